@@ -5,11 +5,12 @@ use std::fmt::Write as _;
 use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use maulstick_rig::Fault;
 use maulstick_rig::files::{allow_overwriting, clear_on_signals};
+use maulstick_types::edits::commands;
 
+use crate::advice;
 use crate::commands::{
-    begin, bench, brush, calibrate, control, demo, devices, endpoint, export, fit, force, import,
-    layers, light, matching, mix, mode, open, painting, paints, render, save_as, schema, surface,
-    take,
+    begin, bench, brush, calibrate, demo, devices, edit, endpoint, export, fit, force, import,
+    light, matching, mix, open, painting, paints, render, save_as, schema, snapshot, take,
 };
 use crate::processes::{self, NodeCommand};
 use crate::up;
@@ -38,26 +39,13 @@ enum Command {
     /// Show or repair takes
     #[command(subcommand)]
     Take(take::TakeCommand),
-    /// Load a brush with paint
-    Load(control::LoadOptions),
-    /// Make a brush stiffer or softer
-    Tune(control::TuneOptions),
-    /// Clean a brush
-    Clean(control::CleanOptions),
+    /// An edit of the painting
+    #[command(flatten)]
+    Edit(edit::EditCommand),
     /// Show or change the light
     Light(light::LightOptions),
-    /// Dry the wet paint into a new layer
-    Dry(layers::DryOptions),
-    /// Make dry layers wet again
-    Wet(layers::WetOptions),
-    /// Make a dry layer more or less opaque
-    Opacity(layers::OpacityOptions),
-    /// Undo the newest step
-    Undo(control::HistoryOptions),
-    /// Redo the newest undone step
-    Redo(control::HistoryOptions),
     /// Write the picture as a file
-    Snapshot(control::SnapshotOptions),
+    Snapshot(snapshot::SnapshotOptions),
     /// Open another painting in the running rig
     Open(open::OpenOptions),
     /// Begin a new painting in the running rig
@@ -81,16 +69,6 @@ enum Command {
     /// Show, export, import, repair, pack painting files; keep versions
     #[command(subcommand)]
     Painting(painting::PaintingCommand),
-    /// Lay a film of wet paint over the canvas
-    Fill(surface::FillOptions),
-    /// Change the ground of the canvas
-    Ground(surface::GroundOptions),
-    /// Change the tooth of the canvas
-    Tooth(surface::ToothOptions),
-    /// Size the canvas
-    Size(mode::SizeOptions),
-    /// Let paint on the palette deplete or last
-    Piles(mode::PilesOptions),
     /// List the paints
     Paints(paints::PaintsOptions),
     /// Mix paints and show their colour
@@ -107,29 +85,38 @@ enum Command {
     Force(force::ForceOptions),
 }
 
-/// The commands as `maulstick --help` lists them.
+/// The commands as `maulstick --help` lists them; those of edits stand before them, as each edit says.
 const GROUPS: &[(&str, &[&str])] = &[
     ("Rig", &["up", "node", "endpoint", "schema"]),
     (
         "Painting",
         &["new", "open", "save-as", "snapshot", "export", "painting"],
     ),
-    ("Paint", &["fill", "undo", "redo"]),
-    ("Canvas", &["ground", "tooth", "size", "light"]),
-    ("Layers", &["dry", "wet", "opacity"]),
-    ("Brush", &["load", "clean", "tune", "piles", "brush"]),
+    ("Paint", &[]),
+    ("Canvas", &["light"]),
+    ("Layers", &[]),
+    ("Brush", &["brush"]),
     ("Colour", &["paints", "mix", "match", "fit"]),
     ("Takes", &["demo", "import", "render", "take"]),
     ("Devices", &["devices", "calibrate", "force"]),
     ("Measure", &["bench"]),
 ];
 
+/// Names of the commands of a group.
+fn in_group<'a>(group: &str, names: &'a [&'a str]) -> Vec<&'a str> {
+    let edits = commands().into_iter().filter(|form| form.group == group);
+    edits
+        .map(|form| form.name)
+        .chain(names.iter().copied())
+        .collect()
+}
+
 /// A command whose help lists its subcommands in [`GROUPS`].
 fn grouped(command: clap::Command) -> clap::Command {
     let mut list = String::new();
     for (group, names) in GROUPS {
         writeln!(list, "{group}:").ok();
-        for name in *names {
+        for name in in_group(group, names) {
             let found = command.find_subcommand(name);
             let about = found.and_then(clap::Command::get_about);
             let about = about.map(ToString::to_string).unwrap_or_default();
@@ -162,6 +149,10 @@ pub fn run() -> Result<i32, Fault> {
         clear_on_signals(crate::EXIT_INTERRUPTED)
             .map_err(|error| Fault::failure(format!("cannot watch for signals: {error}")))?;
     }
+    carry_out(command).map_err(|fault| fault.worded(advice::words))
+}
+
+fn carry_out(command: Command) -> Result<i32, Fault> {
     match command {
         Command::Up(options) => up::run(&options),
         Command::Node(command) => processes::run(&command),
@@ -169,16 +160,9 @@ pub fn run() -> Result<i32, Fault> {
         Command::Import(options) => import::run(&options),
         Command::Demo(options) => demo::run(&options),
         Command::Take(command) => take::run(&command),
-        Command::Load(options) => control::load(&options),
-        Command::Tune(options) => control::tune(&options),
-        Command::Clean(options) => control::clean(&options),
+        Command::Edit(command) => edit::run(&command),
         Command::Light(options) => light::run(&options),
-        Command::Dry(options) => layers::dry(&options),
-        Command::Wet(options) => layers::wet(&options),
-        Command::Opacity(options) => layers::opacity(&options),
-        Command::Undo(options) => control::undo(&options),
-        Command::Redo(options) => control::redo(&options),
-        Command::Snapshot(options) => control::snapshot(&options),
+        Command::Snapshot(options) => snapshot::snapshot(&options),
         Command::Open(options) => open::run(&options),
         Command::New(options) => begin::run(&options),
         Command::SaveAs(options) => save_as::run(&options),
@@ -188,11 +172,6 @@ pub fn run() -> Result<i32, Fault> {
         Command::Schema(options) => schema::run(&options),
         Command::Brush(command) => brush::run(&command),
         Command::Painting(command) => painting::run(&command),
-        Command::Fill(options) => surface::fill(&options),
-        Command::Ground(options) => surface::ground(&options),
-        Command::Tooth(options) => surface::tooth(&options),
-        Command::Size(options) => mode::size(&options),
-        Command::Piles(options) => mode::piles(&options),
         Command::Paints(options) => paints::run(&options),
         Command::Mix(options) => mix::run(&options),
         Command::Match(options) => matching::run(&options),
@@ -205,11 +184,83 @@ pub fn run() -> Result<i32, Fault> {
 
 #[cfg(test)]
 mod tests {
+    use maulstick_types::edits::{self, Edit, Form as _, Relight};
+    use maulstick_types::scene::Light;
+
     use super::*;
+    use crate::lamp::changed;
 
     #[test]
     fn the_command_line_is_consistent() {
         grouped(Cli::command()).debug_assert();
+    }
+
+    /// The edit that a command line means.
+    fn edit_of(arguments: &str) -> Option<Edit> {
+        let words = std::iter::once("maulstick").chain(arguments.split('|'));
+        let matches = grouped(Cli::command()).try_get_matches_from(words);
+        let matches = matches.unwrap_or_else(|error| panic!("{arguments}: {error}"));
+        match Cli::from_arg_matches(&matches).expect("read").command {
+            Command::Edit(command) => Some(command.edit),
+            Command::Brush(brush::BrushCommand::Mode(options)) => Some(options.edit().into()),
+            Command::Painting(painting::PaintingCommand::Versions(options)) => options.edit(),
+            Command::Light(options) => {
+                let light = changed(options.change(), &Light::default()).expect("a light");
+                let expose = false;
+                Some(Relight { light, expose }.into())
+            }
+            _ => None,
+        }
+    }
+
+    /// Edits that only a window asks for: their numbers are found with the pointer.
+    const POINTED_AT: [&str; 3] = ["NameLayer", "Place", "Wells"];
+
+    macro_rules! walk {
+        ($($edit:ident),*) => {
+            #[test]
+            fn each_edit_is_read_from_its_command_line() {
+                let mut without = Vec::new();
+                $(
+                    let example = edits::$edit::example().expect("in range");
+                    match edits::$edit::ARGUMENTS {
+                        Some(arguments) => {
+                            assert_eq!(edit_of(arguments), Some(example.into()), "{arguments}");
+                        }
+                        None => without.push(stringify!($edit)),
+                    }
+                )*
+                without.sort_unstable();
+                assert_eq!(without, POINTED_AT);
+            }
+        };
+    }
+
+    maulstick_types::for_each_edit!(walk);
+
+    #[test]
+    fn what_is_out_of_range_is_rejected_on_the_command_line() {
+        for (arguments, word) in [
+            ("dry|--share|3", "above 0, at most 1"),
+            ("dry|--over|soon", "90s"),
+            ("dry|--share|0.5|--over|90s", "cannot be used with"),
+            ("dry|--region|1,2", "X,Y,WxH"),
+            ("opacity|sky|-1", "0 to 1"),
+            ("fill|Bone Black|--um|9000", "1 to 5000 µm"),
+            ("fill", "MIXTURE"),
+            ("wet|--layers|0", "1.."),
+            ("size|-2", "0 to 1000 µm"),
+            ("tune|--stiffness|99", "0.05 to 20"),
+            ("load|Bone Black=2", "not a number above 0"),
+            ("load|Bone Black|--brush|a/b", "letters, digits"),
+            ("piles|stay", "deplete"),
+            ("brush|mode|spunge", "'sponge'"),
+        ] {
+            let words = std::iter::once("maulstick").chain(arguments.split('|'));
+            let rejected = grouped(Cli::command()).try_get_matches_from(words);
+            let said = rejected.expect_err(arguments).to_string();
+            assert!(said.contains(word), "{arguments}: {said}");
+        }
     }
 
     #[test]
@@ -218,8 +269,7 @@ mod tests {
         let mut commands: Vec<_> = command.get_subcommands().map(|c| c.get_name()).collect();
         let mut listed: Vec<_> = GROUPS
             .iter()
-            .flat_map(|(_, names)| *names)
-            .copied()
+            .flat_map(|(group, names)| in_group(group, names))
             .collect();
         commands.sort_unstable();
         listed.sort_unstable();

@@ -17,7 +17,7 @@ use crate::performance::{PaintingOptions, library_from, painting_setup, refused}
 pub fn wrong(path: &Path, error: &DocumentError) -> Fault {
     let fault = Fault::usage(error.to_string())
         .at(path.display().to_string())
-        .help(error.help());
+        .advise(error.advice());
     let failure = matches!(
         error,
         DocumentError::Full

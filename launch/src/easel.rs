@@ -11,12 +11,14 @@ use maulstick_painting::Sequencer;
 use maulstick_rig::Fault;
 use maulstick_session::{Autosave, Offline};
 use maulstick_types::Mixture;
-use maulstick_types::command::Command;
-use maulstick_types::scene::{BrushHandling, CANVAS};
+use maulstick_types::edits::{Ground, Relight, Tooth, Undo};
+use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::StylusSample;
+use maulstick_types::values::{BrushName, MaterialName};
 
 use crate::duration::time_ns;
 use crate::ground::GroundFile;
+use crate::lamp::changed;
 use crate::performance::refused;
 use crate::script::{Act, Script};
 use crate::tooth::ToothPicture;
@@ -73,29 +75,14 @@ impl<'a> Easel<'a> {
     }
 
     fn act(&mut self, act: Act) -> Result<(), Fault> {
-        let brush = self.offline.brush().to_owned();
         let done = match act {
             Act::Brush(name, file, share) => self.offline.take_up(&name, *file, share),
-            Act::Load(mixture, None) => self.offline.command(Command::Load { brush, mixture }),
-            Act::Load(left, Some(right)) => {
-                let command = Command::LoadBeside { brush, left, right };
-                self.offline.command(command)
+            Act::Edit(mut edit) => {
+                if let Some(brush) = edit.brush_mut() {
+                    *brush = BrushName::new(self.offline.brush())?;
+                }
+                self.offline.edit(*edit).map(drop)
             }
-            Act::Handle(mode, flow, most_m) => {
-                let handling = BrushHandling {
-                    brush,
-                    mode,
-                    flow,
-                    most_m,
-                };
-                self.offline.command(Command::Handle { handling })
-            }
-            Act::FillWith(thickness_m) => self.offline.command(Command::FillWith {
-                surface: CANVAS,
-                brush,
-                thickness_m,
-            }),
-            Act::Clean => self.offline.command(Command::Clean { brush }),
             Act::Take(take, loads) => {
                 let samples = take.samples.iter();
                 let samples: Vec<_> = samples.map(|s| (s.time_ns, s.sample.clone())).collect();
@@ -108,7 +95,7 @@ impl<'a> Easel<'a> {
                     .map(|cells| 1e3 * canvas.cell_m * f64::from(cells));
                 return self.follow(&stroke.samples(size_mm), Vec::new());
             }
-            Act::Ground(file) => return self.prime(file),
+            Act::Ground(file) => return self.prime(&file),
             Act::Tooth(picture) => return self.weave(&picture),
             Act::Wait(ticks) => {
                 self.wait(ticks);
@@ -116,35 +103,24 @@ impl<'a> Easel<'a> {
             }
             Act::Light(change) => {
                 let before = self.offline.painting_mut().scene().light.clone();
-                let light = change.on(&before)?;
+                let light = changed(&change, &before)?;
                 let expose = change.exposure.is_none() && changes_colour(&light, &before);
-                self.offline.command(Command::Relight { light, expose })
+                self.offline.edit(Relight { light, expose }).map(drop)
             }
             Act::Undo(times) => return self.take_back(times),
-            Act::Command(command) => self.offline.command(command),
         };
         done.map_err(refused)?;
         self.keep();
         Ok(())
     }
 
-    fn prime(&mut self, file: GroundFile) -> Result<(), Fault> {
-        let surface = CANVAS;
+    fn prime(&mut self, file: &GroundFile) -> Result<(), Fault> {
         let painting = self.offline.painting_mut();
         let cells = painting.store(CANVAS).map_or([1, 1], TileStore::cells);
-        let command = match file.picture(cells)? {
-            Some(bytes) => {
-                let ground = format!("{IMAGE}{}", self.embed(bytes)?);
-                Command::Ground { surface, ground }
-            }
-            None => match file {
-                GroundFile::Spectrum(spectrum) => Command::GroundSpectrum { surface, spectrum },
-                GroundFile::Named(ground) | GroundFile::Picture(_, ground) => {
-                    Command::Ground { surface, ground }
-                }
-            },
-        };
-        self.offline.command(command).map_err(refused)?;
+        let bytes = file.picture(cells)?.unwrap_or_default();
+        let ground = format!("{IMAGE}{}", self.embed(bytes)?);
+        let edit = Ground::named(CANVAS, &ground)?;
+        self.offline.edit(edit).map_err(refused)?;
         self.keep();
         Ok(())
     }
@@ -153,12 +129,12 @@ impl<'a> Easel<'a> {
         let canvas = &self.offline.painting_mut().scene().surfaces[0];
         let (cells, cell_m) = (canvas.cells, canvas.cell_m);
         let hash = self.embed(picture.png(cells, cell_m)?)?;
-        let command = Command::Tooth {
-            surface: CANVAS,
-            tooth: picture.name(hash, cells, cell_m),
+        let edit = Tooth {
+            tooth: MaterialName::new(picture.name(hash, cells, cell_m))?,
             seed: 1,
+            surface: CANVAS,
         };
-        self.offline.command(command).map_err(refused)?;
+        self.offline.edit(edit).map_err(refused)?;
         self.keep();
         Ok(())
     }
@@ -193,8 +169,8 @@ impl<'a> Easel<'a> {
             return Err(Fault::usage(what).help(help));
         }
         for _ in 0..times {
-            let undo = Command::Undo { brush: None };
-            self.offline.command(undo).map_err(refused)?;
+            let undo = Undo { brush: None };
+            self.offline.edit(undo).map_err(refused)?;
         }
         self.keep();
         Ok(())

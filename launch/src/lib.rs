@@ -27,6 +27,7 @@
 //! | [`paintings`] | the bundled paintings |
 //! | [`performance`] | setup that `render` and `up --play` share: take, brush, loads, canvas |
 
+pub mod advice;
 pub mod attached;
 pub mod backend;
 pub mod cells;

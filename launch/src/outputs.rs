@@ -6,6 +6,7 @@ use maulstick_optics::Illuminant;
 use maulstick_rig::Fault;
 use maulstick_rig::config::{RigConfig, is_path};
 use maulstick_rig::files::{FileId, Kind, check_writable, gives_way, is_companion};
+use maulstick_types::values::WholePath;
 
 use crate::commands::open::whole;
 
@@ -117,7 +118,7 @@ impl Relayed {
     /// # Errors
     /// A [`Fault`] where the path cannot be told as text, or the current folder is gone.
     pub fn new(path: &Path, kind: Kind) -> Result<Self, Fault> {
-        let to = PathBuf::from(whole(path)?);
+        let to = PathBuf::from(whole(path)?.as_str());
         let written = match gives_way(&to, kind) {
             true => to.clone(),
             false => {
@@ -129,9 +130,11 @@ impl Relayed {
     }
 
     /// The name that the node is given.
-    #[must_use]
-    pub fn asked(&self) -> String {
-        self.written.display().to_string()
+    ///
+    /// # Errors
+    /// A [`Fault`] where it cannot be told as text.
+    pub fn asked(&self) -> Result<WholePath, Fault> {
+        whole(&self.written)
     }
 
     /// Gives the file its name once the node has written it, and that name in what the node said.
@@ -143,7 +146,7 @@ impl Relayed {
             std::fs::rename(&self.written, &self.to)
                 .map_err(|error| Fault::writing(&self.to, &error))?;
         }
-        Ok(said.replace(&self.asked(), &self.to.display().to_string()))
+        Ok(said.replace(&*self.asked()?, &self.to.display().to_string()))
     }
 }
 

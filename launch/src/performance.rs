@@ -231,7 +231,7 @@ pub fn mixture_of(text: &str, library: &PaintLibrary) -> Result<Mixture, Fault> 
 /// A refusal of the painting as the user sees it.
 #[must_use]
 pub fn refused(refusal: EditError) -> Fault {
-    Fault::usage(refusal.what).help(refusal.help)
+    Fault::usage(refusal.to_string()).advise(refusal.advice())
 }
 
 /// The measured paints.

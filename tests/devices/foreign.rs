@@ -13,7 +13,7 @@ use glam::{DQuat, DVec3};
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, Class, Queue, Wake};
 use maulstick_num::geometry::{canonical, rotation};
-use maulstick_types::command::{Command as Order, CommandRequest};
+use maulstick_types::command::{CommandRequest, TakeCommand};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
 use maulstick_types::{Flags, Origin, Pose, encode};
@@ -217,7 +217,7 @@ fn hostile_messages_are_counted_and_dropped() {
         client: 1,
         number: 1,
         after: None,
-        command: Order::Mark,
+        command: TakeCommand::Mark.into(),
     };
     let good = encode(&origin, Flags::NONE, 0, 1, 1, &mark).expect("encoded");
     let mut hostile = vec![Vec::new(), vec![0; 7], vec![0xff; 5000]];

@@ -15,6 +15,7 @@
 //! | `background_task` | work on a thread beside the window |
 //! | `spectrum_file` | spectra from CSV files |
 
+mod advice;
 pub mod app;
 mod background_task;
 mod dialogs;

@@ -1,4 +1,4 @@
-//! Motion of the canvas by the free hand: samples of a 6-DOF mouse become [`Command::Place`].
+//! Motion of the canvas by the free hand: samples of a 6-DOF mouse become [`Place`].
 //!
 //! Pushing right and up pans, pushing away from the desk zooms in, turning about the axis out of the desk turns the
 //! canvas; all about the middle of the desk, where the painter looks. The commands go into the journal, so a replay
@@ -16,8 +16,8 @@ use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, Class, Queue, Wake};
 use maulstick_num::exp;
 use maulstick_rig::Fault;
-use maulstick_types::command::Command;
 use maulstick_types::control::ControlSample;
+use maulstick_types::edits::Place;
 use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::topics::Topics;
 
@@ -117,7 +117,7 @@ impl Drop for CanvasMover {
 fn follow(
     heard: &Samples<ControlSample>,
     mut shown: impl FnMut() -> Option<SurfacePlacement>,
-    mut send: impl FnMut(Command) -> Result<(), Fault>,
+    mut send: impl FnMut(Place) -> Result<(), Fault>,
 ) {
     let mut lie: Option<SurfacePlacement> = None;
     while let Ok(mut control) = heard.recv() {
@@ -140,7 +140,7 @@ fn follow(
             };
             let to = pushed(&from, &control, moved.elapsed().min(LONGEST).as_secs_f64());
             moved = Instant::now();
-            match send(to.command(CANVAS)) {
+            match to.edit(CANVAS).map_err(Fault::from).and_then(&mut send) {
                 Ok(()) => lie = Some(to),
                 Err(fault) => tracing::warn!("the canvas is not moved: {}", fault.what),
             }
@@ -185,7 +185,7 @@ mod tests {
         assert!((middle(&now) - middle(&lie())).length() < 1e-12, "{now:?}");
         let quarter = now.pose.vector(DVec3::X);
         assert!(quarter.y < -0.1 && quarter.z == 0.0, "{quarter}");
-        assert_eq!(now.command(CANVAS).check(), Ok(()));
+        assert!(now.edit(CANVAS).is_ok());
     }
 
     #[test]

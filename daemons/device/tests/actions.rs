@@ -13,9 +13,11 @@ use maulstick_bus::{Bus, Class, Faults, MemoryNet, Queue, Wake};
 use maulstick_device::actions::{Actions, Actor};
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::command::Command;
+use maulstick_types::edits::{Clean, Edit, Handle, Place, Undo};
 use maulstick_types::paint::{Entry, JournalEntry};
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE, Scene, Surface};
 use maulstick_types::stylus::{StylusSample, switch};
+use maulstick_types::values::BrushName;
 
 use crate::support::{Live, START_NS};
 
@@ -106,7 +108,7 @@ impl Rig {
     fn modes(&self) -> Vec<BrushMode> {
         let commands = self.commands.iter();
         let modes = commands.filter_map(|command| match command {
-            Command::Handle { handling } => Some(handling.mode.clone()),
+            Command::Edit(Edit::Handle(handle)) => Some(handle.mode.clone()),
             _ => None,
         });
         modes.collect()
@@ -134,13 +136,13 @@ fn undo_takes_the_newest_step_of_its_brush_back_and_clean_cleans_it() {
     hold(&mut actor, 0);
     hold(&mut actor, CLEAN);
     rig.until("a cleaning", |rig| {
-        rig.commands.contains(&Command::Clean {
-            brush: "main".into(),
-        })
+        rig.commands.contains(&Command::from(Clean {
+            brush: BrushName::main(),
+        }))
     });
-    let undone = Command::Undo {
-        brush: Some("main".into()),
-    };
+    let undone = Command::from(Undo {
+        brush: Some(BrushName::main()),
+    });
     assert_eq!(rig.commands.iter().filter(|c| **c == undone).count(), 1);
 }
 
@@ -154,7 +156,10 @@ fn a_brush_picks_while_its_switch_is_held_and_is_used_as_before_then() {
         ..BrushHandling::normal("main")
     };
     let handling = before.clone();
-    rig.live.command(1, Command::Handle { handling });
+    rig.live.command(
+        1,
+        Command::from(Handle::try_from(&handling).expect("in range")),
+    );
     hold(&mut actor, PICK);
     rig.until_mode(&BrushMode::Sampler);
     hold(&mut actor, 0);
@@ -234,7 +239,7 @@ fn what_is_refused_is_told_and_the_next_switch_works() {
     hold(&mut stranger, CLEAN | PICK);
     hold(&mut stranger, PALETTE_SWITCH);
     rig.until("a palette that moves", |rig| rig.commands.len() == 1);
-    assert!(matches!(rig.commands[0], Command::Place { .. }));
+    assert!(matches!(rig.commands[0], Command::Edit(Edit::Place(_))));
 }
 
 #[test]
@@ -294,11 +299,7 @@ fn a_palette_over_a_canvas_that_has_moved_since_goes_back_to_where_it_was() {
     let mut pose = rig.surface(CANVAS).pose;
     pose.position_m[0] += 0.05;
     let (surface, zoom) = (CANVAS, 1.0);
-    let moved = Command::Place {
-        surface,
-        pose: pose.clone(),
-        zoom,
-    };
+    let moved = Command::from(Place::new(surface, pose.clone(), zoom).expect("in reach"));
     rig.live.command(1, moved);
     rig.until("moved", |rig| rig.surface(CANVAS).pose == pose);
     hold(&mut actor, 0);

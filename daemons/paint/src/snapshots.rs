@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 
 use maulstick_appearance::picture::{Depth, Export};
-use maulstick_canvas::EditError;
 use maulstick_exchange::{ExchangeError, write_lit_png};
 use maulstick_files::{Kind, write_whole};
 use maulstick_painting::Painting;
@@ -15,6 +14,7 @@ use maulstick_types::command::Outcome;
 use maulstick_types::scene::CANVAS;
 
 use crate::exporter::{Asker, unwritable};
+use crate::refusal::Refusal;
 
 /// Snapshots that wait, at most: each keeps the tiles that it shows.
 const WAITING: usize = 16;
@@ -23,7 +23,7 @@ const WAITING: usize = 16;
 #[derive(Debug, Default)]
 pub struct Snapshots {
     waiting: VecDeque<Snapshot>,
-    writing: Option<(Asker, JoinHandle<Result<(), EditError>>)>,
+    writing: Option<(Asker, JoinHandle<Result<(), Refusal>>)>,
 }
 
 /// A picture of the canvas and, if asked, the ledger, to be written.
@@ -45,10 +45,10 @@ impl Snapshots {
     /// Adds a snapshot behind those that wait.
     ///
     /// # Errors
-    /// [`EditError`] where too many wait.
-    pub fn add(&mut self, snapshot: Snapshot) -> Result<(), EditError> {
+    /// [`Refusal`] where too many wait.
+    pub fn add(&mut self, snapshot: Snapshot) -> Result<(), Refusal> {
         if self.waiting.len() >= WAITING {
-            return Err(EditError::new(
+            return Err(Refusal::say(
                 format!("{WAITING} pictures wait to be written already"),
                 "ask again when the disk has caught up",
             ));
@@ -73,8 +73,8 @@ impl Snapshots {
                 Ok(Err(refusal)) => Some((asker, refusal)),
                 Err(_) => Some((
                     asker,
-                    EditError::new(
-                        "internal error: the thread that writes pictures panicked".to_owned(),
+                    Refusal::say(
+                        "internal error: the thread that writes pictures panicked",
                         "see the messages of the rig, and report the fault",
                     ),
                 )),
@@ -82,11 +82,11 @@ impl Snapshots {
             None => None,
         };
         let failed = failed.or_else(|| self.begin_next());
-        failed.map(|(asker, EditError { what, help })| (asker, Outcome::Refused { what, help }))
+        failed.map(|(asker, refusal)| (asker, refusal.into()))
     }
 
     /// Begins the next one; on failure says whose.
-    fn begin_next(&mut self) -> Option<(Asker, EditError)> {
+    fn begin_next(&mut self) -> Option<(Asker, Refusal)> {
         if self.writing.is_some() {
             return None;
         }
@@ -100,7 +100,7 @@ impl Snapshots {
             }
             Err(error) => {
                 let what = format!("no picture can be written: {error}");
-                Some((asker, EditError::new(what, "try again")))
+                Some((asker, Refusal::say(what, "try again")))
             }
         }
     }
@@ -119,7 +119,7 @@ impl Drop for Snapshots {
 }
 
 impl Snapshot {
-    fn write(mut self) -> Result<(), EditError> {
+    fn write(mut self) -> Result<(), Refusal> {
         write(&mut self.still, &self.path, self.ledger, &self.export)
             .map_err(|(path, error)| unwritable(&path, &error))
     }

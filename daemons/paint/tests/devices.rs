@@ -8,10 +8,13 @@ use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Receiver, Sender};
 use maulstick_bus::{Class, CreditSender, Faults, MemoryNet, Queue, Wake};
 use maulstick_types::brush::{BrushDef, BrushState};
+use maulstick_types::command::BrushCommand;
 use maulstick_types::command::{Command, Outcome};
+use maulstick_types::edits::{Load, Tune, Undo};
 use maulstick_types::haptics::{ContactModel, ForceLaw};
 use maulstick_types::scene::Tuning;
 use maulstick_types::stylus::{StylusInfo, axes};
+use maulstick_types::values::{BrushName, BrushToml};
 use maulstick_types::{Flags, Origin, name_hash};
 use support::{Device, Live, START_NS, loads, pen, take};
 
@@ -132,10 +135,11 @@ fn two_devices_of_one_number_are_two_devices() {
 #[test]
 fn a_brush_without_a_file_holds_up_no_other() {
     let mut live = live();
-    let load = Command::Load {
-        brush: "main".into(),
+    let load = Command::from(Load {
         mixture: loads()[0].clone(),
-    };
+        beside: None,
+        brush: BrushName::main(),
+    });
     live.command(1, load);
     let (bus, wake) = (live.net.bus(), Wake::new());
     let origin = Origin {
@@ -200,9 +204,11 @@ fn another_brush_is_taken_up_and_a_bad_file_leaves_the_one_in_hand() {
     let topic = live.topics.brush_def("main");
     let mut defs = Receiver::<BrushDef>::new(&bus, &topic, Class::Cached, Queue::Ring(8), &wake)
         .expect("subscribed");
-    let define = |toml: String| Command::Define {
-        brush: "main".into(),
-        toml,
+    let define = |toml: String| {
+        Command::from(BrushCommand::Define {
+            brush: BrushName::main(),
+            toml: BrushToml::new(toml).expect("valid"),
+        })
     };
     let text = BrushFile::library_text("flat").expect("flat").to_owned();
     let misspelt = text.replace("friction =", "frictoin =");
@@ -211,13 +217,14 @@ fn another_brush_is_taken_up_and_a_bad_file_leaves_the_one_in_hand() {
     let negative = text.replace("length_mm = 26.0", "length_mm = -26.0");
     let said = tell_brush(&mut live, 2, define(negative)).expect("refused");
     assert!(said.contains("head.length_mm"), "{said}");
-    let said = tell_brush(&mut live, 3, Command::Undo { brush: None }).expect("refused");
+    let said = tell_brush(&mut live, 3, Command::from(Undo { brush: None })).expect("refused");
     assert!(said.contains("no matter"), "{said}");
     let mut mouse = live.device("mouse", 5);
-    let load = Command::Load {
-        brush: "main".into(),
+    let load = Command::from(Load {
         mixture: loads()[0].clone(),
-    };
+        beside: None,
+        brush: BrushName::main(),
+    });
     live.command(4, load);
     let mut paint = |live: &mut Live, y: f64| {
         for step in 0..20 {
@@ -280,7 +287,7 @@ fn a_softer_brush_pushes_back_less() {
         stiffness: 1.0,
         wetness: 1.0,
     };
-    live.command(1, Command::Tune { tuning });
+    live.command(1, Command::from(Tune::try_from(&tuning).expect("in range")));
     let soft = felt(&mut live);
     assert!(
         soft < 0.7 * stiff && soft > 0.3 * stiff,

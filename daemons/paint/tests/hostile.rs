@@ -4,9 +4,12 @@ mod support;
 
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Class, Faults, MemoryNet, Queue, Wake};
-use maulstick_types::command::{Command, Outcome};
+use maulstick_types::command::{Command, Outcome, RigCommand, TakeCommand};
+use maulstick_types::edits::{Dry, Load, Place};
 use maulstick_types::paint::JournalEntry;
-use maulstick_types::{Message as _, Mixture};
+use maulstick_types::scene::CANVAS;
+use maulstick_types::values::{BrushName, WholePath};
+use maulstick_types::{Message as _, Mixture, Pose, Region};
 use support::{Live, START_NS};
 
 fn live() -> Live {
@@ -14,26 +17,62 @@ fn live() -> Live {
 }
 
 #[test]
-fn a_text_too_long_to_be_answered_is_refused_in_short() {
+fn what_is_out_of_range_is_answered_in_short_with_the_reason() {
     let mut live = live();
-    let long = "x".repeat(70_000);
-    let (path, brush) = (long.clone(), long.clone());
+    let pose = Pose {
+        position_m: [1e30, 0.0, 0.0],
+        ..Pose::IDENTITY
+    };
+    let place = Place::new(CANVAS, Pose::IDENTITY, 1.0).expect("in reach");
+    let empty = Region {
+        corner_m: [0.0; 2],
+        size_m: [0.0, f64::NAN],
+    };
     let hostile = [
-        Command::Clean { brush },
-        Command::Snapshot { path, ledger: None },
-        Command::Load {
-            brush: "main".into(),
-            mixture: Mixture::pure(&long),
-        },
+        (
+            Command::from(Load {
+                mixture: Mixture::pure(&"x".repeat(70_000)),
+                beside: None,
+                brush: BrushName::main(),
+            }),
+            "70000 bytes",
+        ),
+        (Place { pose, ..place }.into(), "desk's origin"),
+        (
+            Dry {
+                region: Some(empty),
+                ..Dry::whole(CANVAS)
+            }
+            .into(),
+            "X,Y,WxH",
+        ),
     ];
-    for (number, command) in hostile.into_iter().enumerate() {
+    for (number, (command, word)) in hostile.into_iter().enumerate() {
         let outcome = live.ask("paint", number as u64 + 1, command);
         assert!(
-            matches!(&outcome, Outcome::Refused { what, .. } if what.contains("70000 bytes")),
+            matches!(&outcome, Outcome::Refused { what, .. } if what.contains(word) && what.len() < 300),
             "{outcome:?}"
         );
     }
-    live.command(9, Command::Mark);
+    live.command(9, Command::from(TakeCommand::Mark));
+}
+
+#[test]
+fn a_command_for_another_node_is_refused_by_name() {
+    let mut live = live();
+    for node in ["paint", "main"] {
+        let open = RigCommand::Open {
+            path: WholePath::new("/a.maul").expect("whole"),
+            forget: false,
+        };
+        let outcome = live.ask(node, 1, open.into());
+        let Outcome::Refused { advice, .. } = outcome else {
+            panic!("{outcome:?}");
+        };
+        assert!(advice.to_string().contains("'rig'"), "{advice}");
+    }
+    let outcome = live.ask("main", 2, Dry::whole(CANVAS).into());
+    assert!(matches!(outcome, Outcome::Refused { .. }), "{outcome:?}");
 }
 
 #[test]
@@ -44,17 +83,17 @@ fn the_largest_command_fits_into_the_journal() {
     let mut journal =
         Receiver::<JournalEntry>::new(&bus, &topic, Class::Data, Queue::Ring(64), &wake)
             .expect("subscribed");
-    // A load is 34 bytes and the length of its name; the rest of the command is 49.
+    // A load is 34 bytes and the length of its name; the rest of the command is 53.
     let load = Mixture::pure("Bone Black");
     let limit = maulstick_types::command::CommandRequest::MAX_BYTES;
-    let loads = vec![load; (limit - 49) / 34];
-    let command = Command::Take {
-        brush: "main".into(),
+    let loads = vec![load; (limit - 53) / 34];
+    let command = Command::from(TakeCommand::Begin {
+        brush: BrushName::main(),
         device: 1,
         device_epoch: 1,
         loads,
         again: false,
-    };
+    });
     live.command(1, command);
     live.net.advance(1_000_000);
     let entries: Vec<JournalEntry> =

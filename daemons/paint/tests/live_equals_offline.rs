@@ -10,6 +10,8 @@ use maulstick_bus::{Bus, Faults, MemoryNet};
 use maulstick_painting::picture::picture;
 use maulstick_session::Offline;
 use maulstick_types::command::Command;
+use maulstick_types::edits::Load;
+use maulstick_types::values::BrushName;
 use maulstick_types::{Flags, Origin, name_hash};
 use proptest::prelude::*;
 use support::{Device, Live, START_NS, file, loads, offline, painting, pen, settings, take, turns};
@@ -187,10 +189,11 @@ fn a_live_brush_merges_while_paint_is_busy_and_keeps_the_path() {
     let mut live = Live::new(MemoryNet::new(1, START_NS, Faults::default()));
     live.command(
         1,
-        Command::Load {
-            brush: "main".into(),
+        Command::from(Load {
             mixture: loads()[0].clone(),
-        },
+            beside: None,
+            brush: BrushName::main(),
+        }),
     );
     let samples = take();
     let mut states = 0;
@@ -223,11 +226,12 @@ fn a_live_brush_merges_while_paint_is_busy_and_keeps_the_path() {
     );
     let merged = live.paint.painting_mut().report();
     let mut offline = Offline::new(painting(), "main", file(), 0.5, Vec::new()).expect("set up");
-    let load = Command::Load {
-        brush: "main".into(),
+    let load = Load {
         mixture: loads()[0].clone(),
+        beside: None,
+        brush: BrushName::main(),
     };
-    offline.command(load).expect("loaded");
+    offline.edit(load).expect("loaded");
     for (time_ns, sample) in &samples {
         offline.sample(START_NS + time_ns, sample).expect("painted");
     }
@@ -243,10 +247,11 @@ fn a_live_brush_merges_while_paint_is_busy_and_keeps_the_path() {
 /// Paint that has its turn each so many samples: its steps, cells covered, and how much longer steps ever were.
 fn painted_late(every: usize) -> (u64, u64, u32) {
     let mut live = Live::new(MemoryNet::new(1, START_NS, Faults::default()));
-    let load = Command::Load {
-        brush: "main".into(),
+    let load = Command::from(Load {
         mixture: loads()[0].clone(),
-    };
+        beside: None,
+        brush: BrushName::main(),
+    });
     live.command(1, load);
     let mut mouse = live.device("mouse", 5);
     let mut longest = 1;

@@ -6,7 +6,9 @@ use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Class, Faults, MemoryNet, Queue, Wake};
 use maulstick_types::brush::BrushState;
 use maulstick_types::command::Command;
+use maulstick_types::edits::{Load, Place};
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::BrushName;
 use support::{Device, Live, START_NS, loads, painting, pen};
 
 /// Time of a turn, ns.
@@ -64,11 +66,7 @@ fn what_was_painted_before_a_canvas_is_moved_stays_where_it_was_painted() {
     pose.position_m[1] += MOVED_M;
     live.command(
         1,
-        Command::Place {
-            surface: CANVAS,
-            pose,
-            zoom: 1.0,
-        },
+        Command::from(Place::new(CANVAS, pose, 1.0).expect("in reach")),
     );
     lifted(&mut live, &mut mouse);
     let [[left, right], [low, high]] = lies(&mut states);
@@ -106,18 +104,17 @@ fn a_device_is_told_of_its_samples_once_they_are_solved() {
 fn covered(zoom: Option<Zoomed>) -> u64 {
     let mut live = Live::new(MemoryNet::new(1, START_NS, Faults::default()));
     let mut mouse = live.device("mouse", 5);
-    let load = Command::Load {
-        brush: "main".into(),
+    let load = Command::from(Load {
         mixture: loads()[0].clone(),
-    };
+        beside: None,
+        brush: BrushName::main(),
+    });
     live.command(1, load);
     live.net.advance(MILLISECOND);
     live.brush.turn().expect("turned");
-    let larger = Command::Place {
-        surface: CANVAS,
-        pose: painting().scene().surfaces[0].pose.clone(),
-        zoom: 1.3,
-    };
+    let larger = Command::from(
+        Place::new(CANVAS, painting().scene().surfaces[0].pose.clone(), 1.3).expect("in reach"),
+    );
     if zoom == Some(Zoomed::Before) {
         live.command(2, larger.clone());
         live.net.advance(MILLISECOND);
@@ -129,11 +126,7 @@ fn covered(zoom: Option<Zoomed>) -> u64 {
         let pose = painting().scene().surfaces[0].pose.clone();
         live.command(
             3,
-            Command::Place {
-                surface: CANVAS,
-                pose,
-                zoom: 1.0,
-            },
+            Command::from(Place::new(CANVAS, pose, 1.0).expect("in reach")),
         );
     } else if zoom == Some(Zoomed::Meanwhile) {
         live.command(2, larger);

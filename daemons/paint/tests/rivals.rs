@@ -7,9 +7,11 @@ use maulstick_bus::typed::{Receiver, Sender};
 use maulstick_bus::{Bus, Class, Faults, MemoryNet, Queue, Wake};
 use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::command::Command;
+use maulstick_types::edits::Load;
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::Scene;
 use maulstick_types::stylus::StylusSample;
+use maulstick_types::values::BrushName;
 use maulstick_types::{Flags, Message, Origin, encode, name_hash};
 use support::{Device, Live, START_NS, loads, pen};
 
@@ -29,10 +31,11 @@ struct Rig {
 impl Rig {
     fn new() -> Self {
         let mut live = Live::new(MemoryNet::new(1, START_NS, Faults::default()));
-        let load = Command::Load {
-            brush: "main".into(),
+        let load = Command::from(Load {
             mixture: loads()[0].clone(),
-        };
+            beside: None,
+            brush: BrushName::main(),
+        });
         live.command(1, load);
         let mouse = live.device("mouse", 5);
         let mut rig = Self {

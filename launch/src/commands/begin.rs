@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use maulstick_rig::Fault;
 use maulstick_rig::config::{CanvasSection, is_path};
-use maulstick_types::command::{Command, NewCanvas};
+use maulstick_types::command::{NewCanvas, RigCommand};
+use maulstick_types::values::MaterialName;
 
 use super::open::{LONGEST, whole};
 use crate::commands::say;
-use crate::commands::session::{RIG, Session, Target};
+use crate::commands::session::{Session, Target};
 
 /// Options of `maulstick new`.
 #[derive(Args, Clone, Debug)]
@@ -59,24 +60,25 @@ pub fn run(options: &NewOptions) -> Result<i32, Fault> {
     let usual = CanvasSection::default();
     let usual_cm = [usual.width_mm, usual.height_mm].map(|mm| mm * 0.1);
     let [width, height] = options.cm.unwrap_or(usual_cm);
-    let command = Command::New {
-        path: options.file.as_deref().map(whole).transpose()?,
-        canvas: NewCanvas {
-            width_m: width * 1e-2,
-            height_m: height * 1e-2,
-            cell_m: 1e-3 / options.cells_per_mm,
-            ground: match is_path(&options.ground) {
-                true => whole(Path::new(&options.ground))?,
-                false => options.ground.clone(),
-            },
-            tooth: options.tooth.clone(),
-            tooth_seed: options.seed,
-            stain_m: usual.stain_um * 1e-6,
+    let canvas = NewCanvas {
+        width_m: width * 1e-2,
+        height_m: height * 1e-2,
+        cell_m: 1e-3 / options.cells_per_mm,
+        ground: match is_path(&options.ground) {
+            true => MaterialName::new(whole(Path::new(&options.ground))?)?,
+            false => MaterialName::new(&*options.ground)?,
         },
+        tooth: MaterialName::new(&*options.tooth)?,
+        tooth_seed: options.seed,
+        stain_m: usual.stain_um * 1e-6,
+    };
+    canvas.check()?;
+    let command = RigCommand::New {
+        path: options.file.as_deref().map(whole).transpose()?,
+        canvas,
         forget: options.forget,
     };
-    command.check().map_err(Fault::told)?;
-    let done = Session::open(&options.target)?.send_within(RIG, command, LONGEST)?;
+    let done = Session::open(&options.target)?.send_within(command, LONGEST)?;
     say!("{done}");
     Ok(0)
 }

@@ -13,7 +13,7 @@ use maulstick_rig::Fault;
 use maulstick_rig::config::BrushSection;
 use maulstick_rig::config::toml_fault;
 use maulstick_rig::files::{Kind, check_writable, write_whole};
-use maulstick_types::command::Command;
+use maulstick_types::values::{BrushName, BrushToml};
 use serde_json::json;
 
 use crate::cells::SheetCells;
@@ -181,11 +181,11 @@ fn take_up(options: &TakeOptions) -> Result<i32, Fault> {
     let toml = brush_file(&section)?
         .to_toml()
         .map_err(|error| Fault::failure(error.to_string()))?;
-    let command = Command::Define {
-        brush: options.brush.clone(),
-        toml,
+    let command = maulstick_types::command::BrushCommand::Define {
+        brush: BrushName::new(&*options.brush)?,
+        toml: BrushToml::new(toml)?,
     };
-    Session::command(&options.target, &options.brush, command)?;
+    Session::command(&options.target, command)?;
     Ok(0)
 }
 

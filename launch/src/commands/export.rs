@@ -7,13 +7,14 @@ use maulstick_exchange::Format;
 use maulstick_paint_node::exporter::kind_of;
 use maulstick_rig::Fault;
 use maulstick_rig::files::Kind;
-use maulstick_types::command::{Command, ExportOrder};
+use maulstick_types::command::{ExportOrder, FileCommand, png_bits};
 use maulstick_types::scene::{CANVAS, PALETTE};
+use maulstick_types::values::ValueError;
 
 use super::open::LONGEST;
 use super::painting::formats;
 use crate::commands::say;
-use crate::commands::session::{PAINT, Session, Target};
+use crate::commands::session::{Session, Target};
 use crate::outputs::{Relayed, UsedFile, check_outputs, named_by};
 
 /// Options of `maulstick export`.
@@ -32,7 +33,7 @@ pub struct ExportOptions {
     #[arg(long)]
     palette: bool,
     /// Bits per channel of a PNG: 8, 16
-    #[arg(long, default_value_t = 8)]
+    #[arg(long, default_value = "8", value_parser = bits)]
     bits: u32,
     /// Colour profile of a PNG: srgb, display-p3 [default: that of the rig]
     #[arg(long, value_name = "PROFILE")]
@@ -53,6 +54,10 @@ pub struct ExportOptions {
     target: Target,
 }
 
+fn bits(text: &str) -> Result<u32, ValueError> {
+    png_bits(text.parse().unwrap_or(0))
+}
+
 /// Has the painting written as it is now.
 ///
 /// # Errors
@@ -60,7 +65,7 @@ pub struct ExportOptions {
 pub fn run(options: &ExportOptions) -> Result<i32, Fault> {
     let session = Session::open(&options.target)?;
     let Some(file) = &options.file else {
-        session.send(PAINT, Command::StopExport)?;
+        session.send(FileCommand::StopExport)?;
         return Ok(0);
     };
     let config = session.config()?;
@@ -77,21 +82,18 @@ pub fn run(options: &ExportOptions) -> Result<i32, Fault> {
     let kind = format.map_or(Kind::Png, kind_of);
     check_outputs(&[UsedFile::new("the export", file).of(kind)], &inputs)?;
     let file = Relayed::new(file, kind)?;
-    let command = Command::Export {
-        order: ExportOrder {
-            format: options.format.clone().unwrap_or_default(),
-            surface: if options.palette { PALETTE } else { CANVAS },
-            bits: options.bits,
-            base_m: options.base_mm * 1e-3,
-            exaggeration: options.exaggeration,
-            step: options.step.unwrap_or(0),
-            profile: options.profile.clone().unwrap_or_default(),
-            gamut: options.gamut.clone().unwrap_or_default(),
-            ..ExportOrder::to(&file.asked())
-        },
-    };
-    command.check().map_err(Fault::told)?;
-    let done = session.send_within(PAINT, command, LONGEST)?;
+    let command = FileCommand::Export(ExportOrder {
+        format: options.format.clone().unwrap_or_default(),
+        surface: if options.palette { PALETTE } else { CANVAS },
+        bits: options.bits,
+        base_m: options.base_mm * 1e-3,
+        exaggeration: options.exaggeration,
+        step: options.step.unwrap_or(0),
+        profile: options.profile.clone().unwrap_or_default(),
+        gamut: options.gamut.clone().unwrap_or_default(),
+        ..ExportOrder::to(file.asked()?)
+    });
+    let done = session.send_within(command, LONGEST)?;
     say!("{}", file.arrive(&done)?);
     Ok(0)
 }

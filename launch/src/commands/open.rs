@@ -5,10 +5,11 @@ use std::time::Duration;
 
 use clap::Args;
 use maulstick_rig::Fault;
-use maulstick_types::command::Command;
+use maulstick_types::command::RigCommand;
+use maulstick_types::values::WholePath;
 
 use crate::commands::say;
-use crate::commands::session::{RIG, Session, Target};
+use crate::commands::session::{Session, Target};
 
 /// Longest wait for a painting to be open: its last journal records may have to be done again.
 pub(super) const LONGEST: Duration = Duration::from_secs(3600);
@@ -29,13 +30,14 @@ pub struct OpenOptions {
 ///
 /// # Errors
 /// A [`Fault`] if there is none, or if it is not UTF-8, as messages are.
-pub(crate) fn whole(path: &Path) -> Result<String, Fault> {
+pub(crate) fn whole(path: &Path) -> Result<WholePath, Fault> {
     let whole = std::path::absolute(path).map_err(|error| Fault::reading(path, &error))?;
-    whole.into_os_string().into_string().map_err(|name| {
+    let text = whole.into_os_string().into_string().map_err(|name| {
         Fault::usage("this path is not UTF-8")
             .at(name.display().to_string())
             .help("give the file, or the folder that it is in, another name")
-    })
+    })?;
+    Ok(WholePath::new(text)?)
 }
 
 /// Goes on in another painting.
@@ -43,12 +45,11 @@ pub(crate) fn whole(path: &Path) -> Result<String, Fault> {
 /// # Errors
 /// A [`Fault`] where it cannot be opened, or where no rig runs.
 pub fn run(options: &OpenOptions) -> Result<i32, Fault> {
-    let command = Command::Open {
+    let command = RigCommand::Open {
         path: whole(&options.file)?,
         forget: options.forget,
     };
-    command.check().map_err(Fault::told)?;
-    let done = Session::open(&options.target)?.send_within(RIG, command, LONGEST)?;
+    let done = Session::open(&options.target)?.send_within(command, LONGEST)?;
     say!("{done}");
     Ok(0)
 }

@@ -19,7 +19,7 @@ use crate::easel::Easel;
 use crate::kit::use_kit;
 use crate::outputs::{UsedFile, check_apart, check_outputs, named_by};
 use crate::performance::{PaintingOptions, brush_file, library_from, painting_setup, refused};
-use crate::script::{Act, Script, in_steps};
+use crate::script::{Act, Script, advice};
 
 /// Options of `maulstick render`.
 #[derive(Args, Clone, Debug)]
@@ -196,7 +196,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     let painted = easel
         .follow_script(script)
         .map_err(|fault| match options.script {
-            Some(_) => in_steps(fault),
+            Some(_) => fault.worded(advice::words),
             None => fault,
         });
     let mut offline = easel.offline;

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use maulstick_rig::Fault;
-use maulstick_types::command::Command;
+use maulstick_types::command::{RigCommand, SaveAs};
 
 use super::open::{LONGEST, whole};
 use crate::commands::say;
-use crate::commands::session::{RIG, Session, Target};
+use crate::commands::session::{Session, Target};
 
 /// Options of `maulstick save-as`.
 #[derive(Args, Clone, Debug)]
@@ -27,12 +27,11 @@ pub struct SaveAsOptions {
 /// # Errors
 /// A [`Fault`] where it cannot be written there, or where no rig runs.
 pub fn run(options: &SaveAsOptions) -> Result<i32, Fault> {
-    let command = Command::SaveAs {
+    let command = RigCommand::SaveAs(SaveAs {
         path: whole(&options.file)?,
         replace: options.replace,
-    };
-    command.check().map_err(Fault::told)?;
-    let done = Session::open(&options.target)?.send_within(RIG, command, LONGEST)?;
+    });
+    let done = Session::open(&options.target)?.send_within(command, LONGEST)?;
     say!("{done}");
     Ok(0)
 }

@@ -22,10 +22,6 @@ pub struct Target {
     name: String,
 }
 
-/// The node that does what concerns the painting.
-pub const PAINT: &str = "paint";
-/// Name of the launcher, which carries out commands to the rig as a whole.
-pub const RIG: &str = "rig";
 /// Longest wait for the answer of a node.
 const PATIENCE: Duration = Duration::from_secs(10);
 
@@ -65,13 +61,12 @@ impl Session {
         RigConfig::read(&self.folder.join(CONFIG_FILE))
     }
 
-    /// Sends a command to a node of the rig that `target` names, once it is checked; returns what the node says.
+    /// Sends a command to its node of the rig that `target` names; returns what the node says.
     ///
     /// # Errors
-    /// A [`Fault`] of the command, where no rig runs, or in the node's own words.
-    pub fn command(target: &Target, node: &str, command: Command) -> Result<String, Fault> {
-        command.check().map_err(Fault::told)?;
-        Self::open(target)?.send(node, command)
+    /// A [`Fault`] where no rig runs, or with the node's refusal.
+    pub fn command(target: &Target, command: impl Into<Command>) -> Result<String, Fault> {
+        Self::open(target)?.send(command)
     }
 
     /// The topics of the rig.
@@ -86,27 +81,28 @@ impl Session {
         self.bus.now_ns()
     }
 
-    /// Sends a command to a node; returns what it says.
+    /// Sends a command to its node; returns what it says.
     ///
     /// # Errors
-    /// A [`Fault`] in the node's own words.
-    pub fn send(&self, node: &str, command: Command) -> Result<String, Fault> {
-        self.send_within(node, command, PATIENCE)
+    /// A [`Fault`] with the node's refusal.
+    pub fn send(&self, command: impl Into<Command>) -> Result<String, Fault> {
+        self.send_within(command, PATIENCE)
     }
 
     /// The same of a command that may take as long as `limit`.
     ///
     /// # Errors
-    /// A [`Fault`] in the node's own words.
+    /// A [`Fault`] with the node's refusal.
     pub fn send_within(
         &self,
-        node: &str,
-        command: Command,
+        command: impl Into<Command>,
         limit: Duration,
     ) -> Result<String, Fault> {
+        let command = command.into();
+        let node = command.node().to_owned();
         let bus = Arc::clone(&self.bus) as Arc<dyn Bus>;
         let is_gone = || RigFolder::join_at(&self.folder).is_err();
-        Commander::of(bus, &self.topics, node).send(command, None, limit, &is_gone)
+        Commander::of(bus, &self.topics, &node).send(command, None, limit, &is_gone)
     }
 
     /// Sends a node a query of its own.

@@ -11,24 +11,21 @@ use maulstick_painting::setup::relief_called;
 use maulstick_rig::Fault;
 use maulstick_rig::config::{BrushSection, is_path};
 use maulstick_types::advice::choice;
-use maulstick_types::command::Command;
+use maulstick_types::edits::{Edit, Form, Ground, LightChange, Tooth};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::topics::check_name;
+use serde::Deserialize as _;
 
 use super::Act;
 use super::entries::file;
 use super::steps::Step;
 use super::stroke::{Stroke, Turn};
-use crate::commands::mode::handling;
-use crate::duration::ticks_in;
 use crate::ground::GroundFile;
-use crate::lamp::LightChange;
+use crate::lamp::changed;
 use crate::outputs::UsedFile;
 use crate::performance::{brush_file, mixture_of, refused};
 use crate::tooth::ToothPicture;
 
-/// Thickness of a film for which nothing is said, µm.
-const FILM_UM: f64 = 50.0;
 /// Lean of a stroke's handle for which nothing is said, degrees.
 const LEAN_DEG: f64 = 25.0;
 /// Speed of a stroke for which nothing is said, mm/s.
@@ -37,29 +34,38 @@ const SPEED_MM_S: f64 = 120.0;
 const FARTHEST_MM: f64 = 5000.0;
 /// No stroke takes longer, s.
 const LONGEST_S: f64 = 600.0;
-/// The keys of a light.
-const LIGHT: [&str; 10] = [
-    "illuminant",
-    "direction",
-    "intensity",
-    "exposure",
-    "relief",
-    "softness",
-    "observer",
-    "rule",
-    "samples",
-    "adapted",
-];
+/// Reads an edit. Its paints are spelt as the library does.
+pub(super) fn edit<E: Form>(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, Fault> {
+    if step.kind.form.switch {
+        switched_on(step)?;
+    }
+    let mut edit: Edit = step.keys.read(E::read_step)?.into();
+    edit.check_idle()?;
+    for mixture in edit.mixtures_mut() {
+        let known = library.check(mixture);
+        *mixture = known.map_err(|error| refused(maulstick_painting::paint_error(error)))?;
+    }
+    Ok(Act::Edit(Box::new(edit)))
+}
 
-pub(super) fn command(command: Command) -> Result<Act, Fault> {
-    command.check().map_err(Fault::told)?;
-    Ok(Act::Command(command))
+/// Steps taken back.
+#[derive(serde::Deserialize)]
+struct UndoStep {
+    undo: u32,
+}
+
+pub(super) fn undo(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
+    let UndoStep { undo } = step.keys.read(UndoStep::deserialize)?;
+    match undo {
+        0 => Err(Fault::usage("an undo of 0 steps does nothing").help("leave it out")),
+        times => Ok(Act::Undo(times)),
+    }
 }
 
 /// The file that a step names, if it names one.
 pub(super) fn file_of(step: &Step<'_>) -> Result<Option<UsedFile>, Fault> {
     let keys = &step.keys;
-    let does = step.kind.does;
+    let does = step.kind.form.key;
     let what = format!("the {does} at {}", step.place());
     Ok(match does {
         "take" => {
@@ -80,7 +86,7 @@ pub(super) fn file_of(step: &Step<'_>) -> Result<Option<UsedFile>, Fault> {
 }
 
 pub(super) fn switched_on(step: &Step<'_>) -> Result<(), Fault> {
-    match step.due(step.keys.switch(step.kind.does)?)? {
+    match step.due(step.keys.switch(step.kind.form.key)?)? {
         true => Ok(()),
         false => Err(Fault::usage("a step that is 'false' does nothing").help("leave it out")),
     }
@@ -110,34 +116,6 @@ pub(super) fn brush(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
         .help("give the file another name")
     })?;
     Ok(Act::Brush(section.name, Box::new(head), depth_share))
-}
-
-pub(super) fn load(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, Fault> {
-    let mixture = step.due(step.mixture("load", library)?)?;
-    Ok(Act::Load(mixture, step.mixture("beside", library)?))
-}
-
-pub(super) fn mode(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
-    let keys = &step.keys;
-    let (flow, most_um) = (keys.number("flow")?, keys.number("most_um")?);
-    let handling = handling("brush", step.due(keys.text("mode")?)?, flow, most_um)?;
-    Ok(Act::Handle(handling.mode, handling.flow, handling.most_m))
-}
-
-pub(super) fn film_m(step: &Step<'_>) -> Result<f64, Fault> {
-    Ok(step.keys.number("um")?.unwrap_or(FILM_UM) * 1e-6)
-}
-
-pub(super) fn fill_with_brush(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
-    switched_on(step)?;
-    let thickness_m = film_m(step)?;
-    // The brush in hand is known only when the step comes.
-    command(Command::FillWith {
-        surface: CANVAS,
-        brush: "brush".to_owned(),
-        thickness_m,
-    })?;
-    Ok(Act::FillWith(thickness_m))
 }
 
 pub(super) fn take(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, Fault> {
@@ -235,66 +213,6 @@ pub(super) fn stroke(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
     Ok(Act::Stroke(stroke))
 }
 
-/// A drying at once, or over a time.
-pub(super) fn dry(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
-    let (keys, surface) = (&step.keys, CANVAS);
-    let share = step.due(keys.number("dry")?)? as f32;
-    let name = keys.word("layer")?.unwrap_or_default();
-    let region = step.region()?;
-    let Some(time) = keys.text("over")? else {
-        return command(match region {
-            None => Command::Dry {
-                surface,
-                share,
-                name,
-            },
-            Some(region) => Command::DryRegion {
-                surface,
-                share,
-                name,
-                region,
-            },
-        });
-    };
-    if share != 1.0 {
-        return Err(Fault::usage("over a time all that is wet dries")
-            .help("{ dry = 1.0, over = \"90s\" }; a `stop_drying` leaves the rest wet"));
-    }
-    command(Command::DryOver {
-        surface,
-        ticks: ticks_in(time).map_err(Fault::told)?,
-        name,
-        region,
-    })
-}
-
-pub(super) fn wet(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
-    let layers = step.due(step.keys.word("wet")?)?;
-    let layers = match layers.parse() {
-        Ok(count) if count > 0 => count,
-        // As commands have it.
-        _ if layers == "all" => 0,
-        _ => {
-            let what =
-                format!("'wet' takes how many of the newest layers, or \"all\", not {layers}");
-            return Err(Fault::usage(what));
-        }
-    };
-    command(Command::Wet {
-        surface: CANVAS,
-        layers,
-        region: step.region()?,
-    })
-}
-
-pub(super) fn opacity(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
-    let opacity = step.due(step.keys.number("opacity")?)? as f32;
-    let Some(layer) = step.keys.word("layer")? else {
-        return Err(Fault::usage("no layer is named"));
-    };
-    command(Command::LayerOpacity { layer, opacity })
-}
-
 /// True if a name refers to something stored in a painting: only the painting can tell.
 fn is_held(name: &str) -> bool {
     name.starts_with(IMAGE) || name.starts_with(SPECTRUM)
@@ -304,22 +222,26 @@ pub(super) fn ground(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
     let name = step.keys.beside(step.due(step.keys.text("ground")?)?);
     let ground = GroundFile::read(&name);
     let ground = step.keys.named("ground", file(&name), ground)?;
-    match &ground {
-        GroundFile::Named(name) if !is_held(name) => {
-            check_ground(name, &Assets::default()).map_err(refused)?;
+    let edit = match &ground {
+        GroundFile::Named(name) => {
+            if !is_held(name) {
+                check_ground(name, &Assets::default()).map_err(refused)?;
+            }
+            Ground::named(CANVAS, name)?
         }
-        _ => {}
-    }
-    Ok(Act::Ground(ground))
+        GroundFile::Spectrum(csv) => Ground::spectrum(CANVAS, csv)?,
+        GroundFile::Picture(..) => return Ok(Act::Ground(ground)),
+    };
+    Ok(Act::Edit(Box::new(edit.into())))
 }
 
 pub(super) fn tooth(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
     let keys = &step.keys;
     let tooth = keys.beside(step.due(keys.text("tooth")?)?);
-    let seed: Option<u64> = keys.whole("seed")?;
+    let seed = keys.is_given("seed");
     let sizes = [keys.number("width_mm")?, keys.number("depth_um")?];
     if is_path(&tooth) {
-        if seed.is_some() {
+        if seed {
             return Err(keys
                 .fault("seed", "'seed' does nothing beside a picture")
                 .help("a picture's tooth is the picture: leave it out"));
@@ -337,54 +259,31 @@ pub(super) fn tooth(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
                 .help("it is for a picture's, such as { tooth = \"weave.png\", width_mm = 60 }"));
         }
     }
-    let seed = seed.unwrap_or(1);
-    if !is_held(&tooth) {
+    let edit: Tooth = step.keys.read(Form::read_step)?;
+    if !is_held(&edit.tooth) {
         let cell_m = PaintingSetup::default().cell_m;
-        relief_called(&tooth, seed, cell_m, &Assets::default()).map_err(refused)?;
+        relief_called(&edit.tooth, edit.seed, cell_m, &Assets::default()).map_err(refused)?;
     }
-    command(Command::Tooth {
-        surface: CANVAS,
-        tooth,
-        seed,
-    })
+    Ok(Act::Edit(Box::new(edit.into())))
 }
 
 pub(super) fn light(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
     let keys = step.due(step.keys.table("light")?)?;
-    let given = keys.keys();
-    if let Some(key) = given.iter().find(|key| !LIGHT.contains(key)) {
-        let fault = keys.fault(key, format!("a light has no key '{key}'"));
-        return Err(fault.help(choice(key, LIGHT)));
-    }
-    if given.is_empty() {
+    if keys.keys().is_empty() {
         return Err(Fault::usage(
             "a light of which nothing is said changes nothing",
         ));
     }
-    let illuminant = keys.text("illuminant")?.map(|name| keys.beside(name));
-    let rule = keys.text("rule")?.map(str::to_owned);
-    let change = LightChange {
-        illuminant,
-        direction: keys.three("direction")?,
-        intensity: keys.number("intensity")?,
-        exposure: keys.number("exposure")?,
-        relief: keys.number("relief")?,
-        softness: keys.number("softness")?,
-        observer: keys.whole("observer")?,
-        samples: keys.whole("samples")?,
-        adapted: keys.switch("adapted")?,
-        rule,
-    };
-    if change.rule.as_deref() == Some("reference") && change.samples.is_some() {
-        return Err(keys
-            .fault(
-                "samples",
-                "'samples' does nothing beside the rule 'reference'",
-            )
-            .help("it has all 101: leave it out"));
+    let given = keys.keys();
+    if let Some(key) = given.iter().find(|key| !LightChange::KEYS.contains(key)) {
+        let fault = keys.fault(key, format!("a light has no key '{key}'"));
+        return Err(fault.help(choice(key, LightChange::KEYS)));
     }
-    let name = change.illuminant.as_deref().unwrap_or_default();
-    let on_default = change.on(&PaintingSetup::default().light);
-    step.keys.named("light", file(name), on_default)?;
+    let mut change: LightChange = keys.read(LightChange::deserialize)?;
+    change.illuminant = change.illuminant.map(|name| keys.beside(&name));
+    change.check_idle()?;
+    let name = change.illuminant.clone().unwrap_or_default();
+    let on_default = changed(&change, &PaintingSetup::default().light);
+    step.keys.named("light", file(&name), on_default)?;
     Ok(Act::Light(change))
 }

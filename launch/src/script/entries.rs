@@ -6,7 +6,7 @@ use std::path::Path;
 use maulstick_rig::Fault;
 use maulstick_rig::config::is_path;
 use toml::Spanned;
-use toml::de::{DeArray, DeInteger, DeTable, DeValue};
+use toml::de::{DeArray, DeTable, DeValue, ValueDeserializer};
 
 /// Example of a script.
 const EXAMPLE: &str = "a script is `step = [ { load = \"Bone Black\" }, … ]`";
@@ -127,10 +127,6 @@ fn described(value: &DeValue<'_>) -> String {
     }
 }
 
-fn whole_of(number: &DeInteger<'_>) -> Option<u64> {
-    u64::from_str_radix(number.as_str(), number.radix()).ok()
-}
-
 fn number_of(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix())
@@ -154,6 +150,33 @@ impl<'a> Entries<'a> {
         let mut keys: Vec<_> = self.table.keys().collect();
         keys.sort_by_key(|key| key.span().start);
         keys.into_iter().map(|key| key.get_ref().as_ref()).collect()
+    }
+
+    /// True if a key is given.
+    pub(super) fn is_given(&self, key: &str) -> bool {
+        self.find(key).is_some()
+    }
+
+    /// Reads all keys into one value. An error has the line of its key.
+    pub(super) fn read<T>(
+        &self,
+        read: impl FnOnce(ValueDeserializer<'a>) -> Result<T, toml::de::Error>,
+    ) -> Result<T, Fault> {
+        let table = Spanned::new(0..0, DeValue::Table(self.table.clone()));
+        read(ValueDeserializer::from(table)).map_err(|error| {
+            let start = error.span().map(|span| span.start);
+            let holds =
+                |value: &Spanned<DeValue<'_>>| start.is_some_and(|at| value.span().contains(&at));
+            let found = self.table.iter().find(|(_, value)| holds(value));
+            let message = error.message().lines().next().unwrap_or_default();
+            let fault = match found {
+                Some((key, _)) => {
+                    self.fault(key.get_ref(), format!("'{}': {message}", key.get_ref()))
+                }
+                None => Fault::usage(message),
+            };
+            fault.help(self.for_example())
+        })
     }
 
     /// File and line of a key.
@@ -200,26 +223,10 @@ impl<'a> Entries<'a> {
         self.due(key, "a number", number_of)
     }
 
-    /// A whole number that is not negative.
-    pub(super) fn whole<T: TryFrom<u64>>(&self, key: &str) -> Result<Option<T>, Fault> {
-        self.due(key, "a whole number, 0 or more", |value| match value {
-            DeValue::Integer(number) => whole_of(number)?.try_into().ok(),
-            _ => None,
-        })
-    }
-
     pub(super) fn switch(&self, key: &str) -> Result<Option<bool>, Fault> {
         self.due(key, "true or false", |value| match value {
             DeValue::Boolean(switch) => Some(*switch),
             _ => None,
-        })
-    }
-
-    /// A name, or a whole number in its digits.
-    pub(super) fn word(&self, key: &str) -> Result<Option<String>, Fault> {
-        self.due(key, "a name or a number", |value| match value {
-            DeValue::Integer(number) => whole_of(number).map(|number| number.to_string()),
-            value => text_of(value).map(str::to_owned),
         })
     }
 
@@ -242,25 +249,6 @@ impl<'a> Entries<'a> {
             let rows = list_of(value)?.iter();
             rows.map(|row| numbers_of(row.get_ref())).collect()
         })
-    }
-
-    /// A vector.
-    pub(super) fn three(&self, key: &str) -> Result<Option<[f64; 3]>, Fault> {
-        let Some(list) = self.due(key, "three numbers", list_of)? else {
-            return Ok(None);
-        };
-        let wrong = |what: String| {
-            let fault = self.fault(key, format!("'{key}' takes three numbers, not {what}"));
-            fault.help(self.for_example())
-        };
-        let number = |value: &Spanned<DeValue<'_>>| {
-            let value = value.get_ref();
-            number_of(value).ok_or_else(|| wrong(described(value)))
-        };
-        let numbers: Vec<f64> = list.iter().map(number).collect::<Result<_, _>>()?;
-        let count = numbers.len();
-        let three = numbers.try_into();
-        three.map(Some).map_err(|_| wrong(count.to_string()))
     }
 
     pub(super) fn table(&self, key: &str) -> Result<Option<Self>, Fault> {

@@ -17,9 +17,11 @@
 //! | `entries` | keys and what they hold, each with its line |
 //! | `steps` | which steps there are, and what keys each has |
 //! | `acts` | what each step does |
+//! | [`advice`] | what to do about a refusal, in steps |
 //! | [`stroke`] | a stroke written as points |
 
 mod acts;
+pub mod advice;
 mod entries;
 mod steps;
 pub mod stroke;
@@ -33,36 +35,28 @@ use maulstick_device::Take;
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::Fault;
 use maulstick_types::Mixture;
-use maulstick_types::command::Command;
-use maulstick_types::scene::BrushMode;
+use maulstick_types::edits::{Edit, LightChange};
 use toml::de::DeTable;
 
 use self::entries::Source;
 use self::stroke::Stroke;
 use crate::duration::time_ns;
 use crate::ground::GroundFile;
-use crate::lamp::LightChange;
 use crate::outputs::UsedFile;
 use crate::tooth::ToothPicture;
 
 /// Action of a step.
 #[derive(Clone, Debug)]
 pub enum Act {
+    /// Applies an edit; that of a brush is for the one in hand.
+    Edit(Box<Edit>),
     /// Takes up a brush: its name, its file, the share of its head that full pressure presses in.
     Brush(String, Box<BrushFile>, f64),
-    /// Loads the brush; with two mixtures a half of its width with each.
-    Load(Mixture, Option<Mixture>),
-    /// Takes all paint off the brush.
-    Clean,
-    /// Sets the handling of the brush: mode, flow of the marker, most paint, m.
-    Handle(BrushMode, f64, f64),
-    /// Lays a film of what the brush carries over the canvas, m.
-    FillWith(f64),
     /// Follows a take; its strokes load these mixtures in turn.
     Take(Take, Vec<Mixture>),
     /// Paints a stroke with what the brush has.
     Stroke(Stroke),
-    /// Gives the canvas another ground.
+    /// Gives the canvas the ground of a picture.
     Ground(GroundFile),
     /// Gives the canvas the tooth of a picture.
     Tooth(ToothPicture),
@@ -72,8 +66,6 @@ pub enum Act {
     Light(LightChange),
     /// Takes so many steps back.
     Undo(u32),
-    /// Anything else.
-    Command(Command),
 }
 
 /// A script that is read.
@@ -85,33 +77,6 @@ pub struct Script {
     pub canvas_mm: Option<[f64; 2]>,
     /// The files that they name.
     pub files: Vec<UsedFile>,
-}
-
-/// Advice of the painting for a running rig, and the step that does the same.
-const ADVICE: [(&str, &str); 3] = [
-    ("`maulstick dry --stop`", "{ stop_drying = true }"),
-    (
-        "`maulstick dry --over 90s`",
-        "{ dry = 1.0, over = \"90s\" }",
-    ),
-    ("`maulstick dry`", "{ dry = 1.0 }"),
-];
-
-/// A refusal of a step: its help names steps in the place of commands to a running rig.
-#[must_use]
-pub fn in_steps(fault: Fault) -> Fault {
-    let Some(mut help) = fault.help.clone() else {
-        return fault;
-    };
-    for (command, step) in ADVICE {
-        help = help.replace(command, step);
-    }
-    if let Some((before, rest)) = help.split_once("`maulstick opacity ")
-        && let Some((layer, after)) = rest.split_once(" 1`")
-    {
-        help = format!("{before}{{ opacity = 1.0, layer = {layer} }}{after}");
-    }
-    fault.help(help)
 }
 
 impl Script {

@@ -1,177 +1,105 @@
 //! The kinds of steps, and the keys of each.
 
+use std::sync::LazyLock;
+
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::Fault;
 use maulstick_types::advice::nearest;
-use maulstick_types::command::Command;
-use maulstick_types::scene::CANVAS;
-use maulstick_types::{Mixture, Region};
+use maulstick_types::edits::{self, Form as _, StepForm};
+use maulstick_types::values::ticks_in;
 use toml::de::DeTable;
 
 use super::Act;
-use super::acts::{
-    brush, command, dry, fill_with_brush, film_m, ground, light, load, mode, opacity, stroke,
-    switched_on, take, tooth, wet,
-};
+use super::acts::{brush, edit, ground, light, stroke, take, tooth, undo};
 use super::entries::{Entries, Source};
-use crate::commands::mode::piles_command;
-use crate::duration::ticks_in;
-use crate::performance::mixture_of;
+
+type Read = fn(&Step<'_>, &PaintLibrary) -> Result<Act, Fault>;
 
 /// A kind of step.
 #[derive(Debug)]
 pub(super) struct Kind {
-    /// The key that says what is done.
-    pub(super) does: &'static str,
-    /// The keys that say how.
-    with: &'static [&'static str],
-    /// Example of its form.
-    pub(super) example: &'static str,
-    act: fn(&Step<'_>, &PaintLibrary) -> Result<Act, Fault>,
+    /// Its keys.
+    pub(super) form: StepForm,
+    act: Read,
 }
 
-const fn kind(
-    does: &'static str,
-    with: &'static [&'static str],
-    example: &'static str,
-    act: fn(&Step<'_>, &PaintLibrary) -> Result<Act, Fault>,
-) -> Kind {
-    Kind {
-        does,
-        with,
-        example,
-        act,
-    }
+const fn kind(form: StepForm, act: Read) -> Kind {
+    Kind { form, act }
 }
+
+macro_rules! edit_kinds {
+    ($($edit:ident),*) => {
+        /// The steps that are edits.
+        fn edit_kinds() -> Vec<Kind> {
+            let mut kinds = Vec::new();
+            $(
+                let forms = edits::$edit::STEPS.iter();
+                kinds.extend(forms.map(|form| kind(*form, edit::<edits::$edit>)));
+            )*
+            kinds
+        }
+    };
+}
+
+maulstick_types::for_each_edit!(edit_kinds);
+
+/// Edits for which a script says more than they hold: files, changes and counts.
+const MORE: [(&str, Read); 4] = [
+    ("ground", ground),
+    ("tooth", tooth),
+    ("light", light),
+    ("undo", undo),
+];
 
 /// All kinds of steps.
-pub(super) static KINDS: [Kind; 21] = [
-    kind(
-        "brush",
-        &["size_mm", "depth_share"],
-        "{ brush = \"filbert\", size_mm = 14, depth_share = 0.5 }",
-        brush,
-    ),
-    kind(
-        "load",
-        &["beside"],
-        "{ load = \"Ultramarine Blue=0.6,Titanium White=0.4\", beside = \"Bone Black\" }",
-        load,
-    ),
-    kind("clean", &[], "{ clean = true }", |step, _| {
-        switched_on(step)?;
-        Ok(Act::Clean)
-    }),
-    kind(
-        "mode",
-        &["flow", "most_um"],
-        "{ mode = \"marker\", flow = 4, most_um = 60 }",
-        mode,
-    ),
-    kind(
-        "fill_with_brush",
-        &["um"],
-        "{ fill_with_brush = true, um = 30 }",
-        fill_with_brush,
-    ),
-    kind("stain_um", &[], "{ stain_um = 3 }", |step, _| {
-        let um = step.due(step.keys.number("stain_um")?)?;
-        let (surface, stain_m) = (CANVAS, um * 1e-6);
-        command(Command::Size { surface, stain_m })
-    }),
-    kind("piles", &[], "{ piles = \"last\" }", |step, _| {
-        command(piles_command(step.due(step.keys.text("piles")?)?)?)
-    }),
-    kind(
-        "take",
-        &["loads"],
-        "{ take = \"sky.mcap\", loads = [\"Burnt Sienna\", \"Bone Black\"] }",
-        take,
-    ),
-    kind(
-        "stroke",
-        &[
-            "lean_deg",
-            "toward_deg",
-            "turn_deg",
-            "twist_deg",
-            "speed_mm_s",
-        ],
-        "{ stroke = [[20, 30, 0.3], [60, 34, 0.5], [90, 30, 0.1]], lean_deg = 25 }",
-        stroke,
-    ),
-    kind(
-        "dry",
-        &["layer", "region", "over"],
-        "{ dry = 0.5, layer = \"sky\", region = \"10,20,60x40\" }, { dry = 1.0, over = \"90s\" }",
-        dry,
-    ),
-    kind("wait", &[], "{ wait = \"20min\" }", |step, _| {
-        let time = step.due(step.keys.text("wait")?)?;
-        Ok(Act::Wait(ticks_in(time).map_err(Fault::told)?))
-    }),
-    kind("stop_drying", &[], "{ stop_drying = true }", |step, _| {
-        switched_on(step)?;
-        command(Command::StopDrying { surface: CANVAS })
-    }),
-    kind(
-        "wet",
-        &["region"],
-        "{ wet = 1 }, { wet = \"all\", region = \"10,20,60x40\" }",
-        wet,
-    ),
-    kind(
-        "opacity",
-        &["layer"],
-        "{ opacity = 0.7, layer = \"sky\" }",
-        opacity,
-    ),
-    kind(
-        "fill",
-        &["um"],
-        "{ fill = \"Yellow Ochre=0.3,Titanium White=0.7\", um = 40 }",
-        |step, library| {
-            let mixture = step.mixture("fill", library)?;
-            command(Command::Fill {
-                surface: CANVAS,
-                mixture: step.due(mixture)?,
-                thickness_m: film_m(step)?,
-            })
-        },
-    ),
-    kind("ground", &[], "{ ground = \"grey\" }", ground),
-    kind(
-        "tooth",
-        &["seed", "width_mm", "depth_um"],
-        "{ tooth = \"linen\", seed = 2 }, { tooth = \"weave.png\", width_mm = 60, depth_um = 80 }",
-        tooth,
-    ),
-    kind(
-        "light",
-        &[],
-        "{ light = { illuminant = \"A\", direction = [-0.7, 0.3, 0.5] } }",
-        light,
-    ),
-    kind("undo", &[], "{ undo = 1 }", |step, _| {
-        match step.due(step.keys.whole("undo")?)? {
-            0 => Err(Fault::usage("an undo of 0 steps does nothing").help("leave it out")),
-            times => Ok(Act::Undo(times)),
+pub(super) static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| {
+    let mut kinds = vec![
+        kind(
+            StepForm::new(
+                "brush",
+                &["size_mm", "depth_share"],
+                "{ brush = \"filbert\", size_mm = 14, depth_share = 0.5 }",
+            ),
+            brush,
+        ),
+        kind(
+            StepForm::new(
+                "take",
+                &["loads"],
+                "{ take = \"sky.mcap\", loads = [\"Burnt Sienna\", \"Bone Black\"] }",
+            ),
+            take,
+        ),
+        kind(
+            StepForm::new(
+                "stroke",
+                &[
+                    "lean_deg",
+                    "toward_deg",
+                    "turn_deg",
+                    "twist_deg",
+                    "speed_mm_s",
+                ],
+                "{ stroke = [[20, 30, 0.3], [60, 34, 0.5], [90, 30, 0.1]], lean_deg = 25 }",
+            ),
+            stroke,
+        ),
+        kind(
+            StepForm::new("wait", &[], "{ wait = \"20min\" }"),
+            |step, _| {
+                let time = step.due(step.keys.text("wait")?)?;
+                Ok(Act::Wait(ticks_in(time)?))
+            },
+        ),
+    ];
+    kinds.extend(edit_kinds());
+    for kind in &mut kinds {
+        if let Some((_, act)) = MORE.iter().find(|(key, _)| *key == kind.form.key) {
+            kind.act = *act;
         }
-    }),
-    kind("keep", &[], "{ keep = \"before the glaze\" }", |step, _| {
-        let name = step.due(step.keys.text("keep")?)?.to_owned();
-        command(Command::Keep { name })
-    }),
-    kind(
-        "return",
-        &[],
-        "{ return = \"before the glaze\" }",
-        |step, _| {
-            let name = step.due(step.keys.text("return")?)?.to_owned();
-            command(Command::Return { name })
-        },
-    ),
-];
+    }
+    kinds
+});
 
 /// A step as it is written.
 #[derive(Debug)]
@@ -183,7 +111,13 @@ pub(super) struct Step<'a> {
 impl<'a> Step<'a> {
     /// A step that does one thing, and whose other keys are that thing's.
     fn of(source: Source<'a>, table: &'a DeTable<'a>, start: usize) -> Result<Self, Fault> {
-        let all = || KINDS.each_ref().map(|kind| kind.does).join(", ");
+        let all = || {
+            KINDS
+                .iter()
+                .map(|kind| kind.form.key)
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
         let keys = Entries {
             source,
             table,
@@ -192,12 +126,12 @@ impl<'a> Step<'a> {
         let given = keys.keys();
         let kinds: Vec<&Kind> = KINDS
             .iter()
-            .filter(|kind| given.contains(&kind.does))
+            .filter(|kind| given.contains(&kind.form.key))
             .collect();
         let known = || {
             KINDS
                 .iter()
-                .flat_map(|kind| kind.with.iter().chain([&kind.does]))
+                .flat_map(|kind| kind.form.with.iter().chain([&kind.form.key]))
         };
         if let Some(key) = given.iter().find(|key| !known().any(|known| known == *key)) {
             let meant = nearest(key, known().copied());
@@ -216,21 +150,21 @@ impl<'a> Step<'a> {
                     keys.fault(key, format!("'{key}' alone is a step that does nothing"))
                 }
                 Some(_) => {
-                    let does: Vec<_> = kinds.iter().map(|kind| kind.does).collect();
+                    let does: Vec<_> = kinds.iter().map(|kind| kind.form.key).collect();
                     let what = format!("a step that does several things: {}", does.join(", "));
-                    keys.fault(kinds[0].does, what)
+                    keys.fault(kinds[0].form.key, what)
                 }
             };
             return Err(fault.help(format!("a step does one of: {}", all())));
         };
         let other = given
             .iter()
-            .find(|key| **key != kind.does && !kind.with.contains(key));
+            .find(|key| **key != kind.form.key && !kind.form.with.contains(key));
         if let Some(key) = other {
-            let what = format!("'{key}' does nothing beside '{}'", kind.does);
+            let what = format!("'{key}' does nothing beside '{}'", kind.form.key);
             return Err(keys.fault(key, what).help(kind.takes()));
         }
-        let example = kind.example;
+        let example = kind.form.example;
         Ok(Self {
             kind,
             keys: Entries { example, ..keys },
@@ -239,39 +173,20 @@ impl<'a> Step<'a> {
 
     /// File and line.
     pub(super) fn place(&self) -> String {
-        self.keys.place(self.kind.does)
+        self.keys.place(self.kind.form.key)
     }
 
     /// Value of a required key: it makes the step one of its kind, or is reported as missing.
     pub(super) fn due<T>(&self, value: Option<T>) -> Result<T, Fault> {
-        value.ok_or_else(|| Fault::usage(format!("'{}' lacks a key", self.kind.does)))
-    }
-
-    pub(super) fn mixture(
-        &self,
-        key: &str,
-        library: &PaintLibrary,
-    ) -> Result<Option<Mixture>, Fault> {
-        let Some(text) = self.keys.text(key)? else {
-            return Ok(None);
-        };
-        self.keys
-            .named(key, None, mixture_of(text, library))
-            .map(Some)
-    }
-
-    pub(super) fn region(&self) -> Result<Option<Region>, Fault> {
-        let text = self.keys.text("region")?;
-        text.map(|text| text.parse().map_err(Fault::told))
-            .transpose()
+        value.ok_or_else(|| Fault::usage(format!("'{}' lacks a key", self.kind.form.key)))
     }
 }
 
 impl Kind {
     fn takes(&self) -> String {
-        match self.with.is_empty() {
-            true => format!("'{}' takes no other key", self.does),
-            false => format!("'{}' takes: {}", self.does, self.with.join(", ")),
+        match self.form.with.is_empty() {
+            true => format!("'{}' takes no other key", self.form.key),
+            false => format!("'{}' takes: {}", self.form.key, self.form.with.join(", ")),
         }
     }
 }

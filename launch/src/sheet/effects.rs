@@ -4,8 +4,9 @@ use maulstick_appearance::picture::Picture;
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::Fault;
-use maulstick_types::command::Command;
+use maulstick_types::edits::{Dry, Load};
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::{BrushName, Share};
 
 use super::gesture::{Gesture, Moment, swell};
 use super::marks::stroke;
@@ -122,12 +123,12 @@ impl Panel {
     }
 
     fn dry(&mut self, share: f32) -> Result<(), Fault> {
-        let command = Command::Dry {
-            surface: CANVAS,
-            share,
-            name: String::new(),
+        let dry = Dry {
+            share: Share::new(share)?,
+            ..Dry::whole(CANVAS)
         };
-        self.offline.command(command).map_err(refused)
+        self.offline.edit(dry).map_err(refused)?;
+        Ok(())
     }
 }
 
@@ -180,12 +181,12 @@ fn loading(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
         ["Burnt Sienna", "Yellow Ochre=0.5,Titanium White=0.5"],
     ];
     for (row, [left, right]) in pairs.into_iter().enumerate() {
-        let command = Command::LoadBeside {
-            brush: BRUSH.to_owned(),
-            left: mixture_of(left)?,
-            right: mixture_of(right)?,
+        let load = Load {
+            mixture: mixture_of(left)?,
+            beside: Some(mixture_of(right)?),
+            brush: BrushName::new(BRUSH)?,
         };
-        panel.offline.command(command).map_err(refused)?;
+        panel.offline.edit(load).map_err(refused)?;
         let y = 39.0 - 15.0 * row as f64;
         let way = (0..7).map(|i| {
             let side = if i % 2 == 0 { -1.0 } else { 1.0 };

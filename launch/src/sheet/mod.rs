@@ -26,7 +26,8 @@ use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_rig::Fault;
 use maulstick_session::Offline;
 use maulstick_types::Mixture;
-use maulstick_types::command::Command;
+use maulstick_types::edits::Load;
+use maulstick_types::values::BrushName;
 
 use self::gesture::Hand;
 use crate::page::Page;
@@ -129,11 +130,13 @@ impl Panel {
     }
 
     fn load(&mut self, brush: &str, mixture: &str) -> Result<(), Fault> {
-        let command = Command::Load {
-            brush: brush.to_owned(),
+        let load = Load {
             mixture: mixture_of(mixture)?,
+            beside: None,
+            brush: BrushName::new(brush)?,
         };
-        self.offline.command(command).map_err(refused)
+        self.offline.edit(load).map_err(refused)?;
+        Ok(())
     }
 
     fn paint(&mut self, gesture: &gesture::Gesture) -> Result<(), Fault> {
@@ -185,12 +188,12 @@ pub fn one_stroke_panel(
         library,
     )?;
     for gesture in one_stroke::marks(file.head.width_mm) {
-        let command = Command::LoadBeside {
-            brush: BRUSH.to_owned(),
-            left: mixture_of(DOUBLE[0])?,
-            right: mixture_of(DOUBLE[1])?,
+        let load = Load {
+            mixture: mixture_of(DOUBLE[0])?,
+            beside: Some(mixture_of(DOUBLE[1])?),
+            brush: BrushName::new(BRUSH)?,
         };
-        panel.offline.command(command).map_err(refused)?;
+        panel.offline.edit(load).map_err(refused)?;
         panel.paint(&gesture)?;
     }
     Ok(panel.picture())

@@ -137,12 +137,12 @@ fn a_badger_softens_the_edge_between_two_wet_colours() {
 fn a_double_loaded_brush_paints_two_colours_side_by_side() {
     let file = library_brush("flat").expect("flat");
     let mut panel = Panel::new((SIZE_MM, CELL_MM), "grey", file, paints()).expect("a panel");
-    let load = Command::LoadBeside {
-        brush: BRUSH.to_owned(),
-        left: mixture_of("Pyrrole Red").expect("a mixture"),
-        right: mixture_of("Titanium White").expect("a mixture"),
+    let load = Load {
+        mixture: mixture_of("Pyrrole Red").expect("a mixture"),
+        beside: Some(mixture_of("Titanium White").expect("a mixture")),
+        brush: BrushName::new(BRUSH).expect("a name"),
     };
-    panel.offline.command(load).expect("loaded");
+    panel.offline.edit(load).expect("loaded");
     let way = vec![[12.0, 25.0], [76.0, 25.0]];
     let gesture = stroke(way, 1.6, 90.0, |t| 0.3 * gesture::swell(t, 0.1));
     panel.paint(&gesture).expect("painted");

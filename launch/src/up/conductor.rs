@@ -11,7 +11,7 @@ use maulstick_device::player::Rate;
 use maulstick_rig::Fault;
 use maulstick_rig::commander::Commander;
 use maulstick_rig::config::RigConfig;
-use maulstick_types::command::Command;
+use maulstick_types::command::TakeCommand;
 use maulstick_types::stylus::{TakeEnd, TakeStatus};
 use maulstick_types::topics::Topics;
 
@@ -162,11 +162,16 @@ impl Conductor {
             };
         }
         let command = match &self.performance.snapshot {
-            Some(picture) => Command::Snapshot {
-                path: picture.asked(),
-                ledger: self.performance.ledger.as_ref().map(Relayed::asked),
+            Some(picture) => TakeCommand::Snapshot {
+                path: picture.asked()?,
+                ledger: self
+                    .performance
+                    .ledger
+                    .as_ref()
+                    .map(Relayed::asked)
+                    .transpose()?,
             },
-            None => Command::Mark,
+            None => TakeCommand::Mark,
         };
         let (to_conductor, outcome) = mpsc::channel();
         let given_up = Arc::new(AtomicBool::new(false));

@@ -42,6 +42,9 @@ pub enum BusError {
         /// The error.
         source: maulstick_types::DecodeError,
     },
+    /// No rig of that name runs.
+    #[error("no rig called '{0}' is running")]
+    NoRig(String),
     /// The rig's folder cannot be used.
     #[error("{reason}")]
     Folder {

@@ -176,7 +176,7 @@ impl RigFolder {
     /// The folder of a running rig.
     ///
     /// # Errors
-    /// [`BusError::Folder`] where no such rig runs.
+    /// [`BusError::NoRig`] where no such rig runs.
     pub fn join(rig: &str) -> Result<(Self, RigInfo), BusError> {
         Self::join_in(&base(), rig)
     }
@@ -195,7 +195,7 @@ impl RigFolder {
     /// The running rig of the folder `path`.
     ///
     /// # Errors
-    /// [`BusError::Folder`] where no rig runs there, or the folder is not the user's alone.
+    /// [`BusError::NoRig`] where no rig runs there, [`BusError::Folder`] where the folder is not the user's alone.
     pub fn join_at(path: &Path) -> Result<(Self, RigInfo), BusError> {
         if path.symlink_metadata().is_ok() {
             check_private(path)?;
@@ -204,10 +204,7 @@ impl RigFolder {
             .is_ok_and(|file| Flock::lock(file, FlockArg::LockSharedNonblock).is_err());
         let info = RigInfo::read(path).filter(|_| running).ok_or_else(|| {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            folder_error(
-                format!("no rig called '{name}' is running"),
-                "start one with `maulstick up`, or name another with `--name`",
-            )
+            BusError::NoRig(name.into_owned())
         })?;
         Ok((
             Self {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::marker::PhantomData;
 use std::time::Duration;
 
+use maulstick_types::command::{CommandReply, CommandRequest, Outcome};
 use maulstick_types::{DecodeError, Flags, Header, Message, Origin, decode, encode};
 
 use crate::bus::{Bus, BusError, Class, Publish, Subscription};
@@ -119,6 +120,30 @@ impl Reader {
                 None
             }
         }
+    }
+
+    /// Reads a command. The reply to one that is out of range says so, if at least its number can be read.
+    ///
+    /// # Errors
+    /// That reply.
+    pub fn read_command(
+        &mut self,
+        topic: &str,
+        bytes: &[u8],
+    ) -> Result<CommandRequest, Option<CommandReply>> {
+        let error = match decode::<CommandRequest>(bytes) {
+            Ok((_, request)) => return Ok(request),
+            Err(error) => error,
+        };
+        let reply = CommandRequest::number_in(bytes).map(|number| CommandReply {
+            number,
+            outcome: Outcome::refused(
+                error.to_string(),
+                "see the message formats for what a command may say",
+            ),
+        });
+        self.refuse(topic, error.into());
+        Err(reply)
     }
 
     /// Counts a refusal and reports it, once for each topic and reason.

@@ -6,7 +6,9 @@ use std::time::{Duration, Instant};
 use crate::fault::Fault;
 use maulstick_bus::typed::{ask, random_epoch, random_u64};
 use maulstick_bus::{Bus, BusError, Class};
-use maulstick_types::command::{After, Command, CommandReply, CommandRequest, Outcome};
+use maulstick_types::command::{
+    After, Command, CommandReply, CommandRequest, Outcome, TakeCommand,
+};
 use maulstick_types::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
@@ -60,15 +62,20 @@ impl Commander {
     /// A [`Fault`] with the node's own words if it is refused, or if nobody answers.
     pub fn send(
         &mut self,
-        command: Command,
+        command: impl Into<Command>,
         after: Option<After>,
         patience: Duration,
         stop: &dyn Fn() -> bool,
     ) -> Result<String, Fault> {
+        let command = command.into();
         // A failure at the end of a take, or of a write, is no wrong usage.
         let refusal: fn(String) -> Fault = match &command {
-            Command::Snapshot { .. } | Command::Mark => Fault::failure,
-            _ => Fault::usage,
+            Command::Take(TakeCommand::Snapshot { .. } | TakeCommand::Mark) => Fault::failure,
+            Command::Take(TakeCommand::Begin { .. })
+            | Command::Edit(_)
+            | Command::File(_)
+            | Command::Brush(_)
+            | Command::Rig(_) => Fault::usage,
         };
         self.number += 1;
         let number = self.number;
@@ -95,10 +102,10 @@ impl Commander {
                     ..
                 }) => return Ok(detail),
                 Ok(CommandReply {
-                    outcome: Outcome::Refused { what, help },
+                    outcome: Outcome::Refused { what, advice },
                     ..
                 }) => {
-                    return Err(refusal(what).at(self.topic.clone()).help(help));
+                    return Err(refusal(what).at(self.topic.clone()).advise(advice));
                 }
                 Ok(CommandReply {
                     outcome: Outcome::Waiting,
@@ -110,7 +117,7 @@ impl Commander {
             if Instant::now() >= give_up || stop() {
                 return Err(Fault::failure("the node does not answer")
                     .at(self.topic.clone())
-                    .help("see whether it runs: `maulstick up` shows its nodes"));
+                    .help("see whether it runs"));
             }
             // A node that is not there yet answers at once with nothing.
             std::thread::sleep(Duration::from_millis(20).saturating_sub(asked.elapsed()));

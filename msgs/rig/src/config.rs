@@ -8,6 +8,7 @@ mod palette;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use maulstick_types::advice::Advice;
 use serde::{Deserialize, Serialize};
 
 use crate::fault::Fault;
@@ -385,7 +386,7 @@ pub fn toml_fault(text: &str, name: &str, error: &toml::de::Error) -> Fault {
             place: fault.place,
             ..Fault::unknown(format!("unknown key '{key}'"), key, keys.iter().copied())
         },
-        _ => fault.help("see the commented default: `maulstick up --print-config`"),
+        _ => fault.advise(Advice::DefaultSettings),
     }
 }
 

@@ -3,7 +3,10 @@
 use std::fmt;
 
 use maulstick_bus::BusError;
+use maulstick_types::advice::Advice;
 use maulstick_types::plain;
+use maulstick_types::scene::LightError;
+use maulstick_types::values::ValueError;
 
 /// Exit code for bad usage and bad input files.
 pub const EXIT_USAGE: i32 = 2;
@@ -17,8 +20,10 @@ pub struct Fault {
     pub what: String,
     /// A file with its line, or a topic.
     pub place: Option<String>,
-    /// Advice.
+    /// Advice, in words that hold everywhere.
     pub help: Option<String>,
+    /// Advice for which front ends have their own words.
+    pub advice: Option<Advice>,
     /// [`EXIT_USAGE`] or [`EXIT_FAILURE`].
     pub code: i32,
 }
@@ -31,17 +36,8 @@ impl Fault {
             what: what.into(),
             place: None,
             help: None,
+            advice: None,
             code: EXIT_USAGE,
-        }
-    }
-
-    /// Bad usage, from a line with error and advice, split by [`parted`](maulstick_types::advice::parted).
-    #[must_use]
-    pub fn told(line: impl AsRef<str>) -> Self {
-        let (what, help) = maulstick_types::advice::parted(line.as_ref());
-        Self {
-            help: help.map(str::to_owned),
-            ..Self::usage(what)
         }
     }
 
@@ -52,6 +48,7 @@ impl Fault {
             what: what.into(),
             place: None,
             help: None,
+            advice: None,
             code: EXIT_FAILURE,
         }
     }
@@ -67,7 +64,26 @@ impl Fault {
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
+        self.advice = None;
         self
+    }
+
+    /// Says what to do, by an advice that front ends have their own words for.
+    #[must_use]
+    pub fn advise(self, advice: Advice) -> Self {
+        Self {
+            advice: Some(advice.clone()),
+            ..self.help(advice.to_string())
+        }
+    }
+
+    /// The same in the words of a front end, where it has its own.
+    #[must_use]
+    pub fn worded(self, words: impl Fn(&Advice) -> Option<String>) -> Self {
+        match self.advice.as_ref().and_then(words) {
+            Some(help) => self.help(help),
+            None => self,
+        }
     }
 
     /// An input file that cannot be read.
@@ -125,6 +141,18 @@ impl fmt::Display for Fault {
 
 impl std::error::Error for Fault {}
 
+impl From<ValueError> for Fault {
+    fn from(error: ValueError) -> Self {
+        Self::usage(error.to_string())
+    }
+}
+
+impl From<LightError> for Fault {
+    fn from(error: LightError) -> Self {
+        Self::usage(error.to_string())
+    }
+}
+
 impl From<BusError> for Fault {
     fn from(error: BusError) -> Self {
         match error {
@@ -133,9 +161,9 @@ impl From<BusError> for Fault {
                     .at(at)
                     .help("see that the rig is running and that its folder is yours")
             }
-            BusError::Topic { topic, reason } => Self::failure(reason)
-                .at(topic)
-                .help("the node was restarted or the rig has stopped: look at `maulstick up`"),
+            BusError::Topic { topic, reason } => Self::failure(reason).at(topic).help(
+                "the node was restarted or the rig has stopped: look at the messages of the rig",
+            ),
             BusError::NoAnswer { topic, limit_ms } => {
                 Self::failure(format!("no answer within {limit_ms} ms"))
                     .at(topic)
@@ -144,6 +172,7 @@ impl From<BusError> for Fault {
             BusError::Message { topic, source } => Self::failure(source.to_string())
                 .at(topic)
                 .help("all nodes of a rig must be of the same build"),
+            BusError::NoRig(_) => Self::failure(error.to_string()).advise(Advice::StartRig),
             BusError::Folder { reason, help } => Self::failure(reason).help(help),
         }
     }

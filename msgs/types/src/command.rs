@@ -1,12 +1,18 @@
-//! Commands to the paint node and their replies.
+//! Commands to the nodes of a rig, by who carries them out, and their replies.
 
+use serde::de::Error as _;
+
+use crate::advice::Advice;
 use crate::define::{message, wire_enum, wire_struct};
+use crate::edits::Edit;
 use crate::mixture::Mixture;
-use crate::pose::Pose;
-use crate::region::Region;
-use crate::scene::{BrushHandling, CANVAS, Light, Tuning, Well};
+use crate::scene::{CANVAS, STAINS_M};
+use crate::values::{BrushName, BrushToml, MaterialName, ValueError, WholePath};
 
-mod check;
+/// The node that has the painting.
+pub const PAINT_NODE: &str = "paint";
+/// Name of the launcher, which carries out commands to the rig as a whole.
+pub const RIG_NODE: &str = "rig";
 
 /// A path of a command has at most this many bytes; Linux takes no longer ones.
 pub const PATH_MAX: usize = 4096;
@@ -51,6 +57,7 @@ wire_struct! {
 
 wire_struct! {
     /// What a new painting is painted on.
+    #[serde(try_from = "CanvasFields")]
     pub struct NewCanvas {
         /// Width, m.
         pub width_m: f64,
@@ -59,9 +66,9 @@ wire_struct! {
         /// Side of a cell, m.
         pub cell_m: f64,
         /// Name of the ground, or the whole path of a CSV file of nm,reflectance or of a picture.
-        pub ground: String,
+        pub ground: MaterialName,
         /// Name of the tooth.
-        pub tooth: String,
+        pub tooth: MaterialName,
         /// Seed of the tooth.
         pub tooth_seed: u64,
         /// Thickness of paint that stays however hard it is brushed, m.
@@ -69,16 +76,82 @@ wire_struct! {
     }
 }
 
+/// A canvas as it is decoded.
+#[derive(serde::Deserialize)]
+struct CanvasFields {
+    width_m: f64,
+    height_m: f64,
+    cell_m: f64,
+    ground: MaterialName,
+    tooth: MaterialName,
+    tooth_seed: u64,
+    stain_m: f64,
+}
+
+impl TryFrom<CanvasFields> for NewCanvas {
+    type Error = ValueError;
+
+    fn try_from(fields: CanvasFields) -> Result<Self, ValueError> {
+        let canvas = Self {
+            width_m: fields.width_m,
+            height_m: fields.height_m,
+            cell_m: fields.cell_m,
+            ground: fields.ground,
+            tooth: fields.tooth,
+            tooth_seed: fields.tooth_seed,
+            stain_m: fields.stain_m,
+        };
+        canvas.check()?;
+        Ok(canvas)
+    }
+}
+
+impl NewCanvas {
+    /// Checks that it can be made: whether there are such a ground and tooth is seen later.
+    ///
+    /// # Errors
+    /// [`ValueError`].
+    pub fn check(&self) -> Result<(), ValueError> {
+        if !CELLS_M.contains(&self.cell_m) {
+            return Err(ValueError::Range {
+                what: "cell",
+                value: self.cell_m * 1e3,
+                unit: " mm",
+                range: ".01 to 10",
+            });
+        }
+        let size_m = [self.width_m, self.height_m];
+        let [width, height] = size_m.map(|side| side / self.cell_m);
+        if !(CELLS.contains(&width) && CELLS.contains(&height)) {
+            let cell_m = self.cell_m;
+            return Err(ValueError::Canvas { size_m, cell_m });
+        }
+        if width * height > CELLS_IN_ALL {
+            return Err(ValueError::Cells(width * height));
+        }
+        match STAINS_M.contains(&self.stain_m) {
+            true => Ok(()),
+            false => Err(ValueError::Range {
+                what: "stain",
+                value: self.stain_m * 1e6,
+                unit: " µm",
+                range: "0 to 1000",
+            }),
+        }
+    }
+}
+
 wire_struct! {
     /// A painting for other programs.
     pub struct ExportOrder {
         /// The whole path of the file.
-        pub path: String,
+        pub path: WholePath,
         /// `png`, `exr`, `ora`, `height` or `stl`; as the path ends if empty.
         pub format: String,
         /// The surface.
         pub surface: u32,
         /// Bits a channel of a PNG: 8 or 16.
+        #[serde(deserialize_with = "bits")]
         pub bits: u32,
         /// Thickness of a solid under its lowest place, m.
         pub base_m: f64,
@@ -93,12 +166,28 @@ wire_struct! {
     }
 }
 
+/// Bits per channel that a PNG may have.
+///
+/// # Errors
+/// [`ValueError::Bits`].
+pub fn png_bits(bits: u32) -> Result<u32, ValueError> {
+    match [8, 16].contains(&bits) {
+        true => Ok(bits),
+        false => Err(ValueError::Bits(bits)),
+    }
+}
+
+fn bits<'de, D: serde::Deserializer<'de>>(from: D) -> Result<u32, D::Error> {
+    let bits = serde::Deserialize::deserialize(from)?;
+    png_bits(bits).map_err(D::Error::custom)
+}
+
 impl ExportOrder {
     /// The canvas, in the format that the path says, with what is usual for all else.
     #[must_use]
-    pub fn to(path: &str) -> Self {
+    pub fn to(path: WholePath) -> Self {
         Self {
-            path: path.to_owned(),
+            path,
             format: String::new(),
             surface: CANVAS,
             bits: 8,
@@ -111,26 +200,41 @@ impl ExportOrder {
     }
 }
 
+wire_struct! {
+    /// The painting, with its history, in another file, in which it goes on.
+    pub struct SaveAs {
+        /// The whole path of the file.
+        pub path: WholePath,
+        /// Whether a painting that is there already may go.
+        pub replace: bool,
+    }
+}
+
 wire_enum! {
-    /// What a painter, a script or a player can ask for.
+    /// A command, by who carries it out.
+    #[allow(clippy::large_enum_variant, reason = "commands are few and short-lived")]
     pub enum Command {
-        /// Loads a brush afresh: what it carried goes to the cleaner.
-        Load {
-            /// Name of the brush.
-            brush: String,
-            /// What it takes up.
-            mixture: Mixture,
-        },
-        /// Takes all paint off a brush.
-        Clean {
-            /// Name of the brush.
-            brush: String,
-        },
+        /// The painting: it changes by an edit.
+        Edit(Edit),
+        /// The sequencer: something takes its place in the journal and changes no paint.
+        Take(TakeCommand),
+        /// The paint node, beside the journal: files are written.
+        File(FileCommand),
+        /// The node of a brush.
+        Brush(BrushCommand),
+        /// The launcher: the rig goes on in another painting.
+        Rig(RigCommand),
+    }
+}
+
+wire_enum! {
+    /// What takes its place in the journal besides edits.
+    pub enum TakeCommand {
         /// Announces a take: only announced takes paint. Each new stroke takes the next load in
         /// turn; without loads the brush keeps what it has.
-        Take {
+        Begin {
             /// Name of the brush that will follow it.
-            brush: String,
+            brush: BrushName,
             /// Source of the player's samples.
             device: u32,
             /// Epoch of this playing.
@@ -140,254 +244,105 @@ wire_enum! {
             /// Whether it begins again, after a crash: what was painted of it is undone first.
             again: bool,
         },
-        /// Takes the newest step back.
-        Undo {
-            /// Whose newest step, if not that of all; refused where a later step touches its tiles.
-            brush: Option<String>,
-        },
-        /// Takes the newest undo back.
-        Redo {
-            /// Of whose steps, if not of all.
-            brush: Option<String>,
-        },
-        /// Writes a picture of the canvas and, if asked, the ledger.
-        Snapshot {
-            /// A PNG; written beside and renamed.
-            path: String,
-            /// A JSON file with the ledger.
-            ledger: Option<String>,
-        },
-        /// Moves, turns or zooms a surface.
-        Place {
-            /// The surface.
-            surface: u32,
-            /// Surface frame to desk frame.
-            pose: Pose,
-            /// Desk lengths per surface length.
-            zoom: f64,
-        },
         /// Ends nothing and changes nothing: its reply says that the place it names is reached.
         Mark,
-        /// Loads a brush afresh with a mixture on either half of its width.
-        LoadBeside {
-            /// Name of the brush.
-            brush: String,
-            /// What the half toward −x of the brush takes up.
-            left: Mixture,
-            /// What the other half takes up.
-            right: Mixture,
+        /// Writes a picture of the canvas as it is there and, if asked, the ledger.
+        Snapshot {
+            /// A PNG; written beside and renamed.
+            path: WholePath,
+            /// A JSON file with the ledger.
+            ledger: Option<WholePath>,
         },
-        /// Gives a brush another file; it is the brush's own node that does it.
+    }
+}
+
+wire_enum! {
+    /// What the paint node does with files while it is painted on.
+    pub enum FileCommand {
+        /// Writes the painting for other programs.
+        Export(ExportOrder),
+        /// Ends the export that goes on: its file is not written.
+        StopExport,
+        /// Puts the painting into another file.
+        SaveAs(SaveAs),
+    }
+}
+
+wire_enum! {
+    /// What a brush's own node does.
+    pub enum BrushCommand {
+        /// Gives a brush another file.
         Define {
             /// Name of the brush.
-            brush: String,
+            brush: BrushName,
             /// The file, TOML.
-            toml: String,
+            toml: BrushToml,
         },
-        /// Makes a brush stiffer or softer than its file says.
-        Tune {
-            /// How it is from now on.
-            tuning: Tuning,
-        },
-        /// Changes the light, or how its light becomes colour.
-        Relight {
-            /// How it is from now on.
-            light: Light,
-            /// Whether the exposure is chosen anew, so that the bare canvas does not clip.
-            expose: bool,
-        },
-        /// Dries wet paint of a surface into a new layer.
-        Dry {
-            /// The surface.
-            surface: u32,
-            /// The lower share of the wet film that dries, above 0 to 1.
-            share: f32,
-            /// Name of the layer.
-            name: String,
-        },
-        /// Makes a dry layer more or less opaque.
-        Opacity {
-            /// Number of the layer.
-            layer: u32,
-            /// Factor on its optical thickness, 0 to 1.
-            opacity: f32,
-        },
-        /// Gives a surface another ground.
-        Ground {
-            /// The surface.
-            surface: u32,
-            /// Name of the ground.
-            ground: String,
-        },
-        /// Gives a surface another tooth.
-        Tooth {
-            /// The surface.
-            surface: u32,
-            /// Name of the tooth.
-            tooth: String,
-            /// Seed of the tooth.
-            seed: u64,
-        },
-        /// Lays an even film of wet paint over a whole surface.
-        Fill {
-            /// The surface.
-            surface: u32,
-            /// The paint.
-            mixture: Mixture,
-            /// Thickness of the film, m.
-            thickness_m: f64,
-        },
-        /// Keeps the painting as it is as a version.
-        Keep {
-            /// Name of the version.
-            name: String,
-        },
-        /// Makes the painting as it was in a version.
-        Return {
-            /// Name of the version.
-            name: String,
-        },
-        /// Begins a version from another one: the painting becomes as it was there.
-        Branch {
-            /// Name of the other version.
-            from: String,
-            /// Name of the new version.
-            name: String,
-        },
-        /// Forgets a version.
-        Forget {
-            /// Name of the version.
-            name: String,
-        },
-        /// Dries wet paint of a part of a surface into a new layer.
-        DryRegion {
-            /// The surface.
-            surface: u32,
-            /// The lower share of the wet film that dries, above 0 to 1.
-            share: f32,
-            /// Name of the layer.
-            name: String,
-            /// The part.
-            region: Region,
-        },
-        /// Has the wet paint of a surface, or of a part, dry evenly into one new layer while time goes by.
-        DryOver {
-            /// The surface.
-            surface: u32,
-            /// How long, in sixtieths of a second.
-            ticks: u32,
-            /// Name of the layer.
-            name: String,
-            /// The part; all of it if absent.
-            region: Option<Region>,
-        },
-        /// Ends the drying that goes on: what is wet still stays wet.
-        StopDrying {
-            /// The surface.
-            surface: u32,
-        },
-        /// Makes the newest dry layers of a surface, or of a part, wet paint again where they lie.
-        Wet {
-            /// The surface.
-            surface: u32,
-            /// How many; 0 for all.
-            layers: u32,
-            /// The part; all of it if absent.
-            region: Option<Region>,
-        },
-        /// Makes a dry layer, called by its name, more or less opaque.
-        LayerOpacity {
-            /// Its name, or its number in digits; of several of that name the newest.
-            layer: String,
-            /// Factor on its optical thickness, 0 to 1.
-            opacity: f32,
-        },
-        /// Gives a surface a ground of a measured reflectance.
-        GroundSpectrum {
-            /// The surface.
-            surface: u32,
-            /// Reflectances, a CSV file of nm,reflectance.
-            spectrum: String,
-        },
-        /// Says how a brush is used.
-        Handle {
-            /// How, from now on.
-            handling: BrushHandling,
-        },
-        /// Lays an even film of the colour that a brush carries on the whole over a surface.
-        FillWith {
-            /// The surface.
-            surface: u32,
-            /// The brush.
-            brush: String,
-            /// Thickness of the film, m.
-            thickness_m: f64,
-        },
-        /// Sizes a surface, heavily or hardly.
-        Size {
-            /// The surface.
-            surface: u32,
-            /// Thickness of paint that stays however hard it is brushed, m.
-            stain_m: f64,
-        },
-        /// Says whether paint on a surface lasts, however much of it brushes take up.
-        Piles {
-            /// The surface.
-            surface: u32,
-            /// Whether it lasts.
-            last: bool,
-        },
-        /// Goes on in another painting; it is the launcher that does it, as `rig`.
+    }
+}
+
+wire_enum! {
+    /// What the launcher does.
+    pub enum RigCommand {
+        /// Goes on in another painting.
         Open {
             /// The whole path of a painting that there is.
-            path: String,
+            path: WholePath,
             /// Whether what was painted in memory alone may go.
             forget: bool,
         },
-        /// Begins another painting and goes on in it; it is the launcher that does it, as `rig`.
+        /// Begins another painting and goes on in it.
         New {
             /// The whole path of its file, which is not there yet; in memory alone if absent.
-            path: Option<String>,
+            path: Option<WholePath>,
             /// What it is painted on.
             canvas: NewCanvas,
             /// Whether what was painted in memory alone may go.
             forget: bool,
         },
-        /// Puts the painting with its history into another file and goes on in that one. To the launcher,
-        /// as `rig`, so that it starts with it again; to the paint node it is the same till then.
-        SaveAs {
-            /// The whole path of the file.
-            path: String,
-            /// Whether a painting that is there already may go.
-            replace: bool,
-        },
-        /// Writes the painting for other programs, beside what else is done.
-        Export {
-            /// How.
-            order: ExportOrder,
-        },
-        /// Ends the export that goes on: its file is not written.
-        StopExport,
-        /// Gives a dry layer another name.
-        NameLayer {
-            /// Number of the layer.
-            layer: u32,
-            /// Its name from now on; not blank.
-            name: String,
-        },
-        /// Gives a surface other wells. What brushes have stirred in those that go stays there, wet.
-        Wells {
-            /// The surface.
-            surface: u32,
-            /// Its wells from now on.
-            wells: Vec<Well>,
-        },
+        /// As [`FileCommand::SaveAs`], so that the rig starts with that file again.
+        SaveAs(SaveAs),
+    }
+}
+
+macro_rules! from {
+    ($($inner:ident => $variant:ident),*) => {
+        $(
+            impl From<$inner> for Command {
+                fn from(command: $inner) -> Self {
+                    Self::$variant(command)
+                }
+            }
+        )*
+    };
+}
+
+from!(Edit => Edit, TakeCommand => Take, FileCommand => File, BrushCommand => Brush, RigCommand => Rig);
+
+impl Command {
+    /// Name of the node that carries it out.
+    #[must_use]
+    pub fn node(&self) -> &str {
+        match self {
+            Self::Edit(_) | Self::Take(_) | Self::File(_) => PAINT_NODE,
+            Self::Brush(BrushCommand::Define { brush, .. }) => brush,
+            Self::Rig(_) => RIG_NODE,
+        }
+    }
+
+    /// Its refusal by a node that it is not for.
+    #[must_use]
+    pub fn misaddressed(&self) -> Outcome {
+        Outcome::Refused {
+            what: "this node does not carry out this command".to_owned(),
+            advice: Advice::say(format!("it is for the node '{}'", self.node())),
+        }
     }
 }
 
 message! {
     /// A command with its sender and number; sending it again with the same number is safe.
-    pub struct CommandRequest [version 6, at most 1048576 bytes] {
+    pub struct CommandRequest [version 7, at most 1048576 bytes] {
         /// A number that the client drew at random.
         pub client: u64,
         /// Counts the client's commands.
@@ -396,6 +351,16 @@ message! {
         pub after: Option<After>,
         /// What it does.
         pub command: Command,
+    }
+}
+
+impl CommandRequest {
+    /// The number of a request, read before its command: one whose command is out of range is answered, too.
+    #[must_use]
+    pub fn number_in(bytes: &[u8]) -> Option<u64> {
+        let (_, body) = crate::codec::body_of::<Self>(bytes).ok()?;
+        let number = body.get(8..16)?.try_into().ok()?;
+        Some(u64::from_le_bytes(number))
     }
 }
 
@@ -415,15 +380,35 @@ wire_enum! {
         Refused {
             /// What is wrong.
             what: String,
-            /// What to do about it.
-            help: String,
+            /// What to do about it; each front end has its own words for it.
+            advice: Advice,
         },
+    }
+}
+
+impl Outcome {
+    /// It is done, beside the journal.
+    #[must_use]
+    pub fn done(detail: impl Into<String>) -> Self {
+        Self::Done {
+            journal: 0,
+            detail: detail.into(),
+        }
+    }
+
+    /// It was not done, with advice in words.
+    #[must_use]
+    pub fn refused(what: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::Refused {
+            what: what.into(),
+            advice: Advice::say(help),
+        }
     }
 }
 
 message! {
     /// The reply to a command.
-    pub struct CommandReply [version 1, at most 65536 bytes] {
+    pub struct CommandReply [version 2, at most 65536 bytes] {
         /// The command's number.
         pub number: u64,
         /// What became of it.
@@ -444,4 +429,35 @@ message! {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+
+    #[test]
+    fn canvases_are_sound_or_rejected_with_what_to_do() {
+        let new = |width_m: f64, cell_m: f64| NewCanvas {
+            width_m,
+            height_m: 0.2,
+            cell_m,
+            ground: MaterialName::new("gesso").expect("a name"),
+            tooth: MaterialName::new("linen").expect("a name"),
+            tooth_seed: 1,
+            stain_m: 3e-6,
+        };
+        assert_eq!(new(0.3, 2.5e-4).check(), Ok(()));
+        for (width_m, cell_m, word) in [
+            (0.0, 2.5e-4, "0×20 cm"),
+            (1e4, 2.5e-4, "1638 cm"),
+            (f64::NAN, 2.5e-4, "NaN"),
+            (0.3, 0.0, "cell of 0 mm"),
+            (0.3, f64::INFINITY, "cell of inf mm"),
+            (0.6, 1e-5, "million cells"),
+        ] {
+            let what = new(width_m, cell_m)
+                .check()
+                .expect_err("rejected")
+                .to_string();
+            assert!(what.contains(word) && what.contains("choose"), "{what}");
+        }
+        assert!(png_bits(16).is_ok() && png_bits(12).is_err());
+    }
+}

@@ -8,8 +8,8 @@ macro_rules! wire_struct {
             $( $(#[$field_meta:meta])* pub $field:ident : $ty:ty ),* $(,)?
         }
     ) => {
-        $(#[$meta])*
         #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        $(#[$meta])*
         pub struct $name {
             $( $(#[$field_meta])* pub $field: $ty, )*
         }
@@ -30,7 +30,8 @@ macro_rules! wire_struct {
     };
 }
 
-/// Defines an enum that travels inside messages; its tag is a u32 in order of declaration.
+/// Defines an enum that travels inside messages; its tag is a u32 in order of declaration. A variant that holds one
+/// other type calls it `value` in its field table.
 macro_rules! wire_enum {
     (
         $(#[$meta:meta])*
@@ -38,18 +39,19 @@ macro_rules! wire_enum {
             $(
                 $(#[$variant_meta:meta])*
                 $variant:ident
+                $(($inner:ty))?
                 $({
                     $( $(#[$field_meta:meta])* $field:ident : $ty:ty ),* $(,)?
                 })?
             ),* $(,)?
         }
     ) => {
-        $(#[$meta])*
         #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        $(#[$meta])*
         pub enum $name {
             $(
                 $(#[$variant_meta])*
-                $variant $({ $( $(#[$field_meta])* $field: $ty, )* })?,
+                $variant $(($inner))? $({ $( $(#[$field_meta])* $field: $ty, )* })?,
             )*
         }
 
@@ -65,7 +67,10 @@ macro_rules! wire_enum {
                         $(
                             $crate::schema::Variant {
                                 name: stringify!($variant).to_owned(),
-                                fields: vec![$($( table.field::<$ty>(stringify!($field)), )*)?],
+                                fields: vec![
+                                    $( table.field::<$inner>("value"), )?
+                                    $($( table.field::<$ty>(stringify!($field)), )*)?
+                                ],
                             },
                         )*
                     ])

@@ -180,7 +180,7 @@ pub enum DecodeError {
     /// Another message, or another version of it.
     #[error(
         "schema {got:#010x} (version {version}) is not {name}'s {wanted:#010x}: \
-         rebuild the sender, or compare with `maulstick schema --json`"
+         rebuild the sender, or compare the message formats"
     )]
     UnknownSchema {
         /// The message that was expected.

@@ -11,6 +11,8 @@
 //! | [`topics`] | the key expressions of a rig |
 //! | [`reply_cache`] | the newest reply to each client |
 //! | [`advice`] | what to do about something that is wrong |
+//! | [`edits`] | edits of a painting, one in one file |
+//! | [`values`] | numbers and names that are in range |
 //! | [`stylus`], [`control`], [`haptics`], [`brush`], [`scene`], [`paint`], [`command`], [`window`] | the messages |
 
 mod codec;
@@ -23,10 +25,10 @@ pub mod brush;
 pub mod catalogue;
 pub mod command;
 pub mod control;
+pub mod edits;
 pub mod haptics;
 pub mod header;
 pub mod mixture;
-pub mod older;
 pub mod paint;
 pub mod pose;
 pub mod region;
@@ -35,6 +37,7 @@ pub mod scene;
 pub mod schema;
 pub mod stylus;
 pub mod topics;
+pub mod values;
 pub mod window;
 
 pub use advice::nearest;

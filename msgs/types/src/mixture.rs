@@ -3,6 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::command::{PAINT_NAME_MAX, PARTS_MAX};
 use crate::define::wire_struct;
 
 wire_struct! {
@@ -17,9 +18,26 @@ wire_struct! {
 
 wire_struct! {
     /// Paints and their shares by volume; the shares sum to 1 within 1e-3.
+    #[serde(try_from = "Parts")]
     pub struct Mixture {
         /// At least one part, no paint twice.
         pub parts: Vec<Part>,
+    }
+}
+
+/// A mixture as it is decoded.
+#[derive(serde::Deserialize)]
+struct Parts {
+    parts: Vec<Part>,
+}
+
+impl TryFrom<Parts> for Mixture {
+    type Error = MixtureError;
+
+    fn try_from(Parts { parts }: Parts) -> Result<Self, MixtureError> {
+        let mixture = Self { parts };
+        mixture.check()?;
+        Ok(mixture)
     }
 }
 
@@ -45,6 +63,12 @@ pub enum MixtureError {
         /// The sum.
         sum: f64,
     },
+    /// Too many paints.
+    #[error("a mixture of {0} paints: it has at most {PARTS_MAX}")]
+    Parts(usize),
+    /// The name of a paint is too long.
+    #[error("a paint's name of {0} bytes: it has at most {PAINT_NAME_MAX}")]
+    Name(usize),
     /// A paint twice.
     #[error("'{paint}' stands twice in the mixture")]
     Twice {
@@ -72,6 +96,13 @@ impl Mixture {
     pub fn check(&self) -> Result<(), MixtureError> {
         if self.parts.is_empty() || self.parts.iter().any(|part| part.paint.is_empty()) {
             return Err(MixtureError::Empty);
+        }
+        if self.parts.len() > PARTS_MAX {
+            return Err(MixtureError::Parts(self.parts.len()));
+        }
+        let mut lengths = self.parts.iter().map(|part| part.paint.len());
+        if let Some(length) = lengths.find(|length| *length > PAINT_NAME_MAX) {
+            return Err(MixtureError::Name(length));
         }
         for (place, part) in self.parts.iter().enumerate() {
             if !(part.share > 0.0 && part.share <= 1.0 + 1e-3) {

@@ -74,18 +74,12 @@ wire_enum! {
 
 message! {
     /// An entry of the journal, in order; it has room for the largest command with its index.
-    pub struct JournalEntry [version 6, at most 1049600 bytes] {
+    pub struct JournalEntry [version 7, at most 1049600 bytes] {
         /// From 0, without gaps.
         pub index: u64,
         /// The record.
         pub entry: Entry,
     }
-}
-
-impl JournalEntry {
-    /// Hashes of the schemas of older versions, whose bytes mean the same today: since then commands were
-    /// appended, nothing else.
-    pub const OLDER: [u32; 2] = [0x41c3_0f50, 0x5048_54fc];
 }
 
 message! {

@@ -4,6 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::define::wire_struct;
+use crate::values::ValueError;
 
 /// No region reaches farther than this from its surface's origin, m.
 const FARTHEST_M: f64 = 1e4;
@@ -11,6 +12,7 @@ const FARTHEST_M: f64 = 1e4;
 wire_struct! {
     /// A rectangle in a surface's frame: origin at the surface's lower left corner, x right, y up. It
     /// holds the cells whose middle lies in it; it may reach beyond the surface.
+    #[serde(try_from = "RegionFields")]
     pub struct Region {
         /// Its lower left corner, m.
         pub corner_m: [f64; 2],
@@ -19,19 +21,37 @@ wire_struct! {
     }
 }
 
+/// A region as it is decoded.
+#[derive(serde::Deserialize)]
+struct RegionFields {
+    corner_m: [f64; 2],
+    size_m: [f64; 2],
+}
+
+impl TryFrom<RegionFields> for Region {
+    type Error = ValueError;
+
+    fn try_from(fields: RegionFields) -> Result<Self, ValueError> {
+        let region = Self {
+            corner_m: fields.corner_m,
+            size_m: fields.size_m,
+        };
+        region.check()?;
+        Ok(region)
+    }
+}
+
 impl Region {
     /// Checks that it is finite and not empty.
     ///
     /// # Errors
-    /// What is wrong and what to do, as [`parted`](crate::advice::parted) tells them apart.
-    pub fn check(&self) -> Result<(), String> {
+    /// [`ValueError::Region`].
+    pub fn check(&self) -> Result<(), ValueError> {
         let near = self.corner_m.iter().all(|m| m.abs() <= FARTHEST_M);
         let wide = self.size_m.iter().all(|m| *m > 0.0 && *m <= FARTHEST_M);
         match near && wide {
             true => Ok(()),
-            false => Err(format!(
-                "the region {self} is empty or not finite; give X,Y,WxH in mm, such as 10,20,60x40"
-            )),
+            false => Err(ValueError::Region(self.to_string())),
         }
     }
 
@@ -59,11 +79,11 @@ impl fmt::Display for Region {
 }
 
 impl FromStr for Region {
-    type Err = String;
+    type Err = ValueError;
 
     /// Reads `X,Y,WxH`, in mm of the surface from its lower left corner.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("'{text}' is no region; give X,Y,WxH in mm, such as 10,20,60x40");
+    fn from_str(text: &str) -> Result<Self, ValueError> {
+        let wrong = || ValueError::Region(text.chars().take(40).collect());
         let parts: Vec<&str> = text.trim_end_matches("mm").split(',').collect();
         let [x, y, size] = parts[..] else {
             return Err(wrong());
@@ -118,7 +138,7 @@ mod tests {
             "1,2,infx4",
             "a,2,3x4",
         ] {
-            let what = text.parse::<Region>().expect_err(text);
+            let what = text.parse::<Region>().expect_err(text).to_string();
             assert!(what.contains("X,Y,WxH"), "{what}");
         }
     }

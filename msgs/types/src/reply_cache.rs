@@ -1,21 +1,25 @@
-//! The newest reply to each client: a command that is sent again is answered again, not done again.
+//! The newest reply to each client: a command that is sent again is answered again, not done again. The sequencer's is
+//! saved with the painting.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
 
 use crate::command::{CommandRequest, Outcome};
 
 /// Clients whose newest answer is kept. A client repeats within seconds; of more clients than these the
 /// one that was answered longest ago is forgotten.
-const CLIENTS: usize = 64;
+const CLIENTS: usize = 256;
 
 /// The newest answer to each client.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ReplyCache {
     newest: BTreeMap<u64, Answer>,
     answers: u64,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Answer {
     number: u64,
     outcome: Outcome,
@@ -23,12 +27,27 @@ struct Answer {
 }
 
 impl ReplyCache {
-    /// What was answered to this very command.
+    /// The answer to this very command, or the refusal of one that comes after a later one of its client.
     #[must_use]
     pub fn find(&self, request: &CommandRequest) -> Option<Outcome> {
-        let newest = self.newest.get(&request.client);
-        let same = newest.filter(|answer| answer.number == request.number);
-        same.map(|answer| answer.outcome.clone())
+        let newest = self.newest.get(&request.client)?;
+        match newest.number.cmp(&request.number) {
+            Ordering::Less => None,
+            Ordering::Equal => Some(newest.outcome.clone()),
+            Ordering::Greater => Some(Outcome::refused(
+                format!(
+                    "command {} comes after command {}",
+                    request.number, newest.number
+                ),
+                "number commands upward",
+            )),
+        }
+    }
+
+    /// The number of the newest command of a client that was answered.
+    #[must_use]
+    pub fn newest(&self, client: u64) -> Option<u64> {
+        self.newest.get(&client).map(|answer| answer.number)
     }
 
     /// Keeps what became of command `number` of a client.
@@ -51,7 +70,7 @@ impl ReplyCache {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::Command;
+    use crate::command::TakeCommand;
 
     use super::*;
 
@@ -60,7 +79,7 @@ mod tests {
             client,
             number,
             after: None,
-            command: Command::Mark,
+            command: TakeCommand::Mark.into(),
         }
     }
 
@@ -73,7 +92,11 @@ mod tests {
         replies.keep(0, 2, Outcome::Waiting);
         replies.keep(1000, 1, Outcome::Waiting);
         assert_eq!(replies.find(&request(0, 2)), Some(Outcome::Waiting));
-        assert_eq!(replies.find(&request(0, 1)), None);
+        assert!(
+            matches!(replies.find(&request(0, 1)), Some(Outcome::Refused { .. })),
+            "too late"
+        );
+        assert_eq!(replies.find(&request(0, 3)), None);
         assert_eq!(replies.find(&request(1, 1)), None, "answered longest ago");
         assert!(replies.find(&request(1000, 1)).is_some());
     }

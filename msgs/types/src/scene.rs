@@ -5,6 +5,7 @@ mod fault;
 use crate::define::{message, wire_enum, wire_struct};
 use crate::mixture::Mixture;
 use crate::pose::Pose;
+use crate::values::ValueError;
 
 /// The canvas.
 pub const CANVAS: u32 = 0;
@@ -74,10 +75,8 @@ wire_struct! {
         pub wells: Vec<Well>,
         /// Thickness of paint that stays however hard it is brushed, m: little on a canvas that is
         /// heavily sized (Baxter 2004, § 6.4.1).
-        #[serde(default = "default_stain_m")]
         pub stain_m: f64,
         /// Whether paint that brushes take up from it stays there all the same (Baxter 2004, § 6.7).
-        #[serde(default)]
         pub piles_last: bool,
     }
 }
@@ -134,17 +133,27 @@ impl BrushMode {
         ("vacuum", Self::Vacuum),
     ];
 
-    /// The mode of this name.
-    ///
-    /// # Errors
-    /// What names there are, and the nearest, as [`parted`](crate::advice::parted) tells them apart.
-    pub fn called(name: &str) -> Result<Self, String> {
-        if let Some((_, mode)) = Self::NAMES.iter().find(|(known, _)| *known == name) {
-            return Ok(mode.clone());
-        }
-        let names = Self::NAMES.map(|(name, _)| name);
-        let help = crate::advice::choice(name, names);
-        Err(format!("there is no mode called '{name}'; {help}"))
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        let found = Self::NAMES.iter().find(|(_, mode)| mode == self);
+        found.map_or("", |(name, _)| name)
+    }
+}
+
+impl std::str::FromStr for BrushMode {
+    type Err = ValueError;
+
+    fn from_str(name: &str) -> Result<Self, ValueError> {
+        let found = Self::NAMES.iter().find(|(known, _)| *known == name);
+        found.map(|(_, mode)| mode.clone()).ok_or_else(|| {
+            let names = Self::NAMES.map(|(name, _)| name);
+            ValueError::Unknown {
+                what: "mode",
+                name: name.chars().take(40).collect(),
+                choice: crate::advice::choice(name, names),
+            }
+        })
     }
 }
 
@@ -259,12 +268,47 @@ impl Default for Light {
     }
 }
 
+/// A light that cannot be.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LightError {
+    /// A number out of range.
+    #[error("the {name} is {value}: choose {least} to {most}")]
+    Range {
+        /// The quantity.
+        name: &'static str,
+        /// The number.
+        value: f64,
+        /// The least that it can be.
+        least: f64,
+        /// The most.
+        most: f64,
+    },
+    /// A lamp below the canvas, or of no direction.
+    #[error("the light must come from above the canvas: give x, y, z with z > 0")]
+    Below,
+    /// The name of a spectrum that is too long.
+    #[error("an illuminant's name of {0} bytes: it has at most {ILLUMINANT_NAME_MAX}")]
+    Name(usize),
+    /// Powers that are no spectrum.
+    #[error("this is no spectrum: give 101 powers of 0 or more, not all of them 0")]
+    Spectrum,
+    /// An observer that the CIE does not have.
+    #[error("there is no CIE observer of {0}: take 1931 or 1964")]
+    Observer(u32),
+    /// An unknown sampling rule.
+    #[error("there is no such sampling rule: choose one of {}", RULES.join(", "))]
+    Rule,
+    /// Too few or too many wavelengths.
+    #[error("a rule of {0} samples: take 4 to 16")]
+    Samples(u32),
+}
+
 impl Light {
     /// Checks that it shines, in bounds.
     ///
     /// # Errors
-    /// What is wrong and what to do, as [`parted`](crate::advice::parted) tells them apart.
-    pub fn check(&self) -> Result<(), String> {
+    /// [`LightError`].
+    pub fn check(&self) -> Result<(), LightError> {
         let bounded = [
             ("intensity", self.intensity, INTENSITY),
             ("exposure", self.exposure, INTENSITY),
@@ -273,43 +317,34 @@ impl Light {
         ];
         for (name, value, range) in bounded {
             if !range.contains(&value) {
-                let (least, most) = (range.start(), range.end());
-                return Err(format!("the {name} is {value}; choose {least} to {most}"));
+                return Err(LightError::Range {
+                    name,
+                    value,
+                    least: *range.start(),
+                    most: *range.end(),
+                });
             }
         }
         let length: f64 = self.direction.iter().map(|v| v * v).sum();
         if !(1e-6..=1e6).contains(&length) || self.direction[2] <= 0.0 {
-            return Err(
-                "the light must come from above the canvas; give x, y, z with z > 0".into(),
-            );
+            return Err(LightError::Below);
         }
         if self.illuminant.len() > ILLUMINANT_NAME_MAX {
-            let bytes = self.illuminant.len();
-            return Err(format!(
-                "an illuminant's name of {bytes} bytes; choose one of at most {ILLUMINANT_NAME_MAX}"
-            ));
+            return Err(LightError::Name(self.illuminant.len()));
         }
         let power = &self.spectrum;
         let good = power.iter().all(|v| (0.0..=1e9).contains(v)) && power.iter().any(|v| *v > 0.0);
         if !power.is_empty() && (power.len() != 101 || !good) {
-            return Err(
-                "this is no spectrum; give 101 powers of 0 or more, not all of them 0".into(),
-            );
+            return Err(LightError::Spectrum);
         }
         if ![1931, 1964].contains(&self.observer) {
-            return Err(format!(
-                "there is no CIE observer of {}; take 1931 or 1964",
-                self.observer
-            ));
+            return Err(LightError::Observer(self.observer));
         }
         if !RULES.contains(&self.rule.as_str()) {
-            return Err(format!(
-                "there is no such sampling rule; choose one of {}",
-                RULES.join(", ")
-            ));
+            return Err(LightError::Rule);
         }
         if self.rule != "reference" && !SAMPLES.contains(&self.samples) {
-            return Err(format!("a rule of {} samples; take 4 to 16", self.samples));
+            return Err(LightError::Samples(self.samples));
         }
         Ok(())
     }
@@ -341,7 +376,6 @@ message! {
         /// The versions that were kept, by name.
         pub versions: Vec<NamedVersion>,
         /// Brushes that are used in a way of their own.
-        #[serde(default)]
         pub handlings: Vec<BrushHandling>,
     }
 }

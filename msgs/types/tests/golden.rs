@@ -2,8 +2,10 @@
 
 mod parts;
 
+use maulstick_types::advice::Advice;
 use maulstick_types::brush::{BrushConsumed, BrushDef, BrushLook, BrushState, Contact, Solve};
 use maulstick_types::command::{After, Command, CommandReply, CommandRequest, GapRequest, Outcome};
+use maulstick_types::edits::{Undo, examples};
 use maulstick_types::haptics::{
     ContactModel, FluidForce, ForceLaw, ForceOrder, ForceRequest, Grain, HermiteKnot,
 };
@@ -17,7 +19,8 @@ use maulstick_types::scene::{
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, TakeEnd, TakeStatus};
 use maulstick_types::{CATALOGUE, Flags, Message, Mixture, Origin, decode, encode};
 use parts::{
-    control, files, force_reply, handling, paint_status, pose, presented, region, status, thumbnail,
+    control, files, force_reply, handling, paint_status, pose, presented, status, takes, thumbnail,
+    wide_light,
 };
 
 fn after() -> After {
@@ -272,7 +275,7 @@ fn all() -> String {
         line(&entry(Entry::Command {
             client: 1,
             number: 2,
-            command: Command::Undo { brush: None },
+            command: Undo { brush: None }.into(),
         })),
         line(&entry(Entry::Tick { count: 4 })),
         line(&entry(Entry::Decision {
@@ -314,144 +317,14 @@ fn all() -> String {
             side: 96,
         }),
         line(&thumbnail()),
-        line(&command(Command::Load {
-            brush: "main".into(),
-            mixture: mixture.clone(),
-        })),
-        line(&command(Command::Clean {
-            brush: "main".into(),
-        })),
-        line(&command(Command::Take {
-            brush: "main".into(),
-            device: 1,
-            device_epoch: 2,
-            loads: vec![mixture.clone()],
-            again: true,
-        })),
-        line(&command(Command::Undo { brush: None })),
-        line(&command(Command::Redo {
-            brush: Some("main".into()),
-        })),
-        line(&command(Command::Snapshot {
-            path: "p.png".into(),
-            ledger: Some("l.json".into()),
-        })),
-        line(&command(Command::Place {
-            surface: 1,
-            pose: pose(),
-            zoom: 2.0,
-        })),
-        line(&command(Command::Mark)),
-        line(&command(Command::LoadBeside {
-            brush: "main".into(),
-            left: mixture.clone(),
-            right: mixture.clone(),
-        })),
-        line(&command(Command::Define {
-            brush: "main".into(),
-            toml: "kind".into(),
-        })),
-        line(&command(Command::Tune {
-            tuning: Tuning {
-                brush: "main".into(),
-                stiffness: 1.5,
-                wetness: 0.5,
-            },
-        })),
-        line(&command(Command::Relight {
-            light: Light {
-                spectrum: vec![0.5],
-                ..Light::default()
-            },
-            expose: true,
-        })),
-        line(&command(Command::Dry {
-            surface: 0,
-            share: 0.5,
-            name: "sky".into(),
-        })),
-        line(&command(Command::Opacity {
-            layer: 1,
-            opacity: 0.25,
-        })),
-        line(&command(Command::Ground {
-            surface: 0,
-            ground: "grey".into(),
-        })),
-        line(&command(Command::Tooth {
-            surface: 0,
-            tooth: "cotton".into(),
-            seed: 7,
-        })),
-        line(&command(Command::Fill {
-            surface: 0,
-            mixture: mixture.clone(),
-            thickness_m: 1e-4,
-        })),
-        line(&command(Command::Keep {
-            name: "sketch".into(),
-        })),
-        line(&command(Command::Return {
-            name: "sketch".into(),
-        })),
-        line(&command(Command::Branch {
-            from: "sketch".into(),
-            name: "warm".into(),
-        })),
-        line(&command(Command::Forget {
-            name: "warm".into(),
-        })),
-        line(&command(Command::DryRegion {
-            surface: 0,
-            share: 0.5,
-            name: "sky".into(),
-            region: region(),
-        })),
-        line(&command(Command::DryOver {
-            surface: 0,
-            ticks: 5400,
-            name: "sky".into(),
-            region: Some(region()),
-        })),
-        line(&command(Command::StopDrying { surface: 1 })),
-        line(&command(Command::Wet {
-            surface: 0,
-            layers: 2,
-            region: None,
-        })),
-        line(&command(Command::LayerOpacity {
-            layer: "sky".into(),
-            opacity: 0.25,
-        })),
-        line(&command(Command::GroundSpectrum {
-            surface: 0,
-            spectrum: "380,1".into(),
-        })),
-        line(&command(Command::Handle {
-            handling: handling(),
-        })),
-        line(&command(Command::FillWith {
-            surface: 0,
-            brush: "main".into(),
-            thickness_m: 2e-5,
-        })),
-        line(&command(Command::Size {
-            surface: 0,
-            stain_m: 1e-5,
-        })),
-        line(&command(Command::Piles {
-            surface: 1,
-            last: true,
-        })),
+        examples()
+            .expect("in range")
+            .into_iter()
+            .map(|edit| line(&command(edit.into())))
+            .collect(),
+        line(&command(wide_light().into())),
+        takes().map(|asked| line(&command(asked.into()))).concat(),
         files().map(|asked| line(&command(asked))).concat(),
-        line(&command(Command::NameLayer {
-            layer: 2,
-            name: "sky".into(),
-        })),
-        line(&command(Command::Wells {
-            surface: 1,
-            wells: vec![well(WellKind::Cleaner)],
-        })),
         line(&reply(Outcome::Done {
             journal: 1,
             detail: "done".into(),
@@ -459,7 +332,11 @@ fn all() -> String {
         line(&reply(Outcome::Waiting)),
         line(&reply(Outcome::Refused {
             what: "no".into(),
-            help: "yes".into(),
+            advice: Advice::say("yes"),
+        })),
+        line(&reply(Outcome::Refused {
+            what: "no".into(),
+            advice: Advice::FullOpacity { layer: 2 },
         })),
         line(&GapRequest {
             epoch: 1,

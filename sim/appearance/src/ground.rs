@@ -10,7 +10,6 @@ use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::tile::TileId;
 use maulstick_optics::colour::{SrgbTable, srgb_decode};
 use maulstick_optics::{Reflectance, Smooth, Spectrum, Studio, Under, Upsampler};
-use maulstick_types::advice::choice;
 use maulstick_types::paint::TILE;
 
 /// Grounds by name: internal reflectance, the same at every wavelength. Acrylic gesso is titanium
@@ -271,23 +270,17 @@ pub(crate) fn ground_reflectance(name: &str) -> Result<Spectrum, EditError> {
         .iter()
         .find(|(ground, _)| *ground == name)
         .map(|(_, reflectance)| Spectrum::flat(*reflectance))
-        .ok_or_else(|| {
-            EditError::new(
-                format!("there is no ground called '{name}'"),
-                &choice(name, GROUNDS.map(|(ground, _)| ground)),
-            )
+        .ok_or_else(|| EditError::NoGround {
+            name: name.to_owned(),
+            known: GROUNDS.map(|(ground, _)| ground).to_vec(),
         })
 }
 
 /// Reads a table of nm,reflectance.
 fn parsed(bytes: &[u8]) -> Result<Reflectance, EditError> {
     let text = std::str::from_utf8(bytes).unwrap_or_default();
-    Reflectance::parse(text.trim_start_matches('\u{feff}')).map_err(|error| {
-        EditError::new(
-            format!("this is no spectrum of a ground: {error}"),
-            "a row a wavelength: nm,reflectance, rising, 0 to 1",
-        )
-    })
+    Reflectance::parse(text.trim_start_matches('\u{feff}'))
+        .map_err(|error| EditError::Spectrum(error.to_string()))
 }
 
 /// Takes a spectrum in and returns its hash.

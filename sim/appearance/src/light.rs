@@ -3,7 +3,6 @@
 use maulstick_canvas::EditError;
 use maulstick_optics::colour::apply;
 use maulstick_optics::{Illuminant, Observer, RuleKind, Spectrum, StudioSettings};
-use maulstick_types::advice::{choice, parted};
 use maulstick_types::scene::Light;
 
 /// Optical settings of the light; its direction and strength are not among them.
@@ -11,11 +10,7 @@ use maulstick_types::scene::Light;
 /// # Errors
 /// [`EditError`] for a light out of bounds, or a name of no illuminant.
 pub fn studio_settings(light: &Light) -> Result<StudioSettings, EditError> {
-    light.check().map_err(|line| {
-        let (what, help) = parted(&line);
-        let other = "`maulstick light --help` lists what a light may be";
-        EditError::new(what.to_owned(), help.unwrap_or(other))
-    })?;
+    light.check()?;
     let spectrum: Result<[f64; maulstick_optics::spectrum::SAMPLES], _> =
         light.spectrum.as_slice().try_into();
     let illuminant = match spectrum {
@@ -24,9 +19,7 @@ pub fn studio_settings(light: &Light) -> Result<StudioSettings, EditError> {
                 name: light.illuminant.clone(),
                 power: Spectrum(power),
             };
-            found
-                .check()
-                .map_err(|what| EditError::new(what, "give a light of more wavelengths"))?;
+            found.check().map_err(EditError::Dark)?;
             found
         }
         Err(_) => illuminant_named(&light.illuminant)?,
@@ -48,12 +41,9 @@ pub fn studio_settings(light: &Light) -> Result<StudioSettings, EditError> {
 /// # Errors
 /// [`EditError`] with the nearest name and all of them.
 pub fn illuminant_named(name: &str) -> Result<Illuminant, EditError> {
-    let names = maulstick_optics::cie::ILLUMINANTS;
-    Illuminant::named(name).ok_or_else(|| {
-        EditError::new(
-            format!("there is no illuminant called '{name}'"),
-            &format!("{}, and any spectrum from a CSV file", choice(name, names)),
-        )
+    Illuminant::named(name).ok_or_else(|| EditError::NoIlluminant {
+        name: name.to_owned(),
+        known: maulstick_optics::cie::ILLUMINANTS.to_vec(),
     })
 }
 

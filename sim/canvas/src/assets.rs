@@ -86,13 +86,6 @@ pub fn kind_of(bytes: &[u8]) -> &'static str {
     }
 }
 
-fn refused(what: String) -> EditError {
-    EditError::new(
-        what,
-        "a painting holds PNG pictures of 8-bit RGB or 16-bit grey, of 67 million pixels at most",
-    )
-}
-
 impl Assets {
     /// Takes a picture in and returns its hash.
     ///
@@ -137,14 +130,8 @@ impl Assets {
         self.0.get(hash).ok_or_else(|| {
             let digits = hash.bytes().all(|c| matches!(c, b'0'..=b'9' | b'a'..=b'f'));
             match digits && hash.len() == HASH_DIGITS {
-                true => EditError::new(
-                    format!("this painting holds no picture {hash}"),
-                    "import the picture first",
-                ),
-                false => EditError::new(
-                    format!("'{hash}' is not the hash of a picture"),
-                    "write image: and the 64 digits of its SHA-256",
-                ),
+                true => EditError::NoPicture(hash.to_owned()),
+                false => EditError::NoHash(hash.to_owned()),
             }
         })
     }
@@ -176,10 +163,7 @@ impl Assets {
     pub fn colours(&self, hash: &str) -> Result<Arc<Colours>, EditError> {
         match self.decoded(hash)? {
             Decoded::Colours(colours) => Ok(colours),
-            Decoded::Heights(_) => Err(EditError::new(
-                "this picture is one of heights".to_owned(),
-                "import it as a ground: then it is kept with its colours",
-            )),
+            Decoded::Heights(_) => Err(EditError::Heights),
         }
     }
 
@@ -190,24 +174,22 @@ impl Assets {
     pub fn heights(&self, hash: &str) -> Result<Arc<Heights>, EditError> {
         match self.decoded(hash)? {
             Decoded::Heights(heights) => Ok(heights),
-            Decoded::Colours(_) => Err(EditError::new(
-                "this picture is one of colours".to_owned(),
-                "import it as a tooth: then it is kept as 16-bit heights",
-            )),
+            Decoded::Colours(_) => Err(EditError::Colours),
         }
     }
 }
 
 /// Reads a PNG of either kind.
 fn decode(bytes: &[u8]) -> Result<Decoded, EditError> {
-    let wrong = |error: png::DecodingError| refused(format!("this is no whole PNG: {error}"));
+    let wrong =
+        |error: png::DecodingError| EditError::Picture(format!("this is no whole PNG: {error}"));
     let limits = png::Limits { bytes: 1 << 30 };
     let decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
     let mut reader = decoder.read_info().map_err(wrong)?;
     let info = reader.info();
     let (width, height) = (info.width as usize, info.height as usize);
     if u64::from(info.width) * u64::from(info.height) > MOST_PIXELS {
-        return Err(refused(format!(
+        return Err(EditError::Picture(format!(
             "a picture of {width}×{height} pixels is too large"
         )));
     }
@@ -236,7 +218,7 @@ fn decode(bytes: &[u8]) -> Result<Decoded, EditError> {
                 values: values.collect(),
             })))
         }
-        (colour, depth) => Err(refused(format!(
+        (colour, depth) => Err(EditError::Picture(format!(
             "this PNG is {colour:?} of {} bits a channel",
             depth as u8
         ))),
@@ -314,7 +296,7 @@ pub(crate) mod tests {
     fn what_is_no_such_picture_is_refused() {
         let mut embedded = Assets::default();
         let says = |error: EditError, word: &str| {
-            assert!(error.what.contains(word), "{error}");
+            assert!(error.to_string().contains(word), "{error}");
         };
         says(embedded.add((*b"GIF89a").into()).expect_err("no"), "PNG");
         let small = png_of(

@@ -1,22 +1,305 @@
-//! Errors of edits.
+//! Errors of edits. They become words where a person reads them: a reply has the sentence and the advice, and each front
+//! end has its own words for that.
 
-/// An edit that was refused: what is wrong, and what to do about it.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{what}")]
-pub struct EditError {
-    /// The error.
-    pub what: String,
-    /// Advice.
-    pub help: String,
+use maulstick_types::advice::{Advice, choice};
+use maulstick_types::command::Outcome;
+use maulstick_types::scene::LightError;
+use maulstick_types::values::ValueError;
+use maulstick_types::{MixtureError, Region};
+
+use crate::quantum::SLOTS;
+
+/// An edit that was refused: the painting is as it was.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EditError {
+    /// An unknown paint.
+    #[error("there is no paint called '{name}'{}", .nearest.as_ref().map_or(String::new(), |nearest| format!("; did you mean '{nearest}'?")))]
+    NoPaint {
+        /// Its name.
+        name: String,
+        /// The nearest name, if one is near.
+        nearest: Option<String>,
+    },
+    /// A mixture that is none.
+    #[error(transparent)]
+    Mixture(#[from] MixtureError),
+    /// A line of a paint file that cannot be read.
+    #[error("line {line}: {what}")]
+    PaintFile {
+        /// The line, from 1.
+        line: usize,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// One paint more than a painting can have.
+    #[error("'{0}' would be paint {count} of this painting", count = SLOTS + 1)]
+    TooManyPaints(String),
+    /// A paint that the painting does not use.
+    #[error("'{0}' has no slot")]
+    NoSlot(String),
+    /// A brush that the rig does not have.
+    #[error("there is no brush called '{name}' in this rig")]
+    NoBrush {
+        /// Its name.
+        name: String,
+        /// Those that there are.
+        known: Vec<String>,
+    },
+    /// A brush without paint.
+    #[error("brush '{0}' carries no paint to fill with")]
+    EmptyBrush(String),
+    /// A state with numbers that no brush has.
+    #[error("a state of brush '{brush}' is wrong: {fault}")]
+    State {
+        /// Name of the brush.
+        brush: String,
+        /// The fault.
+        fault: &'static str,
+    },
+    /// A state of another brush file.
+    #[error("a state of brush '{0}' does not fit its brush file")]
+    Unfit(String),
+    /// A surface that there is not.
+    #[error("there is no surface {0}")]
+    NoSurface(u32),
+    /// A value out of its range.
+    #[error(transparent)]
+    Value(#[from] ValueError),
+    /// A region without a cell of its surface.
+    #[error("the region {region} holds no cell")]
+    NoCell {
+        /// The region.
+        region: Region,
+        /// Width and height of the surface, mm.
+        surface_mm: [f64; 2],
+    },
+    /// Nothing to dry.
+    #[error("nothing is wet{}", within(.0.as_ref()))]
+    NothingWet(Option<Region>),
+    /// Nothing to make wet again.
+    #[error("nothing has dried{}", within(.0.as_ref()))]
+    NothingDry(Option<Region>),
+    /// No room for paint that is to be wet again.
+    #[error("no cell{} has room for more wet paint", within(.0.as_ref()))]
+    NoRoom(Option<Region>),
+    /// A layer whose opacity wet paint cannot have.
+    #[error("wet paint cannot keep the opacity of layer {number} ({name})")]
+    Veiled {
+        /// Number of the layer.
+        number: u32,
+        /// Its name.
+        name: String,
+    },
+    /// A drying of this surface is in progress.
+    #[error("a drying of this surface goes on already")]
+    Drying,
+    /// No drying of this surface is in progress.
+    #[error("no drying of this surface goes on")]
+    NotDrying,
+    /// A dry layer that there is not.
+    #[error("there is no dry layer {which}")]
+    NoLayer {
+        /// How it was called.
+        which: String,
+        /// Numbers and names of those that there are.
+        known: Vec<(u32, String)>,
+    },
+    /// Nothing to undo, of a brush or at all.
+    #[error("there is nothing{} to undo", .0.as_ref().map_or(String::new(), |brush| format!(" of brush '{brush}'")))]
+    NothingToUndo(Option<String>),
+    /// Nothing to redo.
+    #[error("there is nothing to redo")]
+    NothingToRedo,
+    /// A step under a later one.
+    #[error("'{what}' lies under {}, which came later", .over.as_ref().map_or("something".to_owned(), |over| format!("'{over}'")))]
+    Covered {
+        /// The step.
+        what: String,
+        /// The later one.
+        over: Option<String>,
+    },
+    /// A version that there is not.
+    #[error("there is no version called '{name}'")]
+    NoVersion {
+        /// Its name.
+        name: String,
+        /// Those that there are.
+        known: Vec<String>,
+    },
+    /// A version's name that is taken.
+    #[error("there is a version called '{0}' already")]
+    VersionTaken(String),
+    /// The name by which the painting as it is goes.
+    #[error("'{0}' is the painting as it is, not a version")]
+    VersionNow(&'static str),
+    /// A well beyond the edge of its surface.
+    #[error("well {place} does not lie on the surface")]
+    WellBeside {
+        /// Its place, from 1.
+        place: usize,
+        /// Width and height of the surface, mm.
+        surface_mm: [f64; 2],
+    },
+    /// A light out of range.
+    #[error(transparent)]
+    Light(#[from] LightError),
+    /// A spectrum that does not reach the eye.
+    #[error("{0}")]
+    Dark(String),
+    /// An illuminant that there is not.
+    #[error("there is no illuminant called '{name}'")]
+    NoIlluminant {
+        /// Its name.
+        name: String,
+        /// Those that there are.
+        known: Vec<&'static str>,
+    },
+    /// A ground that there is not.
+    #[error("there is no ground called '{name}'")]
+    NoGround {
+        /// Its name.
+        name: String,
+        /// Those that there are.
+        known: Vec<&'static str>,
+    },
+    /// A tooth that there is not.
+    #[error("there is no tooth called '{name}'")]
+    NoTooth {
+        /// Its name.
+        name: String,
+        /// Those that there are.
+        known: Vec<&'static str>,
+    },
+    /// The name of a pictured tooth that cannot be read.
+    #[error("'{name}' is no tooth: {fault}")]
+    ToothName {
+        /// The name.
+        name: String,
+        /// What is wrong with it.
+        fault: &'static str,
+    },
+    /// A text that is no table of reflectances.
+    #[error("this is no spectrum of a ground: {0}")]
+    Spectrum(String),
+    /// Bytes that are no picture, or one of another kind or size.
+    #[error("{0}")]
+    Picture(String),
+    /// A picture that the painting does not hold.
+    #[error("this painting holds no picture {0}")]
+    NoPicture(String),
+    /// A text that is no hash.
+    #[error("'{0}' is not the hash of a picture")]
+    NoHash(String),
+    /// A picture of heights where one of colours is due.
+    #[error("this picture is one of heights")]
+    Heights,
+    /// A picture of colours where one of heights is due.
+    #[error("this picture is one of colours")]
+    Colours,
+    /// A surface of too few or too many cells.
+    #[error("a canvas of {}×{} cells", .0[0], .0[1])]
+    Cells([u32; 2]),
+    /// Cells that are too small or too large, mm.
+    #[error("cells of {0} mm")]
+    CellSize(f64),
+    /// A document whose parts do not fit together.
+    #[error("{0}")]
+    Damaged(String),
+}
+
+fn within(region: Option<&Region>) -> String {
+    region.map_or(String::new(), |region| format!(" in {region}"))
 }
 
 impl EditError {
-    /// A refusal.
+    /// What to do about it.
     #[must_use]
-    pub fn new(what: String, help: &str) -> Self {
-        Self {
-            what,
-            help: help.to_owned(),
+    pub fn advice(&self) -> Advice {
+        let say = |help: &str| Advice::say(help);
+        let size = |[width, height]: &[f64; 2]| format!("{width:.1}x{height:.1} mm");
+        match self {
+            Self::NoPaint { .. } => Advice::ListPaints,
+            Self::Mixture(_) | Self::PaintFile { .. } => {
+                say("write mixtures as \"Cobalt Blue=0.7,Titanium White=0.3\"")
+            }
+            Self::TooManyPaints(_) => {
+                say("a painting has at most 16 paints: mix it from those in use")
+            }
+            Self::NoSlot(_) | Self::EmptyBrush(_) => say("load it first"),
+            Self::NoBrush { known, .. } => {
+                Advice::say(format!("choose one of: {}", known.join(", ")))
+            }
+            Self::State { .. } => say("restart the program that sends it, or report its fault"),
+            Self::Unfit(_) => say("restart the brush node: it runs with another file"),
+            Self::NoSurface(_) => say("the canvas is 0, the palette 1"),
+            Self::Value(_) | Self::Light(_) => say("choose a value in range"),
+            Self::NoCell { surface_mm, .. } => Advice::say(format!(
+                "the surface is {}, its origin at the lower left corner",
+                size(surface_mm)
+            )),
+            Self::NothingWet(_) | Self::NothingToUndo(_) => say("paint something first"),
+            Self::NothingDry(_) => Advice::DryFirst,
+            Self::NoRoom(_) => say("take some of the wet paint off first, or dry it"),
+            Self::Veiled { number, .. } => Advice::FullOpacity { layer: *number },
+            Self::Drying => Advice::StopDrying,
+            Self::NotDrying => Advice::BeginDrying,
+            Self::NoLayer { known, .. } if known.is_empty() => Advice::DryFirst,
+            Self::NoLayer { known, .. } => {
+                let known = known
+                    .iter()
+                    .map(|(number, name)| format!("{number} ({name})"));
+                Advice::say(format!(
+                    "there are {}",
+                    known.collect::<Vec<_>>().join(", ")
+                ))
+            }
+            Self::NothingToRedo => say("only what was undone and not painted over can be redone"),
+            Self::Covered { .. } => Advice::UndoNewest,
+            Self::NoVersion { known, .. } if known.is_empty() => {
+                say("this painting has none yet: keep one first")
+            }
+            Self::NoVersion { name, known } => {
+                Advice::say(choice(name, known.iter().map(String::as_str)))
+            }
+            Self::VersionTaken(_) => say("choose another name, or forget that version first"),
+            Self::VersionNow(_) => say("choose another name"),
+            Self::WellBeside {
+                surface_mm: [width, height],
+                ..
+            } => Advice::say(format!(
+                "it is {width:.0}×{height:.0} mm: give a middle and a radius within"
+            )),
+            Self::Dark(_) => say("give a light of more wavelengths"),
+            Self::NoIlluminant { name, known } => Advice::say(format!(
+                "{}, and any spectrum from a CSV file",
+                choice(name, known.iter().copied())
+            )),
+            Self::NoGround { name, known } | Self::NoTooth { name, known } => {
+                Advice::say(choice(name, known.iter().copied()))
+            }
+            Self::ToothName { .. } => {
+                say("write image:HASH@120mm,80um: a picture 120 mm wide, 80 µm deep")
+            }
+            Self::Spectrum(_) => say("a row a wavelength: nm,reflectance, rising, 0 to 1"),
+            Self::Picture(_) => say(
+                "a painting holds PNG pictures of 8-bit RGB or 16-bit grey, of 67 million pixels at most",
+            ),
+            Self::NoPicture(_) => say("import the picture first"),
+            Self::NoHash(_) => say("write image: and the 64 digits of its SHA-256"),
+            Self::Heights => say("import it as a ground: then it is kept with its colours"),
+            Self::Colours => say("import it as a tooth: then it is kept as 16-bit heights"),
+            Self::Cells(_) => say("choose 1 to 65536 cells either way"),
+            Self::CellSize(_) => say("choose .01 to 10 mm"),
+            Self::Damaged(_) => Advice::Recover,
+        }
+    }
+}
+
+impl From<EditError> for Outcome {
+    fn from(error: EditError) -> Self {
+        Self::Refused {
+            what: error.to_string(),
+            advice: error.advice(),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use maulstick_types::advice::Advice;
 use rusqlite::ffi;
 
 /// The reason why a document cannot be opened, read or written.
@@ -13,6 +14,9 @@ pub enum DocumentError {
     /// No file at the path.
     #[error("there is no such file")]
     Missing,
+    /// Painting of a format that is not read any more.
+    #[error("this painting has the format {0}, which this program does not read any more")]
+    Older(i32),
     /// Painting of a newer program.
     #[error("this painting has the format {found}, but this program knows formats up to {known}")]
     Newer {
@@ -60,15 +64,26 @@ pub enum DocumentError {
 }
 
 impl DocumentError {
-    /// Advice to the painter.
+    /// Advice for which front ends have their own words.
+    #[must_use]
+    pub fn advice(&self) -> Advice {
+        match self {
+            Self::NoPainting => Advice::NamePainting,
+            Self::Missing => Advice::BeginPainting,
+            Self::Damaged(_) => Advice::Recover,
+            other => Advice::say(other.help()),
+        }
+    }
+
+    /// Advice, in words that hold everywhere.
     #[must_use]
     pub fn help(&self) -> &'static str {
         match self {
             Self::NoPainting => {
-                "give a file that `maulstick up FILE.maul` made, or a new name; of a painting whose \
-                 beginning is damaged `maulstick painting recover FILE -o NEW.maul` takes out what is whole"
+                "name the file of a painting, or a new one; of a damaged painting recover what is whole"
             }
-            Self::Missing => "check the path; `maulstick up FILE.maul` begins a painting",
+            Self::Missing => "check the path, or begin a painting there",
+            Self::Older(_) => "open it with the Maulstick that made it; nothing was changed",
             Self::Newer { .. } => "open it with that newer Maulstick; nothing was changed",
             Self::InUse { .. } => {
                 "close it there; if that program hangs, end it: what it had written is safe"
@@ -76,9 +91,7 @@ impl DocumentError {
             Self::ReadOnly(_) => "check the permissions of the file and its folder, or copy it",
             Self::Full | Self::Unmerged(_) => "free some space: nothing that was written is lost",
             Self::Unwritten(_) => "nothing that was written before is lost",
-            Self::Damaged(_) => {
-                "`maulstick painting recover FILE -o NEW.maul` takes out what is whole"
-            }
+            Self::Damaged(_) => "recover from the file what is whole",
             Self::OpenHere | Self::Companion => "give another name",
             Self::Taken => "give another name: nothing is written over",
             Self::Vanished(_) => "save it under another name now: until then it is in memory alone",

@@ -2,11 +2,10 @@
 
 use std::io::Read as _;
 
-use maulstick_painting::sequencer::{Accepted, NO_ZOOM, Record};
+use maulstick_painting::sequencer::{Accepted, Record};
 use maulstick_types::brush::{BrushDef, BrushState};
-use maulstick_types::older::BrushStateV1;
 use maulstick_types::paint::JournalEntry;
-use maulstick_types::{Flags, HEADER_BYTES, Header, Message, Origin, decode, encode, name_hash};
+use maulstick_types::{Flags, Header, Message, Origin, decode, encode, name_hash};
 
 use rusqlite::params;
 
@@ -125,11 +124,6 @@ fn accepted(message: &[u8]) -> Result<Accepted, DocumentError> {
         let (header, state) = decode::<BrushState>(message).map_err(damaged)?;
         return Ok(Accepted::State { header, state });
     }
-    if header.schema == BrushStateV1::SCHEMA {
-        let state = BrushStateV1::decode_body(&message[HEADER_BYTES..]).map_err(damaged)?;
-        let state = state.at_zoom(NO_ZOOM);
-        return Ok(Accepted::State { header, state });
-    }
     if header.schema == BrushDef::schema().hash {
         let (_, def) = decode::<BrushDef>(message).map_err(damaged)?;
         return Ok(Accepted::Brush {
@@ -137,27 +131,23 @@ fn accepted(message: &[u8]) -> Result<Accepted, DocumentError> {
             toml: def.toml,
         });
     }
-    if JournalEntry::OLDER.contains(&header.schema) {
-        let entry = JournalEntry::decode_body(&message[HEADER_BYTES..]).map_err(damaged)?;
-        return Ok(Accepted::Entry(entry.entry));
-    }
     let (_, entry) = decode::<JournalEntry>(message).map_err(damaged)?;
     Ok(Accepted::Entry(entry.entry))
 }
 
 #[cfg(test)]
 mod tests {
-    use maulstick_types::command::Command;
+    use maulstick_types::edits::Undo;
     use maulstick_types::paint::Entry;
 
     use super::*;
 
     #[test]
-    fn entries_of_an_older_version_are_read_and_unknown_ones_refused() {
+    fn entries_come_back_and_those_of_another_schema_are_rejected() {
         let entry = Entry::Command {
             client: 1,
             number: 2,
-            command: Command::Undo { brush: None },
+            command: Undo { brush: None }.into(),
         };
         let record = Record {
             serial: 5,
@@ -169,41 +159,10 @@ mod tests {
             read(5, &written).expect("read"),
             std::slice::from_ref(&record)
         );
-        let bytes = zstd::bulk::decompress(&written, ROW_MAX).expect("whole");
-        let of_schema = |hash: u32| {
-            let mut bytes = bytes.clone();
-            // Index and length lie before the header, magic and version before its schema.
-            bytes[16..20].copy_from_slice(&hash.to_le_bytes());
-            zstd::bulk::compress(&bytes, 1).expect("packed")
-        };
-        for hash in JournalEntry::OLDER {
-            assert_ne!(hash, JournalEntry::schema().hash, "that is this version's");
-            let older = read(5, &of_schema(hash)).expect("read");
-            assert_eq!(older, std::slice::from_ref(&record));
-        }
-        assert!(read(5, &of_schema(0x1234_5678)).is_err());
-    }
-
-    /// A state of the first version as `msgs/types/tests/golden.txt` had it, and one of today without its zoom.
-    #[test]
-    fn a_state_that_says_no_zoom_is_read_and_says_so() {
-        let old = concat!(
-            "4c4d0100974bf75d040302010807060503000000880000000b000000000000000c000000000000000d0000000000",
-            "00000100000002000000030000000000000001000000000000000400000000000000050000000000000000000000",
-            "010000009a9999999999b93f9a9999999999c9bf333333333333d33f0000000000000000333333333333e33f0000",
-            "0000000000009a9999999999e93f01000000000000000000003f000000bf0100000000000000000003000000803e",
-        );
-        let byte = |at: usize| u8::from_str_radix(&old[2 * at..2 * at + 2], 16).expect("hex");
-        let message: Vec<u8> = (0..old.len() / 2).map(byte).collect();
-        let Accepted::State { header, state } = accepted(&message).expect("read") else {
-            panic!("no state");
-        };
-        assert_eq!(
-            (header.seq, state.device_seq, state.solves.len()),
-            (11, 3, 1)
-        );
-        let solve = &state.solves[0];
-        assert_eq!((solve.zoom, solve.contacts.len()), (NO_ZOOM, 1));
-        assert!(accepted(&message[..message.len() - 1]).is_err());
+        let mut bytes = zstd::bulk::decompress(&written, ROW_MAX).expect("whole");
+        // Index and length lie before the header, magic and version before its schema.
+        bytes[16..20].copy_from_slice(&0x1234_5678u32.to_le_bytes());
+        let other = zstd::bulk::compress(&bytes, 1).expect("packed");
+        assert!(read(5, &other).is_err());
     }
 }

@@ -75,7 +75,7 @@ pub fn replay_journal(path: &Path, history: History) -> Result<(), DocumentError
     let since = opened.snapshot().versions;
     let mut sequencer = opened
         .sequencer()
-        .map_err(|refusal| DocumentError::Damaged(refusal.what))?;
+        .map_err(|refusal| DocumentError::Damaged(refusal.to_string()))?;
     if let Some(fault) = document.pager().fault() {
         return Err(DocumentError::Damaged(fault.to_owned()));
     }

@@ -7,17 +7,20 @@ use std::sync::Arc;
 use maulstick_document::{Access, Checkpoint, Document, DocumentSettings};
 use maulstick_painting::Sequencer;
 use maulstick_types::command::Command;
+use maulstick_types::command::TakeCommand;
+use maulstick_types::edits::Load;
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::BrushName;
 use studio::{Act, BRUSHES, Painter, equip, mixture, sequencer};
 
 fn take(again: bool, loads: &[&str]) -> Command {
-    Command::Take {
-        brush: BRUSHES[0].to_owned(),
+    Command::from(TakeCommand::Begin {
+        brush: BrushName::new(BRUSHES[0]).expect("valid"),
         device: 9,
         device_epoch: 1,
         loads: loads.iter().map(|load| mixture(load)).collect(),
         again,
-    }
+    })
 }
 
 /// A live stroke of the first brush on the canvas.
@@ -53,9 +56,10 @@ fn a_live_brush_paints_in_a_document_of_a_take() {
 
     let (_document, opened) = Document::open(&settings).expect("opened");
     let mut again = opened.expect("a painting").sequencer().expect("whole");
-    let load = Command::Load {
-        brush: BRUSHES[0].to_owned(),
+    let load = Load {
         mixture: mixture("Ultramarine Blue"),
+        beside: None,
+        brush: BrushName::new(BRUSHES[0]).expect("valid"),
     };
     painter.command(&mut again, load);
     for _ in 0..6 {
@@ -81,9 +85,10 @@ fn a_take_that_begins_again_takes_back_its_own_strokes_alone() {
     for _ in 0..24 {
         stroke(&mut painter, &mut sequencer);
     }
-    let load = Command::Load {
-        brush: BRUSHES[0].to_owned(),
+    let load = Load {
         mixture: mixture("Ultramarine Blue"),
+        beside: None,
+        brush: BrushName::new(BRUSHES[0]).expect("valid"),
     };
     painter.command(&mut sequencer, load);
     painter.command(&mut sequencer, take(false, &[]));

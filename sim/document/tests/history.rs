@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use maulstick_document::{Access, Checkpoint, Document, DocumentSettings};
 use maulstick_painting::Sequencer;
-use maulstick_types::command::{Command, Outcome};
+use maulstick_types::command::Outcome;
+use maulstick_types::edits::{Redo, Undo};
 use proptest::prelude::*;
 use studio::{Painter, equip, print, sequencer};
 
@@ -34,17 +35,17 @@ proptest! {
             painter.act(&mut sequencer, &act);
         }
         // Steps that are undone already are not what is asked here.
-        while is_done(&painter.command(&mut sequencer, Command::Redo { brush: None })) {}
+        while is_done(&painter.command(&mut sequencer, Redo { brush: None })) {}
         let end = seen(&mut sequencer);
         let mut prints = vec![end];
-        while is_done(&painter.command(&mut sequencer, Command::Undo { brush: None })) {
+        while is_done(&painter.command(&mut sequencer, Undo { brush: None })) {
             prints.push(seen(&mut sequencer));
         }
         let store = sequencer.painting().store(0).expect("a canvas");
         prop_assert_eq!(store.counts(), [0; 16], "all is undone");
         while let Some(expected) = prints.pop() {
             prop_assert_eq!(seen(&mut sequencer), expected);
-            let redone = painter.command(&mut sequencer, Command::Redo { brush: None });
+            let redone = painter.command(&mut sequencer, Redo { brush: None });
             prop_assert_eq!(is_done(&redone), !prints.is_empty());
         }
     }
@@ -62,7 +63,7 @@ proptest! {
             painter.act(&mut sequencer, &act);
             seen(&mut sequencer);
         }
-        while is_done(&painter.command(&mut sequencer, Command::Undo { brush: None })) {
+        while is_done(&painter.command(&mut sequencer, Undo { brush: None })) {
             seen(&mut sequencer);
         }
         let store = sequencer.painting().store(0).expect("a canvas");
@@ -141,7 +142,7 @@ proptest! {
         }
         prop_assert_eq!(print(&mut kept), print(&mut twin));
         loop {
-            let undo = Command::Undo { brush: None };
+            let undo = Undo { brush: None };
             let mut other = painter.clone();
             let (one, two) = (painter.command(&mut twin, undo.clone()), other.command(&mut kept, undo));
             prop_assert_eq!(is_done(&one), is_done(&two));

@@ -4,6 +4,7 @@ mod crash_vfs;
 mod easel;
 mod studio;
 
+use maulstick_types::edits::Undo;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -12,7 +13,6 @@ use easel::Easel;
 use maulstick_document::{
     Access, Checkpoint, Document, DocumentError, DocumentSettings, Relocate, make_room, unfinished,
 };
-use maulstick_types::command::Command;
 use studio::{Painter, equip, print, sequencer};
 
 fn settings(path: &Path) -> DocumentSettings {
@@ -99,7 +99,7 @@ fn what_was_in_memory_is_in_the_file_with_its_history() {
     let end = print(&mut kept);
     let undo = |kept: &mut maulstick_painting::Sequencer| {
         let mut steps = 0;
-        while kept.ask(Command::Undo { brush: None }).is_ok() {
+        while kept.edit(Undo { brush: None }).is_ok() {
             steps += 1;
         }
         steps

@@ -32,7 +32,7 @@ pub enum ImportError {
     #[error("{0} paints cannot be mixed to a picture; choose 1 to 16")]
     Paints(usize),
     /// The painting refuses.
-    #[error("{}", .0.what)]
+    #[error(transparent)]
     Refused(EditError),
     /// It cannot be written as a PNG.
     #[error("the picture cannot be kept: {0}")]

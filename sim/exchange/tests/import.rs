@@ -12,7 +12,9 @@ use maulstick_optics::PaintLibrary;
 use maulstick_optics::colour::{apply, delta_e_2000, inverse, lab, srgb_decode, srgb_encode};
 use maulstick_painting::setup::PALETTE_PAINTS;
 use maulstick_painting::{Painting, PaintingSetup, Wetness};
+use maulstick_types::edits::{Ground, Tooth};
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::MaterialName;
 
 const FILM_M: f64 = 60e-6;
 
@@ -271,11 +273,11 @@ fn a_picture_is_a_ground_and_is_painted_over() {
     let png = embed::ground(&image, [96, 80]).expect("a ground");
     let hash = painting.embed(png).expect("taken");
     let refused = painting
-        .set_ground(CANVAS, "image:00")
+        .apply(Ground::named(CANVAS, "image:00").expect("valid"))
         .expect_err("no hash");
-    assert!(refused.what.contains("hash"));
+    assert!(refused.to_string().contains("hash"));
     painting
-        .set_ground(CANVAS, &format!("image:{hash}"))
+        .apply(Ground::named(CANVAS, &format!("image:{hash}")).expect("valid"))
         .expect("a ground");
     let pixel = maulstick_exchange::fit_to::colours(&image, [96, 80]).expect("fitted");
     let picture = maulstick_painting::picture::unlit_picture(&mut painting, CANVAS);
@@ -302,7 +304,9 @@ fn a_picture_is_a_ground_and_is_painted_over() {
     painting.redo(None).expect("ground");
     let again = maulstick_painting::picture::unlit_picture(&mut painting, CANVAS);
     assert!(again == picture);
-    painting.set_ground(CANVAS, "grey").expect("another ground");
+    painting
+        .apply(Ground::named(CANVAS, "grey").expect("valid"))
+        .expect("another ground");
     let other = maulstick_painting::picture::unlit_picture(&mut painting, CANVAS);
     assert!(other != picture, "a fault would pass");
 }
@@ -314,7 +318,13 @@ fn a_picture_is_a_tooth_of_its_depth() {
     let png = embed::tooth(&read(ramp), 20.0, 2.5e-4).expect("a tooth");
     let hash = painting.embed(png).expect("taken");
     let name = format!("image:{hash}@20mm,100um");
-    painting.set_tooth(CANVAS, &name, 1).expect("a tooth");
+    painting
+        .apply(Tooth {
+            tooth: MaterialName::new(&*name).expect("valid"),
+            seed: 1,
+            surface: CANVAS,
+        })
+        .expect("a tooth");
     let tile = |painting: &Painting| {
         let relief = &painting.bare(CANVAS).expect("a canvas").relief;
         relief.tile(TileId { x: 0, y: 0 })
@@ -327,13 +337,27 @@ fn a_picture_is_a_tooth_of_its_depth() {
         assert!(off < 1e-6, "{x}: {} {expected}", heights[64 * 7 + x]);
     }
     painting
-        .set_tooth(CANVAS, &format!("image:{hash}@20mm,50um"), 1)
+        .apply(Tooth {
+            tooth: MaterialName::new(format!("image:{hash}@20mm,50um")).expect("valid"),
+            seed: 1,
+            surface: CANVAS,
+        })
         .expect("a tooth");
     let lower = tile(&painting);
     assert!((lower[9] - 0.5 * heights[9]).abs() < 1e-9);
     assert!((lower[9] - heights[9]).abs() > 1e-6, "a fault would pass");
-    let refused = painting.set_tooth(CANVAS, &format!("image:{hash}"), 1);
-    assert!(refused.expect_err("no size").help.contains("@120mm"));
+    let refused = painting.apply(Tooth {
+        tooth: MaterialName::new(format!("image:{hash}")).expect("valid"),
+        seed: 1,
+        surface: CANVAS,
+    });
+    assert!(
+        refused
+            .expect_err("no size")
+            .advice()
+            .to_string()
+            .contains("@120mm")
+    );
     painting.undo(None).expect("undone");
     assert_eq!(tile(&painting), heights);
     // A new painting may begin with it.

@@ -1,10 +1,9 @@
 //! Ticks of a painting, and the dryings that they drive.
 
 use maulstick_types::Region;
+pub use maulstick_types::values::TICKS_A_SECOND;
 use serde::{Deserialize, Serialize};
 
-/// Ticks a second.
-pub const TICKS_A_SECOND: u32 = 60;
 /// Most rounds of a drying, and the fewest ticks of one.
 const ROUNDS: u32 = 32;
 const ROUND_TICKS: u32 = 30;

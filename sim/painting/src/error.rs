@@ -6,9 +6,9 @@ use maulstick_optics::PaintError;
 /// A refusal because of a paint or a mixture.
 #[must_use]
 pub fn paint_error(error: PaintError) -> EditError {
-    let help = match &error {
-        PaintError::Unknown { .. } => "`maulstick paints` lists them all",
-        _ => "write mixtures as \"Cobalt Blue=0.7,Titanium White=0.3\"",
-    };
-    EditError::new(error.to_string(), help)
+    match error {
+        PaintError::Unknown { name, nearest } => EditError::NoPaint { name, nearest },
+        PaintError::Mixture(error) => error.into(),
+        PaintError::File { line, what } => EditError::PaintFile { line, what },
+    }
 }

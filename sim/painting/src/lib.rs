@@ -10,6 +10,7 @@
 //! | [`sequencer`] | the order of states and commands |
 //! | [`setup`] | the scene of a new painting |
 //! | [`ledger`], [`history`] | the books, undo |
+//! | [`Apply`] | edits as the painting carries them out |
 //! | [`clock`] | ticks, and the dryings that they drive |
 //! | [`snapshot`] | the part of a document that is not tiles |
 //! | [`picture`] | pictures of its surfaces |
@@ -20,12 +21,18 @@
 //! ```
 //! use maulstick_optics::PaintLibrary;
 //! use maulstick_painting::{Painting, PaintingSetup};
+//! use maulstick_types::edits::{Fill, FillPaint};
 //! use maulstick_types::scene::CANVAS;
+//! use maulstick_types::values::FilmThickness;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let setup = PaintingSetup { cells: [128, 96], ..PaintingSetup::default() };
 //! let mut painting = Painting::new(&setup, PaintLibrary::measured()?)?;
-//! painting.lay(CANVAS, &"Cobalt Blue=0.7,Titanium White=0.3".parse()?, 40e-6)?;
+//! painting.apply(Fill {
+//!     paint: FillPaint::Mixture { mixture: "Cobalt Blue=0.7,Titanium White=0.3".parse()? },
+//!     thickness: FilmThickness::in_unit(40.0)?,
+//!     surface: CANVAS,
+//! })?;
 //! let report = painting.report();
 //! assert_eq!((report.covered_cells, report.quanta_missing), (128 * 96, 0));
 //! painting.undo(None)?;
@@ -35,6 +42,7 @@
 //! # }
 //! ```
 
+mod apply;
 pub mod brush_colour;
 pub mod clock;
 mod error;
@@ -46,6 +54,7 @@ pub mod sequencer;
 pub mod setup;
 pub mod snapshot;
 
+pub use apply::{Applied, Apply};
 pub use error::paint_error;
 pub use painting::{Checkpoint, LaidTile, NOW, Named, Painting, Restored, UnderBrush, Wetness};
 pub use sequencer::{Effect, Sequencer};

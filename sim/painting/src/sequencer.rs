@@ -1,27 +1,21 @@
 //! The sequencer: it decides what enters the journal and in which order; nothing else does.
 
-mod dispatch;
-mod layers;
 mod records;
 
-pub use records::{Accepted, NO_ZOOM, Record};
+pub use records::{Accepted, Record};
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use maulstick_canvas::EditError;
-use maulstick_types::advice::parted;
 use maulstick_types::brush::BrushState;
-use maulstick_types::command::{Command, CommandRequest, Outcome};
+use maulstick_types::command::{Command, CommandRequest, Outcome, TakeCommand};
 use maulstick_types::paint::{Entry, JournalEntry};
+use maulstick_types::reply_cache::ReplyCache;
 use maulstick_types::{Flags, Header, Mixture, Origin};
 
+use crate::apply::{Applied, Apply as _};
 use crate::painting::Painting;
-use crate::snapshot::{ReplySnapshot, TakeSnapshot};
-use dispatch::elsewhere;
-
-/// Clients whose last reply is cached, so that a repeated command is done once. A client repeats within seconds; beyond
-/// this number the client answered longest ago is forgotten.
-const CLIENTS: usize = 256;
+use crate::snapshot::TakeSnapshot;
 
 /// Effect of a command on the outside world; carried out at once by the caller of the sequencer.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -60,8 +54,7 @@ pub struct Sequencer {
     gone: BTreeSet<u32>,
     consumed: BTreeMap<Origin, u64>,
     waiting: Vec<CommandRequest>,
-    answered: BTreeMap<u64, ReplySnapshot>,
-    answers: u64,
+    replies: ReplyCache,
     ignored: u64,
     serial: u64,
     /// Accepted records, if they are saved.
@@ -80,8 +73,7 @@ impl Sequencer {
             gone: BTreeSet::new(),
             consumed: BTreeMap::new(),
             waiting: Vec::new(),
-            answered: BTreeMap::new(),
-            answers: 0,
+            replies: ReplyCache::default(),
             ignored: 0,
             serial: 0,
             records: None,
@@ -151,10 +143,10 @@ impl Sequencer {
     ) -> (Vec<Replied>, Result<(), EditError>) {
         let may_paint = self.may_paint(brush, header, state);
         let result = if let Some(fault) = state.fault() {
-            Err(EditError::new(
-                format!("a state of brush '{brush}' is wrong: {fault}"),
-                "restart the program that sends it, or report its fault",
-            ))
+            Err(EditError::State {
+                brush: brush.to_owned(),
+                fault,
+            })
         } else if !may_paint {
             self.ignored += 1;
             Ok(())
@@ -263,6 +255,18 @@ impl Sequencer {
         self.note(index, || Accepted::Entry(entry));
     }
 
+    /// A sixtieth of a second goes by: entered where something dries by itself, else nothing happens.
+    pub fn tick(&mut self) {
+        if !self.painting.is_drying() {
+            return;
+        }
+        self.painting.tick();
+        let count = self.painting.clock().ticks;
+        let entry = Entry::Tick { count };
+        let index = self.enter(entry.clone());
+        self.note(index, || Accepted::Entry(entry));
+    }
+
     /// Accepts a command, at once or when the state that it waits for has come.
     pub fn command(&mut self, request: CommandRequest) -> Replied {
         let (client, number) = (request.client, request.number);
@@ -272,25 +276,8 @@ impl Sequencer {
             outcome,
             effect: None,
         };
-        // Whatever is answered may be quoted, and is journalled: it has to fit.
-        if let Err(line) = request.command.check() {
-            let (what, help) = parted(&line);
-            let other = "see the messages of `maulstick schema` for what a command may say";
-            return reply(Outcome::Refused {
-                what: what.to_owned(),
-                help: help.unwrap_or(other).to_owned(),
-            });
-        }
-        if let Some(answered) = self.answered.get(&client) {
-            if answered.number == number {
-                return reply(answered.outcome.clone());
-            }
-            if answered.number > number {
-                return reply(Outcome::Refused {
-                    what: format!("command {number} comes after command {}", answered.number),
-                    help: "number commands upward".to_owned(),
-                });
-            }
+        if let Some(outcome) = self.replies.find(&request) {
+            return reply(outcome);
         }
         if self
             .waiting
@@ -336,102 +323,30 @@ impl Sequencer {
     }
 
     fn execute(&mut self, request: &CommandRequest) -> Replied {
+        let (client, number) = (request.client, request.number);
         let mut effect = None;
         let done = match &request.command {
-            Command::Load { brush, mixture } => {
-                self.painting.load(brush, mixture).map(|()| String::new())
-            }
-            Command::LoadBeside { brush, left, right } => self
-                .painting
-                .load_beside(brush, left, right)
-                .map(|()| String::new()),
-            Command::Tune { tuning } => self.painting.tune(tuning).map(|()| String::new()),
-            Command::Clean { brush } => self.painting.clean(brush).map(|()| String::new()),
-            Command::Take {
-                brush,
-                device,
-                device_epoch,
-                loads,
-                again,
-            } => self.begin_take(brush, [*device, *device_epoch], loads, *again),
-            Command::Undo { brush } => self.painting.undo(brush.as_deref()),
-            Command::Redo { brush } => self.painting.redo(brush.as_deref()),
-            Command::Snapshot { path, ledger } => {
-                effect = Some(Effect::Snapshot {
-                    path: path.clone(),
-                    ledger: ledger.clone(),
-                });
-                Ok(path.clone())
-            }
-            Command::Relight { light, expose } => self.painting.relight(light).map(|()| {
-                if *expose {
-                    self.painting.expose();
-                }
-                String::new()
-            }),
-            Command::Ground { surface, ground } => self
-                .painting
-                .set_ground(*surface, ground)
-                .map(|()| String::new()),
-            Command::Tooth {
-                surface,
-                tooth,
-                seed,
-            } => self
-                .painting
-                .set_tooth(*surface, tooth, *seed)
-                .map(|()| String::new()),
-            Command::Fill {
-                surface,
-                mixture,
-                thickness_m,
-            } => self
-                .painting
-                .lay(*surface, mixture, *thickness_m)
-                .map(|()| String::new()),
-            Command::Keep { name } => self.painting.keep(name).map(|()| String::new()),
-            Command::Return { name } => self.painting.return_to(name).map(|()| String::new()),
-            Command::Branch { from, name } => {
-                self.painting.branch(from, name).map(|()| String::new())
-            }
-            Command::Forget { name } => self.painting.forget(name).map(|()| String::new()),
-            Command::Mark => Ok(String::new()),
-            command @ (Command::Dry { .. }
-            | Command::DryRegion { .. }
-            | Command::DryOver { .. }
-            | Command::StopDrying { .. }
-            | Command::Wet { .. }
-            | Command::Opacity { .. }
-            | Command::LayerOpacity { .. }
-            | Command::NameLayer { .. }) => self.layers(command),
-            command @ (Command::Place { .. }
-            | Command::Handle { .. }
-            | Command::FillWith { .. }
-            | Command::Size { .. }
-            | Command::Piles { .. }
-            | Command::Wells { .. }
-            | Command::GroundSpectrum { .. }) => self.ways(command),
-            command @ (Command::Define { .. }
-            | Command::Open { .. }
-            | Command::New { .. }
-            | Command::SaveAs { .. }
-            | Command::Export { .. }
-            | Command::StopExport) => Err(elsewhere(command)),
-        };
-        let (client, number) = (request.client, request.number);
-        let outcome = match done {
-            Ok(detail) => {
-                let command = request.command.clone();
-                let entry = Entry::Command {
+            Command::Edit(edit) => edit.apply(&mut self.painting),
+            Command::Take(command) => self.take(command, &mut effect),
+            command @ (Command::File(_) | Command::Brush(_) | Command::Rig(_)) => {
+                return Replied {
                     client,
                     number,
-                    command,
+                    outcome: command.misaddressed(),
+                    effect,
                 };
-                let journal = self.enter(entry.clone());
-                self.note(journal, || Accepted::Entry(entry));
-                Outcome::Done { journal, detail }
             }
-            Err(EditError { what, help }) => Outcome::Refused { what, help },
+        };
+        let outcome = match done {
+            Ok(applied) => {
+                let command = request.command.clone();
+                let journal = self.enter_command(client, number, command);
+                Outcome::Done {
+                    journal,
+                    detail: applied.to_string(),
+                }
+            }
+            Err(error) => error.into(),
         };
         self.remember(client, number, outcome.clone());
         Replied {
@@ -442,6 +357,43 @@ impl Sequencer {
         }
     }
 
+    fn enter_command(&mut self, client: u64, number: u64, command: Command) -> u64 {
+        let entry = Entry::Command {
+            client,
+            number,
+            command,
+        };
+        let index = self.enter(entry.clone());
+        self.note(index, || Accepted::Entry(entry));
+        index
+    }
+
+    /// Carries out what takes its place in the journal besides edits.
+    fn take(
+        &mut self,
+        command: &TakeCommand,
+        effect: &mut Option<Effect>,
+    ) -> Result<Applied, EditError> {
+        match command {
+            TakeCommand::Begin {
+                brush,
+                device,
+                device_epoch,
+                loads,
+                again,
+            } => self.begin_take(brush, [*device, *device_epoch], loads, *again)?,
+            TakeCommand::Mark => {}
+            TakeCommand::Snapshot { path, ledger } => {
+                *effect = Some(Effect::Snapshot {
+                    path: path.to_string(),
+                    ledger: ledger.as_ref().map(ToString::to_string),
+                });
+                return Ok(Applied::Written(path.to_string()));
+            }
+        }
+        Ok(Applied::Done)
+    }
+
     /// Begins a take; what was painted of one that begins again is undone.
     fn begin_take(
         &mut self,
@@ -449,7 +401,7 @@ impl Sequencer {
         [device, epoch]: [u32; 2],
         loads: &[Mixture],
         again: bool,
-    ) -> Result<String, EditError> {
+    ) -> Result<(), EditError> {
         let before = self.announced.get(brush).filter(|_| again);
         if let Some(step) = before.map(|take| take.step) {
             self.painting.undo_to(brush, step)?;
@@ -466,24 +418,11 @@ impl Sequencer {
         };
         self.gone.remove(&device);
         self.announced.insert(brush.to_owned(), take);
-        Ok(String::new())
+        Ok(())
     }
 
     /// Keeps what became of a command, also when its effect failed after all.
     pub fn remember(&mut self, client: u64, number: u64, outcome: Outcome) {
-        if self.answered.len() >= CLIENTS && !self.answered.contains_key(&client) {
-            let oldest = self.answered.iter().min_by_key(|(_, reply)| reply.age);
-            if let Some(oldest) = oldest.map(|(client, _)| *client) {
-                self.answered.remove(&oldest);
-            }
-        }
-        self.answers += 1;
-        let age = self.answers;
-        let reply = ReplySnapshot {
-            number,
-            outcome,
-            age,
-        };
-        self.answered.insert(client, reply);
+        self.replies.keep(client, number, outcome);
     }
 }

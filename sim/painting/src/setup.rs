@@ -9,7 +9,6 @@ use maulstick_canvas::relief::Relief;
 use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_canvas::relief::tooth_picture::PictureTooth;
 use maulstick_optics::PaintLibrary;
-use maulstick_types::advice::choice;
 use maulstick_types::scene::{CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind};
 use maulstick_types::{Mixture, Pose};
 
@@ -183,17 +182,11 @@ pub fn wells_of(mixtures: &[Mixture], cells: [u32; 2], cell_m: f64) -> Vec<Well>
 /// [`EditError`] with what is possible.
 pub(crate) fn check_size(cells: [u32; 2], cell_m: f64) -> Result<(), EditError> {
     if cells.iter().any(|cells| !(1..=65_536).contains(cells)) {
-        return Err(EditError::new(
-            format!("a canvas of {}×{} cells", cells[0], cells[1]),
-            "choose 1 to 65536 cells either way",
-        ));
+        return Err(EditError::Cells(cells));
     }
     match (1e-5..=1e-2).contains(&cell_m) {
         true => Ok(()),
-        false => Err(EditError::new(
-            format!("cells of {} mm", cell_m * 1e3),
-            "choose .01 to 10 mm",
-        )),
+        false => Err(EditError::CellSize(cell_m * 1e3)),
     }
 }
 
@@ -211,11 +204,9 @@ pub fn relief_called(
         let tooth = PictureTooth::called(name, cell_m, embedded)?;
         return Ok(Relief::pictured(tooth, cell_m));
     }
-    let tooth = Tooth::new(name, seed, cell_m).ok_or_else(|| {
-        EditError::new(
-            format!("there is no tooth called '{name}'"),
-            &choice(name, Tooth::names()),
-        )
+    let tooth = Tooth::new(name, seed, cell_m).ok_or_else(|| EditError::NoTooth {
+        name: name.to_owned(),
+        known: Tooth::names().collect(),
     })?;
     Ok(Relief::new(tooth, cell_m))
 }
@@ -308,13 +299,13 @@ mod tests {
         assert!(check(|s| s.cells = [0, 10]).is_err());
         assert!(check(|s| s.cell_m = f64::NAN).is_err());
         let error = check(|s| s.ground = "gesoo".into()).expect_err("unknown");
-        assert!(error.help.contains("gesso"));
+        assert!(error.advice().to_string().contains("gesso"));
         let error = check(|s| s.tooth = "line".into()).expect_err("unknown");
-        assert!(error.help.contains("linen"));
+        assert!(error.advice().to_string().contains("linen"));
         assert!(check(|s| s.wells = vec![Mixture::pure("Blue")]).is_err());
         let error = check(|s| s.ground = "image:00".into()).expect_err("no hash");
-        assert!(error.help.contains("SHA-256"));
+        assert!(error.advice().to_string().contains("SHA-256"));
         let error = check(|s| s.tooth = "image:00".into()).expect_err("no size");
-        assert!(error.help.contains("80um"));
+        assert!(error.advice().to_string().contains("80um"));
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use maulstick_impasto::brush::head::WaypointSnapshot;
 use maulstick_impasto::brush::scale::Scale;
 use maulstick_types::Mixture;
-use maulstick_types::command::Outcome;
+use maulstick_types::reply_cache::ReplyCache;
 use maulstick_types::scene::Scene;
 use serde::{Deserialize, Serialize};
 
@@ -74,13 +74,10 @@ pub struct PaintingSnapshot {
     /// Time of the first and of the last state, ns.
     pub span_ns: Option<(u64, u64)>,
     /// Most bytes of the history.
-    #[serde(default = "quota")]
     pub quota: u64,
     /// Time elapsed, and dryings in progress.
-    #[serde(default)]
     pub clock: Clock,
     /// Rows that the document has of it; `None` in paintings from before rows were counted.
-    #[serde(default)]
     pub rows: Option<RowCounts>,
 }
 
@@ -93,10 +90,6 @@ pub struct RowCounts {
     pub steps: u64,
     /// Named versions.
     pub versions: u64,
-}
-
-fn quota() -> u64 {
-    crate::history::QUOTA
 }
 
 /// A take that may paint.
@@ -112,17 +105,6 @@ pub struct TakeSnapshot {
     pub step: u64,
 }
 
-/// The newest reply to a client.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ReplySnapshot {
-    /// The command's number.
-    pub number: u64,
-    /// Outcome.
-    pub outcome: Outcome,
-    /// Its place among all replies.
-    pub age: u64,
-}
-
 /// The sequencer at a place of its journal.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SequencerSnapshot {
@@ -136,6 +118,6 @@ pub struct SequencerSnapshot {
     pub gone: Vec<u32>,
     /// Consumed states of brushes: source, epoch, next.
     pub consumed: Vec<(u32, u32, u64)>,
-    /// Replies, by client.
-    pub answers: BTreeMap<u64, ReplySnapshot>,
+    /// The newest reply to each client.
+    pub replies: ReplyCache,
 }

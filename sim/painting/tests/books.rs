@@ -6,7 +6,13 @@ use maulstick_num::fork_join::with_threads;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
+use maulstick_types::edits::{
+    Clean, Dry, Fill, FillPaint, Handle, LayerRef, Load, Opacity, Piles, Size,
+};
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE};
+use maulstick_types::values::{
+    BrushName, FilmThickness, LayerName, OpacityFactor, Share, StainThickness,
+};
 use maulstick_types::{Mixture, Pose};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
@@ -18,6 +24,30 @@ const MIXTURES: [&str; 3] = [
     "Ultramarine Blue=0.6,Titanium White=0.4",
     "Yellow Ochre=0.5,Pyrrole Red=0.25,Bone Black=0.25",
 ];
+
+fn load(brush: &str, mixture: Mixture) -> Load {
+    let (beside, brush) = (None, BrushName::new(brush).expect("a name"));
+    Load {
+        mixture,
+        beside,
+        brush,
+    }
+}
+
+fn dry(surface: u32, share: f32, name: &str) -> Dry {
+    Dry {
+        share: Share::new(share).expect("in range"),
+        layer: LayerName::new(name).ok(),
+        ..Dry::whole(surface)
+    }
+}
+
+fn opacity(number: u32, opacity: f32) -> Opacity {
+    Opacity {
+        layer: LayerRef::Number { number },
+        opacity: OpacityFactor::new(opacity).expect("in range"),
+    }
+}
 
 /// The library's round brush at a size, with so many strips, for speed.
 fn brush(size_mm: f64, strips: usize) -> BrushFile {
@@ -181,9 +211,15 @@ fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act) {
         Act::Paint(b, places) => paint(painting, BRUSHES[*b], 10.0, strokes[*b], places),
         Act::NextStroke(b) => strokes[*b] += 1,
         Act::Load(b, l) => painting
-            .load(BRUSHES[*b], &mixture(MIXTURES[*l]))
+            .apply(load(BRUSHES[*b], mixture(MIXTURES[*l])))
+            .map(drop)
             .expect("known"),
-        Act::Clean(b) => painting.clean(BRUSHES[*b]).expect("known"),
+        Act::Clean(b) => painting
+            .apply(Clean {
+                brush: BrushName::new(BRUSHES[*b]).expect("valid"),
+            })
+            .map(drop)
+            .expect("known"),
         Act::Take(b, loads) => {
             let loads: Vec<Mixture> = loads.iter().map(|l| mixture(MIXTURES[*l])).collect();
             painting.take(BRUSHES[*b], &loads).expect("known");
@@ -192,8 +228,8 @@ fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act) {
             painting.define_brush(BRUSHES[*b], brush(10.0, *strips));
         }
         // There may be nothing to dry, to undo or to redo.
-        Act::Dry(surface, share) => drop(painting.dry(*surface, *share, "")),
-        Act::Opacity(layer, opacity) => drop(painting.set_opacity(*layer, *opacity)),
+        Act::Dry(surface, share) => drop(painting.apply(dry(*surface, *share, ""))),
+        Act::Opacity(layer, opacity) => drop(painting.apply(self::opacity(*layer, *opacity))),
         Act::Handle(b, mode) => {
             let handling = BrushHandling {
                 mode: BrushMode::NAMES[*mode].1.clone(),
@@ -201,14 +237,32 @@ fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act) {
                 most_m: [0.0, 4e-5][mode % 2],
                 brush: BRUSHES[*b].to_owned(),
             };
-            painting.handle(&handling).expect("known");
+            painting
+                .apply(Handle::try_from(&handling).expect("in range"))
+                .expect("known");
         }
         // It may carry nothing.
-        Act::FillWith(b) => drop(painting.fill_with(CANVAS, BRUSHES[*b], 2e-5)),
+        Act::FillWith(b) => drop(painting.apply(Fill {
+            paint: FillPaint::Carried {
+                brush: BrushName::new(BRUSHES[*b]).expect("valid"),
+            },
+            thickness: FilmThickness::new(2e-5).expect("in range"),
+            surface: CANVAS,
+        })),
         Act::Prepare(surface, last) => {
-            painting.piles(*surface, *last).expect("a surface");
+            painting
+                .apply(Piles {
+                    last: *last,
+                    surface: *surface,
+                })
+                .expect("a surface");
             let stain_m = if *last { 0.0 } else { 1e-5 };
-            painting.size(*surface, stain_m).expect("a surface");
+            painting
+                .apply(Size {
+                    stain: StainThickness::new(stain_m).expect("in range"),
+                    surface: *surface,
+                })
+                .expect("a surface");
         }
         Act::Undo => drop(painting.undo(None)),
         Act::Redo => drop(painting.redo(None)),
@@ -232,7 +286,7 @@ proptest! {
                 Err(refusal) => break refusal,
             }
         };
-        prop_assert_eq!(refusal.what, "there is nothing to undo");
+        prop_assert_eq!(refusal.to_string(), "there is nothing to undo");
         let store = painting.store(CANVAS).expect("a canvas");
         prop_assert_eq!(store.counts(), [0; 16], "all that was done is undone");
         prop_assert_eq!(store.dry_counts(), [0; 16]);
@@ -250,7 +304,7 @@ proptest! {
         let mut painting = painting(size_mm);
         for (i, (places, load)) in ways.iter().enumerate() {
             if let Some(text) = MIXTURES.get(*load) {
-                painting.load("main", &mixture(text)).expect("known");
+                painting.apply(Load { mixture: mixture(text), beside: None, brush: BrushName::main() }).expect("known");
             }
             paint(&mut painting, "main", size_mm, i as u64 + 1, places);
             check(&mut painting)?;
@@ -307,8 +361,20 @@ fn across(from_mm: f64, to_mm: f64) -> Vec<Place> {
 #[test]
 fn what_is_painted_after_a_command_within_a_stroke_is_undone_too() {
     let commands: [fn(&mut Painting); 4] = [
-        |painting| painting.load("main", &mixture(MIXTURES[0])).expect("known"),
-        |painting| painting.clean("other").expect("known"),
+        |painting| {
+            painting
+                .apply(load("main", mixture(MIXTURES[0])))
+                .map(drop)
+                .expect("known")
+        },
+        |painting| {
+            painting
+                .apply(Clean {
+                    brush: BrushName::new("other").expect("valid"),
+                })
+                .map(drop)
+                .expect("known")
+        },
         |painting| drop(painting.undo(None).expect("a stroke")),
         |painting| {
             painting.undo(None).expect("a stroke");
@@ -317,7 +383,9 @@ fn what_is_painted_after_a_command_within_a_stroke_is_undone_too() {
     ];
     for command in commands {
         let mut painting = painting(10.0);
-        painting.load("main", &mixture(MIXTURES[1])).expect("known");
+        painting
+            .apply(load("main", mixture(MIXTURES[1])))
+            .expect("known");
         paint(&mut painting, "main", 10.0, 1, &across(4.0, 8.0));
         command(&mut painting);
         paint(&mut painting, "main", 10.0, 1, &across(8.0, 12.0));
@@ -342,8 +410,12 @@ fn what_is_painted_after_a_command_within_a_stroke_is_undone_too() {
 fn a_load_from_before_a_brush_had_other_strips_comes_back() {
     for strips in [31, 60] {
         let mut painting = painting(10.0);
-        painting.load("main", &mixture(MIXTURES[0])).expect("known");
-        painting.load("main", &mixture(MIXTURES[1])).expect("known");
+        painting
+            .apply(load("main", mixture(MIXTURES[0])))
+            .expect("known");
+        painting
+            .apply(load("main", mixture(MIXTURES[1])))
+            .expect("known");
         painting.define_brush("main", brush(10.0, strips));
         painting.undo(None).expect("the second load");
         assert_eq!(painting.report().quanta_missing, 0);
@@ -356,7 +428,9 @@ fn a_load_from_before_a_brush_had_other_strips_comes_back() {
 fn a_head_in_the_air_and_a_clean_one_leave_nothing() {
     let mut painting = painting(10.0);
     paint(&mut painting, "main", 10.0, 1, &across(4.0, 12.0));
-    painting.load("main", &mixture(MIXTURES[0])).expect("known");
+    painting
+        .apply(load("main", mixture(MIXTURES[0])))
+        .expect("known");
     let high = |place: Place| Place {
         height: 1.3,
         bend: [0.0; 2],
@@ -372,7 +446,9 @@ fn a_head_in_the_air_and_a_clean_one_leave_nothing() {
 #[test]
 fn a_restart_paints_nothing_on_its_way() {
     let mut painting = painting(10.0);
-    painting.load("main", &mixture(MIXTURES[0])).expect("known");
+    painting
+        .apply(load("main", mixture(MIXTURES[0])))
+        .expect("known");
     let file = brush(10.0, 48);
     for place in across(4.0, 12.0) {
         let state = BrushState {
@@ -391,12 +467,17 @@ fn a_restart_paints_nothing_on_its_way() {
 #[test]
 fn what_has_dried_stays_and_catches_paint() {
     let mut painting = painting(10.0);
-    painting.load("main", &mixture(MIXTURES[0])).expect("known");
+    painting
+        .apply(load("main", mixture(MIXTURES[0])))
+        .expect("known");
     paint(&mut painting, "main", 10.0, 1, &across(4.0, 12.0));
     painting.commit();
     let wet = painting.store(CANVAS).expect("a canvas").counts();
     assert_eq!(
-        painting.dry(CANVAS, 1.0, "underpainting").as_deref(),
+        painting
+            .apply(dry(CANVAS, 1.0, "underpainting"))
+            .map(|done| done.to_string())
+            .as_deref(),
         Ok("underpainting")
     );
     let store = painting.store(CANVAS).expect("a canvas");
@@ -404,10 +485,15 @@ fn what_has_dried_stays_and_catches_paint() {
     let report = painting.report();
     assert_eq!(report.quanta_missing, 0);
     assert!(report.accounts_m3["dry"] > 0.0 && report.accounts_m3["canvas"] == 0.0);
-    assert!(painting.dry(CANVAS, 1.0, "").is_err(), "nothing is wet");
+    assert!(
+        painting.apply(dry(CANVAS, 1.0, "")).is_err(),
+        "nothing is wet"
+    );
     // A brush so high that it only touched the first stroke's relief.
     let deposited = |painting: &mut Painting, stroke: u64| {
-        painting.load("main", &mixture(MIXTURES[0])).expect("known");
+        painting
+            .apply(load("main", mixture(MIXTURES[0])))
+            .expect("known");
         let before = painting.store(CANVAS).expect("a canvas").counts()[0];
         paint(painting, "main", 10.0, stroke, &across(4.0, 12.0));
         painting.commit();
@@ -416,8 +502,15 @@ fn what_has_dried_stays_and_catches_paint() {
     let over_dry = deposited(&mut painting, 2);
     assert!(over_dry > 0);
     assert_eq!(painting.report().quanta_missing, 0);
-    assert!(painting.set_opacity(9, 0.5).is_err());
-    painting.set_opacity(1, 0.5).expect("the layer");
+    assert!(
+        painting
+            .apply(Opacity {
+                layer: LayerRef::Number { number: 9 },
+                opacity: OpacityFactor::new(0.5).expect("in range")
+            })
+            .is_err()
+    );
+    painting.apply(opacity(1, 0.5)).expect("the layer");
     assert_eq!(painting.scene().layers[0].opacity, 0.5);
     painting.undo(None).expect("the opacity");
     assert_eq!(painting.scene().layers[0].opacity, 1.0);
@@ -434,7 +527,9 @@ fn a_wide_brush_loses_no_quantum_of_its_broad_strips() {
         turn: 0.0,
     };
     let mut painting = painting(60.0);
-    painting.load("main", &mixture(MIXTURES[0])).expect("known");
+    painting
+        .apply(load("main", mixture(MIXTURES[0])))
+        .expect("known");
     let places = [place([-0.075_547_72, 0.0]), place([0.0, 0.311_891_85])];
     paint(&mut painting, "main", 60.0, 1, &places);
     let report = painting.report();

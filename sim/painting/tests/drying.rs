@@ -5,14 +5,19 @@ use std::collections::BTreeSet;
 use maulstick_appearance::Bakery;
 use maulstick_appearance::bands::Banded;
 use maulstick_brush::BrushFile;
+use maulstick_canvas::EditError;
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::quantum::{Counts, SLOTS};
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
+use maulstick_types::advice::Advice;
 use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::command::Command;
+use maulstick_types::edits::{
+    Dry, Edit, Fill, FillPaint, Load, NameLayer, Opacity, Redo, StopDrying, Undo, Wet,
+};
 use maulstick_types::paint::Entry;
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::{BrushName, FilmThickness, LayerName, OpacityFactor, Share, Ticks};
 use maulstick_types::{Flags, Header, Pose, Region, name_hash};
 use proptest::prelude::*;
 
@@ -38,35 +43,46 @@ fn sequencer() -> Sequencer {
     sequencer
 }
 
-fn fill(mixture: &str, um: f64) -> Command {
-    Command::Fill {
+fn fill(mixture: &str, um: f64) -> Fill {
+    Fill {
+        paint: FillPaint::Mixture {
+            mixture: mixture.parse().expect("a mixture"),
+        },
+        thickness: FilmThickness::new(um * 1e-6).expect("in range"),
         surface: CANVAS,
+    }
+}
+
+fn load(mixture: &str) -> Load {
+    Load {
         mixture: mixture.parse().expect("a mixture"),
-        thickness_m: um * 1e-6,
+        beside: None,
+        brush: BrushName::main(),
     }
 }
 
-fn load(mixture: &str) -> Command {
-    Command::Load {
-        brush: "main".to_owned(),
-        mixture: mixture.parse().expect("a mixture"),
-    }
-}
-
-fn dry_over(ticks: u32) -> Command {
-    Command::DryOver {
-        surface: CANVAS,
-        ticks,
-        name: "slow".to_owned(),
-        region: None,
-    }
-}
-
-fn wet(layers: u32, region: Option<Region>) -> Command {
-    Command::Wet {
-        surface: CANVAS,
-        layers,
+fn dry(share: f32, layer: &str, region: Option<Region>) -> Dry {
+    Dry {
+        share: Share::new(share).expect("in range"),
+        layer: LayerName::new(layer).ok(),
         region,
+        ..Dry::whole(CANVAS)
+    }
+}
+
+fn dry_over(ticks: u32) -> Dry {
+    Dry {
+        layer: LayerName::new("slow").ok(),
+        over: Some(Ticks::new(ticks).expect("in range")),
+        ..Dry::whole(CANVAS)
+    }
+}
+
+fn wet(layers: u32, region: Option<Region>) -> Wet {
+    Wet {
+        layers: (layers > 0).then_some(layers),
+        region,
+        surface: CANVAS,
     }
 }
 
@@ -195,10 +211,10 @@ fn depth(sequencer: &Sequencer) -> usize {
 fn painted() -> Sequencer {
     let mut sequencer = sequencer();
     sequencer
-        .ask(fill("Yellow Ochre=0.3,Titanium White=0.7", 30.0))
+        .edit(fill("Yellow Ochre=0.3,Titanium White=0.7", 30.0))
         .expect("filled");
     sequencer
-        .ask(load("Ultramarine Blue=0.6,Titanium White=0.4"))
+        .edit(load("Ultramarine Blue=0.6,Titanium White=0.4"))
         .expect("loaded");
     stroke(&mut sequencer, 0, 1, 8.0, true);
     stroke(&mut sequencer, 1, 2, 14.0, true);
@@ -219,14 +235,14 @@ proptest! {
         let mut sequencer = painted();
         let (before, paint) = (colours(&mut sequencer), both(counts(&mut sequencer)));
         for share in &shares {
-            let (surface, share, name) = (CANVAS, *share, String::new());
+            let share = *share;
             let region = "5,5,20x10".parse().expect("a region");
             let command = match part {
-                true => Command::DryRegion { surface, share, name, region },
-                false => Command::Dry { surface, share, name },
+                true => dry(share, "", Some(region)),
+                false => dry(share, "", None),
             };
             // All may be dry already.
-            sequencer.ask(command).ok();
+            sequencer.edit(command).ok();
             prop_assert_eq!(both(counts(&mut sequencer)), paint);
         }
         let after = colours(&mut sequencer);
@@ -234,7 +250,7 @@ proptest! {
         println!("worst {worst:e}, mean {mean:e}");
         prop_assert!(worst < 1e-3 && mean < 5e-5, "{worst} {mean}");
         // A fault would be seen: a film of a micrometre.
-        sequencer.ask(fill("Bone Black", 1.0)).expect("filled");
+        sequencer.edit(fill("Bone Black", 1.0)).expect("filled");
         let faulty = mean_off(&before, &colours(&mut sequencer));
         prop_assert!(faulty > 1e-3, "a fault would pass: {faulty}");
     }
@@ -244,11 +260,11 @@ proptest! {
         let mut sequencer = painted();
         let (cells, colour) = (wet_cells(&mut sequencer), colours(&mut sequencer));
         for share in &shares {
-            let (surface, share, name) = (CANVAS, *share, String::new());
-            sequencer.ask(Command::Dry { surface, share, name }).ok();
+            let share = *share;
+            sequencer.edit(dry(share, "", None)).ok();
         }
         prop_assert!(wet_cells(&mut sequencer) != cells);
-        sequencer.ask(wet(0, None)).expect("dry");
+        sequencer.edit(wet(0, None)).expect("dry");
         prop_assert_eq!(wet_cells(&mut sequencer), cells);
         prop_assert_eq!(colours(&mut sequencer), colour);
         prop_assert_eq!(depth(&sequencer), 0);
@@ -263,14 +279,7 @@ fn a_region_dries_where_the_middles_of_its_cells_lie_and_nowhere_else() {
     let region: Region = "10,5,12.5x7.6".parse().expect("a region");
     let [from, to] = region.cells(CELLS, CELL_M).expect("cells");
     assert_eq!([from, to], [[40, 20], [90, 50]]);
-    sequencer
-        .ask(Command::DryRegion {
-            surface: CANVAS,
-            share: 1.0,
-            name: "sky".into(),
-            region,
-        })
-        .expect("wet");
+    sequencer.edit(dry(1.0, "sky", Some(region))).expect("wet");
     let after = wet_cells(&mut sequencer);
     for (cell, (before, after)) in before.iter().zip(&after).enumerate() {
         let at = [cell as u32 % CELLS[0], cell as u32 / CELLS[0]];
@@ -281,18 +290,13 @@ fn a_region_dries_where_the_middles_of_its_cells_lie_and_nowhere_else() {
     let refused = |sequencer: &mut Sequencer, region: &str, word: &str| {
         let region: Region = region.parse().expect("a region");
         let commands = [
-            Command::DryRegion {
-                surface: CANVAS,
-                share: 0.5,
-                name: String::new(),
-                region: region.clone(),
-            },
-            wet(1, Some(region)),
+            Edit::from(dry(0.5, "", Some(region.clone()))),
+            wet(1, Some(region)).into(),
         ];
         let depth = sequencer.painting().history_depth();
         for command in commands {
-            let error = sequencer.ask(command).expect_err("refused");
-            assert!(error.what.contains(word), "{}", error.what);
+            let error = sequencer.edit(command).expect_err("refused");
+            assert!(error.to_string().contains(word), "{}", error);
         }
         assert_eq!(sequencer.painting().history_depth(), depth);
     };
@@ -302,7 +306,7 @@ fn a_region_dries_where_the_middles_of_its_cells_lie_and_nowhere_else() {
         corner_m: [0.0, f64::NAN],
         size_m: [1.0, 1.0],
     };
-    assert!(sequencer.ask(wet(1, Some(endless))).is_err());
+    assert!(sequencer.edit(wet(1, Some(endless))).is_err());
 }
 
 #[test]
@@ -310,7 +314,7 @@ fn paint_dries_evenly_into_one_layer_over_the_time() {
     let mut sequencer = painted();
     let all = counts(&mut sequencer);
     let (paint, colour) = (both(all), colours(&mut sequencer));
-    sequencer.ask(dry_over(5400)).expect("wet");
+    sequencer.edit(dry_over(5400)).expect("wet");
     ticks(&mut sequencer, 12);
     for tick in 13..=5400u32 {
         sequencer.tick();
@@ -351,7 +355,7 @@ fn paint_dries_evenly_into_one_layer_over_the_time() {
 #[test]
 fn a_stroke_meanwhile_is_one_step_and_dries_in_what_is_left() {
     let mut sequencer = painted();
-    sequencer.ask(dry_over(600)).expect("wet");
+    sequencer.edit(dry_over(600)).expect("wet");
     ticks(&mut sequencer, 300);
     let [_, dry] = counts(&mut sequencer);
     assert!(sum(&dry) > 0);
@@ -381,25 +385,44 @@ fn a_stroke_meanwhile_is_one_step_and_dries_in_what_is_left() {
 fn undo_takes_back_what_dried_since_the_last_step_and_ends_the_drying() {
     let mut sequencer = painted();
     let before = wet_cells(&mut sequencer);
-    let undo = Command::Undo { brush: None };
-    sequencer.ask(dry_over(600)).expect("wet");
+    let undo = Undo { brush: None };
+    sequencer.edit(dry_over(600)).expect("wet");
     ticks(&mut sequencer, 200);
-    sequencer.ask(load("Bone Black")).expect("loaded");
+    sequencer.edit(load("Bone Black")).expect("loaded");
     stroke(&mut sequencer, 2, 3, 11.0, true);
     ticks(&mut sequencer, 200);
     let late = counts(&mut sequencer);
-    assert_eq!(sequencer.ask(undo.clone()).as_deref(), Ok("drying"));
+    assert_eq!(
+        sequencer
+            .edit(undo.clone())
+            .map(|done| done.to_string())
+            .as_deref(),
+        Ok("drying")
+    );
     assert!(!sequencer.painting().is_drying());
     ticks(&mut sequencer, 200);
-    assert_eq!(sequencer.ask(undo.clone()).as_deref(), Ok("stroke"));
-    assert_eq!(sequencer.ask(undo.clone()).as_deref(), Ok("load main"));
-    assert_eq!(sequencer.ask(undo).as_deref(), Ok("drying"));
+    assert_eq!(
+        sequencer
+            .edit(undo.clone())
+            .map(|done| done.to_string())
+            .as_deref(),
+        Ok("stroke")
+    );
+    assert_eq!(
+        sequencer
+            .edit(undo.clone())
+            .map(|done| done.to_string())
+            .as_deref(),
+        Ok("load main")
+    );
+    assert_eq!(
+        sequencer.edit(undo).map(|done| done.to_string()).as_deref(),
+        Ok("drying")
+    );
     assert_eq!(wet_cells(&mut sequencer), before);
     assert!(sequencer.painting().scene().layers.is_empty());
     for _ in 0..4 {
-        sequencer
-            .ask(Command::Redo { brush: None })
-            .expect("undone");
+        sequencer.edit(Redo { brush: None }).expect("undone");
     }
     assert_eq!(counts(&mut sequencer), late);
     assert_eq!(sequencer.painting().scene().layers.len(), 1);
@@ -408,70 +431,74 @@ fn undo_takes_back_what_dried_since_the_last_step_and_ends_the_drying() {
 #[test]
 fn a_drying_ends_when_it_is_told_to_and_there_is_one_at_a_time() {
     let mut sequencer = painted();
-    let stop = Command::StopDrying { surface: CANVAS };
-    let none = sequencer.ask(stop.clone()).expect_err("none goes on");
-    assert!(none.help.contains("--over"));
-    sequencer.ask(dry_over(600)).expect("wet");
-    let other = sequencer.ask(dry_over(60)).expect_err("one goes on");
-    assert!(other.help.contains("--stop"));
+    let stop = StopDrying { surface: CANVAS };
+    let none = sequencer.edit(stop.clone()).expect_err("none goes on");
+    assert!(none == EditError::NotDrying);
+    sequencer.edit(dry_over(600)).expect("wet");
+    let other = sequencer.edit(dry_over(60)).expect_err("one goes on");
+    assert!(other == EditError::Drying);
     ticks(&mut sequencer, 200);
     let before = counts(&mut sequencer);
     assert!(sum(&before[0]) > 0 && sum(&before[1]) > 0);
-    sequencer.ask(stop).expect("it goes on");
+    sequencer.edit(stop).expect("it goes on");
     ticks(&mut sequencer, 900);
     assert_eq!(counts(&mut sequencer), before);
     let mut empty = self::sequencer();
-    let refused = empty.ask(dry_over(60)).expect_err("bare");
-    assert!(refused.what.contains("nothing is wet"));
+    let refused = empty.edit(dry_over(60)).expect_err("bare");
+    assert!(refused.to_string().contains("nothing is wet"));
 }
 
 #[test]
 fn the_newest_layer_becomes_wet_in_a_region_and_an_opacity_is_not_lost() {
     let mut sequencer = painted();
     let all = both(counts(&mut sequencer));
-    let dry = |name: &str| Command::Dry {
-        surface: CANVAS,
-        share: 1.0,
-        name: name.to_owned(),
-    };
-    sequencer.ask(dry("low")).expect("wet");
-    sequencer.ask(load("Pyrrole Red")).expect("loaded");
+    let dry = |name: &str| dry(1.0, name, None);
+    sequencer.edit(dry("low")).expect("wet");
+    sequencer.edit(load("Pyrrole Red")).expect("loaded");
     stroke(&mut sequencer, 2, 3, 11.0, true);
-    sequencer.ask(dry("high")).expect("wet");
-    let opacity = |layer: &str, opacity: f32| Command::LayerOpacity {
-        layer: layer.to_owned(),
-        opacity,
+    sequencer.edit(dry("high")).expect("wet");
+    let opacity = |layer: &str, opacity: f32| Opacity {
+        layer: layer.parse().expect("valid"),
+        opacity: OpacityFactor::new(opacity).expect("in range"),
     };
-    sequencer.ask(opacity("high", 0.5)).expect("a layer");
+    sequencer.edit(opacity("high", 0.5)).expect("a layer");
     let veiled = sequencer
-        .ask(wet(1, None))
+        .edit(wet(1, None))
         .expect_err("no wet paint is veiled");
-    assert!(veiled.what.contains("high") && veiled.help.contains("opacity 2 1"));
+    assert!(
+        veiled.to_string().contains("high") && veiled.advice() == Advice::FullOpacity { layer: 2 }
+    );
     sequencer
-        .ask(opacity("2", 1.0))
+        .edit(opacity("2", 1.0))
         .expect("a layer by its number");
-    let unknown = sequencer.ask(opacity("sky", 1.0)).expect_err("no layer");
-    assert!(unknown.what.contains("'sky'") && unknown.help.contains("2 (high)"));
+    let unknown = sequencer.edit(opacity("sky", 1.0)).expect_err("no layer");
+    assert!(
+        unknown.to_string().contains("'sky'") && unknown.advice().to_string().contains("2 (high)")
+    );
 
     let names = |sequencer: &Sequencer| -> Vec<String> {
         let layers = &sequencer.painting().scene().layers;
         layers.iter().map(|layer| layer.name.clone()).collect()
     };
-    let name = |layer: u32| Command::NameLayer {
+    let name = |layer: u32| NameLayer {
         layer,
-        name: " sky ".to_owned(),
+        name: LayerName::new(" sky ").expect("valid"),
     };
-    sequencer.ask(name(1)).expect("a layer");
+    sequencer.edit(name(1)).expect("a layer");
     assert_eq!(names(&sequencer), ["sky", "high"]);
-    sequencer
-        .ask(Command::Undo { brush: None })
-        .expect("a step");
+    sequencer.edit(Undo { brush: None }).expect("a step");
     assert_eq!(names(&sequencer), ["low", "high"]);
-    let unknown = sequencer.ask(name(3)).expect_err("no layer");
-    assert!(unknown.what.contains('3') && unknown.help.contains("2 (high)"));
+    let unknown = sequencer.edit(name(3)).expect_err("no layer");
+    assert!(unknown.to_string().contains('3') && unknown.advice().to_string().contains("2 (high)"));
 
     let region: Region = "6,6,10x10".parse().expect("a region");
-    assert_eq!(sequencer.ask(wet(1, Some(region))).as_deref(), Ok("high"));
+    assert_eq!(
+        sequencer
+            .edit(wet(1, Some(region)))
+            .map(|done| done.to_string())
+            .as_deref(),
+        Ok("high")
+    );
     let layers = |sequencer: &Sequencer| -> BTreeSet<u32> {
         let layers = &sequencer.painting().scene().layers;
         layers.iter().map(|layer| layer.number).collect()
@@ -480,15 +507,15 @@ fn the_newest_layer_becomes_wet_in_a_region_and_an_opacity_is_not_lost() {
     let [wet_part, dry_part] = counts(&mut sequencer);
     assert!(sum(&wet_part) > 0 && wet_part[..2] == [0, 0] && sum(&dry_part) > sum(&all));
     let painted = wet_cells(&mut sequencer);
-    sequencer.ask(wet(1, None)).expect("the rest of it");
+    sequencer.edit(wet(1, None)).expect("the rest of it");
     assert_eq!(layers(&sequencer), BTreeSet::from([1]));
     assert_eq!(counts(&mut sequencer)[1], all, "the lower one is dry");
-    sequencer.ask(wet(0, None)).expect("all");
+    sequencer.edit(wet(0, None)).expect("all");
     assert_eq!((layers(&sequencer).len(), depth(&sequencer)), (0, 0));
-    let nothing = sequencer.ask(wet(0, None)).expect_err("all is wet");
-    assert!(nothing.what.contains("nothing has dried"));
+    let nothing = sequencer.edit(wet(0, None)).expect_err("all is wet");
+    assert!(nothing.to_string().contains("nothing has dried"));
     for _ in 0..2 {
-        sequencer.ask(Command::Undo { brush: None }).expect("done");
+        sequencer.edit(Undo { brush: None }).expect("done");
     }
     assert_eq!(wet_cells(&mut sequencer), painted);
     assert_eq!(layers(&sequencer), BTreeSet::from([1, 2]));

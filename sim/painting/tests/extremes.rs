@@ -9,7 +9,9 @@ use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
+use maulstick_types::edits::Load;
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::BrushName;
 
 /// A brush on a canvas, and where it goes.
 #[derive(Clone, Copy, Debug)]
@@ -57,7 +59,12 @@ impl Case {
             .enumerate()
         {
             let mixture = paint.parse().expect("a mixture");
-            painting.load("main", &mixture).expect("known");
+            let load = Load {
+                mixture,
+                beside: None,
+                brush: BrushName::main(),
+            };
+            painting.apply(load).expect("known");
             let middle_m = 0.5 * f64::from(self.side) * self.cell_m;
             let solves = self.ways_m.iter().map(|way| Solve {
                 event_ns: 0,

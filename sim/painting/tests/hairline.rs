@@ -5,9 +5,10 @@ use maulstick_optics::PaintLibrary;
 use maulstick_painting::picture::picture;
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_types::brush::BrushState;
-use maulstick_types::command::Command;
+use maulstick_types::edits::Load;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
+use maulstick_types::values::BrushName;
 use maulstick_types::{Flags, Header, Message as _, Origin};
 
 const CELL_MM: f64 = 0.0625;
@@ -28,11 +29,12 @@ fn widths(file: BrushFile, pressure: f64) -> Vec<f64> {
     let mut model = BrushModel::new(file.clone(), 0.5);
     model.set_scene(sequencer.painting_mut().scene());
     sequencer.define_brush("main", file);
-    let load = Command::Load {
-        brush: "main".into(),
+    let load = Load {
         mixture: "Bone Black".parse().expect("a mixture"),
+        beside: None,
+        brush: BrushName::main(),
     };
-    sequencer.ask(load).expect("loaded");
+    sequencer.edit(load).expect("loaded");
     for step in 0..70u64 {
         let sample = StylusSample {
             pose: StylusPose::Contact {

@@ -17,7 +17,9 @@ use maulstick_painting::picture::{picture_for, unlit_picture};
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
+use maulstick_types::edits::{Dry, LayerRef, Load, Opacity};
 use maulstick_types::scene::{CANVAS, Light, PALETTE};
+use maulstick_types::values::{BrushName, LayerName, OpacityFactor, Share};
 
 fn painting(light: Light) -> Painting {
     let setup = PaintingSetup {
@@ -36,7 +38,11 @@ fn painting(light: Light) -> Painting {
 /// A stroke from left to right, `y_mm` up the canvas.
 fn stroke(painting: &mut Painting, number: u64, load: &str, y_mm: f64) {
     painting
-        .load("main", &load.parse().expect("a mixture"))
+        .apply(Load {
+            mixture: load.parse().expect("a mixture"),
+            beside: None,
+            brush: BrushName::main(),
+        })
         .expect("known");
     let file = BrushFile::library("round")
         .and_then(|file| file.scaled_to(8.0))
@@ -91,14 +97,24 @@ fn drying_keeps_the_colour_and_the_height_whatever_the_share() {
         let mut painting = painting(Light::default());
         two_strokes(&mut painting);
         let wet = unlit_picture(&mut painting, CANVAS);
-        painting.dry(CANVAS, share, "").expect("wet");
+        painting
+            .apply(Dry {
+                share: Share::new(share).expect("in range"),
+                ..Dry::whole(CANVAS)
+            })
+            .expect("wet");
         let dry = unlit_picture(&mut painting, CANVAS);
         assert!(
             farthest(&wet, &dry) <= 1,
             "{share}: {}",
             farthest(&wet, &dry)
         );
-        painting.set_opacity(1, 0.5).expect("a layer");
+        painting
+            .apply(Opacity {
+                layer: LayerRef::Number { number: 1 },
+                opacity: OpacityFactor::new(0.5).expect("in range"),
+            })
+            .expect("a layer");
         let thinner = unlit_picture(&mut painting, CANVAS);
         assert!(farthest(&wet, &thinner) > 4, "a fault would pass");
     }
@@ -110,7 +126,12 @@ fn a_glaze_lets_the_dry_layer_shine_through_and_does_not_mix_with_it() {
         let mut painting = painting(Light::default());
         stroke(&mut painting, 1, "Hansa Yellow Opaque", 8.0);
         if dried {
-            painting.dry(CANVAS, 1.0, "").expect("wet");
+            painting
+                .apply(Dry {
+                    share: Share::new(1.0).expect("in range"),
+                    ..Dry::whole(CANVAS)
+                })
+                .expect("wet");
         }
         stroke(&mut painting, 2, "Ultramarine Blue=0.06,Thinner=0.94", 8.0);
         let store = painting.store(CANVAS).expect("a canvas");
@@ -130,9 +151,21 @@ fn a_relit_painting_is_one_that_was_painted_under_that_light() {
     let mut after = painting(Light::default());
     for painting in [&mut before, &mut after] {
         stroke(painting, 1, "Ultramarine Blue=0.3,Titanium White=0.7", 6.0);
-        painting.dry(CANVAS, 0.6, "first").expect("wet");
+        painting
+            .apply(Dry {
+                share: Share::new(0.6).expect("in range"),
+                layer: LayerName::new("first").ok(),
+                ..Dry::whole(CANVAS)
+            })
+            .expect("wet");
         stroke(painting, 2, "Pyrrole Red", 7.0);
-        painting.dry(CANVAS, 1.0, "second").expect("wet");
+        painting
+            .apply(Dry {
+                share: Share::new(1.0).expect("in range"),
+                layer: LayerName::new("second").ok(),
+                ..Dry::whole(CANVAS)
+            })
+            .expect("wet");
         stroke(painting, 3, "Yellow Ochre", 9.0);
     }
     let day = unlit_picture(&mut after, CANVAS);
@@ -223,14 +256,20 @@ fn a_light_that_is_none_changes_nothing() {
         },
     ] {
         let refusal = painting.relight(&light).expect_err("no light");
-        println!("{refusal}: {}", refusal.help);
+        println!("{refusal}: {}", refusal.advice());
         assert_eq!(painting.scene().version, version);
     }
     let refusal = painting.relight(&Light {
         illuminant: "D64".into(),
         ..Light::default()
     });
-    assert!(refusal.expect_err("unknown").help.contains("'D65'"));
+    assert!(
+        refusal
+            .expect_err("unknown")
+            .advice()
+            .to_string()
+            .contains("'D65'")
+    );
 }
 
 /// A flat bare canvas, adapted or not, shows what a spectrometer reads of it under that light.

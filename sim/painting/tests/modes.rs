@@ -5,7 +5,9 @@ use maulstick_canvas::quantum::{Counts, QUANTUM_M, SLOTS};
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::{BrushState, Solve};
+use maulstick_types::edits::{Fill, FillPaint, Handle, Load, Piles, Size};
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE};
+use maulstick_types::values::{BrushName, FilmThickness, StainThickness};
 use maulstick_types::{Mixture, Pose, name_hash};
 
 const BRUSH: &str = "main";
@@ -49,7 +51,16 @@ impl Easel {
     fn on_white(mode: BrushMode, um: f64) -> Self {
         let mut easel = Self::new();
         let white = mixture(WHITE);
-        easel.painting.lay(CANVAS, &white, um * 1e-6).expect("laid");
+        easel
+            .painting
+            .apply(Fill {
+                paint: FillPaint::Mixture {
+                    mixture: white.clone(),
+                },
+                thickness: FilmThickness::new(um * 1e-6).expect("in range"),
+                surface: CANVAS,
+            })
+            .expect("laid");
         easel.use_as(mode, |_| {});
         easel
     }
@@ -60,11 +71,19 @@ impl Easel {
             ..BrushHandling::normal(BRUSH)
         };
         change(&mut handling);
-        self.painting.handle(&handling).expect("known");
+        self.painting
+            .apply(Handle::try_from(&handling).expect("in range"))
+            .expect("known");
     }
 
     fn load(&mut self, text: &str) {
-        self.painting.load(BRUSH, &mixture(text)).expect("loaded");
+        self.painting
+            .apply(Load {
+                mixture: mixture(text),
+                beside: None,
+                brush: BrushName::new(BRUSH).expect("valid"),
+            })
+            .expect("loaded");
     }
 
     /// From left to right over the middle of the canvas, or of another place of a surface, mm.
@@ -260,12 +279,29 @@ fn a_brush_adds_no_more_than_its_most() {
 #[test]
 fn a_fill_with_the_brush_has_its_colour_and_costs_it_nothing() {
     let mut easel = Easel::new();
-    assert!(easel.painting.fill_with(CANVAS, BRUSH, 2e-5).is_err());
+    assert!(
+        easel
+            .painting
+            .apply(Fill {
+                paint: FillPaint::Carried {
+                    brush: BrushName::new(BRUSH).expect("valid")
+                },
+                thickness: FilmThickness::new(2e-5).expect("in range"),
+                surface: CANVAS
+            })
+            .is_err()
+    );
     easel.load("Ultramarine Blue=0.25,Titanium White=0.75");
     let loaded = easel.account("brush");
     easel
         .painting
-        .fill_with(CANVAS, BRUSH, 2e-5)
+        .apply(Fill {
+            paint: FillPaint::Carried {
+                brush: BrushName::new(BRUSH).expect("valid"),
+            },
+            thickness: FilmThickness::new(2e-5).expect("in range"),
+            surface: CANVAS,
+        })
         .expect("filled");
     assert_eq!(easel.account("brush"), loaded);
     let counts = easel.on(CANVAS);
@@ -283,7 +319,13 @@ fn a_sized_canvas_is_brushed_bare_and_another_keeps_a_stain() {
     let ridge = |stain_m: f64| {
         let mut easel = Easel::on_white(BrushMode::SpongeNoPush, 30.0);
         easel.use_as(BrushMode::Normal, |_| {});
-        easel.painting.size(CANVAS, stain_m).expect("sized");
+        easel
+            .painting
+            .apply(Size {
+                stain: StainThickness::new(stain_m).expect("in range"),
+                surface: CANVAS,
+            })
+            .expect("sized");
         easel.middle();
         easel.on(CANVAS);
         easel.films().into_iter().fold(0.0, f64::max)
@@ -298,8 +340,23 @@ fn piles_deplete_or_last_as_the_painter_says() {
     let taken = |last: bool| {
         let mut easel = Easel::new();
         let white = mixture(WHITE);
-        easel.painting.lay(PALETTE, &white, 3e-4).expect("laid");
-        easel.painting.piles(PALETTE, last).expect("the palette");
+        easel
+            .painting
+            .apply(Fill {
+                paint: FillPaint::Mixture {
+                    mixture: white.clone(),
+                },
+                thickness: FilmThickness::new(3e-4).expect("in range"),
+                surface: PALETTE,
+            })
+            .expect("laid");
+        easel
+            .painting
+            .apply(Piles {
+                last,
+                surface: PALETTE,
+            })
+            .expect("the palette");
         let before = total(&easel.on(PALETTE));
         easel.stroke(PALETTE, [60.0, 100.0]);
         let after = total(&easel.on(PALETTE));
@@ -335,7 +392,16 @@ fn the_palette_fills_the_reservoir() {
     let inside = |surface: u32, at: [f64; 2]| {
         let mut easel = Easel::new();
         let white = mixture(WHITE);
-        easel.painting.lay(surface, &white, 5e-4).expect("laid");
+        easel
+            .painting
+            .apply(Fill {
+                paint: FillPaint::Mixture {
+                    mixture: white.clone(),
+                },
+                thickness: FilmThickness::new(5e-4).expect("in range"),
+                surface,
+            })
+            .expect("laid");
         easel.stroke(surface, at);
         easel.account("brush") - films * f64::from(easel.carried())
     };
@@ -386,7 +452,15 @@ fn narrow_surfaces_are_painted_on() {
         let mut painting = Painting::new(&setup, library).expect("a painting");
         painting.define_brush(BRUSH, brush());
         let white = mixture(WHITE);
-        painting.lay(CANVAS, &white, 1e-4).expect("laid");
+        painting
+            .apply(Fill {
+                paint: FillPaint::Mixture {
+                    mixture: white.clone(),
+                },
+                thickness: FilmThickness::new(1e-4).expect("in range"),
+                surface: CANVAS,
+            })
+            .expect("laid");
         let mut easel = Easel {
             painting,
             strokes: 0,
@@ -402,7 +476,16 @@ fn what_lies_under_the_brush_is_told() {
     let under = |text: &str| {
         let mut easel = Easel::new();
         let film = mixture(text);
-        easel.painting.lay(CANVAS, &film, 1e-4).expect("laid");
+        easel
+            .painting
+            .apply(Fill {
+                paint: FillPaint::Mixture {
+                    mixture: film.clone(),
+                },
+                thickness: FilmThickness::new(1e-4).expect("in range"),
+                surface: CANVAS,
+            })
+            .expect("laid");
         easel.middle();
         easel.painting.under_brush(name_hash(BRUSH))
     };

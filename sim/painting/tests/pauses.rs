@@ -8,10 +8,11 @@ use maulstick_optics::PaintLibrary;
 
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_types::brush::BrushState;
-use maulstick_types::command::Command;
+use maulstick_types::edits::{Load, Undo};
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
+use maulstick_types::values::BrushName;
 use maulstick_types::{Flags, Header, Message as _, Origin};
 
 const CELL_MM: f64 = 0.25;
@@ -69,11 +70,12 @@ fn stroke(kind: &str, pause: Range<u64>, hand: Hand, after: After) -> Stroke {
     let mut model = BrushModel::new(file.clone(), 0.5);
     model.set_scene(sequencer.painting_mut().scene());
     sequencer.define_brush("main", file);
-    let load = Command::Load {
-        brush: "main".into(),
+    let load = Load {
         mixture: "Bone Black".parse().expect("a mixture"),
+        beside: None,
+        brush: BrushName::main(),
     };
-    sequencer.ask(load).expect("loaded");
+    sequencer.edit(load).expect("loaded");
     let rested = match hand {
         Hand::Moves => 0,
         Hand::Rests => pause.end - pause.start,
@@ -127,8 +129,10 @@ fn stroke(kind: &str, pause: Range<u64>, hand: Hand, after: After) -> Stroke {
     numbers.retain(|number| *number > 0);
     numbers.dedup();
     let film = film(sequencer.painting_mut(), cells);
-    let undo = || Command::Undo { brush: None };
-    let undone = (0..8).take_while(|_| sequencer.ask(undo()).is_ok()).count();
+    let undo = || Undo { brush: None };
+    let undone = (0..8)
+        .take_while(|_| sequencer.edit(undo()).is_ok())
+        .count();
     Stroke {
         cells: film,
         numbers,

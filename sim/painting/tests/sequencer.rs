@@ -4,7 +4,10 @@ use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Effect, Painting, PaintingSetup, Sequencer};
 use maulstick_types::brush::{BrushState, Solve};
+use maulstick_types::command::TakeCommand;
 use maulstick_types::command::{After, Command, CommandRequest, Outcome};
+use maulstick_types::edits::Clean;
+use maulstick_types::values::{BrushName, WholePath};
 use maulstick_types::{Flags, Header, Pose};
 
 const BRUSH: u32 = 3;
@@ -67,10 +70,10 @@ fn request(client: u64, number: u64, command: Command) -> CommandRequest {
 #[test]
 fn a_command_that_waits_for_a_refused_state_is_done_with_its_effect() {
     let mut sequencer = sequencer();
-    let command = Command::Snapshot {
-        path: "p.png".into(),
+    let command = Command::from(TakeCommand::Snapshot {
+        path: WholePath::new("/p.png").expect("valid"),
         ledger: None,
-    };
+    });
     let snapshot = CommandRequest {
         after: Some(After {
             brush: BRUSH,
@@ -125,7 +128,7 @@ fn a_brush_file_that_comes_again_breaks_no_stroke() {
 #[test]
 fn a_repeated_command_is_done_once_among_many_clients() {
     let mut sequencer = sequencer();
-    let mark = |client: u64| request(client, 1, Command::Mark);
+    let mark = |client: u64| request(client, 1, Command::from(TakeCommand::Mark));
     for other in 1000..2000 {
         sequencer.command(mark(other));
     }
@@ -133,9 +136,10 @@ fn a_repeated_command_is_done_once_among_many_clients() {
     let clean = request(
         1,
         1,
-        Command::Clean {
-            brush: "main".into(),
-        },
+        Clean {
+            brush: BrushName::main(),
+        }
+        .into(),
     );
     let done = sequencer.command(clean.clone()).outcome;
     assert!(matches!(done, Outcome::Done { .. }), "{done:?}");

@@ -5,11 +5,12 @@ use maulstick_impasto::Impasto;
 use maulstick_impasto::model::{PaintModel, Step, StepReport};
 use maulstick_num::fork_join::{threads, with_threads};
 use maulstick_optics::PaintLibrary;
-use maulstick_painting::{Painting, PaintingSetup, Sequencer};
-use maulstick_types::Pose;
+use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::command::Command;
+use maulstick_types::edits::{Fill, FillPaint, Load};
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::{BrushName, FilmThickness};
+use maulstick_types::{Mixture, Pose};
 
 const FILM: &str = "Ultramarine Blue=0.25,Titanium White=0.25,Yellow Ochre=0.25,Pyrrole Red=0.25";
 /// More than one, up to more than any machine gives.
@@ -52,16 +53,19 @@ fn painted(size: Size, model: Option<Box<dyn PaintModel>>) -> Vec<(usize, u32, u
         painting.set_model(model);
     }
     painting.define_brush("main", file.clone());
-    let mixture = FILM.parse().expect("a mixture");
-    painting.load("main", &mixture).expect("known");
-    let mut sequencer = Sequencer::new(painting);
-    let fill = Command::Fill {
-        surface: CANVAS,
-        mixture,
-        thickness_m: 120e-6,
+    let mixture: Mixture = FILM.parse().expect("a mixture");
+    let load = Load {
+        mixture: mixture.clone(),
+        beside: None,
+        brush: BrushName::main(),
     };
-    sequencer.ask(fill).expect("a canvas");
-    let painting = sequencer.painting_mut();
+    painting.apply(load).expect("known");
+    let fill = Fill {
+        paint: FillPaint::Mixture { mixture },
+        thickness: FilmThickness::new(120e-6).expect("in range"),
+        surface: CANVAS,
+    };
+    painting.apply(fill).expect("a canvas");
     let size_m = f64::from(side) * setup.cell_m;
     let solves = (0..=size.solves).map(|at| {
         let along = at as f64 / size.solves as f64;

@@ -8,9 +8,9 @@ use maulstick_brush::{BrushFile, BrushModel};
 use maulstick_canvas::EditError;
 use maulstick_num::fork_join::with_cores_beyond;
 use maulstick_painting::clock::TICKS_A_SECOND;
-use maulstick_painting::{Painting, Sequencer};
+use maulstick_painting::{Applied, Painting, Sequencer};
 use maulstick_types::brush::BrushState;
-use maulstick_types::command::Command;
+use maulstick_types::edits::Edit;
 use maulstick_types::stylus::StylusSample;
 use maulstick_types::{Flags, Header, Message as _, Mixture, Origin, name_hash};
 
@@ -110,13 +110,10 @@ impl Offline {
     /// [`EditError`] where a load is wrong.
     pub fn begin_take(&mut self, loads: Vec<Mixture>) -> Result<(), EditError> {
         self.ticker.pause();
-        self.command(Command::Take {
-            brush: self.brush.clone(),
-            device: self.player.source,
-            device_epoch: self.player.epoch,
-            loads,
-            again: false,
-        })
+        let player = [self.player.source, self.player.epoch];
+        self.sequencer.begin_own_take(&self.brush, player, loads)?;
+        self.follow_scene();
+        Ok(())
     }
 
     /// Name of the brush in hand.
@@ -125,17 +122,22 @@ impl Offline {
         &self.brush
     }
 
-    /// Does a command now.
+    /// Applies an edit now.
     ///
     /// # Errors
     /// [`EditError`] where the painting refuses it.
-    pub fn command(&mut self, command: Command) -> Result<(), EditError> {
-        self.sequencer.ask(command)?;
+    pub fn edit(&mut self, edit: impl Into<Edit>) -> Result<Applied, EditError> {
+        let applied = self.sequencer.edit(edit)?;
+        self.follow_scene();
+        Ok(applied)
+    }
+
+    /// Has the brush follow what the scene says of it.
+    fn follow_scene(&mut self) {
         let scene = self.sequencer.painting_mut().scene();
         self.model.set_scene(scene);
         self.model.tune(scene.tuning(&self.brush));
         self.model.soak(scene.wetness(&self.brush));
-        Ok(())
     }
 
     /// Lets so many sixtieths of a second go by, in which nobody paints. `each` is told after each second of it where

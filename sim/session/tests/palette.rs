@@ -7,7 +7,7 @@ use maulstick_painting::setup::wells_of;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_session::Offline;
 use maulstick_types::Mixture;
-use maulstick_types::command::Command;
+use maulstick_types::edits::Wells;
 use maulstick_types::scene::{PALETTE, Scene, Surface, Well, WellKind};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
 
@@ -172,7 +172,7 @@ impl Hand {
     /// Lays other wells on the palette, as a client of the paint node would.
     fn lay(&mut self, wells: Vec<Well>) -> Result<(), maulstick_canvas::EditError> {
         let surface = PALETTE;
-        self.offline.command(Command::Wells { surface, wells })
+        self.offline.edit(Wells::new(surface, wells)?).map(drop)
     }
 }
 
@@ -219,11 +219,23 @@ fn wells_beside_the_palette_or_of_unknown_paint_are_refused() {
     let (cells, cell_m) = (before.cells, before.cell_m);
     let unknown = wells_of(&[Mixture::pure("Colbat Blue")], cells, cell_m);
     let error = hand.lay(unknown).expect_err("unknown");
-    assert!(error.what.contains("'Cobalt Blue'"), "{}", error.what);
+    assert!(
+        error.to_string().contains("'Cobalt Blue'"),
+        "{}",
+        error.to_string()
+    );
     let mut beside = wells_of(&[Mixture::pure("Cobalt Blue")], cells, cell_m);
     beside[0].center_m[0] = -1e-3;
     let error = hand.lay(beside).expect_err("beside");
-    assert!(error.what.contains("well 1"), "{}", error.what);
-    assert!(error.help.contains("128×256 mm"), "{}", error.help);
+    assert!(
+        error.to_string().contains("well 1"),
+        "{}",
+        error.to_string()
+    );
+    assert!(
+        error.advice().to_string().contains("128×256 mm"),
+        "{}",
+        error.advice().to_string()
+    );
     assert_eq!(hand.palette(), before, "a refused command changes nothing");
 }

@@ -8,7 +8,7 @@ use maulstick_optics::PaintLibrary;
 use maulstick_optics::colour::delta_e_2000;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_session::Offline;
-use maulstick_types::command::Command;
+use maulstick_types::edits::Handle;
 use maulstick_types::scene::{BrushHandling, BrushMode};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
 
@@ -58,8 +58,8 @@ fn painted_as(mode: BrushMode, finer: u32, rate_hz: f64, length: f64) -> Paintin
         mode,
         ..BrushHandling::normal("main")
     };
-    let command = Command::Handle { handling };
-    offline.command(command).expect("a mode");
+    let command = Handle::try_from(&handling).expect("in range");
+    offline.edit(command).expect("a mode");
     let count = (length * SECONDS * rate_hz) as u64;
     for i in 0..=count {
         let t = i as f64 / rate_hz;

@@ -1,5 +1,6 @@
 //! Steps of the paint model by themselves: states of a brush that were solved before, on wet paint.
 
+use maulstick_types::edits::Edit;
 use std::sync::Arc;
 use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
@@ -12,8 +13,9 @@ use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_rig::Fault;
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::command::Command;
+use maulstick_types::edits::{Fill, FillPaint, Load};
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::{BrushName, FilmThickness};
 
 use crate::advection;
 use crate::header::header_of;
@@ -73,17 +75,20 @@ impl Round {
         let mut sequencer = Sequencer::new(painting);
         sequencer.define_brush(BRUSH, file.clone());
         let mixture = || FILM.parse().map_err(fault);
-        let load = Command::Load {
-            brush: BRUSH.to_owned(),
+        let load = Load {
             mixture: mixture()?,
+            beside: None,
+            brush: BrushName::new(BRUSH)?,
         };
-        let fill = Command::Fill {
+        let fill = Fill {
+            paint: FillPaint::Mixture {
+                mixture: mixture()?,
+            },
+            thickness: FilmThickness::new(FILM_M)?,
             surface: CANVAS,
-            mixture: mixture()?,
-            thickness_m: FILM_M,
         };
-        for command in [load, fill] {
-            sequencer.ask(command).map_err(fault)?;
+        for edit in [Edit::from(load), fill.into()] {
+            sequencer.edit(edit).map_err(fault)?;
         }
         let size_m = f64::from(cells) * setup.cell_m;
         let radius_m = 0.25 * size_m;

@@ -45,12 +45,12 @@ pub(crate) fn run(
         ..PaintingSetup::default()
     };
     let library = PaintLibrary::measured().map_err(fault)?;
-    let painting = Painting::new(&setup, library).map_err(|refusal| fault(refusal.what))?;
+    let painting = Painting::new(&setup, library).map_err(|refusal| fault(refusal))?;
     let brush = BrushFile::library("round").map_err(fault)?;
     let brush = brush.scaled_to(BRUSH_MM).map_err(fault)?;
     let loads: Result<Vec<_>, _> = loads.iter().map(|load| load.parse()).collect();
     let loads = loads.map_err(|error| fault(format!("{error}")))?;
-    let refused = |refusal: maulstick_canvas::EditError| fault(refusal.what);
+    let refused = |refusal: maulstick_canvas::EditError| fault(refusal);
     let mut offline = Offline::new(painting, "main", brush, DEPTH_SHARE, loads).map_err(refused)?;
     let samples: Vec<_> = take
         .samples
@@ -123,7 +123,7 @@ fn packing(side: usize, pixels: Vec<u8>) -> Result<f64, Fault> {
 fn tooth(setup: &PaintingSetup) -> Result<f64, Fault> {
     let (took, _) = median(|| {
         let library = PaintLibrary::measured().map_err(fault)?;
-        let painting = Painting::new(setup, library).map_err(|refusal| fault(refusal.what))?;
+        let painting = Painting::new(setup, library).map_err(|refusal| fault(refusal))?;
         let canvas = painting.store(CANVAS).zip(painting.bare(CANVAS));
         let (store, bare) = canvas.ok_or_else(|| fault("there is no canvas"))?;
         let begun = thread_cpu();

@@ -10,9 +10,10 @@ use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, Class, Dial, Queue, RigClock, Wake, ZenohBus};
 use maulstick_rig::Fault;
 use maulstick_rig::commander::Commander;
-use maulstick_types::command::Command as Act;
+use maulstick_types::edits::{Edit, Fill, FillPaint, Place};
 use maulstick_types::scene::{CANVAS, Scene, Surface};
 use maulstick_types::topics::Topics;
+use maulstick_types::values::FilmThickness;
 
 use crate::report::Report;
 use crate::running::{Running, display, fault, joined, maulstick};
@@ -120,15 +121,16 @@ fn measured(side_mm: u32, zooms: &[f64], display: &str) -> Result<Vec<u64>, Faul
     }
     let canvas = canvas.ok_or_else(|| fault("no canvas"))?;
     let mut commands = Commander::of(Arc::clone(&bus) as Arc<dyn Bus>, &topics, "paint");
-    let mut send = |act: Act| commands.send(act, None, PATIENCE, &|| false);
+    let mut send = |edit: Edit| commands.send(edit, None, PATIENCE, &|| false);
     let mixture = "Ultramarine Blue=0.5,Titanium White=0.5"
         .parse()
         .map_err(fault)?;
-    send(Act::Fill {
+    let fill = Fill {
+        paint: FillPaint::Mixture { mixture },
+        thickness: FilmThickness::new(5e-5)?,
         surface: CANVAS,
-        mixture,
-        thickness_m: 5e-5,
-    })?;
+    };
+    send(fill.into())?;
     let pid = window_of(folder.path()).ok_or_else(|| fault("no window"))?;
     let mut all = Vec::new();
     for zoom in zooms {
@@ -137,11 +139,7 @@ fn measured(side_mm: u32, zooms: &[f64], display: &str) -> Result<Vec<u64>, Faul
         for (at, cells) in pose.position_m.iter_mut().zip(canvas.cells) {
             *at = -half * f64::from(cells);
         }
-        send(Act::Place {
-            surface: CANVAS,
-            pose,
-            zoom: *zoom,
-        })?;
+        send(Place::new(CANVAS, pose, *zoom)?.into())?;
         all.push(settled(pid)?);
     }
     bus.close();

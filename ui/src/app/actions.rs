@@ -3,13 +3,13 @@
 use eframe::egui::{self, Color32, Context, Event, PointerButton, Stroke};
 use glam::{DVec2, DVec3};
 use maulstick_brush::palette_place::{Side, beside, is_out, is_same, mirrored, over, size_m};
-use maulstick_types::command::Command;
+use maulstick_types::edits::{Place, Wells};
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 
 use super::{App, STILL};
 use crate::input::keys::{self, Action};
 use crate::input::mouse_stylus::Pointer;
-use crate::input::navigation::Around;
+use crate::input::navigation::{Around, place};
 use crate::rig::force_history;
 use crate::settings::preferences::Preferences;
 use crate::view::camera::View;
@@ -74,10 +74,10 @@ impl App {
         };
         self.navigation.forget();
         match act {
-            Action::Fit => self.requests.paint(view.fitted(canvas).command(CANVAS)),
+            Action::Fit => place(&mut self.requests, &view.fitted(canvas), CANVAS),
             Action::Hundred => {
                 let lie = view.hundred(canvas, pixels_per_point);
-                self.requests.paint(lie.command(CANVAS));
+                place(&mut self.requests, &lie, CANVAS);
             }
             Action::Palette => self.slide(),
             _ => {}
@@ -94,11 +94,9 @@ impl App {
             true => beside(canvas, palette, side),
             false => over(canvas, palette),
         };
-        self.requests.paint(Command::Place {
-            surface: PALETTE,
-            pose,
-            zoom: palette.zoom,
-        });
+        if let Ok(edit) = Place::new(PALETTE, pose, palette.zoom) {
+            self.requests.send(edit);
+        }
     }
 
     /// Carries out navigation, the cleaning key and the palette gesture.
@@ -193,15 +191,15 @@ impl App {
         let key = (side, self.rig.starts);
         let rests = is_same(&palette.pose, &beside(canvas, palette, other));
         if self.side.replace(key) != Some(key) && rests {
-            self.requests.paint(Command::Place {
-                surface: PALETTE,
-                pose: beside(canvas, palette, side),
-                zoom: palette.zoom,
-            });
-            self.requests.paint(Command::Wells {
-                surface: PALETTE,
-                wells: mirrored(&palette.wells, size_m(palette)),
-            });
+            let pose = beside(canvas, palette, side);
+            let wells = mirrored(&palette.wells, size_m(palette));
+            if let (Ok(laid), Ok(wells)) = (
+                Place::new(PALETTE, pose, palette.zoom),
+                Wells::new(PALETTE, wells),
+            ) {
+                self.requests.send(laid);
+                self.requests.send(wells);
+            }
         }
     }
 }

@@ -3,7 +3,7 @@
 use eframe::egui::{
     self, Align2, Area, CollapsingHeader, Context, Frame, Id, Order, RichText, ScrollArea, Ui,
 };
-use maulstick_types::command::Command;
+use maulstick_types::edits::{Dry, Redo, Undo};
 use maulstick_types::scene::CANVAS;
 
 use crate::app::first_run::FirstRun;
@@ -93,13 +93,9 @@ impl Overlay {
     /// Does what a key asks for; `false` where it concerns the desk.
     fn follow(&mut self, context: &Context, act: Action, work: &mut PanelContext<'_>) -> bool {
         match act {
-            Action::Undo => work.requests.paint(Command::Undo { brush: None }),
-            Action::Redo => work.requests.paint(Command::Redo { brush: None }),
-            Action::Dry => work.requests.paint(Command::Dry {
-                surface: CANVAS,
-                share: 1.0,
-                name: String::new(),
-            }),
+            Action::Undo => work.requests.send(Undo { brush: None }),
+            Action::Redo => work.requests.send(Redo { brush: None }),
+            Action::Dry => work.requests.send(Dry::whole(CANVAS)),
             Action::Smaller => work.step_width(false),
             Action::Larger => work.step_width(true),
             Action::NextBrush => work.next_brush(),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use eframe::egui::{ComboBox, Context, Grid, Ui};
-use maulstick_types::command::{Command, ExportOrder};
+use maulstick_types::command::{Command, ExportOrder, FileCommand};
 
 use crate::dialogs::browser::{Browser, Purpose};
 use crate::dialogs::dialog::{self, Answer, Foot, line, number};
@@ -118,7 +118,7 @@ impl ExportPicture {
         }
         let mut order = ExportOrder {
             format: format.name.to_owned(),
-            ..ExportOrder::to(&path.display().to_string())
+            ..ExportOrder::to(paths::named(&path)?)
         };
         match format.name {
             "png" => (order.bits, order.profile) = (self.bits, self.profile.to_owned()),
@@ -134,7 +134,7 @@ impl ExportPicture {
             }
             _ => {}
         }
-        Ok(Command::Export { order })
+        Ok(FileCommand::Export(order).into())
     }
 
     /// Follows the ending that was typed.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use eframe::egui::{Align2, Area, Context, Frame, Id, Order, ProgressBar};
-use maulstick_types::command::Command;
+use maulstick_types::command::FileCommand;
 use maulstick_types::paint::ExportStatus;
 
 use crate::dialogs::paths;
@@ -46,7 +46,7 @@ pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) {
                     ui.add(bar.show_percentage());
                     ui.label(left(&export));
                     if ui.button("Stop").clicked() {
-                        work.requests.paint(Command::StopExport);
+                        work.requests.send(FileCommand::StopExport);
                     }
                 });
             });

@@ -27,13 +27,13 @@ use std::path::{Path, PathBuf};
 use std::task::Poll;
 
 use eframe::egui::Context;
-use maulstick_types::command::Command;
+use maulstick_types::command::{Command, FileCommand, RigCommand};
 
 use crate::background_task::BackgroundTask;
 use crate::input::keys::Action;
 use crate::reference::Reference;
 use crate::rig::dispatcher::Outcome;
-use crate::rig::requests::{PAINT, Request};
+use crate::rig::requests::Request;
 use crate::widgets::context::PanelContext;
 use dialog::{Answer, in_words};
 use discard_prompt::Unkept;
@@ -46,7 +46,8 @@ use recent::RecentList;
 use save_as::SaveAs;
 
 /// The launcher, as a node.
-pub(crate) const RIG: &str = "rig";
+#[cfg(test)]
+pub(crate) use maulstick_types::command::RIG_NODE as RIG;
 
 /// A dialog that is open.
 #[derive(Debug)]
@@ -200,7 +201,7 @@ impl Files {
             (Answer::Leave, _) => (self.dialog, self.waiting) = (None, None),
             (_, Some(command)) => {
                 // An export runs in the background and shows its progress.
-                let is_export = matches!(command, Command::Export { .. });
+                let is_export = matches!(command, Command::File(FileCommand::Export(_)));
                 let order = ask(command, work);
                 match is_export {
                     true => self.dialog = None,
@@ -316,52 +317,42 @@ impl Files {
         }
         work.notifications
             .note(format!("Opening {} …", paths::name(path)));
-        ask(
-            Command::Open {
-                path: path.display().to_string(),
-                forget: false,
-            },
-            work,
-        );
+        let forget = false;
+        match paths::named(path) {
+            Ok(path) => drop(ask(RigCommand::Open { path, forget }.into(), work)),
+            Err(words) => work.notifications.fault(words, String::new()),
+        }
     }
 }
 
 /// Sends a command about files to who does it.
 fn ask(command: Command, work: &mut PanelContext<'_>) -> Request {
-    let node = match &command {
-        Command::Export { .. } | Command::StopExport => PAINT,
-        _ => RIG,
-    };
     work.rig.switching |= switches(&command);
-    work.requests.node(node, command.clone());
-    Request::Command {
-        node: node.to_owned(),
-        command,
-    }
+    work.requests.send(command.clone());
+    Request::of(command)
 }
 
 /// True for a command that opens another painting, for which nodes are restarted.
 fn switches(command: &Command) -> bool {
-    matches!(
-        command,
-        Command::Open { .. } | Command::New { .. } | Command::SaveAs { .. }
-    )
+    matches!(command, Command::Rig(_))
 }
 
 /// Result of a file command in words; `None` for any other command.
 fn done(command: &Command) -> Option<String> {
     let file = |path: &str| paths::shown(Path::new(path));
-    match command {
-        Command::Open { path, .. } => Some(format!("Opened {}.", file(path))),
-        Command::New { path, .. } => Some(match path {
+    Some(match command {
+        Command::Rig(RigCommand::Open { path, .. }) => format!("Opened {}.", file(path)),
+        Command::Rig(RigCommand::New { path, .. }) => match path {
             Some(path) => format!("A new painting, kept in {}.", file(path)),
             None => "A new painting, in no file.".to_owned(),
-        }),
-        Command::SaveAs { path, .. } => Some(format!("The painting is in {} now.", file(path))),
-        Command::Export { order } => Some(format!("Written: {}.", file(&order.path))),
-        Command::StopExport => Some("The export has ended without a file.".to_owned()),
-        _ => None,
-    }
+        },
+        Command::Rig(RigCommand::SaveAs(save_as)) | Command::File(FileCommand::SaveAs(save_as)) => {
+            format!("The painting is in {} now.", file(&save_as.path))
+        }
+        Command::File(FileCommand::Export(order)) => format!("Written: {}.", file(&order.path)),
+        Command::File(FileCommand::StopExport) => "The export has ended without a file.".to_owned(),
+        Command::Edit(_) | Command::Take(_) | Command::Brush(_) => return None,
+    })
 }
 
 /// The folder in which a dialog begins: that of the painting, or of the one before.

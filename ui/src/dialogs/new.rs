@@ -4,8 +4,9 @@ use std::path::Path;
 
 use eframe::egui::{ComboBox, Context, Grid, Key, TextEdit, Ui};
 use maulstick_canvas::relief::tooth::Tooth;
-use maulstick_types::command::{Command, NewCanvas};
+use maulstick_types::command::{Command, NewCanvas, RigCommand};
 use maulstick_types::scene::default_stain_m;
+use maulstick_types::values::{MaterialName, ValueError, WholePath};
 
 use crate::dialogs::dialog::{self, Answer, Foot, in_words, line, number};
 use crate::dialogs::discard_prompt::Unkept;
@@ -95,19 +96,17 @@ impl NewPainting {
             FILE => paths::whole(&self.ground_file).display().to_string(),
             name => name.to_owned(),
         };
+        let wrong = |error: ValueError| in_words(&error.to_string(), "");
         let canvas = NewCanvas {
             width_m: width * 1e-2,
             height_m: height * 1e-2,
             cell_m: 1e-3 / fine,
-            ground,
-            tooth: self.tooth.clone(),
+            ground: MaterialName::new(ground).map_err(wrong)?,
+            tooth: MaterialName::new(&*self.tooth).map_err(wrong)?,
             tooth_seed: 1,
             stain_m: default_stain_m(),
         };
-        canvas.check().map_err(|line| {
-            let (what, help) = maulstick_types::advice::parted(&line);
-            in_words(what, help.unwrap_or_default())
-        })?;
+        canvas.check().map_err(wrong)?;
         Ok(canvas)
     }
 
@@ -122,15 +121,16 @@ impl NewPainting {
             true => None,
             false => Some(self.file()?),
         };
-        Ok(Command::New {
+        Ok(RigCommand::New {
             path,
             canvas,
             forget: self.unkept.let_go(),
-        })
+        }
+        .into())
     }
 
     /// The whole path of its file.
-    fn file(&self) -> Result<String, String> {
+    fn file(&self) -> Result<WholePath, String> {
         if self.path.trim().is_empty() || self.path.trim().ends_with('/') {
             return Err("Keep in: write the name of a file, or choose to keep nothing.".to_owned());
         }
@@ -147,7 +147,7 @@ impl NewPainting {
                 paths::shown(path.parent().unwrap_or(Path::new("/")))
             ));
         }
-        Ok(path.display().to_string())
+        paths::named(&path)
     }
 
     /// Shows the dialog.

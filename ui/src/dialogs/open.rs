@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use eframe::egui::Context;
-use maulstick_types::command::Command;
+use maulstick_types::command::{Command, RigCommand};
 
 use crate::dialogs::browser::{Browser, Purpose};
 use crate::dialogs::dialog::{self, Answer, Foot};
@@ -65,10 +65,11 @@ impl OpenPainting {
                 paths::shown(path)
             ));
         }
-        Ok(Command::Open {
-            path: path.display().to_string(),
+        Ok(RigCommand::Open {
+            path: paths::named(path)?,
             forget: self.unkept.let_go(),
-        })
+        }
+        .into())
     }
 
     /// Shows the dialog.

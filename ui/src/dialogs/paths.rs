@@ -4,11 +4,24 @@ use std::path::{Component, Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use directories::{BaseDirs, UserDirs};
+use maulstick_types::values::WholePath;
 
 /// File ending of a painting.
 pub(crate) const PAINTING: &str = "maul";
 /// File endings of the pictures that can be read.
 pub(crate) const PICTURES: [&str; 5] = ["png", "jpg", "jpeg", "tif", "tiff"];
+
+/// A whole path as messages carry it.
+///
+/// # Errors
+/// What is wrong with it, in words.
+pub(crate) fn named(path: &Path) -> Result<WholePath, String> {
+    let name = path.to_str().map(WholePath::new);
+    match name {
+        Some(named) => named.map_err(|error| format!("This path cannot be used: {error}.")),
+        None => Err("This path is not UTF-8: give the file another name.".to_owned()),
+    }
+}
 
 /// The folder of the user.
 #[must_use]

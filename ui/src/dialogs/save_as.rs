@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use eframe::egui::Context;
-use maulstick_types::command::Command;
+use maulstick_types::command::{self, Command, RigCommand};
 
 use crate::dialogs::browser::{Browser, Purpose};
 use crate::dialogs::dialog::{self, Answer, Foot};
@@ -70,10 +70,8 @@ impl SaveAs {
             self.found = Some((path, false));
             return Err(words);
         }
-        Ok(Command::SaveAs {
-            path: path.display().to_string(),
-            replace,
-        })
+        let path = paths::named(&path)?;
+        Ok(RigCommand::SaveAs(command::SaveAs { path, replace }).into())
     }
 
     /// Shows the dialog.

@@ -2,8 +2,12 @@ use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use maulstick_brush::BrushFile;
 use maulstick_rig::Fault;
+use maulstick_types::command::PAINT_NODE as PAINT;
 use maulstick_types::command::{ExportOrder, NewCanvas};
+use maulstick_types::command::{FileCommand, RigCommand, SaveAs};
+use maulstick_types::edits::Undo;
 use maulstick_types::paint::ExportStatus;
+use maulstick_types::values::WholePath;
 
 use super::*;
 use crate::test_support::overlay_bench::{ctrl, let_go, press, until, window, write};
@@ -30,19 +34,19 @@ fn a_new_painting_is_begun_by_keys_alone() {
     harness.get_by_label("Height").type_text("10");
     press(&mut harness, Key::Enter);
     let asked = harness.state_mut().asked();
-    let command = Command::New {
-        path: Some(text(&folder.path().join("Painting.maul"))),
+    let command = Command::from(RigCommand::New {
+        path: Some(WholePath::new(text(&folder.path().join("Painting.maul"))).expect("valid")),
         canvas: NewCanvas {
             width_m: 0.125,
             height_m: 0.1,
             cell_m: 2.5e-4,
-            ground: "gesso".into(),
-            tooth: "linen".into(),
+            ground: "gesso".parse().expect("a name"),
+            tooth: "linen".parse().expect("a name"),
             tooth_seed: 1,
             stain_m: 3e-6,
         },
         forget: false,
-    };
+    });
     assert_eq!(asked, [(RIG.to_owned(), command)]);
     // It is asked for once, however often Enter is pressed.
     press(&mut harness, Key::Enter);
@@ -73,7 +77,7 @@ fn escape_leaves_a_dialog_and_keys_are_the_desks_again() {
     press(&mut harness, Key::Escape);
     assert!(harness.query_by_label("Width").is_none());
     ctrl(&mut harness, Key::Z, gone());
-    let undo = Command::Undo { brush: None };
+    let undo = Command::from(Undo { brush: None });
     assert_eq!(harness.state_mut().asked(), [(PAINT.to_owned(), undo)]);
 }
 
@@ -95,7 +99,13 @@ fn a_painting_is_found_by_typing_and_opened() {
     press(&mut harness, Key::Enter);
     let open = |path: PathBuf, forget: bool| {
         let path = text(&path);
-        (RIG.to_owned(), Command::Open { path, forget })
+        (
+            RIG.to_owned(),
+            Command::from(RigCommand::Open {
+                path: WholePath::new(path).expect("valid"),
+                forget,
+            }),
+        )
     };
     let sea = open(folder.path().join("sea.maul"), false);
     assert_eq!(harness.state_mut().asked(), [sea]);
@@ -122,7 +132,7 @@ fn what_is_in_no_file_is_let_go_only_where_that_is_said() {
     let asked = harness.state_mut().asked();
     assert!(matches!(
         &asked[..],
-        [(_, Command::Open { forget: true, .. })]
+        [(_, Command::Rig(RigCommand::Open { forget: true, .. }))]
     ));
 }
 
@@ -159,7 +169,13 @@ fn saving_is_confirmed_and_what_is_in_no_file_gets_one() {
     let path = folder.path().join("Painting.maul");
     let save = |replace: bool| {
         let path = text(&path);
-        (RIG.to_owned(), Command::SaveAs { path, replace })
+        (
+            RIG.to_owned(),
+            Command::from(RigCommand::SaveAs(SaveAs {
+                path: WholePath::new(path).expect("valid"),
+                replace,
+            })),
+        )
     };
     assert_eq!(harness.state_mut().asked(), [save(false)]);
     harness
@@ -197,9 +213,9 @@ fn an_export_goes_on_by_itself_and_can_be_stopped() {
     let path = text(&folder.path().join("Painting.png"));
     let order = ExportOrder {
         format: "png".into(),
-        ..ExportOrder::to(&path)
+        ..ExportOrder::to(path.parse().expect("whole"))
     };
-    let asked = (PAINT.to_owned(), Command::Export { order });
+    let asked = (PAINT.to_owned(), Command::from(FileCommand::Export(order)));
     assert_eq!(harness.state_mut().asked(), std::slice::from_ref(&asked));
     assert!(harness.query_by_label("Depth").is_none(), "it is closed");
     let node = harness.state_mut().rig.paint.as_mut().expect("a node");
@@ -212,7 +228,7 @@ fn an_export_goes_on_by_itself_and_can_be_stopped() {
     harness.get_by_label("3 s left");
     harness.get_by_label("Stop").click();
     harness.run_steps(2);
-    let stop = (PAINT.to_owned(), Command::StopExport);
+    let stop = (PAINT.to_owned(), Command::from(FileCommand::StopExport));
     assert_eq!(harness.state_mut().asked(), [stop]);
     harness.state_mut().answer(&asked, Ok("Painting.png"));
     assert!(harness.state().told().contains("Written: "));
@@ -232,10 +248,10 @@ fn a_file_that_is_dropped_becomes_what_it_is() {
     until(&mut harness, |harness| {
         harness.state().told().contains("Opening sea.maul")
     });
-    let open = Command::Open {
-        path: text(&painting),
+    let open = Command::from(RigCommand::Open {
+        path: WholePath::new(text(&painting)).expect("valid"),
         forget: false,
-    };
+    });
     assert_eq!(harness.state_mut().asked(), [(RIG.to_owned(), open)]);
     let toml = BrushFile::library_text("flat").expect("a brush");
     let_go(&mut harness, &[&put("mine.toml", toml)]);
@@ -244,7 +260,7 @@ fn a_file_that_is_dropped_becomes_what_it_is() {
         brush.asked.as_ref().is_some_and(|file| file.kind == "flat")
     });
     let asked = harness.state_mut().asked();
-    let defined = matches!(&asked[..], [(to, Command::Define { .. })] if to == "main");
+    let defined = matches!(&asked[..], [(to, Command::Brush(_))] if to == "main");
     assert!(defined, "{asked:?}");
     let picture = put("apples.png", "no picture");
     let_go(&mut harness, &[&picture]);

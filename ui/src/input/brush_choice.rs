@@ -7,7 +7,8 @@ use std::sync::OnceLock;
 use maulstick_brush::file::library::LIBRARY;
 use maulstick_brush::{BrushError, BrushFile};
 use maulstick_rig::Fault;
-use maulstick_types::command::Command;
+use maulstick_types::command::{BrushCommand, Command};
+use maulstick_types::values::{BrushName, BrushToml};
 
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
@@ -153,16 +154,18 @@ impl PanelContext<'_> {
                 return self.notifications.fault(error.to_string(), help);
             }
         };
-        let brush = self.rig.brush_name().to_owned();
-        let command = Command::Define {
-            brush: brush.clone(),
-            toml,
+        let brush = BrushName::new(self.rig.brush_name());
+        let define = brush.and_then(|brush| {
+            let toml = BrushToml::new(toml)?;
+            Ok(BrushCommand::Define { brush, toml })
+        });
+        let define = match define {
+            Ok(define) => define,
+            Err(error) => {
+                let help = "make its skin of fewer faces";
+                return self.notifications.fault(error.to_string(), help);
+            }
         };
-        if let Err(what) = command.check() {
-            return self
-                .notifications
-                .fault(what, "make its skin of fewer faces");
-        }
         let width_mm = file.head.width_mm;
         self.preferences
             .widths_mm
@@ -171,30 +174,30 @@ impl PanelContext<'_> {
         if let Some(own) = self.rig.brushes.get_mut(in_hand) {
             own.asked = Some(file);
         }
-        self.requests.brush(&brush, command);
+        self.requests.send(define);
     }
 
     /// Takes in the outcome of a request: a brush that refused keeps its file; one that has the requested file runs the
     /// command that waited for it.
     pub fn brush_answered(&mut self, outcome: &Outcome) {
         let Request::Command {
-            command: Command::Define { brush, toml },
+            command: Command::Brush(BrushCommand::Define { brush, toml }),
             ..
         } = &outcome.request
         else {
             return;
         };
         let mut brushes = self.rig.brushes.iter_mut();
-        let Some(own) = brushes.find(|own| own.name == *brush) else {
+        let Some(own) = brushes.find(|own| *brush == *own.name) else {
             return;
         };
         let newest = own.asked.as_ref().map(BrushFile::to_toml);
-        if newest.is_some_and(|newest| newest.as_ref() != Ok(toml)) {
+        if newest.is_some_and(|newest| newest.ok().as_deref() != Some(toml.as_str())) {
             return;
         }
         let then = own.then.take();
         match (&outcome.result, then) {
-            (Ok(_), Some(command)) => self.requests.paint(command),
+            (Ok(_), Some(command)) => self.requests.send(command),
             (Ok(_), None) => {}
             (Err(_), _) => own.asked = None,
         }
@@ -205,7 +208,7 @@ impl PanelContext<'_> {
         let in_hand = self.rig.in_hand;
         match self.rig.brushes.get_mut(in_hand) {
             Some(own) if own.asked.is_some() => own.then = Some(command),
-            _ => self.requests.paint(command),
+            _ => self.requests.send(command),
         }
     }
 

@@ -1,7 +1,8 @@
 //! The cleaning key: a tap cleans the brush; while it is held the brush lifts paint.
 
-use maulstick_types::command::Command;
+use maulstick_types::edits::{Clean, Handle};
 use maulstick_types::scene::{BrushHandling, BrushMode};
+use maulstick_types::values::BrushName;
 
 use crate::rig::requests::Requests;
 
@@ -39,8 +40,12 @@ impl CleanKey {
                 Some(Down {
                     before: Some(handling),
                     ..
-                }) => requests.paint(Command::Handle { handling }),
-                Some(Down { brush, .. }) => requests.paint(Command::Clean { brush }),
+                }) => handle(requests, &handling),
+                Some(Down { brush, .. }) => {
+                    if let Ok(brush) = BrushName::new(brush) {
+                        requests.send(Clean { brush });
+                    }
+                }
                 None => {}
             }
             return;
@@ -52,12 +57,11 @@ impl CleanKey {
         });
         if down.before.is_none() && (painting || now_s - down.since_s > TAP_S) {
             down.before = Some(now.clone());
-            requests.paint(Command::Handle {
-                handling: BrushHandling {
-                    mode: BrushMode::Vacuum,
-                    ..now.clone()
-                },
-            });
+            let lifts = BrushHandling {
+                mode: BrushMode::Vacuum,
+                ..now.clone()
+            };
+            handle(requests, &lifts);
         }
     }
 
@@ -68,8 +72,18 @@ impl CleanKey {
     }
 }
 
+/// Uses a brush so.
+fn handle(requests: &mut Requests, handling: &BrushHandling) {
+    if let Ok(edit) = Handle::try_from(handling) {
+        requests.send(edit);
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use maulstick_types::command::Command;
+    use maulstick_types::edits::Edit;
+
     use super::*;
     use crate::rig::requests::Request;
 
@@ -91,7 +105,7 @@ mod tests {
 
     fn modes(commands: &[Command]) -> Vec<BrushMode> {
         let mode = |command: &Command| match command {
-            Command::Handle { handling } => handling.mode.clone(),
+            Command::Edit(Edit::Handle(handle)) => handle.mode.clone(),
             other => panic!("{other:?}"),
         };
         commands.iter().map(mode).collect()
@@ -100,10 +114,8 @@ mod tests {
     #[test]
     fn a_tap_cleans_and_a_held_key_lifts_until_it_is_let_go() {
         let tap = asked(&[(0.0, true, false), (0.1, true, false), (0.12, false, false)]);
-        let clean = Command::Clean {
-            brush: "main".into(),
-        };
-        assert_eq!(tap, [clean]);
+        let brush = BrushName::main();
+        assert_eq!(tap, [Command::from(Clean { brush })]);
         let held = [BrushMode::Vacuum, BrushMode::NoPush];
         let long = asked(&[(0.0, true, false), (0.3, true, false), (0.5, false, false)]);
         assert_eq!(modes(&long), held);

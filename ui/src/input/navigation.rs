@@ -166,7 +166,7 @@ impl Navigation {
         };
         drag.at = at;
         if drag.lie != lie {
-            requests.paint(drag.lie.command(drag.surface));
+            place(requests, &drag.lie, drag.surface);
             self.sent = Some((drag.surface, drag.lie, now));
         }
     }
@@ -229,7 +229,7 @@ impl Navigation {
         requests: &mut Requests,
     ) {
         if to != from {
-            requests.paint(to.command(surface));
+            place(requests, &to, surface);
             self.sent = Some((surface, to, now));
         }
     }
@@ -251,6 +251,13 @@ fn drag_mode(button: PointerButton, modifiers: Modifiers, free: bool) -> Option<
     }
 }
 
+/// Places a surface, if that is within reach.
+pub(crate) fn place(requests: &mut Requests, lie: &SurfacePlacement, surface: u32) {
+    if let Ok(edit) = lie.edit(surface) {
+        requests.send(edit);
+    }
+}
+
 fn find(surfaces: &[Surface], id: u32) -> Option<&Surface> {
     surfaces.iter().find(|surface| surface.id == id)
 }
@@ -265,6 +272,7 @@ mod tests {
     use maulstick_num::geometry::Rigid;
     use maulstick_painting::PaintingSetup;
     use maulstick_types::command::Command;
+    use maulstick_types::edits::Edit;
 
     use super::*;
     use crate::rig::requests::Request;
@@ -299,18 +307,13 @@ mod tests {
         let requests = requests.into_inner().take();
         let lie = |order| match order {
             Request::Command {
-                command:
-                    Command::Place {
-                        surface,
-                        pose,
-                        zoom,
-                    },
+                command: Command::Edit(Edit::Place(place)),
                 ..
             } => (
-                surface,
+                place.surface,
                 SurfacePlacement {
-                    pose: Rigid::from(&pose),
-                    zoom,
+                    pose: Rigid::from(&place.pose),
+                    zoom: place.zoom.get(),
                 },
             ),
             other => panic!("{other:?}"),

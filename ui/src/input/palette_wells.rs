@@ -3,7 +3,7 @@
 use maulstick_brush::palette_place::{mirrored, size_m};
 use maulstick_painting::setup::wells_of;
 use maulstick_types::Mixture;
-use maulstick_types::command::Command;
+use maulstick_types::edits::Wells;
 use maulstick_types::scene::{Surface, WellKind};
 
 use crate::widgets::context::PanelContext;
@@ -40,16 +40,13 @@ impl PanelContext<'_> {
             return;
         };
         let wells = wells_of(mixtures, palette.cells, palette.cell_m);
-        let command = Command::Wells {
-            surface: palette.id,
-            wells: match self.preferences.left_handed {
-                false => wells,
-                true => mirrored(&wells, size_m(palette)),
-            },
+        let wells = match self.preferences.left_handed {
+            false => wells,
+            true => mirrored(&wells, size_m(palette)),
         };
-        match command.check() {
-            Ok(()) => self.requests.paint(command),
-            Err(what) => self.notifications.fault(what, String::new()),
+        match Wells::new(palette.id, wells) {
+            Ok(edit) => self.requests.send(edit),
+            Err(error) => self.notifications.fault(error.to_string(), String::new()),
         }
     }
 }

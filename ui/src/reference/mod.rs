@@ -17,7 +17,8 @@ use eframe::egui::{
     pos2, vec2,
 };
 use maulstick_optics::colour::srgb_encode;
-use maulstick_types::command::Command;
+use maulstick_types::edits::Load;
+use maulstick_types::values::BrushName;
 use serde::{Deserialize, Serialize};
 
 use crate::dialogs::paths;
@@ -407,9 +408,12 @@ fn proposal(ui: &mut Ui, found: &Match, work: &mut PanelContext<'_>) {
         let load = ui.button("Load").on_hover_text("Load the brush with it");
         load.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Load {words}")));
         if load.clicked() {
-            let brush = work.rig.brush_name().to_owned();
-            let mixture = found.mixture.clone();
-            work.requests.paint(Command::Load { brush, mixture });
+            let load = BrushName::new(work.rig.brush_name()).map(|brush| Load {
+                mixture: found.mixture.clone(),
+                beside: None,
+                brush,
+            });
+            crate::widgets::rows::ask(work, load);
         }
         let put = ui.button("+").on_hover_text("Put it on the palette");
         put.widget_info(|| {

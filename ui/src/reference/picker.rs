@@ -80,7 +80,7 @@ pub(crate) fn search(ask: &Ask, library: &PaintLibrary) -> Matches {
         return Err("It is too dark to compare colours. Turn the light up.".to_owned());
     }
     let settings = studio_settings(&ask.light)
-        .map_err(|refusal| format!("The light is none to compare colours in: {}.", refusal.what))?;
+        .map_err(|refusal| format!("The light is none to compare colours in: {}.", refusal))?;
     let viewing = Viewing::new(&settings, library.paints());
     let target = viewing
         .display(ask.linear.map(|channel| channel / gain))

@@ -1,9 +1,11 @@
+use maulstick_types::command::Command;
 use std::path::PathBuf;
 
 use eframe::egui::{Key, Modifiers, MouseWheelUnit, OutputCommand};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use maulstick_types::Mixture;
+use maulstick_types::edits::{Edit, Load, Wells};
 use maulstick_types::scene::{Well, WellKind};
 
 use super::*;
@@ -75,7 +77,7 @@ fn a_click_on_a_colour_proposes_mixtures_that_are_loaded_put_on_the_palette_and_
     load(&harness).expect("a mixture");
     harness.run_steps(3);
     let asked = harness.state_mut().asked();
-    let [(node, Command::Load { brush, mixture })] = &asked[..] else {
+    let [(node, Command::Edit(Edit::Load(Load { mixture, brush, .. })))] = &asked[..] else {
         panic!("{asked:?}");
     };
     assert_eq!((node.as_str(), brush.as_str()), (PAINT, "main"));
@@ -97,7 +99,7 @@ fn a_click_on_a_colour_proposes_mixtures_that_are_loaded_put_on_the_palette_and_
     put.expect("a mixture").click();
     harness.run_steps(3);
     let asked_next = harness.state_mut().asked();
-    let [(_, Command::Wells { wells, .. })] = &asked_next[..] else {
+    let [(_, Command::Edit(Edit::Wells(Wells { wells, .. })))] = &asked_next[..] else {
         panic!("{asked_next:?}");
     };
     let lies =

@@ -10,11 +10,13 @@ use maulstick_bus::typed::{ask, random_epoch};
 use maulstick_bus::{Bus, Class, Wake};
 use maulstick_rig::Fault;
 use maulstick_rig::commander::Commander;
-use maulstick_types::command::Command;
+use maulstick_types::command::{Command, FileCommand};
+use maulstick_types::edits::{Edit, Relight};
 use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
+use crate::advice;
 use crate::rig::requests::Request;
 use crate::rig::stroke_barrier::Ready;
 
@@ -169,7 +171,7 @@ fn address(request: &Request) -> String {
         // It takes long, and other commands to the node do not wait for its end.
         Request::Command {
             node,
-            command: Command::Export { .. },
+            command: Command::File(FileCommand::Export(_)),
         } => format!("{EXPORT} {node}"),
         Request::Command { node, .. } => format!("node {node}"),
         // Switching off waits for no earlier answer.
@@ -184,9 +186,12 @@ fn address(request: &Request) -> String {
 /// Longest wait for a command.
 fn patience(command: &Command) -> Duration {
     match command {
-        Command::Open { .. } | Command::New { .. } | Command::SaveAs { .. } => OPENING,
-        Command::Export { .. } => EXPORTING,
-        _ => PATIENCE,
+        Command::Rig(_) | Command::File(FileCommand::SaveAs(_)) => OPENING,
+        Command::File(FileCommand::Export(_)) => EXPORTING,
+        Command::File(FileCommand::StopExport)
+        | Command::Edit(_)
+        | Command::Take(_)
+        | Command::Brush(_) => PATIENCE,
     }
 }
 
@@ -196,7 +201,7 @@ fn replaces(newer: &Request, older: &Request) -> bool {
     let chooses = matches!(
         older,
         Request::Command {
-            command: Command::Relight { expose: true, .. },
+            command: Command::Edit(Edit::Relight(Relight { expose: true, .. })),
             ..
         }
     );
@@ -280,12 +285,14 @@ impl Worker {
                 let commander = self.commander.get_or_insert_with(|| {
                     Commander::of(Arc::clone(bus), topics, node).asking(ASK)
                 });
-                commander.send(
-                    command.clone(),
-                    ready.after.clone(),
-                    patience(command),
-                    &ended,
-                )
+                commander
+                    .send(
+                        command.clone(),
+                        ready.after.clone(),
+                        patience(command),
+                        &ended,
+                    )
+                    .map_err(|fault| fault.worded(advice::words))
             }
             Request::Force { device, order } => {
                 let me = Origin {
@@ -328,6 +335,8 @@ impl Drop for CommandDispatcher {
 #[cfg(test)]
 mod tests {
     use maulstick_types::Pose;
+    use maulstick_types::command::TakeCommand;
+    use maulstick_types::edits::{Place, Tune, Undo};
     use maulstick_types::scene::{Light, Tuning};
 
     use super::*;
@@ -344,20 +353,21 @@ mod tests {
     }
 
     fn place(surface: u32, zoom: f64) -> Request {
-        request(Command::Place {
-            surface,
-            pose: Pose::IDENTITY,
-            zoom,
-        })
+        request(Command::from(
+            Place::new(surface, Pose::IDENTITY, zoom).expect("in reach"),
+        ))
     }
 
     #[test]
     fn nothing_waits_for_the_end_of_an_export() {
-        let export = Command::Export {
-            order: maulstick_types::command::ExportOrder::to("/a.png"),
-        };
-        assert!(patience(&export) > patience(&Command::Mark));
-        let (undo, stop) = (Command::Undo { brush: None }, Command::StopExport);
+        let export = Command::from(FileCommand::Export(
+            maulstick_types::command::ExportOrder::to("/a.png".parse().expect("whole")),
+        ));
+        assert!(patience(&export) > patience(&Command::from(TakeCommand::Mark)));
+        let (undo, stop) = (
+            Command::from(Undo { brush: None }),
+            Command::from(FileCommand::StopExport),
+        );
         assert_eq!(address(&request(undo)), address(&request(stop.clone())));
         assert_ne!(address(&request(export)), address(&request(stop)));
     }
@@ -367,13 +377,14 @@ mod tests {
         let tune = |brush: &str, stiffness: f64| {
             let brush = brush.to_owned();
             let wetness = 0.0;
-            request(Command::Tune {
-                tuning: Tuning {
+            request(Command::from(
+                Tune::try_from(&Tuning {
                     brush,
                     stiffness,
                     wetness,
-                },
-            })
+                })
+                .expect("in range"),
+            ))
         };
         let mut waiting = VecDeque::new();
         for request in [
@@ -396,7 +407,7 @@ mod tests {
 
     #[test]
     fn of_places_that_wait_the_newest_is_sent_and_nothing_overtakes() {
-        let undo = || request(Command::Undo { brush: None });
+        let undo = || request(Command::from(Undo { brush: None }));
         let mut waiting = VecDeque::new();
         for request in [
             place(0, 1.0),
@@ -419,7 +430,7 @@ mod tests {
                 intensity,
                 ..Light::default()
             };
-            request(Command::Relight { light, expose })
+            request(Command::from(Relight { light, expose }))
         };
         let mut waiting = VecDeque::new();
         for request in [

@@ -1,13 +1,13 @@
 //! Requests to the rig: collected while the window is drawn, sent by the
 //! [`dispatcher`](crate::rig::dispatcher).
 
-use maulstick_types::command::Command;
+use maulstick_types::command::{BrushCommand, Command};
+use maulstick_types::edits::Edit;
 use maulstick_types::haptics::ForceOrder;
 
 use crate::input::keys::Action;
 
-/// The node of the painting.
-pub(crate) const PAINT: &str = "paint";
+pub(crate) use maulstick_types::command::PAINT_NODE as PAINT;
 
 /// A request to a process of the rig.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +29,14 @@ pub enum Request {
 }
 
 impl Request {
+    /// A command to the node that carries it out.
+    #[must_use]
+    pub fn of(command: impl Into<Command>) -> Self {
+        let command = command.into();
+        let node = command.node().to_owned();
+        Self::Command { node, command }
+    }
+
     /// Key of the value it sets, if only the newest of its kind counts.
     #[must_use]
     pub fn sets(&self) -> Option<(&'static str, String)> {
@@ -41,12 +49,12 @@ impl Request {
             Self::Force { .. } => return None,
         };
         Some(match command {
-            Command::Place { surface, .. } => ("place", surface.to_string()),
-            Command::Tune { tuning } => ("tuning", tuning.brush.clone()),
-            Command::Handle { handling } => ("handling", handling.brush.clone()),
-            Command::Define { brush, .. } => ("brush", brush.clone()),
-            Command::Wells { surface, .. } => ("wells", surface.to_string()),
-            Command::Relight { .. } => ("light", String::new()),
+            Command::Edit(Edit::Place(edit)) => ("place", edit.surface.to_string()),
+            Command::Edit(Edit::Tune(edit)) => ("tuning", edit.brush.to_string()),
+            Command::Edit(Edit::Handle(edit)) => ("handling", edit.brush.to_string()),
+            Command::Edit(Edit::Wells(edit)) => ("wells", edit.surface.to_string()),
+            Command::Edit(Edit::Relight(_)) => ("light", String::new()),
+            Command::Brush(BrushCommand::Define { brush, .. }) => ("brush", brush.to_string()),
             _ => return None,
         })
     }
@@ -60,22 +68,9 @@ pub struct Requests {
 }
 
 impl Requests {
-    /// Asks the paint node.
-    pub fn paint(&mut self, command: Command) {
-        self.node(PAINT, command);
-    }
-
-    /// Asks the node of a brush.
-    pub fn brush(&mut self, brush: &str, command: Command) {
-        self.node(brush, command);
-    }
-
-    /// Asks a node.
-    pub fn node(&mut self, node: &str, command: Command) {
-        self.waiting.push(Request::Command {
-            node: node.to_owned(),
-            command,
-        });
+    /// Asks the node that carries out a command.
+    pub fn send(&mut self, command: impl Into<Command>) {
+        self.waiting.push(Request::of(command));
     }
 
     /// Requests a change of the force of a device.

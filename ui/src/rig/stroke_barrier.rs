@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, VecDeque};
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, BusError, Class, Queue, Wake};
 use maulstick_types::brush::BrushConsumed;
-use maulstick_types::command::{After, Command};
+use maulstick_types::command::{After, Command, FileCommand};
 use maulstick_types::name_hash;
 use maulstick_types::paint::{BrushCredit, PaintConsumed};
 use maulstick_types::topics::Topics;
@@ -185,7 +185,7 @@ impl Waiting {
 fn follows(request: &Request) -> bool {
     match request {
         Request::Command {
-            command: Command::StopExport,
+            command: Command::File(FileCommand::StopExport),
             ..
         }
         | Request::Force { .. } => false,
@@ -221,6 +221,8 @@ fn is_painted(
 mod tests {
     use maulstick_bus::typed::Sender;
     use maulstick_bus::{Faults, MemoryNet};
+    use maulstick_types::edits::Edit;
+    use maulstick_types::edits::{Place, Undo};
     use maulstick_types::{Origin, Pose};
 
     use super::*;
@@ -326,14 +328,10 @@ mod tests {
         }
     }
 
-    const UNDO: Command = Command::Undo { brush: None };
+    const UNDO: Command = Command::Edit(Edit::Undo(Undo { brush: None }));
 
     fn place() -> Command {
-        Command::Place {
-            surface: 0,
-            pose: Pose::IDENTITY,
-            zoom: 1.0,
-        }
+        Command::from(Place::new(0, Pose::IDENTITY, 1.0).expect("in reach"))
     }
 
     #[test]

@@ -3,8 +3,9 @@
 use maulstick_optics::{PaintLibrary, THINNER};
 use maulstick_rig::Fault;
 use maulstick_types::Mixture;
-use maulstick_types::command::Command;
+use maulstick_types::edits::Load;
 use maulstick_types::mixture::Part;
+use maulstick_types::values::BrushName;
 use serde::{Deserialize, Serialize};
 
 /// Largest share of thinner in a load; pure thinner is a paint by itself.
@@ -34,20 +35,17 @@ impl BrushLoad {
         Ok(thinned(&mixture, thinner))
     }
 
-    /// The command that loads a brush so.
+    /// The edit that loads a brush so.
     ///
     /// # Errors
     /// A [`Fault`] that quotes what is no mixture of the paints.
-    pub fn command(&self, brush: &str, library: &PaintLibrary) -> Result<Command, Fault> {
-        let brush = brush.to_owned();
-        let mixture = self.mixture(&self.paint, library)?;
-        Ok(match &self.beside {
-            None => Command::Load { brush, mixture },
-            Some(other) => Command::LoadBeside {
-                brush,
-                left: mixture,
-                right: self.mixture(other, library)?,
-            },
+    pub fn edit(&self, brush: &str, library: &PaintLibrary) -> Result<Load, Fault> {
+        let beside = self.beside.as_ref();
+        let beside = beside.map(|other| self.mixture(other, library));
+        Ok(Load {
+            mixture: self.mixture(&self.paint, library)?,
+            beside: beside.transpose()?,
+            brush: BrushName::new(brush)?,
         })
     }
 }
@@ -148,23 +146,27 @@ mod tests {
 
     #[test]
     fn a_load_is_one_mixture_or_two_and_thinned() {
-        let command = |loading: BrushLoad| loading.command("main", &library());
-        let pure = command(loading("cobalt blue", None, 0.0)).expect("a paint");
+        let edit = |loading: BrushLoad| loading.edit("main", &library());
+        let pure = edit(loading("cobalt blue", None, 0.0)).expect("a paint");
         assert_eq!(
             pure,
-            Command::Load {
-                brush: "main".into(),
-                mixture: Mixture::pure("Cobalt Blue")
+            Load {
+                mixture: Mixture::pure("Cobalt Blue"),
+                beside: None,
+                brush: BrushName::main()
             }
         );
-        let two = command(loading(
+        let two = edit(loading(
             "Cobalt Blue=0.5,Thinner=0.5",
             Some("Bone Black"),
             0.5,
         ));
-        let Command::LoadBeside { left, right, .. } = two.expect("two") else {
-            panic!("two halves")
-        };
+        let Load {
+            mixture: left,
+            beside,
+            ..
+        } = two.expect("two");
+        let right = beside.expect("two halves");
         assert_eq!(left.to_string(), "Cobalt Blue=0.25,Thinner=0.75");
         assert_eq!(right.to_string(), "Bone Black=0.5,Thinner=0.5");
         assert_eq!(left.check(), Ok(()));
@@ -176,14 +178,14 @@ mod tests {
     #[test]
     fn what_is_no_mixture_is_told_with_help() {
         let error = |paint: &str| {
-            let fault = loading(paint, None, 0.0).command("main", &library());
+            let fault = loading(paint, None, 0.0).edit("main", &library());
             fault.expect_err(paint).to_string()
         };
         assert!(error("Colbat Blue").contains("'Cobalt Blue'"));
         assert!(error("Cobalt Blue=2").contains("not a number above 0"));
         assert!(error("").contains("at least one paint"));
         let beside = loading("Cobalt Blue", Some("x=1"), f64::NAN);
-        assert!(beside.command("main", &library()).is_err());
+        assert!(beside.edit("main", &library()).is_err());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_rig::Fault;
-use maulstick_types::command::Command;
+use maulstick_types::edits::{Handle, Tune};
 use maulstick_types::scene::{BrushHandling, BrushMode, MARKER_FLOW, Tuning};
 use serde::{Deserialize, Serialize};
 
@@ -107,7 +107,7 @@ impl Preset {
     pub fn apply(&self, work: &mut PanelContext<'_>) -> Result<(), Fault> {
         let file = self.brush()?;
         let brush = work.rig.brush_name().to_owned();
-        let mode = BrushMode::called(&self.mode).map_err(Fault::told)?;
+        let mode = self.mode.parse()?;
         let tuning = Tuning {
             brush: brush.clone(),
             stiffness: self.stiffness,
@@ -119,21 +119,17 @@ impl Preset {
             most_m: self.most_m,
             ..BrushHandling::normal(&brush)
         };
-        let commands = [Command::Tune { tuning }, Command::Handle { handling }];
-        for command in &commands {
-            command.check().map_err(Fault::told)?;
-        }
+        let (tune, handle) = (Tune::try_from(&tuning)?, Handle::try_from(&handling)?);
         let load = match self.loading.paint.is_empty() {
             true => None,
-            false => Some(self.loading.command(&brush, &work.rig.library)?),
+            false => Some(self.loading.edit(&brush, &work.rig.library)?),
         };
         work.take_up(file);
-        for command in commands {
-            work.requests.paint(command);
-        }
+        work.requests.send(tune);
+        work.requests.send(handle);
         if let Some(load) = load {
             work.preferences.loading = self.loading.clone();
-            work.then(load);
+            work.then(load.into());
         }
         Ok(())
     }

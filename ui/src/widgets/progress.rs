@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use eframe::egui::{Align2, Area, Context, Frame, Id, Order, ProgressBar, Ui};
 use maulstick_types::command::Command;
+use maulstick_types::edits::{Relight, StopDrying};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::{CANVAS, Light};
 
@@ -95,7 +96,7 @@ impl Progress {
                 });
             });
         match cancelled {
-            Some(Cancel::Paint(command)) => work.requests.paint(*command),
+            Some(Cancel::Paint(command)) => work.requests.send(*command),
             Some(Cancel::GiveUp) => return true,
             None => {}
         }
@@ -138,10 +139,8 @@ impl Progress {
         let share = f64::from(status.baked) / f64::from(status.baking.max(1));
         let back = |light: &Light| {
             let light = light.clone();
-            Cancel::Paint(Box::new(Command::Relight {
-                light,
-                expose: false,
-            }))
+            let expose = false;
+            Cancel::Paint(Box::new(Relight { light, expose }.into()))
         };
         (status.baked < status.baking).then(|| Job {
             kind: Kind::Relighting,
@@ -167,7 +166,7 @@ fn lines(status: &PaintStatus) -> impl Iterator<Item = String> {
 
 fn drying(rig: &RigState) -> Option<Job> {
     let drying = rig.paint.as_ref()?.status.drying.as_ref()?;
-    let stop = Command::StopDrying { surface: CANVAS };
+    let stop = StopDrying { surface: CANVAS };
     Some(Job {
         kind: Kind::Drying,
         words: match drying.layer.is_empty() {
@@ -175,7 +174,7 @@ fn drying(rig: &RigState) -> Option<Job> {
             false => format!("Drying “{}”", drying.layer),
         },
         share: Some(f64::from(drying.share)),
-        cancel: Some(Cancel::Paint(Box::new(stop))),
+        cancel: Some(Cancel::Paint(Box::new(stop.into()))),
         hint: "What is wet still stays wet",
     })
 }
@@ -320,10 +319,10 @@ mod tests {
         let asked = harness.state_mut().requests.take();
         let back = Asked::Command {
             node: "paint".into(),
-            command: Command::Relight {
+            command: Command::from(Relight {
                 light: scene.light,
                 expose: false,
-            },
+            }),
         };
         assert_eq!(asked, [back]);
         harness.state_mut().baked(40.0, 100);

@@ -7,8 +7,8 @@ use eframe::egui::{
     Align, ComboBox, Layout, Response, RichText, Slider, SliderClamping, TextWrapMode, Ui,
     UiBuilder, vec2,
 };
-use maulstick_rig::Fault;
 use maulstick_types::command::Command;
+use maulstick_types::values::ValueError;
 
 use crate::widgets::context::PanelContext;
 use crate::widgets::pending::Pending;
@@ -16,15 +16,18 @@ use crate::widgets::pending::Pending;
 /// Width of the words at the left, points.
 const WORDS: f32 = 84.0;
 
-/// Sends the paint node a valid command; any other is refused with a notification.
-pub(crate) fn ask(work: &mut PanelContext<'_>, command: Command) -> bool {
-    match command.check() {
-        Ok(()) => {
-            work.requests.paint(command);
+/// Sends an edit; one that cannot be made is rejected with a notification.
+pub(crate) fn ask<E: Into<Command>>(
+    work: &mut PanelContext<'_>,
+    edit: Result<E, ValueError>,
+) -> bool {
+    match edit {
+        Ok(edit) => {
+            work.requests.send(edit);
             true
         }
-        Err(line) => {
-            work.notifications.of(&Fault::told(line));
+        Err(error) => {
+            work.notifications.of(&error.into());
             false
         }
     }

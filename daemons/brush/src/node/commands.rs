@@ -1,20 +1,16 @@
 //! Commands to the brush node: a new definition of its brush.
 
 use maulstick_brush::BrushFile;
-use maulstick_bus::{Announcer, BusError};
+use maulstick_bus::{Announcer, BusError, Request};
 use maulstick_types::brush::BrushDef;
-use maulstick_types::command::{BRUSH_FILE_MAX, Command, CommandReply, CommandRequest, Outcome};
+use maulstick_types::command::{
+    BRUSH_FILE_MAX, BrushCommand, Command, CommandReply, CommandRequest, Outcome,
+};
 use maulstick_types::{Flags, encode, name_hash};
 
 use super::BrushNode;
 use super::pace::Pace;
 use crate::path_simplifier::PathSimplifier;
-
-/// The reason why a command was not done, with advice.
-struct Refusal {
-    what: String,
-    help: &'static str,
-}
 
 /// Announces the definition of a brush.
 pub(super) fn define(
@@ -40,23 +36,19 @@ impl BrushNode {
     /// Answers what is asked of this brush.
     pub(super) fn serve_commands(&mut self, now_ns: u64) -> Result<(), BusError> {
         while let Some(request) = self.commands.try_recv() {
-            let read = self
-                .reader
-                .read::<CommandRequest>(&request.key, &request.bytes);
-            let Some((_, asked)) = read else { continue };
+            let asked = match self.reader.read_command(&request.key, &request.bytes) {
+                Ok(asked) => asked,
+                Err(reply) => {
+                    if let Some(reply) = reply {
+                        self.answer(request, now_ns, &reply);
+                    }
+                    continue;
+                }
+            };
             let outcome = match self.replies.find(&asked) {
                 Some(outcome) => outcome,
                 None => {
-                    let outcome = match self.command(&asked, now_ns)? {
-                        Ok(()) => Outcome::Done {
-                            journal: 0,
-                            detail: String::new(),
-                        },
-                        Err(refusal) => Outcome::Refused {
-                            what: refusal.what,
-                            help: refusal.help.to_owned(),
-                        },
-                    };
+                    let outcome = self.command(&asked, now_ns)?;
                     self.replies
                         .keep(asked.client, asked.number, outcome.clone());
                     outcome
@@ -66,45 +58,41 @@ impl BrushNode {
                 number: asked.number,
                 outcome,
             };
-            let me = self.states.origin();
-            match encode(&me, Flags::NONE, 0, now_ns, now_ns, &reply) {
-                Ok(bytes) => {
-                    if let Err(error) = request.answer(bytes) {
-                        tracing::debug!("a client is gone: {error}");
-                    }
-                }
-                Err(error) => tracing::error!("a command cannot be answered: {error}"),
-            }
+            self.answer(request, now_ns, &reply);
         }
         Ok(())
     }
 
+    fn answer(&self, request: Request, now_ns: u64, reply: &CommandReply) {
+        let me = self.states.origin();
+        match encode(&me, Flags::NONE, 0, now_ns, now_ns, reply) {
+            Ok(bytes) => {
+                if let Err(error) = request.answer(bytes) {
+                    tracing::debug!("a client is gone: {error}");
+                }
+            }
+            Err(error) => tracing::error!("a command cannot be answered: {error}"),
+        }
+    }
+
     /// Does a command; a refused one changes nothing.
-    fn command(
-        &mut self,
-        asked: &CommandRequest,
-        now_ns: u64,
-    ) -> Result<Result<(), Refusal>, BusError> {
-        let refused = |what: String, help| Ok(Err(Refusal { what, help }));
+    fn command(&mut self, asked: &CommandRequest, now_ns: u64) -> Result<Outcome, BusError> {
+        let refused = |what: String, help: &str| Ok(Outcome::refused(what, help));
         if asked.after.is_some() {
             let what = "a brush has no journal in which to wait".to_owned();
             return refused(what, "ask without a place in it");
         }
-        let checked = asked.command.check();
-        let toml = match &asked.command {
-            _ if checked.is_err() => {
-                return refused(checked.err().unwrap_or_default(), "correct the command");
-            }
-            Command::Define { brush, toml } if *brush == self.settings.name => toml,
-            Command::Define { brush, .. } => {
-                let what = format!("this is brush '{}', not '{brush}'", self.settings.name);
-                return refused(what, "send it to that brush's node");
-            }
-            _ => {
-                let what = "this is no matter of the brush".to_owned();
-                return refused(what, "send it to the paint node");
+        let command = match &asked.command {
+            Command::Brush(command) => command,
+            command
+            @ (Command::Edit(_) | Command::Take(_) | Command::File(_) | Command::Rig(_)) => {
+                return Ok(command.misaddressed());
             }
         };
+        let BrushCommand::Define { brush, toml } = command;
+        if *brush != *self.settings.name {
+            return Ok(asked.command.misaddressed());
+        }
         let file = match BrushFile::parse(toml) {
             Ok(file) => file,
             Err(error) => return refused(error.to_string(), "correct the brush file"),
@@ -124,6 +112,6 @@ impl BrushNode {
         define(&mut self.def, now_ns, &self.settings.name, &file)?;
         (self.backlog, self.pace) = (PathSimplifier::new(file.length_m()), Pace::default());
         self.model.take_up(file);
-        Ok(Ok(()))
+        Ok(Outcome::done(""))
     }
 }

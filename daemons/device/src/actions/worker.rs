@@ -12,8 +12,10 @@ use maulstick_rig::Fault;
 use maulstick_rig::fault::EXIT_USAGE;
 use maulstick_types::Pose;
 use maulstick_types::command::Command;
+use maulstick_types::edits::{Clean, Handle, Place, Undo};
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE, Scene};
 use maulstick_types::topics::Topics;
+use maulstick_types::values::BrushName;
 
 use super::{Action, Edge, SwitchEvent};
 use maulstick_rig::commander::Commander;
@@ -67,7 +69,7 @@ pub(super) struct Worker {
     scenes: Receiver<Scene>,
     wake: Wake,
     scene: Option<Scene>,
-    brush: String,
+    brush: BrushName,
     held: HeldModes,
     /// Handling of the brush before the temporary mode, until it is restored.
     before: Option<BrushHandling>,
@@ -99,7 +101,7 @@ impl Worker {
             scenes,
             wake,
             scene: None,
-            brush: brush.to_owned(),
+            brush: BrushName::new(brush)?,
             held: HeldModes::default(),
             before: None,
             asked: None,
@@ -148,10 +150,10 @@ impl Worker {
                 self.follow();
             }
             SwitchEvent::Switch(Action::Undo, Edge::Pressed) => {
-                self.send(Command::Undo { brush: Some(brush) });
+                self.send(Undo { brush: Some(brush) });
             }
             SwitchEvent::Switch(Action::Clean, Edge::Pressed) => {
-                self.send(Command::Clean { brush });
+                self.send(Clean { brush });
             }
             SwitchEvent::Switch(Action::Palette, Edge::Pressed) => self.slide(),
             SwitchEvent::Switch(..) => {}
@@ -215,7 +217,13 @@ impl Worker {
     }
 
     fn handle(&mut self, handling: BrushHandling) -> Told {
-        self.send(Command::Handle { handling })
+        match Handle::try_from(&handling) {
+            Ok(edit) => self.send(edit),
+            Err(error) => {
+                tracing::warn!("a switch: {error}");
+                Told::Refused
+            }
+        }
     }
 
     /// Slides the palette over the canvas, or back to where it was.
@@ -236,11 +244,10 @@ impl Worker {
             None if is_same(&now, &over) => (beside, None),
             None => (over, Some(now)),
         };
-        let told = self.send(Command::Place {
-            surface: PALETTE,
-            pose: to.clone(),
-            zoom,
-        });
+        let told = match Place::new(PALETTE, to.clone(), zoom) {
+            Ok(edit) => self.send(edit),
+            Err(error) => return tracing::warn!("the palette stays where it is: {error}"),
+        };
         if told == Told::Done {
             self.rest = rest;
             // The next slide asks the scene where the palette is: it has to have come.
@@ -269,10 +276,10 @@ impl Worker {
     }
 
     /// Sends a command. A failure is reported.
-    fn send(&mut self, command: Command) -> Told {
+    fn send(&mut self, edit: impl Into<Command>) -> Told {
         let stop = Arc::clone(&self.stop);
         let stopped = || stop.load(Ordering::SeqCst);
-        let fault = match self.commander.send(command, None, PATIENCE, &stopped) {
+        let fault = match self.commander.send(edit, None, PATIENCE, &stopped) {
             Ok(_) => {
                 self.unheard = false;
                 return Told::Done;

@@ -11,8 +11,9 @@ use maulstick_bus::typed::{Receiver, Sender};
 use maulstick_bus::{Class, CreditSender, Queue};
 use maulstick_rig::{Fault, Member, config};
 use maulstick_types::brush::BrushConsumed;
-use maulstick_types::command::{After, Command};
+use maulstick_types::command::{After, TakeCommand};
 use maulstick_types::stylus::{StylusInfo, StylusSample, TakeEnd, TakeStatus, axes};
+use maulstick_types::values::BrushName;
 use maulstick_types::{Flags, Mixture, Origin, name_hash};
 
 use crate::take::Take;
@@ -83,9 +84,9 @@ pub fn run(member: &mut Member, settings: &PlayerSettings) -> Result<(), Fault> 
     let mut player = Player::new(member, settings, origin)?;
     let stop = member.stop.clone();
     let mut commander = Commander::new(member.bus.clone(), &member.topics);
-    let announce = Command::Take {
+    let announce = TakeCommand::Begin {
         again: settings.again,
-        brush: settings.brush.clone(),
+        brush: BrushName::new(&*settings.brush)?,
         device: origin.source,
         device_epoch: origin.epoch,
         loads: settings.loads.clone(),

@@ -9,15 +9,17 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread::JoinHandle;
 
 use maulstick_appearance::picture::{Depth, Export};
-use maulstick_canvas::EditError;
 use maulstick_exchange::{ExchangeError, Format, Order};
 use maulstick_files::{Kind, write_whole};
 use maulstick_optics::colour::RgbSpace;
 use maulstick_optics::gamut::GamutMapping;
 use maulstick_optics::icc::Profile;
 use maulstick_painting::Painting;
+use maulstick_types::advice::Advice;
 use maulstick_types::command::{ExportOrder, Outcome};
 use maulstick_types::paint::ExportStatus;
+
+use crate::refusal::Refusal;
 
 /// The client that requested it, and the number of its command.
 pub type Asker = (u64, u64);
@@ -42,7 +44,7 @@ impl Exporter {
     /// request leaves open.
     ///
     /// # Errors
-    /// [`EditError`] for an unknown format, profile or gamut, and while another export runs.
+    /// [`Refusal`] for an unknown format, profile or gamut, and while another export runs.
     pub fn begin(
         &mut self,
         asker: Asker,
@@ -50,15 +52,15 @@ impl Exporter {
         mut painting: Painting,
         usual: &Export,
         now_ns: u64,
-    ) -> Result<(), EditError> {
+    ) -> Result<(), Refusal> {
         if let Some(running) = &self.0 {
-            return Err(EditError::new(
+            return Err(Refusal::new(
                 format!("{} is being exported", running.path),
-                "wait for its end, or stop it: `maulstick export --stop`",
+                Advice::StopExport,
             ));
         }
         let order = order(asked, usual)?;
-        let path = PathBuf::from(&asked.path);
+        let path = PathBuf::from(asked.path.as_str());
         let (share, stop) = <(Arc<AtomicU32>, Arc<AtomicBool>)>::default();
         let (to_node, outcome) = channel();
         let (shown, stopped) = (Arc::clone(&share), Arc::clone(&stop));
@@ -69,11 +71,11 @@ impl Exporter {
                 to_node.send(done).ok();
             })
             .map_err(|error| {
-                EditError::new(format!("nothing can be exported: {error}"), "try again")
+                Refusal::say(format!("nothing can be exported: {error}"), "try again")
             })?;
         self.0 = Some(Running {
             asker,
-            path: asked.path.clone(),
+            path: asked.path.to_string(),
             began_ns: now_ns,
             share,
             stop,
@@ -86,16 +88,16 @@ impl Exporter {
     /// Has the export that goes on end without a file.
     ///
     /// # Errors
-    /// [`EditError`] where none goes on.
-    pub fn stop(&mut self) -> Result<(), EditError> {
+    /// [`Refusal`] where none goes on.
+    pub fn stop(&mut self) -> Result<(), Refusal> {
         match &self.0 {
             Some(running) => {
                 running.stop.store(true, SeqCst);
                 Ok(())
             }
-            None => Err(EditError::new(
-                "nothing is being exported".to_owned(),
-                "`maulstick export FILE` begins an export",
+            None => Err(Refusal::new(
+                "nothing is being exported",
+                Advice::BeginExport,
             )),
         }
     }
@@ -106,10 +108,10 @@ impl Exporter {
         let outcome = match running.outcome.try_recv() {
             Ok(outcome) => outcome,
             Err(TryRecvError::Empty) => return None,
-            Err(TryRecvError::Disconnected) => Outcome::Refused {
-                what: format!("the export of {} fell", running.path),
-                help: "see the messages of the rig, and report the fault".to_owned(),
-            },
+            Err(TryRecvError::Disconnected) => Outcome::refused(
+                format!("internal error: the export of {} panicked", running.path),
+                "see the messages of the rig, and report the fault",
+            ),
         };
         let asker = running.asker;
         self.0 = None;
@@ -148,19 +150,19 @@ pub fn kind_of(format: Format) -> Kind {
     }
 }
 
-pub(crate) fn unwritable(path: &Path, error: &Error) -> EditError {
+pub(crate) fn unwritable(path: &Path, error: &Error) -> Refusal {
     let help = match error.kind() {
         ErrorKind::AlreadyExists | ErrorKind::InvalidInput | ErrorKind::ResourceBusy => {
             "give another name"
         }
         _ => "check that the folder exists and can be written to",
     };
-    EditError::new(format!("cannot write {}: {error}", path.display()), help)
+    Refusal::say(format!("cannot write {}: {error}", path.display()), help)
 }
 
 /// The requested export, with defaults for everything left open.
-fn order(asked: &ExportOrder, usual: &Export) -> Result<Order, EditError> {
-    let path = Path::new(&asked.path);
+fn order(asked: &ExportOrder, usual: &Export) -> Result<Order, Refusal> {
+    let path = Path::new(asked.path.as_str());
     let format = match asked.format.as_str() {
         "" => Format::of(path),
         name => Format::named(name),
@@ -170,7 +172,7 @@ fn order(asked: &ExportOrder, usual: &Export) -> Result<Order, EditError> {
             "" => path.extension().unwrap_or_default().to_string_lossy(),
             name => name.into(),
         };
-        EditError::new(
+        Refusal::say(
             format!("nothing is exported as '{name}'"),
             "end the name in .png, .exr, .ora or .stl, or say which format: png, exr, ora, height, stl",
         )
@@ -180,7 +182,7 @@ fn order(asked: &ExportOrder, usual: &Export) -> Result<Order, EditError> {
         "srgb" => Arc::new(Profile::of(RgbSpace::Srgb)),
         "display-p3" => Arc::new(Profile::of(RgbSpace::DisplayP3)),
         name => {
-            return Err(EditError::new(
+            return Err(Refusal::say(
                 format!("there is no profile called '{name}' here"),
                 "choose srgb or display-p3, or leave it to [view] of rig.toml",
             ));
@@ -191,7 +193,7 @@ fn order(asked: &ExportOrder, usual: &Export) -> Result<Order, EditError> {
         "soft" => GamutMapping::Soft,
         "clamp" => GamutMapping::Clamp,
         name => {
-            return Err(EditError::new(
+            return Err(Refusal::say(
                 format!("colours come into no gamut by '{name}'"),
                 "choose soft or clamp",
             ));
@@ -266,31 +268,24 @@ fn write(
             _ => Err(Error::other("not written")),
         }
     });
-    let refused = |what: String, help: &str| Outcome::Refused {
-        what,
-        help: help.to_owned(),
-    };
     let name = path.display();
     match (written, made) {
-        (Ok(()), Ok(said)) => Outcome::Done {
-            journal: 0,
-            detail: match said.is_empty() {
-                true => name.to_string(),
-                false => format!("{name}: {said}"),
-            },
-        },
-        _ if stop.load(SeqCst) => refused(
+        (Ok(()), Ok(said)) => Outcome::done(match said.is_empty() {
+            true => name.to_string(),
+            false => format!("{name}: {said}"),
+        }),
+        _ if stop.load(SeqCst) => Outcome::refused(
             format!("the export of {name} was stopped"),
             "nothing was written; export again when you like",
         ),
         (_, Err(ExchangeError::Write(error))) | (Err(error), Ok(_)) => {
-            let refusal = unwritable(path, &error);
-            refused(refusal.what, &refusal.help)
+            unwritable(path, &error).into()
         }
-        (_, Err(error)) => refused(
+        (_, Err(error)) => Refusal::new(
             format!("{name} cannot be made: {error}"),
-            "`maulstick painting export --help` says what each format takes",
-        ),
+            Advice::ListFormats,
+        )
+        .into(),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Exports are whole files, refused in words, or stopped.
 
+use maulstick_types::values::WholePath;
 use std::time::{Duration, Instant};
 
 use maulstick_optics::PaintLibrary;
@@ -31,7 +32,8 @@ fn wait(exporter: &mut Exporter) -> Outcome {
 #[test]
 fn every_format_is_written_and_what_is_none_is_refused_with_the_list() {
     let folder = tempfile::tempdir().expect("a folder");
-    let at = |name: &str| folder.path().join(name).display().to_string();
+    let at =
+        |name: &str| WholePath::new(folder.path().join(name).display().to_string()).expect("whole");
     let mut exporter = Exporter::default();
     let usual = Export::default();
     let begin = |exporter: &mut Exporter, order: &ExportOrder| {
@@ -47,12 +49,12 @@ fn every_format_is_written_and_what_is_none_is_refused_with_the_list() {
     for (name, format, head) in heads {
         let order = ExportOrder {
             format: format.to_owned(),
-            ..ExportOrder::to(&at(name))
+            ..ExportOrder::to(at(name))
         };
         begin(&mut exporter, &order).expect("begun");
         let outcome = wait(&mut exporter);
         assert!(matches!(outcome, Outcome::Done { .. }), "{outcome:?}");
-        let bytes = std::fs::read(at(name)).expect("written");
+        let bytes = std::fs::read(at(name).as_str()).expect("written");
         assert!(
             bytes.starts_with(head) || name == "a.stl" && bytes.len() > 84,
             "{name}: {:?}",
@@ -62,37 +64,37 @@ fn every_format_is_written_and_what_is_none_is_refused_with_the_list() {
     let refused = |order: ExportOrder, words: [&str; 2]| {
         let mut exporter = Exporter::default();
         let said = match begin(&mut exporter, &order) {
-            Err(EditError { what, help }) => format!("{what}; {help}"),
+            Err(refusal) => format!("{}; {}", refusal.what, refusal.advice),
             Ok(()) => match wait(&mut exporter) {
-                Outcome::Refused { what, help } => format!("{what}; {help}"),
+                Outcome::Refused { what, advice } => format!("{what}; {advice}"),
                 done => unreachable!("{done:?}"),
             },
         };
         assert!(words.iter().all(|word| said.contains(word)), "{said}");
     };
     refused(
-        ExportOrder::to(&at("a.jpg")),
+        ExportOrder::to(at("a.jpg")),
         ["'jpg'", ".png, .exr, .ora or .stl"],
     );
-    refused(ExportOrder::to(&at("no/a.png")), ["no/a.png", "folder"]);
+    refused(ExportOrder::to(at("no/a.png")), ["no/a.png", "folder"]);
     let profile = ExportOrder {
         profile: "own.icc".into(),
-        ..ExportOrder::to(&at("a.png"))
+        ..ExportOrder::to(at("a.png"))
     };
     refused(profile, ["'own.icc'", "display-p3"]);
     let beside = ExportOrder {
         format: "png".into(),
-        ..ExportOrder::to(&at("a.maul-wal"))
+        ..ExportOrder::to(at("a.maul-wal"))
     };
     refused(beside, ["may belong to a painting", "another name"]);
     let step = ExportOrder {
         exaggeration: -1.0,
-        ..ExportOrder::to(&at("b.stl"))
+        ..ExportOrder::to(at("b.stl"))
     };
     begin(&mut exporter, &step).expect("seen later");
     let outcome = wait(&mut exporter);
     assert!(matches!(outcome, Outcome::Refused { .. }), "{outcome:?}");
-    assert!(!Path::new(&at("b.stl")).exists());
+    assert!(!Path::new(at("b.stl").as_str()).exists());
 }
 
 #[test]
@@ -101,7 +103,7 @@ fn an_export_that_is_stopped_leaves_what_was_there() {
     let path = folder.path().join("a.png");
     const BEFORE: &[u8] = b"\x89PNG\r\n\x1a\nbefore";
     std::fs::write(&path, BEFORE).expect("written");
-    let order = ExportOrder::to(&path.display().to_string());
+    let order = ExportOrder::to(WholePath::new(path.display().to_string()).expect("whole"));
     let mut exporter = Exporter::default();
     let usual = Export::default();
     assert!(exporter.stop().is_err(), "nothing to stop");
@@ -109,7 +111,7 @@ fn an_export_that_is_stopped_leaves_what_was_there() {
         .begin((1, 2), &order, painting([2048, 2048]), &usual, 5)
         .expect("begun");
     let status = exporter.status(7).expect("it goes on");
-    assert_eq!((status.path, status.since_ns), (order.path.clone(), 2));
+    assert_eq!((status.path, status.since_ns), (order.path.to_string(), 2));
     let second = exporter.begin((1, 3), &order, painting([64, 64]), &usual, 5);
     assert!(second.expect_err("one at a time").what.contains("a.png"));
     exporter.stop().expect("stopped");

@@ -10,8 +10,11 @@ use maulstick_document::{Access, DocumentSettings};
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::PaintingSetup;
 use maulstick_types::command::{Command, CommandReply, CommandRequest, ExportOrder, Outcome};
+use maulstick_types::command::{FileCommand, SaveAs, TakeCommand};
+use maulstick_types::edits::{Fill, FillPaint, Forget, Keep};
 use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::{FilmThickness, VersionName, WholePath};
 use maulstick_types::{Flags, Message, Mixture, decode, encode};
 
 use super::*;
@@ -108,19 +111,21 @@ impl Rig {
     pub(super) fn refused(&mut self, command: Command, words: &[&str]) {
         let asked = format!("{command:?}");
         let outcome = self.command(command);
-        let Outcome::Refused { what, help } = outcome else {
+        let Outcome::Refused { what, advice } = outcome else {
             panic!("{asked} is not refused: {outcome:?}");
         };
-        let said = format!("{what}; {help}");
+        let said = format!("{what}; {advice}");
         assert!(words.iter().all(|word| said.contains(word)), "{said}");
     }
 
     pub(super) fn fill(&mut self, paint: &str) {
-        self.done(Command::Fill {
+        self.done(Command::from(Fill {
+            paint: FillPaint::Mixture {
+                mixture: Mixture::pure(paint),
+            },
+            thickness: FilmThickness::new(1e-4).expect("in range"),
             surface: CANVAS,
-            mixture: Mixture::pure(paint),
-            thickness_m: 1e-4,
-        });
+        }));
     }
 
     fn thumbnail(&mut self, version: &str, side: u32) -> ThumbnailReply {
@@ -131,10 +136,10 @@ impl Rig {
 }
 
 pub(super) fn save_as(path: &Path, replace: bool) -> Command {
-    Command::SaveAs {
-        path: path.display().to_string(),
+    Command::from(FileCommand::SaveAs(SaveAs {
+        path: WholePath::new(path.display().to_string()).expect("valid"),
         replace,
-    }
+    }))
 }
 
 /// The painting of a file, and how many steps it can undo.
@@ -161,9 +166,9 @@ fn small_pictures_show_versions_and_the_painting_as_it_is() {
     assert_eq!((bare.width, bare.height), (48, 32));
     assert_eq!(bare.rgb.len(), 48 * 32 * 3);
     rig.fill("Yellow Ochre");
-    rig.done(Command::Keep {
-        name: "yellow".into(),
-    });
+    rig.done(Command::from(Keep {
+        name: VersionName::new("yellow").expect("valid"),
+    }));
     let yellow = rig.thumbnail("", 48);
     rig.fill("Bone Black");
     let black = rig.thumbnail("", 48);
@@ -174,13 +179,13 @@ fn small_pictures_show_versions_and_the_painting_as_it_is() {
     assert_ne!(rig.thumbnail("yellow", 24).rgb.len(), yellow.rgb.len());
     assert_eq!(rig.thumbnail("nobody", 48).width, 0);
     // Another version of its name is another picture.
-    rig.done(Command::Forget {
-        name: "yellow".into(),
-    });
+    rig.done(Command::from(Forget {
+        name: VersionName::new("yellow").expect("valid"),
+    }));
     assert_eq!(rig.thumbnail("yellow", 48).width, 0);
-    rig.done(Command::Keep {
-        name: "yellow".into(),
-    });
+    rig.done(Command::from(Keep {
+        name: VersionName::new("yellow").expect("valid"),
+    }));
     assert_eq!(rig.thumbnail("yellow", 48).rgb, black.rgb);
 }
 
@@ -191,19 +196,19 @@ fn an_export_is_of_the_moment_it_was_asked_for_and_done_once() {
     let mut rig = Rig::new();
     rig.fill("Yellow Ochre");
     let snapshot = |rig: &mut Rig, name: &str| {
-        rig.done(Command::Snapshot {
-            path: at(name).display().to_string(),
+        rig.done(Command::from(TakeCommand::Snapshot {
+            path: WholePath::new(at(name).display().to_string()).expect("valid"),
             ledger: None,
-        });
+        }));
         std::fs::read(at(name)).expect("written")
     };
     let before = snapshot(&mut rig, "before.png");
-    let order = ExportOrder::to(&at("a.png").display().to_string());
+    let order = ExportOrder::to(at("a.png").display().to_string().parse().expect("whole"));
     let request = CommandRequest {
         client: 5,
         number: 1,
         after: None,
-        command: Command::Export { order },
+        command: Command::from(FileCommand::Export(order)),
     };
     let topic = rig.topics.command("paint");
     let reply: CommandReply = rig.ask(&topic, &request);
@@ -227,12 +232,9 @@ fn an_export_is_of_the_moment_it_was_asked_for_and_done_once() {
     let again: CommandReply = rig.ask(&topic, &request);
     assert!(matches!(again.outcome, Outcome::Done { .. }));
     assert!(!at("a.png").exists());
-    rig.refused(Command::StopExport, &["nothing is being exported"]);
     rig.refused(
-        Command::Export {
-            order: ExportOrder::to("a.png"),
-        },
-        &["root"],
+        Command::from(FileCommand::StopExport),
+        &["nothing is being exported"],
     );
 }
 

@@ -3,23 +3,29 @@
 use std::path::Path;
 
 use maulstick_bus::Request;
-use maulstick_canvas::EditError;
 use maulstick_painting::Effect;
 use maulstick_painting::sequencer::Replied;
-use maulstick_types::advice::parted;
-use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
+use maulstick_types::command::{
+    Command, CommandReply, CommandRequest, FileCommand, Outcome, SaveAs,
+};
 use maulstick_types::{Flags, encode};
 
 use super::PaintNode;
+use crate::refusal::Refusal;
 use crate::snapshots::Snapshot;
 
 impl PaintNode {
     pub(super) fn serve_commands(&mut self, now_ns: u64) {
         while let Some(request) = self.commands.try_recv() {
-            let read = self
-                .reader
-                .read::<CommandRequest>(&request.key, &request.bytes);
-            let Some((_, asked)) = read else { continue };
+            let asked = match self.reader.read_command(&request.key, &request.bytes) {
+                Ok(asked) => asked,
+                Err(reply) => {
+                    if let Some(reply) = reply {
+                        self.answer(request, now_ns, reply);
+                    }
+                    continue;
+                }
+            };
             let number = asked.number;
             let outcome = match self.beside(&asked, now_ns) {
                 Some(outcome) => outcome,
@@ -43,10 +49,10 @@ impl PaintNode {
             tracing::warn!("{}: {error}", request.key);
             write(&CommandReply {
                 number: reply.number,
-                outcome: Outcome::Refused {
-                    what: "the answer to this command is too long".to_owned(),
-                    help: "send shorter names".to_owned(),
-                },
+                outcome: Outcome::refused(
+                    "the answer to this command is too long",
+                    "send shorter names",
+                ),
             })
         });
         match bytes.map(|bytes| request.answer(bytes)) {
@@ -56,53 +62,50 @@ impl PaintNode {
         }
     }
 
-    /// Carries out a command that changes no painting; `None` if it is the sequencer's.
+    /// Carries out a command about files; `None` if it is the sequencer's.
     fn beside(&mut self, asked: &CommandRequest, now_ns: u64) -> Option<Outcome> {
-        let is_beside = matches!(
-            asked.command,
-            Command::Export { .. } | Command::StopExport | Command::SaveAs { .. }
-        );
-        if !is_beside {
-            return None;
-        }
+        let command = match &asked.command {
+            Command::File(command) => command,
+            Command::Edit(_) | Command::Take(_) | Command::Brush(_) | Command::Rig(_) => {
+                return None;
+            }
+        };
         if let Some(outcome) = self.replies.find(asked) {
             return Some(outcome);
         }
-        let outcome = match self.begin_beside(asked, now_ns) {
-            Ok(outcome) => outcome,
-            Err(EditError { what, help }) => Outcome::Refused { what, help },
-        };
+        let outcome = self.begin_beside(asked, command, now_ns);
+        let outcome = outcome.unwrap_or_else(Outcome::from);
         self.replies
             .keep(asked.client, asked.number, outcome.clone());
         Some(outcome)
     }
 
-    fn begin_beside(&mut self, asked: &CommandRequest, now_ns: u64) -> Result<Outcome, EditError> {
-        asked.command.check().map_err(|line| {
-            let (what, help) = parted(&line);
-            EditError::new(what.to_owned(), help.unwrap_or("correct the command"))
-        })?;
+    fn begin_beside(
+        &mut self,
+        asked: &CommandRequest,
+        command: &FileCommand,
+        now_ns: u64,
+    ) -> Result<Outcome, Refusal> {
         if asked.after.is_some() {
-            return Err(EditError::new(
-                "this command has no place in the journal".to_owned(),
+            return Err(Refusal::say(
+                "this command has no place in the journal",
                 "ask without a place in it",
             ));
         }
         let asker = (asked.client, asked.number);
-        match &asked.command {
-            Command::Export { order } => {
+        match command {
+            FileCommand::Export(order) => {
                 let still = self.sequencer.painting_mut().still();
                 self.exporter
                     .begin(asker, order, still, &self.export, now_ns)?;
                 Ok(Outcome::Waiting)
             }
-            Command::SaveAs { path, replace } => self.save_as(asker, Path::new(path), *replace),
-            _ => {
+            FileCommand::SaveAs(SaveAs { path, replace }) => {
+                self.save_as(asker, Path::new(path.as_str()), *replace)
+            }
+            FileCommand::StopExport => {
                 self.exporter.stop()?;
-                Ok(Outcome::Done {
-                    journal: 0,
-                    detail: String::new(),
-                })
+                Ok(Outcome::done(""))
             }
         }
     }
@@ -134,8 +137,8 @@ impl PaintNode {
         });
         match added {
             Ok(()) => Outcome::Waiting,
-            Err(EditError { what, help }) => {
-                let outcome = Outcome::Refused { what, help };
+            Err(refusal) => {
+                let outcome = Outcome::from(refusal);
                 self.sequencer
                     .remember(replied.client, replied.number, outcome.clone());
                 outcome

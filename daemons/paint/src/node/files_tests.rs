@@ -5,22 +5,26 @@
 use std::os::unix::fs::MetadataExt as _;
 
 use maulstick_types::command::{Command, CommandReply, CommandRequest, ExportOrder, Outcome};
+use maulstick_types::command::{FileCommand, TakeCommand};
 use maulstick_types::paint::PaintStatus;
+use maulstick_types::values::WholePath;
 
 use super::beside_tests::{Rig, kept, save_as};
 use super::*;
 
 fn snapshot(path: &Path, ledger: Option<&Path>) -> Command {
-    Command::Snapshot {
-        path: path.display().to_string(),
-        ledger: ledger.map(|path| path.display().to_string()),
-    }
+    Command::from(TakeCommand::Snapshot {
+        path: WholePath::new(path.display().to_string()).expect("valid"),
+        ledger: ledger
+            .map(|path| path.display().to_string())
+            .map(|it| WholePath::new(it).expect("valid")),
+    })
 }
 
 fn export(path: &Path) -> Command {
-    let mut order = ExportOrder::to(&path.display().to_string());
+    let mut order = ExportOrder::to(path.display().to_string().parse().expect("whole"));
     order.format = "png".to_owned();
-    Command::Export { order }
+    Command::from(FileCommand::Export(order))
 }
 
 /// Whether this process holds locks of a file, as the kernel lists them.

@@ -343,7 +343,7 @@ impl PaintNode {
         if let Err(error) = painted {
             self.refused += 1;
             if self.misfits.say(&received.key) {
-                tracing::warn!("{}: {error}: {}", received.key, error.help);
+                tracing::warn!("{}: {error}: {}", received.key, error.advice());
             }
         }
         if now_ns >= self.fed_ns + FEED_PERIOD_NS {

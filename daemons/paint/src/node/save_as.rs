@@ -5,14 +5,15 @@
 
 use std::path::{Path, PathBuf};
 
-use maulstick_canvas::EditError;
 use maulstick_document::{
     Access, Document, DocumentError, DocumentSettings, Relocate, Relocation, make_room, unfinished,
 };
+use maulstick_types::advice::Advice;
 use maulstick_types::command::Outcome;
 
 use super::PaintNode;
 use crate::exporter::Asker;
+use crate::refusal::Refusal;
 use maulstick_session::Autosave;
 
 /// A move of a painting to another file in progress.
@@ -32,14 +33,12 @@ enum Stage {
     Moved(Relocation),
 }
 
-fn refused(path: &Path, error: &DocumentError) -> EditError {
-    let help = match error {
-        DocumentError::Taken => {
-            "give another name, or say that the one that is there may go: `--replace`"
-        }
-        error => error.help(),
+fn refused(path: &Path, error: &DocumentError) -> Refusal {
+    let advice = match error {
+        DocumentError::Taken => Advice::Replace,
+        error => error.advice(),
     };
-    EditError::new(format!("{}: {error}", path.display()), help)
+    Refusal::new(format!("{}: {error}", path.display()), advice)
 }
 
 /// True if two names lead to the same file.
@@ -52,15 +51,15 @@ impl PaintNode {
     /// Begins to move the painting to another file.
     ///
     /// # Errors
-    /// [`EditError`] if it cannot be created there, or a move is in progress.
+    /// [`Refusal`] if it cannot be created there, or a move is in progress.
     pub(super) fn save_as(
         &mut self,
         asker: Asker,
         to: &Path,
         replace: bool,
-    ) -> Result<Outcome, EditError> {
+    ) -> Result<Outcome, Refusal> {
         if let Some(saving) = &self.saving {
-            return Err(EditError::new(
+            return Err(Refusal::say(
                 format!("the painting is on its way to {}", saving.to.display()),
                 "wait until it is there, and ask again",
             ));
@@ -113,7 +112,7 @@ impl PaintNode {
                 {
                     // A painting in memory stays there, and leaves no part of it elsewhere.
                     let what = format!("{}: {what}", saving.to.display());
-                    let refusal = EditError::new(what, help);
+                    let refusal = Refusal::say(what, help);
                     self.give_document_up();
                     Some(Err(refusal))
                 } else {
@@ -146,7 +145,7 @@ impl PaintNode {
                 self.unnamed = false;
                 there(&saving.to)
             }
-            Err(EditError { what, help }) => Outcome::Refused { what, help },
+            Err(refusal) => refusal.into(),
         };
         self.status_ns = 0;
         let (client, number) = saving.asker;
@@ -214,8 +213,5 @@ fn tell_where(document: &Document) {
 }
 
 fn there(path: &Path) -> Outcome {
-    Outcome::Done {
-        journal: 0,
-        detail: path.display().to_string(),
-    }
+    Outcome::done(path.display().to_string())
 }

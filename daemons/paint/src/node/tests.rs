@@ -9,8 +9,10 @@ use maulstick_bus::{Faults, MemoryNet};
 use maulstick_optics::{PaintLibrary, Under};
 use maulstick_painting::PaintingSetup;
 use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
+use maulstick_types::edits::{Dry, Fill, FillPaint, Load};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
+use maulstick_types::values::{BrushName, FilmThickness, Ticks};
 use maulstick_types::{Flags, Header, Mixture, decode};
 
 use super::*;
@@ -42,10 +44,11 @@ fn node(net: &MemoryNet) -> (PaintNode, BrushModel) {
 }
 
 fn load(node: &mut PaintNode, number: u64, paint: &str) {
-    let command = Command::Load {
-        brush: "main".into(),
+    let command = Command::from(Load {
         mixture: Mixture::pure(paint),
-    };
+        beside: None,
+        brush: BrushName::main(),
+    });
     let request = CommandRequest {
         client: 1,
         number,
@@ -154,16 +157,18 @@ fn paint_dries_by_the_clock_of_the_node_and_each_tick_is_in_the_journal() {
         let outcome = node.sequencer.command(request).outcome;
         assert!(matches!(outcome, Outcome::Done { .. }), "{outcome:?}");
     };
-    let fill = Command::Fill {
+    let fill = Command::from(Fill {
+        paint: FillPaint::Mixture {
+            mixture: Mixture::pure("Bone Black"),
+        },
+        thickness: FilmThickness::new(3e-5).expect("in range"),
         surface: CANVAS,
-        mixture: Mixture::pure("Bone Black"),
-        thickness_m: 3e-5,
-    };
-    let over = |ticks: u32| Command::DryOver {
-        surface: CANVAS,
-        ticks,
-        name: String::new(),
-        region: None,
+    });
+    let over = |ticks: u32| {
+        Command::from(Dry {
+            over: Some(Ticks::new(ticks).expect("in range")),
+            ..Dry::whole(CANVAS)
+        })
     };
     ask(&mut node, 1, fill.clone());
     net.advance(5_000_000_000);

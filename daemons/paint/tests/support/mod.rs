@@ -22,9 +22,11 @@ use maulstick_painting::picture::picture;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_session::Offline;
 use maulstick_types::brush::BrushConsumed;
+use maulstick_types::command::TakeCommand;
 use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
 use maulstick_types::topics::Topics;
+use maulstick_types::values::BrushName;
 use maulstick_types::{Flags, Mixture, Origin, decode, encode, name_hash};
 
 pub const START_NS: u64 = 1_000_000_000_000;
@@ -218,13 +220,13 @@ impl Live {
         let brush = "main".to_owned();
         self.command(
             number,
-            Command::Take {
-                brush,
+            Command::from(TakeCommand::Begin {
+                brush: BrushName::new(brush).expect("valid"),
                 device,
                 device_epoch,
                 loads: loads(),
                 again: false,
-            },
+            }),
         );
     }
 

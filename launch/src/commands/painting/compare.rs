@@ -9,8 +9,9 @@ use maulstick_painting::picture::picture;
 use maulstick_painting::{NOW, Sequencer};
 use maulstick_rig::Fault;
 use maulstick_rig::files::Kind;
-use maulstick_types::command::Command;
+use maulstick_types::edits::{ReturnTo, Undo};
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::VersionName;
 use serde_json::json;
 
 use crate::commands::{print_json, say, write_picture};
@@ -42,7 +43,8 @@ pub(super) fn compare(
     let cells = sequencer.painting().scene().surfaces[0].cells;
     let cells = u64::from(cells[0]) * u64::from(cells[1]);
     crate::memory::check("the comparison", cells * PIXEL_BYTES)?;
-    sequencer.ask(Command::Mark).map_err(refused)?;
+    // An open step is finished first.
+    sequencer.painting_mut().commit();
     let pictures = [seen(&mut sequencer, one)?, seen(&mut sequencer, other)?];
     if let Some(what) = document.pager().fault() {
         return Err(wrong(path, &DocumentError::Damaged(what.to_owned())));
@@ -89,14 +91,12 @@ pub(super) fn compare(
 fn seen(sequencer: &mut Sequencer, version: &str) -> Result<Picture, Fault> {
     let is_now = version == NOW;
     if !is_now {
-        let name = version.to_owned();
-        sequencer.ask(Command::Return { name }).map_err(refused)?;
+        let name = VersionName::new(version)?;
+        sequencer.edit(ReturnTo { name }).map_err(refused)?;
     }
     let seen = picture(sequencer.painting_mut(), CANVAS);
     if !is_now {
-        sequencer
-            .ask(Command::Undo { brush: None })
-            .map_err(refused)?;
+        sequencer.edit(Undo { brush: None }).map_err(refused)?;
     }
     Ok(seen)
 }

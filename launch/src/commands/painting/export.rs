@@ -151,7 +151,7 @@ fn write<T>(
                 &options.file,
                 &maulstick_document::DocumentError::Damaged(what),
             ),
-            other => Fault::told(other.to_string()).at(options.output.display().to_string()),
+            other => Fault::usage(other.to_string()).at(options.output.display().to_string()),
         });
     }
     written.map_err(|error| Fault::writing(&options.output, &error))?;

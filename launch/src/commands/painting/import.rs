@@ -8,8 +8,9 @@ use maulstick_exchange::{Image, ImportError, Support, embed};
 use maulstick_painting::{Painting, Sequencer, Wetness};
 use maulstick_rig::{Fault, RigConfig};
 use maulstick_session::Autosave;
-use maulstick_types::command::Command;
+use maulstick_types::edits::{Ground, Tooth};
 use maulstick_types::scene::{CANVAS, WellKind};
+use maulstick_types::values::MaterialName;
 
 use crate::commands::say;
 use crate::document::{go_on, there, wrong};
@@ -84,8 +85,8 @@ impl ImportOptions {
     fn fault(&self, error: &ImportError) -> Fault {
         match error {
             ImportError::File(error) => Fault::reading(&self.picture, error),
-            ImportError::Thickness(_) => Fault::told(error.to_string()).at("--um"),
-            ImportError::Paints(_) => Fault::told(error.to_string()).at("--paint"),
+            ImportError::Thickness(_) => Fault::usage(error.to_string()).at("--um"),
+            ImportError::Paints(_) => Fault::usage(error.to_string()).at("--paint"),
             ImportError::Refused(refusal) => refused(refusal.clone()).at("--paint"),
             ImportError::Canvas(..) => Fault::usage(error.to_string())
                 .at(self.file.display().to_string())
@@ -128,11 +129,8 @@ impl ImportOptions {
         let cells = sequencer.painting().scene().surfaces[0].cells;
         let bytes = embed::ground(image, cells).map_err(|error| self.fault(&error))?;
         let hash = sequencer.painting_mut().embed(bytes).map_err(refused)?;
-        let command = Command::Ground {
-            surface: CANVAS,
-            ground: format!("image:{hash}"),
-        };
-        sequencer.ask(command).map_err(refused)?;
+        let ground = Ground::named(CANVAS, &format!("image:{hash}"))?;
+        sequencer.edit(ground).map_err(refused)?;
         Ok("the picture is its ground".to_owned())
     }
 
@@ -144,12 +142,12 @@ impl ImportOptions {
         let (cells, cell_m) = (canvas.cells, canvas.cell_m);
         let bytes = picture.png(cells, cell_m)?;
         let hash = sequencer.painting_mut().embed(bytes).map_err(refused)?;
-        let command = Command::Tooth {
-            surface: CANVAS,
-            tooth: picture.name(hash, cells, cell_m),
+        let tooth = Tooth {
+            tooth: MaterialName::new(picture.name(hash, cells, cell_m))?,
             seed: 1,
+            surface: CANVAS,
         };
-        sequencer.ask(command).map_err(refused)?;
+        sequencer.edit(tooth).map_err(refused)?;
         let depth_um = self.depth_um;
         Ok(format!("the picture is its tooth, {depth_um} µm deep"))
     }

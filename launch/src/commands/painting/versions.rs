@@ -5,11 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 use maulstick_bus::Class;
 use maulstick_rig::{Fault, RigConfig};
-use maulstick_types::command::Command;
+use maulstick_types::edits::{Branch, Edit, Forget, Keep, ReturnTo};
 use maulstick_types::scene::{NamedVersion, Scene};
+use maulstick_types::values::VersionName;
 use serde_json::json;
 
-use crate::commands::session::{PAINT, Session, Target};
+use crate::commands::session::{Session, Target};
 use crate::commands::{print_json, say};
 use crate::document::{go_on, there, wrong};
 use crate::performance::refused;
@@ -23,16 +24,16 @@ pub struct VersionsOptions {
     file: Option<PathBuf>,
     /// Keep the painting as a version of this name
     #[arg(long, value_name = "NAME", group = "act")]
-    keep: Option<String>,
+    keep: Option<VersionName>,
     /// Return the painting to a version; this can be undone
     #[arg(long = "return", value_name = "NAME", group = "act")]
-    return_to: Option<String>,
+    return_to: Option<VersionName>,
     /// Begin version NAME from version FROM, and return the painting to it
     #[arg(long, value_names = ["FROM", "NAME"], num_args = 2, group = "act")]
-    branch: Option<Vec<String>>,
+    branch: Option<Vec<VersionName>>,
     /// Delete a version
     #[arg(long, value_name = "NAME", group = "act")]
-    forget: Option<String>,
+    forget: Option<VersionName>,
     /// Draw two versions and their difference side by side; "now" is the current painting
     #[arg(long, value_names = ["ONE", "OTHER"], num_args = 2, group = "act", requires = "output", requires = "file")]
     compare: Option<Vec<String>>,
@@ -47,15 +48,20 @@ pub struct VersionsOptions {
 }
 
 impl VersionsOptions {
-    fn command(&self) -> Option<Command> {
-        let keep = self.keep.clone().map(|name| Command::Keep { name });
-        let back = self.return_to.clone().map(|name| Command::Return { name });
-        let forget = self.forget.clone().map(|name| Command::Forget { name });
+    /// The edit that is asked for, if any.
+    pub(crate) fn edit(&self) -> Option<Edit> {
+        let name = |name: &Option<VersionName>| name.clone();
+        let keep = name(&self.keep).map(|name| Keep { name }.into());
+        let back = name(&self.return_to).map(|name| ReturnTo { name }.into());
+        let forget = name(&self.forget).map(|name| Forget { name }.into());
         let branch = self.branch.as_deref().and_then(|names| match names {
-            [from, name] => Some(Command::Branch {
-                from: from.clone(),
-                name: name.clone(),
-            }),
+            [from, name] => Some(
+                Branch {
+                    from: from.clone(),
+                    name: name.clone(),
+                }
+                .into(),
+            ),
             _ => None,
         });
         keep.or(back).or(forget).or(branch)
@@ -67,14 +73,11 @@ impl VersionsOptions {
 /// # Errors
 /// A [`Fault`] for an unknown version, or where there is no painting.
 pub(super) fn run(options: &VersionsOptions) -> Result<i32, Fault> {
-    let command = options.command();
-    if let Some(command) = &command {
-        command.check().map_err(Fault::told)?;
-    }
+    let edit = options.edit();
     let Some(path) = &options.file else {
         let session = Session::open(&options.target)?;
-        if let Some(command) = command {
-            session.send(PAINT, command)?;
+        if let Some(edit) = edit {
+            session.send(edit)?;
         }
         let mut scenes = session.follow::<Scene>(&session.topics().scene(), Class::Cached)?;
         return list(&scenes.hear()?.message, options.json);
@@ -82,7 +85,7 @@ pub(super) fn run(options: &VersionsOptions) -> Result<i32, Fault> {
     if let (Some([one, other]), Some(output)) = (options.compare.as_deref(), &options.output) {
         return compare(path, [one, other], output, options.json);
     }
-    let Some(command) = command else {
+    let Some(edit) = edit else {
         let (_document, opened) = crate::document::read(path)?;
         return list(
             opened.sequencer().map_err(refused)?.painting().scene(),
@@ -92,7 +95,7 @@ pub(super) fn run(options: &VersionsOptions) -> Result<i32, Fault> {
     there(path)?;
     let (document, mut sequencer, since) = go_on(&RigConfig::default(), path)?;
     let autosave = maulstick_session::Autosave::new(document, &mut sequencer, since);
-    let done = sequencer.ask(command).map_err(refused);
+    let done = sequencer.edit(edit).map_err(refused);
     autosave
         .close(&mut sequencer)
         .map_err(|error| wrong(path, &error))?;

@@ -3,8 +3,10 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use maulstick_rig::Fault;
 use maulstick_rig::commander::Commander;
-use maulstick_types::command::Command;
+use maulstick_types::edits::Load;
+use maulstick_types::values::BrushName;
 
 use super::Supervisor;
 
@@ -34,11 +36,15 @@ impl Supervisor {
         let load = move || {
             let mut commander = Commander::new(bus, &topics);
             for brush in brushes {
-                let command = Command::Load {
-                    brush,
+                let load = BrushName::new(brush).map(|brush| Load {
                     mixture: mixture.clone(),
-                };
-                if let Err(fault) = commander.send(command, None, LOAD_TIME, &|| stop.requested()) {
+                    beside: None,
+                    brush,
+                });
+                let loaded = load
+                    .map_err(Fault::from)
+                    .and_then(|load| commander.send(load, None, LOAD_TIME, &|| stop.requested()));
+                if let Err(fault) = loaded {
                     tracing::warn!("{}", fault.what);
                 }
             }

@@ -7,8 +7,10 @@ use std::sync::Arc;
 use maulstick_bus::typed::{Reader, Receiver, random_epoch};
 use maulstick_bus::{Bus, BusError, Class, Queue, Request, Server, Wake};
 use maulstick_rig::Fault;
-use maulstick_types::advice::parted;
-use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
+use maulstick_types::advice::Advice;
+use maulstick_types::command::{
+    Command, CommandReply, CommandRequest, Outcome, RIG_NODE, RigCommand,
+};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::reply_cache::ReplyCache;
 use maulstick_types::topics::Topics;
@@ -16,7 +18,6 @@ use maulstick_types::{Flags, Origin, encode, name_hash};
 
 use super::Supervisor;
 use super::switch::{Ask, Switch};
-use crate::commands::session::RIG;
 
 /// Requests to the rig, and its replies.
 pub(super) struct Orders {
@@ -54,10 +55,10 @@ impl Orders {
     pub(super) fn new(bus: &dyn Bus, topics: &Topics, wake: &Wake) -> Result<Self, BusError> {
         let topic = topics.paint_status();
         Ok(Self {
-            server: bus.serve(&topics.command(RIG), 64, wake)?,
+            server: bus.serve(&topics.command(RIG_NODE), 64, wake)?,
             reader: Reader::default(),
             me: Origin {
-                source: name_hash(RIG),
+                source: name_hash(RIG_NODE),
                 epoch: random_epoch(),
             },
             replies: ReplyCache::default(),
@@ -82,11 +83,17 @@ impl Orders {
 
     /// True if the paint node has reported its status since this was first requested, where that matters.
     fn has_heard(&mut self, asked: &CommandRequest) -> bool {
-        if !matches!(asked.command, Command::Open { .. } | Command::New { .. }) {
-            return true;
-        }
         let asker = (asked.client, asked.number);
-        self.leaving.has_heard(asker, self.heard)
+        match asked.command {
+            Command::Rig(RigCommand::Open { .. } | RigCommand::New { .. }) => {
+                self.leaving.has_heard(asker, self.heard)
+            }
+            Command::Rig(RigCommand::SaveAs(_))
+            | Command::Edit(_)
+            | Command::Take(_)
+            | Command::File(_)
+            | Command::Brush(_) => true,
+        }
     }
 
     /// The paint node is another one: what the one before said holds no more.
@@ -102,9 +109,10 @@ pub(super) fn refusal(fault: Fault) -> Outcome {
         Some(place) => format!("{place}: {}", fault.what),
         None => fault.what,
     };
+    let advice = fault.advice;
     Outcome::Refused {
         what,
-        help: fault.help.unwrap_or_default(),
+        advice: advice.unwrap_or_else(|| Advice::say(fault.help.unwrap_or_default())),
     }
 }
 
@@ -142,10 +150,15 @@ impl Supervisor {
         }
         while let Some(request) = self.orders.server.try_recv() {
             let orders = &mut self.orders;
-            let read = orders
-                .reader
-                .read::<CommandRequest>(&request.key, &request.bytes);
-            let Some((_, asked)) = read else { continue };
+            let asked = match orders.reader.read_command(&request.key, &request.bytes) {
+                Ok(asked) => asked,
+                Err(reply) => {
+                    if let Some(reply) = reply {
+                        orders.answer(&*bus, request, &reply);
+                    }
+                    continue;
+                }
+            };
             let outcome = match orders.replies.find(&asked) {
                 Some(outcome) => outcome,
                 // It is asked again, and done when its turn comes.
@@ -168,41 +181,41 @@ impl Supervisor {
 
     /// Begins to do what is asked.
     fn order(&mut self, asked: &CommandRequest) -> Result<Outcome, Fault> {
-        asked.command.check().map_err(|line| {
-            let (what, help) = parted(&line);
-            Fault::usage(what).help(help.unwrap_or("correct the command"))
-        })?;
         if asked.after.is_some() {
             return Err(Fault::usage("the rig has no journal in which to wait")
                 .help("ask without a place in it"));
         }
         let here = self.config.paint.document.clone();
-        let ask = match &asked.command {
-            Command::Open { path, forget } => {
-                let path = PathBuf::from(path);
+        let command = match &asked.command {
+            Command::Rig(command) => command,
+            command @ (Command::Edit(_)
+            | Command::Take(_)
+            | Command::File(_)
+            | Command::Brush(_)) => return Ok(command.misaddressed()),
+        };
+        let ask = match command {
+            RigCommand::Open { path, forget } => {
+                let path = PathBuf::from(path.as_str());
                 if here.is_some_and(|here| is_same(&here, &path)) {
-                    return Ok(done(format!("{} is open already", path.display())));
+                    return Ok(Outcome::done(format!("{} is open already", path.display())));
                 }
                 self.may_leave(*forget)?;
                 Ask::Open(path, *forget)
             }
-            Command::New {
+            RigCommand::New {
                 path,
                 canvas,
                 forget,
             } => {
                 self.may_leave(*forget)?;
-                Ask::New(path.as_ref().map(PathBuf::from), canvas.clone(), *forget)
+                let path = path.as_ref().map(|path| PathBuf::from(path.as_str()));
+                Ask::New(path, canvas.clone(), *forget)
             }
-            Command::SaveAs { path, replace } => {
+            RigCommand::SaveAs(save_as) => {
                 if !self.paint_runs() {
                     return Ok(starts_again());
                 }
-                Ask::SaveAs(PathBuf::from(path), *replace)
-            }
-            _ => {
-                return Err(Fault::usage("this is no matter of the rig as a whole")
-                    .help("send it to the paint node, or to that of the brush"));
+                Ask::SaveAs(save_as.clone())
             }
         };
         self.switch = Some(Switch::begin(self, (asked.client, asked.number), ask)?);
@@ -218,15 +231,14 @@ impl Supervisor {
         }
         if let Some(export) = status.and_then(|status| status.export.as_ref()) {
             return Err(Fault::usage(format!("{} is being exported", export.path))
-                .help("wait for its end, or stop it: `maulstick export --stop`"));
+                .advise(Advice::StopExport));
         }
         let in_memory = self.config.paint.document.is_none();
         let is_blank = status.is_some_and(|status| status.blank);
         match in_memory && !is_blank && !forget {
             true => Err(
-                Fault::usage("what was painted is in memory alone, and would be gone").help(
-                    "keep it first: `maulstick save-as FILE.maul`; or say that it may go: `--forget`",
-                ),
+                Fault::usage("what was painted is in memory alone, and would be gone")
+                    .advise(Advice::SaveOrForget),
             ),
             false => Ok(()),
         }
@@ -235,14 +247,10 @@ impl Supervisor {
 
 /// Nothing can be asked of a painting that is not there.
 pub(super) fn starts_again() -> Outcome {
-    Outcome::Refused {
-        what: "the paint node is being started just now".to_owned(),
-        help: "wait until the painting is there, and ask again".to_owned(),
-    }
-}
-
-pub(super) fn done(detail: String) -> Outcome {
-    Outcome::Done { journal: 0, detail }
+    Outcome::refused(
+        "the paint node is being started just now",
+        "wait until the painting is there, and ask again",
+    )
 }
 
 #[cfg(test)]

@@ -14,10 +14,10 @@ use maulstick_rig::config::{RigConfig, is_path};
 use maulstick_rig::files::{Kind, check_writable, write_whole};
 use maulstick_rig::member::CONFIG_FILE;
 use maulstick_types::Mixture;
-use maulstick_types::command::{Command, NewCanvas, Outcome};
+use maulstick_types::command::{FileCommand, NewCanvas, Outcome, SaveAs};
 use maulstick_types::topics::Topics;
 
-use super::orders::{done, refusal, starts_again};
+use super::orders::{refusal, starts_again};
 use super::starts::start_time;
 use super::{GRACE, Supervisor};
 use crate::document::{measure, read, round, wrong};
@@ -38,8 +38,8 @@ pub(super) enum Ask {
     Open(PathBuf, bool),
     /// A new one, in memory alone where it has no file, and whether what is in memory alone may go.
     New(Option<PathBuf>, NewCanvas, bool),
-    /// The painting in another file; one that is there may be replaced.
-    SaveAs(PathBuf, bool),
+    /// The painting in another file.
+    SaveAs(SaveAs),
 }
 
 /// A switch to another painting in progress.
@@ -98,10 +98,11 @@ impl Switch {
         let mut config = supervisor.config.clone();
         let wake = supervisor.wake.clone();
         let stage = match ask {
-            Ask::SaveAs(path, replace) => {
+            Ask::SaveAs(save_as) => {
+                let path = PathBuf::from(save_as.path.as_str());
                 tracing::info!("saving in {}", path.display());
                 let (bus, topics) = (Arc::clone(&supervisor.bus), supervisor.topics.clone());
-                let (to, stop) = (path.clone(), supervisor.stop.clone());
+                let stop = supervisor.stop.clone();
                 let gone = Arc::new(AtomicBool::new(false));
                 let has_gone = Arc::clone(&gone);
                 Stage::Saving(
@@ -109,7 +110,7 @@ impl Switch {
                     gone,
                     beside(move || {
                         let stops = || stop.requested() || has_gone.load(Ordering::SeqCst);
-                        let saved = save(bus, &topics, &to, replace, &stops);
+                        let saved = save(bus, &topics, save_as, &stops);
                         wake.ring();
                         saved
                     })?,
@@ -152,12 +153,10 @@ fn beside<T: Send + 'static>(
 fn save(
     bus: Arc<dyn Bus>,
     topics: &Topics,
-    to: &Path,
-    replace: bool,
+    save_as: SaveAs,
     stops: &dyn Fn() -> bool,
 ) -> Result<String, Fault> {
-    let path = to.display().to_string();
-    let command = Command::SaveAs { path, replace };
+    let command = FileCommand::SaveAs(save_as);
     Commander::new(bus, topics).send(command, None, SAVE_TIME, stops)
 }
 
@@ -180,7 +179,7 @@ fn begun(
     path: Option<PathBuf>,
     canvas: &NewCanvas,
 ) -> Result<Mixture, Fault> {
-    if is_path(&canvas.ground) && !Path::new(&canvas.ground).is_absolute() {
+    if is_path(&canvas.ground) && !Path::new(canvas.ground.as_str()).is_absolute() {
         return Err(
             Fault::usage("the path of the ground does not begin at the root")
                 .help("give the whole path, for each program has a folder of its own"),
@@ -191,8 +190,8 @@ fn begun(
         [canvas.width_m, canvas.height_m, canvas.cell_m].map(|m| round(m * 1e3));
     section.stain_um = round(canvas.stain_m * 1e6);
     section.tooth_seed = canvas.tooth_seed;
-    section.ground.clone_from(&canvas.ground);
-    section.tooth.clone_from(&canvas.tooth);
+    section.ground = canvas.ground.to_string();
+    section.tooth = canvas.tooth.to_string();
     if let Some(path) = &path {
         if path.exists() {
             return Err(wrong(path, &DocumentError::Taken));
@@ -262,7 +261,7 @@ impl Supervisor {
                     }
                     let name = to.display().to_string();
                     tracing::info!("painting in {name}");
-                    Err(done(name))
+                    Err(Outcome::done(name))
                 }
                 _ if gone.load(Ordering::SeqCst) => Err(ended_as_it_saved(&to)),
                 Err(mpsc::TryRecvError::Empty) => Ok(Stage::Saving(to, gone, saved)),
@@ -330,7 +329,7 @@ impl Supervisor {
             }
         }
         tracing::info!("painting in {name}");
-        Ok(Err(done(name)))
+        Ok(Err(Outcome::done(name)))
     }
 
     /// A node that was asked to end for it has ended, or the paint node while it started.
@@ -354,10 +353,10 @@ impl Supervisor {
                             true => "it is open again with all that its file has",
                             false => "it was in memory alone, and another is begun",
                         };
-                        Stage::Returning(Outcome::Refused {
-                            what: "the painting could not be closed as it should be".to_owned(),
-                            help: format!("{help}; the messages of the rig say what was wrong"),
-                        })
+                        Stage::Returning(Outcome::refused(
+                            "the painting could not be closed as it should be",
+                            format!("{help}; the messages of the rig say what was wrong"),
+                        ))
                     }
                 };
                 self.switch = Some(Switch { asker, stage });
@@ -416,10 +415,10 @@ impl Supervisor {
                        start it again with the painting before"
             }
         };
-        Ok(Stage::Returning(Outcome::Refused {
-            what: format!("{} could not be opened", plan.name()),
-            help: help.to_owned(),
-        }))
+        Ok(Stage::Returning(Outcome::refused(
+            format!("{} could not be opened", plan.name()),
+            help,
+        )))
     }
 
     /// Starts the paint node; what was in memory alone is gone, and its brushes are loaded anew.
@@ -448,20 +447,18 @@ impl Supervisor {
 }
 
 fn ended_as_it_saved(to: &Path) -> Outcome {
-    Outcome::Refused {
-        what: format!(
+    Outcome::refused(
+        format!(
             "the paint node ended before it said that the painting is in {}",
             to.display()
         ),
-        help: "look whether that file has it, and open it there; the messages of the rig say what was \
-               wrong"
-            .to_owned(),
-    }
+        "look whether that file has it, and open it there; the messages of the rig say what was wrong",
+    )
 }
 
 fn fallen() -> Outcome {
-    Outcome::Refused {
-        what: "the thread that looked after it has fallen".to_owned(),
-        help: "see the messages of the rig, and report the fault".to_owned(),
-    }
+    Outcome::refused(
+        "internal error: the file worker panicked",
+        "see the messages of the rig, and report the fault",
+    )
 }

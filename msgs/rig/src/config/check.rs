@@ -66,7 +66,7 @@ impl RigConfig {
         )
         .map_err(|(what, help)| fault(what, "piles", "").help(help))?;
         self.light.light().check().map_err(|what| {
-            Fault::told(what).at(format!("{name}:{}", line_of(text, "[light]", "")))
+            Fault::from(what).at(format!("{name}:{}", line_of(text, "[light]", "")))
         })?;
         self.check_nodes()
             .map_err(|(what, help, node)| fault(what, "[node.", &node).help(help))?;
@@ -162,8 +162,7 @@ impl RigConfig {
         if let Some(corners) = device.corners_m
             && !are_corners(&corners)
         {
-            let help =
-                "three places in metres, not on one line, as `maulstick calibrate` writes them";
+            let help = "three places in metres, not on one line, as a calibration writes them";
             return Err(Wrong::value(name, "corners_m", corners, help));
         }
         if !is_curve(&device.pressure_curve) {

@@ -1,13 +1,17 @@
 //! Parts of the messages whose bytes are golden.
 
-use maulstick_types::command::{Command, ExportOrder, NewCanvas};
+use maulstick_types::command::{
+    BrushCommand, Command, ExportOrder, FileCommand, NewCanvas, RigCommand, SaveAs, TakeCommand,
+};
 use maulstick_types::control::ControlSample;
+use maulstick_types::edits::Relight;
 use maulstick_types::haptics::ForceReply;
 use maulstick_types::paint::{DryingStatus, ExportStatus, FrameHolds, PaintStatus, ThumbnailReply};
-use maulstick_types::scene::{BrushHandling, BrushMode};
+use maulstick_types::scene::{BrushHandling, BrushMode, Light};
 use maulstick_types::stylus::StylusStatus;
+use maulstick_types::values::{BrushName, BrushToml, MaterialName, WholePath};
 use maulstick_types::window::Presented;
-use maulstick_types::{Pose, Region};
+use maulstick_types::{Mixture, Pose};
 
 pub(crate) fn handling() -> BrushHandling {
     BrushHandling {
@@ -30,13 +34,6 @@ pub(crate) fn pose() -> Pose {
     Pose {
         position_m: [0.1, -0.2, 0.3],
         orientation: [0.0, 0.6, 0.0, 0.8],
-    }
-}
-
-pub(crate) fn region() -> Region {
-    Region {
-        corner_m: [0.01, 0.02],
-        size_m: [0.06, 0.04],
     }
 }
 
@@ -114,14 +111,48 @@ pub(crate) fn thumbnail() -> ThumbnailReply {
     }
 }
 
-/// The commands about files.
-pub(crate) fn files() -> [Command; 5] {
+/// A light of a measured spectrum.
+pub(crate) fn wide_light() -> Relight {
+    Relight {
+        light: Light {
+            spectrum: vec![0.5; 101],
+            ..Light::default()
+        },
+        expose: true,
+    }
+}
+
+fn path(name: &str) -> WholePath {
+    WholePath::new(name).expect("whole")
+}
+
+/// What takes its place in the journal besides edits.
+pub(crate) fn takes() -> [TakeCommand; 3] {
+    [
+        TakeCommand::Begin {
+            brush: BrushName::main(),
+            device: 1,
+            device_epoch: 2,
+            loads: vec![Mixture::pure("Bone Black")],
+            again: true,
+        },
+        TakeCommand::Mark,
+        TakeCommand::Snapshot {
+            path: path("/p.png"),
+            ledger: Some(path("/l.json")),
+        },
+    ]
+}
+
+/// The commands about files, and those of other nodes.
+pub(crate) fn files() -> [Command; 7] {
+    let material = |name: &str| MaterialName::new(name).expect("a name");
     let canvas = NewCanvas {
         width_m: 0.3,
         height_m: 0.2,
         cell_m: 2.5e-4,
-        ground: "gesso".into(),
-        tooth: "linen".into(),
+        ground: material("gesso"),
+        tooth: material("linen"),
         tooth_seed: 1,
         stain_m: 3e-6,
     };
@@ -130,24 +161,33 @@ pub(crate) fn files() -> [Command; 5] {
         step: 4,
         profile: "srgb".into(),
         gamut: "clamp".into(),
-        ..ExportOrder::to("/a.stl")
+        ..ExportOrder::to(path("/a.stl"))
+    };
+    let save_as = SaveAs {
+        path: path("/c.maul"),
+        replace: true,
     };
     [
-        Command::Open {
-            path: "/a.maul".into(),
+        FileCommand::Export(order).into(),
+        FileCommand::StopExport.into(),
+        FileCommand::SaveAs(save_as.clone()).into(),
+        BrushCommand::Define {
+            brush: BrushName::main(),
+            toml: BrushToml::new("kind").expect("short"),
+        }
+        .into(),
+        RigCommand::Open {
+            path: path("/a.maul"),
             forget: true,
-        },
-        Command::New {
-            path: Some("/b.maul".into()),
+        }
+        .into(),
+        RigCommand::New {
+            path: Some(path("/b.maul")),
             canvas,
             forget: false,
-        },
-        Command::SaveAs {
-            path: "/c.maul".into(),
-            replace: true,
-        },
-        Command::Export { order },
-        Command::StopExport,
+        }
+        .into(),
+        RigCommand::SaveAs(save_as).into(),
     ]
 }
 

@@ -3,8 +3,9 @@
 use glam::DVec3;
 use maulstick_num::geometry::{Rigid, canonical, rotation};
 use maulstick_num::sin_cos;
-use maulstick_types::command::Command;
+use maulstick_types::edits::Place;
 use maulstick_types::scene::Surface;
+use maulstick_types::values::ValueError;
 
 /// Zooms that a painter can use.
 pub const ZOOMS: [f64; 2] = [0.1, 20.0];
@@ -45,14 +46,12 @@ impl SurfacePlacement {
         }
     }
 
-    /// The command that lays a surface so.
-    #[must_use]
-    pub fn command(&self, surface: u32) -> Command {
-        Command::Place {
-            surface,
-            pose: self.pose.to_pose(),
-            zoom: self.zoom,
-        }
+    /// The edit that lays a surface so.
+    ///
+    /// # Errors
+    /// [`ValueError`] where it is not finite, or out of reach.
+    pub fn edit(&self, surface: u32) -> Result<Place, ValueError> {
+        Place::new(surface, self.pose.to_pose(), self.zoom)
     }
 
     /// Larger by a factor about a point of the desk. A zoom set otherwise, beyond those of a painter, goes no farther;
@@ -138,7 +137,7 @@ mod tests {
                 (under(&placement, held) - own).length() < 1e-12,
                 "{placement:?}"
             );
-            assert_eq!(placement.command(0).check(), Ok(()));
+            assert!(placement.edit(0).is_ok());
         }
         let beside = held + DVec3::X * 1e-3;
         let off = (under(&PLACEMENT.zoomed(beside, 3.0), held) - own).length();

@@ -46,11 +46,9 @@ impl ToothName {
     /// # Errors
     /// [`EditError`] with what is wrong with it.
     pub fn parse(name: &str) -> Result<Self, EditError> {
-        let wrong = |what: &str| {
-            EditError::new(
-                format!("'{name}' is no tooth: {what}"),
-                "write image:HASH@120mm,80um: a picture 120 mm wide, 80 µm deep",
-            )
+        let wrong = |fault| EditError::ToothName {
+            name: name.to_owned(),
+            fault,
         };
         let rest = name
             .strip_prefix(IMAGE)
@@ -203,14 +201,14 @@ mod tests {
             ("image:ab@120mm,1e9um", "depth"),
         ] {
             let error = ToothName::parse(name).expect_err("wrong");
-            assert!(error.what.contains(word), "{error}");
-            assert!(error.help.contains("@120mm,80um"));
+            assert!(error.to_string().contains(word), "{error}");
+            assert!(error.advice().to_string().contains("@120mm,80um"));
         }
         let none = PictureTooth::called(
             &format!("image:{}@9mm,9um", "0".repeat(64)),
             1e-3,
             &Assets::default(),
         );
-        assert!(none.expect_err("none").what.contains("no picture"));
+        assert!(none.expect_err("none").to_string().contains("no picture"));
     }
 }

@@ -9,7 +9,9 @@ use crate::error::DocumentError;
 /// `application_id` of a painting: "Maul".
 pub const APPLICATION_ID: i32 = 0x4D61_756C;
 /// The schema that this program writes.
-pub const VERSION: i32 = 1;
+pub const VERSION: i32 = 2;
+/// The oldest schema that it reads.
+const OLDEST: i32 = 2;
 
 /// Every row begins with its table's number, so that rows can be sorted even if the schema is lost, and ends with a
 /// checksum of its other columns.
@@ -142,12 +144,13 @@ pub fn is_foreign(path: &Path) -> Result<bool, DocumentError> {
 }
 
 /// Steps from each older schema to the next; the first, to 2, will be the first here.
-const MIGRATIONS: [&str; (VERSION - 1) as usize] = [];
+const MIGRATIONS: [&str; (VERSION - OLDEST) as usize] = [];
 
-/// Migrates an older painting to the schema of this program; rejects one of a newer program.
+/// Migrates an older painting to the schema of this program; rejects one of a newer program or of before the oldest
+/// schema.
 ///
 /// # Errors
-/// [`DocumentError::Newer`], [`DocumentError::NoPainting`], or what SQLite says.
+/// [`DocumentError::Newer`], [`DocumentError::Older`], [`DocumentError::NoPainting`], or what SQLite says.
 pub fn migrate(connection: &Connection) -> Result<(), DocumentError> {
     let application: i32 =
         connection.query_row("PRAGMA application_id", params![], |row| row.get(0))?;
@@ -155,14 +158,21 @@ pub fn migrate(connection: &Connection) -> Result<(), DocumentError> {
     if application != APPLICATION_ID || version < 1 {
         return Err(DocumentError::NoPainting);
     }
+    if version < OLDEST {
+        return Err(DocumentError::Older(version));
+    }
     if version > VERSION {
         return Err(DocumentError::Newer {
             found: version,
             known: VERSION,
         });
     }
-    for (place, change) in MIGRATIONS.iter().enumerate().skip(version as usize - 1) {
-        let to = place + 2;
+    for (place, change) in MIGRATIONS
+        .iter()
+        .enumerate()
+        .skip((version - OLDEST) as usize)
+    {
+        let to = OLDEST + 1 + place as i32;
         let change = format!("BEGIN IMMEDIATE; {change}; PRAGMA user_version = {to}; COMMIT;");
         connection.execute_batch(&change)?;
     }

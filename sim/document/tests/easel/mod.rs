@@ -2,11 +2,11 @@
 
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 
+use maulstick_types::edits::Undo;
 use std::sync::Arc;
 
 use maulstick_document::{Checkpoint, Document, DocumentSettings};
 use maulstick_painting::Sequencer;
-use maulstick_types::command::Command;
 
 use crate::studio::{Act, Painter, equip, sequencer};
 
@@ -42,7 +42,7 @@ impl Easel {
         let (document, opened) = Document::open(settings).map_err(|error| error.to_string())?;
         let opened = opened.ok_or("there is no painting in it")?;
         let since = opened.snapshot().versions;
-        let mut kept = opened.sequencer().map_err(|refusal| refusal.what)?;
+        let mut kept = opened.sequencer().map_err(|refusal| refusal.to_string())?;
         kept.record();
         match document.pager().fault() {
             Some(fault) => Err(fault.to_owned()),
@@ -84,7 +84,7 @@ impl Easel {
     /// Undoes all that can be; returns how many steps that were.
     pub fn undo_all(&mut self) -> usize {
         let mut steps = 0;
-        while self.sequencer.ask(Command::Undo { brush: None }).is_ok() {
+        while self.sequencer.edit(Undo { brush: None }).is_ok() {
             steps += 1;
         }
         self.record();

@@ -9,7 +9,14 @@ use maulstick_painting::history::{TilePlace, TileRef};
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::command::{Command, CommandRequest, Outcome};
+use maulstick_types::edits::{
+    Branch, Clean, Dry, Fill, FillPaint, Forget, Ground, Keep, LayerRef, Load, NameLayer, Opacity,
+    Redo, ReturnTo, StopDrying, Tooth, Undo, Wet,
+};
 use maulstick_types::scene::{CANVAS, PALETTE};
+use maulstick_types::values::{
+    BrushName, FilmThickness, LayerName, MaterialName, OpacityFactor, Share, Ticks, VersionName,
+};
 use maulstick_types::{Flags, Header, Mixture, Pose, Region, name_hash};
 use proptest::prelude::ProptestConfig;
 use rand_pcg::Pcg64Mcg;
@@ -184,84 +191,100 @@ impl Painter {
                 let way = self.way(self.strokes[b]);
                 return Act::Paint(b, new, way);
             }
-            15..18 => Command::Load { brush, mixture },
-            18 => Command::Clean { brush },
-            19..21 => Command::Dry {
-                surface: CANVAS,
-                share: [1.0, 0.4][self.dice.below(2) as usize],
-                name: String::new(),
-            },
-            21 => Command::Opacity {
-                layer: 1 + self.dice.below(3) as u32,
-                opacity: 0.5,
-            },
-            22 => Command::Fill {
-                surface: CANVAS,
+            15..18 => Command::from(Load {
                 mixture,
-                thickness_m: 2e-5,
-            },
-            23 => Command::Ground {
+                beside: None,
+                brush: BrushName::new(brush).expect("valid"),
+            }),
+            18 => Command::from(Clean {
+                brush: BrushName::new(brush).expect("valid"),
+            }),
+            19..21 => Command::from(Dry {
+                share: Share::new([1.0, 0.4][self.dice.below(2) as usize]).expect("in range"),
+                ..Dry::whole(CANVAS)
+            }),
+            21 => Command::from(Opacity {
+                layer: LayerRef::Number {
+                    number: 1 + self.dice.below(3) as u32,
+                },
+                opacity: OpacityFactor::new(0.5).expect("in range"),
+            }),
+            22 => Command::from(Fill {
+                paint: FillPaint::Mixture { mixture },
+                thickness: FilmThickness::new(2e-5).expect("in range"),
                 surface: CANVAS,
-                ground: ["gesso", "grey", "black"][self.dice.below(3) as usize].to_owned(),
-            },
-            24 => Command::Tooth {
-                surface: CANVAS,
-                tooth: ["linen", "paper"][self.dice.below(2) as usize].to_owned(),
+            }),
+            23 => Command::from(
+                Ground::named(
+                    CANVAS,
+                    ["gesso", "grey", "black"][self.dice.below(3) as usize],
+                )
+                .expect("valid"),
+            ),
+            24 => Command::from(Tooth {
+                tooth: MaterialName::new(["linen", "paper"][self.dice.below(2) as usize])
+                    .expect("valid"),
                 seed: self.dice.below(3),
-            },
-            25..27 => Command::Keep {
-                name: named(&mut self.dice),
-            },
-            27 => Command::Return {
-                name: named(&mut self.dice),
-            },
-            28 => Command::Branch {
-                from: named(&mut self.dice),
-                name: named(&mut self.dice),
-            },
-            29 => Command::Forget {
-                name: named(&mut self.dice),
-            },
-            30..35 => Command::Undo {
-                brush: maybe(&mut self.dice, &brush),
-            },
-            35..39 => Command::Redo {
-                brush: maybe(&mut self.dice, &brush),
-            },
+                surface: CANVAS,
+            }),
+            25..27 => Command::from(Keep {
+                name: VersionName::new(named(&mut self.dice)).expect("valid"),
+            }),
+            27 => Command::from(ReturnTo {
+                name: VersionName::new(named(&mut self.dice)).expect("valid"),
+            }),
+            28 => Command::from(Branch {
+                from: VersionName::new(named(&mut self.dice)).expect("valid"),
+                name: VersionName::new(named(&mut self.dice)).expect("valid"),
+            }),
+            29 => Command::from(Forget {
+                name: VersionName::new(named(&mut self.dice)).expect("valid"),
+            }),
+            30..35 => Command::from(Undo {
+                brush: maybe(&mut self.dice, &brush).map(|it| BrushName::new(it).expect("valid")),
+            }),
+            35..39 => Command::from(Redo {
+                brush: maybe(&mut self.dice, &brush).map(|it| BrushName::new(it).expect("valid")),
+            }),
             39 => return Act::Redefine(b, [31, 48][self.dice.below(2) as usize]),
             40..46 => return Act::Ticks([7, 45, 150, 400][self.dice.below(4) as usize]),
-            46..49 => Command::DryOver {
-                surface: CANVAS,
-                ticks: [20, 200, 2000][self.dice.below(3) as usize],
-                name: String::new(),
+            46..49 => Command::from(Dry {
+                over: Some(
+                    Ticks::new([20, 200, 2000][self.dice.below(3) as usize]).expect("in range"),
+                ),
                 region: self.region(),
-            },
-            49 => Command::StopDrying { surface: CANVAS },
-            50..52 => Command::DryRegion {
-                surface: CANVAS,
-                share: [1.0, 0.4][self.dice.below(2) as usize],
-                name: "part".to_owned(),
-                region: part(&mut self.dice),
-            },
-            52..54 => Command::Wet {
-                surface: CANVAS,
-                layers: self.dice.below(3) as u32,
+                ..Dry::whole(CANVAS)
+            }),
+            49 => Command::from(StopDrying { surface: CANVAS }),
+            50..52 => Command::from(Dry {
+                share: Share::new([1.0, 0.4][self.dice.below(2) as usize]).expect("in range"),
+                layer: LayerName::new("part").ok(),
+                region: Some(part(&mut self.dice)),
+                ..Dry::whole(CANVAS)
+            }),
+            52..54 => Command::from(Wet {
+                // None is all.
+                layers: Some(self.dice.below(3) as u32).filter(|count| *count > 0),
                 region: self.region(),
-            },
+                surface: CANVAS,
+            }),
             54 => match self.dice.below(2) {
-                0 => Command::LayerOpacity {
-                    layer: "part".to_owned(),
-                    opacity: 0.5,
-                },
-                _ => Command::NameLayer {
+                0 => Command::from(Opacity {
+                    layer: "part".parse().expect("valid"),
+                    opacity: OpacityFactor::new(0.5).expect("in range"),
+                }),
+                _ => Command::from(NameLayer {
                     layer: 1,
-                    name: "renamed".to_owned(),
-                },
+                    name: LayerName::new("renamed").expect("valid"),
+                }),
             },
-            _ => Command::GroundSpectrum {
-                surface: CANVAS,
-                spectrum: format!("400,0.{}\n700,0.5", 1 + self.dice.below(3)),
-            },
+            _ => Command::from(
+                Ground::spectrum(
+                    CANVAS,
+                    &format!("400,0.{}\n700,0.5", 1 + self.dice.below(3)),
+                )
+                .expect("valid"),
+            ),
         };
         Act::Command(command)
     }
@@ -300,13 +323,13 @@ impl Painter {
         }
     }
 
-    pub fn command(&mut self, sequencer: &mut Sequencer, command: Command) -> Outcome {
+    pub fn command(&mut self, sequencer: &mut Sequencer, command: impl Into<Command>) -> Outcome {
         self.commands += 1;
         let request = CommandRequest {
             client: 7,
             number: self.commands,
             after: None,
-            command,
+            command: command.into(),
         };
         let outcome = sequencer.command(request).outcome;
         sequencer.drain_journal();

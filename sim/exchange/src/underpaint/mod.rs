@@ -49,10 +49,7 @@ impl Support {
     /// [`ImportError`] for an unknown surface or paint, none, or more than 16 paints.
     pub fn of(painting: &Painting, surface: u32, paints: &[String]) -> Result<Self, ImportError> {
         let (Some(bare), Some(store)) = (painting.bare(surface), painting.store(surface)) else {
-            return Err(ImportError::Refused(maulstick_canvas::EditError::new(
-                format!("there is no surface {surface}"),
-                "the canvas is 0, the palette 1",
-            )));
+            return Err(maulstick_canvas::EditError::NoSurface(surface).into());
         };
         if !(1..=SLOTS).contains(&paints.len()) {
             return Err(ImportError::Paints(paints.len()));

@@ -4,7 +4,9 @@ use std::io::{Cursor, Read as _};
 
 use maulstick_painting::Painting;
 use maulstick_painting::picture::unlit_picture;
+use maulstick_types::edits::{Dry, LayerRef, Opacity};
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::{OpacityFactor, Share};
 use zip::{CompressionMethod, ZipArchive};
 
 use crate::support::{CELLS, bare, decoded, file, painted, speck, stroke};
@@ -119,11 +121,21 @@ fn lower_layers_are_the_painting_before_the_others_were_laid() {
         (3, "Titanium White", [15.0, 6.0]),
     ] {
         stroke(&mut painting, number, load, place);
-        painting.dry(CANVAS, 1.0, "").expect("wet");
+        painting
+            .apply(Dry {
+                share: Share::new(1.0).expect("in range"),
+                ..Dry::whole(CANVAS)
+            })
+            .expect("wet");
         seen.push(unlit_picture(&mut painting, CANVAS).rgb);
     }
     // A layer less opaque than it was does not move what lies under it.
-    painting.set_opacity(3, 0.5).expect("a layer");
+    painting
+        .apply(Opacity {
+            layer: LayerRef::Number { number: 3 },
+            opacity: OpacityFactor::new(0.5).expect("in range"),
+        })
+        .expect("a layer");
     seen[3] = unlit_picture(&mut painting, CANVAS).rgb;
     let opened = opened(&mut painting);
     assert_eq!(opened.layers.len(), 4, "nothing is wet");

@@ -13,7 +13,9 @@ use maulstick_painting::picture::banded;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
+use maulstick_types::edits::{Dry, Fill, FillPaint, Load};
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::{BrushName, FilmThickness, LayerName, Share};
 
 /// No multiple of a tile either way.
 pub(crate) const CELLS: [u32; 2] = [150, 70];
@@ -35,8 +37,14 @@ pub(crate) fn bare(cells: [u32; 2]) -> Painting {
 
 /// A stroke from left to right, `y_mm` up the canvas.
 pub(crate) fn stroke(painting: &mut Painting, number: u64, load: &str, [x_mm, y_mm]: [f64; 2]) {
-    let mixture = load.parse().expect("a mixture");
-    painting.load("main", &mixture).expect("known");
+    let mixture: maulstick_types::Mixture = load.parse().expect("a mixture");
+    painting
+        .apply(Load {
+            mixture: mixture.clone(),
+            beside: None,
+            brush: BrushName::main(),
+        })
+        .expect("known");
     let file = BrushFile::library("round").and_then(|file| file.scaled_to(8.0));
     let file = file.expect("round");
     let solve = |dx_mm: f64| Solve {
@@ -71,7 +79,11 @@ pub(crate) fn painted() -> Painting {
         [3.0, 7.0],
     );
     painting
-        .dry(CANVAS, 1.0, "sky <\"first\"> & sea")
+        .apply(Dry {
+            share: Share::new(1.0).expect("in range"),
+            layer: LayerName::new("sky <\"first\"> & sea").ok(),
+            ..Dry::whole(CANVAS)
+        })
         .expect("wet");
     stroke(
         &mut painting,
@@ -79,7 +91,13 @@ pub(crate) fn painted() -> Painting {
         "Hansa Yellow Opaque=0.2,Thinner=0.8",
         [10.0, 9.0],
     );
-    painting.dry(CANVAS, 0.6, "glaze").expect("wet");
+    painting
+        .apply(Dry {
+            share: Share::new(0.6).expect("in range"),
+            layer: LayerName::new("glaze").ok(),
+            ..Dry::whole(CANVAS)
+        })
+        .expect("wet");
     stroke(&mut painting, 3, "Pyrrole Red", [14.0, 5.0]);
     painting
 }
@@ -88,9 +106,22 @@ pub(crate) fn painted() -> Painting {
 pub(crate) fn speck() -> Painting {
     let mut painting = bare([1, 1]);
     let mut lay = |paint: &str| {
-        let mixture = paint.parse().expect("a mixture");
-        painting.lay(CANVAS, &mixture, 3e-5).expect("it fits");
-        painting.dry(CANVAS, 0.5, "").expect("wet");
+        let mixture: maulstick_types::Mixture = paint.parse().expect("a mixture");
+        painting
+            .apply(Fill {
+                paint: FillPaint::Mixture {
+                    mixture: mixture.clone(),
+                },
+                thickness: FilmThickness::new(3e-5).expect("in range"),
+                surface: CANVAS,
+            })
+            .expect("it fits");
+        painting
+            .apply(Dry {
+                share: Share::new(0.5).expect("in range"),
+                ..Dry::whole(CANVAS)
+            })
+            .expect("wet");
     };
     lay("Yellow Ochre");
     lay("Ultramarine Blue");

@@ -8,7 +8,9 @@ use maulstick_optics::colour::{RgbSpace, apply, delta_e_2000, lab, srgb_decode};
 use maulstick_painting::picture::flat_drawing;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::{BrushState, Solve};
+use maulstick_types::edits::{Fill, FillPaint, Load};
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::{BrushName, FilmThickness};
 use maulstick_types::{Mixture, Pose};
 
 /// Cells of .25 mm of the canvas either way.
@@ -48,13 +50,27 @@ pub(crate) fn easel_of(finer: u32, gpu: Option<Device>) -> Painting {
         painting.define_brush(name, brush());
     }
     painting
-        .lay(CANVAS, &mixture("Titanium White"), 40e-6)
+        .apply(Fill {
+            paint: FillPaint::Mixture {
+                mixture: mixture("Titanium White"),
+            },
+            thickness: FilmThickness::new(40e-6).expect("in range"),
+            surface: CANVAS,
+        })
         .expect("laid");
     painting
-        .load("main", &mixture("Ultramarine Blue=0.6,Yellow Ochre=0.4"))
+        .apply(Load {
+            mixture: mixture("Ultramarine Blue=0.6,Yellow Ochre=0.4"),
+            beside: None,
+            brush: BrushName::main(),
+        })
         .expect("loaded");
     painting
-        .load("other", &mixture("Pyrrole Red"))
+        .apply(Load {
+            mixture: mixture("Pyrrole Red"),
+            beside: None,
+            brush: BrushName::new("other").expect("valid"),
+        })
         .expect("loaded");
     painting
 }

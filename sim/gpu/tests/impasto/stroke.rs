@@ -3,7 +3,9 @@
 use maulstick_gpu::GpuError;
 use maulstick_painting::{Painting, Sequencer};
 use maulstick_types::brush::BrushState;
+use maulstick_types::edits::{Clean, Load};
 use maulstick_types::paint::Entry;
+use maulstick_types::values::BrushName;
 use maulstick_types::{Flags, Header, Message as _, name_hash};
 
 use crate::device;
@@ -91,7 +93,11 @@ fn the_books_balance() {
     }
     assert_eq!(painting.report().quanta_missing, 0);
     paint(&mut painting, "main", &stroke(2, 3.0, 24));
-    painting.clean("main").expect("known");
+    painting
+        .apply(Clean {
+            brush: BrushName::main(),
+        })
+        .expect("known");
     paint(&mut painting, "main", &stroke(2, 5.0, 24));
     assert_eq!(painting.report().quanta_missing, 0);
     let painted = all(&mut painting);
@@ -103,7 +109,11 @@ fn the_books_balance() {
     painting.redo(None).expect("a step");
     assert!(painted == all(&mut painting), "redone it is as it was");
     painting
-        .load("main", &mixture("Yellow Ochre"))
+        .apply(Load {
+            mixture: mixture("Yellow Ochre"),
+            beside: None,
+            brush: BrushName::main(),
+        })
         .expect("loaded");
     assert_eq!(painting.report().quanta_missing, 0);
 }

@@ -5,11 +5,12 @@ use maulstick_canvas::quantum::{CELL_MAX, QUANTUM_M, REFERENCE_CELL_M, UNIT_M};
 use maulstick_impasto::brush::traits::BrushTraits;
 use maulstick_impasto::model::{Handling, StepReport, Transfer};
 use maulstick_optics::THINNER;
+use maulstick_types::edits::{Handle, Piles, Size};
 use maulstick_types::scene::{BrushHandling, BrushMode, PALETTE, Surface};
 use maulstick_types::{Mixture, mixture::Part};
 
 use super::Painting;
-use crate::ledger::Ledger;
+use crate::apply::{Applied, Apply};
 
 /// Share of what a film lacks that comes from inside, and of its surplus that goes there, each time
 /// that paint flows in a brush on the palette, on reference cells: there it is filled through and
@@ -111,72 +112,58 @@ pub(super) fn handling_of(handling: Option<&BrushHandling>) -> Handling {
     }
 }
 
-impl Painting {
-    /// Says how a brush is used from now on.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown brush.
-    pub fn handle(&mut self, handling: &BrushHandling) -> Result<(), EditError> {
-        self.brush(&handling.brush)?;
-        let handlings = &mut self.scene.handlings;
+impl Apply for Handle {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.brush(&self.brush)?;
+        let handling = BrushHandling::from(self.clone());
+        let handlings = &mut painting.scene.handlings;
         handlings.retain(|other| other.brush != handling.brush);
-        if *handling != BrushHandling::normal(&handling.brush) {
-            handlings.push(handling.clone());
+        if handling != BrushHandling::normal(&handling.brush) {
+            handlings.push(handling);
         }
-        self.scene.version += 1;
-        Ok(())
+        painting.scene.version += 1;
+        Ok(Applied::Done)
     }
+}
 
-    /// Sizes a surface: so much paint stays however hard it is brushed, m.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown surface.
-    pub fn size(&mut self, surface: u32, stain_m: f64) -> Result<(), EditError> {
-        self.change_surface(surface, |surface| surface.stain_m = stain_m)
+impl Apply for Size {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let stain_m = self.stain.get();
+        painting.change_surface(self.surface, |surface| surface.stain_m = stain_m)
     }
+}
 
-    /// Says whether paint on a surface lasts, however much of it brushes take up.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown surface.
-    pub fn piles(&mut self, surface: u32, last: bool) -> Result<(), EditError> {
-        self.change_surface(surface, |surface| surface.piles_last = last)
+impl Apply for Piles {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.change_surface(self.surface, |surface| surface.piles_last = self.last)
     }
+}
 
+impl Painting {
     fn change_surface(
         &mut self,
         id: u32,
         change: impl FnOnce(&mut Surface),
-    ) -> Result<(), EditError> {
+    ) -> Result<Applied, EditError> {
         self.surface(id)?;
         let mut surfaces = self.scene.surfaces.iter_mut();
         if let Some(surface) = surfaces.find(|own| own.id == id) {
             change(surface);
         }
         self.scene.version += 1;
-        Ok(())
+        Ok(Applied::Done)
     }
 
-    /// Lays an even film of the colour that a brush carries on the whole over a surface; the brush
-    /// keeps what it has.
+    /// The mean colour of the paint on a brush.
     ///
     /// # Errors
-    /// [`EditError`] for an unknown surface or brush, or one that carries nothing.
-    pub fn fill_with(
-        &mut self,
-        surface: u32,
-        brush: &str,
-        thickness_m: f64,
-    ) -> Result<(), EditError> {
-        self.surface(surface)?;
+    /// [`EditError`] for an unknown brush, or one that carries nothing.
+    pub(super) fn carried_mixture(&mut self, brush: &str) -> Result<Mixture, EditError> {
         self.commit();
         let counts = self.brush(brush)?.load.counts();
         let total: u64 = counts.iter().sum();
         if total == 0 {
-            return Err(EditError::new(
-                format!("brush '{brush}' carries no paint to fill with"),
-                "load it first",
-            ));
+            return Err(EditError::EmptyBrush(brush.to_owned()));
         }
         let carried = self.scene.paints.iter().zip(counts);
         let parts = carried
@@ -185,10 +172,9 @@ impl Painting {
                 paint: slot.name.clone(),
                 share: count as f64 / total as f64,
             });
-        let mixture = Mixture {
+        Ok(Mixture {
             parts: parts.collect(),
-        };
-        self.lay_from(surface, &mixture, thickness_m, Ledger::from_mode_counts)
+        })
     }
 
     /// Surface under the brush with this hash of its name.

@@ -191,9 +191,8 @@ impl Painting {
         }
         let ids: Vec<u32> = scene.surfaces.iter().map(|surface| surface.id).collect();
         if ids != [CANVAS, PALETTE] {
-            return Err(EditError::new(
+            return Err(EditError::Damaged(
                 "the document has no canvas and palette".to_owned(),
-                "`maulstick painting recover` takes out what is whole",
             ));
         }
         let mut look = Appearance::new(Studio::new(
@@ -318,10 +317,9 @@ fn restored_track(
     sheets: &[SurfaceState],
 ) -> Result<PaintingBrush, EditError> {
     let file = BrushFile::parse(&brush.file).map_err(|error| {
-        EditError::new(
-            format!("the file of brush '{name}' in the document is wrong: {error}"),
-            "`maulstick painting recover` takes out what is whole",
-        )
+        EditError::Damaged(format!(
+            "the file of brush '{name}' in the document is wrong: {error}"
+        ))
     })?;
     let content = load.as_ref().map(Page::get);
     let thinned = match &content {

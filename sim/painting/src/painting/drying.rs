@@ -8,10 +8,12 @@
 use std::sync::Arc;
 
 use maulstick_canvas::EditError;
-use maulstick_types::Region;
+use maulstick_types::edits::{Dry, StopDrying};
+use maulstick_types::values::Ticks;
 
 use super::Painting;
 use super::layers::{Changed, Part};
+use crate::apply::{Applied, Apply};
 use crate::clock::{Clock, Drying, Round, TICKS_A_SECOND};
 
 /// Most tiles that dry in a tick.
@@ -24,61 +26,50 @@ const STILL_TICKS: u32 = 120;
 /// Name of its steps.
 const STEP: &str = "drying";
 
+impl Apply for StopDrying {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let count = painting.clock.dryings.len();
+        painting.let_stay_wet(Some(self.surface));
+        match painting.clock.dryings.len() < count {
+            true => Ok(Applied::Done),
+            false => Err(EditError::NotDrying),
+        }
+    }
+}
+
 impl Painting {
-    /// Has the wet paint of a part dry evenly into one new layer over so many ticks.
+    /// Has the wet paint of a part dry evenly into one new layer over a time.
     ///
     /// # Errors
     /// [`EditError`] for an unknown surface, a part beside it, where nothing is wet, and where a
     /// drying goes on.
-    pub fn dry_over(
-        &mut self,
-        surface: u32,
-        ticks: u32,
-        name: &str,
-        region: Option<&Region>,
-    ) -> Result<String, EditError> {
+    pub(super) fn dry_over(&mut self, edit: &Dry, over: Ticks) -> Result<Applied, EditError> {
+        let (surface, region) = (edit.surface, edit.region.as_ref());
         let part = self.part(surface, region)?;
         if self.clock.dryings.iter().any(|it| it.surface == surface) {
-            return Err(EditError::new(
-                "a drying of this surface goes on already".to_owned(),
-                "wait for its end, or stop it: `maulstick dry --stop`",
-            ));
+            return Err(EditError::Drying);
         }
         self.commit();
         if !self.is_wet(&part) {
-            return Err(super::layers::nothing_wet(region));
+            return Err(EditError::NothingWet(edit.region.clone()));
         }
+        let ticks = over.get();
         self.clock.dryings.push(Drying {
             surface,
             region: region.cloned(),
-            name: name.to_owned(),
+            name: edit.layer.clone().map_or(String::new(), Into::into),
             layer: None,
             ticks,
             elapsed: 0,
             reached: 0,
             round: None,
         });
-        let seconds = f64::from(ticks) / f64::from(TICKS_A_SECOND);
-        Ok(format!("within {seconds:.1} s"))
+        Ok(Applied::Drying(
+            f64::from(ticks) / f64::from(TICKS_A_SECOND),
+        ))
     }
 
-    /// Ends the drying of a surface: what is wet still stays wet.
-    ///
-    /// # Errors
-    /// [`EditError`] where none goes on.
-    pub fn stop_drying(&mut self, surface: u32) -> Result<(), EditError> {
-        let count = self.clock.dryings.len();
-        self.let_stay_wet(Some(surface));
-        match self.clock.dryings.len() < count {
-            true => Ok(()),
-            false => Err(EditError::new(
-                "no drying of this surface goes on".to_owned(),
-                "`maulstick dry --over 90s` begins one",
-            )),
-        }
-    }
-
-    /// As [`stop_drying`](Self::stop_drying), if one goes on there, or on all surfaces.
+    /// Ends the drying of a surface, if one goes on there, or of all surfaces: what is wet still stays wet.
     pub(super) fn let_stay_wet(&mut self, surface: Option<u32>) {
         let stays = |drying: &Drying| surface.is_some_and(|surface| drying.surface != surface);
         self.clock.dryings.retain(stays);

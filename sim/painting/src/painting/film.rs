@@ -10,8 +10,10 @@ use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::quantum::{CELL_MAX, Counts, QUANTUM_M, SLOTS};
 use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_types::Mixture;
+use maulstick_types::edits::{Fill, FillPaint};
 
 use super::Painting;
+use crate::apply::{Applied, Apply};
 use crate::history::TilePlace;
 use crate::ledger::Ledger;
 
@@ -43,22 +45,33 @@ impl Films {
     }
 }
 
-impl Painting {
-    /// Lays an even film of wet paint over a whole surface, but for its wells.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown surface or paint, or a 17th paint.
-    pub fn lay(
-        &mut self,
-        surface: u32,
-        mixture: &Mixture,
-        thickness_m: f64,
-    ) -> Result<(), EditError> {
-        self.lay_from(surface, mixture, thickness_m, Ledger::from_tube)
+impl Apply for Fill {
+    /// Lays an even film of paint from the tubes, or of the colour that a brush carries on the whole; the brush keeps
+    /// what it has.
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let thickness_m = self.thickness.get();
+        match &self.paint {
+            FillPaint::Mixture { mixture } => {
+                painting.lay_from(self.surface, mixture, thickness_m, Ledger::from_tube)?;
+            }
+            FillPaint::Carried { brush } => {
+                painting.surface(self.surface)?;
+                let mixture = painting.carried_mixture(brush)?;
+                painting.lay_from(
+                    self.surface,
+                    &mixture,
+                    thickness_m,
+                    Ledger::from_mode_counts,
+                )?;
+            }
+        }
+        Ok(Applied::Done)
     }
+}
 
-    /// As [`lay`](Self::lay), from where `book` says.
-    pub(super) fn lay_from(
+impl Painting {
+    /// Lays an even film of wet paint over a whole surface, but for its wells; from where `book` says.
+    fn lay_from(
         &mut self,
         surface: u32,
         mixture: &Mixture,

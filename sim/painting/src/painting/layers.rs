@@ -6,10 +6,12 @@ use maulstick_canvas::EditError;
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_types::Region;
+use maulstick_types::edits::{Dry, Form as _, LayerRef, NameLayer, Opacity};
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::Layer;
 
 use super::Painting;
+use crate::apply::{Applied, Apply};
 
 /// A part of a surface.
 pub(super) struct Part {
@@ -22,47 +24,56 @@ pub(super) struct Part {
 /// Tiles after some of their paint dried, or became wet.
 pub(super) type Changed = Vec<(TileId, Arc<Tile>)>;
 
-/// The error that nothing is wet.
-pub(super) fn nothing_wet(region: Option<&Region>) -> EditError {
-    let place = region.map_or(String::new(), |region| format!(" in {region}"));
-    EditError::new(format!("nothing is wet{place}"), "paint something first")
+impl Apply for Dry {
+    /// Dries the lower share of the wet paint of a surface, or of a part, into a new layer, at once or over a time.
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        self.check_idle()?;
+        if let Some(over) = self.over {
+            return painting.dry_over(self, over);
+        }
+        painting.close_windows();
+        let part = painting.part(self.surface, self.region.as_ref())?;
+        let dried = painting.drying(&part, self.share.get());
+        if dried.is_empty() {
+            return Err(EditError::NothingWet(self.region.clone()));
+        }
+        painting.let_stay_wet(Some(self.surface));
+        painting.begin_step("dry", None);
+        let name = self.layer.as_deref().unwrap_or_default();
+        let name = painting.dried(self.surface, dried, name);
+        painting.end_own_step();
+        Ok(Applied::Dried(name))
+    }
+}
+
+impl Apply for Opacity {
+    /// Makes a dry layer more or less opaque: a factor on its optical thickness, never on its height.
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let place = painting.place_of(&self.layer)?;
+        painting.begin_step("opacity", None);
+        painting.scene.layers[place].opacity = self.opacity.get();
+        painting.layers_changed();
+        painting.end_own_step();
+        Ok(Applied::Done)
+    }
+}
+
+impl Apply for NameLayer {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let number = self.layer;
+        let place = painting.place_of(&LayerRef::Number { number })?;
+        painting.begin_step("name", None);
+        self.name
+            .trim()
+            .clone_into(&mut painting.scene.layers[place].name);
+        painting.scene.version += 1;
+        painting.end_own_step();
+        Ok(Applied::Done)
+    }
 }
 
 impl Painting {
-    /// Dries the lower `share` of all wet paint of a surface into a new layer called `name`, and says
-    /// which.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown surface, or where nothing is wet.
-    pub fn dry(&mut self, surface: u32, share: f32, name: &str) -> Result<String, EditError> {
-        self.dry_part(surface, share, name, None)
-    }
-
-    /// As [`dry`](Self::dry), but only the cells whose middle is in `region`, if there is one.
-    ///
-    /// # Errors
-    /// As [`dry`](Self::dry), and for a region outside the surface.
-    pub fn dry_part(
-        &mut self,
-        surface: u32,
-        share: f32,
-        name: &str,
-        region: Option<&Region>,
-    ) -> Result<String, EditError> {
-        self.close_windows();
-        let part = self.part(surface, region)?;
-        let dried = self.drying(&part, share);
-        if dried.is_empty() {
-            return Err(nothing_wet(region));
-        }
-        self.let_stay_wet(Some(surface));
-        self.begin_step("dry", None);
-        let name = self.dried(surface, dried, name);
-        self.end_own_step();
-        Ok(name)
-    }
-
-    /// As [`dry`](Self::dry), within the step that is open.
+    /// Dries the lower `share` of the wet paint of a surface, within the step that is open, and says which layer it is.
     pub(super) fn dry_in_step(
         &mut self,
         surface: u32,
@@ -72,7 +83,7 @@ impl Painting {
         let part = self.part(surface, None)?;
         let dried = self.drying(&part, share);
         if dried.is_empty() {
-            return Err(nothing_wet(None));
+            return Err(EditError::NothingWet(None));
         }
         self.let_stay_wet(Some(surface));
         Ok(self.dried(surface, dried, name))
@@ -92,16 +103,12 @@ impl Painting {
             let cells = [[0, 0], cells];
             return Ok(Part { sheet, cells });
         };
-        let fault = |what: String| {
-            let [width, height] = cells.map(|cells| f64::from(cells) * cell_m * 1e3);
-            let help = format!(
-                "the surface is {width:.1}x{height:.1} mm, its origin at the lower left corner"
-            );
-            EditError::new(what, &help)
-        };
-        region.check().map_err(fault)?;
+        region.check()?;
         let within = region.cells(cells, cell_m);
-        let within = within.ok_or_else(|| fault(format!("the region {region} holds no cell")))?;
+        let within = within.ok_or_else(|| EditError::NoCell {
+            region: region.clone(),
+            surface_mm: cells.map(|cells| f64::from(cells) * cell_m * 1e3),
+        })?;
         Ok(Part {
             sheet,
             cells: within,
@@ -200,65 +207,24 @@ impl Painting {
         name
     }
 
-    /// Makes the dry layer of a name, or of a number in digits, more or less opaque; of several of a
-    /// name it is the newest.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown layer.
-    pub fn set_opacity_of(&mut self, layer: &str, opacity: f32) -> Result<(), EditError> {
-        let named = self.scene.layers.iter().rev();
-        let number: Option<u32> = layer.parse().ok();
-        let found = named.clone().find(|other| other.name == layer);
-        let found = found.or_else(|| named.clone().find(|other| Some(other.number) == number));
-        match found.map(|layer| layer.number) {
-            Some(number) => self.set_opacity(number, opacity),
-            None if number.is_some() => Err(self.no_layer(layer)),
-            None => Err(self.no_layer(&format!("called '{layer}'"))),
-        }
-    }
-
-    fn no_layer(&self, which: &str) -> EditError {
-        let known = self.scene.layers.iter();
-        let known: Vec<String> = known
-            .map(|layer| format!("{} ({})", layer.number, layer.name))
-            .collect();
-        let help = match known.is_empty() {
-            true => "nothing has dried yet: `maulstick dry` makes a layer".to_owned(),
-            false => format!("there are {}", known.join(", ")),
-        };
-        EditError::new(format!("there is no dry layer {which}"), &help)
-    }
-
-    /// Makes a dry layer more or less opaque: a factor on its optical thickness, never on its height.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown layer.
-    pub fn set_opacity(&mut self, layer: u32, opacity: f32) -> Result<(), EditError> {
+    /// Place of a dry layer in the scene.
+    fn place_of(&self, which: &LayerRef) -> Result<usize, EditError> {
         let layers = &self.scene.layers;
-        let Some(place) = layers.iter().position(|other| other.number == layer) else {
-            return Err(self.no_layer(&layer.to_string()));
+        let numbered = |number: u32| layers.iter().position(|layer| layer.number == number);
+        let found = match which {
+            LayerRef::Number { number } => numbered(*number),
+            LayerRef::Named { name } => layers
+                .iter()
+                .rposition(|layer| layer.name == name.as_str())
+                .or_else(|| numbered(name.parse().ok()?)),
         };
-        self.begin_step("opacity", None);
-        self.scene.layers[place].opacity = opacity;
-        self.layers_changed();
-        self.end_own_step();
-        Ok(())
-    }
-
-    /// Gives a dry layer another name.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown layer.
-    pub fn name_layer(&mut self, layer: u32, name: &str) -> Result<(), EditError> {
-        let layers = &self.scene.layers;
-        let Some(place) = layers.iter().position(|other| other.number == layer) else {
-            return Err(self.no_layer(&layer.to_string()));
-        };
-        self.begin_step("name", None);
-        name.trim().clone_into(&mut self.scene.layers[place].name);
-        self.scene.version += 1;
-        self.end_own_step();
-        Ok(())
+        found.ok_or_else(|| EditError::NoLayer {
+            which: which.to_string(),
+            known: layers
+                .iter()
+                .map(|layer| (layer.number, layer.name.clone()))
+                .collect(),
+        })
     }
 
     /// Tells the look and all who follow the scene.

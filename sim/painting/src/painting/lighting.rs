@@ -5,17 +5,30 @@ use std::sync::Arc;
 use maulstick_appearance::light::{changes_colour, studio_settings};
 use maulstick_canvas::EditError;
 use maulstick_optics::Studio;
+use maulstick_types::edits::Relight;
 use maulstick_types::scene::{CANVAS, Light, PaintSlot};
 
 use super::{Painting, bare};
+use crate::apply::{Applied, Apply};
 use crate::error::paint_error;
 
 /// Thickness of an opaque layer, m.
 const OPAQUE_M: f64 = 0.01;
 
-impl Painting {
+impl Apply for Relight {
     /// Changes the light. If its spectrum, or its conversion to colour, changes, dry layers are baked anew on demand,
     /// tile by tile.
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.relight(&self.light)?;
+        if self.expose {
+            painting.expose();
+        }
+        Ok(Applied::Done)
+    }
+}
+
+impl Painting {
+    /// Changes the light, without choosing the exposure anew.
     ///
     /// # Errors
     /// [`EditError`] for an invalid light.

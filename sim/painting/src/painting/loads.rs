@@ -7,13 +7,65 @@ use maulstick_canvas::quantum::SLOTS;
 use maulstick_impasto::brush::load::{Half, by_slot};
 use maulstick_impasto::brush::traits::BrushTraits;
 use maulstick_types::Mixture;
-use maulstick_types::scene::{Scene, Tuning};
+use maulstick_types::edits::{Clean, Load, Tune};
+use maulstick_types::scene::Scene;
 
 use super::Painting;
 use super::backend::Deferral;
 use super::lighting::paint_slot;
+use crate::apply::{Applied, Apply};
 use crate::brush_colour::Carried;
 use crate::error::paint_error;
+
+impl Apply for Load {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let brush = self.brush.as_str();
+        painting.brush(brush)?;
+        let mixtures = std::iter::once(&self.mixture).chain(&self.beside);
+        let slots = painting.all_slots(&mixtures.cloned().collect::<Vec<_>>())?;
+        painting.begin_step(&format!("load {brush}"), Some(brush));
+        let parts: Vec<_> = match &slots[..] {
+            [both] => vec![(&both[..], Half::Both)],
+            halves => halves
+                .iter()
+                .map(|slots| &slots[..])
+                .zip([Half::Left, Half::Right])
+                .collect(),
+        };
+        let seed = painting.brush(brush)?.next_seed();
+        painting.fill(brush, &parts, seed)?;
+        painting.book(Some(brush));
+        painting.end_step(|step| step.brush.as_deref() == Some(brush));
+        Ok(Applied::Done)
+    }
+}
+
+impl Apply for Clean {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let brush = self.brush.as_str();
+        painting.brush(brush)?;
+        painting.begin_step(&format!("clean {brush}"), Some(brush));
+        let track = painting.brush(brush)?;
+        track.deferral = Deferral::default();
+        let left = Arc::make_mut(&mut track.load).take_all();
+        painting.ledger.to_cleaner(&left);
+        painting.book(Some(brush));
+        painting.end_step(|step| step.brush.as_deref() == Some(brush));
+        Ok(Applied::Done)
+    }
+}
+
+impl Apply for Tune {
+    /// Makes a brush stiffer or softer; who solves it hears of it by the scene.
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.brush(&self.brush)?;
+        let tunings = &mut painting.scene.tunings;
+        tunings.retain(|other| other.brush != self.brush.as_str());
+        tunings.push(self.clone().into());
+        painting.scene.version += 1;
+        Ok(Applied::Done)
+    }
+}
 
 impl Painting {
     /// The slots of several mixtures; where one is refused no paint gets a slot.
@@ -38,14 +90,8 @@ impl Painting {
         }
         // All or none: a refused mixture changes nothing.
         if self.scene.paints.len() + new.len() > SLOTS {
-            return Err(EditError::new(
-                format!(
-                    "'{}' would be paint {} of this painting",
-                    new[SLOTS - self.scene.paints.len()].name,
-                    SLOTS + 1
-                ),
-                "a painting has at most 16 paints: mix it from those in use",
-            ));
+            let first = &new[SLOTS - self.scene.paints.len()];
+            return Err(EditError::TooManyPaints(first.name.clone()));
         }
         for paint in new {
             let look = Arc::make_mut(&mut self.look);
@@ -61,45 +107,9 @@ impl Painting {
                 .paints
                 .iter()
                 .position(|slot| slot.name == name)
-                .ok_or_else(|| EditError::new(format!("'{name}' has no slot"), "load it first"))
+                .ok_or_else(|| EditError::NoSlot(name.to_owned()))
         };
         by_slot(&mixture, find)
-    }
-
-    /// Loads a brush afresh.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown brush or paint, or a 17th paint.
-    pub fn load(&mut self, brush: &str, mixture: &Mixture) -> Result<(), EditError> {
-        self.brush(brush)?;
-        let slots = self.slots(mixture)?;
-        self.begin_step(&format!("load {brush}"), Some(brush));
-        let seed = self.brush(brush)?.next_seed();
-        self.fill(brush, &[(&slots, Half::Both)], seed)?;
-        self.book(Some(brush));
-        self.end_step(|step| step.brush.as_deref() == Some(brush));
-        Ok(())
-    }
-
-    /// Loads a brush afresh with a mixture on either half of its width (double loading).
-    ///
-    /// # Errors
-    /// As [`load`](Self::load).
-    pub fn load_beside(
-        &mut self,
-        brush: &str,
-        left: &Mixture,
-        right: &Mixture,
-    ) -> Result<(), EditError> {
-        self.brush(brush)?;
-        let slots = self.all_slots(&[left.clone(), right.clone()])?;
-        self.begin_step(&format!("load {brush}"), Some(brush));
-        let parts = [(&slots[0][..], Half::Left), (&slots[1][..], Half::Right)];
-        let seed = self.brush(brush)?.next_seed();
-        self.fill(brush, &parts, seed)?;
-        self.book(Some(brush));
-        self.end_step(|step| step.brush.as_deref() == Some(brush));
-        Ok(())
     }
 
     /// Forgets what the strokes of a brush would load.
@@ -131,39 +141,10 @@ impl Painting {
         Ok(())
     }
 
-    /// Makes a brush stiffer or softer; who solves it hears of it by the scene.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown brush.
-    pub fn tune(&mut self, tuning: &Tuning) -> Result<(), EditError> {
-        self.brush(&tuning.brush)?;
-        let tunings = &mut self.scene.tunings;
-        tunings.retain(|other| other.brush != tuning.brush);
-        tunings.push(tuning.clone());
-        self.scene.version += 1;
-        Ok(())
-    }
-
-    /// Takes all paint off a brush.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown brush.
-    pub fn clean(&mut self, brush: &str) -> Result<(), EditError> {
-        self.brush(brush)?;
-        self.begin_step(&format!("clean {brush}"), Some(brush));
-        let track = self.brush(brush)?;
-        track.deferral = Deferral::default();
-        let left = Arc::make_mut(&mut track.load).take_all();
-        self.ledger.to_cleaner(&left);
-        self.book(Some(brush));
-        self.end_step(|step| step.brush.as_deref() == Some(brush));
-        Ok(())
-    }
-
     /// Gives a brush the loads that its next strokes take in turn.
     ///
     /// # Errors
-    /// As [`load`](Self::load).
+    /// [`EditError`] for an unknown brush or paint, or a 17th paint.
     pub fn take(&mut self, brush: &str, loads: &[Mixture]) -> Result<(), EditError> {
         self.brush(brush)?;
         self.all_slots(loads)?;

@@ -2,62 +2,48 @@
 
 use std::sync::Arc;
 
+use super::{Painting, bare};
+use crate::apply::{Applied, Apply};
+use crate::history::SurfaceMaterial;
+use crate::setup::relief_called;
 use maulstick_appearance::ground::{add_spectrum, check_ground};
 use maulstick_canvas::EditError;
 use maulstick_canvas::assets::SPECTRUM;
+use maulstick_types::edits::{Ground, GroundSource, Tooth};
 use maulstick_types::scene::Surface;
 
-use super::{Painting, bare};
-use crate::history::SurfaceMaterial;
-use crate::setup::relief_called;
+impl Apply for Ground {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let surface = self.surface;
+        painting.surface(surface)?;
+        let ground = match &self.ground {
+            GroundSource::Named { name } => name.to_string(),
+            GroundSource::Spectrum { csv } => {
+                format!("{SPECTRUM}{}", add_spectrum(&mut painting.embedded, csv)?)
+            }
+        };
+        check_ground(&ground, &painting.embedded)?;
+        painting.make("ground", surface, |make| make.ground = ground);
+        Ok(Applied::Done)
+    }
+}
+
+impl Apply for Tooth {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let cell_m = painting.surface(self.surface)?.cell_m;
+        relief_called(&self.tooth, self.seed, cell_m, &painting.embedded)?;
+        painting.make("tooth", self.surface, |make| {
+            make.tooth = self.tooth.to_string();
+            make.tooth_seed = self.seed;
+        });
+        Ok(Applied::Done)
+    }
+}
 
 impl Painting {
     pub(super) fn surface(&self, id: u32) -> Result<&Surface, EditError> {
         let found = self.scene.surfaces.iter().find(|surface| surface.id == id);
-        found.ok_or_else(|| {
-            EditError::new(
-                format!("there is no surface {id}"),
-                "the canvas is 0, the palette 1",
-            )
-        })
-    }
-
-    /// Gives a surface another ground.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown surface or ground.
-    pub fn set_ground(&mut self, surface: u32, ground: &str) -> Result<(), EditError> {
-        self.surface(surface)?;
-        check_ground(ground, &self.embedded)?;
-        self.make("ground", surface, |make| {
-            ground.clone_into(&mut make.ground)
-        });
-        Ok(())
-    }
-
-    /// Gives a surface a ground of a measured reflectance, a CSV file of nm,reflectance, which the
-    /// painting holds from then on.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown surface, or with the line of what is no reflectance.
-    pub fn set_ground_spectrum(&mut self, surface: u32, text: &str) -> Result<(), EditError> {
-        self.surface(surface)?;
-        let hash = add_spectrum(&mut self.embedded, text)?;
-        self.set_ground(surface, &format!("{SPECTRUM}{hash}"))
-    }
-
-    /// Gives a surface another tooth.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown surface or tooth.
-    pub fn set_tooth(&mut self, surface: u32, tooth: &str, seed: u64) -> Result<(), EditError> {
-        let cell_m = self.surface(surface)?.cell_m;
-        relief_called(tooth, seed, cell_m, &self.embedded)?;
-        self.make("tooth", surface, |make| {
-            tooth.clone_into(&mut make.tooth);
-            make.tooth_seed = seed;
-        });
-        Ok(())
+        found.ok_or(EditError::NoSurface(id))
     }
 
     fn make(&mut self, what: &str, surface: u32, change: impl FnOnce(&mut SurfaceMaterial)) {

@@ -46,10 +46,11 @@ use maulstick_impasto::brush::traits::BrushTraits;
 use maulstick_impasto::model::PaintModel;
 use maulstick_impasto::path::PathStepper;
 use maulstick_optics::{PaintLibrary, Studio};
-use maulstick_types::brush::ZOOMS;
+use maulstick_types::edits::{Edit, Place};
 use maulstick_types::scene::{Scene, Surface, WellKind};
 use maulstick_types::{Mixture, name_hash};
 
+use crate::apply::{Applied, Apply};
 use crate::clock::Clock;
 use crate::error::paint_error;
 use crate::history::{History, QUOTA};
@@ -350,45 +351,39 @@ impl Painting {
     }
 
     fn brush(&mut self, name: &str) -> Result<&mut PaintingBrush, EditError> {
-        let names = self.brushes.keys().cloned().collect::<Vec<_>>().join(", ");
-        self.brushes.get_mut(name).ok_or_else(|| {
-            EditError::new(
-                format!("there is no brush called '{name}' in this rig"),
-                &format!("choose one of: {names}"),
-            )
+        let known = match self.brushes.contains_key(name) {
+            true => Vec::new(),
+            false => self.brushes.keys().cloned().collect(),
+        };
+        let brush = self.brushes.get_mut(name);
+        brush.ok_or_else(|| EditError::NoBrush {
+            name: name.to_owned(),
+            known,
         })
     }
+}
 
-    /// Moves, turns or zooms a surface.
+impl Painting {
+    /// Applies an edit.
     ///
     /// # Errors
-    /// [`EditError`] for an unknown surface or a bad pose.
-    pub fn place(
-        &mut self,
-        surface: u32,
-        pose: &maulstick_types::Pose,
-        zoom: f64,
-    ) -> Result<(), EditError> {
-        if !pose.is_valid() || !ZOOMS.contains(&zoom) {
-            return Err(EditError::new(
-                "the pose or the zoom is out of range".into(),
-                "send a finite pose, a unit quaternion and a zoom of .01 to 100",
-            ));
+    /// [`EditError`] says why it is refused; then the painting is as it was.
+    pub fn apply(&mut self, edit: impl Into<Edit>) -> Result<Applied, EditError> {
+        edit.into().apply(self)
+    }
+}
+
+impl Apply for Place {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let zoom = self.zoom.get();
+        Place::new(self.surface, self.pose.clone(), zoom)?;
+        painting.surface(self.surface)?;
+        let mut surfaces = painting.scene.surfaces.iter_mut();
+        if let Some(found) = surfaces.find(|found| found.id == self.surface) {
+            (found.pose, found.zoom) = (self.pose.clone(), zoom);
         }
-        let found = self
-            .scene
-            .surfaces
-            .iter_mut()
-            .find(|found| found.id == surface);
-        let found = found.ok_or_else(|| {
-            EditError::new(
-                format!("there is no surface {surface}"),
-                "the canvas is 0, the palette 1",
-            )
-        })?;
-        (found.pose, found.zoom) = (pose.clone(), zoom);
-        self.scene.version += 1;
-        Ok(())
+        painting.scene.version += 1;
+        Ok(Applied::Done)
     }
 }
 

@@ -82,7 +82,9 @@ impl Painting {
 mod tests {
     use maulstick_optics::PaintLibrary;
     use maulstick_types::Mixture;
+    use maulstick_types::edits::{Dry, Fill, FillPaint, Ground};
     use maulstick_types::scene::CANVAS;
+    use maulstick_types::values::{FilmThickness, LayerName, Share};
 
     use super::*;
     use crate::picture::picture;
@@ -99,16 +101,30 @@ mod tests {
         assert!(painting.is_blank());
         let lay = |painting: &mut Painting, paint: &str| {
             painting
-                .lay(CANVAS, &Mixture::pure(paint), 4e-5)
+                .apply(Fill {
+                    paint: FillPaint::Mixture {
+                        mixture: Mixture::pure(paint),
+                    },
+                    thickness: FilmThickness::new(4e-5).expect("in range"),
+                    surface: CANVAS,
+                })
                 .expect("laid");
         };
         lay(&mut painting, "Yellow Ochre");
         assert!(!painting.is_blank());
-        painting.dry(CANVAS, 1.0, "first").expect("dried");
+        painting
+            .apply(Dry {
+                share: Share::new(1.0).expect("in range"),
+                layer: LayerName::new("first").ok(),
+                ..Dry::whole(CANVAS)
+            })
+            .expect("dried");
         painting.keep("yellow").expect("kept");
         let yellow = picture(&mut painting, CANVAS);
         lay(&mut painting, "Bone Black");
-        painting.set_ground(CANVAS, "grey").expect("a ground");
+        painting
+            .apply(Ground::named(CANVAS, "grey").expect("valid"))
+            .expect("a ground");
         let black = picture(&mut painting, CANVAS);
         let mut still = painting.still();
         lay(&mut painting, "Pyrrole Red");

@@ -41,10 +41,7 @@ impl Painting {
         let track = self.brush(name)?;
         let fits = solve.stroke == 0 || track.head.fits(solve.angles_rad.len());
         if !fits || solve.fault().is_some() {
-            return Err(EditError::new(
-                format!("a state of brush '{name}' does not fit its brush file"),
-                "restart the brush node: it runs with another file",
-            ));
+            return Err(EditError::Unfit(name.to_owned()));
         }
         let (first, last) = self.span_ns.unwrap_or((solve.event_ns, solve.event_ns));
         self.span_ns = Some((first, last.max(solve.event_ns)));

@@ -108,7 +108,7 @@ impl Painting {
         let slot = |paint: &String| {
             let mut slots = self.scene.paints.iter();
             let found = slots.position(|slot| slot.name == *paint);
-            found.ok_or_else(|| EditError::new(format!("'{paint}' has no slot"), "load it first"))
+            found.ok_or_else(|| EditError::NoSlot(paint.clone()))
         };
         paints.iter().map(slot).collect()
     }

@@ -9,10 +9,12 @@ use maulstick_canvas::page::Page;
 use maulstick_canvas::tile::Version;
 use maulstick_impasto::brush::load::BrushLoad;
 use maulstick_impasto::brush::traits::TEXELS_PER_STRIP;
+use maulstick_types::edits::{Redo, Undo};
 use maulstick_types::scene::{Layer, Scene};
 
 use super::Painting;
 use super::backend::Deferral;
+use crate::apply::{Applied, Apply};
 use crate::history::{
     Change, NonTileState, OpenStep, Step, StepEffects, SurfaceMaterial, TilePlace, TileRef, same,
 };
@@ -53,6 +55,18 @@ pub(super) fn makes(scene: &Scene) -> Vec<SurfaceMaterial> {
             tooth_seed: surface.tooth_seed,
         })
         .collect()
+}
+
+impl Apply for Undo {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.undo(self.brush.as_deref()).map(Applied::Step)
+    }
+}
+
+impl Apply for Redo {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.redo(self.brush.as_deref()).map(Applied::Step)
+    }
 }
 
 impl Painting {
@@ -176,13 +190,10 @@ impl Painting {
         let own = |step: &OpenStep| brush.is_none() || step.brush.as_deref() == brush;
         // Nothing lies over a step that is not finished.
         if !self.history.open().any(own) {
-            let step = self.history.last_done(brush).ok_or_else(|| {
-                let whose = brush.map_or(String::new(), |brush| format!(" of brush '{brush}'"));
-                EditError::new(
-                    format!("there is nothing{whose} to undo"),
-                    "paint something first",
-                )
-            })?;
+            let step = self
+                .history
+                .last_done(brush)
+                .ok_or_else(|| EditError::NothingToUndo(brush.map(str::to_owned)))?;
             self.check(step, Way::Back)?;
         }
         self.end_step(|_| true);
@@ -225,12 +236,8 @@ impl Painting {
             self.brush(brush)?;
         }
         self.commit();
-        let step = self.history.last_undone(brush).cloned().ok_or_else(|| {
-            EditError::new(
-                "there is nothing to redo".into(),
-                "only what was undone and not painted over can be redone",
-            )
-        })?;
+        let step = self.history.last_undone(brush).cloned();
+        let step = step.ok_or(EditError::NothingToRedo)?;
         self.check(&step, Way::Forth)?;
         self.end_step(|_| true);
         Ok(self.walk(&step, Way::Forth))
@@ -257,11 +264,10 @@ impl Painting {
             return Ok(());
         }
         let other = later.or_else(|| self.history.last_done(None));
-        let other = other.map_or("something".to_owned(), |step| format!("'{}'", step.what));
-        Err(EditError::new(
-            format!("'{}' lies under {other}, which came later", step.what),
-            "undo that first: `maulstick undo` without a brush takes the newest step of all",
-        ))
+        Err(EditError::Covered {
+            what: step.what.clone(),
+            over: other.map(|step| step.what.clone()),
+        })
     }
 
     /// Takes a step back, or forth; it was checked.

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::Painting;
+use crate::apply::{Applied, Apply};
+use crate::history::{NonTileState, TilePlace, TileRef, same};
 use maulstick_canvas::EditError;
 use maulstick_impasto::brush::load::BrushLoad;
-use maulstick_types::advice::choice;
+use maulstick_types::edits::{Branch, Forget, Keep, ReturnTo};
 use maulstick_types::scene::NamedVersion;
-
-use super::Painting;
-use crate::history::{NonTileState, TilePlace, TileRef, same};
 
 /// A painting as it was.
 #[derive(Clone, Debug)]
@@ -27,6 +27,32 @@ pub struct Named {
 /// Name of the current painting among its versions.
 pub const NOW: &str = "now";
 
+impl Apply for Keep {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.keep(&self.name).map(|()| Applied::Done)
+    }
+}
+
+impl Apply for ReturnTo {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.return_to(&self.name).map(|()| Applied::Done)
+    }
+}
+
+impl Apply for Branch {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting
+            .branch(&self.from, &self.name)
+            .map(|()| Applied::Done)
+    }
+}
+
+impl Apply for Forget {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.forget(&self.name).map(|()| Applied::Done)
+    }
+}
+
 impl Painting {
     /// The versions, by name.
     pub fn named(&self) -> impl Iterator<Item = &Named> {
@@ -40,26 +66,16 @@ impl Painting {
     }
 
     pub(super) fn version(&self, name: &str) -> Result<&Named, EditError> {
-        self.named.get(name).ok_or_else(|| {
-            let names: Vec<&str> = self.named.keys().map(String::as_str).collect();
-            let help = match names.is_empty() {
-                true => "this painting has none yet: keep one first".to_owned(),
-                false => choice(name, names),
-            };
-            EditError::new(format!("there is no version called '{name}'"), &help)
+        self.named.get(name).ok_or_else(|| EditError::NoVersion {
+            name: name.to_owned(),
+            known: self.named.keys().cloned().collect(),
         })
     }
 
     fn check_new(&self, name: &str) -> Result<(), EditError> {
         match self.named.contains_key(name) {
-            _ if name == NOW => Err(EditError::new(
-                format!("'{NOW}' is the painting as it is, not a version"),
-                "choose another name",
-            )),
-            true => Err(EditError::new(
-                format!("there is a version called '{name}' already"),
-                "choose another name, or forget that version first",
-            )),
+            _ if name == NOW => Err(EditError::VersionNow(NOW)),
+            true => Err(EditError::VersionTaken(name.to_owned())),
             false => Ok(()),
         }
     }

@@ -12,9 +12,11 @@ use maulstick_canvas::quantum::{QUANTUM_M, SLOTS};
 use maulstick_canvas::window::Window;
 use maulstick_impasto::brush::traits::BrushTraits;
 use maulstick_types::Mixture;
+use maulstick_types::edits::Wells;
 use maulstick_types::scene::{Well, WellKind};
 
 use super::{Painting, bare};
+use crate::apply::{Applied, Apply};
 use crate::error::paint_error;
 use crate::ledger::Ledger;
 
@@ -63,12 +65,16 @@ fn is_in((pose, traits): (&HeadPose, &BrushTraits), well: &Well, cell_m: f64) ->
     })
 }
 
-impl Painting {
+impl Apply for Wells {
     /// Gives a surface other wells. Paint stirred in those that go stays there, wet.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown surface or paint, or a well outside the surface.
-    pub fn set_wells(&mut self, surface: u32, wells: &[Well]) -> Result<(), EditError> {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.set_wells(self.surface, &self.wells)?;
+        Ok(Applied::Done)
+    }
+}
+
+impl Painting {
+    fn set_wells(&mut self, surface: u32, wells: &[Well]) -> Result<(), EditError> {
         let mut changed = self.surface(surface)?.clone();
         let size = changed.cells.map(|cells| f64::from(cells) * changed.cell_m);
         changed.wells = wells.to_vec();
@@ -78,11 +84,10 @@ impl Painting {
                 low >= -EDGE_M && high <= size[i] + EDGE_M
             };
             if well.radius_m <= 0.0 || !(lies(0) && lies(1)) {
-                let [width, height] = size.map(|m| m * 1e3);
-                return Err(EditError::new(
-                    format!("well {} does not lie on the surface", place + 1),
-                    &format!("it is {width:.0}×{height:.0} mm: give a middle and a radius within"),
-                ));
+                return Err(EditError::WellBeside {
+                    place: place + 1,
+                    surface_mm: size.map(|m| m * 1e3),
+                });
             }
             if let WellKind::Paint { mixture } = &mut well.kind {
                 *mixture = self.library.check(mixture).map_err(paint_error)?;

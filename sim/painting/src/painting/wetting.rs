@@ -3,75 +3,57 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use super::Painting;
+use super::layers::{Changed, Part};
+use crate::apply::{Applied, Apply};
 use maulstick_canvas::EditError;
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::tile::{Tile, TileId};
-use maulstick_types::Region;
+use maulstick_types::edits::Wet;
 
-use super::Painting;
-use super::layers::{Changed, Part};
-
-impl Painting {
-    /// Rewets the newest `layers` dry layers of a part in place; 0 means all. Returns which, in words.
+impl Apply for Wet {
+    /// Rewets the newest dry layers of a part in place.
     ///
     /// A cell takes no more than it can hold: paint without room, and all under it there, stays dry. A layer that is
-    /// empty afterwards is removed from the scene.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown surface or a part outside it, where nothing has dried or has room, and for a layer
-    /// whose opacity is not 1, for wet paint has no opacity. Then nothing has changed.
-    pub fn wet(
-        &mut self,
-        surface: u32,
-        layers: u32,
-        region: Option<&Region>,
-    ) -> Result<String, EditError> {
-        let part = self.part(surface, region)?;
-        self.close_windows();
-        let numbers = self.newest_on(&part, layers);
-        let place = region.map_or(String::new(), |region| format!(" in {region}"));
+    /// empty afterwards is removed from the scene. A layer whose opacity is not 1 is refused, for wet paint has no
+    /// opacity.
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let part = painting.part(self.surface, self.region.as_ref())?;
+        painting.close_windows();
+        let numbers = painting.newest_on(&part, self.layers);
         let Some(least) = numbers.first().copied() else {
-            return Err(EditError::new(
-                format!("nothing has dried{place}"),
-                "`maulstick dry` dries wet paint",
-            ));
+            return Err(EditError::NothingDry(self.region.clone()));
         };
-        let known = self.scene.layers.iter();
+        let known = painting.scene.layers.iter();
         let chosen = known.filter(|layer| numbers.contains(&layer.number));
         if let Some(veiled) = chosen.clone().find(|layer| layer.opacity != 1.0) {
-            let (number, name) = (veiled.number, &veiled.name);
-            return Err(EditError::new(
-                format!("wet paint cannot keep the opacity of layer {number} ({name})"),
-                &format!("`maulstick opacity {number} 1` makes it as it was laid"),
-            ));
+            return Err(EditError::Veiled {
+                number: veiled.number,
+                name: veiled.name.clone(),
+            });
         }
-        let names: Vec<String> = chosen.rev().map(|layer| layer.name.clone()).collect();
+        let layers: Vec<String> = chosen.rev().map(|layer| layer.name.clone()).collect();
         let mut full_cells = 0;
         let mut tiles = Changed::new();
-        for (id, tile, within) in self.dried_tiles(&part) {
+        for (id, tile, within) in painting.dried_tiles(&part) {
             if let Some(rewet) = tile.rewet(least, &within) {
                 full_cells += rewet.full_cells;
                 tiles.push((id, Arc::new(rewet.tile)));
             }
         }
         if tiles.is_empty() {
-            return Err(EditError::new(
-                format!("no cell{place} has room for more wet paint"),
-                "take some of the wet paint off first, or dry it",
-            ));
+            return Err(EditError::NoRoom(self.region.clone()));
         }
-        self.let_stay_wet(Some(surface));
-        self.begin_step("wet", None);
-        self.put_changed(surface, tiles);
-        self.drop_empty_layers(&numbers);
-        self.end_own_step();
-        let names = names.join(", ");
-        Ok(match full_cells {
-            0 => names,
-            cells => format!("{names}; {cells} cells could not hold all of it"),
-        })
+        painting.let_stay_wet(Some(self.surface));
+        painting.begin_step("wet", None);
+        painting.put_changed(self.surface, tiles);
+        painting.drop_empty_layers(&numbers);
+        painting.end_own_step();
+        Ok(Applied::Rewet { layers, full_cells })
     }
+}
 
+impl Painting {
     /// The tiles of a part on which something has dried, with the cells that are of the part.
     fn dried_tiles<'a>(
         &'a self,
@@ -88,13 +70,9 @@ impl Painting {
         })
     }
 
-    /// Numbers of the newest layers, `count` of them or for 0 all, that have paint in a part.
-    fn newest_on(&self, part: &Part, count: u32) -> BTreeSet<u32> {
-        let most = if count == 0 {
-            usize::MAX
-        } else {
-            count as usize
-        };
+    /// Numbers of the newest layers, `count` of them or all, that have paint in a part.
+    fn newest_on(&self, part: &Part, count: Option<u32>) -> BTreeSet<u32> {
+        let most = count.map_or(usize::MAX, |count| count as usize);
         let mut found = BTreeSet::new();
         for (_, tile, within) in self.dried_tiles(part) {
             let layers = tile.dry().into_iter().flat_map(|stack| stack.layers());

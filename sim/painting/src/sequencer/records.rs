@@ -3,11 +3,14 @@
 use maulstick_brush::BrushFile;
 use maulstick_canvas::EditError;
 use maulstick_types::brush::BrushState;
-use maulstick_types::command::{Command, CommandRequest, Outcome};
+use maulstick_types::command::{Command, CommandRequest, Outcome, TakeCommand};
+use maulstick_types::edits::Edit;
 use maulstick_types::paint::Entry;
-use maulstick_types::{Header, Origin};
+use maulstick_types::values::BrushName;
+use maulstick_types::{Header, Mixture, Origin};
 
 use super::Sequencer;
+use crate::apply::{Applied, Apply as _};
 use crate::painting::Painting;
 use crate::snapshot::SequencerSnapshot;
 
@@ -17,9 +20,6 @@ const OWN: u64 = 0;
 /// The decision that a painting goes on after its program ended: what its brushes did last is not
 /// joined to what they do next.
 const GOES_ON: &str = "the painting goes on";
-
-/// Zoom of a solve that an older program saved without it: the scene has the zoom.
-pub const NO_ZOOM: f64 = 0.0;
 
 /// Something that was accepted.
 #[derive(Clone, Debug, PartialEq)]
@@ -102,28 +102,45 @@ impl Sequencer {
         }
     }
 
-    /// Does a command of the one who runs the sequencer, at once.
+    /// Applies an edit of the one who runs the sequencer, at once.
     ///
     /// # Errors
     /// [`EditError`] where the painting refuses it.
-    pub fn ask(&mut self, command: Command) -> Result<String, EditError> {
-        let number = self
-            .answered
-            .get(&OWN)
-            .map_or(1, |answer| answer.number + 1);
-        let request = CommandRequest {
-            client: OWN,
-            number,
-            after: None,
-            command,
+    pub fn edit(&mut self, edit: impl Into<Edit>) -> Result<Applied, EditError> {
+        let edit = edit.into();
+        let applied = edit.apply(&mut self.painting)?;
+        self.accept_own(edit.into());
+        Ok(applied)
+    }
+
+    /// Begins a take of the one who runs the sequencer: its samples have this device and epoch.
+    ///
+    /// # Errors
+    /// [`EditError`] where a load is wrong.
+    pub fn begin_own_take(
+        &mut self,
+        brush: &str,
+        [device, device_epoch]: [u32; 2],
+        loads: Vec<Mixture>,
+    ) -> Result<(), EditError> {
+        let brush = BrushName::new(brush)?;
+        self.begin_take(&brush, [device, device_epoch], &loads, false)?;
+        let command = TakeCommand::Begin {
+            brush,
+            device,
+            device_epoch,
+            loads,
+            again: false,
         };
-        let outcome = self.command(request).outcome;
+        self.accept_own(command.into());
+        Ok(())
+    }
+
+    fn accept_own(&mut self, command: Command) {
+        let number = self.replies.newest(OWN).map_or(1, |newest| newest + 1);
+        self.enter_command(OWN, number, command);
+        self.remember(OWN, number, Outcome::done(""));
         self.drain_journal();
-        match outcome {
-            Outcome::Done { detail, .. } => Ok(detail),
-            Outcome::Refused { what, help } => Err(EditError { what, help }),
-            Outcome::Waiting => Ok(String::new()),
-        }
     }
 
     /// Resumes after the program ended: the next states of brushes begin new paths, and no take has a brush until its
@@ -164,10 +181,7 @@ impl Sequencer {
         let next = record.next();
         self.next = record.index;
         match record.what {
-            Accepted::State { header, mut state } => {
-                self.know_zooms(&mut state);
-                self.replay_state(&header, &state);
-            }
+            Accepted::State { header, state } => self.replay_state(&header, &state),
             Accepted::Entry(Entry::Command {
                 client,
                 number,
@@ -179,9 +193,7 @@ impl Sequencer {
                     after: None,
                     command,
                 };
-                if request.command.check().is_ok() {
-                    self.execute(&request);
-                }
+                self.execute(&request);
             }
             Accepted::Entry(Entry::Decision { what }) => {
                 if what == GOES_ON {
@@ -210,14 +222,6 @@ impl Sequencer {
         }
     }
 
-    fn know_zooms(&self, state: &mut BrushState) {
-        let surfaces = &self.painting.scene().surfaces;
-        for solve in state.solves.iter_mut().filter(|it| it.zoom == NO_ZOOM) {
-            let surface = surfaces.iter().find(|it| it.id == solve.surface);
-            solve.zoom = surface.map_or(1.0, |surface| surface.zoom);
-        }
-    }
-
     fn replay_state(&mut self, header: &Header, state: &BrushState) {
         let brush = self.painting.brush_of(header.source).map(str::to_owned);
         if let Some(brush) = brush.filter(|_| state.fault().is_none()) {
@@ -239,14 +243,13 @@ impl Sequencer {
             consumed: consumed
                 .map(|(origin, next)| (origin.source, origin.epoch, *next))
                 .collect(),
-            answers: self.answered.clone(),
+            replies: self.replies.clone(),
         }
     }
 
     /// A sequencer restored from its snapshot.
     #[must_use]
     pub fn restored(mut painting: Painting, kept: SequencerSnapshot) -> Self {
-        let answers = kept.answers.values().map(|answer| answer.age).max();
         let consumed = kept
             .consumed
             .into_iter()
@@ -259,8 +262,7 @@ impl Sequencer {
             announced: kept.takes,
             gone: kept.gone.into_iter().collect(),
             consumed: consumed.collect(),
-            answered: kept.answers,
-            answers: answers.unwrap_or(0),
+            replies: kept.replies,
             ..Self::new(painting)
         }
     }

@@ -11,8 +11,9 @@ use maulstick_rig::Fault;
 use maulstick_session::Autosave;
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::command::Command;
+use maulstick_types::edits::Load;
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::BrushName;
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng as _;
 
@@ -117,11 +118,12 @@ impl Easel {
     /// Loads a paint in turn.
     pub(super) fn load(&mut self) -> Result<(), Fault> {
         let text = PAINTS[self.stroke as usize % PAINTS.len()];
-        let command = Command::Load {
-            brush: BRUSH.to_owned(),
+        let command = Load {
             mixture: text.parse().map_err(fault)?,
+            beside: None,
+            brush: BrushName::new(BRUSH).expect("valid"),
         };
-        self.sequencer.ask(command).map_err(fault)?;
+        self.sequencer.edit(command).map_err(fault)?;
         Ok(())
     }
 

@@ -4,7 +4,9 @@ use maulstick_document::pack::{History, pack};
 use maulstick_exchange::write_open_exr;
 use maulstick_painting::Painting;
 use maulstick_rig::Fault;
+use maulstick_types::edits::Dry;
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::{LayerName, Share};
 
 use super::fault;
 use super::hand::{Easel, Took};
@@ -43,6 +45,12 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
 }
 
 fn dry(painting: &mut Painting) -> Result<(), Fault> {
-    painting.dry(CANVAS, 1.0, "first").map_err(fault)?;
+    painting
+        .apply(Dry {
+            share: Share::new(1.0).expect("in range"),
+            layer: LayerName::new("first").ok(),
+            ..Dry::whole(CANVAS)
+        })
+        .map_err(fault)?;
     Ok(())
 }

@@ -1,12 +1,12 @@
 //! Ten thousand steps taken back.
 
 use maulstick_rig::Fault;
-use maulstick_types::command::Command;
 
 use super::fault;
 use super::hand::{Easel, Took};
 use crate::report::{Report, quantile, sorted};
 use crate::thread_cpu::thread_cpu;
+use maulstick_types::edits::Undo;
 
 const CELLS: u32 = 4096;
 const STEPS: usize = 10_000;
@@ -29,10 +29,7 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
     let mut spent_ms = Vec::new();
     for _ in 0..STEPS {
         let (busy, paged) = (thread_cpu(), easel.autosave.document().page_in_cpu());
-        easel
-            .sequencer
-            .ask(Command::Undo { brush: None })
-            .map_err(fault)?;
+        easel.sequencer.edit(Undo { brush: None }).map_err(fault)?;
         let busy = thread_cpu().saturating_sub(busy);
         let paged = easel
             .autosave

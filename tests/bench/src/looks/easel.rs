@@ -8,10 +8,11 @@ use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_rig::Fault;
 use maulstick_session::Offline;
-use maulstick_types::command::Command;
+use maulstick_types::edits::{Dry, Edit, Load};
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::{StylusPose, StylusSample, axes};
+use maulstick_types::values::BrushName;
 
 /// Samples a second.
 const RATE_HZ: f64 = 250.0;
@@ -56,7 +57,7 @@ pub(crate) struct Easel {
 }
 
 fn refused(refusal: EditError) -> Fault {
-    Fault::failure(format!("{}; {}", refusal.what, refusal.help))
+    Fault::failure(format!("{refusal}; {}", refusal.advice()))
 }
 
 /// A brush of the library, so wide.
@@ -94,8 +95,8 @@ impl Easel {
         })
     }
 
-    pub(crate) fn command(&mut self, command: Command) -> Result<(), Fault> {
-        self.offline.command(command).map_err(refused)
+    pub(crate) fn edit(&mut self, edit: impl Into<Edit>) -> Result<(), Fault> {
+        self.offline.edit(edit).map(drop).map_err(refused)
     }
 
     pub(crate) fn take_up(&mut self, name: &str, file: BrushFile) -> Result<(), Fault> {
@@ -109,15 +110,15 @@ impl Easel {
             .parse()
             .map_err(|error| Fault::failure(format!("{error}")))?;
         let brush = self.offline.brush().to_owned();
-        self.command(Command::Load { brush, mixture })
+        self.edit(Load {
+            mixture,
+            beside: None,
+            brush: BrushName::new(brush)?,
+        })
     }
 
     pub(crate) fn dry(&mut self) -> Result<(), Fault> {
-        self.command(Command::Dry {
-            surface: CANVAS,
-            share: 1.0,
-            name: String::new(),
-        })
+        self.edit(Dry::whole(CANVAS))
     }
 
     pub(crate) fn stroke(&mut self, stroke: &Stroke) -> Result<(), Fault> {

@@ -1,7 +1,8 @@
 //! Paint, tools and grounds beyond what a painter takes: all stays finite and no quantum is lost.
 
-use maulstick_types::command::Command;
+use maulstick_types::edits::{Fill, FillPaint};
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::FilmThickness;
 
 use super::easel::{Easel, Stroke, brush};
 
@@ -20,12 +21,14 @@ fn easel(kind: &str) -> Easel {
 }
 
 fn fill(easel: &mut Easel, film_mm: f64) {
-    let fill = Command::Fill {
+    let fill = Fill {
+        paint: FillPaint::Mixture {
+            mixture: "Titanium White".parse().expect("a mixture"),
+        },
+        thickness: FilmThickness::new(1e-3 * film_mm).expect("in range"),
         surface: CANVAS,
-        mixture: "Titanium White".parse().expect("a mixture"),
-        thickness_m: 1e-3 * film_mm,
     };
-    easel.command(fill).expect("filled");
+    easel.edit(fill).expect("filled");
 }
 
 #[test]
@@ -36,12 +39,7 @@ fn a_film_of_a_metre_is_refused() {
     let said = maulstick_brush::BrushFile::parse(&text).expect_err("refused");
     assert!(said.to_string().contains("load.film_um"), "{said}");
     let mut easel = easel("flat");
-    let metre = Command::Fill {
-        surface: CANVAS,
-        mixture: "Titanium White".parse().expect("a mixture"),
-        thickness_m: 1.0,
-    };
-    assert!(easel.command(metre).is_err());
+    assert!(FilmThickness::new(1.0).is_err());
     whole(&mut easel);
 }
 

@@ -3,6 +3,8 @@
 use maulstick_rig::Fault;
 
 use super::easel::{Easel, Map, Stroke, brush, correlation, slope};
+use maulstick_types::edits::{Fill, FillPaint};
+use maulstick_types::values::FilmThickness;
 
 /// Name, value, unit.
 pub(crate) type Number = (&'static str, f64, &'static str);
@@ -281,12 +283,14 @@ pub(crate) fn knife(trial: Trial) -> Result<Vec<Number>, Fault> {
         "linen",
         brush(trial.pick("knife", "flat"), 16.0)?,
     )?;
-    easel.command(maulstick_types::command::Command::Fill {
+    easel.edit(Fill {
+        paint: FillPaint::Mixture {
+            mixture: PAINT
+                .parse()
+                .map_err(|error| Fault::failure(format!("{error}")))?,
+        },
+        thickness: FilmThickness::new(500e-6)?,
         surface: 0,
-        mixture: PAINT
-            .parse()
-            .map_err(|error| Fault::failure(format!("{error}")))?,
-        thickness_m: 500e-6,
     })?;
     easel.stroke(&Stroke::along(25.0, 15.0, 75.0, 0.5))?;
     let part = ([30.0, 22.0], [60.0, 28.0]);

@@ -5,6 +5,7 @@ use std::cell::Cell;
 use eframe::egui::{Key, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use maulstick_types::command::BrushCommand;
 use maulstick_types::command::Command;
 
 use super::*;
@@ -30,7 +31,7 @@ fn a_click_takes_a_brush_into_the_hand_at_its_width() {
     let [
         Asked::Command {
             node,
-            command: Command::Define { brush, toml },
+            command: Command::Brush(BrushCommand::Define { brush, toml }),
         },
     ] = &requests[..]
     else {
@@ -93,7 +94,7 @@ fn files_of_ones_own_join_it_and_a_lost_one_is_told() {
     harness.run();
     let commands = harness.state_mut().commands();
     assert!(
-        matches!(&commands[..], [Command::Define { .. }]),
+        matches!(&commands[..], [Command::Brush(BrushCommand::Define { .. })]),
         "{commands:?}"
     );
     harness.get_by_label("Lost").click_accesskit();

@@ -6,7 +6,7 @@ fn asked(path: &Path, change: impl FnOnce(&mut ExportPicture)) -> Result<ExportO
     export.follow();
     change(&mut export);
     match export.command(path)? {
-        Command::Export { order } => Ok(order),
+        Command::File(FileCommand::Export(order)) => Ok(order),
         other => panic!("{other:?}"),
     }
 }

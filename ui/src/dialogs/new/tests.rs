@@ -41,7 +41,7 @@ fn it_is_kept_in_a_file_that_is_not_there_yet() {
         let path = folder.path().join(name).display().to_string();
         asked(|new| (new.in_memory, new.path) = (false, path))
     };
-    let Ok(Command::New { path, .. }) = at("sea") else {
+    let Ok(Command::Rig(RigCommand::New { path, .. })) = at("sea") else {
         panic!("refused");
     };
     assert!(path.is_some_and(|path| path.ends_with("/sea.maul")));
@@ -57,7 +57,9 @@ fn it_is_kept_in_a_file_that_is_not_there_yet() {
     let words = asked(|new| new.ground = FILE).expect_err("no file");
     assert!(words.starts_with("Ground"), "{words}");
     let ground = asked(|new| (new.ground, new.ground_file) = (FILE, "/g/oak.png".into()));
-    assert!(matches!(ground, Ok(Command::New { canvas, .. }) if canvas.ground == "/g/oak.png"));
+    assert!(
+        matches!(ground, Ok(Command::Rig(RigCommand::New { canvas, .. })) if canvas.ground == "/g/oak.png")
+    );
 }
 
 #[test]
@@ -65,7 +67,7 @@ fn how_large_it_is_is_told_in_words() {
     let of = |width: &str, fine: &str| {
         let command = asked(|new| (new.width, new.fine) = (width.into(), fine.into()));
         match command.expect("a canvas") {
-            Command::New { canvas, .. } => estimate(&canvas),
+            Command::Rig(RigCommand::New { canvas, .. }) => estimate(&canvas),
             other => panic!("{other:?}"),
         }
     };

@@ -5,7 +5,9 @@ use crate::test_support::overlay_bench::picture;
 fn a_name_is_whole_or_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let save = |path: &Path| SaveAs::at(String::new()).command(path);
-    let Ok(Command::SaveAs { path, replace }) = save(&folder.path().join("sea")) else {
+    let Ok(Command::Rig(RigCommand::SaveAs(command::SaveAs { path, replace }))) =
+        save(&folder.path().join("sea"))
+    else {
         panic!("refused");
     };
     assert!(path.ends_with("/sea.maul") && !replace);

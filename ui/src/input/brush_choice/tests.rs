@@ -1,6 +1,8 @@
 //! Requests of rack, keys and presets.
 
 use maulstick_rig::Fault;
+use maulstick_types::edits::Clean;
+use maulstick_types::values::BrushName;
 
 use super::*;
 use crate::rig::requests::PAINT;
@@ -9,7 +11,9 @@ use crate::test_support::context_bench::Bench;
 fn defined(bench: &mut Bench) -> Vec<(String, BrushFile)> {
     let commands = bench.commands().into_iter();
     let defined = commands.map(|command| match command {
-        Command::Define { brush, toml } => (brush, BrushFile::parse(&toml).expect("a brush")),
+        Command::Brush(BrushCommand::Define { brush, toml }) => {
+            (brush.to_string(), BrushFile::parse(&toml).expect("a brush"))
+        }
         other => panic!("{other:?}"),
     });
     defined.collect()
@@ -96,8 +100,10 @@ fn a_brush_comes_back_at_the_width_it_was_used_at() {
 #[test]
 fn a_brush_that_refuses_keeps_what_it_has_and_one_that_does_takes_up_its_paint() {
     let refused = || Err(Fault::failure("the brush is painting"));
-    let load = || Command::Clean {
-        brush: "main".into(),
+    let load = || {
+        Command::from(Clean {
+            brush: BrushName::main(),
+        })
     };
     let mut bench = Bench::new();
     bench.work().step_width(true);

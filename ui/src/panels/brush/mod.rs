@@ -18,7 +18,8 @@ use std::ops::RangeInclusive;
 
 use eframe::egui::{Button, ComboBox, Rect, RichText, Sense, Ui, vec2};
 use maulstick_brush::BrushFile;
-use maulstick_types::command::{Command, STIFFNESS};
+use maulstick_types::command::STIFFNESS;
+use maulstick_types::edits::Tune;
 use maulstick_types::scene::{BrushHandling, Tuning};
 
 use crate::input::brush_choice::{called, library, resized, widths_mm};
@@ -172,7 +173,7 @@ impl BrushPanel {
         }
         if wanted != tuning {
             self.tuning.ask(ui, wanted.clone());
-            work.requests.paint(Command::Tune { tuning: wanted });
+            crate::widgets::rows::ask(work, Tune::try_from(&wanted));
         }
     }
 }

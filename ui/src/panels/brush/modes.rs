@@ -1,7 +1,7 @@
 //! Brush modes that the paint model offers.
 
 use eframe::egui::{ComboBox, Ui};
-use maulstick_types::command::Command;
+use maulstick_types::edits::Handle;
 use maulstick_types::scene::{BrushHandling, BrushMode, FLOWS};
 
 use crate::widgets::context::PanelContext;
@@ -98,7 +98,7 @@ pub(super) fn show(
     }
     if wanted != handling {
         asked.ask(ui, wanted.clone());
-        work.requests.paint(Command::Handle { handling: wanted });
+        crate::widgets::rows::ask(work, Handle::try_from(&wanted));
     }
 }
 

@@ -2,7 +2,8 @@
 
 use eframe::egui::{Button, TextEdit, Ui};
 use maulstick_rig::Fault;
-use maulstick_types::command::Command;
+use maulstick_types::edits::Clean;
+use maulstick_types::values::BrushName;
 
 use crate::settings::brush_load::{MOST_THINNER, completed, completions};
 use crate::widgets::context::PanelContext;
@@ -56,8 +57,8 @@ impl PaintRows {
                 .button("Clean")
                 .on_hover_text("Takes all paint off the brush.  C");
             if clean.clicked() {
-                let brush = work.rig.brush_name().to_owned();
-                work.requests.paint(Command::Clean { brush });
+                let brush = BrushName::new(work.rig.brush_name());
+                crate::widgets::rows::ask(work, brush.map(|brush| Clean { brush }));
             }
         });
         if before != work.preferences.loading {
@@ -73,10 +74,10 @@ impl PaintRows {
 
     fn load(&mut self, work: &mut PanelContext<'_>) {
         let brush = work.rig.brush_name().to_owned();
-        let command = work.preferences.loading.command(&brush, &work.rig.library);
-        self.fault = match command {
-            Ok(command) => {
-                work.then(command);
+        let load = work.preferences.loading.edit(&brush, &work.rig.library);
+        self.fault = match load {
+            Ok(load) => {
+                work.then(load.into());
                 None
             }
             Err(fault) => Some(fault),

@@ -4,7 +4,11 @@ use eframe::egui::{Key, Modifiers, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use maulstick_types::Mixture;
+use maulstick_types::command::BrushCommand;
+use maulstick_types::command::Command;
+use maulstick_types::edits::{Clean, Edit, Handle, Load, Tune};
 use maulstick_types::scene::{BrushMode, MARKER_FLOW};
+use maulstick_types::values::BrushName;
 
 use super::*;
 use crate::settings::presets::Preset;
@@ -42,9 +46,7 @@ fn sliders_ask_for_what_they_say() {
     let commands = harness.state_mut().commands();
     assert_eq!(
         commands,
-        [Command::Tune {
-            tuning: tuning.clone()
-        }]
+        [Command::from(Tune::try_from(&tuning).expect("in range"))]
     );
     set(&mut harness, "Wetness", 40.0);
     let tuning = Tuning {
@@ -54,15 +56,15 @@ fn sliders_ask_for_what_they_say() {
     let commands = harness.state_mut().commands();
     assert_eq!(
         commands,
-        [Command::Tune { tuning }],
+        [Command::from(Tune::try_from(&tuning).expect("in range"))],
         "the stiffness asked for holds"
     );
     set(&mut harness, "Width", 12.5);
     let commands = harness.state_mut().commands();
-    let [Command::Define { brush, toml }] = &commands[..] else {
+    let [Command::Brush(BrushCommand::Define { brush, toml })] = &commands[..] else {
         panic!("{commands:?}")
     };
-    assert_eq!(brush, "main");
+    assert_eq!(*brush, "main");
     assert!(toml.contains("width_mm = 12.5"), "{toml}");
 }
 
@@ -101,9 +103,7 @@ fn the_way_shows_what_belongs_to_it() {
     let commands = harness.state_mut().commands();
     assert_eq!(
         commands,
-        [Command::Handle {
-            handling: marker.clone()
-        }]
+        [Command::from(Handle::try_from(&marker).expect("in range"))]
     );
     // The rig answers.
     let scene = harness.state_mut().rig.scene.as_mut();
@@ -124,7 +124,9 @@ fn the_way_shows_what_belongs_to_it() {
     };
     assert_eq!(
         harness.state_mut().commands(),
-        [Command::Handle { handling }]
+        [Command::from(
+            Handle::try_from(&handling).expect("in range")
+        )]
     );
     assert!(
         harness
@@ -150,11 +152,23 @@ fn a_paint_is_completed_thinned_and_loaded() {
     let mixture: Mixture = "Ultramarine Blue=0.8,Thinner=0.2".parse().expect("one");
     let brush = "main".to_owned();
     let commands = harness.state_mut().commands();
-    assert_eq!(commands, [Command::Load { brush, mixture }]);
+    assert_eq!(
+        commands,
+        [Command::from(Load {
+            mixture,
+            beside: None,
+            brush: BrushName::new(brush).expect("valid")
+        })]
+    );
     harness.get_by_label("Clean").click();
     harness.run();
     let brush = "main".to_owned();
-    assert_eq!(harness.state_mut().commands(), [Command::Clean { brush }]);
+    assert_eq!(
+        harness.state_mut().commands(),
+        [Command::from(Clean {
+            brush: BrushName::new(brush).expect("valid")
+        })]
+    );
 }
 
 #[test]
@@ -177,7 +191,14 @@ fn two_paints_side_by_side_and_one_that_there_is_not() {
     harness.key_press(Key::Enter);
     harness.run();
     let commands = harness.state_mut().commands();
-    let [Command::LoadBeside { left, right, .. }] = &commands[..] else {
+    let [
+        Command::Edit(Edit::Load(Load {
+            mixture: left,
+            beside: Some(right),
+            ..
+        })),
+    ] = &commands[..]
+    else {
         panic!("{commands:?}")
     };
     assert_eq!(left, &Mixture::pure("Bone Black"));
@@ -192,7 +213,7 @@ fn another_shape_keeps_its_own_width() {
     harness.get_by_label("Filbert").click();
     harness.run();
     let commands = harness.state_mut().commands();
-    let [Command::Define { toml, .. }] = &commands[..] else {
+    let [Command::Brush(BrushCommand::Define { toml, .. })] = &commands[..] else {
         panic!("{commands:?}")
     };
     let file = BrushFile::parse(toml).expect("a brush");
@@ -206,14 +227,14 @@ fn bristles_are_changed_and_come_back() {
     harness.run();
     set(&mut harness, "Inside", 500.0);
     let commands = harness.state_mut().commands();
-    let [Command::Define { toml, .. }] = &commands[..] else {
+    let [Command::Brush(BrushCommand::Define { toml, .. })] = &commands[..] else {
         panic!("{commands:?}")
     };
     assert_eq!(BrushFile::parse(toml).expect("one").load.inside_um, 500.0);
     harness.get_by_label("As it was made").click();
     harness.run();
     let commands = harness.state_mut().commands();
-    let [Command::Define { toml, .. }] = &commands[..] else {
+    let [Command::Brush(BrushCommand::Define { toml, .. })] = &commands[..] else {
         panic!("{commands:?}")
     };
     let file = BrushFile::parse(toml).expect("one");
@@ -247,16 +268,16 @@ fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
     harness.run();
     let commands = harness.state_mut().commands();
     let [
-        Command::Define { .. },
-        Command::Tune { .. },
-        Command::Handle { .. },
+        Command::Brush(BrushCommand::Define { .. }),
+        Command::Edit(Edit::Tune(_)),
+        Command::Edit(Edit::Handle(_)),
     ] = &commands[..]
     else {
         panic!("{commands:?}")
     };
     let then = harness.state().rig.brushes[0].then.clone();
     assert!(
-        matches!(then, Some(Command::Load { .. })),
+        matches!(then, Some(Command::Edit(Edit::Load(_)))),
         "once it is a round one"
     );
     assert_eq!(harness.state().preferences.loading.paint, "Bone Black");

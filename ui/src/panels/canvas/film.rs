@@ -2,8 +2,9 @@
 
 use eframe::egui::Ui;
 use maulstick_types::Mixture;
-use maulstick_types::command::Command;
+use maulstick_types::edits::{Fill, FillPaint};
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::{BrushName, FilmThickness, ValueError};
 
 use crate::widgets::context::PanelContext;
 use crate::widgets::rows::{Number, Sliders, ask, below, choice};
@@ -53,24 +54,24 @@ impl FilmForm {
             let button = ui.button("Lay it");
             let button = button.on_hover_text("Over the whole canvas; it can be undone");
             if button.clicked() {
-                ask(work, self.command(work.rig.brush_name()));
+                ask(work, self.edit(work.rig.brush_name()));
             }
         });
     }
 
-    fn command(&self, brush: &str) -> Command {
-        let thickness_m = self.thickness_um * 1e-6;
-        match self.paint.as_str() {
-            CARRIED => Command::FillWith {
-                surface: CANVAS,
-                brush: brush.to_owned(),
-                thickness_m,
+    fn edit(&self, brush: &str) -> Result<Fill, ValueError> {
+        let paint = match self.paint.as_str() {
+            CARRIED => FillPaint::Carried {
+                brush: BrushName::new(brush)?,
             },
-            paint => Command::Fill {
-                surface: CANVAS,
+            paint => FillPaint::Mixture {
                 mixture: Mixture::pure(paint),
-                thickness_m,
             },
-        }
+        };
+        Ok(Fill {
+            paint,
+            thickness: FilmThickness::in_unit(self.thickness_um)?,
+            surface: CANVAS,
+        })
     }
 }

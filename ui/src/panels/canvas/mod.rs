@@ -10,9 +10,10 @@ use std::path::Path;
 use eframe::egui::{CollapsingHeader, DragValue, Key, TextEdit, Ui};
 use maulstick_appearance::ground::GROUNDS;
 use maulstick_canvas::assets::{IMAGE, SPECTRUM};
-use maulstick_canvas::relief::tooth::Tooth;
-use maulstick_types::command::Command;
+use maulstick_canvas::relief::tooth;
+use maulstick_types::edits::{Ground, Piles, Place, Size, Tooth};
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
+use maulstick_types::values::{MaterialName, StainThickness};
 
 use crate::input::keys::Action;
 use crate::panels::Panel;
@@ -85,11 +86,9 @@ impl Panel for CanvasPanel {
         self.ground(ui, work, &canvas);
         let change = self.sliders.row(ui, &SIZING, canvas.stain_m * 1e6);
         if let Some(um) = change.settled {
-            let command = Command::Size {
-                surface: CANVAS,
-                stain_m: um * 1e-6,
-            };
-            ask(work, command);
+            let surface = CANVAS;
+            let stain = StainThickness::in_unit(um);
+            ask(work, stain.map(|stain| Size { stain, surface }));
         }
         ui.separator();
         self.place(ui, work, &canvas);
@@ -141,25 +140,24 @@ fn preferences(ui: &mut Ui, work: &mut PanelContext<'_>) {
         .checkbox(&mut last, "Paint on the palette lasts")
         .on_hover_text("Brushes take paint from the palette, and it stays there all the same");
     if lasts.changed() {
-        let command = Command::Piles {
-            surface: PALETTE,
-            last,
-        };
-        ask(work, command);
+        let surface = PALETTE;
+        ask(work, Ok(Piles { last, surface }));
     }
 }
 
 impl CanvasPanel {
     fn tooth(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
         let (name, seed) = (&canvas.tooth, canvas.tooth_seed);
-        let command = |tooth: String, seed: u64| Command::Tooth {
-            surface: CANVAS,
-            tooth,
-            seed,
+        let edit = |tooth: &str, seed: u64| {
+            Ok(Tooth {
+                tooth: MaterialName::new(tooth)?,
+                seed,
+                surface: CANVAS,
+            })
         };
-        let chosen = choice(ui, "Tooth", shown(name, name), Tooth::names());
+        let chosen = choice(ui, "Tooth", shown(name, name), tooth::Tooth::names());
         if let Some(tooth) = chosen {
-            ask(work, command(tooth, seed));
+            ask(work, edit(&tooth, seed));
         }
         if name.starts_with(IMAGE) {
             return;
@@ -173,7 +171,7 @@ impl CanvasPanel {
                 .on_hover_text("Another number is another piece of the same cloth")
         });
         if changed.changed() && piece != seed {
-            ask(work, command(name.clone(), piece));
+            ask(work, edit(name, piece));
         }
     }
 
@@ -181,11 +179,7 @@ impl CanvasPanel {
         let names = GROUNDS.map(|(name, _)| name);
         let chosen = choice(ui, "Ground", shown(&canvas.ground, "a measured one"), names);
         if let Some(ground) = chosen {
-            let command = Command::Ground {
-                surface: CANVAS,
-                ground,
-            };
-            ask(work, command);
+            ask(work, Ground::named(CANVAS, &ground));
         }
         row(ui, "From a file", |ui| {
             let edit = TextEdit::singleline(&mut self.file).hint_text("CSV of nm,reflectance");
@@ -195,11 +189,7 @@ impl CanvasPanel {
                 self.told.clear();
                 match spectrum_file::reflectance(Path::new(self.file.trim())) {
                     Ok(spectrum) => {
-                        let command = Command::GroundSpectrum {
-                            surface: CANVAS,
-                            spectrum,
-                        };
-                        ask(work, command);
+                        ask(work, Ground::spectrum(CANVAS, &spectrum));
                     }
                     Err(fault) => self.told = spectrum_file::told(&fault),
                 }
@@ -239,12 +229,7 @@ impl CanvasPanel {
         });
         if posture != before {
             let (pose, zoom) = posture.laid(canvas);
-            let command = Command::Place {
-                surface: CANVAS,
-                pose,
-                zoom,
-            };
-            if ask(work, command) {
+            if ask(work, Place::new(CANVAS, pose, zoom)) {
                 self.posture.hold(now_s, posture);
             }
         }

@@ -2,6 +2,9 @@ use eframe::egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use maulstick_types::Mixture;
+use maulstick_types::command::Command;
+use maulstick_types::edits::{Fill, FillPaint, Ground, Piles, Place, Size, Tooth};
+use maulstick_types::values::{BrushName, FilmThickness, MaterialName, StainThickness};
 
 use super::*;
 use crate::test_support::panel_bench::{Bench, harness, picture, rig};
@@ -32,29 +35,28 @@ fn tooth_ground_and_sizing_are_asked_for() {
     set(&mut harness, Role::SpinButton, "Piece", 7.0);
     choose(&mut harness, "Ground", "grey");
     set(&mut harness, Role::Slider, "Stain", 12.0);
-    let tooth = |tooth: &str, seed: u64| Command::Tooth {
-        surface: CANVAS,
-        tooth: tooth.to_owned(),
-        seed,
+    let tooth = |tooth: &str, seed: u64| {
+        Command::from(Tooth {
+            tooth: MaterialName::new(tooth).expect("valid"),
+            seed,
+            surface: CANVAS,
+        })
     };
     let expected = [
         tooth("paper", seed),
         tooth("linen", 7),
-        Command::Ground {
+        Command::from(Ground::named(CANVAS, "grey").expect("valid")),
+        Command::from(Size {
+            stain: StainThickness::new(12.0 * 1e-6).expect("in range"),
             surface: CANVAS,
-            ground: "grey".to_owned(),
-        },
-        Command::Size {
-            surface: CANVAS,
-            stain_m: 12.0 * 1e-6,
-        },
+        }),
     ];
     assert_eq!(harness.state_mut().asked(), expected);
     set(&mut harness, Role::Slider, "Stain", 5e4);
     assert!(harness.state_mut().asked().is_empty());
     let told = harness.state().notifications.told();
     assert!(
-        told[0].what.contains("stain") && told[0].help.contains("1000 µm"),
+        told[0].what.contains("stain") && told[0].what.contains("1000 µm"),
         "{told:?}"
     );
 }
@@ -85,10 +87,7 @@ fn a_measured_ground_is_read_or_told_with_its_line() {
     let good = "400,0.4\n700,0.6\n";
     std::fs::write(&path, good).expect("written");
     field(&mut harness, "");
-    let expected = Command::GroundSpectrum {
-        surface: CANVAS,
-        spectrum: good.to_owned(),
-    };
+    let expected = Command::from(Ground::spectrum(CANVAS, good).expect("valid"));
     assert_eq!(harness.state_mut().asked(), [expected]);
 }
 
@@ -107,11 +106,7 @@ fn the_canvas_is_tilted_turned_and_zoomed_each_beside_the_others() {
     .laid(&canvas);
     let asked = harness.state_mut().asked();
     assert_eq!(asked.len(), 3);
-    let last = Command::Place {
-        surface: CANVAS,
-        pose,
-        zoom,
-    };
+    let last = Command::from(Place::new(CANVAS, pose, zoom).expect("in reach"));
     assert_eq!(asked[2], last);
     assert_ne!(asked[1], last, "a fault would pass");
 }
@@ -135,10 +130,10 @@ fn the_hand_and_the_lasting_paint_are_switched() {
     assert!(harness.state().preferences.left_handed);
     harness.get_by_label("Paint on the palette lasts").click();
     harness.run();
-    let expected = Command::Piles {
-        surface: PALETTE,
+    let expected = Command::from(Piles {
         last: true,
-    };
+        surface: PALETTE,
+    });
     assert_eq!(harness.state_mut().asked(), [expected]);
 }
 
@@ -155,23 +150,27 @@ fn a_film_is_of_a_paint_or_of_what_the_brush_carries() {
     harness.run();
     let surface = CANVAS;
     let expected = [
-        Command::FillWith {
+        Command::from(Fill {
+            paint: FillPaint::Carried {
+                brush: BrushName::main(),
+            },
+            thickness: FilmThickness::new(50.0 * 1e-6).expect("in range"),
             surface,
-            brush: "main".to_owned(),
-            thickness_m: 50.0 * 1e-6,
-        },
-        Command::Fill {
+        }),
+        Command::from(Fill {
+            paint: FillPaint::Mixture {
+                mixture: Mixture::pure("Titanium White"),
+            },
+            thickness: FilmThickness::new(20.0 * 1e-6).expect("in range"),
             surface,
-            mixture: Mixture::pure("Titanium White"),
-            thickness_m: 20.0 * 1e-6,
-        },
+        }),
     ];
     assert_eq!(harness.state_mut().asked(), expected);
     set(&mut harness, Role::Slider, "Thickness", 9000.0);
     harness.get_by_label("Lay it").click();
     harness.run();
     let told = harness.state().notifications.told();
-    assert!(told[0].help.contains("5000 µm"), "{told:?}");
+    assert!(told[0].what.contains("5000 µm"), "{told:?}");
 }
 
 #[test]

@@ -12,8 +12,9 @@ use eframe::egui::{
     Align, Button, Color32, ColorImage, CornerRadius, Key, Layout, Rect, Response, RichText, Sense,
     TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
 };
-use maulstick_types::command::Command;
+use maulstick_types::edits::{Branch, Forget, Keep, Redo, ReturnTo, Undo};
 use maulstick_types::scene::NamedVersion;
+use maulstick_types::values::VersionName;
 
 use crate::panels::Panel;
 use crate::rig::thumbnails::Picture;
@@ -75,10 +76,10 @@ fn steps(ui: &mut Ui, work: &mut PanelContext<'_>) {
             button.on_hover_text(hover).clicked()
         };
         if step(ui, "Undo", undo, "The newest step back: Ctrl+Z") {
-            ask(work, Command::Undo { brush: None });
+            ask(work, Ok(Undo { brush: None }));
         }
         if step(ui, "Redo", redo, "What was undone, again: Shift+Ctrl+Z") {
-            ask(work, Command::Redo { brush: None });
+            ask(work, Ok(Redo { brush: None }));
         }
     });
 }
@@ -110,8 +111,8 @@ impl HistoryPanel {
     fn keep(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let (_, done) = naming(ui, &mut self.name, "Name of a version", "Keep");
         if done {
-            let name = self.name.trim().to_owned();
-            if ask(work, Command::Keep { name }) {
+            let name = VersionName::new(self.name.trim());
+            if ask(work, name.map(|name| Keep { name })) {
                 self.name.clear();
             }
         }
@@ -157,8 +158,7 @@ impl HistoryPanel {
                 "It cannot be had back",
             );
             if yes.clicked() {
-                let name = name.to_owned();
-                ask(work, Command::Forget { name });
+                ask(work, VersionName::new(name).map(|name| Forget { name }));
                 self.forgetting = None;
             }
             if small(ui, "No", &format!("Keep {name}"), "It stays").clicked() {
@@ -168,8 +168,7 @@ impl HistoryPanel {
         }
         let hover = "The painting becomes as it was then; this can be undone";
         if small(ui, "Return", &format!("Return to {name}"), hover).clicked() {
-            let name = name.to_owned();
-            ask(work, Command::Return { name });
+            ask(work, VersionName::new(name).map(|name| ReturnTo { name }));
         }
         let hover = "Begin another version from this one";
         if small(ui, "Branch", &format!("Branch from {name}"), hover).clicked() {
@@ -194,11 +193,9 @@ impl HistoryPanel {
         }
         let (_, done) = naming(ui, name, "Name of the new version", "Begin");
         if done {
-            let command = Command::Branch {
-                from: from.to_owned(),
-                name: name.trim().to_owned(),
-            };
-            if ask(work, command) {
+            let name = VersionName::new(name.trim());
+            let branch = VersionName::new(from).and_then(|from| Ok(Branch { from, name: name? }));
+            if ask(work, branch) {
                 self.branching = None;
             }
         }

@@ -1,6 +1,9 @@
 use eframe::egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use maulstick_types::command::Command;
+use maulstick_types::edits::{Branch, Forget, Keep, Redo, ReturnTo, Undo};
+use maulstick_types::values::VersionName;
 
 use super::*;
 use crate::rig::state::{PaintNode, RigState};
@@ -65,7 +68,7 @@ fn steps_go_back_and_forth_where_there_are_some() {
     let mut harness = panel();
     click(&mut harness, "Undo (12)");
     click(&mut harness, "Redo (0)");
-    let undo = Command::Undo { brush: None };
+    let undo = Command::from(Undo { brush: None });
     assert_eq!(
         harness.state_mut().asked(),
         [undo],
@@ -75,7 +78,7 @@ fn steps_go_back_and_forth_where_there_are_some() {
     paint.status = steps(11, 1);
     harness.run();
     click(&mut harness, "Redo (1)");
-    let redo = Command::Redo { brush: None };
+    let redo = Command::from(Redo { brush: None });
     assert_eq!(harness.state_mut().asked(), [redo]);
 }
 
@@ -93,16 +96,16 @@ fn versions_are_kept_returned_to_and_branched_from() {
     harness.run();
     let name = |name: &str| name.to_owned();
     let expected = [
-        Command::Keep {
-            name: name("Trees"),
-        },
-        Command::Return {
-            name: name("Sketch"),
-        },
-        Command::Branch {
-            from: name("Warm"),
-            name: name("Hot"),
-        },
+        Command::from(Keep {
+            name: VersionName::new(name("Trees")).expect("valid"),
+        }),
+        Command::from(ReturnTo {
+            name: VersionName::new(name("Sketch")).expect("valid"),
+        }),
+        Command::from(Branch {
+            from: VersionName::new(name("Warm")).expect("valid"),
+            name: VersionName::new(name("Hot")).expect("valid"),
+        }),
     ];
     assert_eq!(harness.state_mut().asked(), expected);
     assert!(harness.query_by_label("Name of the new version").is_none());
@@ -117,7 +120,12 @@ fn a_version_is_forgotten_after_a_question() {
     click(&mut harness, "Forget Warm?");
     click(&mut harness, "Forget Warm");
     let name = "Warm".to_owned();
-    assert_eq!(harness.state_mut().asked(), [Command::Forget { name }]);
+    assert_eq!(
+        harness.state_mut().asked(),
+        [Command::from(Forget {
+            name: VersionName::new(name).expect("valid")
+        })]
+    );
 }
 
 #[test]
@@ -127,7 +135,7 @@ fn a_name_that_no_version_can_have_is_told() {
     click(&mut harness, "Keep");
     assert!(harness.state_mut().asked().is_empty());
     let told = harness.state().notifications.told();
-    assert!(told[0].help.contains("128 bytes"), "{told:?}");
+    assert!(told[0].what.contains("128"), "{told:?}");
 }
 
 #[test]

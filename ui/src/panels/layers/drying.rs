@@ -3,9 +3,11 @@
 use eframe::egui::{DragValue, ProgressBar, TextEdit, Ui};
 use maulstick_painting::clock::TICKS_A_SECOND;
 use maulstick_types::Region;
-use maulstick_types::command::{Command, DRYING_TICKS};
+use maulstick_types::command::DRYING_TICKS;
+use maulstick_types::edits::{Dry, StopDrying, Wet};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::{LayerName, Share, Ticks, ValueError};
 
 use super::region;
 use crate::widgets::context::PanelContext;
@@ -68,6 +70,11 @@ impl Default for DryingForm {
     }
 }
 
+/// Rejects a part that is empty.
+fn checked(part: &Option<Region>) -> Result<(), ValueError> {
+    part.as_ref().map_or(Ok(()), Region::check)
+}
+
 impl DryingForm {
     /// Shows it; `layers` have dried so far.
     pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, layers: usize) {
@@ -93,39 +100,36 @@ impl DryingForm {
                 .button("Dry")
                 .on_hover_text("Wet paint becomes a dry layer at once");
             if dry.clicked() {
-                ask(work, self.dry());
+                let share = Share::new((self.percent * 1e-2) as f32);
+                ask(work, share.and_then(|share| self.dry(share, None)));
                 self.name.clear();
             }
             let wet = ui.add_enabled(layers > 0, eframe::egui::Button::new("Wet again"));
             let wet = wet.on_hover_text("The newest dry layer becomes wet paint again");
             if wet.clicked() {
-                let command = Command::Wet {
+                let wet = Wet {
                     surface: CANVAS,
-                    layers: 1,
+                    layers: Some(1),
                     region: self.part.clone(),
                 };
-                ask(work, command);
+                ask(work, checked(&self.part).map(|()| wet));
             }
         });
         self.in_time(ui, work);
     }
 
-    fn dry(&self) -> Command {
-        let (surface, name) = (CANVAS, self.name.trim().to_owned());
-        let share = (self.percent * 1e-2) as f32;
-        match self.part.clone() {
-            Some(region) => Command::DryRegion {
-                surface,
-                share,
-                name,
-                region,
-            },
-            None => Command::Dry {
-                surface,
-                share,
-                name,
-            },
-        }
+    /// The drying of what the form says.
+    fn dry(&self, share: Share, over: Option<Ticks>) -> Result<Dry, ValueError> {
+        checked(&self.part)?;
+        let name = self.name.trim();
+        let layer = (!name.is_empty()).then(|| LayerName::new(name));
+        Ok(Dry {
+            share,
+            layer: layer.transpose()?,
+            region: self.part.clone(),
+            over,
+            surface: CANVAS,
+        })
     }
 
     /// Drying while time goes by.
@@ -142,20 +146,16 @@ impl DryingForm {
                 .button("Start")
                 .on_hover_text("All that is wet there dries evenly; one may paint meanwhile");
             if start.clicked() {
-                let command = Command::DryOver {
-                    surface: CANVAS,
-                    ticks: (self.time_s * f64::from(TICKS_A_SECOND)).round() as u32,
-                    name: self.name.trim().to_owned(),
-                    region: self.part.clone(),
-                };
-                ask(work, command);
+                let ticks = (self.time_s * f64::from(TICKS_A_SECOND)).round() as u32;
+                let over = Ticks::new(ticks).map(Some);
+                ask(work, over.and_then(|over| self.dry(Share::WHOLE, over)));
                 self.name.clear();
             }
             let stop = ui
                 .button("Stop")
                 .on_hover_text("What is wet still stays wet");
             if stop.clicked() {
-                ask(work, Command::StopDrying { surface: CANVAS });
+                ask(work, Ok(StopDrying { surface: CANVAS }));
             }
             time.on_hover_text("Minutes and seconds")
         });

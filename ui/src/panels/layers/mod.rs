@@ -10,8 +10,9 @@ use std::collections::BTreeMap;
 
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Button, Key, TextEdit, Ui, WidgetInfo};
-use maulstick_types::command::Command;
+use maulstick_types::edits::{LayerRef, NameLayer, Opacity};
 use maulstick_types::scene::Layer;
+use maulstick_types::values::{LayerName, OpacityFactor, ValueError};
 
 use crate::panels::Panel;
 use crate::widgets::context::PanelContext;
@@ -70,6 +71,14 @@ impl Panel for LayersPanel {
     }
 }
 
+/// Makes a layer more or less opaque.
+fn opaque(number: u32, opacity: f32) -> Result<Opacity, ValueError> {
+    Ok(Opacity {
+        layer: LayerRef::Number { number },
+        opacity: OpacityFactor::new(opacity)?,
+    })
+}
+
 impl LayersPanel {
     /// The row of a layer.
     fn layer(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, layer: &Layer) {
@@ -77,11 +86,7 @@ impl LayersPanel {
         ui.push_id(number, |ui| {
             ui.horizontal(|ui| {
                 if let Some(opacity) = self.eye(ui, layer) {
-                    let command = Command::Opacity {
-                        layer: number,
-                        opacity,
-                    };
-                    ask(work, command);
+                    ask(work, opaque(number, opacity));
                 }
                 match &self.naming {
                     Some((named, _)) if *named == number => self.name(ui, work),
@@ -97,11 +102,7 @@ impl LayersPanel {
                 });
                 // All layers above are computed anew, and an opacity is a step to undo: once is enough.
                 if let Some(percent) = change.settled {
-                    let command = Command::Opacity {
-                        layer: number,
-                        opacity: (percent * 1e-2) as f32,
-                    };
-                    ask(work, command);
+                    ask(work, opaque(number, (percent * 1e-2) as f32));
                 }
             });
         });
@@ -153,13 +154,9 @@ impl LayersPanel {
         field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Name of the layer"));
         if field.lost_focus() {
             let given = !ui.input(|input| input.key_pressed(Key::Escape));
-            let name = name.trim().to_owned();
-            let command = Command::NameLayer {
-                layer: *layer,
-                name,
-            };
+            let (layer, name) = (*layer, LayerName::new(name.trim()));
             if given {
-                ask(work, command);
+                ask(work, name.map(|name| NameLayer { layer, name }));
             }
             self.naming = None;
         } else if !field.has_focus() {

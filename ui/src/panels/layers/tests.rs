@@ -2,7 +2,10 @@ use eframe::egui::{Key, accesskit::Role, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use maulstick_types::Region;
+use maulstick_types::command::Command;
+use maulstick_types::edits::{Dry, Edit, LayerRef, NameLayer, Opacity, StopDrying, Wet};
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::{LayerName, OpacityFactor, Share, Ticks};
 
 use super::*;
 use crate::rig::state::RigState;
@@ -30,7 +33,10 @@ fn panel() -> Harness<'static, Bench<LayersPanel>> {
 }
 
 fn opacity(layer: u32, opacity: f32) -> Command {
-    Command::Opacity { layer, opacity }
+    Command::from(Opacity {
+        layer: LayerRef::Number { number: layer },
+        opacity: OpacityFactor::new(opacity).expect("in range"),
+    })
 }
 
 #[test]
@@ -81,10 +87,10 @@ fn a_click_on_a_name_gives_another_one() {
     harness.run();
     harness.key_press(Key::Enter);
     harness.run();
-    let named = Command::NameLayer {
+    let named = Command::from(NameLayer {
         layer: 2,
-        name: "Sky at dusk".to_owned(),
-    };
+        name: LayerName::new("Sky at dusk").expect("valid"),
+    });
     assert_eq!(harness.state_mut().asked(), [named]);
     harness.get_by_label("Trees").click();
     harness.run();
@@ -118,23 +124,21 @@ fn paint_dries_at_once_in_time_or_becomes_wet_again() {
     harness.run();
     let surface = CANVAS;
     let expected = [
-        Command::Dry {
-            surface,
-            share: 0.4,
-            name: "Fog".to_owned(),
-        },
-        Command::DryOver {
-            surface,
-            ticks: 120 * 60,
-            name: String::new(),
+        Command::from(Dry {
+            share: Share::new(0.4).expect("in range"),
+            layer: LayerName::new("Fog").ok(),
+            ..Dry::whole(surface)
+        }),
+        Command::from(Dry {
+            over: Some(Ticks::new(120 * 60).expect("in range")),
+            ..Dry::whole(surface)
+        }),
+        Command::from(StopDrying { surface }),
+        Command::from(Wet {
+            layers: Some(1),
             region: None,
-        },
-        Command::StopDrying { surface },
-        Command::Wet {
             surface,
-            layers: 1,
-            region: None,
-        },
+        }),
     ];
     assert_eq!(harness.state_mut().asked(), expected);
 }
@@ -158,7 +162,13 @@ fn a_part_is_drawn_and_one_that_is_none_is_told() {
     harness.get_by_label("Dry").click();
     harness.run();
     let asked = harness.state_mut().asked();
-    let [Command::DryRegion { region, .. }] = &asked[..] else {
+    let [
+        Command::Edit(Edit::Dry(Dry {
+            region: Some(region),
+            ..
+        })),
+    ] = &asked[..]
+    else {
         panic!("{asked:?}");
     };
     let canvas = harness.state().rig.canvas().expect("a canvas");
@@ -179,7 +189,7 @@ fn a_part_is_drawn_and_one_that_is_none_is_told() {
     assert!(harness.state_mut().asked().is_empty());
     let told = harness.state().notifications.told();
     assert!(
-        told[0].what.contains("region") && told[0].help.contains("give"),
+        told[0].what.contains("region") && told[0].what.contains("X,Y,WxH"),
         "{told:?}"
     );
 }

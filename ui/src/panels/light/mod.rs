@@ -10,8 +10,9 @@ use std::path::Path;
 use eframe::egui::{CollapsingHeader, TextEdit, TextureHandle, TextureOptions, Ui};
 use maulstick_appearance::light::changes_colour;
 use maulstick_optics::cie::ILLUMINANTS;
-use maulstick_types::command::Command;
+use maulstick_types::edits::Relight;
 use maulstick_types::scene::{Light, RULES, SAMPLES};
+use maulstick_types::values::ValueError;
 
 use crate::panels::Panel;
 use crate::spectrum_file;
@@ -113,11 +114,12 @@ impl Panel for LightPanel {
         }
         // Another spectrum is as bright as the last one.
         expose |= changes_colour(&light, &before);
-        let command = Command::Relight {
+        let relight = Relight {
             light: light.clone(),
             expose,
         };
-        if ask(work, command) && !expose {
+        let relight = light.check().map(|()| relight).map_err(ValueError::from);
+        if ask(work, relight) && !expose {
             self.asked.hold(now_s, light);
         } else {
             self.asked.release();

@@ -1,6 +1,8 @@
 use eframe::egui::{Key, accesskit::Role, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use maulstick_types::command::Command;
+use maulstick_types::edits::{Edit, Relight};
 
 use super::*;
 use crate::test_support::panel_bench::{Bench, harness, picture, rig};
@@ -12,7 +14,7 @@ fn panel() -> Harness<'static, Bench<LightPanel>> {
 /// The lights that were asked for, and whether their exposure is to be chosen.
 fn lights(harness: &mut Harness<'static, Bench<LightPanel>>) -> Vec<(Light, bool)> {
     let light = |command| match command {
-        Command::Relight { light, expose } => (light, expose),
+        Command::Edit(Edit::Relight(Relight { light, expose })) => (light, expose),
         other => panic!("no light: {other:?}"),
     };
     harness.state_mut().asked().into_iter().map(light).collect()
@@ -141,7 +143,7 @@ fn a_strength_beyond_all_lamps_is_told() {
     assert!(lights(&mut harness).is_empty());
     let told = harness.state().notifications.told();
     assert!(
-        told[0].what.contains("intensity") && told[0].help.contains("100"),
+        told[0].what.contains("intensity") && told[0].what.contains("100"),
         "{told:?}"
     );
 }

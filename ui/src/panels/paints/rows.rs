@@ -65,9 +65,9 @@ pub(super) fn show(panel: &mut PaintsPanel, ui: &mut Ui, work: &mut PanelContext
                 work.preferences.loading.thinner = 0.0;
             }
             let brush = work.rig.brush_name().to_owned();
-            let command = work.preferences.loading.command(&brush, &work.rig.library);
-            match command {
-                Ok(command) => work.then(command),
+            let load = work.preferences.loading.edit(&brush, &work.rig.library);
+            match load {
+                Ok(load) => work.then(load.into()),
                 Err(fault) => work.notifications.of(&fault),
             }
         }

@@ -5,7 +5,9 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
+use maulstick_types::edits::{Edit, Load, Wells};
 use maulstick_types::scene::{PALETTE, WellKind};
+use maulstick_types::values::BrushName;
 
 use super::*;
 use crate::settings::paint_sets::PaintSet;
@@ -27,7 +29,7 @@ fn write(harness: &mut Harness<'_, Bench>, field: &str, text: &str) {
 /// Names of what a command lays in the palette's wells, from the top.
 fn laid(harness: &mut Harness<'_, Bench>) -> Vec<String> {
     let commands = harness.state_mut().commands();
-    let [Command::Wells { surface, wells }] = &commands[..] else {
+    let [Command::Edit(Edit::Wells(Wells { surface, wells }))] = &commands[..] else {
         panic!("{commands:?}")
     };
     assert_eq!(*surface, PALETTE);
@@ -54,10 +56,11 @@ fn a_click_loads_the_brush_with_the_paint() {
     write(&mut harness, "Search", "pb 28");
     harness.get_by_label("Cobalt Blue").click();
     harness.run();
-    let load = Command::Load {
-        brush: "main".into(),
+    let load = Command::from(Load {
         mixture: Mixture::pure("Cobalt Blue"),
-    };
+        beside: None,
+        brush: BrushName::main(),
+    });
     assert_eq!(harness.state_mut().commands(), [load]);
     assert_eq!(harness.state().preferences.loading.paint, "Cobalt Blue");
     let white = harness.query_by_label("Titanium White to the palette");

@@ -1,0 +1,95 @@
+//! Sets the mode of a brush.
+
+use crate::define::wire_struct;
+use crate::edits::{Form, StepForm, read};
+use crate::scene::{BrushHandling, BrushMode, MARKER_FLOW};
+use crate::values::{BrushName, FilmThickness, MarkerFlow, ValueError};
+
+wire_struct! {
+    /// Set the mode of a brush: sponge, marker, sampler, vacuum, …
+    #[cfg_attr(feature = "cli", derive(clap::Args))]
+    pub struct Handle {
+        /// Mode: normal, no-push, sponge, sponge-no-push, marker, sampler or vacuum
+        #[serde(deserialize_with = "read::text")]
+        pub mode: BrushMode,
+        /// Flow of the marker, µm of paint per mm of its path
+        #[serde(default)]
+        #[cfg_attr(feature = "cli", arg(long, value_name = "UM_PER_MM", allow_negative_numbers = true))]
+        pub flow: Option<MarkerFlow>,
+        /// Add no paint where the wet film is this thick, µm
+        #[serde(default, rename = "most_um")]
+        #[cfg_attr(feature = "cli", arg(long = "most-um", value_name = "UM", allow_negative_numbers = true))]
+        pub most: Option<FilmThickness>,
+        /// Brush of the rig
+        #[serde(default)]
+        #[cfg_attr(feature = "cli", arg(long, default_value = "main"))]
+        pub brush: BrushName,
+    }
+}
+
+impl From<Handle> for BrushHandling {
+    fn from(edit: Handle) -> Self {
+        Self {
+            brush: edit.brush.into(),
+            mode: edit.mode,
+            flow: edit.flow.map_or(MARKER_FLOW, MarkerFlow::get),
+            most_m: edit.most.map_or(0.0, FilmThickness::get),
+        }
+    }
+}
+
+impl TryFrom<&BrushHandling> for Handle {
+    type Error = ValueError;
+
+    fn try_from(handling: &BrushHandling) -> Result<Self, ValueError> {
+        let most = (handling.most_m != 0.0).then(|| FilmThickness::new(handling.most_m));
+        Ok(Self {
+            mode: handling.mode.clone(),
+            flow: Some(MarkerFlow::new(handling.flow)?),
+            most: most.transpose()?,
+            brush: BrushName::new(&*handling.brush)?,
+        })
+    }
+}
+
+impl Form for Handle {
+    const STEPS: &'static [StepForm] = &[StepForm::new(
+        "mode",
+        &["flow", "most_um"],
+        "{ mode = \"marker\", flow = 4, most_um = 60 }",
+    )];
+    const ARGUMENTS: Option<&'static str> = Some("brush|mode|marker|--flow|4|--most-um|60");
+
+    fn example() -> Result<Self, ValueError> {
+        Ok(Self {
+            mode: BrushMode::Marker,
+            flow: Some(MarkerFlow::in_unit(4.0)?),
+            most: Some(FilmThickness::in_unit(60.0)?),
+            brush: BrushName::main(),
+        })
+    }
+
+    fn brush_mut(&mut self) -> Option<&mut BrushName> {
+        Some(&mut self.brush)
+    }
+
+    fn check_idle(&self) -> Result<(), ValueError> {
+        let with = || format!("the mode {}", self.mode.name());
+        if self.flow.is_some() && self.mode != BrushMode::Marker {
+            let option = "a flow";
+            return Err(ValueError::Idle {
+                option,
+                with: with(),
+            });
+        }
+        // These add no paint to the surface.
+        if self.most.is_some() && matches!(self.mode, BrushMode::Sampler | BrushMode::Vacuum) {
+            let option = "most_um";
+            return Err(ValueError::Idle {
+                option,
+                with: with(),
+            });
+        }
+        Ok(())
+    }
+}

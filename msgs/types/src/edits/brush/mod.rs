@@ -1,0 +1,11 @@
+//! Edits of brushes: what they carry and how they are used.
+
+mod clean;
+mod handle;
+mod load;
+mod tune;
+
+pub use clean::Clean;
+pub use handle::Handle;
+pub use load::Load;
+pub use tune::Tune;

@@ -1,0 +1,121 @@
+//! How an edit is written in a script and on the command line.
+
+use crate::Mixture;
+use crate::schema::Wire;
+use crate::values::{BrushName, ValueError};
+
+use super::Edit;
+
+/// Form of an edit as a step of a script.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StepForm {
+    /// The key that says what is done.
+    pub key: &'static str,
+    /// True if that key takes `true` alone.
+    pub switch: bool,
+    /// The keys that say how.
+    pub with: &'static [&'static str],
+    /// Examples, the first of which is [`Form::example`].
+    pub example: &'static str,
+}
+
+impl StepForm {
+    /// A step whose key has a value.
+    #[must_use]
+    pub const fn new(
+        key: &'static str,
+        with: &'static [&'static str],
+        example: &'static str,
+    ) -> Self {
+        Self {
+            key,
+            switch: false,
+            with,
+            example,
+        }
+    }
+
+    /// A step whose key takes `true` alone.
+    #[must_use]
+    pub const fn switch(
+        key: &'static str,
+        with: &'static [&'static str],
+        example: &'static str,
+    ) -> Self {
+        Self {
+            switch: true,
+            ..Self::new(key, with, example)
+        }
+    }
+}
+
+/// Form of an edit as a command of its own.
+#[cfg(feature = "cli")]
+#[derive(Clone, Copy, Debug)]
+pub struct CommandForm {
+    /// Name of the command.
+    pub name: &'static str,
+    /// Heading under which the list of commands has it.
+    pub group: &'static str,
+    /// Adds its options.
+    pub augment: fn(clap::Command) -> clap::Command,
+    /// Reads them.
+    pub read: fn(&clap::ArgMatches) -> Result<Edit, clap::Error>,
+}
+
+#[cfg(feature = "cli")]
+impl CommandForm {
+    /// A command whose options are those of `T`.
+    #[must_use]
+    pub const fn of<T: clap::Args + Into<Edit>>(name: &'static str, group: &'static str) -> Self {
+        Self {
+            name,
+            group,
+            augment: T::augment_args,
+            read: |matches| T::from_arg_matches(matches).map(Into::into),
+        }
+    }
+}
+
+/// How an edit is written: each says it in its own file.
+pub trait Form: Wire + Into<Edit> {
+    /// Its steps in scripts; none if a script cannot ask for it.
+    const STEPS: &'static [StepForm];
+    /// The command line that means [`example`](Self::example), without the program; `None` if there is none.
+    const ARGUMENTS: Option<&'static str>;
+    /// Its command; `None` if it has none of its own.
+    #[cfg(feature = "cli")]
+    const COMMAND: Option<CommandForm> = None;
+
+    /// One of its kind, for tests and documents.
+    ///
+    /// # Errors
+    /// None, if it is in range.
+    fn example() -> Result<Self, ValueError>;
+
+    /// Reads a step of a script.
+    ///
+    /// # Errors
+    /// Those of its fields.
+    fn read_step<'de, D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        <Self as serde::Deserialize>::deserialize(from)
+    }
+
+    /// See [`Edit::brush_mut`].
+    fn brush_mut(&mut self) -> Option<&mut BrushName> {
+        None
+    }
+
+    /// See [`Edit::mixtures_mut`].
+    fn mixtures_mut(&mut self) -> Vec<&mut Mixture> {
+        Vec::new()
+    }
+
+    /// See [`Edit::check_idle`].
+    ///
+    /// # Errors
+    /// As there.
+    fn check_idle(&self) -> Result<(), ValueError> {
+        Ok(())
+    }
+}

@@ -1,0 +1,29 @@
+//! Keeps the painting as a version.
+
+use crate::define::wire_struct;
+use crate::edits::{Form, StepForm};
+use crate::values::{ValueError, VersionName};
+
+wire_struct! {
+    /// Keep the painting as a version
+    pub struct Keep {
+        /// Name of the version.
+        #[serde(rename = "keep")]
+        pub name: VersionName,
+    }
+}
+
+impl Form for Keep {
+    const STEPS: &'static [StepForm] = &[StepForm::new(
+        "keep",
+        &[],
+        "{ keep = \"before the glaze\" }",
+    )];
+    const ARGUMENTS: Option<&'static str> = Some("painting|versions|--keep|before the glaze");
+
+    fn example() -> Result<Self, ValueError> {
+        Ok(Self {
+            name: VersionName::new("before the glaze")?,
+        })
+    }
+}

@@ -1,0 +1,15 @@
+//! Edits of the past: steps undone and redone, versions kept and returned to.
+
+mod branch;
+mod forget;
+mod keep;
+mod redo;
+mod return_to;
+mod undo;
+
+pub use branch::Branch;
+pub use forget::Forget;
+pub use keep::Keep;
+pub use redo::Redo;
+pub use return_to::ReturnTo;
+pub use undo::Undo;

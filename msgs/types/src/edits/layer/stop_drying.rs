@@ -1,0 +1,28 @@
+//! Ends a drying.
+
+use crate::define::wire_struct;
+use crate::edits::{Form, StepForm, read};
+use crate::scene::CANVAS;
+use crate::values::ValueError;
+
+wire_struct! {
+    /// Stop a running drying; what is still wet stays wet
+    pub struct StopDrying {
+        /// The surface.
+        #[serde(default = "read::canvas")]
+        pub surface: u32,
+    }
+}
+
+impl Form for StopDrying {
+    const STEPS: &'static [StepForm] = &[StepForm::switch(
+        "stop_drying",
+        &[],
+        "{ stop_drying = true }",
+    )];
+    const ARGUMENTS: Option<&'static str> = Some("dry|--stop");
+
+    fn example() -> Result<Self, ValueError> {
+        Ok(Self { surface: CANVAS })
+    }
+}

@@ -1,0 +1,19 @@
+//! Edits of a surface: its place, its light, what it is made of, films and wells.
+
+mod fill;
+mod ground;
+mod piles;
+mod place;
+mod relight;
+mod size;
+mod tooth;
+mod wells;
+
+pub use fill::{Fill, FillPaint};
+pub use ground::{Ground, GroundSource};
+pub use piles::Piles;
+pub use place::Place;
+pub use relight::{Exposure, LightChange, Relight};
+pub use size::Size;
+pub use tooth::Tooth;
+pub use wells::Wells;

@@ -1,0 +1,90 @@
+//! Gives a surface other wells.
+
+use serde::de::{Deserialize, Deserializer, Error};
+
+use crate::command::WELLS_MAX;
+use crate::define::wire_struct;
+use crate::edits::{Form, StepForm};
+use crate::scene::{PALETTE, Well, WellKind};
+use crate::stylus::FARTHEST_M;
+use crate::values::ValueError;
+
+wire_struct! {
+    /// Give a surface other wells
+    ///
+    /// What brushes have stirred in those that go stays there, wet.
+    pub struct Wells {
+        /// The surface.
+        pub surface: u32,
+        /// Its wells from now on: few, round and within reach.
+        #[serde(deserialize_with = "few")]
+        pub wells: Vec<Well>,
+    }
+}
+
+impl Wells {
+    /// Wells of a surface.
+    ///
+    /// # Errors
+    /// [`ValueError`] for too many, and for one that is not round or out of reach.
+    pub fn new(surface: u32, wells: Vec<Well>) -> Result<Self, ValueError> {
+        if wells.len() > WELLS_MAX {
+            return Err(ValueError::Wells(wells.len()));
+        }
+        let near = |m: &f64| m.abs() <= FARTHEST_M;
+        let good = |well: &&Well| {
+            let is_round = well.radius_m > 0.0 && near(&well.radius_m);
+            is_round && well.center_m.iter().all(near)
+        };
+        match wells.iter().find(|well| !good(well)) {
+            Some(well) => Err(ValueError::Well(well.radius_m * 1e3)),
+            None => Ok(Self { surface, wells }),
+        }
+    }
+}
+
+fn few<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Well>, D::Error> {
+    let wells = Vec::deserialize(from)?;
+    let checked = Wells::new(PALETTE, wells).map_err(D::Error::custom)?;
+    Ok(checked.wells)
+}
+
+impl Form for Wells {
+    const STEPS: &'static [StepForm] = &[];
+    const ARGUMENTS: Option<&'static str> = None;
+
+    fn example() -> Result<Self, ValueError> {
+        let well = Well {
+            center_m: [0.1, 0.2],
+            radius_m: 0.01,
+            kind: WellKind::Cleaner,
+        };
+        Self::new(PALETTE, vec![well])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wells_are_few_round_and_near() {
+        let check = |radius_m: f64, x: f64, count: usize| {
+            let well = Well {
+                center_m: [x, 0.0],
+                radius_m,
+                kind: WellKind::Cleaner,
+            };
+            Wells::new(PALETTE, vec![well; count]).map(drop)
+        };
+        assert_eq!(check(0.01, 0.1, WELLS_MAX), Ok(()));
+        assert_eq!(
+            check(0.01, 0.1, WELLS_MAX + 1),
+            Err(ValueError::Wells(WELLS_MAX + 1))
+        );
+        for (radius_m, x) in [(0.0, 0.1), (f64::NAN, 0.1), (1e9, 0.1), (0.01, f64::NAN)] {
+            let error = check(radius_m, x, 1).expect_err("no well").to_string();
+            assert!(error.contains("within the surface"), "{error}");
+        }
+    }
+}

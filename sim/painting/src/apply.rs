@@ -1,0 +1,75 @@
+//! Applying edits: each edit's `apply` is in the file of `painting` that has what it changes.
+
+use std::fmt;
+
+use maulstick_canvas::EditError;
+use maulstick_types::edits::{
+    Branch, Clean, Dry, Edit, Fill, Forget, Ground, Handle, Keep, Load, NameLayer, Opacity, Piles,
+    Place, Redo, Relight, ReturnTo, Size, StopDrying, Tooth, Tune, Undo, Wells, Wet,
+};
+
+use crate::painting::Painting;
+
+/// An edit as the painting carries it out.
+pub trait Apply {
+    /// Changes a painting; where it is refused the painting is as it was.
+    ///
+    /// # Errors
+    /// [`EditError`] says why it is refused.
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError>;
+}
+
+/// What an edit has done.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Applied {
+    /// All that it says.
+    Done,
+    /// Paint has dried into a layer of this name.
+    Dried(String),
+    /// Paint dries within so many seconds.
+    Drying(f64),
+    /// Dry layers are wet again.
+    Rewet {
+        /// Their names, the newest first.
+        layers: Vec<String>,
+        /// Cells that could not hold all of it.
+        full_cells: usize,
+    },
+    /// A step was undone or redone.
+    Step(String),
+    /// A file is written.
+    Written(String),
+}
+
+impl fmt::Display for Applied {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Done => Ok(()),
+            Self::Dried(layer) => f.write_str(layer),
+            Self::Drying(seconds) => write!(f, "within {seconds:.1} s"),
+            Self::Rewet { layers, full_cells } => {
+                f.write_str(&layers.join(", "))?;
+                match full_cells {
+                    0 => Ok(()),
+                    cells => write!(f, "; {cells} cells could not hold all of it"),
+                }
+            }
+            Self::Step(what) | Self::Written(what) => f.write_str(what),
+        }
+    }
+}
+
+macro_rules! apply_edits {
+    ($($edit:ident),*) => {
+        // One arm an edit, each with the `Apply` of its own type.
+        impl Apply for Edit {
+            fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+                match self {
+                    $( Self::$edit(edit) => <$edit as Apply>::apply(edit, painting), )*
+                }
+            }
+        }
+    };
+}
+
+maulstick_types::for_each_edit!(apply_edits);

@@ -1,0 +1,32 @@
+//! The window's words for the advice that comes with a refusal.
+
+use maulstick_types::advice::Advice;
+
+/// What to do about it in this window; `None` where the general words do.
+#[must_use]
+pub(crate) fn words(advice: &Advice) -> Option<String> {
+    let words = match advice {
+        Advice::StopDrying => "wait for its end, or press Stop in the panel Layers",
+        Advice::BeginDrying => "press Start in the panel Layers",
+        Advice::DryFirst => "press Dry in the panel Layers",
+        Advice::FullOpacity { layer } => {
+            return Some(format!(
+                "set the opacity of layer {layer} to 100 % in the panel Layers"
+            ));
+        }
+        Advice::ListPaints => "choose one of the panel Tubes",
+        Advice::UndoNewest => "undo that first: Ctrl+Z takes the newest step of all",
+        Advice::StopExport => "wait for its end, or press Stop",
+        Advice::Replace => "write another name, or tick that the one that is there may go",
+        Advice::SaveOrForget => "save it under another name first, or tick that it may go",
+        Advice::Say { .. }
+        | Advice::Recover
+        | Advice::BeginExport
+        | Advice::ListFormats
+        | Advice::NamePainting
+        | Advice::BeginPainting
+        | Advice::StartRig
+        | Advice::DefaultSettings => return None,
+    };
+    Some(words.to_owned())
+}
