@@ -9,7 +9,7 @@ use maulstick_canvas::dry::{DryLayer, DryStack};
 use maulstick_canvas::page::{Page, Pager};
 use maulstick_canvas::planes::Planes;
 use maulstick_canvas::tile::{Tile, Version};
-use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_model::brush::load::BrushLoad;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::history::{Change, NonTileState, Step, StepEffects, TilePlace, TileRef};
 use maulstick_painting::sequencer::Record;

@@ -2,7 +2,7 @@
 //!
 //! Pure: brush states and commands come in, tiles and reports go out. [`Sequencer`] decides the
 //! order and keeps the journal; [`Painting`] does what the journal says; a
-//! [`PaintModel`](maulstick_impasto::model::PaintModel) moves the paint of one step.
+//! [`PaintModel`](maulstick_model::interface::PaintModel) moves the paint of one step.
 //!
 //! | module | holds |
 //! | --- | --- |

@@ -344,7 +344,7 @@ fn a_look_of_a_brush_is_told_once_for_each_load_and_light() {
     use maulstick_brush::file::sections::Hair;
     use maulstick_bus::Queue;
     use maulstick_bus::typed::Receiver;
-    use maulstick_impasto::brush::load::BrushLoad;
+    use maulstick_model::brush::load::BrushLoad;
     use maulstick_types::brush::BrushLook;
 
     let mut rig = rig();

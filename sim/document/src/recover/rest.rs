@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::{Counts, SLOTS, add};
-use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_model::brush::load::BrushLoad;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::ledger::Ledger;
 use maulstick_painting::snapshot::{PaintingSnapshot, SequencerSnapshot};

@@ -29,8 +29,8 @@ use std::sync::Arc;
 
 use maulstick_canvas::window::Window;
 use maulstick_impasto::Impasto;
-use maulstick_impasto::brush::load::BrushLoad;
-use maulstick_impasto::model::{PaintModel, Step, StepReport, Transfer};
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::interface::{PaintModel, Step, StepReport, Transfer};
 
 use crate::device::{Device, GpuError};
 use kept::KeptSteps;

@@ -5,11 +5,11 @@ use maulstick_canvas::quantum::add;
 use super::advection::{Advection, Axis};
 use super::bristle_flow::flow;
 use super::exchange::Exchange;
-use super::footprint::Footprint;
-use super::modes::{sample, vacuum};
 use super::seep::seep;
 use super::velocity::Faces;
-use crate::model::{PaintModel, Step, StepReport, Transfer};
+use maulstick_model::footprint::Footprint;
+use maulstick_model::interface::{PaintModel, Step, StepReport, Transfer};
+use maulstick_model::modes::{sample, vacuum};
 
 /// The paint model `impasto`, with room for its stages.
 #[derive(Debug, Default)]

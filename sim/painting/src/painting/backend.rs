@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use maulstick_canvas::EditError;
-use maulstick_impasto::brush::traits::BrushTraits;
-use maulstick_impasto::model::{PaintModel, StepReport};
+use maulstick_model::brush::traits::BrushTraits;
+use maulstick_model::interface::{PaintModel, StepReport};
 
 use super::Painting;
 use super::brush_modes::UnderBrush;

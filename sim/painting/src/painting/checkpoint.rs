@@ -12,10 +12,10 @@ use maulstick_canvas::page::{Page, Pager};
 use maulstick_canvas::store::TileStore;
 use maulstick_canvas::tile::{TileId, Version};
 use maulstick_impasto::Impasto;
-use maulstick_impasto::brush::head::Waypoint;
-use maulstick_impasto::brush::load::BrushLoad;
-use maulstick_impasto::brush::traits::TEXELS_PER_STRIP;
-use maulstick_impasto::path::PathStepper;
+use maulstick_model::brush::head::Waypoint;
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::brush::traits::TEXELS_PER_STRIP;
+use maulstick_model::path::PathStepper;
 use maulstick_optics::{PaintLibrary, Studio};
 use maulstick_types::scene::{CANVAS, PALETTE};
 

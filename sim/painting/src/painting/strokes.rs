@@ -7,12 +7,12 @@ use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::relief::ride;
 use maulstick_canvas::store::TileRect;
 use maulstick_canvas::window::Window;
-use maulstick_impasto::brush::head::{Waypoint, low_bounds};
-use maulstick_impasto::brush::load::Half;
-use maulstick_impasto::brush::scale::Scale;
-use maulstick_impasto::brush::traits::BrushTraits;
-use maulstick_impasto::model::{Step, Sweep};
-use maulstick_impasto::path::PathStepper;
+use maulstick_model::brush::head::{Waypoint, low_bounds};
+use maulstick_model::brush::load::Half;
+use maulstick_model::brush::scale::Scale;
+use maulstick_model::brush::traits::BrushTraits;
+use maulstick_model::interface::{Step, Sweep};
+use maulstick_model::path::PathStepper;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
 use maulstick_types::scene::CANVAS;
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use maulstick_canvas::EditError;
-use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_model::brush::load::BrushLoad;
 use maulstick_types::advice::choice;
 use maulstick_types::scene::NamedVersion;
 

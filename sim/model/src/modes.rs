@@ -3,9 +3,9 @@
 
 use maulstick_canvas::quantum::{Counts, SLOTS};
 
-use super::footprint::Footprint;
 use crate::brush::traits::TEXELS_PER_STRIP;
-use crate::model::Step;
+use crate::footprint::Footprint;
+use crate::interface::Step;
 
 /// Lifts the wet paint off the cells that are at least half covered, and a part of it off the others;
 /// what was lifted.

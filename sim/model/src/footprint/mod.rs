@@ -1,16 +1,24 @@
-//! Stage 1: the cells that the head touches, with the touching strip and its depth.
+//! Footprint of a head: the cells that it touches, with the touching strip and its depth.
 //!
 //! Strips are ribbons that turn their flat side to the surface (Baxter 2004, § 3.5.2). In each cell the deepest one
 //! counts. It touches where it, with the film of paint that it carries, reaches the top of the surface there: tooth,
 //! dry relief and wet paint. All lengths are in cells.
 
+pub mod band;
+pub mod contact;
+mod draw_skin;
+mod rasterizer;
+
 use maulstick_canvas::window::{Area, Window};
 use maulstick_num::fork_join::{Balance, both_if};
 
-use super::PARALLEL_MIN_CELLS;
-use super::band::{Band, draw_strips};
-use super::contact::Contact;
-use crate::model::{Step, StepReport};
+use band::{Band, draw_strips};
+use contact::Contact;
+
+use crate::interface::{Step, StepReport};
+
+/// Smaller footprints run on one core: fork-join would cost more than it saves.
+pub const PARALLEL_MIN_CELLS: usize = 400;
 
 /// The footprint of one step.
 #[derive(Clone, Debug, Default)]
@@ -92,7 +100,7 @@ impl Footprint {
     }
 
     /// Notes how high paint stands where the brush has left it.
-    pub(crate) fn note_left(&mut self, step: &mut Step<'_>) {
+    pub fn note_left(&mut self, step: &mut Step<'_>) {
         self.weigh(self.around, step);
     }
 
