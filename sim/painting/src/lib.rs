@@ -8,6 +8,7 @@
 //! | --- | --- |
 //! | [`Painting`] | surfaces, brushes, what is done to them |
 //! | [`sequencer`] | the order of states and commands |
+//! | [`models`] | the paint models that a surface can have |
 //! | [`setup`] | the scene of a new painting |
 //! | [`ledger`], [`history`] | the books, undo |
 //! | [`clock`] | ticks, and the dryings that they drive |
@@ -40,6 +41,7 @@ pub mod clock;
 mod error;
 pub mod history;
 pub mod ledger;
+pub mod models;
 mod painting;
 pub mod picture;
 pub mod sequencer;

@@ -8,6 +8,7 @@ use maulstick_types::decode;
 
 use maulstick_appearance::display::{DisplayTile, WetFilms};
 use maulstick_appearance::ground::Ground;
+use maulstick_appearance::show_paint::Counted;
 use maulstick_appearance::{Appearance, Bakery};
 use maulstick_canvas::assets::Assets;
 use maulstick_canvas::planes::TILE_CELLS;
@@ -39,6 +40,7 @@ fn rig_of(cells: [u32; 2]) -> Rig {
     {
         let mut fed = feed.lock();
         let bare = Arc::new(BlankSurface {
+            shown: &Counted,
             ground: Ground::Even(vec![0.95; look.studio.wavelengths()]),
             relief: Arc::new(Relief::flat(2.5e-4)),
             wells: Vec::new(),

@@ -9,12 +9,14 @@
 //! | [`advection`] | 3: the paint goes there, counted |
 //! | [`exchange`] | 4 and 5: Algorithm 3, both ways |
 //! | [`bristle_flow`] | paint moves within the head |
+//! | [`rest`], [`levelling`] | after the stroke |
 //! | [`modes`](maulstick_model::modes) | the sampler and the vacuum cleaner, in place of 2 to 5 |
 
 pub mod advection;
 pub mod bristle_flow;
 pub mod exchange;
 pub mod levelling;
+pub mod rest;
 pub mod seep;
 pub mod step;
 pub mod velocity;

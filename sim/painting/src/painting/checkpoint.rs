@@ -11,7 +11,6 @@ use maulstick_canvas::assets::Assets;
 use maulstick_canvas::page::{Page, Pager};
 use maulstick_canvas::store::TileStore;
 use maulstick_canvas::tile::{TileId, Version};
-use maulstick_impasto::Impasto;
 use maulstick_model::brush::head::Waypoint;
 use maulstick_model::brush::load::BrushLoad;
 use maulstick_model::brush::traits::TEXELS_PER_STRIP;
@@ -26,6 +25,7 @@ use super::undo::makes;
 use super::{Named, Painting, PaintingBrush, SurfaceState, bare};
 use crate::error::paint_error;
 use crate::history::{History, NonTileState, Step, TilePlace};
+use crate::models::{Models, model_called};
 use crate::setup::check_size;
 use crate::snapshot::{BrushSnapshot, OpenStepSnapshot, PaintingSnapshot, RowCounts};
 
@@ -214,6 +214,7 @@ impl Painting {
             sheets.push(SurfaceState {
                 id: surface.id,
                 cell_m: surface.cell_m,
+                model: model_called(&surface.model)?,
                 store: TileStore::paged(surface.cells, &pager),
                 bare: Arc::new(bare(surface, &look.studio, makers, None)?),
                 top: kept.tops.get(&surface.id).copied().unwrap_or(0.0),
@@ -265,7 +266,7 @@ impl Painting {
             sheets,
             embedded: restored.embedded,
             brushes,
-            model: Box::new(Impasto::default()),
+            models: Models::default(),
             unsettled: None,
             fall: BackendFallback::default(),
             accounted: kept.ledger.clone(),

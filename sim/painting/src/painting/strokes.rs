@@ -90,7 +90,7 @@ impl Painting {
         }
         let track = self.brush(name)?;
         let traits = BrushTraits::of(&track.thinned, scale.cell_m, scale.zoom);
-        let waypoint = Waypoint::of(solve, scale, self.seen_fullness(name, &traits)?);
+        let waypoint = Waypoint::of(solve, scale, self.seen_fullness(name, sheet, &traits)?);
         let track = self.brush(name)?;
         let head = Arc::clone(&track.head);
         let Some((_, mut path)) = running else {
@@ -174,7 +174,8 @@ impl Painting {
             return;
         };
         let traits = BrushTraits::of(&track.thinned, scale.cell_m, scale.zoom).doubled(doublings);
-        let deferred = self.model.defers() && !self.has_wells(sheet);
+        let model = self.sheets[sheet].model;
+        let deferred = self.models.of(model).defers() && !self.has_wells(sheet);
         let height = if deferred {
             // The height of the paint is not known here.
             f32::INFINITY
@@ -230,9 +231,9 @@ impl Painting {
             thinner,
         };
         let report = if deferred {
-            self.model.step(&mut step)
+            self.models.of(model).step(&mut step)
         } else {
-            self.model.step_now(&mut step)
+            self.models.of(model).step_now(&mut step)
         };
         self.sheets[sheet].top = self.sheets[sheet].top.max(window.top());
         // The report of deferred steps covers all that were not settled.
@@ -241,7 +242,7 @@ impl Painting {
         } else {
             0
         };
-        self.note(name, &report, 1 + unsettled);
+        self.note((name, sheet), &report, 1 + unsettled);
         if deferred {
             self.defer(name);
         }
