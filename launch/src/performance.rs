@@ -352,6 +352,31 @@ mod tests {
     }
 
     #[test]
+    fn a_paint_model_is_chosen_for_a_new_painting_alone() {
+        let setup = |canvas: &str, palette: &str| {
+            let options = PaintingOptions {
+                model: Some(canvas.into()),
+                ..Default::default()
+            };
+            assert_eq!(options.for_a_new_one(), Some("--model"));
+            let mut config = RigConfig::default();
+            palette.clone_into(&mut config.palette.model);
+            options.apply(&mut config)?;
+            painting_setup(&config, &library()?).map(|setup| [setup.model, setup.palette_model])
+        };
+        let marker = ["marker", "impasto"].map(str::to_owned);
+        assert_eq!(setup("marker", "impasto"), Ok(marker));
+        for (canvas, palette, place) in [
+            ("makrer", "impasto", "model of [paint], or --model"),
+            ("impasto", "makrer", "model of [palette]"),
+        ] {
+            let fault = setup(canvas, palette).expect_err("misspelt").to_string();
+            let told = fault.contains("'makrer'") && fault.contains("did you mean 'marker'");
+            assert!(told && fault.contains(place), "{fault}");
+        }
+    }
+
+    #[test]
     fn a_brush_may_come_from_the_rig_the_library_or_a_file() {
         let apply = |name: &str| {
             let options = KitOptions {

@@ -1,6 +1,7 @@
 //! The interface of paint models: one step of a brush on a surface, and the paint at rest after a stroke.
 
 use maulstick_brush::head::{Head, HeadPose};
+use maulstick_canvas::own_plane::OwnPlane;
 use maulstick_canvas::quantum::{CELL_MAX, Counts, SLOTS};
 use maulstick_canvas::window::{Area, Window};
 
@@ -123,11 +124,14 @@ pub struct Rest<'a> {
     pub thinner: Option<usize>,
 }
 
+/// Quanta by slot in the planes that a model keeps of its own on one page.
+pub type CountOwn = fn(&[OwnPlane]) -> Counts;
+
 /// A paint model: how paint moves in one step.
 ///
-/// Wells, fills, underpaintings, drying and rewetting know no model: they add, take and keep counts of paint by cell and
-/// slot, and so does what a model leaves in a window's planes. What the model reports is booked: paint from nowhere and
-/// paint lifted off have accounts of their own, and the rest must be found on brushes and surfaces.
+/// Wells, fills, underpaintings, drying and rewetting know no model: they work on counts of paint by cell and slot. What a
+/// model keeps besides, in planes of its own, they leave as it is. What the model reports is booked: paint from nowhere
+/// and paint lifted off have accounts of their own, and the rest must be found on brushes and surfaces.
 pub trait PaintModel: Send {
     /// Its name in `rig.toml`.
     fn name(&self) -> &'static str;
@@ -157,6 +161,10 @@ pub trait PaintModel: Send {
     }
     /// Moves the paint of a stroke once the brush is lifted; window and load are settled.
     fn rest(&mut self, _rest: &mut Rest<'_>) {}
+    /// What counts the paint in its own planes, for the ledger; `None` if there is none in them.
+    fn count_own(&self) -> Option<CountOwn> {
+        None
+    }
     /// The reason why the backend changed, returned once. No paint is lost by it.
     fn take_fall(&mut self) -> Option<String> {
         None
