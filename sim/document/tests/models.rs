@@ -41,6 +41,8 @@ fn each_goes_on_in_its_document_as_in_memory() {
             sequencer: mut kept,
             ..
         } = Easel::open(&settings).expect("whole");
+        // What is opened goes on with lifted brushes.
+        alone.go_on();
         assert_eq!(kept.painting().model(CANVAS), Some(model));
         assert_eq!(print(&mut kept), print(&mut alone), "{model} opened again");
         for _ in 0..15 {
