@@ -3,6 +3,10 @@
 use maulstick_gpu::{Choice, Device, GpuImpasto};
 use maulstick_painting::Sequencer;
 use maulstick_rig::Fault;
+use maulstick_types::scene::CANVAS;
+
+/// Setting of the backend.
+const PLACE: &str = "backend of [paint], or --backend";
 
 /// Has a painting's steps computed by the GPU from now on, and journals that, if the settings want it and there is one:
 /// `auto` takes a graphics processor of its own, `gpu` any.
@@ -15,6 +19,19 @@ pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), Fa
         "gpu" => Choice::Forced,
         _ => Choice::Auto,
     };
+    match (sequencer.painting().model(CANVAS), choice) {
+        (Some("impasto"), _) => {}
+        (_, Choice::Auto) => return Ok(()),
+        (model, Choice::Forced) => {
+            let what = format!(
+                "no GPU computes the paint model '{}'",
+                model.unwrap_or_default()
+            );
+            return Err(Fault::usage(what)
+                .at(PLACE)
+                .help("leave the choice to the rig: backend = \"auto\""));
+        }
+    }
     match (Device::open(choice).and_then(GpuImpasto::new), choice) {
         (Ok(model), _) => {
             tracing::info!("paint is computed by {}", model.adapter());
@@ -27,7 +44,7 @@ pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), Fa
         (Err(error), Choice::Forced) => Err(Fault::failure(format!(
             "paint cannot be computed by a GPU: {error}"
         ))
-        .at("backend of [paint], or --backend")
+        .at(PLACE)
         .help("install a Vulkan driver, or leave the choice to the rig: backend = \"auto\"")),
     }
 }

@@ -104,11 +104,11 @@ pub fn presence(path: &Path, options: &PaintingOptions) -> Result<Presence, Faul
             check_writable(path, Kind::Own).map_err(|error| Fault::writing(path, &error))?;
             Ok(Presence::New)
         }
-        true => match options.kit.for_a_new_one() {
+        true => match options.for_a_new_one() {
             Some(option) => Err(Fault::usage(format!("{option} is for a new painting"))
                 .at(path.display().to_string())
                 .help(
-                    "this one has its size, cells, paints, ground and light; `maulstick light` and `ground` change these",
+                    "this one has its paint model, size, cells, paints, ground and light; `maulstick light` and `ground` change these",
                 )),
             None => Ok(Presence::There),
         },

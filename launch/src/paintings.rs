@@ -12,6 +12,7 @@ use maulstick_session::Offline;
 use crate::easel::Easel;
 use crate::performance::refused;
 use crate::script::Script;
+use crate::sheet::Board;
 
 /// Names and scripts of the paintings.
 pub const PAINTINGS: [(&str, &str); 3] = [
@@ -38,13 +39,13 @@ pub fn script(name: &str, library: &PaintLibrary) -> Result<Script, Fault> {
     Script::parse(text, &format!("{name}.toml"), Path::new(""), library)
 }
 
-/// Paints one of the paintings in cells so wide; `bar` shows how far it is.
+/// Paints one of the paintings on such a board; `bar` shows how far it is.
 ///
 /// # Errors
 /// A [`Fault`] for a name that none has, or where the painting refuses a step.
 pub fn paint(
     name: &str,
-    cell_mm: f64,
+    board: Board,
     library: PaintLibrary,
     bar: ProgressBar,
 ) -> Result<Offline, Fault> {
@@ -53,8 +54,9 @@ pub fn paint(
         .canvas_mm
         .ok_or_else(|| Fault::failure(format!("the painting '{name}' does not say its size")))?;
     let setup = PaintingSetup {
-        cells: size_mm.map(|mm| (mm / cell_mm).round() as u32),
-        cell_m: 1e-3 * cell_mm,
+        cells: size_mm.map(|mm| (mm / board.cell_mm).round() as u32),
+        cell_m: 1e-3 * board.cell_mm,
+        model: board.model.to_owned(),
         // Strokes that go over the canvas's edge come to a clean board.
         wells: Vec::new(),
         ..PaintingSetup::default()

@@ -6,8 +6,8 @@ use clap::Args;
 use maulstick_brush::BrushFile;
 use maulstick_canvas::EditError;
 use maulstick_optics::{Illuminant, PaintError, PaintLibrary};
-use maulstick_painting::PaintingSetup;
-use maulstick_painting::paint_error;
+use maulstick_painting::models::model_called;
+use maulstick_painting::{PaintingSetup, paint_error};
 use maulstick_rig::Fault;
 use maulstick_rig::config::{BACKENDS, BrushSection, LightSection, RigConfig};
 use maulstick_types::Mixture;
@@ -65,6 +65,10 @@ pub struct PaintingOptions {
     /// of rig.toml]
     #[arg(long, value_name = "NAME", value_parser = BACKENDS)]
     pub backend: Option<String>,
+    /// Paint model of a new painting's canvas: impasto, or marker, an even film that nothing pushes or takes up
+    /// [default: that of rig.toml]
+    #[arg(long, value_name = "NAME")]
+    pub model: Option<String>,
     /// Ledger of the paint to write, JSON
     #[arg(long, value_name = "FILE")]
     pub ledger: Option<PathBuf>,
@@ -194,7 +198,14 @@ impl KitOptions {
 }
 
 impl PaintingOptions {
-    /// As [`KitOptions::apply`], with memory, history and backend.
+    /// The first of the options that only a new painting takes.
+    #[must_use]
+    pub fn for_a_new_one(&self) -> Option<&'static str> {
+        let model = self.model.as_ref().map(|_| "--model");
+        model.or_else(|| self.kit.for_a_new_one())
+    }
+
+    /// As [`KitOptions::apply`], with memory, history, backend and paint model.
     ///
     /// # Errors
     /// As there, and for invalid sizes.
@@ -204,6 +215,9 @@ impl PaintingOptions {
         }
         if let Some(backend) = &self.backend {
             config.paint.backend.clone_from(backend);
+        }
+        if let Some(model) = &self.model {
+            config.paint.model.clone_from(model);
         }
         if self.history.is_some() {
             config.paint.history.clone_from(&self.history);
@@ -287,6 +301,12 @@ fn wells(config: &RigConfig, library: &PaintLibrary) -> Vec<String> {
     names.take(default.len()).collect()
 }
 
+/// The name of a paint model.
+fn model(name: &str, place: &str) -> Result<String, Fault> {
+    let entry = model_called(name).map_err(|error| refused(error).at(place))?;
+    Ok(entry.name.to_owned())
+}
+
 /// The painting that the rig's settings ask for.
 ///
 /// # Errors
@@ -311,6 +331,8 @@ pub fn painting_setup(config: &RigConfig, library: &PaintLibrary) -> Result<Pain
         wells,
         light: light(&config.light)?,
         exposure: config.light.exposure,
+        model: model(&config.paint.model, "model of [paint], or --model")?,
+        palette_model: model(&config.palette.model, "model of [palette]")?,
         ..PaintingSetup::default()
     };
     GroundFile::read(&canvas.ground)?.prime(&mut setup)?;
@@ -326,6 +348,31 @@ mod tests {
         assert_eq!(parse_size("640x480"), Ok([640, 480]));
         for text in ["640", "x480", "0x10", "640x-1", "1e3x2", "70000x1"] {
             assert!(parse_size(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_paint_model_is_chosen_for_a_new_painting_alone() {
+        let setup = |canvas: &str, palette: &str| {
+            let options = PaintingOptions {
+                model: Some(canvas.into()),
+                ..Default::default()
+            };
+            assert_eq!(options.for_a_new_one(), Some("--model"));
+            let mut config = RigConfig::default();
+            palette.clone_into(&mut config.palette.model);
+            options.apply(&mut config)?;
+            painting_setup(&config, &library()?).map(|setup| [setup.model, setup.palette_model])
+        };
+        let marker = ["marker", "impasto"].map(str::to_owned);
+        assert_eq!(setup("marker", "impasto"), Ok(marker));
+        for (canvas, palette, place) in [
+            ("makrer", "impasto", "model of [paint], or --model"),
+            ("impasto", "makrer", "model of [palette]"),
+        ] {
+            let fault = setup(canvas, palette).expect_err("misspelt").to_string();
+            let told = fault.contains("'makrer'") && fault.contains("did you mean 'marker'");
+            assert!(told && fault.contains(place), "{fault}");
         }
     }
 

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::{Bus, Faults, MemoryNet};
+use maulstick_painting::models::model_names;
 use maulstick_painting::picture::picture;
 use maulstick_session::Offline;
 use maulstick_types::command::Command;
@@ -14,7 +15,10 @@ use maulstick_types::edits::Load;
 use maulstick_types::values::BrushName;
 use maulstick_types::{Flags, Origin, name_hash};
 use proptest::prelude::*;
-use support::{Device, Live, START_NS, file, loads, offline, painting, pen, settings, take, turns};
+use support::{
+    Device, Live, START_NS, file, loads, offline, offline_on, painting, painting_of, pen, settings,
+    take, turns,
+};
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
@@ -54,6 +58,28 @@ proptest! {
         live.sent = 0;
         live.play(&mut order, 200_000);
         prop_assert!(picture(live.paint.painting_mut(), 0).rgb == offline());
+    }
+}
+
+#[test]
+fn with_every_paint_model_and_no_two_paint_alike() {
+    let mut pictures = Vec::new();
+    for model in model_names() {
+        let faults = Faults {
+            loss: 0.2,
+            delay_ns: 5_000_000,
+        };
+        let mut live = Live::new(MemoryNet::new(3, START_NS, faults));
+        let bus: Arc<dyn Bus> = Arc::new(live.net.bus());
+        live.paint = Live::paint_node_on(&bus, &live.topics, 6, painting_of(model));
+        live.announce(1);
+        live.play(&mut turns(3), 200_000);
+        let painting = live.paint.painting_mut();
+        assert_eq!(painting.report().quanta_missing, 0, "{model}");
+        let painted = picture(painting, 0).rgb;
+        assert!(painted == offline_on(painting_of(model)), "{model}");
+        assert!(!pictures.contains(&painted), "a fault would pass: {model}");
+        pictures.push(painted);
     }
 }
 

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use clap::Args;
+use clap::builder::PossibleValuesParser;
+use maulstick_painting::models::model_names;
 use maulstick_rig::Fault;
-use maulstick_rig::config::MODELS;
 
 /// Options of `maulstick bench`.
 #[derive(Args, Clone, Debug)]
@@ -14,7 +15,7 @@ pub struct BenchOptions {
     /// view, window [default: everything]
     area: Option<String>,
     /// Paint model to measure in `paint` [default: impasto]
-    #[arg(long, value_name = "NAME", value_parser = MODELS)]
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(model_names()))]
     model: Option<String>,
     /// Where `paint` computes its steps [default: cpu]
     #[arg(long, value_name = "NAME", value_parser = ["cpu", "gpu"])]

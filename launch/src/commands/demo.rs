@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 use indicatif::ProgressBar;
 use maulstick_device::demo::{Subject, performance};
+use maulstick_painting::models::{model_called, model_names};
 use maulstick_painting::picture::picture;
 use maulstick_rig::Fault;
 use maulstick_rig::files::Kind;
@@ -14,7 +16,8 @@ use crate::cells::SheetCells;
 use crate::commands::{progress_bar, say, write_picture, write_take};
 use crate::outputs::{UsedFile, check_outputs};
 use crate::paintings::{paint, script};
-use crate::performance::library;
+use crate::performance::{library, refused};
+use crate::sheet::Board;
 use crate::sheet::effects::effects;
 
 /// Options of `maulstick demo`.
@@ -35,6 +38,9 @@ pub struct DemoOptions {
     painting: Option<String>,
     #[command(flatten)]
     cells: SheetCells,
+    /// Paint model of a sheet or a painting [default: impasto]
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(model_names()))]
+    model: Option<String>,
     /// Seed of the performance [default: 1]
     #[arg(long)]
     seed: Option<u64>,
@@ -60,13 +66,34 @@ impl DemoOptions {
                 return Err(Fault::usage(what).help(help));
             }
         }
-        if self.cells.cell_mm.is_some() && self.sheet.is_none() {
-            return Err(Fault::usage(
-                "--cell-mm does nothing without --sheet PNG or --painting NAME",
-            )
-            .help("a take has no cells; `maulstick render --cell-mm` has"));
+        for (option, given, help) in [
+            (
+                "--cell-mm",
+                self.cells.cell_mm.is_some(),
+                "a take has no cells; `maulstick render --cell-mm` has",
+            ),
+            (
+                "--model",
+                self.model.is_some(),
+                "a take has no paint; `maulstick render --model` has",
+            ),
+        ] {
+            if given && self.sheet.is_none() {
+                let what = format!("{option} does nothing without --sheet PNG or --painting NAME");
+                return Err(Fault::usage(what).help(help));
+            }
         }
         Ok(())
+    }
+
+    /// What is painted on.
+    fn board(&self) -> Result<Board, Fault> {
+        let board = Board::impasto(self.cells.side_mm());
+        let Some(model) = &self.model else {
+            return Ok(board);
+        };
+        let model = model_called(model).map_err(refused)?.name;
+        Ok(Board { model, ..board })
     }
 }
 
@@ -92,7 +119,7 @@ pub fn run(options: &DemoOptions) -> Result<i32, Fault> {
     }
     if let Some(path) = &options.sheet {
         let bar = ProgressBar::new(1);
-        let picture = effects(&library()?, options.cells.side_mm(), |done, of| {
+        let picture = effects(&library()?, options.board()?, |done, of| {
             bar.set_length(of as u64);
             bar.set_position(done as u64);
         })?;
@@ -111,7 +138,7 @@ fn run_painting(name: &str, options: &DemoOptions) -> Result<i32, Fault> {
     let path = options.output.as_ref().unwrap_or(&named);
     check_outputs(&[UsedFile::new("the picture", path).of(Kind::Png)], &[])?;
     let bar = progress_bar(0).with_message("painting");
-    let mut offline = paint(name, options.cells.side_mm(), library, bar)?;
+    let mut offline = paint(name, options.board()?, library, bar)?;
     write_picture(&picture(offline.painting_mut(), CANVAS), path)?;
     say!("{}", path.display());
     Ok(0)

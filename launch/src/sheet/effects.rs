@@ -10,7 +10,7 @@ use maulstick_types::values::{BrushName, Share};
 
 use super::gesture::{Gesture, Moment, swell};
 use super::marks::stroke;
-use super::{BRUSH, DEPTH_SHARE, GAP_MM, Panel, Sheet, library_brush, mixture_of};
+use super::{BRUSH, Board, DEPTH_SHARE, GAP_MM, Panel, Sheet, library_brush, mixture_of};
 use crate::performance::refused;
 
 /// Size of a panel, mm.
@@ -29,8 +29,8 @@ const WHITE: &str = "Titanium White";
 struct Effect {
     name: &'static str,
     words: &'static str,
-    /// Paints it on cells of a side, mm.
-    paint: fn(PaintLibrary, f64) -> Result<Panel, Fault>,
+    /// Paints it on a board.
+    paint: fn(PaintLibrary, Board) -> Result<Panel, Fault>,
 }
 
 const EFFECTS: [Effect; 8] = [
@@ -76,13 +76,13 @@ const EFFECTS: [Effect; 8] = [
     },
 ];
 
-/// The sheet, on cells of this side; `told` hears of each panel.
+/// The sheet, on boards like this; `told` hears of each panel.
 ///
 /// # Errors
 /// A [`Fault`] where a brush or a paint is refused, or where it would have too many pixels.
 pub fn effects(
     library: &PaintLibrary,
-    cell_mm: f64,
+    board: Board,
     mut told: impl FnMut(usize, usize),
 ) -> Result<Picture, Fault> {
     let [across, up] = PANEL_MM;
@@ -90,13 +90,13 @@ pub fn effects(
     let rows = EFFECTS.len().div_ceil(columns);
     let width = GAP_MM + columns as f64 * (across + GAP_MM);
     let height = GAP_MM + rows as f64 * (WORDS_MM + up + GAP_MM);
-    let mut sheet = Sheet::new([width, height], cell_mm)?;
+    let mut sheet = Sheet::new([width, height], board.cell_mm)?;
     for (place, effect) in EFFECTS.iter().enumerate() {
         let x = GAP_MM + (place % columns) as f64 * (across + GAP_MM);
         let y = GAP_MM + (place / columns) as f64 * (WORDS_MM + up + GAP_MM);
         sheet.write(effect.name, [x, y + 5.0], 5.5);
         sheet.write(effect.words, [x, y + 10.0], WORDS_SIZE_MM);
-        let panel = (effect.paint)(library.clone(), cell_mm)?;
+        let panel = (effect.paint)(library.clone(), board)?;
         sheet.paste(&panel.picture(), [x, y + WORDS_MM]);
         told(place + 1, EFFECTS.len());
     }
@@ -107,14 +107,9 @@ impl Panel {
     fn of(
         kind: &str,
         width_mm: f64,
-        (library, cell_mm): (PaintLibrary, f64),
+        (library, board): (PaintLibrary, Board),
     ) -> Result<Self, Fault> {
-        Self::new(
-            (PANEL_MM, cell_mm),
-            "gesso",
-            sized(kind, width_mm)?,
-            library,
-        )
+        Self::new((PANEL_MM, board), "gesso", sized(kind, width_mm)?, library)
     }
 
     fn take_up(&mut self, name: &str, file: BrushFile) -> Result<(), Fault> {
@@ -152,8 +147,8 @@ fn wave(points: Vec<[f64; 2]>, pressure: f64, seconds: f64) -> Gesture {
     })
 }
 
-fn transfer(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("flat", 8.0, (library, cell_mm))?;
+fn transfer(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("flat", 8.0, (library, board))?;
     for (row, mixture) in ["Ultramarine Blue", YELLOW, RED].into_iter().enumerate() {
         let y = 40.0 - 15.0 * row as f64;
         for from in [6.0, 80.0, 6.0] {
@@ -173,8 +168,8 @@ fn transfer(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn loading(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("flat", 10.0, (library, cell_mm))?;
+fn loading(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("flat", 10.0, (library, board))?;
     let pairs = [
         ["Quinacridone Magenta=0.6,Pyrrole Red=0.4", WHITE],
         [BLUE, YELLOW],
@@ -197,8 +192,8 @@ fn loading(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn drying(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("flat", 8.0, (library, cell_mm))?;
+fn drying(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("flat", 8.0, (library, board))?;
     // The stripe painted first dries most often: .75⁴ = .32 of it stays wet.
     for stripe in 0..5 {
         if stripe > 0 {
@@ -216,8 +211,8 @@ fn drying(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn blending(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("flat", 13.0, (library, cell_mm))?;
+fn blending(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("flat", 13.0, (library, board))?;
     for (mixture, rows) in [
         ("Ultramarine Blue=0.7,Titanium White=0.3", [18.0, 8.0]),
         (YELLOW, [40.0, 30.0]),
@@ -243,8 +238,8 @@ fn blending(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn glazing(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("filbert", 11.0, (library, cell_mm))?;
+fn glazing(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("filbert", 11.0, (library, board))?;
     let greys = [
         "Bone Black=0.7,Titanium White=0.3",
         "Bone Black=0.2,Titanium White=0.8",
@@ -271,8 +266,8 @@ fn glazing(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn impasto(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("bright", 8.0, (library, cell_mm))?;
+fn impasto(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("bright", 8.0, (library, board))?;
     // Petals around two hearts, each of six loads.
     for (middle, colour) in [
         ([24.0, 24.0], "Hansa Yellow Opaque=0.3,Titanium White=0.7"),
@@ -301,8 +296,8 @@ fn impasto(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
 /// Share of its load on a brush that is wiped for scumbling.
 const NEARLY_EMPTY: f64 = 0.2;
 
-fn scumbling(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("bright", 10.0, (library, cell_mm))?;
+fn scumbling(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("bright", 10.0, (library, board))?;
     for i in 0..14 {
         let (column, row) = (i % 7, i / 7);
         let x = 10.0 + 11.0 * f64::from(column);
@@ -328,8 +323,8 @@ fn scumbling(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn thinning(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("round", 8.0, (library, cell_mm))?;
+fn thinning(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("round", 8.0, (library, board))?;
     let mixtures = [
         "Ultramarine Blue",
         "Ultramarine Blue=0.6,Thinner=0.4",

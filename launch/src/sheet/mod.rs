@@ -101,6 +101,26 @@ fn pixels(mm: f64, cell_mm: f64) -> usize {
     (mm / cell_mm).round() as usize
 }
 
+/// What a panel is painted on.
+#[derive(Clone, Copy, Debug)]
+pub struct Board {
+    /// Side of a cell, mm.
+    pub cell_mm: f64,
+    /// Name of the paint model.
+    pub model: &'static str,
+}
+
+impl Board {
+    /// Impasto on cells of this side, mm.
+    #[must_use]
+    pub fn impasto(cell_mm: f64) -> Self {
+        Self {
+            cell_mm,
+            model: "impasto",
+        }
+    }
+}
+
 /// A panel being painted.
 struct Panel {
     offline: Offline,
@@ -109,15 +129,16 @@ struct Panel {
 
 impl Panel {
     fn new(
-        (size_mm, cell_mm): ([f64; 2], f64),
+        (size_mm, board): ([f64; 2], Board),
         ground: &str,
         file: BrushFile,
         library: PaintLibrary,
     ) -> Result<Self, Fault> {
         let setup = PaintingSetup {
             ground: ground.to_owned(),
-            cells: size_mm.map(|mm| pixels(mm, cell_mm) as u32),
-            cell_m: 1e-3 * cell_mm,
+            cells: size_mm.map(|mm| pixels(mm, board.cell_mm) as u32),
+            cell_m: 1e-3 * board.cell_mm,
+            model: board.model.to_owned(),
             ..PaintingSetup::default()
         };
         let painting = Painting::new(&setup, library).map_err(refused)?;
@@ -162,7 +183,12 @@ pub fn brush_panel(
     library: PaintLibrary,
     cell_mm: f64,
 ) -> Result<Picture, Fault> {
-    let mut panel = Panel::new((marks::PANEL_MM, cell_mm), "gesso", file.clone(), library)?;
+    let mut panel = Panel::new(
+        (marks::PANEL_MM, Board::impasto(cell_mm)),
+        "gesso",
+        file.clone(),
+        library,
+    )?;
     for mark in marks::marks(file) {
         if let Some(mixture) = mark.load {
             panel.load(BRUSH, mixture)?;
@@ -182,7 +208,7 @@ pub fn one_stroke_panel(
     cell_mm: f64,
 ) -> Result<Picture, Fault> {
     let mut panel = Panel::new(
-        (one_stroke::PANEL_MM, cell_mm),
+        (one_stroke::PANEL_MM, Board::impasto(cell_mm)),
         "grey",
         file.clone(),
         library,
@@ -209,7 +235,12 @@ pub fn softening_panel(
     cell_mm: f64,
 ) -> Result<Picture, Fault> {
     let flat = library_brush("flat")?;
-    let mut panel = Panel::new((softening::PANEL_MM, cell_mm), "gesso", flat, library)?;
+    let mut panel = Panel::new(
+        (softening::PANEL_MM, Board::impasto(cell_mm)),
+        "gesso",
+        flat,
+        library,
+    )?;
     for (mixture, gesture) in softening::bands() {
         panel.load(BRUSH, mixture)?;
         panel.paint(&gesture)?;

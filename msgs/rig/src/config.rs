@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use maulstick_types::advice::Advice;
+use maulstick_types::scene::default_model;
 use serde::{Deserialize, Serialize};
 
 use crate::fault::Fault;
@@ -20,8 +21,6 @@ pub use palette::{PILES, PaletteSection};
 
 /// The commented default.
 pub const DEFAULT: &str = include_str!("default.toml");
-/// Paint models.
-pub const MODELS: [&str; 1] = ["impasto"];
 /// Backends of paint and colour.
 pub const BACKENDS: [&str; 3] = ["auto", "cpu", "gpu"];
 /// Colour spaces that the window and pictures know without a file.
@@ -122,7 +121,7 @@ fn half() -> f64 {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PaintSection {
-    /// One of [`MODELS`].
+    /// Paint model of the canvas of a new painting; its name is checked where that is begun.
     pub model: String,
     /// One of [`BACKENDS`].
     pub backend: String,
@@ -161,7 +160,7 @@ const MEMORY_MIN: u64 = 64 << 20;
 impl Default for PaintSection {
     fn default() -> Self {
         Self {
-            model: "impasto".into(),
+            model: default_model(),
             backend: "auto".into(),
             paints: None,
             document: None,
@@ -427,7 +426,6 @@ mod tests {
         let text = error("brush = \"main\"", "brush = \"mian\"");
         assert!(text.contains("'mian'") && text.contains("'main'"), "{text}");
         assert!(error("force = \"linear\"", "force = \"linaer\"").contains("'linear'"));
-        assert!(error("model = \"impasto\"", "model = \"impatso\"").contains("'impasto'"));
         let text = error("[node.paint]", "[node.piant]");
         assert!(
             text.contains("no node called 'piant'") && text.contains("did you mean 'paint'"),

@@ -78,7 +78,16 @@ wire_struct! {
         pub stain_m: f64,
         /// Whether paint that brushes take up from it stays there all the same (Baxter 2004, § 6.7).
         pub piles_last: bool,
+        /// Name of the model of its paint.
+        #[serde(default = "default_model")]
+        pub model: String,
     }
+}
+
+/// The paint model where nothing else is said.
+#[must_use]
+pub fn default_model() -> String {
+    "impasto".to_owned()
 }
 
 /// Thickness that stays where nothing else is said, m.
@@ -360,7 +369,7 @@ impl Tuning {
 
 message! {
     /// The desk; cached for late joiners.
-    pub struct Scene [version 5, at most 16777216 bytes] {
+    pub struct Scene [version 6, at most 16777216 bytes] {
         /// Grows with every change.
         pub version: u64,
         /// The canvas first.

@@ -229,6 +229,7 @@ fn all() -> String {
                 ],
                 stain_m: 1e-5,
                 piles_last: true,
+                model: "impasto".into(),
             }],
             paints: vec![PaintSlot {
                 name: "Bone Black".into(),

@@ -256,7 +256,7 @@ mod tests {
         let plane: Arc<[f32]> = (0..TILE_CELLS).map(|i| (i % 5 * quanta) as f32).collect();
         DryLayer {
             number,
-            planes: maulstick_canvas::page::Page::loose(vec![(slot, plane)]),
+            planes: maulstick_canvas::page::Page::loose(Planes::from_iter([(slot, plane)])),
         }
     }
 

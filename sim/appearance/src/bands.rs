@@ -19,7 +19,7 @@ use maulstick_types::paint::TILE;
 
 use crate::appearance::{Appearance, Bakery};
 use crate::blank_surface::BlankSurface;
-use crate::display::{DisplayTile, WetFilms};
+use crate::display::DisplayTile;
 
 /// Threads that draw: the stepper and its worker have the other cores.
 const THREADS: usize = 2;
@@ -241,7 +241,7 @@ impl<'a> Banded<'a> {
         let under = baked
             .as_deref()
             .map_or_else(|| ground.under(), Under::Planes);
-        let films = WetFilms::of(tile);
+        let films = self.bare.films(tile);
         let unlit = films.shade(&self.look.studio, under);
         DisplayTile::on(self.bare, id, tile, (&films, unlit), self.look.thinner)
     }

@@ -5,11 +5,13 @@
 use std::sync::Arc;
 
 use maulstick_canvas::relief::Relief;
-use maulstick_canvas::tile::TileId;
+use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_optics::{FilmPlanes, Studio, Under};
 use maulstick_types::paint::TILE;
 
+use crate::display::WetFilms;
 use crate::ground::Ground;
+use crate::show_paint::ShowPaint;
 
 /// Thickness of the paint in a well, m.
 pub const WELL_M: f64 = 2e-3;
@@ -39,9 +41,17 @@ pub struct BlankSurface {
     pub relief: Arc<Relief>,
     /// Its wells.
     pub wells: Vec<WellLook>,
+    /// How the paint of its model is shown.
+    pub shown: &'static dyn ShowPaint,
 }
 
 impl BlankSurface {
+    /// The wet films of a tile on it; empty where nothing was painted.
+    #[must_use]
+    pub fn films(&self, tile: Option<&Tile>) -> WetFilms {
+        tile.map(|tile| self.shown.films(tile)).unwrap_or_default()
+    }
+
     /// The cells of a tile that lie in a well, by their place in the tile, with the well.
     pub fn in_wells(&self, id: TileId) -> impl Iterator<Item = (usize, &WellLook)> {
         let corner = [f64::from(id.x), f64::from(id.y)].map(|tile| tile * TILE as f64);

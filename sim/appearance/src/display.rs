@@ -62,6 +62,12 @@ impl WetFilms {
     }
 }
 
+/// Height of a tile's counted paint, wet and dry, m.
+pub(crate) fn painted_height(tile: &Tile) -> Vec<f32> {
+    let dry = tile.dry().map(|stack| &**stack);
+    height(&thickness(&tile.wet()), dry)
+}
+
 /// Height of wet films and of what has dried under them, m.
 fn height(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>) -> Vec<f32> {
     let mut height: Vec<f32> = match dry {
@@ -128,8 +134,8 @@ impl DisplayTile {
     /// Height of a tile of a surface alone, as in [`on`](Self::on), m.
     #[must_use]
     pub(crate) fn height_on(bare: &BlankSurface, id: TileId, tile: Option<&Tile>) -> Vec<f32> {
-        let films = tile.map(|tile| thickness(&tile.wet())).unwrap_or_default();
-        let mut heights = height(&films, tile.and_then(Tile::dry).map(|stack| &**stack));
+        let heights = tile.map(|tile| bare.shown.height(tile));
+        let mut heights = heights.unwrap_or_else(|| vec![0.0; TILE_CELLS]);
         for (cell, well) in bare.in_wells(id) {
             if heights[cell] == 0.0 {
                 heights[cell] = well.height_m;
@@ -154,6 +160,9 @@ impl DisplayTile {
         thinner: Option<usize>,
     ) -> Self {
         let mut shown = Self::of(tile, (films, rgb), thinner);
+        if let Some(tile) = tile {
+            bare.shown.finish(tile, &mut shown);
+        }
         let dry = tile.and_then(Tile::dry);
         for (cell, well) in bare.in_wells(id) {
             if shown.wetness[cell] == 0.0 && dry.is_none_or(|stack| stack.height()[cell] == 0.0) {

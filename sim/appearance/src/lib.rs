@@ -7,6 +7,7 @@
 //! | [`Appearance`], [`Bakery`] | optics of the paints in use, opacity of dry layers, and those layers baked |
 //! | [`light`], [`lamp`] | the scene's light as input of the optics, and its lamp over a surface |
 //! | [`ground`], [`blank_surface`] | what lies under the paint, and a surface without any |
+//! | [`show_paint`] | what the planes of a paint model mean to the optics |
 //! | [`display`] | a tile as it is shown before light: colour, gloss, height |
 //! | [`bands`] | a surface row of tiles by row of tiles |
 //! | [`picture`] | surfaces under light as pixels |
@@ -45,5 +46,6 @@ pub mod ground;
 pub mod lamp;
 pub mod light;
 pub mod picture;
+pub mod show_paint;
 
 pub use appearance::{Appearance, Bakery};

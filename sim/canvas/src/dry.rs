@@ -215,7 +215,7 @@ mod tests {
         let plane: Arc<[f32]> = vec![count; TILE_CELLS].into();
         DryLayer {
             number,
-            planes: Page::loose(vec![(1, plane)]),
+            planes: Page::loose(Planes::from_iter([(1, plane)])),
         }
     }
 
@@ -238,7 +238,7 @@ mod tests {
 
     #[test]
     fn a_hundred_thousand_layers_can_be_dropped() {
-        let planes = Page::loose(Vec::new());
+        let planes = Page::loose(Planes::new());
         let thin = |number: u32| DryLayer {
             number,
             planes: planes.clone(),

@@ -162,6 +162,14 @@ pub enum EditError {
         /// Those that there are.
         known: Vec<&'static str>,
     },
+    /// A paint model that there is not.
+    #[error("there is no paint model called '{name}'")]
+    NoModel {
+        /// Its name.
+        name: String,
+        /// Those that there are.
+        known: Vec<&'static str>,
+    },
     /// A tooth that there is not.
     #[error("there is no tooth called '{name}'")]
     NoTooth {
@@ -274,9 +282,9 @@ impl EditError {
                 "{}, and any spectrum from a CSV file",
                 choice(name, known.iter().copied())
             )),
-            Self::NoGround { name, known } | Self::NoTooth { name, known } => {
-                Advice::say(choice(name, known.iter().copied()))
-            }
+            Self::NoGround { name, known }
+            | Self::NoModel { name, known }
+            | Self::NoTooth { name, known } => Advice::say(choice(name, known.iter().copied())),
             Self::ToothName { .. } => {
                 say("write image:HASH@120mm,80um: a picture 120 mm wide, 80 µm deep")
             }

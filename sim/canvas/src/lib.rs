@@ -6,7 +6,8 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`quantum`] | the unit in which paint is counted |
-//! | [`planes`], [`tile`], [`store`] | planes of counts, tiles, the tiles of a surface with their versions |
+//! | [`planes`], [`own_plane`] | planes of counts, and those that a paint model keeps of its own |
+//! | [`tile`], [`store`] | tiles, the tiles of a surface with their versions |
 //! | [`dry`], [`rewet`] | what has dried, layer over layer, and becomes wet again |
 //! | [`page`] | pages in memory, and the document behind them |
 //! | [`relief`] | what catches paint: tooth, made or from a picture, and the ride of a bristle over it |
@@ -43,6 +44,7 @@
 pub mod assets;
 pub mod dry;
 mod error;
+pub mod own_plane;
 pub mod page;
 pub mod planes;
 pub mod quantum;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::dry::{DryLayer, DryStack};
 use crate::page::Page;
-use crate::planes::{Planes, TILE_CELLS};
+use crate::planes::{Planes, TILE_CELLS, painted};
 use crate::quantum::{CELL_MAX, SLOTS};
 use crate::tile::Tile;
 
@@ -72,13 +72,13 @@ impl Wet {
             }
         }
         let rest = rest.into_iter().map(|(slot, plane)| (slot, plane.into()));
-        any.then(|| crate::planes::painted(rest))
+        any.then(|| painted(rest).with_own(layer.own().iter().cloned()))
     }
 }
 
 impl Tile {
     /// The tile with its layers from number `least` on wet again in the cells that are `within`; none
-    /// where that changes nothing.
+    /// where that changes nothing. Planes of the model's own stay where they are.
     #[must_use]
     pub fn rewet(&self, least: u32, within: &[bool]) -> Option<Rewet> {
         let mut links = Vec::new();
@@ -122,6 +122,7 @@ impl Tile {
         }
         let planes = wet.planes.into_iter().enumerate();
         let planes = planes.filter_map(|(slot, plane)| Some((slot, plane?.into())));
+        let planes = painted(planes).with_own(self.wet().own().iter().cloned());
         Some(Rewet {
             tile: Self::paged(pager, planes, dry, Some(self)),
             full_cells: wet.full_cells,

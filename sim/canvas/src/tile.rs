@@ -35,15 +35,14 @@ impl Tile {
         Self { wet, dry }
     }
 
-    /// A tile of a painting's pages: a later state of `before`, if that is known.
+    /// A tile of a painting's pages, of planes that hold something: a later state of `before`, if that is known.
     #[must_use]
     pub fn paged(
         pager: &Arc<Pager>,
-        planes: impl Iterator<Item = (usize, Arc<[f32]>)>,
+        planes: Planes,
         dry: Option<Arc<DryStack>>,
         before: Option<&Self>,
     ) -> Self {
-        let planes = painted(planes);
         let before = before.and_then(|tile| tile.wet.as_ref());
         let wet = (!planes.is_empty()).then(|| Page::new(pager, Arc::new(planes), before));
         Self { wet, dry }
@@ -112,6 +111,8 @@ impl Tile {
     /// If the newest dry link is of this layer, and nothing was painted since it dried, it grows: film under film of
     /// the same mixture has the colour of one film. Else there is a new link, for two mixtures one over the other do
     /// not look like both mixed.
+    ///
+    /// Planes of the model's own dry with the whole film, by reference, and stay wet while a part of it does.
     #[must_use]
     pub fn dried(&self, number: u32, share: f32, stays: &[usize]) -> Option<Self> {
         let page = self.wet.as_ref()?;
@@ -122,11 +123,19 @@ impl Tile {
             let layer = DryLayer { number, planes };
             Some(DryStack::over(self.dry.clone(), layer))
         };
-        if share >= 1.0 && stays.is_empty() && grows.is_none() {
-            return Some(Self {
+        let is_whole = share >= 1.0 && stays.is_empty();
+        let by_reference = || {
+            Some(Self {
                 wet: None,
                 dry: over(page.clone()),
-            });
+            })
+        };
+        if is_whole && grows.is_none() {
+            return by_reference();
+        }
+        let wet = page.get();
+        if is_whole && !wet.own().is_empty() {
+            return by_reference();
         }
         let part = |plane: &Arc<[f32]>| -> Arc<[f32]> {
             let mut lower: Vec<f32> = match share >= 1.0 {
@@ -136,7 +145,6 @@ impl Tile {
             stays.iter().for_each(|cell| lower[*cell] = 0.0);
             lower.into()
         };
-        let wet = page.get();
         let lower = painted(wet.iter().map(|(slot, plane)| (*slot, part(plane))));
         if lower.is_empty() {
             return None;
@@ -153,7 +161,7 @@ impl Tile {
             };
             (*slot, left)
         });
-        let upper = painted(upper);
+        let upper = painted(upper).with_own(wet.own().iter().cloned());
         let pager = page.pager();
         let wet = (!upper.is_empty()).then(|| Page::new(pager, Arc::new(upper), Some(page)));
         let grown = grows.and_then(|link| Some((link, sum(&link.layer().planes.get(), &lower)?)));
@@ -201,6 +209,7 @@ pub struct Version {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::own_plane::{OwnPlane, OwnShape, ValueType};
     use crate::planes::TILE_CELLS;
 
     #[test]
@@ -235,5 +244,30 @@ mod tests {
         let around = wet.dried(1, 1.0, &[5, 6]).expect("wet");
         let stays: Vec<f32> = (4..8).map(|cell| around.wet()[0].1[cell]).collect();
         assert_eq!(stays, [0.0, 35_000.0, 42_000.0, 0.0], "a well stays wet");
+    }
+
+    #[test]
+    fn planes_of_the_models_own_dry_with_the_whole_film_and_stay_wet_with_a_part() {
+        let shape = OwnShape {
+            kind: 1,
+            values: ValueType::U8,
+            per_cell: 2,
+        };
+        let own = OwnPlane {
+            shape,
+            bytes: vec![7; shape.tile_bytes()].into(),
+        };
+        let film = Planes::from_iter([(2, vec![1000.0; TILE_CELLS].into())]);
+        let wet = Page::loose(film.with_own([own]));
+        let wet = Tile::of_pages(Some(wet), None);
+        let part = wet.dried(1, 0.5, &[]).expect("wet");
+        assert_eq!((part.wet().own().len(), part.counts()[2]), (1, 500 << 12));
+        let whole = part.dried(1, 1.0, &[]).expect("wet");
+        assert!(whole.wet_page().is_none());
+        let stack = whole.dry().expect("dried");
+        assert_eq!(stack.layer().planes.get().own().len(), 1);
+        assert_eq!(stack.counts()[2], 1000 << 12);
+        let back = whole.rewet(0, &[true; TILE_CELLS]).expect("dried").tile;
+        assert_eq!(back.counts()[2], 1000 << 12);
     }
 }

@@ -1,10 +1,13 @@
 //! A window: leased tiles copied into contiguous planes, on which the kernels work.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use maulstick_types::paint::TILE;
 
 use crate::dry::DryStack;
+use crate::own_plane::{OwnPlane, OwnShape};
+use crate::planes::painted;
 use crate::quantum::{QUANTUM_M, SLOTS};
 use crate::relief::Relief;
 use crate::relief::ride::ride;
@@ -61,6 +64,8 @@ pub struct Window {
     height: usize,
     limit: [usize; 2],
     wet: [Option<Vec<f32>>; SLOTS],
+    /// Planes that the paint model keeps of its own, by their shape.
+    own: BTreeMap<OwnShape, Vec<u8>>,
     base: Vec<f32>,
     ride: Vec<f32>,
     ride_below: f32,
@@ -86,6 +91,7 @@ impl Window {
             height,
             limit: [0, 1].map(|i| rect.cells()[i].min(surface[i] - rect.from[i] as usize * TILE)),
             wet: [const { None }; SLOTS],
+            own: BTreeMap::new(),
             base: vec![0.0; width * height],
             ride: Vec::new(),
             ride_below: relief.depth_m() as f32 * relief.cells_per_m(),
@@ -113,7 +119,15 @@ impl Window {
                 continue;
             };
             let start = window.corner(id);
-            for (slot, plane) in &*tile.wet() {
+            let wet = tile.wet();
+            for plane in wet.own() {
+                let cell = plane.shape.cell_bytes();
+                let to = window.own_mut(plane.shape);
+                for (row, cells) in plane.bytes.chunks_exact(TILE * cell).enumerate() {
+                    to[(start + row * width) * cell..][..TILE * cell].copy_from_slice(cells);
+                }
+            }
+            for (slot, plane) in &*wet {
                 let to = window.wet[*slot].get_or_insert_with(|| vec![0.0; width * height]);
                 for (row, cells) in plane.chunks_exact(TILE).enumerate() {
                     to[start + row * width..][..TILE].copy_from_slice(cells);
@@ -208,6 +222,18 @@ impl Window {
     #[must_use]
     pub fn plane(&self, slot: usize) -> Option<&[f32]> {
         self.wet[slot].as_deref()
+    }
+
+    /// Bytes of a plane that the paint model keeps of its own, cell after cell; zeros where it is new.
+    pub fn own_mut(&mut self, shape: OwnShape) -> &mut Vec<u8> {
+        let bytes = self.width * self.height * shape.cell_bytes();
+        self.own.entry(shape).or_insert_with(|| vec![0; bytes])
+    }
+
+    /// Bytes of a plane that the paint model keeps of its own, if it is in use.
+    #[must_use]
+    pub fn own(&self, shape: OwnShape) -> Option<&[u8]> {
+        self.own.get(&shape).map(Vec::as_slice)
     }
 
     /// The planes in use, in order of slot.
@@ -326,6 +352,19 @@ impl Window {
                 }
                 Some((slot, Arc::from(cells)))
             });
+            let own = self.own.iter().map(|(shape, plane)| {
+                let cell = shape.cell_bytes();
+                let mut bytes = Vec::with_capacity(shape.tile_bytes());
+                for row in 0..TILE {
+                    let first = (start + row * self.width) * cell;
+                    bytes.extend_from_slice(&plane[first..][..TILE * cell]);
+                }
+                OwnPlane {
+                    shape: *shape,
+                    bytes: bytes.into(),
+                }
+            });
+            let planes = painted(planes).with_own(own);
             let before = store.version(id).tile.as_deref();
             let dry = self.dry[place].clone();
             let tile = Some(Arc::new(Tile::paged(store.pager(), planes, dry, before)));
@@ -358,6 +397,38 @@ impl Window {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::own_plane::ValueType;
+
+    #[test]
+    fn planes_of_the_models_own_are_cut_into_tiles_and_come_back() {
+        let mut store = TileStore::new([200, 200]);
+        let relief = Relief::flat(2.5e-4);
+        let mut next = 0;
+        let rect = TileRect {
+            from: [0, 0],
+            to: [3, 2],
+        };
+        let shape = OwnShape {
+            kind: 5,
+            values: ValueType::U16,
+            per_cell: 3,
+        };
+        let mut window = Window::open(&mut store, rect, &relief).expect("free");
+        assert_eq!(window.own(shape), None);
+        let bytes = window.own_mut(shape);
+        (0..bytes.len()).for_each(|i| bytes[i] = (i % 251) as u8);
+        let written = bytes.clone();
+        let [width, height] = rect.cells();
+        window.touch(([0, 0], [width, height]));
+        window.commit(&mut store, &mut next, |_, _| ());
+        window.close(&mut store);
+        let window = Window::open(&mut store, rect, &relief).expect("free again");
+        assert_eq!(window.own(shape), Some(&written[..]));
+        let part = store.version(TileId { x: 1, y: 1 }).tile.as_ref();
+        let own = part.expect("stored").wet().own()[0].clone();
+        let at = |x: usize, y: usize| (y * width + x) * shape.cell_bytes();
+        assert_eq!(own.bytes[..6], written[at(64, 64)..][..6]);
+    }
 
     #[test]
     fn what_is_written_through_a_window_is_read_through_another() {

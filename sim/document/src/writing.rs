@@ -7,7 +7,7 @@ use std::time::Instant;
 use maulstick_canvas::assets::{hash_of, kind_of};
 use maulstick_canvas::page::Page;
 use maulstick_canvas::planes::Planes;
-use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_model::brush::load::BrushLoad;
 use maulstick_painting::history::{Step, TileRef};
 use maulstick_painting::snapshot::SequencerSnapshot;
 use maulstick_painting::{Named, Sequencer};

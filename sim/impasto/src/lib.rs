@@ -1,15 +1,8 @@
 //! IMPaSTo (Baxter 2004, ch. 6): how paint moves in one step of a brush on a surface.
 //!
 //! Pure: a window on counted paint, the head of a brush and its load go in; the same come out, and nothing is lost to
-//! the quantum. [`PaintModel`](model::PaintModel) is the interface, [`Impasto`] the model.
-//!
-//! | module | holds |
-//! | --- | --- |
-//! | [`model`] | the interface of paint models: a step, and what it reports |
-//! | [`stages`] | the stages of a step of impasto, a file each; levelling at rest |
-//! | [`transfer`] | how much goes between brush and canvas |
-//! | [`brush`] | head, load and traits of a brush, in cells and quanta |
-//! | [`path`] | its motion cut into steps |
+//! the quantum. [`Impasto`] is one [`PaintModel`](maulstick_model::interface::PaintModel); [`stages`] holds its stages, a
+//! file each, and levelling at rest.
 //!
 //! A loaded round brush drawn 10 mm over a level ground:
 //!
@@ -17,11 +10,11 @@
 //! use maulstick_brush::{BrushFile, Head};
 //! use maulstick_canvas::{relief::Relief, store::TileStore, window::Window};
 //! use maulstick_impasto::Impasto;
-//! use maulstick_impasto::brush::head::Waypoint;
-//! use maulstick_impasto::brush::load::{BrushLoad, Half};
-//! use maulstick_impasto::brush::{scale::Scale, traits::BrushTraits};
-//! use maulstick_impasto::model::{Handling, PaintModel as _, Step};
-//! use maulstick_impasto::path::PathStepper;
+//! use maulstick_model::brush::head::Waypoint;
+//! use maulstick_model::brush::load::{BrushLoad, Half};
+//! use maulstick_model::brush::{scale::Scale, traits::BrushTraits};
+//! use maulstick_model::interface::{Handling, PaintModel as _, Step};
+//! use maulstick_model::path::PathStepper;
 //! use maulstick_types::{Pose, brush::Solve};
 //!
 //! # fn main() -> Result<(), maulstick_brush::BrushError> {
@@ -73,10 +66,6 @@
 //! # }
 //! ```
 
-pub mod brush;
-pub mod model;
-pub mod path;
 pub mod stages;
-pub mod transfer;
 
 pub use stages::Impasto;

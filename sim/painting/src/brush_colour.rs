@@ -5,8 +5,8 @@ use std::sync::Arc;
 use half::f16;
 use maulstick_brush::file::sections::Hair;
 use maulstick_canvas::quantum::SLOTS;
-use maulstick_impasto::brush::load::BrushLoad;
-use maulstick_impasto::brush::traits::TEXELS_PER_STRIP;
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::brush::traits::TEXELS_PER_STRIP;
 use maulstick_optics::colour::srgb_decode;
 use maulstick_optics::{FilmPlanes, Studio, Under, Upsampler};
 use maulstick_types::brush::BrushLook;
@@ -94,8 +94,8 @@ pub fn hair(hair: Hair, studio: &Studio) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use maulstick_brush::{BrushFile, Head};
-    use maulstick_impasto::brush::load::Half;
-    use maulstick_impasto::brush::traits::BrushTraits;
+    use maulstick_model::brush::load::Half;
+    use maulstick_model::brush::traits::BrushTraits;
     use maulstick_optics::PaintLibrary;
 
     use super::*;

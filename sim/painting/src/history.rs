@@ -10,7 +10,7 @@ use std::sync::Arc;
 use maulstick_canvas::page::Page;
 use maulstick_canvas::store::TileRect;
 use maulstick_canvas::tile::{Tile, TileId};
-use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_model::brush::load::BrushLoad;
 use maulstick_types::scene::Layer;
 use serde::{Deserialize, Serialize};
 

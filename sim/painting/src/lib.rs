@@ -2,12 +2,13 @@
 //!
 //! Pure: brush states and commands come in, tiles and reports go out. [`Sequencer`] decides the
 //! order and keeps the journal; [`Painting`] does what the journal says; a
-//! [`PaintModel`](maulstick_impasto::model::PaintModel) moves the paint of one step.
+//! [`PaintModel`](maulstick_model::interface::PaintModel) moves the paint of one step.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`Painting`] | surfaces, brushes, what is done to them |
 //! | [`sequencer`] | the order of states and commands |
+//! | [`models`] | the paint models that a surface can have |
 //! | [`setup`] | the scene of a new painting |
 //! | [`ledger`], [`history`] | the books, undo |
 //! | [`Apply`] | edits as the painting carries them out |
@@ -48,6 +49,7 @@ pub mod clock;
 mod error;
 pub mod history;
 pub mod ledger;
+pub mod models;
 mod painting;
 pub mod picture;
 pub mod sequencer;

@@ -9,10 +9,13 @@ use maulstick_canvas::relief::Relief;
 use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_canvas::relief::tooth_picture::PictureTooth;
 use maulstick_optics::PaintLibrary;
-use maulstick_types::scene::{CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind};
+use maulstick_types::scene::{
+    CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind, default_model,
+};
 use maulstick_types::{Mixture, Pose};
 
 use crate::error::paint_error;
+use crate::models::model_called;
 
 /// Paints in the wells of a new palette.
 pub const PALETTE_PAINTS: [&str; 10] = [
@@ -58,6 +61,10 @@ pub struct PaintingSetup {
     pub light: Light,
     /// Exposure factor; `None` for the one at which the bare canvas does not clip.
     pub exposure: Option<f64>,
+    /// Name of the canvas's paint model, one of [`MODELS`](crate::models::MODELS).
+    pub model: String,
+    /// The palette's.
+    pub palette_model: String,
     /// The pictures that its ground and its tooth may be made of.
     pub embedded: Assets,
 }
@@ -78,18 +85,22 @@ impl Default for PaintingSetup {
                 .collect(),
             light: Light::default(),
             exposure: None,
+            model: default_model(),
+            palette_model: default_model(),
             embedded: Assets::default(),
         }
     }
 }
 
 impl PaintingSetup {
-    /// Checks sizes, the ground's name and the wells' paints.
+    /// Checks sizes, the names of models, ground and tooth, and the wells' paints.
     ///
     /// # Errors
     /// [`EditError`] with what to do.
     pub fn check(&self, library: &PaintLibrary) -> Result<(), EditError> {
         check_size(self.cells, self.cell_m)?;
+        model_called(&self.model)?;
+        model_called(&self.palette_model)?;
         check_ground(&self.ground, &self.embedded)?;
         relief_called(&self.tooth, self.tooth_seed, self.cell_m, &self.embedded)?;
         studio_settings(&self.light)?;
@@ -119,6 +130,7 @@ impl PaintingSetup {
             wells: Vec::new(),
             stain_m: self.stain_m,
             piles_last: false,
+            model: self.model.clone(),
         };
         let canvas = surface(CANVAS, at(-0.5 * size[0], -0.5 * size[1]), self.cells);
         let cells = palette_cells(self.cell_m);
@@ -126,6 +138,7 @@ impl PaintingSetup {
         board.pose = beside(&canvas, &board, Side::Left);
         board.ground = "grey".to_owned();
         board.tooth = "panel".to_owned();
+        board.model.clone_from(&self.palette_model);
         board.piles_last = self.piles_last;
         board.wells = wells_of(&self.wells, cells, self.cell_m);
         Scene {
@@ -300,6 +313,9 @@ mod tests {
         assert!(check(|s| s.cell_m = f64::NAN).is_err());
         let error = check(|s| s.ground = "gesoo".into()).expect_err("unknown");
         assert!(error.advice().to_string().contains("gesso"));
+        let error = check(|s| s.model = "makrer".into()).expect_err("unknown");
+        assert!(error.advice().to_string().contains("marker"));
+        assert!(check(|s| s.palette_model = String::new()).is_err());
         let error = check(|s| s.tooth = "line".into()).expect_err("unknown");
         assert!(error.advice().to_string().contains("linen"));
         assert!(check(|s| s.wells = vec![Mixture::pure("Blue")]).is_err());

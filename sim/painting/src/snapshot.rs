@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use maulstick_impasto::brush::head::WaypointSnapshot;
-use maulstick_impasto::brush::scale::Scale;
+use maulstick_model::brush::head::WaypointSnapshot;
+use maulstick_model::brush::scale::Scale;
 use maulstick_types::Mixture;
 use maulstick_types::reply_cache::ReplyCache;
 use maulstick_types::scene::Scene;

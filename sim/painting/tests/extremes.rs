@@ -3,7 +3,7 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::CELL_MAX;
-use maulstick_impasto::brush::traits::BrushTraits;
+use maulstick_model::brush::traits::BrushTraits;
 use maulstick_num::fork_join::with_threads;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup};

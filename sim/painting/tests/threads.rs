@@ -2,7 +2,7 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_impasto::Impasto;
-use maulstick_impasto::model::{PaintModel, Step, StepReport};
+use maulstick_model::interface::{PaintModel, Step, StepReport};
 use maulstick_num::fork_join::{threads, with_threads};
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup};

@@ -43,8 +43,9 @@ mod window;
 mod window_latency;
 
 use clap::Parser;
+use clap::builder::PossibleValuesParser;
+use maulstick_painting::models::model_names;
 use maulstick_rig::Fault;
-use maulstick_rig::config::MODELS;
 
 use crate::report::Report;
 
@@ -56,7 +57,7 @@ struct Options {
     /// view, window [default: everything]
     area: Option<String>,
     /// Paint model to measure
-    #[arg(long, default_value = "impasto", value_parser = MODELS)]
+    #[arg(long, default_value = "impasto", value_parser = PossibleValuesParser::new(model_names()))]
     model: String,
     /// Where its steps are computed
     #[arg(long, default_value = "cpu", value_parser = ["cpu", "gpu"])]
@@ -82,7 +83,7 @@ const AREAS: [Area; 12] = [
     ("looks", |report, _| looks::run(report)),
     ("optics", |report, _| optics::run(report)),
     ("paint", |report, options| {
-        paint::run(report, &options.backend)
+        paint::run(report, &options.backend, &options.model)
     }),
     ("render", |report, _| render::run(report)),
     ("view", |report, _| view::run(report)),

@@ -45,6 +45,23 @@ fn fault(error: impl ToString) -> Fault {
     Fault::failure(error.to_string())
 }
 
+/// What moves the paint.
+#[derive(Clone)]
+struct Means {
+    model: String,
+    gpu: Option<Device>,
+}
+
+impl Means {
+    /// The same model on the processor.
+    fn on_processor(&self) -> Self {
+        Self {
+            gpu: None,
+            ..self.clone()
+        }
+    }
+}
+
 /// A brush that goes round over wet paint.
 struct Round {
     sequencer: Sequencer,
@@ -55,19 +72,20 @@ struct Round {
 }
 
 impl Round {
-    fn new(width_mm: f64, strips: usize, side: usize, gpu: Option<&Device>) -> Result<Self, Fault> {
+    fn new(width_mm: f64, strips: usize, side: usize, means: &Means) -> Result<Self, Fault> {
         let mut file = BrushFile::library("round").map_err(fault)?;
         file.strips.count = strips;
         let file = file.scaled_to(width_mm).map_err(fault)?;
         let cells = (6 * side).max(256) as u32;
         let setup = PaintingSetup {
             cells: [cells, cells],
+            model: means.model.clone(),
             ..PaintingSetup::default()
         };
         let library = PaintLibrary::measured().map_err(fault)?;
         let mut painting = Painting::new(&setup, library).map_err(fault)?;
         let mut traffic = None;
-        if let Some(gpu) = gpu {
+        if let Some(gpu) = &means.gpu {
             let model = GpuImpasto::new(gpu.clone()).map_err(fault)?;
             traffic = Some(model.traffic());
             painting.set_model(Box::new(model));
@@ -147,22 +165,23 @@ impl Round {
 }
 
 /// A brush whose footprint covers the share of the square that is wanted.
-fn fitted(side: usize, strips: usize, gpu: Option<&Device>) -> Result<Round, Fault> {
+fn fitted(side: usize, strips: usize, means: &Means) -> Result<Round, Fault> {
     let wanted = COVERED * (side * side) as f64;
     let mut width_mm = 0.25 * side as f64;
     for _ in 0..6 {
-        let ([steps, cells], _) = Round::new(width_mm, strips, side, None)?.paint()?;
+        let ([steps, cells], _) =
+            Round::new(width_mm, strips, side, &means.on_processor())?.paint()?;
         let covered = cells as f64 / steps.max(1) as f64;
         if (0.97..1.06).contains(&(covered / wanted)) {
             break;
         }
         width_mm = (width_mm * (wanted / covered.max(1.0)).sqrt()).clamp(0.5, 250.0);
     }
-    Round::new(width_mm, strips, side, gpu)
+    Round::new(width_mm, strips, side, means)
 }
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report, backend: &str) -> Result<(), Fault> {
+pub(crate) fn run(report: &mut Report, backend: &str, model: &str) -> Result<(), Fault> {
     let gpu = match backend {
         "gpu" => Some(Device::open(Choice::Forced).map_err(fault)?),
         _ => None,
@@ -170,19 +189,26 @@ pub(crate) fn run(report: &mut Report, backend: &str) -> Result<(), Fault> {
     if let Some(gpu) = &gpu {
         report.on(gpu.name());
     }
+    let means = Means {
+        model: model.to_owned(),
+        gpu,
+    };
     let cores = available_parallelism().map_or(1, usize::from);
-    with_threads(cores.min(2), || rounds(report, gpu.as_ref()))?;
-    if gpu.is_none() {
-        cells(report)?;
-        speed_up(report, cores)?;
+    with_threads(cores.min(2), || rounds(report, &means))?;
+    if means.gpu.is_none() {
+        cells(report, &means)?;
+        speed_up(report, cores, &means)?;
     }
-    advection::run(report, gpu)
+    match model {
+        "impasto" => advection::run(report, means.gpu),
+        _ => Ok(()),
+    }
 }
 
 /// Cells in contact that a core paints, beside the copy of as many.
-fn cells(report: &mut Report) -> Result<(), Fault> {
+fn cells(report: &mut Report, means: &Means) -> Result<(), Fault> {
     let (side, strips) = SIZES[1];
-    let mut round = fitted(side, strips, None)?;
+    let mut round = fitted(side, strips, means)?;
     round.paint()?;
     let mut pairs = Vec::new();
     for _ in 0..ROUNDS {
@@ -196,9 +222,9 @@ fn cells(report: &mut Report) -> Result<(), Fault> {
 }
 
 /// How many times as fast several cores paint with a wide brush as one, as far as there are so many.
-fn speed_up(report: &mut Report, cores: usize) -> Result<(), Fault> {
+fn speed_up(report: &mut Report, cores: usize, means: &Means) -> Result<(), Fault> {
     let (side, strips) = WIDE;
-    let mut round = fitted(side, strips, None)?;
+    let mut round = fitted(side, strips, means)?;
     round.paint()?;
     for threads in THREADS {
         let name = format!("steps_per_s.{side}.{threads}");
@@ -219,9 +245,9 @@ fn speed_up(report: &mut Report, cores: usize) -> Result<(), Fault> {
 }
 
 /// Both sizes.
-fn rounds(report: &mut Report, gpu: Option<&Device>) -> Result<(), Fault> {
+fn rounds(report: &mut Report, means: &Means) -> Result<(), Fault> {
     for (side, strips) in SIZES {
-        let mut round = fitted(side, strips, gpu)?;
+        let mut round = fitted(side, strips, means)?;
         round.paint()?;
         let (mut pairs, mut covered) = (Vec::new(), Vec::new());
         for _ in 0..ROUNDS {

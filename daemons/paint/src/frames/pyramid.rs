@@ -179,7 +179,8 @@ impl Pyramid {
                     .planes(sight, number, *id, (stack, ground.under()))
             }));
         }
-        let films: Vec<WetFilms> = ids.iter().map(|id| WetFilms::of(painted(id))).collect();
+        let bare = &surface.bare;
+        let films: Vec<WetFilms> = ids.iter().map(|id| bare.films(painted(id))).collect();
         let planes: Vec<Vec<(usize, &[f32])>> = films.iter().map(WetFilms::planes).collect();
         let batch: Vec<FilmPlanes<'_>> = planes
             .iter()

@@ -8,6 +8,7 @@ use maulstick_types::decode;
 
 use maulstick_appearance::display::{DisplayTile, WetFilms};
 use maulstick_appearance::ground::Ground;
+use maulstick_appearance::show_paint::Counted;
 use maulstick_appearance::{Appearance, Bakery};
 use maulstick_canvas::assets::Assets;
 use maulstick_canvas::planes::TILE_CELLS;
@@ -39,6 +40,7 @@ fn rig_of(cells: [u32; 2]) -> Rig {
     {
         let mut fed = feed.lock();
         let bare = Arc::new(BlankSurface {
+            shown: &Counted,
             ground: Ground::Even(vec![0.95; look.studio.wavelengths()]),
             relief: Arc::new(Relief::flat(2.5e-4)),
             wells: Vec::new(),
@@ -344,7 +346,7 @@ fn a_look_of_a_brush_is_told_once_for_each_load_and_light() {
     use maulstick_brush::file::sections::Hair;
     use maulstick_bus::Queue;
     use maulstick_bus::typed::Receiver;
-    use maulstick_impasto::brush::load::BrushLoad;
+    use maulstick_model::brush::load::BrushLoad;
     use maulstick_types::brush::BrushLook;
 
     let mut rig = rig();

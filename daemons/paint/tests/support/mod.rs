@@ -32,8 +32,14 @@ use maulstick_types::{Flags, Mixture, Origin, decode, encode, name_hash};
 pub const START_NS: u64 = 1_000_000_000_000;
 
 pub fn painting() -> Painting {
+    painting_of("impasto")
+}
+
+/// A painting whose canvas has this paint model.
+pub fn painting_of(model: &str) -> Painting {
     let setup = PaintingSetup {
         cells: [256, 192],
+        model: model.to_owned(),
         ..PaintingSetup::default()
     };
     Painting::new(&setup, PaintLibrary::measured().expect("whole")).expect("a painting")
@@ -87,7 +93,12 @@ pub fn take() -> Vec<(u64, StylusSample)> {
 }
 
 pub fn offline() -> Vec<u8> {
-    let mut offline = Offline::new(painting(), "main", file(), 0.5, loads()).expect("set up");
+    offline_on(painting())
+}
+
+/// The take on a painting, without a bus.
+pub fn offline_on(painting: Painting) -> Vec<u8> {
+    let mut offline = Offline::new(painting, "main", file(), 0.5, loads()).expect("set up");
     for (time_ns, sample) in take() {
         offline
             .sample(START_NS + time_ns, &sample)
@@ -158,12 +169,21 @@ impl Live {
     }
 
     pub fn paint_node(bus: &Arc<dyn Bus>, topics: &Topics, epoch: u32) -> PaintNode {
+        Self::paint_node_on(bus, topics, epoch, painting())
+    }
+
+    pub fn paint_node_on(
+        bus: &Arc<dyn Bus>,
+        topics: &Topics,
+        epoch: u32,
+        painting: Painting,
+    ) -> PaintNode {
         let me = Origin {
             source: name_hash("paint"),
             epoch,
         };
         let mut node =
-            PaintNode::new(Arc::clone(bus), topics, &Wake::new(), me, painting()).expect("paint");
+            PaintNode::new(Arc::clone(bus), topics, &Wake::new(), me, painting).expect("paint");
         while !node.knows_brush("main") {
             node.turn().expect("turned");
         }

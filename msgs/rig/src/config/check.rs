@@ -4,8 +4,8 @@ use maulstick_types::advice::choice;
 use maulstick_types::topics::check_name;
 
 use super::{
-    ACTIONS, BACKENDS, BRUSH_NODE, BrushSection, DRIVERS, DeviceSection, FORCES, GAMUTS, MODELS,
-    RESERVED, RigConfig,
+    ACTIONS, BACKENDS, BRUSH_NODE, BrushSection, DRIVERS, DeviceSection, FORCES, GAMUTS, RESERVED,
+    RigConfig,
 };
 use crate::fault::Fault;
 
@@ -70,8 +70,7 @@ impl RigConfig {
         })?;
         self.check_nodes()
             .map_err(|(what, help, node)| fault(what, "[node.", &node).help(help))?;
-        choose("paint model", &self.paint.model, &MODELS)
-            .and_then(|()| choose("backend", &self.paint.backend, &BACKENDS))
+        choose("backend", &self.paint.backend, &BACKENDS)
             .map_err(|(what, help)| fault(what, "[paint]", "").help(help))?;
         self.paint
             .bytes()

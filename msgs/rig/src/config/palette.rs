@@ -1,5 +1,6 @@
 //! Paints of the palette.
 
+use maulstick_types::scene::default_model;
 use serde::{Deserialize, Serialize};
 
 /// `[palette]`.
@@ -12,6 +13,9 @@ pub struct PaletteSection {
     /// One of [`PILES`].
     #[serde(default = "default_piles")]
     pub piles: String,
+    /// Its paint model, of a new painting.
+    #[serde(default = "default_model")]
+    pub model: String,
 }
 
 impl Default for PaletteSection {
@@ -19,6 +23,7 @@ impl Default for PaletteSection {
         Self {
             wells: Vec::new(),
             piles: default_piles(),
+            model: default_model(),
         }
     }
 }

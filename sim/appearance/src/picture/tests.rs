@@ -14,6 +14,7 @@ use super::*;
 use crate::appearance::Appearance;
 use crate::bands::Banded;
 use crate::blank_surface::BlankSurface;
+use crate::show_paint::Counted;
 
 const CELLS: [u32; 2] = [150, 70];
 const CELL_M: f64 = 2.5e-4;
@@ -45,6 +46,7 @@ fn studio() -> Studio {
 
 fn bare(studio: &Studio) -> BlankSurface {
     BlankSurface {
+        shown: &Counted,
         ground: crate::ground::Ground::Even(vec![0.95; studio.wavelengths()]),
         relief: Arc::new(Relief::flat(CELL_M)),
         wells: Vec::new(),

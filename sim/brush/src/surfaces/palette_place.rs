@@ -160,6 +160,7 @@ mod tests {
             wells: Vec::new(),
             stain_m: 3e-6,
             piles_last: false,
+            model: "impasto".into(),
         }
     }
 

@@ -19,6 +19,7 @@ pub(crate) fn scene() -> Scene {
         wells: Vec::new(),
         stain_m: 3e-6,
         piles_last: false,
+        model: "impasto".into(),
     };
     let light = Light {
         direction: [0.0, 0.0, 1.0],

@@ -2,7 +2,7 @@
 
 use std::any::{Any, TypeId};
 
-use crate::planes::{Planes, TILE_CELLS};
+use crate::planes::Planes;
 
 /// Storage of pages that are not in memory.
 pub trait Backing: Send + Sync {
@@ -32,7 +32,7 @@ impl dyn Backing {
 
 impl Content for Planes {
     fn bytes(&self) -> usize {
-        self.len() * TILE_CELLS * size_of::<f32>()
+        self.bytes()
     }
 
     fn nothing() -> Self {

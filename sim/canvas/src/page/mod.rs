@@ -412,7 +412,7 @@ mod tests {
     }
 
     fn plane(number: u64) -> Planes {
-        vec![(0, vec![number as f32; TILE_CELLS].into())]
+        Planes::from_iter([(0, vec![number as f32; TILE_CELLS].into())])
     }
 
     const BYTES: usize = TILE_CELLS * 4;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use maulstick_canvas::planes::Planes;
 use maulstick_files::{FileId, OpenDatabase, is_companion, read_head};
-use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_model::brush::load::BrushLoad;
 use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags, OptionalExtension as _, params};
 

@@ -7,7 +7,7 @@ use maulstick_canvas::dry::{DryLayer, DryStack};
 use maulstick_canvas::page::{Page, Pager};
 use maulstick_canvas::planes::Planes;
 use maulstick_canvas::tile::Tile;
-use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_model::brush::load::BrushLoad;
 use maulstick_painting::history::TileRef;
 use rusqlite::params;
 

@@ -4,7 +4,7 @@
 //! slot its number, its films and its paint inside.
 
 use maulstick_canvas::quantum::SLOTS;
-use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_model::brush::load::BrushLoad;
 
 /// A head has at most this many texels.
 const TEXELS_MAX: usize = 1 << 20;

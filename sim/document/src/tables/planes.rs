@@ -3,7 +3,10 @@
 //! A plane is 64×64 counts, row after row from the bottom. What is compressed is, for each slot of the
 //! mask from the lowest, the plane's difference to the same plane of an older page, or without one to
 //! the count at its left (the first of a row to the one below it), each as a zigzag number of 32 bits;
-//! of a plane first the low bytes of all differences, then the next ones. Most of these bytes are 0.
+//! of a plane first the low bytes of all differences, then the next ones. Most of these bytes are 0. Planes that the paint
+//! model keeps of its own follow, where the mask has their bit ([`own`]).
+
+mod own;
 
 use std::sync::Arc;
 
@@ -42,10 +45,31 @@ fn left_or_below(counts: &[i32], cell: usize) -> i32 {
     }
 }
 
-/// Bit mask of the slots that planes hold.
+/// Bit of a mask for planes that the model keeps of its own.
+const OWN: u32 = 1 << SLOTS;
+/// Most bytes of such planes.
+const OWN_MOST: usize = 1 << 28;
+
+/// Bit mask of the slots that planes hold, and the bit for the model's own planes.
 #[must_use]
 pub fn mask(planes: &Planes) -> u32 {
-    planes.iter().fold(0, |mask, (slot, _)| mask | 1 << slot)
+    let own = if planes.own().is_empty() { 0 } else { OWN };
+    planes.iter().fold(own, |mask, (slot, _)| mask | 1 << slot)
+}
+
+/// What is compressed: the counts of the slots of `mask`, and the bytes of the model's own planes.
+fn unpacked(mask: u32, bytes: &[u8]) -> Result<(Vec<u8>, usize), String> {
+    let length = (mask & (OWN - 1)).count_ones() as usize * TILE_CELLS * 4;
+    let most = length + if mask & OWN == 0 { 0 } else { OWN_MOST };
+    let all = zstd::bulk::decompress(bytes, most).map_err(|error| error.to_string())?;
+    let fits = match mask & OWN {
+        0 => all.len() == length,
+        _ => all.len() > length,
+    };
+    match fits {
+        true => Ok((all, length)),
+        false => Err(format!("{} bytes instead of {length}", all.len())),
+    }
 }
 
 /// Planes as bytes, as a difference to `base` if there is one.
@@ -68,6 +92,7 @@ pub fn encode(planes: &Planes, base: Option<&Planes>, level: i32) -> std::io::Re
             }
         }
     }
+    own::append(planes, base, &mut shuffled);
     zstd::bulk::compress(&shuffled, level)
 }
 
@@ -76,11 +101,7 @@ pub fn encode(planes: &Planes, base: Option<&Planes>, level: i32) -> std::io::Re
 /// # Errors
 /// The defect of the bytes, in words.
 pub fn repack(mask: u32, bytes: &[u8], level: i32) -> Result<Vec<u8>, String> {
-    let length = (mask & ((1 << SLOTS) - 1)).count_ones() as usize * TILE_CELLS * 4;
-    let shuffled = zstd::bulk::decompress(bytes, length).map_err(|error| error.to_string())?;
-    if shuffled.len() != length {
-        return Err(format!("{} bytes instead of {length}", shuffled.len()));
-    }
+    let (shuffled, _) = unpacked(mask, bytes)?;
     zstd::bulk::compress(&shuffled, level).map_err(|error| error.to_string())
 }
 
@@ -89,16 +110,13 @@ pub fn repack(mask: u32, bytes: &[u8], level: i32) -> Result<Vec<u8>, String> {
 /// # Errors
 /// The defect of the bytes, in words.
 pub fn decode(mask: u32, bytes: &[u8], base: Option<&Planes>) -> Result<Planes, String> {
-    if mask >> SLOTS != 0 {
+    if mask >> SLOTS > 1 {
         return Err("it names slots beyond the last one".to_owned());
     }
     let slots: Vec<usize> = (0..SLOTS).filter(|slot| mask >> slot & 1 == 1).collect();
-    let length = slots.len() * TILE_CELLS * 4;
-    let shuffled = zstd::bulk::decompress(bytes, length).map_err(|error| error.to_string())?;
-    if shuffled.len() != length {
-        return Err(format!("{} bytes instead of {length}", shuffled.len()));
-    }
-    let mut planes = Planes::with_capacity(slots.len());
+    let (all, length) = unpacked(mask, bytes)?;
+    let (shuffled, rest) = all.split_at(length);
+    let mut planes = Planes::new();
     for (slot, bytes) in slots.iter().zip(shuffled.chunks_exact(TILE_CELLS * 4)) {
         let old = base.map(|base| find(base, *slot).map(counts).unwrap_or_default());
         let mut now = vec![0i32; TILE_CELLS];
@@ -119,16 +137,19 @@ pub fn decode(mask: u32, bytes: &[u8], base: Option<&Planes>) -> Result<Planes, 
         let plane: Arc<[f32]> = now.iter().map(|count| *count as f32).collect();
         planes.push((*slot, plane));
     }
-    Ok(planes)
+    Ok(planes.with_own(own::read(rest, base)?))
 }
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
+    use maulstick_canvas::own_plane::{OwnPlane, OwnShape, ValueType};
     use proptest::prelude::*;
 
     use super::*;
 
-    fn planes() -> impl Strategy<Value = Planes> {
+    fn counted() -> impl Strategy<Value = Planes> {
         let plane = prop_oneof![
             prop::collection::vec(0u32..=1 << 24, TILE_CELLS),
             (0u32..1 << 24).prop_map(|count| vec![count; TILE_CELLS]),
@@ -144,6 +165,33 @@ mod tests {
         })
     }
 
+    /// Planes with some of the model's own.
+    fn planes() -> impl Strategy<Value = Planes> {
+        let values = prop_oneof![
+            Just(ValueType::U8),
+            Just(ValueType::U16),
+            Just(ValueType::F32)
+        ];
+        let own =
+            (0u16..3, values, 1u16..4, any::<u8>()).prop_map(|(kind, values, per_cell, step)| {
+                let shape = OwnShape {
+                    kind,
+                    values,
+                    per_cell,
+                };
+                let bytes = (0..shape.tile_bytes()).map(|i| (i as u8).wrapping_mul(step));
+                (shape, bytes.collect::<Arc<[u8]>>())
+            });
+        let own = prop::collection::btree_map(0..9u8, own, 0..3);
+        (counted(), own).prop_map(|(planes, own)| {
+            let by_shape: BTreeMap<OwnShape, Arc<[u8]>> = own.into_values().collect();
+            let own = by_shape
+                .into_iter()
+                .map(|(shape, bytes)| OwnPlane { shape, bytes });
+            planes.with_own(own)
+        })
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(40))]
 
@@ -153,7 +201,8 @@ mod tests {
             let bytes = encode(&now, base, LEVEL).expect("bytes");
             prop_assert_eq!(decode(mask(&now), &bytes, base), Ok(now.clone()));
             if let Some(last) = now.len().checked_sub(1) {
-                let other = decode(mask(&now[..last].to_vec()), &bytes, base);
+                let fewer = Planes::from_iter(now[..last].iter().cloned());
+                let other = decode(mask(&fewer) | mask(&now) & OWN, &bytes, base);
                 prop_assert!(other.is_err(), "a wrong mask is seen");
             }
             let packed = repack(mask(&now), &bytes, PACKED_LEVEL).expect("whole");
@@ -162,19 +211,18 @@ mod tests {
 
         #[test]
         fn no_bytes_make_it_panic(mask in any::<u32>(), bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-            decode(mask & 0xffff, &bytes, None).ok();
+            decode(mask & 0x1_ffff, &bytes, None).ok();
+            own::read(&bytes, None).ok();
         }
     }
 
     #[test]
     fn a_small_change_takes_few_bytes() {
-        let base: Planes = vec![(
-            3,
-            (0..TILE_CELLS).map(|i| (i * i % 99_991) as f32).collect(),
-        )];
+        let plane = (0..TILE_CELLS).map(|i| (i * i % 99_991) as f32).collect();
+        let base = Planes::from_iter([(3, plane)]);
         let mut counts = base[0].1.to_vec();
         (500..540).for_each(|cell| counts[cell] += 1234.0);
-        let now: Planes = vec![(3, counts.into())];
+        let now = Planes::from_iter([(3, counts.into())]);
         let whole = encode(&now, None, LEVEL).expect("bytes").len();
         let part = encode(&now, Some(&base), LEVEL).expect("bytes").len();
         assert!(part < 200 && whole > 20 * part, "{part} of {whole}");

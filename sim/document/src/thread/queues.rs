@@ -8,7 +8,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 
 use maulstick_canvas::page::backing::Backing;
 use maulstick_canvas::planes::Planes;
-use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_model::brush::load::BrushLoad;
 use maulstick_painting::sequencer::Record;
 
 use crate::file::relocate::RelocateRequest;

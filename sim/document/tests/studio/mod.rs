@@ -55,8 +55,14 @@ pub fn brush(strips: usize) -> BrushFile {
 
 /// A new painting on these pages, with two brushes.
 pub fn sequencer(pager: Arc<Pager>) -> Sequencer {
+    sequencer_of("impasto", pager)
+}
+
+/// The same with this paint model on its canvas.
+pub fn sequencer_of(model: &str, pager: Arc<Pager>) -> Sequencer {
     let setup = PaintingSetup {
         cells: CELLS,
+        model: model.to_owned(),
         wells: MIXTURES.map(mixture).to_vec(),
         ..PaintingSetup::default()
     };

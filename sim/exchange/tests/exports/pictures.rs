@@ -4,10 +4,11 @@ use std::io::Cursor;
 
 use maulstick_exchange::{HeightRange, write_height_map};
 use maulstick_painting::Painting;
+use maulstick_painting::models::model_names;
 use maulstick_painting::picture::picture;
 use maulstick_types::scene::CANVAS;
 
-use crate::support::{CELLS, bare, decoded, file, heights, painted, speck};
+use crate::support::{CELLS, EXPORTS, bare, decoded, file, heights, painted, painted_of, speck};
 
 #[test]
 fn eight_bits_are_the_snapshots_bytes() {
@@ -16,6 +17,18 @@ fn eight_bits_are_the_snapshots_bytes() {
         let whole = picture(&mut painting, CANVAS);
         whole.encode_png(&mut snapshot).expect("written");
         assert!(file("PNG, 8 bits", &mut painting) == snapshot);
+    }
+}
+
+#[test]
+fn every_paint_model_is_exported_and_no_two_alike() {
+    for (name, _) in EXPORTS {
+        let mut files = Vec::new();
+        for model in model_names() {
+            let written = file(name, &mut painted_of(model));
+            assert!(!files.contains(&written), "{name}: {model}");
+            files.push(written);
+        }
     }
 }
 

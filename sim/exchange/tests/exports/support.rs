@@ -23,8 +23,14 @@ pub(crate) const CELLS: [u32; 2] = [150, 70];
 pub(crate) const CELL_M: f64 = 2.5e-4;
 
 pub(crate) fn bare(cells: [u32; 2]) -> Painting {
+    bare_of("impasto", cells)
+}
+
+/// A painting whose canvas has this paint model.
+pub(crate) fn bare_of(model: &str, cells: [u32; 2]) -> Painting {
     let setup = PaintingSetup {
         cells,
+        model: model.to_owned(),
         cell_m: CELL_M,
         ..PaintingSetup::default()
     };
@@ -71,7 +77,12 @@ pub(crate) fn stroke(painting: &mut Painting, number: u64, load: &str, [x_mm, y_
 
 /// Two dry layers, the lower one under a name that XML must escape, and wet paint over parts of them.
 pub(crate) fn painted() -> Painting {
-    let mut painting = bare(CELLS);
+    painted_of("impasto")
+}
+
+/// The same with another paint model.
+pub(crate) fn painted_of(model: &str) -> Painting {
+    let mut painting = bare_of(model, CELLS);
     stroke(
         &mut painting,
         1,

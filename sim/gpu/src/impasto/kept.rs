@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use maulstick_brush::{Head, HeadPose};
 use maulstick_canvas::window::Window;
-use maulstick_impasto::brush::load::BrushLoad;
-use maulstick_impasto::brush::traits::BrushTraits;
-use maulstick_impasto::model::{Handling, PaintModel, Step, StepReport, Sweep};
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::brush::traits::BrushTraits;
+use maulstick_model::interface::{Handling, PaintModel, Step, StepReport, Sweep};
 
 /// A step without window and load.
 struct KeptStep {

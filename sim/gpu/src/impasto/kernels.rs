@@ -1,8 +1,8 @@
 //! The stages as compute pipelines, each with those buffers of impasto.wgsl that it uses.
 
-use maulstick_impasto::brush::traits::BrushTraits;
 use maulstick_impasto::stages::velocity::{EASE, SLIP, SQUISH, STABLE};
-use maulstick_impasto::transfer::SWAP_FILM;
+use maulstick_model::brush::traits::BrushTraits;
+use maulstick_model::transfer::SWAP_FILM;
 
 use crate::device::Device;
 

@@ -29,8 +29,8 @@ use std::sync::Arc;
 
 use maulstick_canvas::window::Window;
 use maulstick_impasto::Impasto;
-use maulstick_impasto::brush::load::BrushLoad;
-use maulstick_impasto::model::{PaintModel, Step, StepReport, Transfer};
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::interface::{PaintModel, Rest, Step, StepReport, Transfer};
 
 use crate::device::{Device, GpuError};
 use kept::KeptSteps;
@@ -209,6 +209,14 @@ impl PaintModel for GpuImpasto {
             }
             Err(error) => self.fall(&error, window, load),
         }
+    }
+
+    fn rest_halo(&self) -> Option<usize> {
+        self.cpu.rest_halo()
+    }
+
+    fn rest(&mut self, rest: &mut Rest<'_>) {
+        self.cpu.rest(rest);
     }
 
     fn take_fall(&mut self) -> Option<String> {

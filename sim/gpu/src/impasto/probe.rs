@@ -1,8 +1,8 @@
 //! What stages of a step leave on the device: for the tests that hold each beside its twin.
 
 use bytemuck::pod_collect_to_vec;
-use maulstick_impasto::model::Step;
-use maulstick_impasto::stages::contact::Contact;
+use maulstick_model::footprint::contact::Contact;
+use maulstick_model::interface::Step;
 
 use super::kernels::{Binding, KERNELS};
 use super::record::StepRecord;

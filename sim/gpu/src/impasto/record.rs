@@ -3,10 +3,10 @@
 use bytemuck::{Pod, Zeroable};
 use maulstick_brush::head::STATIONS;
 use maulstick_canvas::quantum::CELL_MAX;
-use maulstick_impasto::brush::head::border;
-use maulstick_impasto::model::{Step, Transfer};
 use maulstick_impasto::stages::advection::STAIN;
-use maulstick_impasto::stages::band::{middle, rank};
+use maulstick_model::brush::head::border;
+use maulstick_model::footprint::band::{middle, rank};
+use maulstick_model::interface::{Step, Transfer};
 
 use super::residence::Residence;
 

@@ -5,8 +5,8 @@ use maulstick_brush::Head;
 use maulstick_brush::head::STATIONS;
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_canvas::window::Window;
-use maulstick_impasto::brush::load::BrushLoad;
-use maulstick_impasto::model::Step;
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::interface::Step;
 use maulstick_types::paint::TILE;
 
 /// Most bytes of a buffer that every device can bind.

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use bytemuck::cast_slice;
 use maulstick_brush::Head;
 use maulstick_canvas::window::Window;
-use maulstick_impasto::brush::load::BrushLoad;
-use maulstick_impasto::model::StepReport;
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::interface::StepReport;
 use wgpu::BufferUsages as Usage;
 
 use super::kernels::{Binding, Groups, KERNELS, PUSHES, Pipeline};

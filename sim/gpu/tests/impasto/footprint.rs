@@ -3,9 +3,9 @@
 use maulstick_brush::head::STATIONS;
 use maulstick_brush::{BrushFile, Head};
 use maulstick_gpu::impasto::probe::Prober;
-use maulstick_impasto::brush::traits::BrushTraits;
-use maulstick_impasto::stages::contact::Contact;
-use maulstick_impasto::stages::footprint::Footprint;
+use maulstick_model::brush::traits::BrushTraits;
+use maulstick_model::footprint::Footprint;
+use maulstick_model::footprint::contact::Contact;
 
 use crate::device;
 use crate::scene::{CELL_M, Random, Scene};

@@ -3,8 +3,8 @@
 use maulstick_canvas::quantum::{Counts, SLOTS};
 use maulstick_gpu::GpuImpasto;
 use maulstick_impasto::Impasto;
-use maulstick_impasto::brush::load::BrushLoad;
-use maulstick_impasto::model::{Handling, PaintModel, StepReport, Transfer};
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::interface::{Handling, PaintModel, StepReport, Transfer};
 
 use crate::device;
 use crate::scene::{Scene, lying};

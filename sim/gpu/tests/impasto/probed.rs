@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use maulstick_canvas::quantum::{QUANTA_PER_UNIT, SLOTS};
 use maulstick_gpu::impasto::probe::{Probe, Prober};
-use maulstick_impasto::brush::load::BrushLoad;
-use maulstick_impasto::stages::contact::Contact;
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::footprint::contact::Contact;
 
 use crate::scene::{PAINTS, Random, Scene};
 

@@ -6,7 +6,7 @@ use maulstick_canvas::quantum::{CELL_MAX, QUANTA_PER_UNIT, SLOTS};
 use maulstick_gpu::impasto::probe::{Probe, Prober};
 use maulstick_impasto::stages::advection::STAIN;
 use maulstick_impasto::stages::velocity::{EASE, SQUISH, STABLE};
-use maulstick_impasto::transfer::{Exchanging, SWAP_FILM};
+use maulstick_model::transfer::{Exchanging, SWAP_FILM};
 
 use crate::device;
 use crate::probed::{Grid, SLOW, ahead, run, scene};
@@ -295,7 +295,7 @@ fn paint_goes_both_ways() {
         let mut expected = exchanged(&probe, &pushed, rule);
         // In every second strip paint flows besides.
         expected.retain(|(is_cell, _, at), _| {
-            *is_cell || (at / maulstick_impasto::brush::traits::TEXELS_PER_STRIP).is_multiple_of(2)
+            *is_cell || (at / maulstick_model::brush::traits::TEXELS_PER_STRIP).is_multiple_of(2)
         });
         let mut scene = scene();
         let last = run(&mut prober, &mut scene, "bristle_flow");

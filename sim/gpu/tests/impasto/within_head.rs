@@ -2,11 +2,11 @@
 
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_gpu::impasto::probe::Prober;
-use maulstick_impasto::brush::load::BrushLoad;
-use maulstick_impasto::brush::traits::TEXELS_PER_STRIP;
 use maulstick_impasto::stages::bristle_flow::flow;
-use maulstick_impasto::stages::contact::Contact;
 use maulstick_impasto::stages::seep::seep;
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::brush::traits::TEXELS_PER_STRIP;
+use maulstick_model::footprint::contact::Contact;
 
 use crate::device;
 use crate::probed::{run, scene, stepped};

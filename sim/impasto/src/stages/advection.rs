@@ -12,8 +12,8 @@ use maulstick_canvas::window::{Area, Window};
 use maulstick_num::fork_join::each;
 use maulstick_num::wide;
 
-use super::shares_of;
 use super::velocity::Faces;
+use maulstick_model::footprint::shares_of;
 
 /// Paint that stays on a cell however hard it is brushed, unless the painter says otherwise, quanta: 3 µm of stain (§
 /// 6.4.1, size).

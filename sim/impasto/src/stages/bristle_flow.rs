@@ -7,9 +7,9 @@
 use maulstick_num::select::larger;
 use maulstick_num::wide;
 
-use crate::brush::load::{PaintOnBrush, film_share};
-use crate::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
-use crate::model::Step;
+use maulstick_model::brush::load::{PaintOnBrush, film_share};
+use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
+use maulstick_model::interface::Step;
 
 /// Counts a step and moves paint within the strips whose turn it is.
 pub fn flow(step: &mut Step<'_>) {

@@ -11,13 +11,13 @@ use maulstick_num::select::{larger, smaller};
 use maulstick_num::wide;
 use std::ops::Range;
 
-use super::contact::Contact;
-use super::footprint::Footprint;
-use super::shares_of;
-use crate::brush::load::BrushLoad;
-use crate::brush::traits::BrushTraits;
-use crate::model::{Handling, Step, Transfer};
-use crate::transfer::Exchanging;
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::brush::traits::BrushTraits;
+use maulstick_model::footprint::Footprint;
+use maulstick_model::footprint::contact::Contact;
+use maulstick_model::footprint::shares_of;
+use maulstick_model::interface::{Handling, Step, Transfer};
+use maulstick_model::transfer::Exchanging;
 
 /// Room for a step. Of the brush's many texels few touch at a time: these are numbered afresh in each
 /// step, so that the others cost nothing.

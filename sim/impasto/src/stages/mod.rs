@@ -4,42 +4,21 @@
 //!
 //! | module | stage |
 //! | --- | --- |
-//! | [`footprint`] | 1: what of the head reaches which cell, and how deep |
-//! | [`band`] | … in rows, those of one core each |
+//! | [`footprint`](maulstick_model::footprint) | 1: what of the head reaches which cell, and how deep |
 //! | [`velocity`] | 2: where the paint under it goes |
 //! | [`advection`] | 3: the paint goes there, counted |
 //! | [`exchange`] | 4 and 5: Algorithm 3, both ways |
 //! | [`bristle_flow`] | paint moves within the head |
-//! | [`modes`] | the sampler and the vacuum cleaner, in place of 2 to 5 |
+//! | [`rest`], [`levelling`] | after the stroke |
+//! | [`modes`](maulstick_model::modes) | the sampler and the vacuum cleaner, in place of 2 to 5 |
 
 pub mod advection;
-pub mod band;
 pub mod bristle_flow;
-pub mod contact;
-mod draw_skin;
 pub mod exchange;
-pub mod footprint;
 pub mod levelling;
-pub mod modes;
-mod rasterizer;
+pub mod rest;
 pub mod seep;
 pub mod step;
 pub mod velocity;
 
 pub use step::Impasto;
-
-use maulstick_num::fork_join::threads;
-
-/// Smaller footprints run on one core: fork-join would cost more than it saves.
-const PARALLEL_MIN_CELLS: usize = 400;
-/// Cells that are worth a core of their own beside two others: a stage of a step takes some microseconds for them,
-/// several times what it takes to hand them over.
-const CELLS_PER_SHARE: usize = 1000;
-
-/// Shares in which a stage does so many cells, of the [threads] that there are.
-fn shares_of(cells: usize) -> usize {
-    match cells {
-        0..PARALLEL_MIN_CELLS => 1,
-        _ => threads().min((cells / CELLS_PER_SHARE).max(2)),
-    }
-}

@@ -9,9 +9,9 @@ use maulstick_num::select::larger;
 use maulstick_num::wide;
 
 use super::bristle_flow::{first_of, part};
-use crate::brush::load::PaintOnBrush;
-use crate::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
-use crate::model::Step;
+use maulstick_model::brush::load::PaintOnBrush;
+use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
+use maulstick_model::interface::Step;
 
 /// Evens films out: in turn between strips of either order, and along them.
 pub fn seep(step: &mut Step<'_>) {

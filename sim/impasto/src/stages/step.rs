@@ -1,15 +1,15 @@
 //! The whole step.
 
-use maulstick_canvas::quantum::add;
-
 use super::advection::{Advection, Axis};
 use super::bristle_flow::flow;
 use super::exchange::Exchange;
-use super::footprint::Footprint;
-use super::modes::{sample, vacuum};
+use super::levelling::HALO;
+use super::rest::level;
 use super::seep::seep;
 use super::velocity::Faces;
-use crate::model::{PaintModel, Step, StepReport, Transfer};
+use maulstick_model::footprint::Footprint;
+use maulstick_model::interface::{PaintModel, Rest, Step, StepReport, Transfer};
+use maulstick_model::modes::{sample, vacuum};
 
 /// The paint model `impasto`, with room for its stages.
 #[derive(Debug, Default)]
@@ -37,12 +37,7 @@ impl PaintModel for Impasto {
                 report.from_nowhere = sample(footprint, step);
                 return report;
             }
-            Transfer::Vacuum => {
-                report.lifted = vacuum(footprint, step);
-                if step.load.total() > 0 {
-                    add(&mut report.lifted, &step.load.take_all());
-                }
-            }
+            Transfer::Vacuum => report.lifted = vacuum(footprint, step),
             _ => {
                 if step.handling.push {
                     self.faces.find(footprint, step);
@@ -69,5 +64,13 @@ impl PaintModel for Impasto {
         footprint.note_left(step);
         step.window.touch(footprint.reached());
         report
+    }
+
+    fn rest_halo(&self) -> Option<usize> {
+        Some(HALO)
+    }
+
+    fn rest(&mut self, rest: &mut Rest<'_>) {
+        level(rest);
     }
 }

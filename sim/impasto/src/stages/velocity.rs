@@ -11,10 +11,10 @@ use maulstick_canvas::window::Area;
 use maulstick_num::fork_join::each;
 use maulstick_num::wide;
 
-use super::contact::Contact;
-use super::footprint::Footprint;
-use super::shares_of;
-use crate::model::Step;
+use maulstick_model::footprint::Footprint;
+use maulstick_model::footprint::contact::Contact;
+use maulstick_model::footprint::shares_of;
+use maulstick_model::interface::Step;
 
 /// c of the squish: cells of flow in a step of one cell, per cell of penetration by cell.
 pub const SQUISH: f32 = 3.0;
@@ -77,7 +77,7 @@ wide! {
 }
 
 impl Faces {
-    /// Finds the velocities in each [part](crate::brush::traits::BrushTraits::parts) of the step; no cell loses more
+    /// Finds the velocities in each [part](maulstick_model::brush::traits::BrushTraits::parts) of the step; no cell loses more
     /// than it holds along either axis.
     pub fn find(&mut self, footprint: &Footprint, step: &Step<'_>) {
         let [width, height] = footprint.around.size;

@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::{QUANTA_PER_UNIT, SLOTS};
 use maulstick_canvas::window::Window;
-use maulstick_impasto::brush::load::BrushLoad;
-use maulstick_impasto::brush::traits::BrushTraits;
-use maulstick_impasto::model::{Handling, Transfer};
-use maulstick_impasto::stages::contact::Contact;
 use maulstick_impasto::stages::exchange::Exchange;
-use maulstick_impasto::stages::footprint::Footprint;
-use maulstick_impasto::transfer::SWAP_FILM;
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::brush::traits::BrushTraits;
+use maulstick_model::footprint::Footprint;
+use maulstick_model::footprint::contact::Contact;
+use maulstick_model::interface::{Handling, Transfer};
+use maulstick_model::transfer::SWAP_FILM;
 
 use crate::scene::{CELL_M, Scene, lying};
 

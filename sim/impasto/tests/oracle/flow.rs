@@ -2,9 +2,9 @@
 
 use maulstick_brush::Head;
 use maulstick_canvas::quantum::SLOTS;
-use maulstick_impasto::brush::load::BrushLoad;
-use maulstick_impasto::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 use maulstick_impasto::stages::bristle_flow::flow;
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 
 use crate::scene::{Scene, brush};
 

@@ -2,11 +2,11 @@
 //! round below, lies there on the relief.
 
 use maulstick_brush::head::STATIONS;
-use maulstick_impasto::brush::head::low_bounds;
-use maulstick_impasto::brush::load::Half;
-use maulstick_impasto::brush::traits::TEXELS_PER_STRIP;
-use maulstick_impasto::stages::contact::Contact;
-use maulstick_impasto::stages::footprint::Footprint;
+use maulstick_model::brush::head::low_bounds;
+use maulstick_model::brush::load::Half;
+use maulstick_model::brush::traits::TEXELS_PER_STRIP;
+use maulstick_model::footprint::Footprint;
+use maulstick_model::footprint::contact::Contact;
 
 use crate::scene::{CELL_M, CELLS, Scene};
 

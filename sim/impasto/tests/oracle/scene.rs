@@ -8,10 +8,10 @@ use maulstick_canvas::relief::Relief;
 use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_canvas::store::TileStore;
 use maulstick_canvas::window::Window;
-use maulstick_impasto::brush::load::{BrushLoad, Half};
-use maulstick_impasto::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
-use maulstick_impasto::model::{Handling, Step, Sweep};
 use maulstick_impasto::stages::advection::STAIN;
+use maulstick_model::brush::load::{BrushLoad, Half};
+use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
+use maulstick_model::interface::{Handling, Step, Sweep};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng as _;
 

@@ -1,9 +1,9 @@
 //! Paint between bristles: of two films beside each other the fuller one gives, of its own mixture.
 
 use maulstick_canvas::quantum::SLOTS;
-use maulstick_impasto::brush::load::BrushLoad;
-use maulstick_impasto::brush::traits::{BrushTraits, Seep, TEXELS_PER_STRIP};
 use maulstick_impasto::stages::seep::seep;
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::brush::traits::{BrushTraits, Seep, TEXELS_PER_STRIP};
 
 use crate::scene::{Scene, brush};
 

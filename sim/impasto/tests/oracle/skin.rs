@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use maulstick_brush::head::STATIONS;
 use maulstick_brush::{BrushFile, Head, HeadPose};
-use maulstick_impasto::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
-use maulstick_impasto::stages::contact::Contact;
-use maulstick_impasto::stages::footprint::Footprint;
+use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
+use maulstick_model::footprint::Footprint;
+use maulstick_model::footprint::contact::Contact;
 
 use crate::scene::{CELL_M, CELLS, Random, Scene};
 

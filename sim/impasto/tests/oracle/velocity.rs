@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use maulstick_brush::BrushFile;
 use maulstick_canvas::relief::Relief;
 use maulstick_canvas::window::{Area, Window};
-use maulstick_impasto::brush::traits::BrushTraits;
 use maulstick_impasto::stages::advection::{Advection, Axis};
-use maulstick_impasto::stages::contact::Contact;
-use maulstick_impasto::stages::footprint::Footprint;
 use maulstick_impasto::stages::velocity::{EASE, Faces, SLIP, SQUISH, STABLE};
+use maulstick_model::brush::traits::BrushTraits;
+use maulstick_model::footprint::Footprint;
+use maulstick_model::footprint::contact::Contact;
 
 use crate::scene::{CELL_M, Scene, window};
 

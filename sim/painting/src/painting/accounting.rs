@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use maulstick_canvas::planes::TILE_CELLS;
-use maulstick_canvas::quantum::{add, quantum_m3};
+use maulstick_canvas::quantum::{Counts, SLOTS, add, quantum_m3};
 use maulstick_canvas::store::TileStore;
 use maulstick_canvas::tile::Tile;
+use maulstick_model::interface::CountOwn;
 use maulstick_types::scene::{CANVAS, PALETTE};
 
 use super::Painting;
@@ -27,6 +28,14 @@ impl Painting {
         }
         let mut covered_cells = 0;
         for sheet in &self.sheets {
+            if let Some(count) = self.models.of(sheet.model).count_own() {
+                let (wet, dry) = counts_own(&sheet.store, count);
+                add(&mut stocks.dry, &dry);
+                match sheet.id {
+                    PALETTE => add(&mut stocks.palette, &wet),
+                    _ => add(&mut stocks.canvas, &wet),
+                }
+            }
             add(&mut stocks.dry, &sheet.store.dry_counts());
             match sheet.id {
                 CANVAS => {
@@ -58,6 +67,21 @@ impl Painting {
             tallies,
         )
     }
+}
+
+/// Paint in the planes that a model keeps of its own, wet and dry.
+fn counts_own(store: &TileStore, count: CountOwn) -> (Counts, Counts) {
+    let (mut wet, mut dry) = ([0; SLOTS], [0; SLOTS]);
+    let tiles = store
+        .iter()
+        .filter_map(|(_, version)| version.tile.as_ref());
+    for tile in tiles {
+        add(&mut wet, &count(tile.wet().own()));
+        for layer in tile.dry().into_iter().flat_map(|stack| stack.layers()) {
+            add(&mut dry, &count(layer.planes.get().own()));
+        }
+    }
+    (wet, dry)
 }
 
 /// Cells with paint, wet or dry.

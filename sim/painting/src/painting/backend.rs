@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use maulstick_canvas::EditError;
-use maulstick_impasto::brush::traits::BrushTraits;
-use maulstick_impasto::model::{PaintModel, StepReport};
+use maulstick_model::brush::traits::BrushTraits;
+use maulstick_model::interface::{PaintModel, StepReport};
 
 use super::Painting;
 use super::brush_modes::UnderBrush;
@@ -47,16 +47,22 @@ impl BackendFallback {
 }
 
 impl Painting {
-    /// Has its steps computed by this model from now on.
+    /// Has the steps of surfaces with a model of this name computed by this one from now on.
     pub fn set_model(&mut self, model: Box<dyn PaintModel>) {
         self.close_windows();
-        self.model = model;
+        self.models.replace(model);
     }
 
-    /// Backend of its steps: `cpu`, or `gpu` and the adapter's name.
+    /// Name of a surface's paint model.
+    #[must_use]
+    pub fn model(&self, surface: u32) -> Option<&'static str> {
+        self.sheet(surface).map(|sheet| sheet.model.name)
+    }
+
+    /// Backend of the steps on its canvas: `cpu`, or `gpu` and the adapter's name.
     #[must_use]
     pub fn backend(&self) -> String {
-        self.model.backend()
+        self.models.backend(self.sheets[0].model)
     }
 
     /// The reason why its backend changed, returned once, after the stroke in which it changed.
@@ -68,13 +74,14 @@ impl Painting {
         self.fall.found.take()
     }
 
-    /// Fullness of a brush, as far as its stroke may know.
+    /// Fullness of a brush, as far as its stroke on a surface may know.
     pub(super) fn seen_fullness(
         &mut self,
         name: &str,
+        sheet: usize,
         traits: &BrushTraits,
     ) -> Result<f32, EditError> {
-        let defers = self.model.defers();
+        let defers = self.models.of(self.sheets[sheet].model).defers();
         let track = self.brush(name)?;
         if !defers {
             return Ok(track.load.fullness(traits));
@@ -109,24 +116,27 @@ impl Painting {
             && let Some(track) = self.brushes.get_mut(&name)
             && let Some((sheet, window)) = &mut track.window
         {
-            let report = self.model.settle(window, Arc::make_mut(&mut track.load));
+            let place = *sheet;
+            let sheet = &mut self.sheets[place];
+            let model = self.models.of(sheet.model);
+            let report = model.settle(window, Arc::make_mut(&mut track.load));
             let steps = std::mem::take(&mut track.deferral.unsettled);
-            let sheet = &mut self.sheets[*sheet];
             sheet.top = sheet.top.max(window.top());
-            self.note(&name, &report, steps);
+            self.note((&name, place), &report, steps);
             self.book(Some(&name));
         }
-        if let Some(what) = self.model.take_fall() {
+        if let Some(what) = self.models.take_fall() {
             self.fall.found = Some(what);
         }
     }
 
-    /// Notes what so many steps of a brush did; of deferred ones that is known when they are settled.
-    pub(super) fn note(&mut self, name: &str, report: &StepReport, steps: u32) {
+    /// Notes what so many steps of a brush did on a surface; of deferred ones that is known when they are settled.
+    pub(super) fn note(&mut self, (name, sheet): (&str, usize), report: &StepReport, steps: u32) {
         self.footprint_cells += report.footprint_cells;
         self.ledger.from_mode(&report.from_nowhere);
         self.ledger.to_cleaner(&report.lifted);
-        let is_known = !self.model.defers() || report.footprint_cells > 0;
+        let defers = self.models.of(self.sheets[sheet].model).defers();
+        let is_known = !defers || report.footprint_cells > 0;
         if let Some(track) = self.brushes.get_mut(name).filter(|_| is_known) {
             let mean = |sum: u64| sum / u64::from(steps.max(1));
             let of_one = StepReport {

@@ -2,8 +2,8 @@
 
 use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::{CELL_MAX, QUANTUM_M, REFERENCE_CELL_M, UNIT_M};
-use maulstick_impasto::brush::traits::BrushTraits;
-use maulstick_impasto::model::{Handling, StepReport, Transfer};
+use maulstick_model::brush::traits::BrushTraits;
+use maulstick_model::interface::{Handling, StepReport, Transfer};
 use maulstick_optics::THINNER;
 use maulstick_types::edits::{Handle, Piles, Size};
 use maulstick_types::scene::{BrushHandling, BrushMode, PALETTE, Surface};

@@ -11,11 +11,10 @@ use maulstick_canvas::assets::Assets;
 use maulstick_canvas::page::{Page, Pager};
 use maulstick_canvas::store::TileStore;
 use maulstick_canvas::tile::{TileId, Version};
-use maulstick_impasto::Impasto;
-use maulstick_impasto::brush::head::Waypoint;
-use maulstick_impasto::brush::load::BrushLoad;
-use maulstick_impasto::brush::traits::TEXELS_PER_STRIP;
-use maulstick_impasto::path::PathStepper;
+use maulstick_model::brush::head::Waypoint;
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::brush::traits::TEXELS_PER_STRIP;
+use maulstick_model::path::PathStepper;
 use maulstick_optics::{PaintLibrary, Studio};
 use maulstick_types::scene::{CANVAS, PALETTE};
 
@@ -26,6 +25,7 @@ use super::undo::makes;
 use super::{Named, Painting, PaintingBrush, SurfaceState, bare};
 use crate::error::paint_error;
 use crate::history::{History, NonTileState, Step, TilePlace};
+use crate::models::{Models, model_called};
 use crate::setup::check_size;
 use crate::snapshot::{BrushSnapshot, OpenStepSnapshot, PaintingSnapshot, RowCounts};
 
@@ -213,6 +213,7 @@ impl Painting {
             sheets.push(SurfaceState {
                 id: surface.id,
                 cell_m: surface.cell_m,
+                model: model_called(&surface.model)?,
                 store: TileStore::paged(surface.cells, &pager),
                 bare: Arc::new(bare(surface, &look.studio, makers, None)?),
                 top: kept.tops.get(&surface.id).copied().unwrap_or(0.0),
@@ -264,7 +265,7 @@ impl Painting {
             sheets,
             embedded: restored.embedded,
             brushes,
-            model: Box::new(Impasto::default()),
+            models: Models::default(),
             unsettled: None,
             fall: BackendFallback::default(),
             accounted: kept.ledger.clone(),

@@ -194,7 +194,7 @@ impl Painting {
         }
         let planes = planes.into_iter().enumerate();
         let planes = planes.filter_map(|(slot, plane)| Some((slot, plane?.into())));
-        let planes: Planes = planes.collect();
+        let planes = Planes::from_iter(planes).with_own(before.own().iter().cloned());
         let sums = (0..TILE_CELLS).map(|cell| planes.iter().map(|(_, plane)| plane[cell]).sum());
         Some(Laid {
             top: sums.fold(0.0, f32::max),

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::SLOTS;
-use maulstick_impasto::brush::load::{Half, by_slot};
-use maulstick_impasto::brush::traits::BrushTraits;
+use maulstick_model::brush::load::{Half, by_slot};
+use maulstick_model::brush::traits::BrushTraits;
 use maulstick_types::Mixture;
 use maulstick_types::edits::{Clean, Load, Tune};
 use maulstick_types::scene::Scene;

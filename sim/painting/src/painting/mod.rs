@@ -40,11 +40,9 @@ use maulstick_canvas::page::{Page, Pager};
 use maulstick_canvas::relief::Relief;
 use maulstick_canvas::store::TileStore;
 use maulstick_canvas::window::Window;
-use maulstick_impasto::Impasto;
-use maulstick_impasto::brush::load::BrushLoad;
-use maulstick_impasto::brush::traits::BrushTraits;
-use maulstick_impasto::model::PaintModel;
-use maulstick_impasto::path::PathStepper;
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::brush::traits::BrushTraits;
+use maulstick_model::path::PathStepper;
 use maulstick_optics::{PaintLibrary, Studio};
 use maulstick_types::edits::{Edit, Place};
 use maulstick_types::scene::{Scene, Surface, WellKind};
@@ -55,15 +53,17 @@ use crate::clock::Clock;
 use crate::error::paint_error;
 use crate::history::{History, QUOTA};
 use crate::ledger::Ledger;
+use crate::models::{ModelEntry, Models, model_called};
 use crate::setup::PaintingSetup;
 use crate::setup::relief_called;
 use backend::{BackendFallback, Deferral};
 
-/// A surface: its tiles and the ground under them.
+/// A surface: its tiles, the model of their paint, and the ground under them.
 #[derive(Debug)]
 struct SurfaceState {
     id: u32,
     cell_m: f64,
+    model: &'static ModelEntry,
     store: TileStore,
     bare: Arc<BlankSurface>,
     /// Most quanta that a cell ever had: how high strips may touch.
@@ -137,7 +137,7 @@ pub struct Painting {
     sheets: Vec<SurfaceState>,
     embedded: Assets,
     brushes: BTreeMap<String, PaintingBrush>,
-    model: Box<dyn PaintModel>,
+    models: Models,
     /// The brush whose newest steps the model has not settled.
     unsettled: Option<String>,
     fall: BackendFallback,
@@ -187,6 +187,7 @@ impl Painting {
             sheets.push(SurfaceState {
                 id: surface.id,
                 cell_m: surface.cell_m,
+                model: model_called(&surface.model)?,
                 store: TileStore::paged(surface.cells, &pager),
                 bare: Arc::new(bare(surface, &studio, (&library, &setup.embedded), None)?),
                 top: 0.0,
@@ -199,7 +200,7 @@ impl Painting {
             sheets,
             embedded: setup.embedded.clone(),
             brushes: BTreeMap::new(),
-            model: Box::new(Impasto::default()),
+            models: Models::default(),
             unsettled: None,
             fall: BackendFallback::default(),
             ledger: Ledger::default(),
@@ -433,6 +434,7 @@ fn bare(
         ground,
         relief,
         wells,
+        shown: model_called(&surface.model)?.shown,
     })
 }
 

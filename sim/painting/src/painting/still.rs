@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use maulstick_canvas::EditError;
 use maulstick_canvas::tile::Version;
-use maulstick_impasto::Impasto;
 
 use super::backend::BackendFallback;
 use super::{Painting, SurfaceState};
 use crate::clock::Clock;
 use crate::history::History;
+use crate::models::Models;
 
 impl Painting {
     /// The painting as it is, with its versions, without brushes and history. Its tiles are shared with
@@ -20,6 +20,7 @@ impl Painting {
         let sheets = self.sheets.iter().map(|sheet| SurfaceState {
             id: sheet.id,
             cell_m: sheet.cell_m,
+            model: sheet.model,
             store: sheet.store.clone(),
             bare: Arc::clone(&sheet.bare),
             top: sheet.top,
@@ -31,7 +32,7 @@ impl Painting {
             look: Arc::clone(&self.look),
             embedded: self.embedded.clone(),
             brushes: BTreeMap::new(),
-            model: Box::new(Impasto::default()),
+            models: Models::default(),
             unsettled: None,
             fall: BackendFallback::default(),
             ledger: self.ledger.clone(),

@@ -7,12 +7,12 @@ use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::relief::ride;
 use maulstick_canvas::store::TileRect;
 use maulstick_canvas::window::Window;
-use maulstick_impasto::brush::head::{Waypoint, low_bounds};
-use maulstick_impasto::brush::load::Half;
-use maulstick_impasto::brush::scale::Scale;
-use maulstick_impasto::brush::traits::BrushTraits;
-use maulstick_impasto::model::{Step, Sweep};
-use maulstick_impasto::path::PathStepper;
+use maulstick_model::brush::head::{Waypoint, low_bounds};
+use maulstick_model::brush::load::Half;
+use maulstick_model::brush::scale::Scale;
+use maulstick_model::brush::traits::BrushTraits;
+use maulstick_model::interface::{Step, Sweep};
+use maulstick_model::path::PathStepper;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
 use maulstick_types::scene::CANVAS;
 
@@ -87,7 +87,7 @@ impl Painting {
         }
         let track = self.brush(name)?;
         let traits = BrushTraits::of(&track.thinned, scale.cell_m, scale.zoom);
-        let waypoint = Waypoint::of(solve, scale, self.seen_fullness(name, &traits)?);
+        let waypoint = Waypoint::of(solve, scale, self.seen_fullness(name, sheet, &traits)?);
         let track = self.brush(name)?;
         let head = Arc::clone(&track.head);
         let Some((_, mut path)) = running else {
@@ -171,7 +171,8 @@ impl Painting {
             return;
         };
         let traits = BrushTraits::of(&track.thinned, scale.cell_m, scale.zoom).doubled(doublings);
-        let deferred = self.model.defers() && !self.has_wells(sheet);
+        let model = self.sheets[sheet].model;
+        let deferred = self.models.of(model).defers() && !self.has_wells(sheet);
         let height = if deferred {
             // The height of the paint is not known here.
             f32::INFINITY
@@ -227,9 +228,9 @@ impl Painting {
             thinner,
         };
         let report = if deferred {
-            self.model.step(&mut step)
+            self.models.of(model).step(&mut step)
         } else {
-            self.model.step_now(&mut step)
+            self.models.of(model).step_now(&mut step)
         };
         self.sheets[sheet].top = self.sheets[sheet].top.max(window.top());
         // The report of deferred steps covers all that were not settled.
@@ -238,7 +239,7 @@ impl Painting {
         } else {
             0
         };
-        self.note(name, &report, 1 + unsettled);
+        self.note((name, sheet), &report, 1 + unsettled);
         if deferred {
             self.defer(name);
         }

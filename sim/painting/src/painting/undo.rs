@@ -7,8 +7,8 @@ use maulstick_brush::Head;
 use maulstick_canvas::EditError;
 use maulstick_canvas::page::Page;
 use maulstick_canvas::tile::Version;
-use maulstick_impasto::brush::load::BrushLoad;
-use maulstick_impasto::brush::traits::TEXELS_PER_STRIP;
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::brush::traits::TEXELS_PER_STRIP;
 use maulstick_types::edits::{Redo, Undo};
 use maulstick_types::scene::{Layer, Scene};
 

@@ -7,7 +7,7 @@ use super::Painting;
 use crate::apply::{Applied, Apply};
 use crate::history::{NonTileState, TilePlace, TileRef, same};
 use maulstick_canvas::EditError;
-use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_model::brush::load::BrushLoad;
 use maulstick_types::edits::{Branch, Forget, Keep, ReturnTo};
 use maulstick_types::scene::NamedVersion;
 

@@ -10,7 +10,7 @@ use maulstick_brush::HeadPose;
 use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::{QUANTUM_M, SLOTS};
 use maulstick_canvas::window::Window;
-use maulstick_impasto::brush::traits::BrushTraits;
+use maulstick_model::brush::traits::BrushTraits;
 use maulstick_types::Mixture;
 use maulstick_types::edits::Wells;
 use maulstick_types::scene::{Well, WellKind};

@@ -7,7 +7,7 @@ use maulstick_document::file::database::Database;
 use maulstick_document::opening::text;
 use maulstick_document::tables::loads;
 use maulstick_document::tables::schema::Table;
-use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_model::brush::load::BrushLoad;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::snapshot::PaintingSnapshot;
 use maulstick_types::scene::WellKind;

@@ -17,7 +17,7 @@ struct Held {
 
 /// One paint on a brush, to be moved: counts by texel.
 #[derive(Debug)]
-pub(crate) struct PaintOnBrush<'a> {
+pub struct PaintOnBrush<'a> {
     /// Its slot.
     pub slot: usize,
     /// Its films.
@@ -57,7 +57,7 @@ const RUNS_OFF: f64 = 0.7;
 
 /// Thickness of a full film by that of paint, where `thinner` is a share of it.
 #[must_use]
-pub(crate) fn film_share(thinner: f64) -> f64 {
+pub fn film_share(thinner: f64) -> f64 {
     1.0 - RUNS_OFF * thinner
 }
 
@@ -160,6 +160,7 @@ impl BrushLoad {
 
     /// Counts of a texel's film.
     #[must_use]
+    #[inline]
     pub fn film(&self, texel: usize) -> u32 {
         self.films[texel]
     }
@@ -303,7 +304,7 @@ impl BrushLoad {
     }
 
     /// All paints' films as last counted; then each paint's slot, its films, and what it has inside.
-    pub(crate) fn parts_mut(&mut self) -> (&mut [u32], impl Iterator<Item = PaintOnBrush<'_>>) {
+    pub fn parts_mut(&mut self) -> (&mut [u32], impl Iterator<Item = PaintOnBrush<'_>>) {
         let held = self.held.iter_mut().enumerate();
         let paints = held.filter_map(|(slot, held)| {
             let Held { film, inside } = held.as_deref_mut()?;
@@ -330,7 +331,8 @@ impl BrushLoad {
     }
 
     /// Adds to a paint on a texel's film, or takes away of what is there.
-    pub(crate) fn change_film(&mut self, slot: usize, texel: usize, change: i32) {
+    #[inline]
+    pub fn change_film(&mut self, slot: usize, texel: usize, change: i32) {
         let count = &mut self.held_mut(slot).film[texel];
         *count = count.saturating_add_signed(change);
     }
@@ -349,7 +351,7 @@ impl BrushLoad {
     }
 
     /// Counts the films of all paints on these texels afresh.
-    pub(crate) fn count_films_of(&mut self, texels: &[u32]) {
+    pub fn count_films_of(&mut self, texels: &[u32]) {
         for texel in texels {
             self.films[*texel as usize] = 0;
         }

@@ -1,16 +1,36 @@
-//! Stage 1: the cells that the head touches, with the touching strip and its depth.
+//! Footprint of a head: the cells that it touches, with the touching strip and its depth.
 //!
 //! Strips are ribbons that turn their flat side to the surface (Baxter 2004, § 3.5.2). In each cell the deepest one
 //! counts. It touches where it, with the film of paint that it carries, reaches the top of the surface there: tooth,
 //! dry relief and wet paint. All lengths are in cells.
 
-use maulstick_canvas::window::{Area, Window};
-use maulstick_num::fork_join::{Balance, each};
+pub mod band;
+pub mod contact;
+mod draw_skin;
+mod rasterizer;
 
-use super::band::{Band, draw_strips};
-use super::contact::Contact;
-use super::shares_of;
-use crate::model::{Step, StepReport};
+use maulstick_canvas::window::{Area, Window};
+use maulstick_num::fork_join::{Balance, each, threads};
+
+use band::{Band, draw_strips};
+use contact::Contact;
+
+use crate::interface::{Step, StepReport};
+
+/// Smaller footprints run on one core: fork-join would cost more than it saves.
+const PARALLEL_MIN_CELLS: usize = 400;
+/// Cells that are worth a core of their own beside two others: a stage of a step takes some microseconds for them,
+/// several times what it takes to hand them over.
+const CELLS_PER_SHARE: usize = 1000;
+
+/// Shares in which a stage does so many cells, of the [threads] that there are.
+#[must_use]
+pub fn shares_of(cells: usize) -> usize {
+    match cells {
+        0..PARALLEL_MIN_CELLS => 1,
+        _ => threads().min((cells / CELLS_PER_SHARE).max(2)),
+    }
+}
 
 /// The footprint of one step.
 #[derive(Clone, Debug, Default)]
@@ -90,7 +110,7 @@ impl Footprint {
     }
 
     /// Notes how high paint stands where the brush has left it.
-    pub(crate) fn note_left(&mut self, step: &mut Step<'_>) {
+    pub fn note_left(&mut self, step: &mut Step<'_>) {
         self.weigh(self.around, step);
     }
 

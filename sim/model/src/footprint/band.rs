@@ -11,7 +11,7 @@ use maulstick_num::wide;
 use super::contact::Contact;
 use super::rasterizer::{Drawing, Line, Piece};
 use crate::brush::traits::TEXELS_PER_STRIP;
-use crate::model::Step;
+use crate::interface::Step;
 
 /// Range of the ranks of strips of the same depth, cells: they overlap in the order of their roots along the direction
 /// in which the head is bent (Baxter 2004, § 3.5.2), the last this much higher.

@@ -3,7 +3,7 @@
 use super::band::Band;
 use super::rasterizer::{Line, Piece};
 use crate::brush::traits::TEXELS_PER_STRIP;
-use crate::model::Step;
+use crate::interface::Step;
 
 /// A corner of a triangle.
 #[derive(Clone, Copy, Debug)]

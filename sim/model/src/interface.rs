@@ -1,8 +1,9 @@
-//! The interface of paint models: one step of a brush on a surface.
+//! The interface of paint models: one step of a brush on a surface, and the paint at rest after a stroke.
 
 use maulstick_brush::head::{Head, HeadPose};
+use maulstick_canvas::own_plane::OwnPlane;
 use maulstick_canvas::quantum::{CELL_MAX, Counts, SLOTS};
-use maulstick_canvas::window::Window;
+use maulstick_canvas::window::{Area, Window};
 
 use crate::brush::load::BrushLoad;
 use crate::brush::traits::BrushTraits;
@@ -108,7 +109,29 @@ impl StepReport {
     }
 }
 
+/// Paint of a stroke once the brush is lifted.
+#[derive(Debug)]
+pub struct Rest<'a> {
+    /// The cells.
+    pub window: &'a mut Window,
+    /// The cells of the tiles that the stroke reached.
+    pub area: Area,
+    /// Side of a cell, m.
+    pub cell_m: f64,
+    /// As [`Step::stain`].
+    pub stain: f32,
+    /// As [`Step::thinner`].
+    pub thinner: Option<usize>,
+}
+
+/// Quanta by slot in the planes that a model keeps of its own on one page.
+pub type CountOwn = fn(&[OwnPlane]) -> Counts;
+
 /// A paint model: how paint moves in one step.
+///
+/// Wells, fills, underpaintings, drying and rewetting know no model: they work on counts of paint by cell and slot. What a
+/// model keeps besides, in planes of its own, they leave as it is. What the model reports is booked: paint from nowhere
+/// and paint lifted off have accounts of their own, and the rest must be found on brushes and surfaces.
 pub trait PaintModel: Send {
     /// Its name in `rig.toml`.
     fn name(&self) -> &'static str;
@@ -131,6 +154,16 @@ pub trait PaintModel: Send {
     /// they reported themselves.
     fn settle(&mut self, _window: &mut Window, _load: &mut BrushLoad) -> StepReport {
         StepReport::default()
+    }
+    /// Cells beside a stroke that [`rest`](Self::rest) looks at; `None` if paint stays as the brush left it.
+    fn rest_halo(&self) -> Option<usize> {
+        None
+    }
+    /// Moves the paint of a stroke once the brush is lifted; window and load are settled.
+    fn rest(&mut self, _rest: &mut Rest<'_>) {}
+    /// What counts the paint in its own planes, for the ledger; `None` if there is none in them.
+    fn count_own(&self) -> Option<CountOwn> {
+        None
     }
     /// The reason why the backend changed, returned once. No paint is lost by it.
     fn take_fall(&mut self) -> Option<String> {

@@ -7,7 +7,7 @@ use maulstick_brush::{Head, HeadPose};
 
 use crate::brush::head::{Waypoint, motion};
 use crate::brush::scale::Scale;
-use crate::model::Sweep;
+use crate::interface::Sweep;
 
 /// Motion that counts as rest, cells.
 const STILL: f64 = 0.02;

@@ -1,14 +1,14 @@
 //! Brush modes that do not paint (Baxter 2004, § 6.8): the sampler, and the cleaning key, which lifts paint like a
 //! vacuum cleaner while it is held and the brush moves.
 
-use maulstick_canvas::quantum::{Counts, SLOTS};
+use maulstick_canvas::quantum::{Counts, SLOTS, add};
 
-use super::footprint::Footprint;
 use crate::brush::traits::TEXELS_PER_STRIP;
-use crate::model::Step;
+use crate::footprint::Footprint;
+use crate::interface::Step;
 
-/// Lifts the wet paint off the cells that are at least half covered, and a part of it off the others;
-/// what was lifted.
+/// Lifts the wet paint off the cells that are at least half covered, a part of it off the others, and all that the
+/// brush carries; what was lifted.
 pub fn vacuum(footprint: &Footprint, step: &mut Step<'_>) -> Counts {
     let mut lifted = [0; SLOTS];
     for (slot, plane) in step.window.planes_mut() {
@@ -18,6 +18,9 @@ pub fn vacuum(footprint: &Footprint, step: &mut Step<'_>) -> Counts {
             *count -= goes;
             lifted[slot] += goes as u64;
         }
+    }
+    if step.load.total() > 0 {
+        add(&mut lifted, &step.load.take_all());
     }
     lifted
 }

@@ -1,0 +1,77 @@
+//! Planes that a paint model keeps of its own, as bytes.
+//!
+//! For each plane, in order of their shapes: its kind, the bytes of a value (4: floating point), and its values a cell, as
+//! three numbers of 16 bits; then its bytes, each as the difference to that of the same plane of an older page.
+
+use maulstick_canvas::own_plane::{OwnPlane, OwnShape, ValueType};
+use maulstick_canvas::planes::Planes;
+
+/// Bytes before those of a plane.
+const HEAD: usize = 6;
+
+fn older<'a>(base: Option<&'a Planes>, shape: &OwnShape) -> Option<&'a [u8]> {
+    let mut planes = base?.own().iter();
+    let found = planes.find(|plane| plane.shape == *shape);
+    found.map(|plane| &*plane.bytes)
+}
+
+/// Bytes with those of an older page taken off, or added to them.
+fn changed(bytes: &[u8], older: Option<&[u8]>, by: fn(u8, u8) -> u8) -> Vec<u8> {
+    match older {
+        Some(older) => bytes.iter().zip(older).map(|(a, b)| by(*a, *b)).collect(),
+        None => bytes.to_vec(),
+    }
+}
+
+/// Appends the model's own planes.
+pub(super) fn append(planes: &Planes, base: Option<&Planes>, to: &mut Vec<u8>) {
+    for plane in planes.own() {
+        let OwnShape {
+            kind,
+            values,
+            per_cell,
+        } = plane.shape;
+        for number in [kind, values.bytes() as u16, per_cell] {
+            to.extend(number.to_le_bytes());
+        }
+        let older = older(base, &plane.shape);
+        to.extend(changed(&plane.bytes, older, u8::wrapping_sub));
+    }
+}
+
+/// Reads what [`append`] wrote.
+///
+/// # Errors
+/// The defect of the bytes, in words.
+pub(super) fn read(mut bytes: &[u8], base: Option<&Planes>) -> Result<Vec<OwnPlane>, String> {
+    let torn = || "a plane of the model's own is torn".to_owned();
+    let mut planes: Vec<OwnPlane> = Vec::new();
+    while !bytes.is_empty() {
+        let (head, rest) = bytes.split_at_checked(HEAD).ok_or_else(torn)?;
+        let [kind, size, per_cell] =
+            [0, 2, 4].map(|at| u16::from_le_bytes([head[at], head[at + 1]]));
+        let values = match size {
+            1 => ValueType::U8,
+            2 => ValueType::U16,
+            4 => ValueType::F32,
+            _ => return Err(torn()),
+        };
+        let shape = OwnShape {
+            kind,
+            values,
+            per_cell,
+        };
+        let rises = planes.last().is_none_or(|last| last.shape < shape);
+        let (own, rest) = rest
+            .split_at_checked(shape.tile_bytes())
+            .filter(|_| rises && per_cell > 0)
+            .ok_or_else(torn)?;
+        let own = changed(own, older(base, &shape), u8::wrapping_add);
+        planes.push(OwnPlane {
+            shape,
+            bytes: own.into(),
+        });
+        bytes = rest;
+    }
+    Ok(planes)
+}

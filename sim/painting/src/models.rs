@@ -1,0 +1,106 @@
+//! The paint models that a surface can have: the one place that names them.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use maulstick_appearance::show_paint::{Counted, ShowPaint};
+use maulstick_canvas::EditError;
+use maulstick_impasto::Impasto;
+use maulstick_marker::{Marker, Matte};
+use maulstick_model::interface::PaintModel;
+
+/// A paint model.
+pub struct ModelEntry {
+    /// Its name in `rig.toml`, in the scene and in a document.
+    pub name: &'static str,
+    /// How its paint is shown.
+    pub shown: &'static dyn ShowPaint,
+    /// A new one, on the processor.
+    make: fn() -> Box<dyn PaintModel>,
+}
+
+/// All of them.
+pub static MODELS: [ModelEntry; 2] = [
+    ModelEntry {
+        name: "impasto",
+        shown: &Counted,
+        make: || Box::new(Impasto::default()),
+    },
+    ModelEntry {
+        name: "marker",
+        shown: &Matte,
+        make: || Box::new(Marker::default()),
+    },
+];
+
+/// Their names.
+pub fn model_names() -> impl Iterator<Item = &'static str> + Clone {
+    MODELS.iter().map(|entry| entry.name)
+}
+
+/// The model of this name.
+///
+/// # Errors
+/// [`EditError`] with the names that there are, and the nearest.
+pub fn model_called(name: &str) -> Result<&'static ModelEntry, EditError> {
+    let found = MODELS.iter().find(|entry| entry.name == name);
+    found.ok_or_else(|| EditError::NoModel {
+        name: name.to_owned(),
+        known: model_names().collect(),
+    })
+}
+
+impl fmt::Debug for ModelEntry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("ModelEntry").field(&self.name).finish()
+    }
+}
+
+/// The models at work in a painting, each made when a surface first needs it.
+#[derive(Default)]
+pub(crate) struct Models(BTreeMap<&'static str, Box<dyn PaintModel>>);
+
+impl Models {
+    /// The model of a surface.
+    pub(crate) fn of(&mut self, entry: &ModelEntry) -> &mut dyn PaintModel {
+        self.0.entry(entry.name).or_insert_with(entry.make).as_mut()
+    }
+
+    /// Has another one of the same name compute its steps.
+    pub(crate) fn replace(&mut self, model: Box<dyn PaintModel>) {
+        self.0.insert(model.name(), model);
+    }
+
+    /// Backend of a model's steps.
+    pub(crate) fn backend(&self, entry: &ModelEntry) -> String {
+        let model = self.0.get(entry.name);
+        model.map_or_else(|| (entry.make)().backend(), |model| model.backend())
+    }
+
+    /// The reason why one of them changed its backend, returned once.
+    pub(crate) fn take_fall(&mut self) -> Option<String> {
+        self.0.values_mut().find_map(|model| model.take_fall())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_is_found_by_the_name_that_it_has_itself() {
+        for entry in &MODELS {
+            assert_eq!((entry.make)().name(), entry.name);
+            assert!(model_called(entry.name).is_ok_and(|found| found.name == entry.name));
+        }
+    }
+
+    #[test]
+    fn an_unknown_name_is_told_with_those_that_there_are_and_the_nearest() {
+        let error = model_called("impatso").expect_err("unknown");
+        assert!(error.to_string().contains("'impatso'"), "{error:?}");
+        let advice = |error: EditError| error.advice().to_string();
+        assert!(advice(error).contains("did you mean 'impasto'"));
+        assert!(model_called("oil").is_err_and(|error| advice(error).contains("marker")));
+    }
+}
