@@ -6,9 +6,9 @@ mod studio;
 use std::sync::Arc;
 
 use easel::Easel;
-use maulstick_document::{Access, Document, DocumentSettings, Moment};
+use maulstick_document::{Access, Checkpoint, Document, DocumentSettings};
 use maulstick_painting::models::model_names;
-use maulstick_types::command::Command;
+use maulstick_types::edits::{Redo, Undo};
 use maulstick_types::scene::CANVAS;
 use studio::{Painter, equip, print, sequencer, sequencer_of};
 
@@ -34,7 +34,7 @@ fn each_goes_on_in_its_document_as_in_memory() {
         for _ in 0..25 {
             act([&mut kept, &mut alone]);
         }
-        document.keep(Moment::of(&mut kept, 0));
+        document.write_checkpoint(Checkpoint::of(&mut kept, 0));
         document.flush();
         document.close().expect("closed");
         let Easel {
@@ -50,10 +50,10 @@ fn each_goes_on_in_its_document_as_in_memory() {
         }
         assert_eq!(print(&mut kept), print(&mut alone), "{model} painted on");
         for sequencer in [&mut kept, &mut alone] {
-            while sequencer.ask(Command::Undo { brush: None }).is_ok() {}
+            while sequencer.edit(Undo { brush: None }).is_ok() {}
         }
         assert_eq!(print(&mut kept), print(&mut alone), "{model} undone");
-        while kept.ask(Command::Redo { brush: None }).is_ok() {}
+        while kept.edit(Redo { brush: None }).is_ok() {}
         assert_eq!(kept.painting_mut().report().quanta_missing, 0, "{model}");
         let end = print(&mut kept);
         assert!(!ends.contains(&end), "a fault would pass: {model}");
@@ -68,9 +68,9 @@ fn a_model_that_the_program_does_not_know_is_told_by_name() {
     let settings = DocumentSettings::new(&path, Access::Paint);
     let (document, _) = Document::open(&settings).expect("begun");
     let mut kept = sequencer(Arc::clone(document.pager()));
-    let mut moment = Moment::of(&mut kept, 0);
-    moment.painting.kept.scene.surfaces[0].model = "watercolour".to_owned();
-    document.keep(moment);
+    let mut checkpoint = Checkpoint::of(&mut kept, 0);
+    checkpoint.painting.kept.scene.surfaces[0].model = "watercolour".to_owned();
+    document.write_checkpoint(checkpoint);
     document.flush();
     document.close().expect("closed");
     let error = Easel::open(&settings).err().expect("refused");

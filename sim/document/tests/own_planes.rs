@@ -6,14 +6,16 @@ use maulstick_brush::BrushFile;
 use maulstick_canvas::own_plane::{OwnPlane, OwnShape, ValueType};
 use maulstick_canvas::quantum::{Counts, SLOTS};
 use maulstick_canvas::tile::TileId;
-use maulstick_document::{Access, Document, DocumentSettings, Moment};
+use maulstick_document::{Access, Checkpoint, Document, DocumentSettings};
 use maulstick_model::footprint::Footprint;
 use maulstick_model::interface::{CountOwn, PaintModel, Step, StepReport};
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
+use maulstick_types::edits::Load;
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::BrushName;
 
 const SHAPE: OwnShape = OwnShape {
     kind: 9,
@@ -125,14 +127,14 @@ fn own(sequencer: &mut Sequencer) -> Vec<(TileId, Vec<OwnPlane>)> {
 fn opened(settings: &DocumentSettings) -> (Document, Sequencer, u64) {
     let (document, opened) = Document::open(settings).expect("whole");
     let opened = opened.expect("a painting");
-    let since = opened.kept().versions;
+    let since = opened.snapshot().versions;
     let mut sequencer = opened.sequencer().expect("it fits");
     sequencer.painting_mut().set_model(Box::new(Toy::counted()));
     (document, sequencer, since)
 }
 
 fn closed(document: Document, mut sequencer: Sequencer, since: u64) {
-    document.keep(Moment::of(&mut sequencer, since));
+    document.write_checkpoint(Checkpoint::of(&mut sequencer, since));
     document.flush();
     assert_eq!(document.fault(), None);
     document.close().expect("closed");
@@ -156,7 +158,12 @@ fn they_are_undone_redone_saved_and_reopened_byte_for_byte() {
     let painting = sequencer.painting_mut();
     painting.set_model(Box::new(Toy::counted()));
     let black = "Bone Black".parse().expect("a mixture");
-    painting.load("main", &black).expect("loaded");
+    let load = Load {
+        mixture: black,
+        beside: None,
+        brush: BrushName::main(),
+    };
+    painting.apply(load).expect("loaded");
     stroke(&mut sequencer, 1, 7.0);
     let once = own(&mut sequencer);
     stroke(&mut sequencer, 2, 9.0);

@@ -9,7 +9,9 @@ use maulstick_painting::models::model_names;
 use maulstick_painting::picture::picture;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::{BrushState, Solve};
+use maulstick_types::edits::{Clean, Dry, Fill, FillPaint, Load, Wet};
 use maulstick_types::scene::{CANVAS, PALETTE};
+use maulstick_types::values::{BrushName, FilmThickness, Share};
 use maulstick_types::{Mixture, Pose};
 
 const BLUE: &str = "Ultramarine Blue=0.6,Titanium White=0.4";
@@ -18,6 +20,22 @@ fn brush() -> BrushFile {
     let mut file = BrushFile::library("round").expect("round");
     file.strips.count = 48;
     file.scaled_to(6.0).expect("a size")
+}
+
+fn load(mixture: Mixture) -> Load {
+    Load {
+        mixture,
+        beside: None,
+        brush: BrushName::main(),
+    }
+}
+
+fn fill(mixture: Mixture, thickness_m: f64) -> Fill {
+    Fill {
+        paint: FillPaint::Mixture { mixture },
+        thickness: FilmThickness::new(thickness_m).expect("in range"),
+        surface: CANVAS,
+    }
 }
 
 fn mixture(text: &str) -> Mixture {
@@ -81,11 +99,11 @@ fn whatever_the_model_strokes_are_undone_redone_and_booked() {
         assert_eq!(painting.model(CANVAS), Some(model));
         assert_eq!(painting.model(PALETTE), Some("impasto"));
         let bare = seen(&mut painting);
-        painting.load("main", &mixture(BLUE)).expect("loaded");
+        painting.apply(load(mixture(BLUE))).expect("loaded");
         stroke(&mut painting, 1, CANVAS, &[4.0, 12.0, 22.0], 6.0);
         let once = seen(&mut painting);
         painting
-            .load("main", &mixture("Pyrrole Red"))
+            .apply(load(mixture("Pyrrole Red")))
             .expect("loaded");
         stroke(&mut painting, 2, CANVAS, &[22.0, 12.0, 4.0], 8.0);
         let twice = seen(&mut painting);
@@ -110,11 +128,21 @@ fn whatever_the_model_strokes_are_undone_redone_and_booked() {
         }
         assert!(seen(&mut painting) == twice, "{model} redone");
         assert_eq!(missing(&mut painting), 0, "{model} redone");
-        painting.dry(CANVAS, 0.5, "").expect("wet");
+        let half_dry = Dry {
+            share: Share::new(0.5).expect("in range"),
+            ..Dry::whole(CANVAS)
+        };
+        painting.apply(half_dry).expect("wet");
         painting
-            .lay(CANVAS, &mixture("Yellow Ochre"), 2e-5)
+            .apply(fill(mixture("Yellow Ochre"), 2e-5))
             .expect("laid");
-        painting.wet(CANVAS, 0, None).expect("dried");
+        painting
+            .apply(Wet {
+                layers: None,
+                region: None,
+                surface: CANVAS,
+            })
+            .expect("dried");
         assert_eq!(
             missing(&mut painting),
             0,
@@ -144,7 +172,7 @@ fn lying(painting: &mut Painting) -> (f32, u64) {
 #[test]
 fn a_marker_lays_a_film_up_to_its_most_and_pushes_and_lifts_nothing() {
     let mut painting = easel("marker", "impasto");
-    painting.load("main", &mixture(BLUE)).expect("loaded");
+    painting.apply(load(mixture(BLUE))).expect("loaded");
     let film = (FILM_M / QUANTUM_M) as f32;
     for number in 1..=6 {
         stroke(&mut painting, number, CANVAS, &[4.0, 12.0, 22.0], 6.0);
@@ -155,14 +183,18 @@ fn a_marker_lays_a_film_up_to_its_most_and_pushes_and_lifts_nothing() {
     let (_, again) = lying(&mut painting);
     assert!(again >= once && again < once + once / 10, "{once} {again}");
     // A clean brush neither pushes it nor takes it up.
-    painting.clean("main").expect("cleaned");
+    painting
+        .apply(Clean {
+            brush: BrushName::main(),
+        })
+        .expect("cleaned");
     let before = seen(&mut painting);
     stroke(&mut painting, 8, CANVAS, &[4.0, 12.0, 22.0], 6.0);
     assert!(seen(&mut painting) == before);
     assert_eq!(painting.fullness(maulstick_types::name_hash("main")), 0.0);
     // Of impasto it does both.
     let mut impasto = easel("impasto", "impasto");
-    impasto.lay(CANVAS, &mixture(BLUE), FILM_M).expect("laid");
+    impasto.apply(fill(mixture(BLUE), FILM_M)).expect("laid");
     let before = seen(&mut impasto);
     stroke(&mut impasto, 1, CANVAS, &[4.0, 12.0, 22.0], 6.0);
     assert!(seen(&mut impasto) != before, "a fault would pass");
@@ -172,7 +204,7 @@ fn a_marker_lays_a_film_up_to_its_most_and_pushes_and_lifts_nothing() {
 fn its_ink_is_matt_and_paint_is_not() {
     for (model, matt) in [("marker", true), ("impasto", false)] {
         let mut painting = easel(model, "impasto");
-        painting.lay(CANVAS, &mixture(BLUE), FILM_M).expect("laid");
+        painting.apply(fill(mixture(BLUE), FILM_M)).expect("laid");
         let banded = maulstick_painting::picture::banded(&mut painting, CANVAS).expect("a canvas");
         let (id, tile) = banded.tiles(0).next().expect("a tile");
         let shown = banded.shown(id, tile, &mut Default::default());
@@ -211,9 +243,7 @@ fn a_model_that_loses_a_quantum_is_found() {
         if leaky {
             painting.set_model(Box::new(Leaky::default()));
         }
-        painting
-            .load("main", &mixture("Bone Black"))
-            .expect("loaded");
+        painting.apply(load(mixture("Bone Black"))).expect("loaded");
         stroke(&mut painting, 1, CANVAS, &[10.0, 11.0], 6.0);
         missing(&mut painting)
     };
