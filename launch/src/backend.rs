@@ -2,7 +2,7 @@
 
 use maulstick_gpu::{Choice, Device, GpuImpasto};
 use maulstick_painting::Sequencer;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::scene::CANVAS;
 
 /// Setting of the backend.
@@ -12,8 +12,8 @@ const PLACE: &str = "backend of [paint], or --backend";
 /// `auto` takes a graphics processor of its own, `gpu` any.
 ///
 /// # Errors
-/// A [`Fault`] if it must be a GPU and there is none.
-pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), Fault> {
+/// A [`UserError`] if it must be a GPU and there is none.
+pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), UserError> {
     let choice = match backend {
         "cpu" => return Ok(()),
         "gpu" => Choice::Forced,
@@ -27,7 +27,7 @@ pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), Fa
                 "no GPU computes the paint model '{}'",
                 model.unwrap_or_default()
             );
-            return Err(Fault::usage(what)
+            return Err(UserError::usage(what)
                 .at(PLACE)
                 .help("leave the choice to the rig: backend = \"auto\""));
         }
@@ -41,7 +41,7 @@ pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), Fa
             Ok(())
         }
         (Err(_), Choice::Auto) => Ok(()),
-        (Err(error), Choice::Forced) => Err(Fault::failure(format!(
+        (Err(error), Choice::Forced) => Err(UserError::failure(format!(
             "paint cannot be computed by a GPU: {error}"
         ))
         .at(PLACE)

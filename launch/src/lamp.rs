@@ -1,7 +1,7 @@
 //! Changes of the light over a painting, with the spectrum of a file.
 
 use maulstick_optics::Illuminant;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::edits::LightChange;
 use maulstick_types::scene::Light;
 
@@ -10,8 +10,8 @@ use crate::viewing::illuminant;
 /// The light after a change.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown spectrum or a bad file, and for a light out of range.
-pub fn changed(change: &LightChange, light: &Light) -> Result<Light, Fault> {
+/// A [`UserError`] for an unknown spectrum or a bad file, and for a light out of range.
+pub fn changed(change: &LightChange, light: &Light) -> Result<Light, UserError> {
     change.check_idle()?;
     let spectrum = match &change.illuminant {
         None => None,

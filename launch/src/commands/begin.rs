@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, is_path};
 use maulstick_types::command::{NewCanvas, RigCommand};
 use maulstick_types::values::MaterialName;
@@ -55,8 +55,8 @@ fn parse_cm(text: &str) -> Result<[f64; 2], String> {
 /// Creates a painting and opens it.
 ///
 /// # Errors
-/// A [`Fault`] for an invalid size, if a file of its name exists, or if no rig runs.
-pub fn run(options: &NewOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for an invalid size, if a file of its name exists, or if no rig runs.
+pub fn run(options: &NewOptions) -> Result<i32, UserError> {
     let usual = CanvasSection::default();
     let usual_cm = [usual.width_mm, usual.height_mm].map(|mm| mm * 0.1);
     let [width, height] = options.cm.unwrap_or(usual_cm);

@@ -8,7 +8,7 @@ use indicatif::ProgressBar;
 use maulstick_device::demo::{Subject, performance};
 use maulstick_painting::models::{model_called, model_names};
 use maulstick_painting::picture::picture;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 use maulstick_types::scene::CANVAS;
 
@@ -48,7 +48,7 @@ pub struct DemoOptions {
 
 impl DemoOptions {
     /// Refuses options that would do nothing.
-    fn check_idle(&self) -> Result<(), Fault> {
+    fn check_idle(&self) -> Result<(), UserError> {
         for (option, given, help) in [
             (
                 "--marks",
@@ -63,7 +63,7 @@ impl DemoOptions {
         ] {
             if given && self.output.is_none() {
                 let what = format!("{option} does nothing beside --sheet alone");
-                return Err(Fault::usage(what).help(help));
+                return Err(UserError::usage(what).help(help));
             }
         }
         for (option, given, help) in [
@@ -80,14 +80,14 @@ impl DemoOptions {
         ] {
             if given && self.sheet.is_none() {
                 let what = format!("{option} does nothing without --sheet PNG or --painting NAME");
-                return Err(Fault::usage(what).help(help));
+                return Err(UserError::usage(what).help(help));
             }
         }
         Ok(())
     }
 
     /// What is painted on.
-    fn board(&self) -> Result<Board, Fault> {
+    fn board(&self) -> Result<Board, UserError> {
         let board = Board::impasto(self.cells.side_mm());
         let Some(model) = &self.model else {
             return Ok(board);
@@ -100,8 +100,8 @@ impl DemoOptions {
 /// Writes the performance and the sheet.
 ///
 /// # Errors
-/// A [`Fault`] where either cannot be written.
-pub fn run(options: &DemoOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where either cannot be written.
+pub fn run(options: &DemoOptions) -> Result<i32, UserError> {
     if let Some(name) = &options.painting {
         return run_painting(name, options);
     }
@@ -131,7 +131,7 @@ pub fn run(options: &DemoOptions) -> Result<i32, Fault> {
 }
 
 /// Writes one of the paintings.
-fn run_painting(name: &str, options: &DemoOptions) -> Result<i32, Fault> {
+fn run_painting(name: &str, options: &DemoOptions) -> Result<i32, UserError> {
     let library = library()?;
     script(name, &library)?;
     let named = PathBuf::from(format!("{name}.png"));

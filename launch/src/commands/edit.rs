@@ -2,7 +2,7 @@
 
 use clap::error::ErrorKind;
 use clap::{Args as _, FromArgMatches, Subcommand};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::edits::{CommandForm, Edit, Ground, GroundSource, commands};
 
 use crate::commands::say;
@@ -62,8 +62,8 @@ impl FromArgMatches for EditCommand {
 /// Applies an edit to the painting of a running rig.
 ///
 /// # Errors
-/// A [`Fault`] with the refusal of the painting, or where no rig runs.
-pub fn run(command: &EditCommand) -> Result<i32, Fault> {
+/// A [`UserError`] with the refusal of the painting, or where no rig runs.
+pub fn run(command: &EditCommand) -> Result<i32, UserError> {
     send(&command.target, command.edit.clone())
 }
 
@@ -71,7 +71,7 @@ pub fn run(command: &EditCommand) -> Result<i32, Fault> {
 ///
 /// # Errors
 /// As [`run`], and for a file that cannot be read.
-pub(super) fn send(target: &Target, mut edit: Edit) -> Result<i32, Fault> {
+pub(super) fn send(target: &Target, mut edit: Edit) -> Result<i32, UserError> {
     edit.check_idle()?;
     if let Edit::Ground(ground) = &mut edit {
         read_ground(ground)?;
@@ -98,7 +98,7 @@ fn word(edit: &Edit) -> Option<&'static str> {
 }
 
 /// Puts the spectrum of a file in the place of its path.
-fn read_ground(edit: &mut Ground) -> Result<(), Fault> {
+fn read_ground(edit: &mut Ground) -> Result<(), UserError> {
     let GroundSource::Named { name } = &edit.ground else {
         return Ok(());
     };
@@ -106,7 +106,7 @@ fn read_ground(edit: &mut Ground) -> Result<(), Fault> {
         GroundFile::Named(name) => Ground::named(edit.surface, &name)?,
         GroundFile::Spectrum(csv) => Ground::spectrum(edit.surface, &csv)?,
         GroundFile::Picture(_, name) => {
-            return Err(Fault::usage("a running rig takes no picture as ground")
+            return Err(UserError::usage("a running rig takes no picture as ground")
                 .at(name)
                 .help(
                     "close it: `maulstick painting import FILE PICTURE --as ground`; or begin with it: \

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use maulstick_exchange::Format;
 use maulstick_paint_node::exporter::kind_of;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 use maulstick_types::command::{ExportOrder, FileCommand, png_bits};
 use maulstick_types::scene::{CANVAS, PALETTE};
@@ -61,8 +61,8 @@ fn bits(text: &str) -> Result<u32, ValueError> {
 /// Has the painting written as it is now.
 ///
 /// # Errors
-/// A [`Fault`] where it cannot be written, where another export goes on, or where no rig runs.
-pub fn run(options: &ExportOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where it cannot be written, where another export goes on, or where no rig runs.
+pub fn run(options: &ExportOptions) -> Result<i32, UserError> {
     let session = Session::open(&options.target)?;
     let Some(file) = &options.file else {
         session.send(FileCommand::StopExport)?;

@@ -1,7 +1,7 @@
 //! `maulstick brush mode`: how a brush is used.
 
 use clap::Args;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::edits::Handle;
 
 use crate::commands::session::Target;
@@ -26,7 +26,7 @@ impl ModeOptions {
 /// Uses a brush in another way.
 ///
 /// # Errors
-/// A [`Fault`] for an option that does nothing with the mode, an unknown brush, or where no rig runs.
-pub fn mode(options: &ModeOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for an option that does nothing with the mode, an unknown brush, or where no rig runs.
+pub fn mode(options: &ModeOptions) -> Result<i32, UserError> {
     super::edit::send(&options.target, options.edit().into())
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::command::{RigCommand, SaveAs};
 
 use super::open::{LONGEST, whole};
@@ -25,8 +25,8 @@ pub struct SaveAsOptions {
 /// Puts the painting into another file, where it goes on.
 ///
 /// # Errors
-/// A [`Fault`] where it cannot be written there, or where no rig runs.
-pub fn run(options: &SaveAsOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where it cannot be written there, or where no rig runs.
+pub fn run(options: &SaveAsOptions) -> Result<i32, UserError> {
     let command = RigCommand::SaveAs(SaveAs {
         path: whole(&options.file)?,
         replace: options.replace,

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 use maulstick_types::command::TakeCommand;
 
@@ -27,8 +27,8 @@ pub struct SnapshotOptions {
 /// Has the picture of the canvas written.
 ///
 /// # Errors
-/// A [`Fault`] where it cannot be written, or where no rig runs.
-pub fn snapshot(options: &SnapshotOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where it cannot be written, or where no rig runs.
+pub fn snapshot(options: &SnapshotOptions) -> Result<i32, UserError> {
     let picture = UsedFile::new("the picture", &options.output).of(Kind::Png);
     let ledger = UsedFile::written("the ledger", options.ledger.as_ref(), Kind::Ledger);
     let outputs: Vec<_> = std::iter::once(picture).chain(ledger).collect();

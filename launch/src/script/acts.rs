@@ -8,7 +8,7 @@ use maulstick_device::Take;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::PaintingSetup;
 use maulstick_painting::setup::relief_called;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::{BrushSection, is_path};
 use maulstick_types::advice::choice;
 use maulstick_types::edits::{Edit, Form, Ground, LightChange, Tooth};
@@ -35,7 +35,7 @@ const FARTHEST_MM: f64 = 5000.0;
 /// No stroke takes longer, s.
 const LONGEST_S: f64 = 600.0;
 /// Reads an edit. Its paints are spelt as the library does.
-pub(super) fn edit<E: Form>(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn edit<E: Form>(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, UserError> {
     if step.kind.form.switch {
         switched_on(step)?;
     }
@@ -54,16 +54,16 @@ struct UndoStep {
     undo: u32,
 }
 
-pub(super) fn undo(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn undo(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
     let UndoStep { undo } = step.keys.read(UndoStep::deserialize)?;
     match undo {
-        0 => Err(Fault::usage("an undo of 0 steps does nothing").help("leave it out")),
+        0 => Err(UserError::usage("an undo of 0 steps does nothing").help("leave it out")),
         times => Ok(Act::Undo(times)),
     }
 }
 
 /// The file that a step names, if it names one.
-pub(super) fn file_of(step: &Step<'_>) -> Result<Option<UsedFile>, Fault> {
+pub(super) fn file_of(step: &Step<'_>) -> Result<Option<UsedFile>, UserError> {
     let keys = &step.keys;
     let does = step.kind.form.key;
     let what = format!("the {does} at {}", step.place());
@@ -85,14 +85,14 @@ pub(super) fn file_of(step: &Step<'_>) -> Result<Option<UsedFile>, Fault> {
     })
 }
 
-pub(super) fn switched_on(step: &Step<'_>) -> Result<(), Fault> {
+pub(super) fn switched_on(step: &Step<'_>) -> Result<(), UserError> {
     match step.due(step.keys.switch(step.kind.form.key)?)? {
         true => Ok(()),
-        false => Err(Fault::usage("a step that is 'false' does nothing").help("leave it out")),
+        false => Err(UserError::usage("a step that is 'false' does nothing").help("leave it out")),
     }
 }
 
-pub(super) fn brush(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn brush(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
     let keys = &step.keys;
     let depth_share = keys.number("depth_share")?.unwrap_or(0.5);
     if !(0.0..=0.9).contains(&depth_share) {
@@ -110,7 +110,7 @@ pub(super) fn brush(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
     };
     let head = keys.named("brush", file(&section.kind), brush_file(&section))?;
     check_name(&section.name).map_err(|what| {
-        Fault::usage(format!(
+        UserError::usage(format!(
             "the brush would be called after its file, but {what}"
         ))
         .help("give the file another name")
@@ -118,7 +118,7 @@ pub(super) fn brush(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
     Ok(Act::Brush(section.name, Box::new(head), depth_share))
 }
 
-pub(super) fn take(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn take(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, UserError> {
     let keys = &step.keys;
     let path = keys.source.folder.join(step.due(keys.text("take")?)?);
     let name = path.display().to_string();
@@ -140,7 +140,7 @@ fn within(
     step: &Step<'_>,
     key: &str,
     range: std::ops::RangeInclusive<f64>,
-) -> Result<Option<f64>, Fault> {
+) -> Result<Option<f64>, UserError> {
     let number = step.keys.number(key)?;
     match number {
         Some(number) if !range.contains(&number) => {
@@ -151,7 +151,7 @@ fn within(
     }
 }
 
-pub(super) fn stroke(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn stroke(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
     let keys = &step.keys;
     let rows = step.due(keys.rows("stroke")?)?;
     let wrong = |what: String, help: &str| Err(keys.fault("stroke", what).help(help));
@@ -218,7 +218,7 @@ fn is_held(name: &str) -> bool {
     name.starts_with(IMAGE) || name.starts_with(SPECTRUM)
 }
 
-pub(super) fn ground(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn ground(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
     let name = step.keys.beside(step.due(step.keys.text("ground")?)?);
     let ground = GroundFile::read(&name);
     let ground = step.keys.named("ground", file(&name), ground)?;
@@ -235,7 +235,7 @@ pub(super) fn ground(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
     Ok(Act::Edit(Box::new(edit.into())))
 }
 
-pub(super) fn tooth(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn tooth(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
     let keys = &step.keys;
     let tooth = keys.beside(step.due(keys.text("tooth")?)?);
     let seed = keys.is_given("seed");
@@ -267,10 +267,10 @@ pub(super) fn tooth(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
     Ok(Act::Edit(Box::new(edit.into())))
 }
 
-pub(super) fn light(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn light(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
     let keys = step.due(step.keys.table("light")?)?;
     if keys.keys().is_empty() {
-        return Err(Fault::usage(
+        return Err(UserError::usage(
             "a light of which nothing is said changes nothing",
         ));
     }

@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use maulstick_optics::PaintLibrary;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::advice::nearest;
 use maulstick_types::edits::{self, Form as _, StepForm};
 use maulstick_types::values::ticks_in;
@@ -13,7 +13,7 @@ use super::Act;
 use super::acts::{brush, edit, ground, light, stroke, take, tooth, undo};
 use super::entries::{Entries, Source};
 
-type Read = fn(&Step<'_>, &PaintLibrary) -> Result<Act, Fault>;
+type Read = fn(&Step<'_>, &PaintLibrary) -> Result<Act, UserError>;
 
 /// A kind of step.
 #[derive(Debug)]
@@ -110,7 +110,7 @@ pub(super) struct Step<'a> {
 
 impl<'a> Step<'a> {
     /// A step that does one thing, and whose other keys are that thing's.
-    fn of(source: Source<'a>, table: &'a DeTable<'a>, start: usize) -> Result<Self, Fault> {
+    fn of(source: Source<'a>, table: &'a DeTable<'a>, start: usize) -> Result<Self, UserError> {
         let all = || {
             KINDS
                 .iter()
@@ -145,7 +145,7 @@ impl<'a> Step<'a> {
         }
         let [kind] = kinds[..] else {
             let fault = match given.first() {
-                None => Fault::usage("a step that does nothing").at(source.place(start)),
+                None => UserError::usage("a step that does nothing").at(source.place(start)),
                 Some(key) if kinds.is_empty() => {
                     keys.fault(key, format!("'{key}' alone is a step that does nothing"))
                 }
@@ -177,8 +177,8 @@ impl<'a> Step<'a> {
     }
 
     /// Value of a required key: it makes the step one of its kind, or is reported as missing.
-    pub(super) fn due<T>(&self, value: Option<T>) -> Result<T, Fault> {
-        value.ok_or_else(|| Fault::usage(format!("'{}' lacks a key", self.kind.form.key)))
+    pub(super) fn due<T>(&self, value: Option<T>) -> Result<T, UserError> {
+        value.ok_or_else(|| UserError::usage(format!("'{}' lacks a key", self.kind.form.key)))
     }
 }
 
@@ -195,7 +195,7 @@ impl Kind {
 pub(super) fn listed<'a>(
     source: Source<'a>,
     script: &'a DeTable<'a>,
-) -> Result<Vec<Step<'a>>, Fault> {
+) -> Result<Vec<Step<'a>>, UserError> {
     let tables = source.listed(script)?.into_iter();
     tables
         .map(|(start, table)| Step::of(source, table, start))
@@ -203,7 +203,7 @@ pub(super) fn listed<'a>(
 }
 
 /// Action of a step. An error has its place, and advice.
-pub(super) fn act(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn act(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, UserError> {
     (step.kind.act)(step, library).map_err(|mut fault| {
         fault.place.get_or_insert_with(|| step.place());
         fault.help.get_or_insert_with(|| step.keys.for_example());

@@ -3,7 +3,7 @@
 use maulstick_appearance::picture::Picture;
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::edits::{Dry, Load};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{BrushName, Share};
@@ -30,7 +30,7 @@ struct Effect {
     name: &'static str,
     words: &'static str,
     /// Paints it on a board.
-    paint: fn(PaintLibrary, Board) -> Result<Panel, Fault>,
+    paint: fn(PaintLibrary, Board) -> Result<Panel, UserError>,
 }
 
 const EFFECTS: [Effect; 8] = [
@@ -79,12 +79,12 @@ const EFFECTS: [Effect; 8] = [
 /// The sheet, on boards like this; `told` hears of each panel.
 ///
 /// # Errors
-/// A [`Fault`] where a brush or a paint is refused, or where it would have too many pixels.
+/// A [`UserError`] where a brush or a paint is refused, or where it would have too many pixels.
 pub fn effects(
     library: &PaintLibrary,
     board: Board,
     mut told: impl FnMut(usize, usize),
-) -> Result<Picture, Fault> {
+) -> Result<Picture, UserError> {
     let [across, up] = PANEL_MM;
     let columns = 2;
     let rows = EFFECTS.len().div_ceil(columns);
@@ -108,16 +108,16 @@ impl Panel {
         kind: &str,
         width_mm: f64,
         (library, board): (PaintLibrary, Board),
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, UserError> {
         Self::new((PANEL_MM, board), "gesso", sized(kind, width_mm)?, library)
     }
 
-    fn take_up(&mut self, name: &str, file: BrushFile) -> Result<(), Fault> {
+    fn take_up(&mut self, name: &str, file: BrushFile) -> Result<(), UserError> {
         let taken = self.offline.take_up(name, file, DEPTH_SHARE);
         taken.map_err(refused)
     }
 
-    fn dry(&mut self, share: f32) -> Result<(), Fault> {
+    fn dry(&mut self, share: f32) -> Result<(), UserError> {
         let dry = Dry {
             share: Share::new(share)?,
             ..Dry::whole(CANVAS)
@@ -127,9 +127,9 @@ impl Panel {
     }
 }
 
-fn sized(kind: &str, width_mm: f64) -> Result<BrushFile, Fault> {
+fn sized(kind: &str, width_mm: f64) -> Result<BrushFile, UserError> {
     let sized = library_brush(kind)?.scaled_to(width_mm);
-    sized.map_err(|error| Fault::failure(error.to_string()))
+    sized.map_err(|error| UserError::failure(error.to_string()))
 }
 
 /// A straight stroke, pressed evenly.
@@ -147,7 +147,7 @@ fn wave(points: Vec<[f64; 2]>, pressure: f64, seconds: f64) -> Gesture {
     })
 }
 
-fn transfer(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
+fn transfer(library: PaintLibrary, board: Board) -> Result<Panel, UserError> {
     let mut panel = Panel::of("flat", 8.0, (library, board))?;
     for (row, mixture) in ["Ultramarine Blue", YELLOW, RED].into_iter().enumerate() {
         let y = 40.0 - 15.0 * row as f64;
@@ -168,7 +168,7 @@ fn transfer(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn loading(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
+fn loading(library: PaintLibrary, board: Board) -> Result<Panel, UserError> {
     let mut panel = Panel::of("flat", 10.0, (library, board))?;
     let pairs = [
         ["Quinacridone Magenta=0.6,Pyrrole Red=0.4", WHITE],
@@ -192,7 +192,7 @@ fn loading(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn drying(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
+fn drying(library: PaintLibrary, board: Board) -> Result<Panel, UserError> {
     let mut panel = Panel::of("flat", 8.0, (library, board))?;
     // The stripe painted first dries most often: .75⁴ = .32 of it stays wet.
     for stripe in 0..5 {
@@ -211,7 +211,7 @@ fn drying(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn blending(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
+fn blending(library: PaintLibrary, board: Board) -> Result<Panel, UserError> {
     let mut panel = Panel::of("flat", 13.0, (library, board))?;
     for (mixture, rows) in [
         ("Ultramarine Blue=0.7,Titanium White=0.3", [18.0, 8.0]),
@@ -238,7 +238,7 @@ fn blending(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn glazing(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
+fn glazing(library: PaintLibrary, board: Board) -> Result<Panel, UserError> {
     let mut panel = Panel::of("filbert", 11.0, (library, board))?;
     let greys = [
         "Bone Black=0.7,Titanium White=0.3",
@@ -266,7 +266,7 @@ fn glazing(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn impasto(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
+fn impasto(library: PaintLibrary, board: Board) -> Result<Panel, UserError> {
     let mut panel = Panel::of("bright", 8.0, (library, board))?;
     // Petals around two hearts, each of six loads.
     for (middle, colour) in [
@@ -296,7 +296,7 @@ fn impasto(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
 /// Share of its load on a brush that is wiped for scumbling.
 const NEARLY_EMPTY: f64 = 0.2;
 
-fn scumbling(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
+fn scumbling(library: PaintLibrary, board: Board) -> Result<Panel, UserError> {
     let mut panel = Panel::of("bright", 10.0, (library, board))?;
     for i in 0..14 {
         let (column, row) = (i % 7, i / 7);
@@ -323,7 +323,7 @@ fn scumbling(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn thinning(library: PaintLibrary, board: Board) -> Result<Panel, Fault> {
+fn thinning(library: PaintLibrary, board: Board) -> Result<Panel, UserError> {
     let mut panel = Panel::of("round", 8.0, (library, board))?;
     let mixtures = [
         "Ultramarine Blue",

@@ -45,7 +45,7 @@ mod window_latency;
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use maulstick_painting::models::model_names;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use crate::report::Report;
 
@@ -71,7 +71,10 @@ struct Options {
 }
 
 /// An area's name and what measures it.
-type Area = (&'static str, fn(&mut Report, &Options) -> Result<(), Fault>);
+type Area = (
+    &'static str,
+    fn(&mut Report, &Options) -> Result<(), UserError>,
+);
 
 const AREAS: [Area; 12] = [
     ("brush", |report, _| brush::run(report)),
@@ -98,7 +101,7 @@ fn main() {
     }
 }
 
-fn measure(options: &Options) -> Result<(), Fault> {
+fn measure(options: &Options) -> Result<(), UserError> {
     if let Some(locator) = &options.far_end {
         return bus::far_end(locator);
     }
@@ -107,7 +110,7 @@ fn measure(options: &Options) -> Result<(), Fault> {
     if let (true, Some(area)) = (areas.is_empty(), &options.area) {
         let names = AREAS.map(|(name, _)| name);
         let what = format!("there is no benchmark called '{area}'");
-        return Err(Fault::unknown(what, area, names));
+        return Err(UserError::unknown(what, area, names));
     }
     let mut report = Report::new();
     for (_, run) in areas {

@@ -10,7 +10,7 @@ use maulstick_gpu::{Choice, Device, GpuImpasto, Traffic};
 use maulstick_num::fork_join::with_threads;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::edits::{Fill, FillPaint, Load};
@@ -41,8 +41,8 @@ const WIDE: (usize, usize) = (352, 1024);
 /// Threads that are compared with one.
 const THREADS: [usize; 3] = [2, 4, 8];
 
-fn fault(error: impl ToString) -> Fault {
-    Fault::failure(error.to_string())
+fn fault(error: impl ToString) -> UserError {
+    UserError::failure(error.to_string())
 }
 
 /// What moves the paint.
@@ -72,7 +72,7 @@ struct Round {
 }
 
 impl Round {
-    fn new(width_mm: f64, strips: usize, side: usize, means: &Means) -> Result<Self, Fault> {
+    fn new(width_mm: f64, strips: usize, side: usize, means: &Means) -> Result<Self, UserError> {
         let mut file = BrushFile::library("round").map_err(fault)?;
         file.strips.count = strips;
         let file = file.scaled_to(width_mm).map_err(fault)?;
@@ -142,7 +142,7 @@ impl Round {
     }
 
     /// Paints the states; steps and footprint cells of them, and the time they took.
-    fn paint(&mut self) -> Result<([u64; 2], Duration), Fault> {
+    fn paint(&mut self) -> Result<([u64; 2], Duration), UserError> {
         let before = self.sequencer.painting().work();
         let begun = Instant::now();
         for state in &self.states {
@@ -165,7 +165,7 @@ impl Round {
 }
 
 /// A brush whose footprint covers the share of the square that is wanted.
-fn fitted(side: usize, strips: usize, means: &Means) -> Result<Round, Fault> {
+fn fitted(side: usize, strips: usize, means: &Means) -> Result<Round, UserError> {
     let wanted = COVERED * (side * side) as f64;
     let mut width_mm = 0.25 * side as f64;
     for _ in 0..6 {
@@ -181,7 +181,7 @@ fn fitted(side: usize, strips: usize, means: &Means) -> Result<Round, Fault> {
 }
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report, backend: &str, model: &str) -> Result<(), Fault> {
+pub(crate) fn run(report: &mut Report, backend: &str, model: &str) -> Result<(), UserError> {
     let gpu = match backend {
         "gpu" => Some(Device::open(Choice::Forced).map_err(fault)?),
         _ => None,
@@ -206,7 +206,7 @@ pub(crate) fn run(report: &mut Report, backend: &str, model: &str) -> Result<(),
 }
 
 /// Cells in contact that a core paints, beside the copy of as many.
-fn cells(report: &mut Report, means: &Means) -> Result<(), Fault> {
+fn cells(report: &mut Report, means: &Means) -> Result<(), UserError> {
     let (side, strips) = SIZES[1];
     let mut round = fitted(side, strips, means)?;
     round.paint()?;
@@ -222,7 +222,7 @@ fn cells(report: &mut Report, means: &Means) -> Result<(), Fault> {
 }
 
 /// How many times as fast several cores paint with a wide brush as one, as far as there are so many.
-fn speed_up(report: &mut Report, cores: usize, means: &Means) -> Result<(), Fault> {
+fn speed_up(report: &mut Report, cores: usize, means: &Means) -> Result<(), UserError> {
     let (side, strips) = WIDE;
     let mut round = fitted(side, strips, means)?;
     round.paint()?;
@@ -245,7 +245,7 @@ fn speed_up(report: &mut Report, cores: usize, means: &Means) -> Result<(), Faul
 }
 
 /// Both sizes.
-fn rounds(report: &mut Report, means: &Means) -> Result<(), Fault> {
+fn rounds(report: &mut Report, means: &Means) -> Result<(), UserError> {
     for (side, strips) in SIZES {
         let mut round = fitted(side, strips, means)?;
         round.paint()?;

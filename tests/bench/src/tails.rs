@@ -12,7 +12,7 @@ use maulstick_exchange::write_lit_png;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::picture::lit_drawing;
 use maulstick_painting::{Painting, PaintingSetup};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_session::Offline;
 use maulstick_types::scene::CANVAS;
 
@@ -27,8 +27,8 @@ const MOST: f64 = 0.05;
 /// Runs of which the median is reported.
 const RUNS: usize = 5;
 
-fn fault(error: impl ToString) -> Fault {
-    Fault::failure(error.to_string())
+fn fault(error: impl ToString) -> UserError {
+    UserError::failure(error.to_string())
 }
 
 /// Measures and reports.
@@ -37,7 +37,7 @@ pub(crate) fn run(
     take: &Take,
     loads: &[&str],
     (cells, cell_mm): (u32, f64),
-) -> Result<(), Fault> {
+) -> Result<(), UserError> {
     let begun = process_cpu();
     let setup = PaintingSetup {
         cells: [cells; 2],
@@ -75,7 +75,9 @@ pub(crate) fn run(
 }
 
 /// The median of the times of several runs, s, and what the last returned.
-fn median<T>(mut work: impl FnMut() -> Result<(T, Duration), Fault>) -> Result<(f64, T), Fault> {
+fn median<T>(
+    mut work: impl FnMut() -> Result<(T, Duration), UserError>,
+) -> Result<(f64, T), UserError> {
     let (mut made, took) = work()?;
     let mut seconds = vec![took.as_secs_f64()];
     for _ in 1..RUNS {
@@ -87,7 +89,7 @@ fn median<T>(mut work: impl FnMut() -> Result<(T, Duration), Fault>) -> Result<(
 }
 
 /// Time of light, shadows, gamut and encoding of the picture, s, and its pixels.
-fn light(painting: &mut Painting, export: &Export) -> Result<(f64, Vec<u8>), Fault> {
+fn light(painting: &mut Painting, export: &Export) -> Result<(f64, Vec<u8>), UserError> {
     let drawing = lit_drawing(painting, CANVAS, export);
     let drawing = drawing.ok_or_else(|| fault("there is no canvas"))?;
     let banded = drawing.banded();
@@ -109,7 +111,7 @@ fn light(painting: &mut Painting, export: &Export) -> Result<(f64, Vec<u8>), Fau
 }
 
 /// Time of packing a picture as a PNG, s.
-fn packing(side: usize, pixels: Vec<u8>) -> Result<f64, Fault> {
+fn packing(side: usize, pixels: Vec<u8>) -> Result<f64, UserError> {
     let picture = Picture::srgb(side, side, pixels);
     let (took, _) = median(|| {
         let (mut file, begun) = (Vec::new(), thread_cpu());
@@ -120,7 +122,7 @@ fn packing(side: usize, pixels: Vec<u8>) -> Result<f64, Fault> {
 }
 
 /// Time of the heights of the whole canvas's tooth, once, s.
-fn tooth(setup: &PaintingSetup) -> Result<f64, Fault> {
+fn tooth(setup: &PaintingSetup) -> Result<f64, UserError> {
     let (took, _) = median(|| {
         let library = PaintLibrary::measured().map_err(fault)?;
         let painting = Painting::new(setup, library).map_err(|refusal| fault(refusal))?;

@@ -1,7 +1,7 @@
 //! Presets: brushes with their paint, by name.
 
 use maulstick_brush::BrushFile;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::edits::{Handle, Tune};
 use maulstick_types::scene::{BrushHandling, BrushMode, MARKER_FLOW, Tuning};
 use serde::{Deserialize, Serialize};
@@ -86,10 +86,10 @@ impl Preset {
     /// The brush.
     ///
     /// # Errors
-    /// A [`Fault`] if the file is invalid, as after an edit by hand.
-    pub fn brush(&self) -> Result<BrushFile, Fault> {
+    /// A [`UserError`] if the file is invalid, as after an edit by hand.
+    pub fn brush(&self) -> Result<BrushFile, UserError> {
         let wrong = |what: String| {
-            Fault::failure(format!("the preset '{}': {what}", self.name)).help("save it anew")
+            UserError::failure(format!("the preset '{}': {what}", self.name)).help("save it anew")
         };
         if !self.file.is_empty() {
             return BrushFile::parse(&self.file).map_err(|error| wrong(error.to_string()));
@@ -103,8 +103,8 @@ impl Preset {
     /// Takes it up: the brush, how it is used, and then its paint.
     ///
     /// # Errors
-    /// A [`Fault`] where something of it is wrong; then nothing is changed.
-    pub fn apply(&self, work: &mut PanelContext<'_>) -> Result<(), Fault> {
+    /// A [`UserError`] where something of it is wrong; then nothing is changed.
+    pub fn apply(&self, work: &mut PanelContext<'_>) -> Result<(), UserError> {
         let file = self.brush()?;
         let brush = work.rig.brush_name().to_owned();
         let mode = self.mode.parse()?;

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use maulstick_rig::Fault;
-use maulstick_rig::commander::Commander;
+use maulstick_rig::UserError;
+use maulstick_rig::command_client::CommandClient;
 use maulstick_types::edits::Load;
 use maulstick_types::values::BrushName;
 
@@ -34,7 +34,7 @@ impl Supervisor {
         };
         let stop = self.stop.clone();
         let load = move || {
-            let mut commander = Commander::new(bus, &topics);
+            let mut commander = CommandClient::new(bus, &topics);
             for brush in brushes {
                 let load = BrushName::new(brush).map(|brush| Load {
                     mixture: mixture.clone(),
@@ -42,7 +42,7 @@ impl Supervisor {
                     brush,
                 });
                 let loaded = load
-                    .map_err(Fault::from)
+                    .map_err(UserError::from)
                     .and_then(|load| commander.send(load, None, LOAD_TIME, &|| stop.requested()));
                 if let Err(fault) = loaded {
                     tracing::warn!("{}", fault.what);

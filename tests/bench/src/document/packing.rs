@@ -3,7 +3,7 @@
 use maulstick_document::pack::{History, pack};
 use maulstick_exchange::write_open_exr;
 use maulstick_painting::Painting;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::edits::Dry;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{LayerName, Share};
@@ -16,7 +16,7 @@ const CELLS: u32 = 2048;
 const STROKES: usize = 400;
 const STROKE_M: f64 = 0.06;
 
-pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
     let folder = tempfile::tempdir().map_err(fault)?;
     let path = folder.path().join("pack.maul");
     let mut easel = Easel::new(&path, CELLS, 512 << 20, 2 << 30)?;
@@ -44,7 +44,7 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
     Ok(())
 }
 
-fn dry(painting: &mut Painting) -> Result<(), Fault> {
+fn dry(painting: &mut Painting) -> Result<(), UserError> {
     painting
         .apply(Dry {
             share: Share::new(1.0).expect("in range"),

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use maulstick_num::{cos, sin};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use super::easel::{Easel, Map, Stroke, brush};
 use super::marks::Painter;
@@ -34,8 +34,8 @@ pub(super) struct Left {
 }
 
 /// Measures and reports.
-pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
-    let left: Result<Vec<Left>, Fault> = (CELLS_MM.into_iter())
+pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
+    let left: Result<Vec<Left>, UserError> = (CELLS_MM.into_iter())
         .map(|cell_mm| left_on(cell_mm, Painter::Able))
         .collect();
     let pairs: Vec<[f64; 2]> = left?
@@ -49,7 +49,7 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
 }
 
 /// Strokes of a fully loaded 14 mm flat on cells of a size; the faulty painter's load shrinks with the cells.
-pub(super) fn left_on(cell_mm: f64, painter: Painter) -> Result<Left, Fault> {
+pub(super) fn left_on(cell_mm: f64, painter: Painter) -> Result<Left, UserError> {
     let mut flat = brush("flat", 14.0)?;
     if painter == Painter::Faulty {
         flat.load.film_um *= cell_mm / CELLS_MM[0];

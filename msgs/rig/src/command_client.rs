@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::fault::Fault;
+use crate::user_error::UserError;
 use maulstick_bus::typed::{ask, random_epoch, random_u64};
-use maulstick_bus::{Bus, BusError, Class};
+use maulstick_bus::{Bus, BusError, Qos};
 use maulstick_types::command::{
     After, Command, CommandReply, CommandRequest, Outcome, TakeCommand,
 };
@@ -16,7 +16,7 @@ use maulstick_types::{Origin, name_hash};
 const ASK: Duration = Duration::from_secs(2);
 
 /// Client that sends commands to a node.
-pub struct Commander {
+pub struct CommandClient {
     bus: Arc<dyn Bus>,
     topic: String,
     client: u64,
@@ -25,7 +25,7 @@ pub struct Commander {
     ask: Duration,
 }
 
-impl Commander {
+impl CommandClient {
     /// Client of the paint node, with a number of its own.
     #[must_use]
     pub fn new(bus: Arc<dyn Bus>, topics: &Topics) -> Self {
@@ -59,23 +59,23 @@ impl Commander {
     /// Sends a command and waits until it is done or refused, at most for `patience`; gives up early on `stop`.
     ///
     /// # Errors
-    /// A [`Fault`] with the node's own words if it is refused, or if nobody answers.
+    /// A [`UserError`] with the node's own words if it is refused, or if nobody answers.
     pub fn send(
         &mut self,
         command: impl Into<Command>,
         after: Option<After>,
         patience: Duration,
         stop: &dyn Fn() -> bool,
-    ) -> Result<String, Fault> {
+    ) -> Result<String, UserError> {
         let command = command.into();
         // A failure at the end of a take, or of a write, is no wrong usage.
-        let refusal: fn(String) -> Fault = match &command {
-            Command::Take(TakeCommand::Snapshot { .. } | TakeCommand::Mark) => Fault::failure,
+        let refusal: fn(String) -> UserError = match &command {
+            Command::Take(TakeCommand::Snapshot { .. } | TakeCommand::Mark) => UserError::failure,
             Command::Take(TakeCommand::Begin { .. })
             | Command::Edit(_)
             | Command::File(_)
             | Command::Brush(_)
-            | Command::Rig(_) => Fault::usage,
+            | Command::Rig(_) => UserError::usage,
         };
         self.number += 1;
         let number = self.number;
@@ -92,7 +92,7 @@ impl Commander {
             match ask::<_, CommandReply>(
                 &*self.bus,
                 &self.topic,
-                Class::Control,
+                Qos::Control,
                 self.me,
                 &request,
                 limit,
@@ -115,7 +115,7 @@ impl Commander {
                 Err(error) => return Err(error.into()),
             }
             if Instant::now() >= give_up || stop() {
-                return Err(Fault::failure("the node does not answer")
+                return Err(UserError::failure("the node does not answer")
                     .at(self.topic.clone())
                     .help("see whether it runs"));
             }

@@ -15,7 +15,7 @@ pub const EXIT_FAILURE: i32 = 1;
 
 /// An error with its place and advice.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
+pub struct UserError {
     /// The error.
     pub what: String,
     /// A file with its line, or a topic.
@@ -28,7 +28,7 @@ pub struct Fault {
     pub code: i32,
 }
 
-impl Fault {
+impl UserError {
     /// Bad usage or a bad input file.
     #[must_use]
     pub fn usage(what: impl Into<String>) -> Self {
@@ -126,7 +126,7 @@ impl Fault {
     }
 }
 
-impl fmt::Display for Fault {
+impl fmt::Display for UserError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "error: {}", plain(&self.what))?;
         if let Some(place) = &self.place {
@@ -139,21 +139,21 @@ impl fmt::Display for Fault {
     }
 }
 
-impl std::error::Error for Fault {}
+impl std::error::Error for UserError {}
 
-impl From<ValueError> for Fault {
+impl From<ValueError> for UserError {
     fn from(error: ValueError) -> Self {
         Self::usage(error.to_string())
     }
 }
 
-impl From<LightError> for Fault {
+impl From<LightError> for UserError {
     fn from(error: LightError) -> Self {
         Self::usage(error.to_string())
     }
 }
 
-impl From<BusError> for Fault {
+impl From<BusError> for UserError {
     fn from(error: BusError) -> Self {
         match error {
             BusError::Open { at, reason } => {
@@ -184,7 +184,7 @@ mod tests {
 
     #[test]
     fn what_is_quoted_forges_no_line() {
-        let fault = Fault::usage("there is no paint called 'x\nerror: all is lost'")
+        let fault = UserError::usage("there is no paint called 'x\nerror: all is lost'")
             .at("a\u{1b}[2J.toml:3")
             .help("take\r'y'");
         assert_eq!(
