@@ -2,14 +2,14 @@
 
 use maulstick_gpu::{Choice, Device, GpuImpasto};
 use maulstick_painting::Sequencer;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 /// Has a painting's steps computed by the GPU from now on, and journals that, if the settings want it and there is one:
 /// `auto` takes a graphics processor of its own, `gpu` any.
 ///
 /// # Errors
-/// A [`Fault`] if it must be a GPU and there is none.
-pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), Fault> {
+/// A [`UserError`] if it must be a GPU and there is none.
+pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), UserError> {
     let choice = match backend {
         "cpu" => return Ok(()),
         "gpu" => Choice::Forced,
@@ -24,7 +24,7 @@ pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), Fa
             Ok(())
         }
         (Err(_), Choice::Auto) => Ok(()),
-        (Err(error), Choice::Forced) => Err(Fault::failure(format!(
+        (Err(error), Choice::Forced) => Err(UserError::failure(format!(
             "paint cannot be computed by a GPU: {error}"
         ))
         .at("backend of [paint], or --backend")

@@ -1,7 +1,7 @@
 //! The side of the cells that pictures are painted with.
 
 use clap::Args;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, RigConfig};
 use maulstick_types::command::CELLS_IN_ALL;
 
@@ -59,14 +59,14 @@ pub fn picture_settings() -> RigConfig {
 /// Checks that a canvas has as many cells as there may be.
 ///
 /// # Errors
-/// A [`Fault`] with the cells that it would have.
-pub fn check_canvas(canvas: &CanvasSection) -> Result<(), Fault> {
+/// A [`UserError`] with the cells that it would have.
+pub fn check_canvas(canvas: &CanvasSection) -> Result<(), UserError> {
     let [width, height] = [canvas.width_mm, canvas.height_mm];
     let cells = [width, height].map(|mm| (mm / canvas.cell_mm).round());
     if cells.iter().all(|cells| SIDE.contains(cells)) && cells[0] * cells[1] <= CELLS_IN_ALL {
         return Ok(());
     }
-    Err(Fault::usage(format!(
+    Err(UserError::usage(format!(
         "a canvas of {width}×{height} mm would have {}×{} cells of {} mm",
         cells[0], cells[1], canvas.cell_mm
     ))

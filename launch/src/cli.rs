@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::files::{allow_overwriting, clear_on_signals};
 
 use crate::commands::{
@@ -146,8 +146,8 @@ fn grouped(command: clap::Command) -> clap::Command {
 /// Runs the command line and returns the exit code.
 ///
 /// # Errors
-/// A [`Fault`] as the user sees it.
-pub fn run() -> Result<i32, Fault> {
+/// A [`UserError`] as the user sees it.
+pub fn run() -> Result<i32, UserError> {
     let matches = grouped(Cli::command()).get_matches();
     let Cli { command, overwrite } =
         Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
@@ -160,7 +160,7 @@ pub fn run() -> Result<i32, Fault> {
         Command::Up(_) | Command::Calibrate(_) | Command::Node(_)
     ) {
         clear_on_signals(crate::EXIT_INTERRUPTED)
-            .map_err(|error| Fault::failure(format!("cannot watch for signals: {error}")))?;
+            .map_err(|error| UserError::failure(format!("cannot watch for signals: {error}")))?;
     }
     match command {
         Command::Up(options) => up::run(&options),

@@ -7,7 +7,7 @@ use maulstick_appearance::picture::Export;
 use maulstick_optics::colour::RgbSpace;
 use maulstick_optics::gamut::GamutMapping;
 use maulstick_optics::icc::{Profile, ProfileError};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::ViewSection;
 
 /// Name of the section in faults of rig.toml.
@@ -18,10 +18,10 @@ const PROFILE_MAX: u64 = 64 << 20;
 /// Export settings of a section; `place` is its name in faults.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown name, or a file that is no RGB profile.
-pub fn export(view: &ViewSection, place: &str) -> Result<Export, Fault> {
+/// A [`UserError`] for an unknown name, or a file that is no RGB profile.
+pub fn export(view: &ViewSection, place: &str) -> Result<Export, UserError> {
     view.check()
-        .map_err(|(what, help)| Fault::usage(what).at(place).help(help))?;
+        .map_err(|(what, help)| UserError::usage(what).at(place).help(help))?;
     let profile = match (view.file(), view.profile.as_str()) {
         (Some(path), _) => read(path)?,
         (None, "display-p3") => Profile::of(RgbSpace::DisplayP3),
@@ -36,14 +36,14 @@ pub fn export(view: &ViewSection, place: &str) -> Result<Export, Fault> {
     })
 }
 
-fn read(path: &Path) -> Result<Profile, Fault> {
+fn read(path: &Path) -> Result<Profile, UserError> {
     let size = std::fs::metadata(path).map(|about| about.len());
     if size.is_ok_and(|size| size > PROFILE_MAX) {
-        return Err(Fault::usage("a file of this size is no ICC profile")
+        return Err(UserError::usage("a file of this size is no ICC profile")
             .at(path.display().to_string())
             .help("give the .icc or .icm file of the display"));
     }
-    let bytes = std::fs::read(path).map_err(|error| Fault::reading(path, &error))?;
+    let bytes = std::fs::read(path).map_err(|error| UserError::reading(path, &error))?;
     Profile::read(bytes).map_err(|error| {
         let help = match error {
             ProfileError::Damaged(_) => {
@@ -53,7 +53,7 @@ fn read(path: &Path) -> Result<Profile, Fault> {
                 "give the profile of a display or of an RGB printer, or use srgb or display-p3"
             }
         };
-        Fault::usage(error.to_string())
+        UserError::usage(error.to_string())
             .at(path.display().to_string())
             .help(help)
     })

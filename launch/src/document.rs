@@ -4,18 +4,18 @@ use std::path::Path;
 
 use maulstick_document::{Access, Document, DocumentError, DocumentSettings, Opened, glance};
 use maulstick_painting::{Painting, Sequencer};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, RigConfig};
-use maulstick_rig::fault::EXIT_FAILURE;
 use maulstick_rig::files::{Kind, check_writable};
+use maulstick_rig::user_error::EXIT_FAILURE;
 use maulstick_types::scene::{CANVAS, Scene};
 
 use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
 
 /// Error of a document, as the user sees it.
 #[must_use]
-pub fn wrong(path: &Path, error: &DocumentError) -> Fault {
-    let fault = Fault::usage(error.to_string())
+pub fn wrong(path: &Path, error: &DocumentError) -> UserError {
+    let fault = UserError::usage(error.to_string())
         .at(path.display().to_string())
         .help(error.help());
     let failure = matches!(
@@ -26,7 +26,7 @@ pub fn wrong(path: &Path, error: &DocumentError) -> Fault {
             | DocumentError::Unwritten(_)
     );
     match failure {
-        true => Fault {
+        true => UserError {
             code: EXIT_FAILURE,
             ..fault
         },
@@ -37,8 +37,8 @@ pub fn wrong(path: &Path, error: &DocumentError) -> Fault {
 /// A painting that is read: nothing is written.
 ///
 /// # Errors
-/// A [`Fault`] if it does not exist, or cannot be read.
-pub fn read(path: &Path) -> Result<(Document, Opened), Fault> {
+/// A [`UserError`] if it does not exist, or cannot be read.
+pub fn read(path: &Path) -> Result<(Document, Opened), UserError> {
     let settings = DocumentSettings::new(path, Access::Read);
     let (document, opened) = Document::open(&settings).map_err(|error| wrong(path, &error))?;
     let opened = opened.ok_or_else(|| wrong(path, &DocumentError::NoPainting))?;
@@ -49,10 +49,10 @@ pub fn read(path: &Path) -> Result<(Document, Opened), Fault> {
 /// up to which the file has it.
 ///
 /// # Errors
-/// A [`Fault`] where the file cannot be used, or the settings are wrong.
-pub fn go_on(config: &RigConfig, path: &Path) -> Result<(Document, Sequencer, u64), Fault> {
+/// A [`UserError`] where the file cannot be used, or the settings are wrong.
+pub fn go_on(config: &RigConfig, path: &Path) -> Result<(Document, Sequencer, u64), UserError> {
     let (memory, history) = config.paint.bytes().map_err(|what| {
-        Fault::usage(what)
+        UserError::usage(what)
             .at("[paint]")
             .help("write sizes as 512M or 2G")
     })?;
@@ -97,15 +97,15 @@ pub enum Presence {
 /// Sees, before anything is started, whether a painting can go on in a file, or be begun there.
 ///
 /// # Errors
-/// A [`Fault`] where it cannot, or where an option is given that only a new painting takes.
-pub fn presence(path: &Path, options: &PaintingOptions) -> Result<Presence, Fault> {
+/// A [`UserError`] where it cannot, or where an option is given that only a new painting takes.
+pub fn presence(path: &Path, options: &PaintingOptions) -> Result<Presence, UserError> {
     match glance(path).map_err(|error| wrong(path, &error))? {
         false => {
-            check_writable(path, Kind::Own).map_err(|error| Fault::writing(path, &error))?;
+            check_writable(path, Kind::Own).map_err(|error| UserError::writing(path, &error))?;
             Ok(Presence::New)
         }
         true => match options.kit.for_a_new_one() {
-            Some(option) => Err(Fault::usage(format!("{option} is for a new painting"))
+            Some(option) => Err(UserError::usage(format!("{option} is for a new painting"))
                 .at(path.display().to_string())
                 .help(
                     "this one has its size, cells, paints, ground and light; `maulstick light` and `ground` change these",
@@ -118,8 +118,8 @@ pub fn presence(path: &Path, options: &PaintingOptions) -> Result<Presence, Faul
 /// Checks that a painting exists, where none is to be created.
 ///
 /// # Errors
-/// A [`Fault`] if it does not exist.
-pub fn there(path: &Path) -> Result<(), Fault> {
+/// A [`UserError`] if it does not exist.
+pub fn there(path: &Path) -> Result<(), UserError> {
     let found = match path.exists() {
         true => glance(path),
         false => Err(DocumentError::Missing),

@@ -8,7 +8,7 @@ use maulstick_appearance::light::changes_colour;
 use maulstick_canvas::assets::IMAGE;
 use maulstick_canvas::store::TileStore;
 use maulstick_painting::Sequencer;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_session::{Autosave, Offline};
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
@@ -54,8 +54,8 @@ impl<'a> Easel<'a> {
     /// Does the steps of a script, in their order.
     ///
     /// # Errors
-    /// A [`Fault`] with file and line of the step that the painting refuses; those before it are done.
-    pub fn follow_script(&mut self, script: Script) -> Result<(), Fault> {
+    /// A [`UserError`] with file and line of the step that the painting refuses; those before it are done.
+    pub fn follow_script(&mut self, script: Script) -> Result<(), UserError> {
         self.bar.inc_length(script.steps.len() as u64);
         let done = script.steps.into_iter().try_for_each(|(place, act)| {
             let done = self.act(act).map_err(|fault| fault.at(place));
@@ -72,7 +72,7 @@ impl<'a> Easel<'a> {
         self.bar.set_position(painted_ns / 1_000_000 + self.done);
     }
 
-    fn act(&mut self, act: Act) -> Result<(), Fault> {
+    fn act(&mut self, act: Act) -> Result<(), UserError> {
         let brush = self.offline.brush().to_owned();
         let done = match act {
             Act::Brush(name, file, share) => self.offline.take_up(&name, *file, share),
@@ -128,7 +128,7 @@ impl<'a> Easel<'a> {
         Ok(())
     }
 
-    fn prime(&mut self, file: GroundFile) -> Result<(), Fault> {
+    fn prime(&mut self, file: GroundFile) -> Result<(), UserError> {
         let surface = CANVAS;
         let painting = self.offline.painting_mut();
         let cells = painting.store(CANVAS).map_or([1, 1], TileStore::cells);
@@ -149,7 +149,7 @@ impl<'a> Easel<'a> {
         Ok(())
     }
 
-    fn weave(&mut self, picture: &ToothPicture) -> Result<(), Fault> {
+    fn weave(&mut self, picture: &ToothPicture) -> Result<(), UserError> {
         let canvas = &self.offline.painting_mut().scene().surfaces[0];
         let (cells, cell_m) = (canvas.cells, canvas.cell_m);
         let hash = self.embed(picture.png(cells, cell_m)?)?;
@@ -164,7 +164,7 @@ impl<'a> Easel<'a> {
     }
 
     /// Takes a picture into the painting, and returns its hash.
-    fn embed(&mut self, bytes: Arc<[u8]>) -> Result<String, Fault> {
+    fn embed(&mut self, bytes: Arc<[u8]>) -> Result<String, UserError> {
         let painting = self.offline.painting_mut();
         let hash = painting.embed(bytes).map_err(refused)?;
         if let Some(autosave) = self.autosave {
@@ -174,7 +174,7 @@ impl<'a> Easel<'a> {
         Ok(hash)
     }
 
-    fn take_back(&mut self, times: u32) -> Result<(), Fault> {
+    fn take_back(&mut self, times: u32) -> Result<(), UserError> {
         let painting = self.offline.painting_mut();
         painting.commit();
         let (there, _) = painting.history_depth();
@@ -190,7 +190,7 @@ impl<'a> Easel<'a> {
                     format!("{{ undo = {there} }} takes all of them back"),
                 ),
             };
-            return Err(Fault::usage(what).help(help));
+            return Err(UserError::usage(what).help(help));
         }
         for _ in 0..times {
             let undo = Command::Undo { brush: None };
@@ -219,7 +219,7 @@ impl<'a> Easel<'a> {
         &mut self,
         samples: &[(u64, StylusSample)],
         loads: Vec<Mixture>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), UserError> {
         self.offline.begin_take(loads).map_err(refused)?;
         // The start does not matter to the painting; a live one has the clock's time here.
         let (start_ns, first_ns) = (PAUSE_NS + self.painted_ns, samples[0].0);

@@ -8,7 +8,7 @@ use maulstick_canvas::assets::{IMAGE, SPECTRUM};
 use maulstick_exchange::{Image, ImportError, embed};
 use maulstick_optics::Reflectance;
 use maulstick_painting::PaintingSetup;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::is_path;
 
 use crate::performance::refused;
@@ -33,8 +33,8 @@ impl GroundFile {
     /// Reads a name, a CSV file of nm,reflectance, or a picture.
     ///
     /// # Errors
-    /// A [`Fault`] where a file cannot be read or is neither, with file and line.
-    pub fn read(name: &str) -> Result<Self, Fault> {
+    /// A [`UserError`] where a file cannot be read or is neither, with file and line.
+    pub fn read(name: &str) -> Result<Self, UserError> {
         let path = Path::new(name);
         if !is_path(name) {
             return Ok(Self::Named(name.to_owned()));
@@ -43,15 +43,16 @@ impl GroundFile {
             let image = Image::open(path).map_err(|error| no_picture(name, &error))?;
             return Ok(Self::Picture(Arc::new(image), name.to_owned()));
         }
-        let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
+        let text =
+            std::fs::read_to_string(path).map_err(|error| UserError::reading(path, &error))?;
         let text = text.trim_start_matches('\u{feff}').to_owned();
         if text.len() > SPECTRUM_MAX {
-            return Err(Fault::usage("a file of this size is no spectrum")
+            return Err(UserError::usage("a file of this size is no spectrum")
                 .at(name.to_owned())
                 .help("give a row a wavelength: nm,reflectance"));
         }
         Reflectance::parse(&text).map_err(|error| {
-            Fault::usage(error.what)
+            UserError::usage(error.what)
                 .at(format!("{name}:{}", error.line))
                 .help("a row a wavelength: nm,reflectance, rising, 0 to 1")
         })?;
@@ -61,8 +62,8 @@ impl GroundFile {
     /// A picture as surfaces of so many cells hold it, a PNG; `None` if it is no picture.
     ///
     /// # Errors
-    /// A [`Fault`] if the surface is too large for it.
-    pub fn picture(&self, cells: [u32; 2]) -> Result<Option<Arc<[u8]>>, Fault> {
+    /// A [`UserError`] if the surface is too large for it.
+    pub fn picture(&self, cells: [u32; 2]) -> Result<Option<Arc<[u8]>>, UserError> {
         let Self::Picture(image, name) = self else {
             return Ok(None);
         };
@@ -73,8 +74,8 @@ impl GroundFile {
     /// Makes it the ground of a new painting.
     ///
     /// # Errors
-    /// A [`Fault`] if it is invalid.
-    pub fn prime(&self, setup: &mut PaintingSetup) -> Result<(), Fault> {
+    /// A [`UserError`] if it is invalid.
+    pub fn prime(&self, setup: &mut PaintingSetup) -> Result<(), UserError> {
         setup.ground = match self {
             Self::Named(name) => name.clone(),
             Self::Spectrum(text) => {
@@ -100,10 +101,10 @@ pub fn is_picture(path: &Path) -> bool {
 
 /// The error that a file is no picture, as the user sees it.
 #[must_use]
-pub fn no_picture(name: &str, error: &ImportError) -> Fault {
+pub fn no_picture(name: &str, error: &ImportError) -> UserError {
     match error {
-        ImportError::File(error) => Fault::reading(name.as_ref(), error),
-        other => Fault::usage(other.to_string())
+        ImportError::File(error) => UserError::reading(name.as_ref(), error),
+        other => UserError::usage(other.to_string())
             .at(name.to_owned())
             .help("give a PNG, JPEG or TIFF of at most 20,000 pixels either way"),
     }

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use maulstick_device::{Take, TakeSetup};
 use maulstick_optics::paints::MEASURED;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::{BrushSection, RigConfig, is_path};
-use maulstick_rig::fault::EXIT_FAILURE;
 use maulstick_rig::files::{Kind, write_whole};
+use maulstick_rig::user_error::EXIT_FAILURE;
 use maulstick_types::Mixture;
 
 use crate::ground::is_picture;
@@ -16,14 +16,14 @@ use crate::performance::brush_file;
 /// The canvas, palette, brush, paints and light of a rig, with the files that they name.
 ///
 /// # Errors
-/// A [`Fault`] for a file that cannot be read.
+/// A [`UserError`] for a file that cannot be read.
 pub fn kit_of(
     config: &RigConfig,
     brush: &BrushSection,
     loads: &[Mixture],
-) -> Result<TakeSetup, Fault> {
-    let read = |path: &Path| std::fs::read(path).map_err(|error| Fault::reading(path, &error));
-    let unwritten = |what: String| Fault::failure(what);
+) -> Result<TakeSetup, UserError> {
+    let read = |path: &Path| std::fs::read(path).map_err(|error| UserError::reading(path, &error));
+    let unwritten = |what: String| UserError::failure(what);
     let mut kit = TakeSetup {
         loads: loads.iter().map(ToString::to_string).collect(),
         ..TakeSetup::default()
@@ -68,23 +68,23 @@ pub fn kit_of(
 /// load; nothing where the take embeds nothing.
 ///
 /// # Errors
-/// A [`Fault`] where it cannot be written, or is no settings of a rig.
+/// A [`UserError`] where it cannot be written, or is no settings of a rig.
 pub fn use_kit(
     take: &Take,
     path: &Path,
     folder: &Path,
     config: &mut RigConfig,
-) -> Result<Vec<String>, Fault> {
+) -> Result<Vec<String>, UserError> {
     let Some(kit) = &take.setup else {
         return Ok(Vec::new());
     };
-    std::fs::create_dir_all(folder).map_err(|error| Fault::writing(folder, &error))?;
+    std::fs::create_dir_all(folder).map_err(|error| UserError::writing(folder, &error))?;
     for (name, bytes) in &kit.files {
         let file = folder.join(name);
         write_whole(&file, Kind::Own, |file| {
             std::io::Write::write_all(file, bytes)
         })
-        .map_err(|error| Fault::writing(&file, &error))?;
+        .map_err(|error| UserError::writing(&file, &error))?;
     }
     let place = format!("{}, what it embeds", path.display());
     let settings = RigConfig::read(&folder.join(&kit.settings)).map_err(|fault| match fault {
@@ -107,7 +107,7 @@ pub fn use_kit(
         let file = Path::new(name);
         let embedded = file.parent() == Some(folder) && file.is_file();
         if !embedded {
-            return Err(Fault::usage("a file that the take embeds is missing, or not what it was")
+            return Err(UserError::usage("a file that the take embeds is missing, or not what it was")
                 .at(place)
                 .help("`maulstick take recover` keeps its samples; embed again with `maulstick take embed`"));
         }

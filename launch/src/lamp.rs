@@ -1,7 +1,7 @@
 //! Changes of the light over a painting.
 
 use maulstick_optics::Illuminant;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::scene::Light;
 
 use crate::viewing::illuminant;
@@ -35,8 +35,8 @@ impl LightChange {
     /// The light after the change.
     ///
     /// # Errors
-    /// A [`Fault`] for an unknown spectrum, or an invalid light.
-    pub fn on(&self, light: &Light) -> Result<Light, Fault> {
+    /// A [`UserError`] for an unknown spectrum, or an invalid light.
+    pub fn on(&self, light: &Light) -> Result<Light, UserError> {
         let mut light = light.clone();
         if let Some(name) = &self.illuminant {
             let found = illuminant(name)?;
@@ -62,7 +62,7 @@ impl LightChange {
         if let Some(rule) = &self.rule {
             light.rule.clone_from(rule);
         }
-        light.check().map_err(Fault::told)?;
+        light.check().map_err(UserError::told)?;
         Ok(light)
     }
 }

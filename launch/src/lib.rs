@@ -54,13 +54,13 @@ pub mod tooth;
 pub mod up;
 pub mod viewing;
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 /// Exit code after Ctrl-C.
 pub const EXIT_INTERRUPTED: i32 = 130;
 
 /// Ends the process: with a fault as the user sees it, or with a code.
-pub fn finish(result: Result<i32, Fault>) -> ! {
+pub fn finish(result: Result<i32, UserError>) -> ! {
     match result {
         Ok(code) => std::process::exit(code),
         Err(fault) => {

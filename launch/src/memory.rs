@@ -3,17 +3,17 @@
 
 use std::path::Path;
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::size::show_bytes;
 
 /// Sees that there is memory for `what`.
 ///
 /// # Errors
-/// A [`Fault`] where less than `bytes` is to be had.
-pub fn check(what: &str, bytes: u64) -> Result<(), Fault> {
+/// A [`UserError`] where less than `bytes` is to be had.
+pub fn check(what: &str, bytes: u64) -> Result<(), UserError> {
     match available().filter(|available| *available < bytes) {
         None => Ok(()),
-        Some(available) => Err(Fault::failure(format!(
+        Some(available) => Err(UserError::failure(format!(
             "{what} takes {} of memory, and {} are free",
             show_bytes(bytes),
             show_bytes(available)

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use maulstick_optics::Illuminant;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::{RigConfig, is_path};
 use maulstick_rig::files::{FileId, Kind, check_writable, gives_way, is_companion};
 
@@ -89,17 +89,19 @@ pub fn named_by(config: &RigConfig) -> Vec<UsedFile> {
 /// Sees, before the work that fills them, that outputs are files of their own and can be written.
 ///
 /// # Errors
-/// A [`Fault`] where an output is an input or another output, or where it cannot be written.
-pub fn check_outputs(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), Fault> {
+/// A [`UserError`] where an output is an input or another output, or where it cannot be written.
+pub fn check_outputs(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), UserError> {
     check_apart(outputs, inputs)?;
     let companion = outputs.iter().find(|output| is_companion(&output.path));
     if let Some(UsedFile { what, path, .. }) = companion {
-        return Err(Fault::usage("a name that ends so may belong to a painting")
-            .at(path.display().to_string())
-            .help(format!("give {what} another name")));
+        return Err(
+            UserError::usage("a name that ends so may belong to a painting")
+                .at(path.display().to_string())
+                .help(format!("give {what} another name")),
+        );
     }
     outputs.iter().try_for_each(|UsedFile { path, kind, .. }| {
-        check_writable(path, *kind).map_err(|error| Fault::writing(path, &error))
+        check_writable(path, *kind).map_err(|error| UserError::writing(path, &error))
     })
 }
 
@@ -115,8 +117,8 @@ impl Relayed {
     /// A file of a kind that [`check_outputs`] has found writable.
     ///
     /// # Errors
-    /// A [`Fault`] where the path cannot be told as text, or the current folder is gone.
-    pub fn new(path: &Path, kind: Kind) -> Result<Self, Fault> {
+    /// A [`UserError`] where the path cannot be told as text, or the current folder is gone.
+    pub fn new(path: &Path, kind: Kind) -> Result<Self, UserError> {
         let to = PathBuf::from(whole(path)?);
         let written = match gives_way(&to, kind) {
             true => to.clone(),
@@ -137,11 +139,11 @@ impl Relayed {
     /// Gives the file its name once the node has written it, and that name in what the node said.
     ///
     /// # Errors
-    /// A [`Fault`] where it cannot be renamed; it stays beside that name.
-    pub fn arrive(&self, said: &str) -> Result<String, Fault> {
+    /// A [`UserError`] where it cannot be renamed; it stays beside that name.
+    pub fn arrive(&self, said: &str) -> Result<String, UserError> {
         if self.written != self.to {
             std::fs::rename(&self.written, &self.to)
-                .map_err(|error| Fault::writing(&self.to, &error))?;
+                .map_err(|error| UserError::writing(&self.to, &error))?;
         }
         Ok(said.replace(&self.asked(), &self.to.display().to_string()))
     }
@@ -150,8 +152,8 @@ impl Relayed {
 /// Sees that no output is an input or another output, wherever links lead.
 ///
 /// # Errors
-/// A [`Fault`] where one is.
-pub fn check_apart(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), Fault> {
+/// A [`UserError`] where one is.
+pub fn check_apart(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), UserError> {
     for (number, output) in outputs.iter().enumerate() {
         let is_same = |other: &&UsedFile| is_same(&output.path, &other.path);
         let what = &output.what;
@@ -163,7 +165,7 @@ pub fn check_apart(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), Faul
             (None, Some(other)) => format!("{} and {what} would be one file", other.what),
             (None, None) => continue,
         };
-        return Err(Fault::usage(what)
+        return Err(UserError::usage(what)
             .at(output.path.display().to_string())
             .help(format!("give {} another name", output.what)));
     }

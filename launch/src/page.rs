@@ -2,7 +2,7 @@
 
 use ab_glyph::{Font as _, FontRef, PxScale, ScaleFont as _};
 use maulstick_appearance::picture::Picture;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_ui::render::brush::thumbnail::BrushThumbnail;
 
 /// Paper and ink, sRGB.
@@ -19,10 +19,10 @@ impl Page {
     /// An empty page of this size, pixels.
     ///
     /// # Errors
-    /// A [`Fault`] where the font cannot be read.
-    pub fn new(width: usize, height: usize) -> Result<Self, Fault> {
+    /// A [`UserError`] where the font cannot be read.
+    pub fn new(width: usize, height: usize) -> Result<Self, UserError> {
         let font = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT)
-            .map_err(|error| Fault::failure(error.to_string()))?;
+            .map_err(|error| UserError::failure(error.to_string()))?;
         let rgb = PAPER.repeat(width * height);
         let picture = Picture::srgb(width, height, rgb);
         Ok(Self { picture, font })

@@ -6,7 +6,7 @@ use indicatif::ProgressBar;
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_session::Offline;
 
 use crate::easel::Easel;
@@ -28,11 +28,11 @@ const DEPTH_SHARE: f64 = 0.5;
 /// The script of a painting.
 ///
 /// # Errors
-/// A [`Fault`] for a name that none has.
-pub fn script(name: &str, library: &PaintLibrary) -> Result<Script, Fault> {
+/// A [`UserError`] for a name that none has.
+pub fn script(name: &str, library: &PaintLibrary) -> Result<Script, UserError> {
     let Some((_, text)) = PAINTINGS.iter().find(|(known, _)| *known == name) else {
         let names = PAINTINGS.map(|(known, _)| known);
-        return Err(Fault::usage(format!("there is no painting '{name}'"))
+        return Err(UserError::usage(format!("there is no painting '{name}'"))
             .help(maulstick_types::advice::choice(name, names)));
     };
     Script::parse(text, &format!("{name}.toml"), Path::new(""), library)
@@ -41,17 +41,17 @@ pub fn script(name: &str, library: &PaintLibrary) -> Result<Script, Fault> {
 /// Paints one of the paintings in cells so wide; `bar` shows how far it is.
 ///
 /// # Errors
-/// A [`Fault`] for a name that none has, or where the painting refuses a step.
+/// A [`UserError`] for a name that none has, or where the painting refuses a step.
 pub fn paint(
     name: &str,
     cell_mm: f64,
     library: PaintLibrary,
     bar: ProgressBar,
-) -> Result<Offline, Fault> {
+) -> Result<Offline, UserError> {
     let script = script(name, &library)?;
-    let size_mm = script
-        .canvas_mm
-        .ok_or_else(|| Fault::failure(format!("the painting '{name}' does not say its size")))?;
+    let size_mm = script.canvas_mm.ok_or_else(|| {
+        UserError::failure(format!("the painting '{name}' does not say its size"))
+    })?;
     let setup = PaintingSetup {
         cells: size_mm.map(|mm| (mm / cell_mm).round() as u32),
         cell_m: 1e-3 * cell_mm,
@@ -60,7 +60,7 @@ pub fn paint(
         ..PaintingSetup::default()
     };
     let painting = Painting::new(&setup, library).map_err(refused)?;
-    let file = BrushFile::library("flat").map_err(|error| Fault::failure(error.to_string()))?;
+    let file = BrushFile::library("flat").map_err(|error| UserError::failure(error.to_string()))?;
     let offline = Offline::new(painting, BRUSH, file, DEPTH_SHARE, Vec::new()).map_err(refused)?;
     let mut autosave = None;
     bar.set_length(script.length_ns() / 1_000_000);

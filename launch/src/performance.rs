@@ -8,7 +8,7 @@ use maulstick_canvas::EditError;
 use maulstick_optics::{Illuminant, PaintError, PaintLibrary};
 use maulstick_painting::PaintingSetup;
 use maulstick_painting::paint_error;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::{BACKENDS, BrushSection, LightSection, RigConfig};
 use maulstick_types::Mixture;
 use maulstick_types::scene::Light;
@@ -73,14 +73,14 @@ pub struct PaintingOptions {
 /// The brush file of a section, at its size, as [`maulstick_device::brush_file`] has it.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown kind or a bad file, with advice on its format.
-pub fn brush_file(section: &BrushSection) -> Result<BrushFile, Fault> {
+/// A [`UserError`] for an unknown kind or a bad file, with advice on its format.
+pub fn brush_file(section: &BrushSection) -> Result<BrushFile, UserError> {
     maulstick_device::brush_file(section).map_err(of_a_brush)
 }
 
 /// Error of a brush file, without the advice for settings of a rig, which does not apply.
 #[must_use]
-pub fn of_a_brush(fault: Fault) -> Fault {
+pub fn of_a_brush(fault: UserError) -> UserError {
     let is_of_settings = |help: &String| help.contains("--print-config");
     match fault.help.as_ref().is_some_and(is_of_settings) {
         true => fault.help(
@@ -111,8 +111,8 @@ impl KitOptions {
     /// Puts size, cells, brush, paints and light into the rig's settings, and returns the brush's section.
     ///
     /// # Errors
-    /// A [`Fault`] for an unknown brush, with the nearest name, and for too many cells.
-    pub fn apply(&self, config: &mut RigConfig) -> Result<BrushSection, Fault> {
+    /// A [`UserError`] for an unknown brush, with the nearest name, and for too many cells.
+    pub fn apply(&self, config: &mut RigConfig) -> Result<BrushSection, UserError> {
         if let Some(cell_mm) = self.cell_mm {
             config.canvas.cell_mm = cell_mm;
         }
@@ -176,12 +176,12 @@ impl KitOptions {
     /// take, where the options have none.
     ///
     /// # Errors
-    /// A [`Fault`] for a bad mixture or an unknown paint, with the nearest name.
+    /// A [`UserError`] for a bad mixture or an unknown paint, with the nearest name.
     pub fn mixtures(
         &self,
         embedded: &[String],
         library: &PaintLibrary,
-    ) -> Result<Vec<Mixture>, Fault> {
+    ) -> Result<Vec<Mixture>, UserError> {
         let (loads, whose) = match self.load.is_empty() {
             false => (self.load.as_slice(), "--load"),
             true => (embedded, "the take's load"),
@@ -198,7 +198,7 @@ impl PaintingOptions {
     ///
     /// # Errors
     /// As there, and for invalid sizes.
-    pub fn apply(&self, config: &mut RigConfig) -> Result<BrushSection, Fault> {
+    pub fn apply(&self, config: &mut RigConfig) -> Result<BrushSection, UserError> {
         if let Some(memory) = &self.memory {
             config.paint.memory.clone_from(memory);
         }
@@ -209,7 +209,7 @@ impl PaintingOptions {
             config.paint.history.clone_from(&self.history);
         }
         config.paint.bytes().map_err(|what| {
-            Fault::usage(what)
+            UserError::usage(what)
                 .at("--memory, --history")
                 .help("write sizes as 512M or 2G; 64M is the least memory")
         })?;
@@ -220,8 +220,8 @@ impl PaintingOptions {
 /// A mixture of a library's paints, their names spelt as the library does.
 ///
 /// # Errors
-/// A [`Fault`] for a bad mixture or an unknown paint, with the nearest name.
-pub fn mixture_of(text: &str, library: &PaintLibrary) -> Result<Mixture, Fault> {
+/// A [`UserError`] for a bad mixture or an unknown paint, with the nearest name.
+pub fn mixture_of(text: &str, library: &PaintLibrary) -> Result<Mixture, UserError> {
     let mixture = text.parse().map_err(PaintError::Mixture);
     mixture
         .and_then(|mixture: Mixture| library.check(&mixture))
@@ -230,30 +230,30 @@ pub fn mixture_of(text: &str, library: &PaintLibrary) -> Result<Mixture, Fault> 
 
 /// A refusal of the painting as the user sees it.
 #[must_use]
-pub fn refused(refusal: EditError) -> Fault {
-    Fault::usage(refusal.what).help(refusal.help)
+pub fn refused(refusal: EditError) -> UserError {
+    UserError::usage(refusal.what).help(refusal.help)
 }
 
 /// The measured paints.
 ///
 /// # Errors
 /// None in practice: they are part of the program.
-pub fn library() -> Result<PaintLibrary, Fault> {
-    PaintLibrary::measured().map_err(|error| Fault::failure(error.to_string()))
+pub fn library() -> Result<PaintLibrary, UserError> {
+    PaintLibrary::measured().map_err(|error| UserError::failure(error.to_string()))
 }
 
 /// The paints of a paint file; without one, the measured ones.
 ///
 /// # Errors
-/// A [`Fault`] with file and line for a file that is no paint file.
-pub fn library_from(path: Option<&Path>) -> Result<PaintLibrary, Fault> {
+/// A [`UserError`] with file and line for a file that is no paint file.
+pub fn library_from(path: Option<&Path>) -> Result<PaintLibrary, UserError> {
     let Some(path) = path else {
         return library();
     };
-    let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
+    let text = std::fs::read_to_string(path).map_err(|error| UserError::reading(path, &error))?;
     // Spreadsheets begin a table with a byte order mark.
     PaintLibrary::parse(text.trim_start_matches('\u{feff}')).map_err(|error| match error {
-        PaintError::File { line, what } => Fault::usage(what)
+        PaintError::File { line, what } => UserError::usage(what)
             .at(format!("{}:{line}", path.display()))
             .help("a row: paint, colour index, source, K or S, then 101 values, 380 to 780 nm"),
         other => refused(paint_error(other)),
@@ -261,7 +261,7 @@ pub fn library_from(path: Option<&Path>) -> Result<PaintLibrary, Fault> {
 }
 
 /// The light of the rig's settings, with the spectrum of its file if it names one.
-fn light(section: &LightSection) -> Result<Light, Fault> {
+fn light(section: &LightSection) -> Result<Light, UserError> {
     let mut light = section.light();
     if Illuminant::named(&section.illuminant).is_none() {
         let found = illuminant(&section.illuminant).map_err(|fault| match fault.place {
@@ -290,8 +290,11 @@ fn wells(config: &RigConfig, library: &PaintLibrary) -> Vec<String> {
 /// The painting that the rig's settings ask for.
 ///
 /// # Errors
-/// A [`Fault`] for a well that is no mixture, or an invalid light.
-pub fn painting_setup(config: &RigConfig, library: &PaintLibrary) -> Result<PaintingSetup, Fault> {
+/// A [`UserError`] for a well that is no mixture, or an invalid light.
+pub fn painting_setup(
+    config: &RigConfig,
+    library: &PaintLibrary,
+) -> Result<PaintingSetup, UserError> {
     let canvas = &config.canvas;
     let wells = wells(config, library);
     let wells = wells

@@ -1,7 +1,7 @@
 //! Curves over two axes, drawn on a page.
 
 use maulstick_appearance::picture::Picture;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use crate::page::Page;
 
@@ -66,8 +66,8 @@ pub fn from_zero(values: impl Iterator<Item = f64>) -> [f64; 2] {
 /// Panels beside each other.
 ///
 /// # Errors
-/// A [`Fault`] where the font cannot be read.
-pub fn plot(panels: &[Panel]) -> Result<Picture, Fault> {
+/// A [`UserError`] where the font cannot be read.
+pub fn plot(panels: &[Panel]) -> Result<Picture, UserError> {
     let width = MARGIN[0] + PANEL[0] + MARGIN[2];
     let mut page = Page::new(width * panels.len(), MARGIN[1] + PANEL[1] + MARGIN[3])?;
     for (number, panel) in panels.iter().enumerate() {

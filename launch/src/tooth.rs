@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use maulstick_canvas::relief::tooth_picture::{DEPTH_UM, ToothName, WIDTH_MM};
 use maulstick_exchange::{Image, embed};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use crate::ground::{is_picture, no_picture};
 
@@ -26,20 +26,20 @@ impl ToothPicture {
     /// A picture that is to be so wide on the canvas, or as wide as that, and so deep.
     ///
     /// # Errors
-    /// A [`Fault`] for sizes out of range.
+    /// A [`UserError`] for sizes out of range.
     pub fn new(
         image: Image,
         file: &str,
         width_mm: Option<f64>,
         depth_um: f64,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, UserError> {
         for (what, size, range) in [
             ("mm wide", width_mm, WIDTH_MM),
             ("µm deep", Some(depth_um), DEPTH_UM),
         ] {
             if let Some(size) = size.filter(|size| !range.contains(size)) {
                 let (least, most) = (range.start(), range.end());
-                return Err(Fault::usage(format!("a tooth {size} {what}"))
+                return Err(UserError::usage(format!("a tooth {size} {what}"))
                     .help(format!("choose {least} to {most}")));
             }
         }
@@ -54,12 +54,16 @@ impl ToothPicture {
     /// Reads the picture, too; its depth is [`DEPTH`] if absent.
     ///
     /// # Errors
-    /// A [`Fault`] where the file is no picture, or for sizes out of range.
-    pub fn read(file: &str, width_mm: Option<f64>, depth_um: Option<f64>) -> Result<Self, Fault> {
+    /// A [`UserError`] where the file is no picture, or for sizes out of range.
+    pub fn read(
+        file: &str,
+        width_mm: Option<f64>,
+        depth_um: Option<f64>,
+    ) -> Result<Self, UserError> {
         let path = Path::new(file);
         if path.exists() && !is_picture(path) {
             return Err(
-                Fault::usage("a tooth is made of a picture, and this is none")
+                UserError::usage("a tooth is made of a picture, and this is none")
                     .at(file)
                     .help("give a PNG, JPEG or TIFF: white is high"),
             );
@@ -76,8 +80,8 @@ impl ToothPicture {
     /// The PNG that a painting with such a canvas holds.
     ///
     /// # Errors
-    /// A [`Fault`] where the picture is too large for it.
-    pub fn png(&self, cells: [u32; 2], cell_m: f64) -> Result<Arc<[u8]>, Fault> {
+    /// A [`UserError`] where the picture is too large for it.
+    pub fn png(&self, cells: [u32; 2], cell_m: f64) -> Result<Arc<[u8]>, UserError> {
         let width_mm = self.width_on(cells, cell_m);
         embed::tooth(&self.image, width_mm, cell_m).map_err(|error| no_picture(&self.file, &error))
     }

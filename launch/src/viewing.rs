@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::{Args, ValueEnum};
 use maulstick_appearance::light::illuminant_named;
 use maulstick_optics::{Illuminant, Observer, PaintLibrary, RuleKind, StudioSettings, Viewing};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::is_path;
 
 use crate::performance::refused;
@@ -53,7 +53,7 @@ pub enum RuleName {
 }
 
 impl ViewingOptions {
-    fn illuminant(&self) -> Result<Illuminant, Fault> {
+    fn illuminant(&self) -> Result<Illuminant, UserError> {
         illuminant(&self.illuminant).map_err(|fault| match fault.place {
             None => fault.at(format!("--illuminant {}", self.illuminant)),
             Some(_) => fault,
@@ -73,8 +73,8 @@ impl ViewingOptions {
     /// Viewing conditions of these options.
     ///
     /// # Errors
-    /// A [`Fault`] for an unknown light, with the nearest name, or a bad file, with its line.
-    pub fn viewing(&self, library: &PaintLibrary) -> Result<Viewing, Fault> {
+    /// A [`UserError`] for an unknown light, with the nearest name, or a bad file, with its line.
+    pub fn viewing(&self, library: &PaintLibrary) -> Result<Viewing, UserError> {
         Ok(Viewing::new(&self.settings()?, library.paints()))
     }
 
@@ -82,7 +82,7 @@ impl ViewingOptions {
     ///
     /// # Errors
     /// As [`viewing`](Self::viewing).
-    pub fn reference(&self) -> Result<Viewing, Fault> {
+    pub fn reference(&self) -> Result<Viewing, UserError> {
         let settings = StudioSettings {
             rule: RuleKind::Reference,
             ..self.settings()?
@@ -90,7 +90,7 @@ impl ViewingOptions {
         Ok(Viewing::new(&settings, &[]))
     }
 
-    fn settings(&self) -> Result<StudioSettings, Fault> {
+    fn settings(&self) -> Result<StudioSettings, UserError> {
         Ok(StudioSettings {
             light: self.illuminant()?,
             observer: match self.observer {
@@ -111,8 +111,8 @@ impl ViewingOptions {
 /// A light by its name, or of a CSV file.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown name, with the nearest, or a bad file, with its line.
-pub fn illuminant(name: &str) -> Result<Illuminant, Fault> {
+/// A [`UserError`] for an unknown name, with the nearest, or a bad file, with its line.
+pub fn illuminant(name: &str) -> Result<Illuminant, UserError> {
     if let Some(light) = Illuminant::named(name) {
         return Ok(light);
     }
@@ -120,10 +120,10 @@ pub fn illuminant(name: &str) -> Result<Illuminant, Fault> {
     if !is_path(name) && !path.exists() {
         return illuminant_named(name).map_err(refused);
     }
-    let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
+    let text = std::fs::read_to_string(path).map_err(|error| UserError::reading(path, &error))?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     Illuminant::parse(&stem, text.trim_start_matches('\u{feff}')).map_err(|error| {
-        Fault::usage(error.what)
+        UserError::usage(error.what)
             .at(format!("{name}:{}", error.line))
             .help("a row a wavelength: nm,power, rising")
     })

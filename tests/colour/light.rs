@@ -5,7 +5,7 @@ mod support;
 
 use std::path::Path;
 
-use maulstick_bus::Class;
+use maulstick_bus::Qos;
 use maulstick_device::{Take, TakeSample};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::Scene;
@@ -68,8 +68,8 @@ fn a_painting_dries_and_is_seen_under_another_light() {
     let place = Place::new();
     let launcher = painted(&place);
     let (bus, topics) = support::join(&place);
-    let mut scenes = listen::<Scene>(&bus, &topics.scene(), Class::Cached);
-    let mut statuses = listen::<PaintStatus>(&bus, &topics.paint_status(), Class::Background);
+    let mut scenes = listen::<Scene>(&bus, &topics.scene(), Qos::Cached);
+    let mut statuses = listen::<PaintStatus>(&bus, &topics.paint_status(), Qos::Background);
     assert_eq!(says(&place, &["dry", "--layer", "sky"]), "dried: sky\n");
     let dried = hear(&mut scenes, |scene| !scene.layers.is_empty()).expect("a layer");
     assert_eq!(

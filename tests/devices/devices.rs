@@ -6,7 +6,7 @@ mod support;
 
 use std::collections::BTreeMap;
 
-use maulstick_bus::{Bus as _, Class};
+use maulstick_bus::{Bus as _, Qos};
 use maulstick_types::brush::BrushState;
 use maulstick_types::name_hash;
 use maulstick_types::scene::{CANVAS, Scene};
@@ -68,7 +68,7 @@ fn a_second_stylus_drives_a_second_brush() {
     let launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
     let (bus, topics) = support::join(&place);
     for (device, brush) in [("left", "main"), ("right", "second")] {
-        let mut states = listen::<BrushState>(&bus, &topics.brush_state(brush), Class::RealTime);
+        let mut states = listen::<BrushState>(&bus, &topics.brush_state(brush), Qos::RealTime);
         let moved = |state: &BrushState| touches(state) && state.device == name_hash(device);
         assert!(
             hear(&mut states, moved).is_some(),
@@ -107,9 +107,9 @@ fn paints_beside_a_hovering_pen(drawing: i32, hovering: i32) -> bool {
     );
     let launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
     let (bus, topics) = support::join(&place);
-    let mut hovers = listen::<StylusSample>(&bus, &topics.sample("hovers"), Class::RealTime);
-    let mut draws = listen::<StylusSample>(&bus, &topics.sample("draws"), Class::RealTime);
-    let mut states = listen::<BrushState>(&bus, &topics.brush_state("main"), Class::RealTime);
+    let mut hovers = listen::<StylusSample>(&bus, &topics.sample("hovers"), Qos::RealTime);
+    let mut draws = listen::<StylusSample>(&bus, &topics.sample("draws"), Qos::RealTime);
+    let mut states = listen::<BrushState>(&bus, &topics.brush_state("main"), Qos::RealTime);
     assert!(
         hear(&mut hovers, |sample| sample.in_range).is_some(),
         "{}",
@@ -179,7 +179,7 @@ fn the_free_hand_moves_the_canvas() {
     settings(&place, &[("puck", "main", 0, puck)]);
     let launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
     let (bus, topics) = support::join(&place);
-    let mut scenes = listen::<Scene>(&bus, &topics.scene(), Class::Cached);
+    let mut scenes = listen::<Scene>(&bus, &topics.scene(), Qos::Cached);
     let canvas = |scene: &Scene| {
         let surface = scene.surfaces.iter().find(|surface| surface.id == CANVAS);
         surface.map(|surface| surface.pose.position_m)
@@ -238,7 +238,7 @@ fn devices_that_are_not_there_are_told_once_and_the_rig_goes_on_with_the_others(
         ("puck", "mouse"),
     ] {
         let topic = topics.stylus_status(name);
-        let mut statuses = listen::<StylusStatus>(&bus, &topic, Class::Background);
+        let mut statuses = listen::<StylusStatus>(&bus, &topic, Qos::Background);
         let told = hear(&mut statuses, |status| !status.trouble.is_empty());
         let trouble = told
             .unwrap_or_else(|| panic!("{name}: {}", launcher.said()))
@@ -249,7 +249,7 @@ fn devices_that_are_not_there_are_told_once_and_the_rig_goes_on_with_the_others(
         );
         troubles.insert(name, trouble);
     }
-    let mut states = listen::<BrushState>(&bus, &topics.brush_state("main"), Class::RealTime);
+    let mut states = listen::<BrushState>(&bus, &topics.brush_state("main"), Qos::RealTime);
     let played = |state: &BrushState| touches(state) && state.device == name_hash("played");
     assert!(hear(&mut states, played).is_some(), "{}", launcher.said());
     assert!(launcher.is_running());
@@ -257,7 +257,7 @@ fn devices_that_are_not_there_are_told_once_and_the_rig_goes_on_with_the_others(
         let said = launcher.said().matches(&trouble).count();
         assert_eq!(said, 1, "{name}: {}", launcher.said());
     }
-    let mut infos = listen::<StylusInfo>(&bus, &topics.stylus_info("played"), Class::Cached);
+    let mut infos = listen::<StylusInfo>(&bus, &topics.stylus_info("played"), Qos::Cached);
     let info = hear(&mut infos, |_| true).expect("what it is");
     assert_eq!((info.driver.as_str(), info.priority), ("pen", 0));
     bus.close();

@@ -6,7 +6,7 @@ mod support;
 use std::time::Duration;
 
 use maulstick_brush::BrushFile;
-use maulstick_bus::Class;
+use maulstick_bus::Qos;
 use maulstick_bus::typed::Receiver;
 use maulstick_haptics::Limits;
 use maulstick_types::stylus::StylusSample;
@@ -63,7 +63,7 @@ fn whichever_of_brush_and_paint_dies_the_force_fades_without_a_leap_and_comes_ba
     std::fs::write(place.path("rig.toml"), hand).expect("written");
     let mut launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
     let (bus, topics) = support::join(&place);
-    let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Class::RealTime);
+    let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Qos::RealTime);
     let felt = |sample: &StylusSample| size(sample) > 0.1;
     for (program, node) in [
         ("maulstick-brush", "brush-main"),

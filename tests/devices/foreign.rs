@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use glam::{DQuat, DVec3};
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Bus, Class, Queue, Wake};
+use maulstick_bus::{Bus, Qos, Queue, Wake};
 use maulstick_num::geometry::{canonical, rotation};
 use maulstick_types::command::{Command as Order, CommandRequest};
 use maulstick_types::paint::PaintStatus;
@@ -45,7 +45,7 @@ fn a_sample_beyond_the_world_holds_nothing_up() {
         epoch: 9,
     };
     let topic = topics.sample("evil");
-    let publisher = bus.publisher(&topic, Class::RealTime).expect("declared");
+    let publisher = bus.publisher(&topic, Qos::RealTime).expect("declared");
     let mut number = 0;
     let mut send = |sample: StylusSample| {
         let now_ns = bus.now_ns();
@@ -132,7 +132,7 @@ fn a_tracker_holds_the_ferrule_until_it_falls_silent() {
     let place = Place::new();
     let launcher = Launcher::up(&place, &[]);
     let (bus, topics) = join(&place);
-    let mut heard = listen::<StylusSample>(&bus, &topics.sample("wand"), Class::RealTime);
+    let mut heard = listen::<StylusSample>(&bus, &topics.sample("wand"), Qos::RealTime);
     let mut tracker = python(&place, "tracker.py", &["--port", "0", "--device", "wand"]);
     let mut said = BufReader::new(tracker.stderr.take().expect("piped")).lines();
     let _tracker = Tracker(tracker);
@@ -206,7 +206,7 @@ fn hostile_messages_are_counted_and_dropped() {
     let before = place.processes();
     let (bus, topics) = join(&place);
     let wake = Wake::new();
-    let (topic, class) = (topics.paint_status(), Class::Background);
+    let (topic, class) = (topics.paint_status(), Qos::Background);
     let mut status = Receiver::<PaintStatus>::new(&bus, &topic, class, Queue::Latest, &wake)
         .expect("subscribed");
     let origin = Origin {
@@ -240,7 +240,7 @@ fn hostile_messages_are_counted_and_dropped() {
     ];
     let told = wait_for(PATIENCE, || {
         for target in &targets {
-            let publisher = bus.publisher(target, Class::Data).expect("declared");
+            let publisher = bus.publisher(target, Qos::Data).expect("declared");
             hostile
                 .iter()
                 .for_each(|bytes| publisher.put(bytes.clone()).expect("sent"));
@@ -253,7 +253,7 @@ fn hostile_messages_are_counted_and_dropped() {
             for bytes in &hostile {
                 let limit = Duration::from_millis(50);
                 drop(
-                    bus.ask(&topic, Class::Control, bytes.clone(), limit, &wake)
+                    bus.ask(&topic, Qos::Control, bytes.clone(), limit, &wake)
                         .expect("asked"),
                 );
             }

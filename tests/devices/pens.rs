@@ -6,7 +6,7 @@ mod support;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use maulstick_bus::Class;
+use maulstick_bus::Qos;
 use maulstick_types::stylus::{StylusSample, StylusStatus, switch};
 use nix::sys::signal::Signal;
 use support::{Launcher, PATIENCE, Place, hear, join, listen, on_canvas, signal, wait_for};
@@ -25,14 +25,14 @@ fn a_recorded_pen_paints_and_is_recorded_as_it_was() {
     let launcher = rig(&place);
     let (bus, topics) = join(&place);
     let topic = topics.stylus_status("tablet");
-    let mut status = listen::<StylusStatus>(&bus, &topic, Class::Background);
+    let mut status = listen::<StylusStatus>(&bus, &topic, Qos::Background);
     let trouble = hear(&mut status, |told| !told.trouble.is_empty())
         .expect("told")
         .trouble;
     assert!(trouble.contains("no 0001:0001 is plugged in"), "{trouble}");
     place.done(&["load", "Bone Black"]);
     let recording = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/examples/pen.hid");
-    let mut samples = listen::<StylusSample>(&bus, &topics.sample("tablet"), Class::RealTime);
+    let mut samples = listen::<StylusSample>(&bus, &topics.sample("tablet"), Qos::RealTime);
     let pen = Command::new(support::MAULSTICK)
         .args(["node", "hid", "--folder"])
         .arg(place.path("maulstick/studio"))
@@ -69,7 +69,7 @@ fn a_recorder_runs_beside_the_daemon_of_its_device() {
     let launcher = rig(&place);
     let (bus, topics) = join(&place);
     let topic = topics.sample("tablet-recorder");
-    let mut samples = listen::<StylusSample>(&bus, &topic, Class::RealTime);
+    let mut samples = listen::<StylusSample>(&bus, &topic, Qos::RealTime);
     let recording = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/examples/pen.hid");
     let mut recorder = Command::new(support::MAULSTICK)
         .args(["node", "hid", "--folder"])

@@ -6,7 +6,7 @@ mod support;
 use std::process::Command;
 use std::time::Instant;
 
-use maulstick_bus::Class;
+use maulstick_bus::Qos;
 use maulstick_types::paint::PaintStatus;
 use nix::sys::signal::Signal;
 use support::{
@@ -73,7 +73,7 @@ fn what_was_done_is_there_after_a_kill_and_can_be_undone() {
             .all(|volume| *volume > 0.0 || *volume == before[3])
     );
     let (bus, topics) = join(&place);
-    let mut status = listen::<PaintStatus>(&bus, &topics.paint_status(), Class::Background);
+    let mut status = listen::<PaintStatus>(&bus, &topics.paint_status(), Qos::Background);
     let whole = |status: &PaintStatus| status.committed == status.journal && status.undo >= 5;
     hear(&mut status, whole).expect("all is in the file");
     let killed = Instant::now();
@@ -123,7 +123,7 @@ fn a_drying_goes_on_after_a_crash_and_layers_become_wet_again() {
     place.done(&["dry", "--over", "4s", "--layer", "slow"]);
     refused(&["dry", "--over", "4s"], &["--stop"]);
     let (bus, topics) = join(&place);
-    let mut status = listen::<PaintStatus>(&bus, &topics.paint_status(), Class::Background);
+    let mut status = listen::<PaintStatus>(&bus, &topics.paint_status(), Qos::Background);
     // Thirty ticks a round: some paint has dried by then, and is in the file.
     let begun = hear(&mut status, |_| true).expect("a rig").journal;
     let dries = |status: &PaintStatus| status.committed > begun + 60;
@@ -180,7 +180,7 @@ fn kill_at_random(rounds: u32) {
             ][..if round == 0 { 11 } else { 7 }],
         );
         let (bus, topics) = join(&place);
-        let mut status = listen::<PaintStatus>(&bus, &topics.paint_status(), Class::Background);
+        let mut status = listen::<PaintStatus>(&bus, &topics.paint_status(), Qos::Background);
         // Somewhere in the take, later from round to round.
         let steps = u64::from(30 + round * 137 % 700);
         let told = hear(&mut status, |told| {
@@ -240,7 +240,7 @@ fn a_take_into_a_painting_begins_again_after_a_crash() {
     let mut launcher = Launcher::start(place.maulstick(&[&play, &load[..]].concat()));
     launcher.wait_says("is up");
     let (bus, topics) = join(&place);
-    let mut status = listen::<PaintStatus>(&bus, &topics.paint_status(), Class::Background);
+    let mut status = listen::<PaintStatus>(&bus, &topics.paint_status(), Qos::Background);
     hear(&mut status, |told| told.steps > 200 && told.committed > 2).expect("painting");
     signal(
         place.pid("maulstick-paint").expect("a paint node"),

@@ -5,7 +5,7 @@ mod support;
 
 use std::process::Stdio;
 
-use maulstick_bus::Class;
+use maulstick_bus::Qos;
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::Scene;
 use nix::sys::signal::Signal;
@@ -17,7 +17,7 @@ use support::{
 /// Cells of the canvas.
 fn cells(place: &Place) -> [u32; 2] {
     let (bus, topics) = join(place);
-    let mut scenes = listen::<Scene>(&bus, &topics.scene(), Class::Cached);
+    let mut scenes = listen::<Scene>(&bus, &topics.scene(), Qos::Cached);
     let cells = hear(&mut scenes, |_| true).expect("a scene").surfaces[0].cells;
     bus.close();
     cells
@@ -25,7 +25,7 @@ fn cells(place: &Place) -> [u32; 2] {
 
 fn status(place: &Place, wanted: impl FnMut(&PaintStatus) -> bool) -> PaintStatus {
     let (bus, topics) = join(place);
-    let mut heard = listen::<PaintStatus>(&bus, &topics.paint_status(), Class::Background);
+    let mut heard = listen::<PaintStatus>(&bus, &topics.paint_status(), Qos::Background);
     let status = hear(&mut heard, wanted).expect("a status");
     bus.close();
     status

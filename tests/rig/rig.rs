@@ -7,7 +7,7 @@ use std::process::Command;
 use std::time::Duration;
 
 use maulstick_brush::BrushFile;
-use maulstick_bus::{Bus as _, Class};
+use maulstick_bus::{Bus as _, Qos};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::stylus::{StylusSample, TakeStatus};
 use nix::sys::signal::Signal;
@@ -102,7 +102,7 @@ fn a_node_that_runs_by_fits_and_starts_changes_nothing() {
         let mut launcher = play(&place, "take.mcap", "1");
         launcher.wait_says("is up");
         let (bus, topics) = support::join(&place);
-        let class = Class::Background;
+        let class = Qos::Background;
         let mut take = listen::<TakeStatus>(&bus, &topics.take_status("player"), class);
         let mut paint = listen::<PaintStatus>(&bus, &topics.paint_status(), class);
         let pid = wait_for(PATIENCE, || place.pid(program)).expect("the node");
@@ -151,7 +151,7 @@ fn a_take_is_played_again_when_a_node_ends_in_mid_stroke() {
         let mut launcher = play(&place, "take.mcap", "4");
         launcher.wait_says("is up");
         let (bus, topics) = support::join(&place);
-        let class = Class::Background;
+        let class = Qos::Background;
         let mut take = listen::<TakeStatus>(&bus, &topics.take_status("player"), class);
         // After half a second the take is in its first stroke.
         let told = hear(&mut take, |told| told.position_ns > 500_000_000).expect("a take");
@@ -342,7 +342,7 @@ fn the_mouse_paints_on_the_palette_with_the_brush_that_is_shown() {
     launcher.wait_says("is up");
     let window = display.window("Maulstick");
     let (bus, topics) = support::join(&place);
-    let mut mouse = listen::<StylusSample>(&bus, &topics.sample("mouse"), Class::RealTime);
+    let mut mouse = listen::<StylusSample>(&bus, &topics.sample("mouse"), Qos::RealTime);
     // On the palette, which lies to the left of the canvas.
     let points: Vec<_> = (0..40)
         .map(|i| over(-245.0 + 1.5 * f64::from(i), -10.0 + 0.3 * f64::from(i)))
@@ -384,7 +384,7 @@ fn a_mouse_stroke_in_the_window_is_painted_and_shown() {
     });
     assert!(shown.is_some(), "the canvas is not shown");
     let (bus, topics) = support::join(&place);
-    let mut mouse = listen::<StylusSample>(&bus, &topics.sample("mouse"), Class::RealTime);
+    let mut mouse = listen::<StylusSample>(&bus, &topics.sample("mouse"), Qos::RealTime);
     display.drag(&points, &mut mouse);
     bus.close();
     assert!(
@@ -425,7 +425,7 @@ fn a_simulated_hand_paints_and_feels_the_canvas() {
     std::fs::write(place.path("rig.toml"), config).expect("written");
     let mut launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
     let (bus, topics) = support::join(&place);
-    let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Class::RealTime);
+    let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Qos::RealTime);
     // The hand presses and the canvas presses back, upward and never above the limit.
     let presses_back = |sample: &StylusSample| {
         let size = sample.force_n.iter().map(|f| f * f).sum::<f64>().sqrt();

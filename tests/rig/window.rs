@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Class, ZenohBus};
+use maulstick_bus::{Qos, ZenohBus};
 use maulstick_types::scene::{CANVAS, PALETTE, Scene, Surface};
 use maulstick_types::stylus::StylusSample;
 use maulstick_types::topics::Topics;
@@ -70,7 +70,7 @@ impl Painter {
     /// The scene, once it is as `wanted`: who joins anew hears it as it is.
     fn scene(&self, what: &str, wanted: impl Fn(&Scene) -> bool) -> Scene {
         let now = || {
-            let mut scenes = listen::<Scene>(&self.bus, &self.topics.scene(), Class::Cached);
+            let mut scenes = listen::<Scene>(&self.bus, &self.topics.scene(), Qos::Cached);
             let heard = wait_for(Duration::from_secs(1), || scenes.newest());
             heard.map(|scene| scene.message).filter(&wanted)
         };
@@ -123,7 +123,7 @@ fn a_painter_mixes_paints_dries_takes_back_moves_the_canvas_and_exports() {
     let (bus, topics) = support::join(&place);
     let mut painter = Painter {
         window: display.window("Maulstick"),
-        mouse: listen(&bus, &topics.sample("mouse"), Class::RealTime),
+        mouse: listen(&bus, &topics.sample("mouse"), Qos::RealTime),
         bus,
         topics,
         display,

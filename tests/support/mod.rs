@@ -17,7 +17,7 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Class, Dial, Queue, RigClock, RigFolder, Wake, ZenohBus};
+use maulstick_bus::{Dial, Qos, Queue, RigClock, RigFolder, Wake, ZenohBus};
 use maulstick_device::{Take, TakeSample};
 use maulstick_types::Message;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
@@ -273,8 +273,8 @@ pub fn join(place: &Place) -> (ZenohBus, Topics) {
 }
 
 /// Hears a topic from now on.
-pub fn listen<M: Message>(bus: &ZenohBus, topic: &str, class: Class) -> Receiver<M> {
-    Receiver::new(bus, topic, class, Queue::Ring(1024), &Wake::new()).expect("subscribed")
+pub fn listen<M: Message>(bus: &ZenohBus, topic: &str, qos: Qos) -> Receiver<M> {
+    Receiver::new(bus, topic, qos, Queue::Ring(1024), &Wake::new()).expect("subscribed")
 }
 
 /// The next message that `wanted` accepts.

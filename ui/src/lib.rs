@@ -32,19 +32,19 @@ mod widgets;
 
 use maulstick_appearance::picture::Export;
 use maulstick_optics::PaintLibrary;
-use maulstick_rig::{Fault, Member};
+use maulstick_rig::{NodeHandle, UserError};
 
 /// Shows the window until it is closed; `mouse` is the name of the mouse as a device, `export` says
 /// what the display is, `library` what paints there are.
 ///
 /// # Errors
-/// A [`Fault`] where there is no display or no GPU driver.
+/// A [`UserError`] where there is no display or no GPU driver.
 pub fn run(
-    mut member: Member,
+    mut member: NodeHandle,
     mouse: &str,
     export: &Export,
     library: PaintLibrary,
-) -> Result<(), Fault> {
+) -> Result<(), UserError> {
     let mut app = app::App::new(&member, mouse, library)?;
     let export = export.clone();
     let viewport = eframe::egui::ViewportBuilder::default()
@@ -73,19 +73,19 @@ pub fn run(
     );
     match result {
         Ok(()) => lost.check(),
-        Err(eframe::Error::AppCreation(error)) => Err(Fault::failure(format!(
+        Err(eframe::Error::AppCreation(error)) => Err(UserError::failure(format!(
             "the window cannot be opened: {error}"
         ))),
-        Err(error) if begun.get() => Err(Fault::failure(format!("the window ended: {error}"))),
+        Err(error) if begun.get() => Err(UserError::failure(format!("the window ended: {error}"))),
         Err(error) => Err(unopened(&error)),
     }
 }
 
 /// The reason why no window could be opened, with advice; another attempt would end the same way.
-fn unopened(error: &eframe::Error) -> Fault {
+fn unopened(error: &eframe::Error) -> UserError {
     match error {
         eframe::Error::Wgpu(error) => {
-            Fault::usage(format!("no graphics device draws the window: {error}")).help(
+            UserError::usage(format!("no graphics device draws the window: {error}")).help(
                 "install a Vulkan or OpenGL driver (mesa-vulkan-drivers, or that of the graphics card); \
                  without a window: `maulstick up --headless`",
             )
@@ -95,7 +95,7 @@ fn unopened(error: &eframe::Error) -> Fault {
                 Ok(value) => format!("{name}={value}"),
                 Err(_) => format!("{name} is not set"),
             };
-            Fault::usage("the display of the window is not there")
+            UserError::usage("the display of the window is not there")
                 .at(format!("{}, {}", said("DISPLAY"), said("WAYLAND_DISPLAY")))
                 .help("set one of them; without a window: `maulstick up --headless`")
         }

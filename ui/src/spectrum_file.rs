@@ -4,15 +4,15 @@ use std::io::Read as _;
 use std::path::Path;
 
 use maulstick_optics::{Illuminant, Reflectance};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::command::SPECTRUM_MAX;
 
 /// The text of a table; a folder, a device or a huge file is rejected.
-fn text(path: &Path, row: &str) -> Result<String, Fault> {
-    let failed = |error: std::io::Error| Fault::reading(path, &error);
+fn text(path: &Path, row: &str) -> Result<String, UserError> {
+    let failed = |error: std::io::Error| UserError::reading(path, &error);
     let place = || path.display().to_string();
     if !std::fs::metadata(path).map_err(failed)?.is_file() {
-        return Err(Fault::usage("this is no file")
+        return Err(UserError::usage("this is no file")
             .at(place())
             .help(format!("name a CSV file: {row}")));
     }
@@ -23,7 +23,7 @@ fn text(path: &Path, row: &str) -> Result<String, Fault> {
         .read_to_string(&mut text)
         .map_err(failed)?;
     if text.len() > SPECTRUM_MAX {
-        return Err(Fault::usage("a file of this size is no spectrum")
+        return Err(UserError::usage("a file of this size is no spectrum")
             .at(place())
             .help(format!("give a row a wavelength: {row}")));
     }
@@ -33,12 +33,12 @@ fn text(path: &Path, row: &str) -> Result<String, Fault> {
 /// The light of a CSV file of nm,power, called as the file.
 ///
 /// # Errors
-/// A [`Fault`] with file and line.
-pub(crate) fn light(path: &Path) -> Result<Illuminant, Fault> {
+/// A [`UserError`] with file and line.
+pub(crate) fn light(path: &Path) -> Result<Illuminant, UserError> {
     let text = text(path, "nm,power")?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     Illuminant::parse(&stem, &text).map_err(|error| {
-        Fault::usage(error.what)
+        UserError::usage(error.what)
             .at(format!("{}:{}", path.display(), error.line))
             .help("a row a wavelength: nm,power, rising")
     })
@@ -47,11 +47,11 @@ pub(crate) fn light(path: &Path) -> Result<Illuminant, Fault> {
 /// The text of a CSV file of nm,reflectance.
 ///
 /// # Errors
-/// A [`Fault`] with file and line.
-pub(crate) fn reflectance(path: &Path) -> Result<String, Fault> {
+/// A [`UserError`] with file and line.
+pub(crate) fn reflectance(path: &Path) -> Result<String, UserError> {
     let text = text(path, "nm,reflectance")?;
     Reflectance::parse(&text).map_err(|error| {
-        Fault::usage(error.what)
+        UserError::usage(error.what)
             .at(format!("{}:{}", path.display(), error.line))
             .help("a row a wavelength: nm,reflectance, rising, 0 to 1")
     })?;
@@ -60,7 +60,7 @@ pub(crate) fn reflectance(path: &Path) -> Result<String, Fault> {
 
 /// A fault in one line: where, what, what to do.
 #[must_use]
-pub(crate) fn told(fault: &Fault) -> String {
+pub(crate) fn told(fault: &UserError) -> String {
     let place = fault.place.iter().map(|place| format!("{place}: "));
     let help = fault.help.iter().map(|help| format!("; {help}"));
     place

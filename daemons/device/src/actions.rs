@@ -9,7 +9,7 @@ use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 
 use maulstick_bus::Bus;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::stylus::{StylusSample, switch};
 use maulstick_types::topics::Topics;
@@ -107,20 +107,20 @@ impl Actor {
     /// Starts the thread for a device that moves `brush`.
     ///
     /// # Errors
-    /// A [`Fault`] where the rig or the system refuses.
+    /// A [`UserError`] where the rig or the system refuses.
     pub fn start(
         bus: Arc<dyn Bus>,
         topics: &Topics,
         brush: &str,
         actions: Actions,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, UserError> {
         let (events, edges) = sync_channel(WAITING);
         let stop = Arc::new(AtomicBool::new(false));
         let mut worker = Worker::new(bus, topics, brush, Arc::clone(&stop))?;
         let thread = std::thread::Builder::new()
             .name("switches".into())
             .spawn(move || worker.run(&edges))
-            .map_err(|error| Fault::failure(format!("no thread for the switches: {error}")))?;
+            .map_err(|error| UserError::failure(format!("no thread for the switches: {error}")))?;
         Ok(Self {
             actions,
             told: 0,

@@ -3,19 +3,19 @@
 use std::path::Path;
 
 use maulstick_brush::BrushFile;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::{BrushSection, toml_fault};
 
 /// The brush file of a section, at its size: one of the library, or read from where its kind says.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown kind or a bad file.
-pub fn brush_file(section: &BrushSection) -> Result<BrushFile, Fault> {
+/// A [`UserError`] for an unknown kind or a bad file.
+pub fn brush_file(section: &BrushSection) -> Result<BrushFile, UserError> {
     let path = Path::new(&section.kind);
     let named = path.components().count() == 1 && path.extension().is_none();
     let file = if named {
         BrushFile::library(&section.kind).map_err(|error| {
-            Fault::usage(error.to_string())
+            UserError::usage(error.to_string())
                 .help("`maulstick brush list` shows them; a file of your own is named with its ending: own.toml")
         })?
     } else {
@@ -24,7 +24,7 @@ pub fn brush_file(section: &BrushSection) -> Result<BrushFile, Fault> {
     match section.size_mm {
         Some(size_mm) => file
             .scaled_to(size_mm)
-            .map_err(|error| Fault::usage(error.to_string()).help("choose another size_mm")),
+            .map_err(|error| UserError::usage(error.to_string()).help("choose another size_mm")),
         None => Ok(file),
     }
 }
@@ -32,11 +32,11 @@ pub fn brush_file(section: &BrushSection) -> Result<BrushFile, Fault> {
 /// Reads a brush file, or a brush modelled in Blender (`.glb`, `.gltf`).
 ///
 /// # Errors
-/// A [`Fault`] with the file for one that cannot be read or is wrong.
-pub fn read_brush(path: &Path) -> Result<BrushFile, Fault> {
-    let bytes = std::fs::read(path).map_err(|error| Fault::reading(path, &error))?;
+/// A [`UserError`] with the file for one that cannot be read or is wrong.
+pub fn read_brush(path: &Path) -> Result<BrushFile, UserError> {
+    let bytes = std::fs::read(path).map_err(|error| UserError::reading(path, &error))?;
     let place = path.display().to_string();
-    let wrong = |what: String, help: &str| Fault::usage(what).at(place.clone()).help(help);
+    let wrong = |what: String, help: &str| UserError::usage(what).at(place.clone()).help(help);
     let extension = path.extension().and_then(|extension| extension.to_str());
     if matches!(extension, Some("glb" | "gltf")) {
         return maulstick_brush::gltf::read(&bytes)

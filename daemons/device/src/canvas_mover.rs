@@ -13,15 +13,15 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 use maulstick_brush::placement::SurfacePlacement;
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Bus, Class, Queue, Wake};
+use maulstick_bus::{Bus, Qos, Queue, Wake};
 use maulstick_num::exp;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::command::Command;
 use maulstick_types::control::ControlSample;
 use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::topics::Topics;
 
-use maulstick_rig::commander::Commander;
+use maulstick_rig::command_client::CommandClient;
 
 /// Pushed to the stop the canvas goes this fast, m/s.
 const PAN_M_S: f64 = 0.2;
@@ -66,13 +66,13 @@ impl CanvasMover {
     /// A mover of the canvas of a rig.
     ///
     /// # Errors
-    /// A [`Fault`] where the rig or the system refuses.
-    pub fn start(bus: &Arc<dyn Bus>, topics: &Topics) -> Result<Self, Fault> {
+    /// A [`UserError`] where the rig or the system refuses.
+    pub fn start(bus: &Arc<dyn Bus>, topics: &Topics) -> Result<Self, UserError> {
         let wake = Wake::new();
         let topic = topics.scene();
-        let mut scenes = Receiver::new(&**bus, &topic, Class::Cached, Queue::Latest, &wake)?
+        let mut scenes = Receiver::new(&**bus, &topic, Qos::Cached, Queue::Latest, &wake)?
             .checking(Scene::fault);
-        let mut commander = Commander::new(Arc::clone(bus), topics).asking(ASK);
+        let mut commander = CommandClient::new(Arc::clone(bus), topics).asking(ASK);
         let (controls, heard) = sync_channel(64);
         let stop = Arc::new(AtomicBool::new(false));
         let ends = Arc::clone(&stop);
@@ -87,7 +87,7 @@ impl CanvasMover {
         let thread = std::thread::Builder::new()
             .name("mover".into())
             .spawn(run)
-            .map_err(|error| Fault::failure(format!("no thread for the free hand: {error}")))?;
+            .map_err(|error| UserError::failure(format!("no thread for the free hand: {error}")))?;
         Ok(Self {
             controls: Some(controls),
             stop,
@@ -123,7 +123,7 @@ impl std::fmt::Debug for CanvasMover {
 fn follow(
     heard: &Samples<ControlSample>,
     mut shown: impl FnMut() -> Option<SurfacePlacement>,
-    mut send: impl FnMut(Command) -> Result<(), Fault>,
+    mut send: impl FnMut(Command) -> Result<(), UserError>,
 ) {
     let mut lie: Option<SurfacePlacement> = None;
     while let Ok(mut control) = heard.recv() {
@@ -254,7 +254,7 @@ mod tests {
                 while Instant::now() < over {
                     std::thread::yield_now();
                 }
-                Err(Fault::failure("the node does not answer"))
+                Err(UserError::failure("the node does not answer"))
             };
             follow(&heard, || Some(lie()), slow);
             assert_eq!(count, 1);

@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use maulstick_num::geometry::{Rigid, canonical};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, DeviceSection};
 
 /// Desk lengths per device length that a device may have.
@@ -134,8 +134,8 @@ impl Registration {
     /// orientation and scale.
     ///
     /// # Errors
-    /// A [`Fault`] for corners that span no plane, or a scale out of range.
-    pub fn of(device: &DeviceSection, canvas: &CanvasSection) -> Result<Self, Fault> {
+    /// A [`UserError`] for corners that span no plane, or a scale out of range.
+    pub fn of(device: &DeviceSection, canvas: &CanvasSection) -> Result<Self, UserError> {
         let plain = Similarity {
             rigid: Rigid {
                 rotation: canonical(DQuat::from_array(device.orientation)),
@@ -178,14 +178,14 @@ pub fn canvas_m(canvas: &CanvasSection) -> DVec2 {
 /// points to `handle`, of any length; 0 where that is not known.
 ///
 /// # Errors
-/// A [`Fault`] where it would be seen from behind.
-pub fn check_side(places: &[DVec3; 3], handle: DVec3) -> Result<(), Fault> {
+/// A [`UserError`] where it would be seen from behind.
+pub fn check_side(places: &[DVec3; 3], handle: DVec3) -> Result<(), UserError> {
     let normal = (places[1] - places[0]).cross(places[2] - places[0]);
     if normal.dot(handle) < 0.0 {
         let what =
             "the corners were touched in another order: the canvas would be seen from behind";
         let help = "touch lower left, then lower right, then upper left; begin again";
-        return Err(Fault::failure(what).help(help));
+        return Err(UserError::failure(what).help(help));
     }
     Ok(())
 }
@@ -196,14 +196,14 @@ pub fn check_side(places: &[DVec3; 3], handle: DVec3) -> Result<(), Fault> {
 /// complex number: Σ z̄·w / Σ |z|² for the places z and the corners w about their means.
 ///
 /// # Errors
-/// A [`Fault`] for places that span no plane, or that differ from the canvas in size too much.
-pub fn by_corners(places: &[DVec3; 3], size: DVec2) -> Result<(Similarity, CornerFit), Fault> {
+/// A [`UserError`] for places that span no plane, or that differ from the canvas in size too much.
+pub fn by_corners(places: &[DVec3; 3], size: DVec2) -> Result<(Similarity, CornerFit), UserError> {
     let again = "touch them again: `maulstick calibrate`";
     let (right, up) = (places[1] - places[0], places[2] - places[0]);
     let normal = right.cross(up);
     let sine = normal.length() / (right.length() * up.length());
     if !sine.is_finite() || sine < TOLERANCE {
-        return Err(Fault::usage("the three corners lie on one line").help(again));
+        return Err(UserError::usage("the three corners lie on one line").help(again));
     }
     let x = right.normalize();
     let z = normal.normalize();
@@ -221,7 +221,7 @@ pub fn by_corners(places: &[DVec3; 3], size: DVec2) -> Result<(Similarity, Corne
     let scale = turn.length() / square;
     if !SCALES.contains(&scale) {
         let what = format!("the canvas is {scale:.3} times as large as what its corners span");
-        return Err(Fault::usage(what).help(again));
+        return Err(UserError::usage(what).help(again));
     }
     let turn = turn.normalize();
     let in_plane = DMat3::from_cols(

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 use maulstick_brush::desk::Desk;
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Bus, Class, Faults, MemoryNet, Queue, Wake};
+use maulstick_bus::{Bus, Faults, MemoryNet, Qos, Queue, Wake};
 use maulstick_device::actions::{Actions, Actor};
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::command::Command;
@@ -58,7 +58,7 @@ impl Rig {
         let actor = actor(&net, &live, "main");
         let journal = live.topics.journal();
         let (queue, wake) = (Queue::Ring(4096), Wake::new());
-        let journal = Receiver::new(&net.bus(), &journal, Class::Data, queue, &wake);
+        let journal = Receiver::new(&net.bus(), &journal, Qos::Data, queue, &wake);
         let rig = Self {
             live,
             journal: journal.expect("subscribed"),

@@ -4,14 +4,14 @@ use std::time::Duration;
 
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Reader, Receiver, Sender};
-use maulstick_bus::{Class, CreditSender, Queue, Server};
+use maulstick_bus::{CreditSender, Qos, Queue, Server};
 use maulstick_device::actions::{Action, Actions, Actor};
 use maulstick_device::device_missing::report_missing;
 use maulstick_device::registration::Registration;
 use maulstick_haptics::contact::Contact;
 use maulstick_haptics::{Limits, Recipient, ServoMemory, Switch};
 use maulstick_num::geometry::Rigid;
-use maulstick_rig::{Fault, Member, RigConfig};
+use maulstick_rig::{NodeHandle, RigConfig, UserError};
 use maulstick_types::haptics::{ContactModel, ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus};
 use maulstick_types::{Flags, encode};
@@ -34,8 +34,8 @@ const IDLE_PERIOD_NS: u64 = 50_000_000;
 /// Runs a device in the rig of `member`.
 ///
 /// # Errors
-/// [`Fault`] if the device or the rig cannot be used.
-pub fn run(member: &mut Member, settings: &HapticSettings) -> Result<(), Fault> {
+/// [`UserError`] if the device or the rig cannot be used.
+pub fn run(member: &mut NodeHandle, settings: &HapticSettings) -> Result<(), UserError> {
     let mut daemon = Daemon::new(member, settings)?;
     member.ready()?;
     member.run(|| daemon.turn())
@@ -84,7 +84,7 @@ struct Daemon {
 }
 
 impl Daemon {
-    fn new(member: &Member, settings: &HapticSettings) -> Result<Self, Fault> {
+    fn new(member: &NodeHandle, settings: &HapticSettings) -> Result<Self, UserError> {
         let device = &settings.device;
         let (bus, topics) = (&*member.bus, &member.topics);
         let origin = member.origin(&device.name);
@@ -105,12 +105,7 @@ impl Daemon {
             origin,
             &member.wake,
         )?;
-        let info = Sender::new(
-            bus,
-            &topics.stylus_info(&device.name),
-            Class::Cached,
-            origin,
-        )?;
+        let info = Sender::new(bus, &topics.stylus_info(&device.name), Qos::Cached, origin)?;
         let mut daemon = Self {
             config: member.config.clone(),
             settings: settings.clone(),
@@ -126,7 +121,7 @@ impl Daemon {
                 brush: device.brush.clone(),
             },
             samples,
-            models: Receiver::new(bus, &topic, Class::RealTime, Queue::Ring(64), &member.wake)?,
+            models: Receiver::new(bus, &topic, Qos::RealTime, Queue::Ring(64), &member.wake)?,
             orders: bus.serve(&topics.force(&device.name), 16, &member.wake)?,
             reader: Reader::default(),
             control: ForceControl {
@@ -139,7 +134,7 @@ impl Daemon {
             status: Sender::new(
                 bus,
                 &topics.stylus_status(&device.name),
-                Class::Background,
+                Qos::Background,
                 origin,
             )?,
             info,
@@ -160,7 +155,7 @@ impl Daemon {
         Ok(daemon)
     }
 
-    fn turn(&mut self) -> Result<Duration, Fault> {
+    fn turn(&mut self) -> Result<Duration, UserError> {
         let now_ns = self.bus.now_ns();
         if self.servo.is_none() && now_ns >= self.attempt_ns {
             self.attempt_ns = now_ns + ATTEMPT_PERIOD_NS;
@@ -175,7 +170,7 @@ impl Daemon {
             self.lose(now_ns)?;
         }
         // A live device never waits for credit; the ring serves receivers that missed a sample.
-        self.samples.forgive();
+        self.samples.reset_credit();
         self.samples.serve(now_ns)?;
         if now_ns >= self.status_ns + STATUS_PERIOD_NS {
             self.status_ns = now_ns;
@@ -190,7 +185,7 @@ impl Daemon {
     }
 
     /// Tries to open the device.
-    fn attempt(&mut self, now_ns: u64) -> Result<(), Fault> {
+    fn attempt(&mut self, now_ns: u64) -> Result<(), UserError> {
         let opened = match open(&self.config, &self.settings) {
             Ok(opened) => opened,
             Err(fault) => {
@@ -218,7 +213,7 @@ impl Daemon {
         let limits = limits.scaled(scale);
         let previous = self.previous_of(limits, now_ns);
         let mut servo = ServoThread::resume(mounted, opened.clock, limits, previous)
-            .map_err(|error| Fault::failure(format!("the servo cannot start: {error}")))?;
+            .map_err(|error| UserError::failure(format!("the servo cannot start: {error}")))?;
         for warning in &servo.warnings {
             tracing::warn!("{}: {warning}", device.name);
         }
@@ -264,12 +259,14 @@ impl Daemon {
     }
 
     /// Handles the end of the servo: lifts the brush, and looks for the device again if that was lost.
-    fn lose(&mut self, now_ns: u64) -> Result<(), Fault> {
+    fn lose(&mut self, now_ns: u64) -> Result<(), UserError> {
         self.dropped_before = self.dropped();
         let Some(Ended { error, previous }) = self.servo.take().and_then(|servo| servo.ended())
         else {
-            return Err(Fault::failure("the servo has ended by a fault of its own")
-                .help("its own message above says why"));
+            return Err(
+                UserError::failure("the servo has ended by a fault of its own")
+                    .help("its own message above says why"),
+            );
         };
         if let Some(fault) = previous.memory.fault
             && previous.rearms == self.control.rearms
@@ -290,7 +287,7 @@ impl Daemon {
         }
         self.told.force_n = 0.0;
         self.attempt_ns = now_ns + ATTEMPT_PERIOD_NS;
-        let fault = Fault::failure(error.to_string()).help(error.help);
+        let fault = UserError::failure(error.to_string()).help(error.help);
         report_missing(&self.settings.device.name, &fault, &mut self.told);
         Ok(())
     }
@@ -371,7 +368,7 @@ impl Daemon {
         }
     }
 
-    fn publish(&mut self, record: &TickRecord, now_ns: u64) -> Result<(), Fault> {
+    fn publish(&mut self, record: &TickRecord, now_ns: u64) -> Result<(), UserError> {
         self.told.lateness[bin(record.late_ns)] += 1;
         self.told.execution[bin(record.spent_ns)] += 1;
         self.told.force_n = record.force.length();
@@ -440,7 +437,7 @@ impl Daemon {
         }
     }
 
-    fn send(&mut self, now_ns: u64, event_ns: u64, sample: StylusSample) -> Result<(), Fault> {
+    fn send(&mut self, now_ns: u64, event_ns: u64, sample: StylusSample) -> Result<(), UserError> {
         self.published_ns = event_ns;
         self.told.samples += 1;
         self.samples

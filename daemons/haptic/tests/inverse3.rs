@@ -17,7 +17,7 @@ use glam::DVec3;
 use maulstick_haptic::device::driver::{DeviceError, Driver, Reading, Wrench};
 use maulstick_haptic::drivers::inverse3;
 use maulstick_haptics::Switch;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::stylus::axes;
 use serde_json::{Value, json};
@@ -46,7 +46,7 @@ fn opened(address: &str) -> Box<dyn Driver> {
     inverse3::open(&at(address)).expect("an Inverse3").driver
 }
 
-fn fault(address: &str) -> Fault {
+fn fault(address: &str) -> UserError {
     inverse3::open(&at(address)).map(|_| ()).expect_err(address)
 }
 

@@ -6,11 +6,11 @@ use std::time::Duration;
 
 use glam::DQuat;
 use maulstick_bus::typed::Sender;
-use maulstick_bus::{Bus, Class, Subscription, Wake};
+use maulstick_bus::{Bus, Qos, Subscription, Wake};
 use maulstick_device::device_missing::report_missing;
 use maulstick_num::geometry::canonical;
 use maulstick_rig::config::{BRUSH_NODE, CanvasSection, DeviceSection};
-use maulstick_rig::{Fault, Member};
+use maulstick_rig::{NodeHandle, UserError};
 use maulstick_types::Origin;
 use maulstick_types::stylus::StylusStatus;
 use maulstick_types::topics::Topics;
@@ -51,8 +51,8 @@ pub struct HidSettings {
 /// Runs a device in the rig of `member`.
 ///
 /// # Errors
-/// A [`Fault`] where the device or the rig cannot be used.
-pub fn run(member: &mut Member, settings: &HidSettings) -> Result<(), Fault> {
+/// A [`UserError`] where the device or the rig cannot be used.
+pub fn run(member: &mut NodeHandle, settings: &HidSettings) -> Result<(), UserError> {
     warn_of_twins(&settings.device, &member.config.device);
     let origin = member.origin(&settings.device.name);
     let mut daemon = Daemon::new(
@@ -120,7 +120,7 @@ impl Daemon {
     /// A daemon on `bus` that sends as `origin` and finds its device at `ports`.
     ///
     /// # Errors
-    /// A [`Fault`] where the settings are wrong, the recording cannot be read, or the bus is closed.
+    /// A [`UserError`] where the settings are wrong, the recording cannot be read, or the bus is closed.
     pub fn new(
         bus: Arc<dyn Bus>,
         topics: &Topics,
@@ -128,10 +128,10 @@ impl Daemon {
         origin: Origin,
         settings: &HidSettings,
         ports: Box<dyn Ports>,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, UserError> {
         let device = &settings.device;
         let kind = Kind::of(&device.driver).ok_or_else(|| {
-            Fault::usage(format!("this daemon has no driver '{}'", device.driver))
+            UserError::usage(format!("this daemon has no driver '{}'", device.driver))
         })?;
         let replay = settings.replay.as_ref().or(device.replay.as_ref());
         let replay = match replay {
@@ -171,7 +171,7 @@ impl Daemon {
             output,
             stream: None,
             attempt_ns: Some(0),
-            status: Sender::new(&*bus, &topic, Class::Background, origin)?,
+            status: Sender::new(&*bus, &topic, Qos::Background, origin)?,
             told: StylusStatus {
                 // It has no force.
                 is_on: false,
@@ -190,8 +190,8 @@ impl Daemon {
     /// Does the work that is due; returns the time until there is more, unless the wake rings.
     ///
     /// # Errors
-    /// A [`Fault`] where the rig is gone.
-    pub fn turn(&mut self) -> Result<Duration, Fault> {
+    /// A [`UserError`] where the rig is gone.
+    pub fn turn(&mut self) -> Result<Duration, UserError> {
         let now_ns = self.bus.now_ns();
         if self.stream.is_none() && self.attempt_ns.is_some_and(|at| now_ns >= at) {
             self.attempt(now_ns)?;
@@ -223,8 +223,8 @@ impl Daemon {
     /// Ends the daemon: lifts the pen and completes the recording.
     ///
     /// # Errors
-    /// A [`Fault`] where the recording could not be written or the rig is gone.
-    pub fn end(mut self) -> Result<(), Fault> {
+    /// A [`UserError`] where the recording could not be written or the rig is gone.
+    pub fn end(mut self) -> Result<(), UserError> {
         let now_ns = self.bus.now_ns();
         let lifted = self.lift(now_ns, now_ns);
         self.stream = None;
@@ -237,7 +237,7 @@ impl Daemon {
     }
 
     /// Takes in the device's reports; returns the time of the next one, if that is known.
-    fn listen(&mut self, now_ns: u64) -> Result<Option<u64>, Fault> {
+    fn listen(&mut self, now_ns: u64) -> Result<Option<u64>, UserError> {
         loop {
             let Some(stream) = &mut self.stream else {
                 return Ok(None);
@@ -278,7 +278,7 @@ impl Daemon {
         }
     }
 
-    fn lift(&mut self, event_ns: u64, now_ns: u64) -> Result<(), Fault> {
+    fn lift(&mut self, event_ns: u64, now_ns: u64) -> Result<(), UserError> {
         match &mut self.output {
             Output::Stylus(stylus) => stylus.end(event_ns, now_ns)?,
             Output::SpaceMouse(mouse) => mouse.end(event_ns, now_ns)?,
@@ -287,7 +287,7 @@ impl Daemon {
     }
 
     /// Tries to open the device, or begins to play the recording in its place.
-    fn attempt(&mut self, now_ns: u64) -> Result<(), Fault> {
+    fn attempt(&mut self, now_ns: u64) -> Result<(), UserError> {
         if let Some(brush) = &self.brush {
             // Tokens come and go, and the newest counts; the wake rings for the next.
             let newest = std::iter::from_fn(|| brush.try_recv()).last();
@@ -348,7 +348,7 @@ impl Daemon {
         identity: &Identity,
         descriptor: &[u8],
         now_ns: u64,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), UserError> {
         let device = &self.settings.device;
         tracing::info!("{}: {}", device.name, open::description(identity, &means));
         if let Some(recorder) = &mut self.recorder {

@@ -1,7 +1,7 @@
 //! The device that a section of `rig.toml` asks for, and the decoder of its reports.
 
 use maulstick_device::hid_collections::Collection;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use crate::descriptor::{self, describe};
 use crate::device_source::{Found, HidSource, Identity, Ports};
@@ -70,8 +70,8 @@ impl Address {
     /// Reads `address` of `rig.toml`.
     ///
     /// # Errors
-    /// A [`Fault`] where it is neither.
-    pub fn parse(text: Option<&str>) -> Result<Self, Fault> {
+    /// A [`UserError`] where it is neither.
+    pub fn parse(text: Option<&str>) -> Result<Self, UserError> {
         let Some(text) = text else {
             return Ok(Self::Any);
         };
@@ -83,7 +83,7 @@ impl Address {
             Some(Self::Numbers(number(vendor)?, number(product)?))
         });
         numbers.ok_or_else(|| {
-            Fault::usage(format!("'{text}' is no address of a HID device")).help(
+            UserError::usage(format!("'{text}' is no address of a HID device")).help(
                 "write vendor:product in hexadecimal as in 056a:0357, or a path as /dev/hidraw3",
             )
         })
@@ -159,14 +159,14 @@ pub enum Means {
 /// Means of reading a device, by its numbers and its descriptor.
 ///
 /// # Errors
-/// A [`Fault`] that says what the device is instead.
-pub fn means(kind: Kind, identity: &Identity, bytes: &[u8]) -> Result<Means, Fault> {
+/// A [`UserError`] that says what the device is instead.
+pub fn means(kind: Kind, identity: &Identity, bytes: &[u8]) -> Result<Means, UserError> {
     let table = Wacom::of(identity.vendor, identity.product);
     if let (Kind::Pen, Some(table)) = (kind, table.filter(|table| table.fits(bytes))) {
         return Ok(Means::Pen(Decoder::Wacom(table)));
     }
     let descriptor = descriptor::read(bytes).map_err(|what| {
-        Fault::failure(format!("{identity} describes itself wrongly: {what}"))
+        UserError::failure(format!("{identity} describes itself wrongly: {what}"))
             .help("choose another device by `address` in rig.toml")
     })?;
     let seems = match kind {
@@ -179,7 +179,7 @@ pub fn means(kind: Kind, identity: &Identity, bytes: &[u8]) -> Result<Means, Fau
             (true, Kind::SpaceMouse) => "is a 6-DOF mouse of an unknown maker".to_owned(),
             (false, _) => format!("is {}, no {}", describe(&descriptor), kind.word()),
         };
-        Fault::failure(format!("{identity} {what}")).help(help)
+        UserError::failure(format!("{identity} {what}")).help(help)
     };
     match kind {
         Kind::Pen => {
@@ -228,14 +228,14 @@ pub struct Opened {
     /// Its identity.
     pub identity: Identity,
     /// Means of reading it; a device that was asked for by its address and cannot be read may still be recorded.
-    pub means: Result<Means, Fault>,
+    pub means: Result<Means, UserError>,
 }
 
 /// Opens the first device that suits.
 ///
 /// # Errors
-/// A [`Fault`] that says what is missing: tried again later, it may be there.
-pub fn open(ports: &mut dyn Ports, kind: Kind, address: &Address) -> Result<Opened, Fault> {
+/// A [`UserError`] that says what is missing: tried again later, it may be there.
+pub fn open(ports: &mut dyn Ports, kind: Kind, address: &Address) -> Result<Opened, UserError> {
     let all = ports.list()?;
     let mut found: Vec<_> = all.iter().filter(|found| address.names(found)).collect();
     if found.is_empty() {
@@ -245,7 +245,7 @@ pub fn open(ports: &mut dyn Ports, kind: Kind, address: &Address) -> Result<Open
     let is_any = *address == Address::Any;
     found.sort_by_key(|found| !kind.suits(found));
     found.retain(|found| !is_any || kind.suits(found));
-    let mut first: Option<Result<Opened, Fault>> = None;
+    let mut first: Option<Result<Opened, UserError>> = None;
     for found in found {
         let opened = ports.open(found).map(|source| {
             let identity = found.identity.clone();
@@ -288,7 +288,7 @@ fn begin(kind: Kind, opened: &mut Opened) {
     }
 }
 
-fn missing(kind: Kind, address: &Address, all: &[Found]) -> Fault {
+fn missing(kind: Kind, address: &Address, all: &[Found]) -> UserError {
     let mut there: Vec<_> = all.iter().map(|found| found.identity.to_string()).collect();
     there.dedup();
     let there = match there.is_empty() {
@@ -300,7 +300,7 @@ fn missing(kind: Kind, address: &Address, all: &[Found]) -> Fault {
         Address::Numbers(vendor, product) => format!("no {vendor:04x}:{product:04x} is plugged in"),
         Address::Path(path) => format!("no HID device is plugged in at {path}"),
     };
-    Fault::failure(what).help(format!("plug it in; {there}"))
+    UserError::failure(what).help(format!("plug it in; {there}"))
 }
 
 /// Description of a device for the log.

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use maulstick_device::corner_calibration::{HandReading, HandSample, Touch};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 
 use crate::device_source::{HidSource, Identity, Ports};
@@ -34,8 +34,8 @@ enum Reports {
 /// Opens the pen of a section of `rig.toml`, or the recording that is played in its place.
 ///
 /// # Errors
-/// [`Fault`] if it is missing, may not be read, or is not a pen.
-pub fn open(ports: &mut dyn Ports, device: &DeviceSection) -> Result<ProbedPen, Fault> {
+/// [`UserError`] if it is missing, may not be read, or is not a pen.
+pub fn open(ports: &mut dyn Ports, device: &DeviceSection) -> Result<ProbedPen, UserError> {
     let pen = |identity: &Identity, means: Means, reports| {
         let what = open::description(identity, &means);
         match means {
@@ -44,7 +44,7 @@ pub fn open(ports: &mut dyn Ports, device: &DeviceSection) -> Result<ProbedPen, 
                 decoder,
                 reports,
             }),
-            Means::SpaceMouse => Err(Fault::usage(format!("{identity} has no pen"))),
+            Means::SpaceMouse => Err(UserError::usage(format!("{identity} has no pen"))),
         }
     };
     let Some(path) = &device.replay else {
@@ -66,8 +66,11 @@ impl ProbedPen {
     /// Hands the pen's readings, in the tablet's frame, to `look` until that breaks off.
     ///
     /// # Errors
-    /// [`Fault`] if the tablet is lost or the recording ends before.
-    pub fn probe(self, mut look: impl FnMut(HandReading) -> ControlFlow<()>) -> Result<(), Fault> {
+    /// [`UserError`] if the tablet is lost or the recording ends before.
+    pub fn probe(
+        self,
+        mut look: impl FnMut(HandReading) -> ControlFlow<()>,
+    ) -> Result<(), UserError> {
         let Self {
             mut decoder,
             reports,
@@ -103,7 +106,7 @@ impl ProbedPen {
                         return Ok(());
                     }
                 }
-                Err(Fault::failure(
+                Err(UserError::failure(
                     "the recording is over before three corners are shown",
                 ))
             }

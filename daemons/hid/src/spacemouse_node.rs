@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use maulstick_bus::typed::Sender;
-use maulstick_bus::{Bus, BusError, Class};
+use maulstick_bus::{Bus, BusError, Qos};
 use maulstick_device::actions::{Actions, Actor};
 use maulstick_device::canvas_mover::CanvasMover;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::Origin;
 use maulstick_types::control::ControlSample;
@@ -43,21 +43,21 @@ impl SpaceMouseNode {
     /// The mouse of a section.
     ///
     /// # Errors
-    /// A [`Fault`] where the rig or the system refuses.
+    /// A [`UserError`] where the rig or the system refuses.
     pub fn new(
         bus: &Arc<dyn Bus>,
         topics: &Topics,
         device: &DeviceSection,
         origin: Origin,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, UserError> {
         let (topic, actions) = (topics.control(&device.name), Actions::of(device));
         Ok(Self {
             mouse: None,
-            samples: Sender::new(&**bus, &topic, Class::RealTime, origin)?,
+            samples: Sender::new(&**bus, &topic, Qos::RealTime, origin)?,
             info: Sender::new(
                 &**bus,
                 &topics.stylus_info(&device.name),
-                Class::Cached,
+                Qos::Cached,
                 origin,
             )?,
             mover: CanvasMover::start(bus, topics)?,

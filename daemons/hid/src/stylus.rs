@@ -8,9 +8,9 @@ use std::sync::Arc;
 
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::Sender;
-use maulstick_bus::{Bus, BusError, Class, CreditSender, Wake};
+use maulstick_bus::{Bus, BusError, CreditSender, Qos, Wake};
 use maulstick_device::actions::{Actions, Actor};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::stylus::{StylusInfo, StylusSample};
 use maulstick_types::topics::Topics;
@@ -51,14 +51,14 @@ impl Stylus {
     /// The pen of a section.
     ///
     /// # Errors
-    /// A [`Fault`] where the rig or the system refuses.
+    /// A [`UserError`] where the rig or the system refuses.
     pub fn new(
         bus: &Arc<dyn Bus>,
         topics: &Topics,
         device: &DeviceSection,
         origin: Origin,
         wake: &Wake,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, UserError> {
         let (name, actions) = (&device.name, Actions::of(device));
         let samples = CreditSender::new(&**bus, topics, &topics.sample(name), origin, wake)?;
         let topic = topics.stylus_info(name);
@@ -66,7 +66,7 @@ impl Stylus {
             pen: Pen::default(),
             tablet: None,
             samples,
-            info: Sender::new(&**bus, &topic, Class::Cached, origin)?,
+            info: Sender::new(&**bus, &topic, Qos::Cached, origin)?,
             actor: Actor::start(Arc::clone(bus), topics, &device.brush, actions)?,
             newest: StylusSample::away(),
             event_ns: 0,
@@ -166,7 +166,7 @@ impl Stylus {
     /// # Errors
     /// [`BusError`].
     pub fn serve(&mut self, now_ns: u64) -> Result<(), BusError> {
-        self.samples.forgive();
+        self.samples.reset_credit();
         self.samples.serve(now_ns)
     }
 

@@ -9,7 +9,7 @@
 use glam::{DMat2, DQuat, DVec2, DVec3};
 use maulstick_device::registration::canvas_m;
 use maulstick_num::{atan2, sin_cos};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, DeviceSection};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, FARTHEST_M, StylusPose, StylusSample, switch};
 
@@ -34,13 +34,13 @@ impl Tablet {
     /// Fits a tablet of an active area, m, that senses `senses`.
     ///
     /// # Errors
-    /// A [`Fault`] where the corners are on one line, or in another order.
+    /// A [`UserError`] where the corners are on one line, or in another order.
     pub fn fit(
         area_m: [f64; 2],
         senses: u32,
         device: &DeviceSection,
         canvas: &CanvasSection,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, UserError> {
         let size = canvas_m(canvas);
         let (linear, translation) = match &device.corners_m {
             Some(corners) => by_corners(corners, size)?,
@@ -123,16 +123,15 @@ impl Tablet {
 
 /// The affine map that takes three points of the tablet to the lower left, lower right and upper left corner
 /// of the canvas.
-fn by_corners(corners: &[[f64; 3]; 3], size: DVec2) -> Result<(DMat2, DVec2), Fault> {
+fn by_corners(corners: &[[f64; 3]; 3], size: DVec2) -> Result<(DMat2, DVec2), UserError> {
     let [origin, right, up] = corners.map(|[x, y, _]| DVec2::new(x, y));
     let sides = DMat2::from_cols(right - origin, up - origin);
     let lengths = (right - origin).length() * (up - origin).length();
     if sides.determinant() <= 0.1 * lengths {
-        return Err(
-            Fault::usage("corners_m are no corners of a canvas that lies on the tablet").help(
-                "touch lower left, lower right and upper left again with `maulstick calibrate`",
-            ),
-        );
+        return Err(UserError::usage(
+            "corners_m are no corners of a canvas that lies on the tablet",
+        )
+        .help("touch lower left, lower right and upper left again with `maulstick calibrate`"));
     }
     let linear = DMat2::from_diagonal(size) * sides.inverse();
     Ok((linear, -0.5 * size - linear * origin))

@@ -6,7 +6,7 @@ use maulstick_brush::BrushFile;
 use maulstick_brush_node::contact_model::ForceKind;
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Receiver, Sender};
-use maulstick_bus::{Class, CreditSender, Faults, MemoryNet, Queue, Wake};
+use maulstick_bus::{CreditSender, Faults, MemoryNet, Qos, Queue, Wake};
 use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::command::{Command, Outcome};
 use maulstick_types::haptics::{ContactModel, ForceLaw};
@@ -34,7 +34,7 @@ fn force_device(live: &Live) -> Device {
     let bus = live.net.bus();
     let arm = live.device("arm", 42);
     let topic = live.topics.stylus_info("arm");
-    let mut info = Sender::new(&bus, &topic, Class::Cached, arm.samples.origin()).expect("one");
+    let mut info = Sender::new(&bus, &topic, Qos::Cached, arm.samples.origin()).expect("one");
     let told = StylusInfo {
         device: "arm".into(),
         driver: "foreign".into(),
@@ -57,7 +57,7 @@ fn a_force_device_with_a_number_of_its_own_gets_its_model() {
     let (bus, wake) = (live.net.bus(), Wake::new());
     let topic = live.topics.contact_model("arm");
     let mut models =
-        Receiver::<ContactModel>::new(&bus, &topic, Class::RealTime, Queue::Ring(8), &wake)
+        Receiver::<ContactModel>::new(&bus, &topic, Qos::RealTime, Queue::Ring(8), &wake)
             .expect("subscribed");
     let mut arm = force_device(&live);
     turn(&mut live);
@@ -76,7 +76,7 @@ fn pressed(kind: ForceKind) -> ForceLaw {
     let (bus, wake) = (live.net.bus(), Wake::new());
     let topic = live.topics.contact_model("arm");
     let mut models =
-        Receiver::<ContactModel>::new(&bus, &topic, Class::RealTime, Queue::Ring(64), &wake)
+        Receiver::<ContactModel>::new(&bus, &topic, Qos::RealTime, Queue::Ring(64), &wake)
             .expect("subscribed");
     let mut arm = force_device(&live);
     turn(&mut live);
@@ -198,7 +198,7 @@ fn another_brush_is_taken_up_and_a_bad_file_leaves_the_one_in_hand() {
     let mut live = live();
     let (bus, wake) = (live.net.bus(), Wake::new());
     let topic = live.topics.brush_def("main");
-    let mut defs = Receiver::<BrushDef>::new(&bus, &topic, Class::Cached, Queue::Ring(8), &wake)
+    let mut defs = Receiver::<BrushDef>::new(&bus, &topic, Qos::Cached, Queue::Ring(8), &wake)
         .expect("subscribed");
     let define = |toml: String| Command::Define {
         brush: "main".into(),
@@ -255,7 +255,7 @@ fn a_softer_brush_pushes_back_less() {
     let (bus, wake) = (live.net.bus(), Wake::new());
     let topic = live.topics.contact_model("arm");
     let mut models =
-        Receiver::<ContactModel>::new(&bus, &topic, Class::RealTime, Queue::Ring(64), &wake)
+        Receiver::<ContactModel>::new(&bus, &topic, Qos::RealTime, Queue::Ring(64), &wake)
             .expect("subscribed");
     let mut arm = force_device(&live);
     turn(&mut live);

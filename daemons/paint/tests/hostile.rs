@@ -3,7 +3,7 @@
 mod support;
 
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Class, Faults, MemoryNet, Queue, Wake};
+use maulstick_bus::{Faults, MemoryNet, Qos, Queue, Wake};
 use maulstick_types::command::{Command, Outcome};
 use maulstick_types::paint::JournalEntry;
 use maulstick_types::{Message as _, Mixture};
@@ -42,7 +42,7 @@ fn the_largest_command_fits_into_the_journal() {
     let (topic, wake) = (live.topics.journal(), Wake::new());
     let bus = live.net.bus();
     let mut journal =
-        Receiver::<JournalEntry>::new(&bus, &topic, Class::Data, Queue::Ring(64), &wake)
+        Receiver::<JournalEntry>::new(&bus, &topic, Qos::Data, Queue::Ring(64), &wake)
             .expect("subscribed");
     // A load is 34 bytes and the length of its name; the rest of the command is 49.
     let load = Mixture::pure("Bone Black");

@@ -201,7 +201,7 @@ fn a_live_brush_merges_while_paint_is_busy_and_keeps_the_path() {
             event_ns: now_ns,
         };
         assert!(*time_ns < u64::MAX);
-        live.player.forgive();
+        live.player.reset_credit();
         live.player.send(Flags::NONE, stamp, sample).expect("sent");
         live.net.advance(8_000_000);
         live.brush.turn().expect("turned");

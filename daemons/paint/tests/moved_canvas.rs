@@ -3,7 +3,7 @@
 mod support;
 
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Class, Faults, MemoryNet, Queue, Wake};
+use maulstick_bus::{Faults, MemoryNet, Qos, Queue, Wake};
 use maulstick_types::brush::BrushState;
 use maulstick_types::command::Command;
 use maulstick_types::scene::CANVAS;
@@ -53,7 +53,7 @@ fn what_was_painted_before_a_canvas_is_moved_stays_where_it_was_painted() {
     let mut live = Live::new(MemoryNet::new(1, START_NS, Faults::default()));
     let bus = live.net.bus();
     let (topic, ring) = (live.topics.brush_state("main"), Queue::Ring(4096));
-    let states = Receiver::new(&bus, &topic, Class::RealTime, ring, &Wake::new());
+    let states = Receiver::new(&bus, &topic, Qos::RealTime, ring, &Wake::new());
     let mut states: Receiver<BrushState> = states.expect("listens");
     let mut mouse = live.device("mouse", 5);
     live.net.advance(MILLISECOND);

@@ -4,7 +4,7 @@ mod support;
 
 use maulstick_brush::BrushFile;
 use maulstick_bus::typed::{Receiver, Sender};
-use maulstick_bus::{Bus, Class, Faults, MemoryNet, Queue, Wake};
+use maulstick_bus::{Bus, Faults, MemoryNet, Qos, Queue, Wake};
 use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::command::Command;
 use maulstick_types::paint::PaintStatus;
@@ -72,7 +72,7 @@ impl Rig {
         let bus = self.live.net.bus();
         let now_ns = bus.now_ns();
         let bytes = encode(&origin, flags, seq, now_ns, now_ns, m).expect("encoded");
-        let publisher = bus.publisher(topic, Class::RealTime).expect("declared");
+        let publisher = bus.publisher(topic, Qos::RealTime).expect("declared");
         publisher.put(bytes).expect("sent");
         self.turn();
     }
@@ -113,7 +113,7 @@ fn a_stray_state_mutes_no_brush_and_is_counted() {
     let bus = rig.live.net.bus();
     let status = rig.live.topics.paint_status();
     let mut statuses: Receiver<PaintStatus> =
-        Receiver::new(&bus, &status, Class::Background, Queue::Ring(4), &wake).expect("one");
+        Receiver::new(&bus, &status, Qos::Background, Queue::Ring(4), &wake).expect("one");
     let empty = BrushState {
         device: 5,
         device_epoch: 11,
@@ -192,7 +192,7 @@ fn a_foreign_brush_file_is_contradicted() {
 fn of_two_senders_of_one_stream_a_receiver_follows_the_newer_and_says_so_once() {
     let net = MemoryNet::new(1, START_NS, Faults::default());
     let (bus, wake) = (net.bus(), Wake::new());
-    let class = Class::RealTime;
+    let class = Qos::RealTime;
     let mut heard: Receiver<StylusSample> =
         Receiver::new(&bus, "t/pen", class, Queue::Ring(64), &wake).expect("subscribed");
     let mut pens: Vec<Sender<_>> = [1, 2]

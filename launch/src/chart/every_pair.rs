@@ -2,7 +2,7 @@
 
 use maulstick_appearance::picture::Picture;
 use maulstick_optics::{Blend, Coat, Paint, PaintLibrary, Viewing};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use crate::page::Page;
 
@@ -35,8 +35,8 @@ pub fn whitest<'a>(library: &'a PaintLibrary, viewing: &Viewing) -> &'a Paint {
 /// The chart of all paints.
 ///
 /// # Errors
-/// A [`Fault`] where the font cannot be read.
-pub fn chart(library: &PaintLibrary, viewing: &Viewing) -> Result<Picture, Fault> {
+/// A [`UserError`] where the font cannot be read.
+pub fn chart(library: &PaintLibrary, viewing: &Viewing) -> Result<Picture, UserError> {
     let paints = library.paints();
     let white = whitest(library, viewing);
     let measure = Page::new(1, 1)?;

@@ -2,7 +2,7 @@
 
 use maulstick_appearance::picture::Picture;
 use maulstick_optics::comparison::{Grading, Way};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use crate::page::Page;
 
@@ -55,8 +55,8 @@ pub fn mean_and_most(delta_e: &[f64]) -> [f64; 2] {
 /// The four rows with what they show.
 ///
 /// # Errors
-/// A [`Fault`] where the font cannot be read.
-pub fn picture(gradings: &[Grading], ends: [&str; 2], rule: &str) -> Result<Picture, Fault> {
+/// A [`UserError`] where the font cannot be read.
+pub fn picture(gradings: &[Grading], ends: [&str; 2], rule: &str) -> Result<Picture, UserError> {
     let measure = Page::new(1, 1)?;
     let shares = shares();
     let lines: Vec<[String; 2]> = gradings

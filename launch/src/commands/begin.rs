@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, is_path};
 use maulstick_types::command::{Command, NewCanvas};
 
@@ -54,8 +54,8 @@ fn parse_cm(text: &str) -> Result<[f64; 2], String> {
 /// Creates a painting and opens it.
 ///
 /// # Errors
-/// A [`Fault`] for an invalid size, if a file of its name exists, or if no rig runs.
-pub fn run(options: &NewOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for an invalid size, if a file of its name exists, or if no rig runs.
+pub fn run(options: &NewOptions) -> Result<i32, UserError> {
     let usual = CanvasSection::default();
     let usual_cm = [usual.width_mm, usual.height_mm].map(|mm| mm * 0.1);
     let [width, height] = options.cm.unwrap_or(usual_cm);
@@ -75,7 +75,7 @@ pub fn run(options: &NewOptions) -> Result<i32, Fault> {
         },
         forget: options.forget,
     };
-    command.check().map_err(Fault::told)?;
+    command.check().map_err(UserError::told)?;
     let done = Session::open(&options.target)?.send_within(RIG, command, LONGEST)?;
     say!("{done}");
     Ok(0)

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use clap::Args;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::MODELS;
 
 /// Options of `maulstick bench`.
@@ -27,8 +27,8 @@ pub struct BenchOptions {
 /// Runs the benchmarks.
 ///
 /// # Errors
-/// A [`Fault`] where they are not built.
-pub fn run(options: &BenchOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where they are not built.
+pub fn run(options: &BenchOptions) -> Result<i32, UserError> {
     let program = beside("maulstick-bench")?;
     let mut command = Command::new(&program);
     command.args(&options.area);
@@ -41,18 +41,20 @@ pub fn run(options: &BenchOptions) -> Result<i32, Fault> {
         command.arg("--json");
     }
     let status = command.status().map_err(|error| {
-        Fault::failure(format!("the benchmarks cannot be started: {error}"))
+        UserError::failure(format!("the benchmarks cannot be started: {error}"))
             .at(program.display().to_string())
             .help("build them: cargo build --release -p maulstick-bench")
     })?;
-    Ok(status.code().unwrap_or(maulstick_rig::fault::EXIT_FAILURE))
+    Ok(status
+        .code()
+        .unwrap_or(maulstick_rig::user_error::EXIT_FAILURE))
 }
 
 /// The program called `name` beside this one.
 ///
 /// # Errors
-/// A [`Fault`] where this program does not know its own path.
-pub fn beside(name: &str) -> Result<PathBuf, Fault> {
-    let own = std::env::current_exe().map_err(|error| Fault::failure(error.to_string()))?;
+/// A [`UserError`] where this program does not know its own path.
+pub fn beside(name: &str) -> Result<PathBuf, UserError> {
+    let own = std::env::current_exe().map_err(|error| UserError::failure(error.to_string()))?;
     Ok(own.with_file_name(name))
 }

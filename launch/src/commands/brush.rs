@@ -9,7 +9,7 @@ use maulstick_brush::file::library::LIBRARY;
 use maulstick_brush::single_spine::{SpineFile, TrialPose, TrialRow, follow, poses};
 use maulstick_brush::{BrushError, BrushFile};
 use maulstick_device::read_brush;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::BrushSection;
 use maulstick_rig::config::toml_fault;
 use maulstick_rig::files::{Kind, check_writable, write_whole};
@@ -114,8 +114,8 @@ pub struct TakeOptions {
 /// Runs a command on brushes.
 ///
 /// # Errors
-/// A [`Fault`] for a bad file.
-pub fn run(command: &BrushCommand) -> Result<i32, Fault> {
+/// A [`UserError`] for a bad file.
+pub fn run(command: &BrushCommand) -> Result<i32, UserError> {
     match command {
         BrushCommand::List(options) => list(options),
         BrushCommand::Sheet(options) => draw_sheet(options),
@@ -126,10 +126,11 @@ pub fn run(command: &BrushCommand) -> Result<i32, Fault> {
     }
 }
 
-fn list(options: &ListOptions) -> Result<i32, Fault> {
+fn list(options: &ListOptions) -> Result<i32, UserError> {
     let (mut rows, mut text) = (Vec::new(), String::new());
     for (name, _) in LIBRARY {
-        let brush = BrushFile::library(name).map_err(|error| Fault::failure(error.to_string()))?;
+        let brush =
+            BrushFile::library(name).map_err(|error| UserError::failure(error.to_string()))?;
         let (head, spines) = (&brush.head, &brush.spines);
         let sizes: Vec<String> = brush.sizes_mm.iter().map(f64::to_string).collect();
         if options.json {
@@ -155,7 +156,7 @@ fn list(options: &ListOptions) -> Result<i32, Fault> {
     Ok(0)
 }
 
-fn import(options: &ImportOptions) -> Result<i32, Fault> {
+fn import(options: &ImportOptions) -> Result<i32, UserError> {
     let path = &options.output;
     check_outputs(
         &[UsedFile::new("the brush file", path).of(Kind::Brush)],
@@ -164,14 +165,14 @@ fn import(options: &ImportOptions) -> Result<i32, Fault> {
     let text = read_brush(&options.model)
         .map_err(of_a_brush)?
         .to_toml()
-        .map_err(|error| Fault::failure(error.to_string()))?;
+        .map_err(|error| UserError::failure(error.to_string()))?;
     write_whole(path, Kind::Brush, |file| file.write_all(text.as_bytes()))
-        .map_err(|error| Fault::writing(path, &error))?;
+        .map_err(|error| UserError::writing(path, &error))?;
     say!("{}: {} bytes", path.display(), text.len());
     Ok(0)
 }
 
-fn take_up(options: &TakeOptions) -> Result<i32, Fault> {
+fn take_up(options: &TakeOptions) -> Result<i32, UserError> {
     let section = BrushSection {
         name: options.brush.clone(),
         kind: options.kind.clone(),
@@ -180,7 +181,7 @@ fn take_up(options: &TakeOptions) -> Result<i32, Fault> {
     };
     let toml = brush_file(&section)?
         .to_toml()
-        .map_err(|error| Fault::failure(error.to_string()))?;
+        .map_err(|error| UserError::failure(error.to_string()))?;
     let command = Command::Define {
         brush: options.brush.clone(),
         toml,
@@ -189,9 +190,9 @@ fn take_up(options: &TakeOptions) -> Result<i32, Fault> {
     Ok(0)
 }
 
-fn draw_sheet(options: &SheetOptions) -> Result<i32, Fault> {
+fn draw_sheet(options: &SheetOptions) -> Result<i32, UserError> {
     let path = &options.output;
-    check_writable(path, Kind::Png).map_err(|error| Fault::writing(path, &error))?;
+    check_writable(path, Kind::Png).map_err(|error| UserError::writing(path, &error))?;
     let bar = ProgressBar::new(0).with_message("painting");
     let picture = sheet(&library()?, options.cells.side_mm(), |done, of| {
         bar.set_length(of as u64);
@@ -208,7 +209,7 @@ fn draw_sheet(options: &SheetOptions) -> Result<i32, Fault> {
     Ok(0)
 }
 
-fn solve(options: &SolveOptions) -> Result<i32, Fault> {
+fn solve(options: &SolveOptions) -> Result<i32, UserError> {
     let (spine, poses) = (read_spine(&options.spine)?, read_poses(&options.poses)?);
     let mut text = String::new();
     if !options.json {
@@ -217,7 +218,7 @@ fn solve(options: &SolveOptions) -> Result<i32, Fault> {
     }
     for row in follow(&spine, &poses) {
         text += &match options.json {
-            true => serde_json::to_string(&row).map_err(|e| Fault::failure(e.to_string()))?,
+            true => serde_json::to_string(&row).map_err(|e| UserError::failure(e.to_string()))?,
             false => in_columns(&row),
         };
         text.push('\n');
@@ -243,14 +244,14 @@ fn in_columns(row: &TrialRow) -> String {
     )
 }
 
-fn read(path: &Path) -> Result<(String, String), Fault> {
-    let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
+fn read(path: &Path) -> Result<(String, String), UserError> {
+    let text = std::fs::read_to_string(path).map_err(|error| UserError::reading(path, &error))?;
     // Spreadsheets begin a table with a byte order mark.
     let text = text.trim_start_matches('\u{feff}').to_owned();
     Ok((text, path.display().to_string()))
 }
 
-fn read_spine(path: &Path) -> Result<SpineFile, Fault> {
+fn read_spine(path: &Path) -> Result<SpineFile, UserError> {
     const HELP: &str = "see what a spine file holds: `maulstick brush solve --help`";
     let (text, name) = read(path)?;
     let file: SpineFile = toml::from_str(&text).map_err(|error| {
@@ -260,15 +261,15 @@ fn read_spine(path: &Path) -> Result<SpineFile, Fault> {
             false => fault.help(HELP),
         }
     })?;
-    let refused = |error: BrushError| Fault::usage(error.to_string()).at(name).help(HELP);
+    let refused = |error: BrushError| UserError::usage(error.to_string()).at(name).help(HELP);
     file.check().map_err(refused)?;
     Ok(file)
 }
 
-fn read_poses(path: &Path) -> Result<Vec<TrialPose>, Fault> {
+fn read_poses(path: &Path) -> Result<Vec<TrialPose>, UserError> {
     let (text, name) = read(path)?;
     poses(&text).map_err(|error| {
-        Fault::usage(error.what)
+        UserError::usage(error.what)
             .at(format!("{name}:{}", error.line))
             .help(error.help)
     })

@@ -15,7 +15,7 @@ use maulstick_hid::hidraw::Hidraw;
 use maulstick_hid::tablet::Tablet;
 use maulstick_rig::config::DeviceSection;
 use maulstick_rig::files::{Kind, check_writable, write_whole};
-use maulstick_rig::{Fault, RigConfig, Stop};
+use maulstick_rig::{RigConfig, Stop, UserError};
 use toml_edit::{Array, DocumentMut, Item, TableLike, Value};
 
 use crate::EXIT_INTERRUPTED;
@@ -34,12 +34,12 @@ pub struct CalibrateOptions {
 /// Has a hand show the corners and writes them.
 ///
 /// # Errors
-/// A [`Fault`] for a device that is not there, corners that do not fit the canvas, or settings that
+/// A [`UserError`] for a device that is not there, corners that do not fit the canvas, or settings that
 /// cannot be written.
-pub fn run(options: &CalibrateOptions) -> Result<i32, Fault> {
+pub fn run(options: &CalibrateOptions) -> Result<i32, UserError> {
     let Some(path) = &options.rig else {
         let help = "make them with `maulstick up --print-config > rig.toml`, and name them: --rig rig.toml";
-        return Err(Fault::usage("there are no settings to write the corners into").help(help));
+        return Err(UserError::usage("there are no settings to write the corners into").help(help));
     };
     let config = RigConfig::read(path)?;
     let place = path.display().to_string();
@@ -47,22 +47,22 @@ pub fn run(options: &CalibrateOptions) -> Result<i32, Fault> {
     let device = config.device.iter().find(|d| d.name == options.device);
     let device = device.cloned().ok_or_else(|| {
         let what = format!("there is no [[device]] called '{}'", options.device);
-        Fault::unknown(what, &options.device, names()).at(place.clone())
+        UserError::unknown(what, &options.device, names()).at(place.clone())
     })?;
     if device.driver == "spacemouse" {
         let what = format!(
             "'{}' moves the canvas itself: there is nothing to fit",
             device.name
         );
-        return Err(Fault::usage(what).at(place));
+        return Err(UserError::usage(what).at(place));
     }
     if RigFolder::join(&config.rig.name).is_ok() {
         let what = format!("the rig '{}' runs and has the device", config.rig.name);
-        return Err(Fault::usage(what).help("end it first: Ctrl-C where `maulstick up` runs"));
+        return Err(UserError::usage(what).help("end it first: Ctrl-C where `maulstick up` runs"));
     }
-    check_writable(path, Kind::Own).map_err(|error| Fault::writing(path, &error))?;
+    check_writable(path, Kind::Own).map_err(|error| UserError::writing(path, &error))?;
     let stop = Stop::on_signals(&Wake::new())
-        .map_err(|error| Fault::failure(format!("cannot watch for signals: {error}")))?;
+        .map_err(|error| UserError::failure(format!("cannot watch for signals: {error}")))?;
     let mut showing = Showing::of(&device);
     let mut broken = None;
     let look = |reading| {
@@ -104,7 +104,7 @@ fn fit_tablet(
     config: &RigConfig,
     mut device: DeviceSection,
     corners: &[DVec3; 3],
-) -> Result<(), Fault> {
+) -> Result<(), UserError> {
     device.corners_m = Some(corners.map(|corner| corner.to_array()));
     // With corners, neither the tablet's area nor its senses matter.
     Tablet::fit([1.0; 2], 0, &device, &config.canvas)?;
@@ -120,11 +120,11 @@ fn fit_tablet(
 
 /// Checks that the corners are those of the canvas, and says how they fit: a hand in the air may not
 /// be stretched.
-fn fit_ferrule(config: &RigConfig, corners: &[DVec3; 3]) -> Result<(), Fault> {
+fn fit_ferrule(config: &RigConfig, corners: &[DVec3; 3]) -> Result<(), UserError> {
     let (to_desk, fit) = by_corners(corners, canvas_m(&config.canvas))?;
     say!("{fit}");
     if !fit.is_good() {
-        return Err(Fault::failure("the three places are no corners of the canvas; nothing is written")
+        return Err(UserError::failure("the three places are no corners of the canvas; nothing is written")
             .help("its width by height has to fit within 10 %, and its corner to be a right one; begin again"));
     }
     say!(
@@ -138,7 +138,7 @@ fn fit_ferrule(config: &RigConfig, corners: &[DVec3; 3]) -> Result<(), Fault> {
 fn watch_pen(
     device: &DeviceSection,
     look: impl FnMut(HandReading) -> ControlFlow<()>,
-) -> Result<(), Fault> {
+) -> Result<(), UserError> {
     let shown = maulstick_hid::probe::open(&mut Hidraw, device)?;
     say!("{}: {}", device.name, shown.what);
     Showing::of(device).ask()?;
@@ -149,7 +149,7 @@ fn watch_ferrule(
     config: &RigConfig,
     device: &DeviceSection,
     look: impl FnMut(HandReading) -> ControlFlow<()>,
-) -> Result<(), Fault> {
+) -> Result<(), UserError> {
     let settings = HapticSettings {
         device: device.clone(),
         hand: None,
@@ -158,7 +158,7 @@ fn watch_ferrule(
     say!("{}: {}", device.name, opened.what);
     Showing::of(device).ask()?;
     probe(opened, DVec3::from(device.ferrule_m), look)
-        .map_err(|error| Fault::failure(error.to_string()).help(error.help))
+        .map_err(|error| UserError::failure(error.to_string()).help(error.help))
 }
 
 /// A calibration in progress, corner by corner.
@@ -179,14 +179,14 @@ impl Showing {
         }
     }
 
-    fn ask(&self) -> Result<(), Fault> {
+    fn ask(&self) -> Result<(), UserError> {
         if let Some(corner) = self.corners.wanted() {
             say!("touch the {corner} corner of the canvas {}", self.how);
         }
         Ok(())
     }
 
-    fn see(&mut self, reading: HandReading) -> Result<ControlFlow<()>, Fault> {
+    fn see(&mut self, reading: HandReading) -> Result<ControlFlow<()>, UserError> {
         let progress = match reading {
             HandReading::Sample(seen) => self.corners.see(&seen),
             HandReading::Away => {
@@ -211,18 +211,18 @@ impl Showing {
 }
 
 /// Writes the corners of a device into the settings, and nothing else of them.
-fn write(path: &Path, device: &str, corners: &[DVec3; 3]) -> Result<(), Fault> {
+fn write(path: &Path, device: &str, corners: &[DVec3; 3]) -> Result<(), UserError> {
     // Changes made to the file meanwhile stay.
-    let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
+    let text = std::fs::read_to_string(path).map_err(|error| UserError::reading(path, &error))?;
     let place = path.display().to_string();
     let text = with_corners(&text, device, corners).map_err(|what| {
-        Fault::failure(what)
+        UserError::failure(what)
             .at(place.clone())
             .help("see what was changed in the file")
     })?;
     RigConfig::parse(&text, &place)?;
     write_whole(path, Kind::Own, |file| file.write_all(text.as_bytes()))
-        .map_err(|error| Fault::writing(path, &error))
+        .map_err(|error| UserError::writing(path, &error))
 }
 
 /// The settings with other corners of a device, to a thousandth of a millimetre; comments and all else

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use maulstick_optics::PaintError;
 use maulstick_painting::paint_error;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
@@ -84,8 +84,8 @@ pub struct SnapshotOptions {
 /// Loads a brush.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown paint or brush, or where no rig runs.
-pub fn load(options: &LoadOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for an unknown paint or brush, or where no rig runs.
+pub fn load(options: &LoadOptions) -> Result<i32, UserError> {
     let brush = options.brush.clone();
     let mixture = mixture_of(&options.mixture)?;
     let command = match &options.beside {
@@ -101,7 +101,7 @@ pub fn load(options: &LoadOptions) -> Result<i32, Fault> {
 }
 
 /// A mixture; whether there are such paints the rig knows.
-fn mixture_of(text: &str) -> Result<Mixture, Fault> {
+fn mixture_of(text: &str) -> Result<Mixture, UserError> {
     text.parse()
         .map_err(|error| refused(paint_error(PaintError::Mixture(error))))
 }
@@ -109,8 +109,8 @@ fn mixture_of(text: &str) -> Result<Mixture, Fault> {
 /// Makes a brush stiffer or softer.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown brush or numbers out of range, or where no rig runs.
-pub fn tune(options: &TuneOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for an unknown brush or numbers out of range, or where no rig runs.
+pub fn tune(options: &TuneOptions) -> Result<i32, UserError> {
     let command = Command::Tune {
         tuning: Tuning {
             brush: options.brush.clone(),
@@ -125,8 +125,8 @@ pub fn tune(options: &TuneOptions) -> Result<i32, Fault> {
 /// Cleans a brush.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown brush, or where no rig runs.
-pub fn clean(options: &CleanOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for an unknown brush, or where no rig runs.
+pub fn clean(options: &CleanOptions) -> Result<i32, UserError> {
     Session::command(
         &options.target,
         PAINT,
@@ -140,8 +140,8 @@ pub fn clean(options: &CleanOptions) -> Result<i32, Fault> {
 /// Undoes the newest step.
 ///
 /// # Errors
-/// A [`Fault`] if there is none, or if no rig runs.
-pub fn undo(options: &HistoryOptions) -> Result<i32, Fault> {
+/// A [`UserError`] if there is none, or if no rig runs.
+pub fn undo(options: &HistoryOptions) -> Result<i32, UserError> {
     let brush = options.brush.clone();
     let what = Session::command(&options.target, PAINT, Command::Undo { brush })?;
     say!("undone: {what}");
@@ -151,8 +151,8 @@ pub fn undo(options: &HistoryOptions) -> Result<i32, Fault> {
 /// Redoes the newest undone step.
 ///
 /// # Errors
-/// A [`Fault`] if there is none, or if no rig runs.
-pub fn redo(options: &HistoryOptions) -> Result<i32, Fault> {
+/// A [`UserError`] if there is none, or if no rig runs.
+pub fn redo(options: &HistoryOptions) -> Result<i32, UserError> {
     let brush = options.brush.clone();
     let what = Session::command(&options.target, PAINT, Command::Redo { brush })?;
     say!("redone: {what}");
@@ -162,8 +162,8 @@ pub fn redo(options: &HistoryOptions) -> Result<i32, Fault> {
 /// Has the picture of the canvas written.
 ///
 /// # Errors
-/// A [`Fault`] where it cannot be written, or where no rig runs.
-pub fn snapshot(options: &SnapshotOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where it cannot be written, or where no rig runs.
+pub fn snapshot(options: &SnapshotOptions) -> Result<i32, UserError> {
     let picture = UsedFile::new("the picture", &options.output).of(Kind::Png);
     let ledger = UsedFile::written("the ledger", options.ledger.as_ref(), Kind::Ledger);
     let outputs: Vec<_> = std::iter::once(picture).chain(ledger).collect();

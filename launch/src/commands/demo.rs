@@ -6,7 +6,7 @@ use clap::Args;
 use indicatif::ProgressBar;
 use maulstick_device::demo::{Subject, performance};
 use maulstick_painting::picture::picture;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 use maulstick_types::scene::CANVAS;
 
@@ -42,7 +42,7 @@ pub struct DemoOptions {
 
 impl DemoOptions {
     /// Refuses options that would do nothing.
-    fn check_idle(&self) -> Result<(), Fault> {
+    fn check_idle(&self) -> Result<(), UserError> {
         for (option, given, help) in [
             (
                 "--marks",
@@ -57,11 +57,11 @@ impl DemoOptions {
         ] {
             if given && self.output.is_none() {
                 let what = format!("{option} does nothing beside --sheet alone");
-                return Err(Fault::usage(what).help(help));
+                return Err(UserError::usage(what).help(help));
             }
         }
         if self.cells.cell_mm.is_some() && self.sheet.is_none() {
-            return Err(Fault::usage(
+            return Err(UserError::usage(
                 "--cell-mm does nothing without --sheet PNG or --painting NAME",
             )
             .help("a take has no cells; `maulstick render --cell-mm` has"));
@@ -73,8 +73,8 @@ impl DemoOptions {
 /// Writes the performance and the sheet.
 ///
 /// # Errors
-/// A [`Fault`] where either cannot be written.
-pub fn run(options: &DemoOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where either cannot be written.
+pub fn run(options: &DemoOptions) -> Result<i32, UserError> {
     if let Some(name) = &options.painting {
         return run_painting(name, options);
     }
@@ -104,7 +104,7 @@ pub fn run(options: &DemoOptions) -> Result<i32, Fault> {
 }
 
 /// Writes one of the paintings.
-fn run_painting(name: &str, options: &DemoOptions) -> Result<i32, Fault> {
+fn run_painting(name: &str, options: &DemoOptions) -> Result<i32, UserError> {
     let library = library()?;
     script(name, &library)?;
     let named = PathBuf::from(format!("{name}.png"));

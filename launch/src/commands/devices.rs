@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use maulstick_bus::Class;
-use maulstick_rig::Fault;
+use maulstick_bus::Qos;
+use maulstick_rig::UserError;
 use maulstick_types::stylus::{StylusInfo, StylusStatus};
 use serde::Serialize;
 use serde_json::json;
@@ -82,8 +82,8 @@ struct Told {
 /// Lists what is attached.
 ///
 /// # Errors
-/// A [`Fault`] where it cannot be printed.
-pub fn run(options: &DevicesOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where it cannot be printed.
+pub fn run(options: &DevicesOptions) -> Result<i32, UserError> {
     let places = Places::here();
     if options.udev {
         print_text(&rules(&hid::devices(&places)))?;
@@ -114,11 +114,9 @@ pub fn run(options: &DevicesOptions) -> Result<i32, Fault> {
 fn used(target: &Target) -> Option<Vec<Used>> {
     let session = Session::open(target).ok()?;
     let topics = session.topics();
-    let mut infos: Feed<StylusInfo> = session
-        .follow(&topics.stylus_info("*"), Class::Cached)
-        .ok()?;
+    let mut infos: Feed<StylusInfo> = session.follow(&topics.stylus_info("*"), Qos::Cached).ok()?;
     let mut statuses: Feed<StylusStatus> = session
-        .follow(&topics.stylus_status("*"), Class::Background)
+        .follow(&topics.stylus_status("*"), Qos::Background)
         .ok()?;
     let mut found: Vec<Used> = Vec::new();
     let mut until = Instant::now() + PATIENCE;

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use maulstick_bus::RigFolder;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use serde_json::json;
 
 use crate::commands::print_json;
@@ -22,8 +22,8 @@ pub struct EndpointOptions {
 /// Prints where the rig is.
 ///
 /// # Errors
-/// A [`Fault`] where no such rig runs.
-pub fn run(options: &EndpointOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where no such rig runs.
+pub fn run(options: &EndpointOptions) -> Result<i32, UserError> {
     let (_, info) = RigFolder::join(&options.name)?;
     if options.json {
         print_json(&json!({

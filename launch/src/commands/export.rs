@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use maulstick_exchange::Format;
 use maulstick_paint_node::exporter::kind_of;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 use maulstick_types::command::{Command, ExportOrder};
 use maulstick_types::scene::{CANVAS, PALETTE};
@@ -56,8 +56,8 @@ pub struct ExportOptions {
 /// Has the painting written as it is now.
 ///
 /// # Errors
-/// A [`Fault`] where it cannot be written, where another export goes on, or where no rig runs.
-pub fn run(options: &ExportOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where it cannot be written, where another export goes on, or where no rig runs.
+pub fn run(options: &ExportOptions) -> Result<i32, UserError> {
     let session = Session::open(&options.target)?;
     let Some(file) = &options.file else {
         session.send(PAINT, Command::StopExport)?;
@@ -90,7 +90,7 @@ pub fn run(options: &ExportOptions) -> Result<i32, Fault> {
             ..ExportOrder::to(&file.asked())
         },
     };
-    command.check().map_err(Fault::told)?;
+    command.check().map_err(UserError::told)?;
     let done = session.send_within(PAINT, command, LONGEST)?;
     say!("{}", file.arrive(&done)?);
     Ok(0)

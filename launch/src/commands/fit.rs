@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use maulstick_measure::{Fit, FitOptions, MeasureError, paint_file, parse_surface};
 use maulstick_optics::surface::SurfaceCorrection;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, write_whole};
 use serde_json::json;
 
@@ -43,18 +43,18 @@ pub struct FitCommand {
 /// Fits the paints and writes their file.
 ///
 /// # Errors
-/// A [`Fault`] with line and column of the table, or where the file cannot be written.
-pub fn run(options: &FitCommand) -> Result<i32, Fault> {
+/// A [`UserError`] with line and column of the table, or where the file cannot be written.
+pub fn run(options: &FitCommand) -> Result<i32, UserError> {
     let path = &options.measurements;
     let text = std::fs::read_to_string(path).map_err(|error| {
-        let fault = Fault::reading(path, &error);
+        let fault = UserError::reading(path, &error);
         match error.kind() {
             ErrorKind::InvalidData => fault.help("save the table as CSV in UTF-8"),
             _ => fault,
         }
     })?;
     let output = &options.output;
-    let writing = |error: std::io::Error| Fault::writing(output, &error);
+    let writing = |error: std::io::Error| UserError::writing(output, &error);
     check_outputs(
         &[UsedFile::new("the paints", output).of(Kind::Paints)],
         &[UsedFile::new("the measurements", path)],
@@ -85,7 +85,7 @@ pub fn run(options: &FitCommand) -> Result<i32, Fault> {
     Ok(0)
 }
 
-fn refused(path: &Path, error: &MeasureError) -> Fault {
+fn refused(path: &Path, error: &MeasureError) -> UserError {
     let mut place = path.display().to_string();
     if let Some(line) = error.place.line {
         place.push_str(&format!(":{line}"));
@@ -97,7 +97,7 @@ fn refused(path: &Path, error: &MeasureError) -> Fault {
         };
         place.push_str(&format!(", {column}"));
     }
-    Fault::usage(&error.what).at(place).help(&error.help)
+    UserError::usage(&error.what).at(place).help(&error.help)
 }
 
 fn as_json(fit: &Fit, output: &Path) -> serde_json::Value {

@@ -10,7 +10,7 @@ use maulstick_haptics::Contact;
 use maulstick_haptics::contact::HandleState;
 use maulstick_num::cos;
 use maulstick_num::geometry::rotation;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::BrushSection;
 use maulstick_rig::files::Kind;
 use maulstick_types::haptics::{ContactModel, ForceLaw};
@@ -157,9 +157,9 @@ struct Row {
 /// Prints and draws the force by depth and angle.
 ///
 /// # Errors
-/// A [`Fault`] for a bad brush file or a picture that cannot be written; for an order where no device of
+/// A [`UserError`] for a bad brush file or a picture that cannot be written; for an order where no device of
 /// a rig takes it.
-pub fn run(options: &ForceOptions) -> Result<i32, Fault> {
+pub fn run(options: &ForceOptions) -> Result<i32, UserError> {
     if let Some(order) = &options.order {
         return give(order);
     }
@@ -168,7 +168,7 @@ pub fn run(options: &ForceOptions) -> Result<i32, Fault> {
             "--stiffness-n-m does nothing beside --model {}",
             options.model.name()
         );
-        return Err(Fault::usage(what)
+        return Err(UserError::usage(what)
             .help("it is the hard wall's: --model rigid; --max-stiffness-n-m bounds any model"));
     }
     let plot_file = UsedFile::written("the plot", options.plot.as_ref(), Kind::Png);
@@ -246,7 +246,7 @@ fn panels(options: &ForceOptions, curves: &[Vec<Row>]) -> [Panel; 2] {
 }
 
 /// The force at each depth of a brush that leans by an angle, as a servo evaluates it.
-fn rows(options: &ForceOptions, file: &BrushFile, degrees: f64) -> Result<Vec<Row>, Fault> {
+fn rows(options: &ForceOptions, file: &BrushFile, degrees: f64) -> Result<Vec<Row>, UserError> {
     let (angle, length) = (degrees.to_radians(), file.length_m());
     let depths: Vec<f64> = options.depth_mm.0.iter().map(|mm| mm * 1e-3).collect();
     let lean = rotation(DVec3::Y, angle);
@@ -280,11 +280,13 @@ fn solved(
     file: &BrushFile,
     degrees: f64,
     depths: &[f64],
-) -> Result<Vec<Row>, Fault> {
+) -> Result<Vec<Row>, UserError> {
     if degrees > FLATTEST_SOLVED {
-        return Err(Fault::usage(format!("a head is not solved at {degrees}°"))
-            .at("--angle-deg")
-            .help(format!("hold it at {FLATTEST_SOLVED}° or steeper")));
+        return Err(
+            UserError::usage(format!("a head is not solved at {degrees}°"))
+                .at("--angle-deg")
+                .help(format!("hold it at {FLATTEST_SOLVED}° or steeper")),
+        );
     }
     let angle = degrees.to_radians();
     let (lean, length) = (rotation(DVec3::Y, angle), file.length_m());
@@ -324,9 +326,9 @@ fn row(depth_m: f64, angle_rad: f64, contact: &maulstick_haptics::ContactForce) 
 }
 
 /// A model over the plane z = 0.
-fn contact(file: &BrushFile, law: ForceLaw) -> Result<Contact, Fault> {
+fn contact(file: &BrushFile, law: ForceLaw) -> Result<Contact, UserError> {
     let model = ContactModel::bare(law, file.length_m());
-    Contact::new(&model).map_err(Fault::failure)
+    Contact::new(&model).map_err(UserError::failure)
 }
 
 #[cfg(test)]

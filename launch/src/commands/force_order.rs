@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use clap::{Args, Subcommand};
-use maulstick_bus::Class;
-use maulstick_rig::Fault;
+use maulstick_bus::Qos;
+use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::stylus::{StylusInfo, axes};
@@ -62,8 +62,8 @@ fn share(text: &str) -> Result<f64, String> {
 /// Sends a request to devices and prints their resulting state.
 ///
 /// # Errors
-/// A [`Fault`] if no rig runs, or no device of it gives force or answers.
-pub fn give(order: &Order) -> Result<i32, Fault> {
+/// A [`UserError`] if no rig runs, or no device of it gives force or answers.
+pub fn give(order: &Order) -> Result<i32, UserError> {
     let (whose, order) = match order {
         Order::Off(whose) => (whose, ForceOrder::Off),
         Order::On(whose) => (whose, ForceOrder::On),
@@ -88,7 +88,7 @@ pub fn give(order: &Order) -> Result<i32, Fault> {
     print_text(&text)?;
     match silent.is_empty() {
         true => Ok(0),
-        false => Err(Fault::failure(format!(
+        false => Err(UserError::failure(format!(
             "{}: its daemon does not answer, so nothing is changed",
             silent.join(", ")
         ))
@@ -98,10 +98,12 @@ pub fn give(order: &Order) -> Result<i32, Fault> {
 }
 
 /// The device of that name, if it is one that gives force.
-fn chosen(known: &[DeviceSection], name: &str, session: &Session) -> Result<String, Fault> {
+fn chosen(known: &[DeviceSection], name: &str, session: &Session) -> Result<String, UserError> {
     match known.iter().find(|device| device.name == name) {
-        Some(device) if device.is_hid() => Err(Fault::usage(format!("'{name}' gives no force"))
-            .help(format!("its driver is {}", device.driver))),
+        Some(device) if device.is_hid() => {
+            Err(UserError::usage(format!("'{name}' gives no force"))
+                .help(format!("its driver is {}", device.driver)))
+        }
         Some(_) => Ok(name.to_owned()),
         None => {
             let others = told_of(session, Instant::now() + TOGETHER)?;
@@ -110,7 +112,7 @@ fn chosen(known: &[DeviceSection], name: &str, session: &Session) -> Result<Stri
                 false => {
                     let names = known.iter().map(|device| device.name.as_str());
                     let what = format!("there is no device '{name}' in the rig");
-                    Err(Fault::unknown(what, name, names))
+                    Err(UserError::unknown(what, name, names))
                 }
             }
         }
@@ -118,7 +120,7 @@ fn chosen(known: &[DeviceSection], name: &str, session: &Session) -> Result<Stri
 }
 
 /// All devices that give force: those of rig.toml, present or not, and others that report that they do.
-fn all(known: &[DeviceSection], session: &Session) -> Result<Vec<String>, Fault> {
+fn all(known: &[DeviceSection], session: &Session) -> Result<Vec<String>, UserError> {
     let own = known.iter().filter(|device| !device.is_hid());
     let mut found: Vec<String> = own.map(|device| device.name.clone()).collect();
     let wait = match found.is_empty() {
@@ -131,7 +133,7 @@ fn all(known: &[DeviceSection], session: &Session) -> Result<Vec<String>, Fault>
         }
     }
     match found.is_empty() {
-        true => Err(Fault::failure("no device of the rig gives force")
+        true => Err(UserError::failure("no device of the rig gives force")
             .at(session.topics().stylus_info("*"))
             .help("see `[[device]]` of rig.toml")),
         false => Ok(found),
@@ -155,9 +157,9 @@ fn told(device: &str, reply: &ForceReply) -> String {
 }
 
 /// The devices that report that they give force.
-fn told_of(session: &Session, mut until: Instant) -> Result<Vec<String>, Fault> {
+fn told_of(session: &Session, mut until: Instant) -> Result<Vec<String>, UserError> {
     let mut infos: session::Feed<StylusInfo> =
-        session.follow(&session.topics().stylus_info("*"), Class::Cached)?;
+        session.follow(&session.topics().stylus_info("*"), Qos::Cached)?;
     let mut found = Vec::new();
     while let Some(info) = infos.next_before(until) {
         if info.drives & axes::FORCE != 0 && !found.contains(&info.device) {

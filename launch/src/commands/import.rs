@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use maulstick_device::table::{TableLayout, TimeUnit, import};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 
 use crate::commands::write_take;
@@ -32,10 +32,12 @@ pub struct ImportOptions {
 /// Imports the table.
 ///
 /// # Errors
-/// A [`Fault`] with the table's line, or where the take cannot be written.
-pub fn run(options: &ImportOptions) -> Result<i32, Fault> {
+/// A [`UserError`] with the table's line, or where the take cannot be written.
+pub fn run(options: &ImportOptions) -> Result<i32, UserError> {
     if !(options.unit_mm > 0.0 && options.unit_mm.is_finite()) {
-        return Err(Fault::usage(format!("--unit-mm {}", options.unit_mm)).help("choose above 0"));
+        return Err(
+            UserError::usage(format!("--unit-mm {}", options.unit_mm)).help("choose above 0")
+        );
     }
     check_outputs(
         &[UsedFile::new("the take", &options.output).of(Kind::Take)],

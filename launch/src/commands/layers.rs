@@ -1,7 +1,7 @@
 //! `maulstick dry`, `wet` and `opacity`: dry layers of a running rig.
 
 use clap::Args;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::Region;
 use maulstick_types::command::Command;
 use maulstick_types::scene::{CANVAS, PALETTE};
@@ -70,15 +70,15 @@ fn surface(palette: bool) -> u32 {
     if palette { PALETTE } else { CANVAS }
 }
 
-fn send(target: &Target, command: Command) -> Result<String, Fault> {
+fn send(target: &Target, command: Command) -> Result<String, UserError> {
     Session::command(target, PAINT, command)
 }
 
 /// Dries what is wet.
 ///
 /// # Errors
-/// A [`Fault`] where nothing is wet, or no rig runs.
-pub fn dry(options: &DryOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where nothing is wet, or no rig runs.
+pub fn dry(options: &DryOptions) -> Result<i32, UserError> {
     let (surface, name) = (surface(options.palette), options.layer.clone());
     let region = options.region.clone();
     let command = match (options.stop, options.over, region) {
@@ -113,8 +113,8 @@ pub fn dry(options: &DryOptions) -> Result<i32, Fault> {
 /// Makes dry layers wet again.
 ///
 /// # Errors
-/// A [`Fault`] where nothing has dried, or no rig runs.
-pub fn wet(options: &WetOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where nothing has dried, or no rig runs.
+pub fn wet(options: &WetOptions) -> Result<i32, UserError> {
     let command = Command::Wet {
         surface: surface(options.palette),
         layers: if options.all { 0 } else { options.layers },
@@ -127,8 +127,8 @@ pub fn wet(options: &WetOptions) -> Result<i32, Fault> {
 /// Makes a layer more or less opaque.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown layer, or where no rig runs.
-pub fn opacity(options: &OpacityOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for an unknown layer, or where no rig runs.
+pub fn opacity(options: &OpacityOptions) -> Result<i32, UserError> {
     let command = Command::LayerOpacity {
         layer: options.layer.clone(),
         opacity: options.opacity,

@@ -3,8 +3,8 @@
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use maulstick_appearance::light::changes_colour;
-use maulstick_bus::Class;
-use maulstick_rig::Fault;
+use maulstick_bus::Qos;
+use maulstick_rig::UserError;
 use maulstick_types::command::Command;
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::{Light, Scene};
@@ -103,13 +103,13 @@ fn three(text: &str) -> Result<[f64; 3], String> {
 /// Changes the light and waits until the dry layers are computed anew; without changes it only prints the light.
 ///
 /// # Errors
-/// A [`Fault`] for an invalid light, or if no rig runs.
-pub fn run(options: &LightOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for an invalid light, or if no rig runs.
+pub fn run(options: &LightOptions) -> Result<i32, UserError> {
     // An invalid change is refused even if no rig runs.
     let change = options.change();
     change.on(&Light::default())?;
     let session = Session::open(&options.target)?;
-    let mut scenes: Feed<Scene> = session.follow(&session.topics().scene(), Class::Cached)?;
+    let mut scenes: Feed<Scene> = session.follow(&session.topics().scene(), Qos::Cached)?;
     let before = scenes.hear()?.message.light;
     let mut light = change.on(&before)?;
     let expose = match options.exposure {
@@ -117,7 +117,7 @@ pub fn run(options: &LightOptions) -> Result<i32, Fault> {
         None => changes_colour(&light, &before),
     };
     if light != before || expose {
-        let mut statuses = session.follow(&session.topics().paint_status(), Class::Background)?;
+        let mut statuses = session.follow(&session.topics().paint_status(), Qos::Background)?;
         session.send(PAINT, Command::Relight { light, expose })?;
         wait_for_baking(&mut statuses, session.now_ns())?;
         light = scenes.hear()?.message.light;
@@ -128,7 +128,7 @@ pub fn run(options: &LightOptions) -> Result<i32, Fault> {
 }
 
 /// Shows how far the dry layers are.
-fn wait_for_baking(statuses: &mut Feed<PaintStatus>, since_ns: u64) -> Result<(), Fault> {
+fn wait_for_baking(statuses: &mut Feed<PaintStatus>, since_ns: u64) -> Result<(), UserError> {
     let bar = ProgressBar::new(0).with_message("relighting");
     if let Ok(style) = ProgressStyle::with_template("{msg} {bar:40} {pos}/{len} tiles, {eta} left")
     {
@@ -149,7 +149,7 @@ fn wait_for_baking(statuses: &mut Feed<PaintStatus>, since_ns: u64) -> Result<()
     }
 }
 
-fn tell(light: &Light, options: &LightOptions) -> Result<i32, Fault> {
+fn tell(light: &Light, options: &LightOptions) -> Result<i32, UserError> {
     let Light {
         direction,
         intensity,

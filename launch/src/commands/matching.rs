@@ -7,7 +7,7 @@ use maulstick_optics::colour::srgb_decode;
 use maulstick_optics::matching::{Proposal, Proposals, propose};
 use maulstick_optics::{Paint, PaintLibrary, Viewing};
 use maulstick_painting::paint_error;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use serde_json::{Value, json};
 
 use crate::commands::{print_json, print_text};
@@ -47,7 +47,7 @@ const SHOWN: usize = 5;
 const ANOTHER: f64 = 2.0;
 
 /// Linear sRGB of `#rrggbb` or `#rgb`.
-fn linear_of(text: &str) -> Result<[f64; 3], Fault> {
+fn linear_of(text: &str) -> Result<[f64; 3], UserError> {
     let digits: Option<Vec<u32>> = text
         .strip_prefix('#')
         .unwrap_or(text)
@@ -58,14 +58,14 @@ fn linear_of(text: &str) -> Result<[f64; 3], Fault> {
         Some(&[r, g, b]) => [17 * r, 17 * g, 17 * b],
         Some(&[r, s, g, h, b, c]) => [16 * r + s, 16 * g + h, 16 * b + c],
         _ => {
-            return Err(Fault::usage(format!("'{text}' is no sRGB colour"))
+            return Err(UserError::usage(format!("'{text}' is no sRGB colour"))
                 .help("six hexadecimal digits, \"#8a5a3c\", or --lab L,a,b"));
         }
     };
     Ok(bytes.map(|byte| srgb_decode(f64::from(byte) / 255.0)))
 }
 
-fn lab_of(text: &str) -> Result<[f64; 3], Fault> {
+fn lab_of(text: &str) -> Result<[f64; 3], UserError> {
     let numbers: Vec<Option<f64>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
     match numbers.as_slice() {
         &[Some(l), Some(a), Some(b)]
@@ -73,22 +73,22 @@ fn lab_of(text: &str) -> Result<[f64; 3], Fault> {
         {
             Ok([l, a, b])
         }
-        _ => Err(Fault::usage(format!("'{text}' is no CIELAB colour"))
+        _ => Err(UserError::usage(format!("'{text}' is no CIELAB colour"))
             .at("--lab")
             .help("L* from 0 to 100, a* and b* from -200 to 200: --lab 44.5,17.2,24.1")),
     }
 }
 
 impl MatchOptions {
-    fn target(&self, viewing: &Viewing) -> Result<[f64; 3], Fault> {
+    fn target(&self, viewing: &Viewing) -> Result<[f64; 3], UserError> {
         match (&self.lab, &self.hex) {
             (Some(lab), _) => lab_of(lab),
             (None, Some(hex)) => Ok(viewing.display(linear_of(hex)?).lab),
-            (None, None) => Err(Fault::usage("no colour is given")),
+            (None, None) => Err(UserError::usage("no colour is given")),
         }
     }
 
-    fn chosen(&self, library: &PaintLibrary) -> Result<Vec<Paint>, Fault> {
+    fn chosen(&self, library: &PaintLibrary) -> Result<Vec<Paint>, UserError> {
         if self.paint.is_empty() {
             return Ok(library.paints().to_vec());
         }
@@ -102,7 +102,7 @@ impl MatchOptions {
             }
         }
         match paints.len() {
-            1 => Err(Fault::usage("one paint makes no mixture")
+            1 => Err(UserError::usage("one paint makes no mixture")
                 .at("--paint")
                 .help(
                     "name two paints or more: --paint \"Cobalt Blue\" --paint \"Titanium White\"",
@@ -115,8 +115,8 @@ impl MatchOptions {
 /// Proposes mixtures.
 ///
 /// # Errors
-/// A [`Fault`] for a bad colour, paint, paint file or light.
-pub fn run(options: &MatchOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for a bad colour, paint, paint file or light.
+pub fn run(options: &MatchOptions) -> Result<i32, UserError> {
     let library = library_from(options.paints.as_deref())?;
     let paints = options.chosen(&library)?;
     let viewing = options.viewing.viewing(&library)?;

@@ -7,7 +7,7 @@ use maulstick_appearance::picture::Picture;
 use maulstick_optics::comparison::compare;
 use maulstick_optics::surface::SurfaceCorrection;
 use maulstick_optics::{Blend, Coat, Layer, PaintLibrary, Seen, Spectrum};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 use serde_json::json;
 
@@ -107,8 +107,8 @@ impl FilmOptions {
 /// Shows a mixture, the chart, or the four ways of mixing.
 ///
 /// # Errors
-/// A [`Fault`] for a bad mixture, paint file or light, or a picture that cannot be written.
-pub fn run(options: &MixOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for a bad mixture, paint file or light, or a picture that cannot be written.
+pub fn run(options: &MixOptions) -> Result<i32, UserError> {
     let library = library_from(options.paints.as_deref())?;
     let output = UsedFile::written("the picture", options.output.as_ref(), Kind::Png);
     let inputs: Vec<_> = UsedFile::given("the paints", options.paints.as_ref())
@@ -126,14 +126,14 @@ pub fn run(options: &MixOptions) -> Result<i32, Fault> {
     Ok(0)
 }
 
-fn blend(text: &str, library: &PaintLibrary) -> Result<Blend, Fault> {
+fn blend(text: &str, library: &PaintLibrary) -> Result<Blend, UserError> {
     let mixture = mixture_of(text, library).map_err(|fault| fault.at(format!("{text:?}")))?;
-    Blend::of(library, &mixture).map_err(|error| Fault::usage(error.to_string()))
+    Blend::of(library, &mixture).map_err(|error| UserError::usage(error.to_string()))
 }
 
-fn show(options: &MixOptions, library: &PaintLibrary) -> Result<(), Fault> {
+fn show(options: &MixOptions, library: &PaintLibrary) -> Result<(), UserError> {
     let [text] = options.mixtures.as_slice() else {
-        return Err(Fault::usage("more than one mixture")
+        return Err(UserError::usage("more than one mixture")
             .help("put a comma between the paints, and quotes around them: \"A=0.7,B=0.3\""));
     };
     let viewing = options.viewing.viewing(library)?;
@@ -170,13 +170,13 @@ fn swatch(text: &str, reflectance: &Spectrum, seen: &Seen) -> String {
     lines.map(|line| format!("{block}{line}\n")).concat()
 }
 
-fn write(picture: &Picture, path: &Path) -> Result<(), Fault> {
+fn write(picture: &Picture, path: &Path) -> Result<(), UserError> {
     write_picture(picture, path)?;
     let (width, height) = (picture.width, picture.height);
     print_text(&format!("{}: {width}×{height} pixels\n", path.display()))
 }
 
-fn draw_chart(options: &MixOptions, library: &PaintLibrary) -> Result<(), Fault> {
+fn draw_chart(options: &MixOptions, library: &PaintLibrary) -> Result<(), UserError> {
     let Some(path) = &options.output else {
         return Ok(());
     };
@@ -186,7 +186,7 @@ fn draw_chart(options: &MixOptions, library: &PaintLibrary) -> Result<(), Fault>
 
 /// The two ends of a graded mixture: given, those of a mixture of two paints, or the dissertation's
 /// as far as they are measured (its Prussian blue is not).
-fn ends(mixtures: &[String]) -> Result<[String; 2], Fault> {
+fn ends(mixtures: &[String]) -> Result<[String; 2], UserError> {
     match mixtures {
         [] => Ok(["Yellow Ochre", "Phthalo Blue Green Shade"].map(str::to_owned)),
         [one, two] => Ok([one.clone(), two.clone()]),
@@ -195,7 +195,7 @@ fn ends(mixtures: &[String]) -> Result<[String; 2], Fault> {
             let (first, second) = one.split_once(',').unwrap_or((one, one));
             Ok([name(first), name(second)])
         }
-        _ => Err(Fault::usage(format!(
+        _ => Err(UserError::usage(format!(
             "a graded mixture has two ends, not {}",
             mixtures.len()
         ))
@@ -204,7 +204,7 @@ fn ends(mixtures: &[String]) -> Result<[String; 2], Fault> {
     }
 }
 
-fn four(options: &MixOptions, library: &PaintLibrary) -> Result<(), Fault> {
+fn four(options: &MixOptions, library: &PaintLibrary) -> Result<(), UserError> {
     let names = ends(&options.mixtures)?;
     let (from, to) = (blend(&names[0], library)?, blend(&names[1], library)?);
     let (reference, viewing) = (

@@ -34,20 +34,20 @@ use std::path::Path;
 use indicatif::{ProgressBar, ProgressStyle};
 use maulstick_appearance::picture::Picture;
 use maulstick_device::Take;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, write_whole};
 use serde_json::Value;
 
 /// Writes a picture as a PNG, whole or not at all.
 ///
 /// # Errors
-/// A [`Fault`] where it cannot be written.
-pub fn write_picture(picture: &Picture, path: &Path) -> Result<(), Fault> {
+/// A [`UserError`] where it cannot be written.
+pub fn write_picture(picture: &Picture, path: &Path) -> Result<(), UserError> {
     write_whole(path, Kind::Png, |file| picture.encode_png(file))
-        .map_err(|error| Fault::writing(path, &error))
+        .map_err(|error| UserError::writing(path, &error))
 }
 
-/// Prints a line as `println!` does, through [`print_line`]: for functions that return a [`Fault`].
+/// Prints a line as `println!` does, through [`print_line`]: for functions that return a [`UserError`].
 macro_rules! say {
     ($($text:tt)*) => {
         $crate::commands::print_line(&format!($($text)*))?
@@ -59,19 +59,19 @@ pub(crate) use say;
 ///
 /// # Errors
 /// As [`print_text`].
-pub fn print_line(line: &str) -> Result<(), Fault> {
+pub fn print_line(line: &str) -> Result<(), UserError> {
     print_text(&format!("{}\n", maulstick_types::plain(line)))
 }
 
 /// Prints text; a reader that has seen enough, as `head` has, is no error.
 ///
 /// # Errors
-/// A [`Fault`] where it cannot be written.
-pub fn print_text(text: &str) -> Result<(), Fault> {
+/// A [`UserError`] where it cannot be written.
+pub fn print_text(text: &str) -> Result<(), UserError> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Fault::failure(format!("cannot print: {error}")))
+            Err(UserError::failure(format!("cannot print: {error}")))
         }
         _ => Ok(()),
     }
@@ -80,18 +80,18 @@ pub fn print_text(text: &str) -> Result<(), Fault> {
 /// Prints JSON, indented.
 ///
 /// # Errors
-/// A [`Fault`] where it cannot be written as text.
-pub fn print_json(value: &Value) -> Result<(), Fault> {
-    let text =
-        serde_json::to_string_pretty(value).map_err(|error| Fault::failure(error.to_string()))?;
+/// A [`UserError`] where it cannot be written as text.
+pub fn print_json(value: &Value) -> Result<(), UserError> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|error| UserError::failure(error.to_string()))?;
     print_text(&(text + "\n"))
 }
 
 /// Writes a take and says what it holds.
 ///
 /// # Errors
-/// A [`Fault`] where the file cannot be written.
-pub fn write_take(take: &Take, path: &Path) -> Result<(), Fault> {
+/// A [`UserError`] where the file cannot be written.
+pub fn write_take(take: &Take, path: &Path) -> Result<(), UserError> {
     take.write(path)?;
     say!(
         "{}: {} samples, {:.1} s",

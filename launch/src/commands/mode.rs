@@ -1,7 +1,7 @@
 //! `maulstick brush mode`, `size` and `piles`: handling of brushes and preparation of surfaces.
 
 use clap::Args;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::PILES;
 use maulstick_types::advice::choice;
 use maulstick_types::command::Command;
@@ -49,24 +49,24 @@ pub struct PilesOptions {
 /// Handling of a brush in a painter's units: flow in µm/mm, most paint in µm.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown mode, with the nearest, for numbers out of range, or for one that does nothing with this
+/// A [`UserError`] for an unknown mode, with the nearest, for numbers out of range, or for one that does nothing with this
 /// mode.
 pub fn handling(
     brush: &str,
     mode: &str,
     flow: Option<f64>,
     most_um: Option<f64>,
-) -> Result<BrushHandling, Fault> {
-    let called = BrushMode::called(mode).map_err(Fault::told)?;
+) -> Result<BrushHandling, UserError> {
+    let called = BrushMode::called(mode).map_err(UserError::told)?;
     if flow.is_some() && called != BrushMode::Marker {
         return Err(
-            Fault::usage(format!("a flow does nothing with the mode {mode}"))
+            UserError::usage(format!("a flow does nothing with the mode {mode}"))
                 .help("leave the flow out, or choose the mode marker"),
         );
     }
     if most_um.is_some() && matches!(called, BrushMode::Sampler | BrushMode::Vacuum) {
         return Err(
-            Fault::usage(format!("most_um does nothing with the mode {mode}"))
+            UserError::usage(format!("most_um does nothing with the mode {mode}"))
                 .help("leave it out: the mode adds no paint to the canvas"),
         );
     }
@@ -79,15 +79,15 @@ pub fn handling(
     let command = Command::Handle {
         handling: handling.clone(),
     };
-    command.check().map_err(Fault::told)?;
+    command.check().map_err(UserError::told)?;
     Ok(handling)
 }
 
 /// Command for the piles on the palette.
 ///
 /// # Errors
-/// A [`Fault`] for anything but [`PILES`].
-pub fn piles_command(piles: &str) -> Result<Command, Fault> {
+/// A [`UserError`] for anything but [`PILES`].
+pub fn piles_command(piles: &str) -> Result<Command, UserError> {
     let surface = PALETTE;
     match piles {
         "last" => Ok(Command::Piles {
@@ -98,11 +98,11 @@ pub fn piles_command(piles: &str) -> Result<Command, Fault> {
             surface,
             last: false,
         }),
-        _ => Err(Fault::usage(format!("piles cannot '{piles}'")).help(choice(piles, PILES))),
+        _ => Err(UserError::usage(format!("piles cannot '{piles}'")).help(choice(piles, PILES))),
     }
 }
 
-fn send(target: &Target, command: Command) -> Result<i32, Fault> {
+fn send(target: &Target, command: Command) -> Result<i32, UserError> {
     Session::command(target, PAINT, command)?;
     Ok(0)
 }
@@ -110,8 +110,8 @@ fn send(target: &Target, command: Command) -> Result<i32, Fault> {
 /// Uses a brush in another way.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown mode or brush, or where no rig runs.
-pub fn mode(options: &ModeOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for an unknown mode or brush, or where no rig runs.
+pub fn mode(options: &ModeOptions) -> Result<i32, UserError> {
     let handling = handling(&options.brush, &options.mode, options.flow, options.most_um)?;
     send(&options.target, Command::Handle { handling })
 }
@@ -119,8 +119,8 @@ pub fn mode(options: &ModeOptions) -> Result<i32, Fault> {
 /// Sizes the canvas.
 ///
 /// # Errors
-/// A [`Fault`] for a thickness out of range, or where no rig runs.
-pub fn size(options: &SizeOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for a thickness out of range, or where no rig runs.
+pub fn size(options: &SizeOptions) -> Result<i32, UserError> {
     let command = Command::Size {
         surface: CANVAS,
         stain_m: options.stain_um * 1e-6,
@@ -131,7 +131,7 @@ pub fn size(options: &SizeOptions) -> Result<i32, Fault> {
 /// Says what piles on the palette do.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown word, or where no rig runs.
-pub fn piles(options: &PilesOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for an unknown word, or where no rig runs.
+pub fn piles(options: &PilesOptions) -> Result<i32, UserError> {
     send(&options.target, piles_command(&options.piles)?)
 }

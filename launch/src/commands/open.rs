@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::command::Command;
 
 use crate::commands::say;
@@ -28,11 +28,11 @@ pub struct OpenOptions {
 /// An absolute path, independent of the current folder.
 ///
 /// # Errors
-/// A [`Fault`] if there is none, or if it is not UTF-8, as messages are.
-pub(crate) fn whole(path: &Path) -> Result<String, Fault> {
-    let whole = std::path::absolute(path).map_err(|error| Fault::reading(path, &error))?;
+/// A [`UserError`] if there is none, or if it is not UTF-8, as messages are.
+pub(crate) fn whole(path: &Path) -> Result<String, UserError> {
+    let whole = std::path::absolute(path).map_err(|error| UserError::reading(path, &error))?;
     whole.into_os_string().into_string().map_err(|name| {
-        Fault::usage("this path is not UTF-8")
+        UserError::usage("this path is not UTF-8")
             .at(name.display().to_string())
             .help("give the file, or the folder that it is in, another name")
     })
@@ -41,13 +41,13 @@ pub(crate) fn whole(path: &Path) -> Result<String, Fault> {
 /// Goes on in another painting.
 ///
 /// # Errors
-/// A [`Fault`] where it cannot be opened, or where no rig runs.
-pub fn run(options: &OpenOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where it cannot be opened, or where no rig runs.
+pub fn run(options: &OpenOptions) -> Result<i32, UserError> {
     let command = Command::Open {
         path: whole(&options.file)?,
         forget: options.forget,
     };
-    command.check().map_err(Fault::told)?;
+    command.check().map_err(UserError::told)?;
     let done = Session::open(&options.target)?.send_within(RIG, command, LONGEST)?;
     say!("{done}");
     Ok(0)

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use maulstick_optics::{Blend, Coat, Paint, RuleKind, StudioSettings, Viewing};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use serde_json::json;
 
 use crate::chart::every_pair::whitest;
@@ -29,8 +29,8 @@ const TINT: f64 = 10.0;
 /// Lists the paints with their masstones, and their tints of one part in ten of white.
 ///
 /// # Errors
-/// A [`Fault`] for a bad paint file.
-pub fn run(options: &PaintsOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for a bad paint file.
+pub fn run(options: &PaintsOptions) -> Result<i32, UserError> {
     let library = library_from(options.paints.as_deref())?;
     let settings = StudioSettings {
         rule: RuleKind::Reference,

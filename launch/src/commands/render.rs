@@ -7,7 +7,7 @@ use maulstick_device::Take;
 use maulstick_paint_node::snapshots::write_snapshot;
 use maulstick_painting::{Painting, Sequencer};
 use maulstick_rig::files::Kind;
-use maulstick_rig::{Fault, RigConfig};
+use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::{Autosave, Offline};
 
 use crate::backend::choose_backend;
@@ -75,10 +75,10 @@ impl RenderOptions {
     }
 
     /// Refuses options that would do nothing.
-    fn check_idle(&self) -> Result<(), Fault> {
+    fn check_idle(&self) -> Result<(), UserError> {
         let painting = &self.painting;
         if let (Some(_), Some(load)) = (&self.script, painting.kit.load.first()) {
-            return Err(Fault::usage("--load does nothing beside --script")
+            return Err(UserError::usage("--load does nothing beside --script")
                 .help(format!("load in the script: {{ load = {load:?} }}")));
         }
         for (option, given) in [
@@ -87,7 +87,7 @@ impl RenderOptions {
         ] {
             if given.is_some() && self.document.is_none() {
                 return Err(
-                    Fault::usage(format!("{option} does nothing without --document"))
+                    UserError::usage(format!("{option} does nothing without --document"))
                         .help("it is for a painting in a file: --document FILE.maul"),
                 );
             }
@@ -97,7 +97,7 @@ impl RenderOptions {
 }
 
 /// Reads a take; a script in its place is refused with advice.
-fn read_take(path: &Path) -> Result<Take, Fault> {
+fn read_take(path: &Path) -> Result<Take, UserError> {
     Take::read(path).map_err(|fault| match path.extension() {
         Some(extension) if extension == "toml" && path.exists() => fault.help(format!(
             "a script is painted with `--script {}`",
@@ -110,8 +110,8 @@ fn read_take(path: &Path) -> Result<Take, Fault> {
 /// Paints the take.
 ///
 /// # Errors
-/// A [`Fault`] for bad input, or where the picture cannot be written.
-pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for bad input, or where the picture cannot be written.
+pub fn run(options: &RenderOptions) -> Result<i32, UserError> {
     let mut config = match &options.rig {
         Some(path) => RigConfig::read(path)?,
         None => picture_settings(),
@@ -121,7 +121,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         Some(path) => Some((path, read_take(path)?)),
         None => None,
     };
-    let folder = tempfile::tempdir().map_err(|error| Fault::failure(error.to_string()))?;
+    let folder = tempfile::tempdir().map_err(|error| UserError::failure(error.to_string()))?;
     let embedded = match &take {
         Some((path, take)) => use_kit(take, path, folder.path(), &mut config)?,
         None => Vec::new(),
@@ -162,7 +162,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     if let Some(size_mm) = script.canvas_mm {
         if options.painting.kit.size.is_some() {
             return Err(
-                Fault::usage("--size does nothing beside a script's 'canvas_mm'")
+                UserError::usage("--size does nothing beside a script's 'canvas_mm'")
                     .help("leave one of them out"),
             );
         }
@@ -213,7 +213,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     }
     let ledger = options.painting.ledger.as_deref();
     write_snapshot(offline.painting_mut(), &options.output, ledger, &export)
-        .map_err(|(path, error)| Fault::writing(&path, &error))?;
+        .map_err(|(path, error)| UserError::writing(&path, &error))?;
     close(&mut offline)?;
     if unloaded {
         eprintln!("the brush carried no paint: `--load \"Ultramarine Blue\"` gives it some");

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::command::Command;
 
 use super::open::{LONGEST, whole};
@@ -25,13 +25,13 @@ pub struct SaveAsOptions {
 /// Puts the painting into another file, where it goes on.
 ///
 /// # Errors
-/// A [`Fault`] where it cannot be written there, or where no rig runs.
-pub fn run(options: &SaveAsOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where it cannot be written there, or where no rig runs.
+pub fn run(options: &SaveAsOptions) -> Result<i32, UserError> {
     let command = Command::SaveAs {
         path: whole(&options.file)?,
         replace: options.replace,
     };
-    command.check().map_err(Fault::told)?;
+    command.check().map_err(UserError::told)?;
     let done = Session::open(&options.target)?.send_within(RIG, command, LONGEST)?;
     say!("{done}");
     Ok(0)

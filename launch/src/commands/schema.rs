@@ -1,7 +1,7 @@
 //! `maulstick schema`: the messages of the rig, for programs in other languages.
 
 use clap::Args;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::CATALOGUE;
 use maulstick_types::schema::{ENCODING, Field, Shape, header_fields};
 use serde_json::json;
@@ -21,8 +21,8 @@ pub struct SchemaOptions {
 /// Prints the field tables.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown message, with the nearest name.
-pub fn run(options: &SchemaOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for an unknown message, with the nearest name.
+pub fn run(options: &SchemaOptions) -> Result<i32, UserError> {
     let wanted = |name: &str| {
         options
             .message
@@ -36,7 +36,7 @@ pub fn run(options: &SchemaOptions) -> Result<i32, Fault> {
     if let (true, Some(message)) = (entries.is_empty(), &options.message) {
         let what = format!("there is no message called '{message}'");
         let names = CATALOGUE.iter().map(|entry| entry.name);
-        return Err(Fault::unknown(what, message, names));
+        return Err(UserError::unknown(what, message, names));
     }
     if options.json {
         let messages: Vec<_> = entries

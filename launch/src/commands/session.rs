@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use maulstick_bus::typed::{Received, Receiver, ask, random_epoch};
-use maulstick_bus::{Bus, BusError, Class, Dial, Queue, RigClock, RigFolder, Wake, ZenohBus};
-use maulstick_rig::commander::Commander;
-use maulstick_rig::member::CONFIG_FILE;
-use maulstick_rig::{Fault, RigConfig};
+use maulstick_bus::{Bus, BusError, Dial, Qos, Queue, RigClock, RigFolder, Wake, ZenohBus};
+use maulstick_rig::command_client::CommandClient;
+use maulstick_rig::node_handle::CONFIG_FILE;
+use maulstick_rig::{RigConfig, UserError};
 use maulstick_types::command::Command;
 use maulstick_types::topics::Topics;
 use maulstick_types::{Message, Origin, name_hash};
@@ -41,8 +41,8 @@ impl Session {
     /// Joins a rig that runs.
     ///
     /// # Errors
-    /// A [`Fault`] where no rig of that name runs.
-    pub fn open(target: &Target) -> Result<Self, Fault> {
+    /// A [`UserError`] where no rig of that name runs.
+    pub fn open(target: &Target) -> Result<Self, UserError> {
         let (folder, info) = RigFolder::join(&target.name)?;
         let dial = Dial {
             name: "cli".into(),
@@ -60,17 +60,17 @@ impl Session {
     /// The settings of the rig, as its nodes read them.
     ///
     /// # Errors
-    /// A [`Fault`] where they cannot be read.
-    pub fn config(&self) -> Result<RigConfig, Fault> {
+    /// A [`UserError`] where they cannot be read.
+    pub fn config(&self) -> Result<RigConfig, UserError> {
         RigConfig::read(&self.folder.join(CONFIG_FILE))
     }
 
     /// Sends a command to a node of the rig that `target` names, once it is checked; returns what the node says.
     ///
     /// # Errors
-    /// A [`Fault`] of the command, where no rig runs, or in the node's own words.
-    pub fn command(target: &Target, node: &str, command: Command) -> Result<String, Fault> {
-        command.check().map_err(Fault::told)?;
+    /// A [`UserError`] of the command, where no rig runs, or in the node's own words.
+    pub fn command(target: &Target, node: &str, command: Command) -> Result<String, UserError> {
+        command.check().map_err(UserError::told)?;
         Self::open(target)?.send(node, command)
     }
 
@@ -89,59 +89,59 @@ impl Session {
     /// Sends a command to a node; returns what it says.
     ///
     /// # Errors
-    /// A [`Fault`] in the node's own words.
-    pub fn send(&self, node: &str, command: Command) -> Result<String, Fault> {
+    /// A [`UserError`] in the node's own words.
+    pub fn send(&self, node: &str, command: Command) -> Result<String, UserError> {
         self.send_within(node, command, PATIENCE)
     }
 
     /// The same of a command that may take as long as `limit`.
     ///
     /// # Errors
-    /// A [`Fault`] in the node's own words.
+    /// A [`UserError`] in the node's own words.
     pub fn send_within(
         &self,
         node: &str,
         command: Command,
         limit: Duration,
-    ) -> Result<String, Fault> {
+    ) -> Result<String, UserError> {
         let bus = Arc::clone(&self.bus) as Arc<dyn Bus>;
         let is_gone = || RigFolder::join_at(&self.folder).is_err();
-        Commander::of(bus, &self.topics, node).send(command, None, limit, &is_gone)
+        CommandClient::of(bus, &self.topics, node).send(command, None, limit, &is_gone)
     }
 
     /// Sends a node a query of its own.
     ///
     /// # Errors
-    /// A [`Fault`] if nobody answers.
-    pub fn ask<Q: Message, A: Message>(&self, topic: &str, question: &Q) -> Result<A, Fault> {
+    /// A [`UserError`] if nobody answers.
+    pub fn ask<Q: Message, A: Message>(&self, topic: &str, question: &Q) -> Result<A, UserError> {
         self.ask_within(topic, question, PATIENCE)
     }
 
     /// The same of a node that has to answer within `limit`.
     ///
     /// # Errors
-    /// A [`Fault`] if nobody answers.
+    /// A [`UserError`] if nobody answers.
     pub fn ask_within<Q: Message, A: Message>(
         &self,
         topic: &str,
         question: &Q,
         limit: Duration,
-    ) -> Result<A, Fault> {
+    ) -> Result<A, UserError> {
         let me = Origin {
             source: name_hash("cli"),
             epoch: random_epoch(),
         };
-        let answer = ask(&*self.bus, topic, Class::Control, me, question, limit);
-        answer.map_err(Fault::from)
+        let answer = ask(&*self.bus, topic, Qos::Control, me, question, limit);
+        answer.map_err(UserError::from)
     }
 
     /// Follows a topic.
     ///
     /// # Errors
-    /// [`BusError::Topic`] as a [`Fault`].
-    pub fn follow<M: Message>(&self, topic: &str, class: Class) -> Result<Feed<M>, Fault> {
+    /// [`BusError::Topic`] as a [`UserError`].
+    pub fn follow<M: Message>(&self, topic: &str, qos: Qos) -> Result<Feed<M>, UserError> {
         let wake = Wake::new();
-        let messages = Receiver::new(&*self.bus, topic, class, Queue::Ring(16), &wake)?;
+        let messages = Receiver::new(&*self.bus, topic, qos, Queue::Ring(16), &wake)?;
         Ok(Feed {
             messages,
             wake,
@@ -187,8 +187,8 @@ impl<M: Message> Feed<M> {
     /// Waits for the next message.
     ///
     /// # Errors
-    /// A [`Fault`] where none comes.
-    pub fn hear(&mut self) -> Result<Received<M>, Fault> {
+    /// A [`UserError`] where none comes.
+    pub fn hear(&mut self) -> Result<Received<M>, UserError> {
         let give_up = Instant::now() + PATIENCE;
         loop {
             if let Some(received) = self.messages.newest() {

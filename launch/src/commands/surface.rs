@@ -1,7 +1,7 @@
 //! `maulstick fill`, `ground` and `tooth`: the canvas of a running rig.
 
 use clap::Args;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::command::Command;
 use maulstick_types::scene::{CANVAS, PALETTE};
 
@@ -50,7 +50,7 @@ pub struct ToothOptions {
     target: Target,
 }
 
-fn send(target: &Target, command: Command) -> Result<i32, Fault> {
+fn send(target: &Target, command: Command) -> Result<i32, UserError> {
     Session::command(target, PAINT, command)?;
     Ok(0)
 }
@@ -58,8 +58,8 @@ fn send(target: &Target, command: Command) -> Result<i32, Fault> {
 /// Lays an even film.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown paint, or where no rig runs.
-pub fn fill(options: &FillOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for an unknown paint, or where no rig runs.
+pub fn fill(options: &FillOptions) -> Result<i32, UserError> {
     let surface = if options.palette { PALETTE } else { CANVAS };
     let thickness_m = options.um * 1e-6;
     if let Some(brush) = options.with_brush.clone() {
@@ -87,14 +87,14 @@ pub fn fill(options: &FillOptions) -> Result<i32, Fault> {
 /// Gives the canvas another ground.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown ground or an invalid file, or if no rig runs.
-pub fn ground(options: &GroundOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for an unknown ground or an invalid file, or if no rig runs.
+pub fn ground(options: &GroundOptions) -> Result<i32, UserError> {
     let surface = CANVAS;
     let command = match GroundFile::read(&options.ground)? {
         GroundFile::Named(ground) => Command::Ground { surface, ground },
         GroundFile::Spectrum(spectrum) => Command::GroundSpectrum { surface, spectrum },
         GroundFile::Picture(_, name) => {
-            return Err(Fault::usage("a running rig takes no picture as ground")
+            return Err(UserError::usage("a running rig takes no picture as ground")
                 .at(name)
                 .help(
                     "close it: `maulstick painting import FILE PICTURE --as ground`; or begin with it: \
@@ -108,8 +108,8 @@ pub fn ground(options: &GroundOptions) -> Result<i32, Fault> {
 /// Gives the canvas another tooth.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown tooth, or where no rig runs.
-pub fn tooth(options: &ToothOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for an unknown tooth, or where no rig runs.
+pub fn tooth(options: &ToothOptions) -> Result<i32, UserError> {
     let command = Command::Tooth {
         surface: CANVAS,
         tooth: options.tooth.clone(),

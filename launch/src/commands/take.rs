@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 use maulstick_device::salvage::salvage;
 use maulstick_device::{Take, TakeSetup};
 use maulstick_rig::files::Kind;
-use maulstick_rig::{Fault, RigConfig};
+use maulstick_rig::{RigConfig, UserError};
 use maulstick_types::stylus::StylusPose;
 use serde_json::json;
 
@@ -56,13 +56,13 @@ pub struct EmbedOptions {
 }
 
 /// Embeds what a take is painted with.
-fn embed(options: &EmbedOptions) -> Result<i32, Fault> {
+fn embed(options: &EmbedOptions) -> Result<i32, UserError> {
     let mut config = match &options.rig {
         Some(path) => RigConfig::read(path)?,
         None => picture_settings(),
     };
     let take = Take::read(&options.take)?;
-    let folder = tempfile::tempdir().map_err(|error| Fault::failure(error.to_string()))?;
+    let folder = tempfile::tempdir().map_err(|error| UserError::failure(error.to_string()))?;
     let embedded = use_kit(&take, &options.take, folder.path(), &mut config)?;
     let brush = options.kit.apply(&mut config)?;
     let mut inputs = named_by(&config);
@@ -101,8 +101,8 @@ fn kit_in_words(kit: &TakeSetup) -> String {
 /// Runs the subcommand.
 ///
 /// # Errors
-/// A [`Fault`] where the take cannot be read or written.
-pub fn run(command: &TakeCommand) -> Result<i32, Fault> {
+/// A [`UserError`] where the take cannot be read or written.
+pub fn run(command: &TakeCommand) -> Result<i32, UserError> {
     match command {
         TakeCommand::Embed(options) => embed(options),
         TakeCommand::Info { take, json } => {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use maulstick_brush_node::contact_model::ForceKind;
 use maulstick_brush_node::{BrushNode, BrushSettings};
 use maulstick_bus::typed::random_epoch;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::{FOREIGN_PRIORITY, MOUSE_PRIORITY, PLAYER_PRIORITY, RigConfig};
 use nix::sys::signal::Signal;
 
@@ -23,10 +23,10 @@ pub(crate) struct BrushOptions {
     brush: String,
 }
 
-fn brush_settings(config: &RigConfig, brush: &str) -> Result<BrushSettings, Fault> {
+fn brush_settings(config: &RigConfig, brush: &str) -> Result<BrushSettings, UserError> {
     let section = config.brush_named(brush).ok_or_else(|| {
         let what = format!("there is no brush '{brush}' in rig.toml");
-        Fault::unknown(
+        UserError::unknown(
             what,
             brush,
             config.brush.iter().map(|brush| brush.name.as_str()),
@@ -60,7 +60,7 @@ fn brush_settings(config: &RigConfig, brush: &str) -> Result<BrushSettings, Faul
     })
 }
 
-pub(super) fn run(options: &BrushOptions) -> Result<i32, Fault> {
+pub(super) fn run(options: &BrushOptions) -> Result<i32, UserError> {
     let mut member = options
         .node
         .join(&brush_node_name(&options.brush), Signal::SIGKILL)?;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use maulstick_haptic::daemon;
 use maulstick_haptic::device::open::HapticSettings;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use nix::sys::signal::Signal;
 
 use super::{NodeOptions, device_named};
@@ -22,7 +22,7 @@ pub(crate) struct HapticOptions {
     hand: Option<PathBuf>,
 }
 
-pub(super) fn run(options: &HapticOptions) -> Result<i32, Fault> {
+pub(super) fn run(options: &HapticOptions) -> Result<i32, UserError> {
     // The servo takes its force back before it ends, so it is asked, not killed.
     let mut member = options.node.join(&options.device, Signal::SIGTERM)?;
     let device = device_named(&member.config, &options.device)?;

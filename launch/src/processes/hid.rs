@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use maulstick_hid::daemon::HidSettings;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 use nix::sys::signal::Signal;
 
@@ -29,7 +29,7 @@ pub(crate) struct HidOptions {
     record: Option<PathBuf>,
 }
 
-pub(super) fn run(options: &HidOptions) -> Result<i32, Fault> {
+pub(super) fn run(options: &HidOptions) -> Result<i32, UserError> {
     // Beside the device's own daemon a recorder is a device by itself: two of them move no brush twice,
     // for one alone has it at a time.
     let beside = options.record.is_some() && options.node.node.is_none();

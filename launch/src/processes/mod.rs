@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use maulstick_bus::RigFolder;
 use maulstick_rig::config::{DeviceSection, RigConfig};
 use maulstick_rig::log::log_to_stderr;
-use maulstick_rig::{Fault, Member, MemberArgs};
+use maulstick_rig::{NodeArgs, NodeHandle, UserError};
 use nix::sys::prctl::{set_name, set_pdeathsig};
 use nix::sys::signal::Signal;
 
@@ -43,8 +43,8 @@ pub(crate) enum NodeCommand {
 /// Runs a process of a rig until it is told to stop.
 ///
 /// # Errors
-/// A [`Fault`].
-pub(crate) fn run(command: &NodeCommand) -> Result<i32, Fault> {
+/// A [`UserError`].
+pub(crate) fn run(command: &NodeCommand) -> Result<i32, UserError> {
     command.program().name_this_process();
     match command {
         NodeCommand::Brush(options) => brush::run(options),
@@ -139,13 +139,13 @@ pub(crate) struct NodeOptions {
 
 impl NodeOptions {
     /// Joins the rig; when the launcher dies this process gets `orphan`.
-    fn join(&self, node: &str, orphan: Signal) -> Result<Member, Fault> {
+    fn join(&self, node: &str, orphan: Signal) -> Result<NodeHandle, UserError> {
         log_to_stderr("info");
         if self.guarded {
             let launcher = nix::unistd::getppid();
-            set_pdeathsig(orphan).map_err(|error| Fault::failure(error.to_string()))?;
+            set_pdeathsig(orphan).map_err(|error| UserError::failure(error.to_string()))?;
             if nix::unistd::getppid() != launcher {
-                return Err(Fault::failure("the launcher is gone"));
+                return Err(UserError::failure("the launcher is gone"));
             }
         }
         let folder = match &self.folder {
@@ -153,7 +153,7 @@ impl NodeOptions {
             None => RigFolder::join(&self.name)?.0.path().to_owned(),
         };
         let node = self.node.clone().unwrap_or_else(|| node.to_owned());
-        Member::join(&MemberArgs {
+        NodeHandle::join(&NodeArgs {
             folder,
             node,
             guarded: self.guarded,
@@ -161,11 +161,11 @@ impl NodeOptions {
     }
 }
 
-fn device_named(config: &RigConfig, name: &str) -> Result<DeviceSection, Fault> {
+fn device_named(config: &RigConfig, name: &str) -> Result<DeviceSection, UserError> {
     let devices = config.device.iter();
     let device = devices.clone().find(|device| device.name == name);
     device.cloned().ok_or_else(|| {
         let what = format!("there is no device '{name}' in rig.toml");
-        Fault::unknown(what, name, devices.map(|device| device.name.as_str()))
+        UserError::unknown(what, name, devices.map(|device| device.name.as_str()))
     })
 }

@@ -13,7 +13,7 @@ use maulstick_paint_node::worker::WorkerPanicked;
 use maulstick_paint_node::{PaintNode, Worker};
 use maulstick_painting::{Painting, Sequencer};
 use maulstick_rig::config::RigConfig;
-use maulstick_rig::{Fault, Member};
+use maulstick_rig::{NodeHandle, UserError};
 use nix::sys::signal::Signal;
 
 use super::NodeOptions;
@@ -32,7 +32,7 @@ pub(crate) struct PaintOptions {
     node: NodeOptions,
 }
 
-pub(super) fn run(options: &PaintOptions) -> Result<i32, Fault> {
+pub(super) fn run(options: &PaintOptions) -> Result<i32, UserError> {
     let mut member = options.node.join("paint", Signal::SIGKILL)?;
     let (document, mut sequencer, since) = painting(&member.config)?;
     choose_backend(&mut sequencer, &member.config.paint.backend)?;
@@ -44,7 +44,7 @@ pub(super) fn run(options: &PaintOptions) -> Result<i32, Fault> {
     let (topic, feed) = (member.topics.frame(), node.feed());
     let mut frames =
         FrameServer::new(bus, &topic, feed.clone(), &member.wake, origin)?.telling_brushes(topics);
-    let (memory, _) = member.config.paint.bytes().map_err(Fault::usage)?;
+    let (memory, _) = member.config.paint.bytes().map_err(UserError::usage)?;
     node = node.with_memory(usize::try_from(memory).unwrap_or(usize::MAX));
     if let Some(document) = document {
         frames = frames.with_tile_cache(document.tile_cache());
@@ -54,8 +54,8 @@ pub(super) fn run(options: &PaintOptions) -> Result<i32, Fault> {
     let backend = member.config.paint.backend.clone();
     let run = move || frames.with_films(film_backend(&backend)).run(&stop);
     let mut thread =
-        Worker::start("frames", run).map_err(|error| Fault::failure(error.to_string()))?;
-    let fallen = |error: WorkerPanicked| Fault::failure(error.to_string());
+        Worker::start("frames", run).map_err(|error| UserError::failure(error.to_string()))?;
+    let fallen = |error: WorkerPanicked| UserError::failure(error.to_string());
     let mut turn = |node: &mut PaintNode| {
         thread.check().map_err(fallen)?;
         let wait = node.turn()?;
@@ -80,7 +80,7 @@ pub(super) fn run(options: &PaintOptions) -> Result<i32, Fault> {
     let path = node.document_path().map(Path::to_owned);
     let closed = node.close().map_err(|error| match &path {
         Some(path) => wrong(path, &error),
-        None => Fault::failure(error.to_string()),
+        None => UserError::failure(error.to_string()),
     });
     member.leave();
     result.and(ended).and(closed).map(|()| 0)
@@ -89,8 +89,8 @@ pub(super) fn run(options: &PaintOptions) -> Result<i32, Fault> {
 /// Has the node take turns until it has painted what had come when it was to stop.
 fn paint_what_has_come(
     node: &mut PaintNode,
-    turn: &mut impl FnMut(&mut PaintNode) -> Result<Duration, Fault>,
-) -> Result<(), Fault> {
+    turn: &mut impl FnMut(&mut PaintNode) -> Result<Duration, UserError>,
+) -> Result<(), UserError> {
     let mut left = LAST_TURNS;
     while left > 0 && turn(node)?.is_zero() {
         left -= 1;
@@ -99,7 +99,7 @@ fn paint_what_has_come(
 }
 
 /// The painting that the settings ask for: in its document, or in memory.
-fn painting(config: &RigConfig) -> Result<(Option<Document>, Sequencer, u64), Fault> {
+fn painting(config: &RigConfig) -> Result<(Option<Document>, Sequencer, u64), UserError> {
     if let Some(path) = &config.paint.document {
         let (document, sequencer, since) = go_on(config, path)?;
         return Ok((Some(document), sequencer, since));
@@ -134,10 +134,10 @@ fn film_backend(name: &str) -> Box<dyn FilmBackend> {
 
 /// Has the node take turns until it knows every brush of rig.toml, or it is time to stop.
 fn wait_for_brushes(
-    member: &Member,
+    member: &NodeHandle,
     node: &mut PaintNode,
-    turn: &mut impl FnMut(&mut PaintNode) -> Result<Duration, Fault>,
-) -> Result<(), Fault> {
+    turn: &mut impl FnMut(&mut PaintNode) -> Result<Duration, UserError>,
+) -> Result<(), UserError> {
     let brushes = &member.config.brush;
     while !brushes.iter().all(|brush| node.knows_brush(&brush.name)) && !member.stop.requested() {
         let wait = turn(node)?;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use maulstick_device::Take;
 use maulstick_device::player::{self, PlayerSettings, Rate};
 use maulstick_painting::paint_error;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::Mixture;
 use nix::sys::signal::Signal;
 
@@ -40,7 +40,7 @@ pub(crate) struct PlayerOptions {
     again: bool,
 }
 
-pub(super) fn run(options: &PlayerOptions) -> Result<i32, Fault> {
+pub(super) fn run(options: &PlayerOptions) -> Result<i32, UserError> {
     let loads = options
         .load
         .iter()

@@ -1,6 +1,6 @@
 //! The process of the window.
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use nix::sys::signal::Signal;
 
 use super::{MOUSE, NodeOptions};
@@ -14,7 +14,7 @@ pub(crate) struct UiOptions {
     node: NodeOptions,
 }
 
-pub(super) fn run(options: &UiOptions) -> Result<i32, Fault> {
+pub(super) fn run(options: &UiOptions) -> Result<i32, UserError> {
     let member = options.node.join("ui", Signal::SIGKILL)?;
     let by_signal = member.stop.clone();
     let export = export(&member.config.view, VIEW)?;

@@ -8,7 +8,7 @@ use maulstick_device::Take;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::PaintingSetup;
 use maulstick_painting::setup::relief_called;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::{BrushSection, is_path};
 use maulstick_types::advice::choice;
 use maulstick_types::command::Command;
@@ -51,13 +51,13 @@ const LIGHT: [&str; 10] = [
     "adapted",
 ];
 
-pub(super) fn command(command: Command) -> Result<Act, Fault> {
-    command.check().map_err(Fault::told)?;
+pub(super) fn command(command: Command) -> Result<Act, UserError> {
+    command.check().map_err(UserError::told)?;
     Ok(Act::Command(command))
 }
 
 /// The file that a step names, if it names one.
-pub(super) fn file_of(step: &Step<'_>) -> Result<Option<UsedFile>, Fault> {
+pub(super) fn file_of(step: &Step<'_>) -> Result<Option<UsedFile>, UserError> {
     let keys = &step.keys;
     let does = step.kind.does;
     let what = format!("the {does} at {}", step.place());
@@ -79,14 +79,14 @@ pub(super) fn file_of(step: &Step<'_>) -> Result<Option<UsedFile>, Fault> {
     })
 }
 
-pub(super) fn switched_on(step: &Step<'_>) -> Result<(), Fault> {
+pub(super) fn switched_on(step: &Step<'_>) -> Result<(), UserError> {
     match step.due(step.keys.switch(step.kind.does)?)? {
         true => Ok(()),
-        false => Err(Fault::usage("a step that is 'false' does nothing").help("leave it out")),
+        false => Err(UserError::usage("a step that is 'false' does nothing").help("leave it out")),
     }
 }
 
-pub(super) fn brush(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn brush(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
     let keys = &step.keys;
     let depth_share = keys.number("depth_share")?.unwrap_or(0.5);
     if !(0.0..=0.9).contains(&depth_share) {
@@ -104,7 +104,7 @@ pub(super) fn brush(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
     };
     let head = keys.named("brush", file(&section.kind), brush_file(&section))?;
     check_name(&section.name).map_err(|what| {
-        Fault::usage(format!(
+        UserError::usage(format!(
             "the brush would be called after its file, but {what}"
         ))
         .help("give the file another name")
@@ -112,23 +112,23 @@ pub(super) fn brush(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
     Ok(Act::Brush(section.name, Box::new(head), depth_share))
 }
 
-pub(super) fn load(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn load(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, UserError> {
     let mixture = step.due(step.mixture("load", library)?)?;
     Ok(Act::Load(mixture, step.mixture("beside", library)?))
 }
 
-pub(super) fn mode(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn mode(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
     let keys = &step.keys;
     let (flow, most_um) = (keys.number("flow")?, keys.number("most_um")?);
     let handling = handling("brush", step.due(keys.text("mode")?)?, flow, most_um)?;
     Ok(Act::Handle(handling.mode, handling.flow, handling.most_m))
 }
 
-pub(super) fn film_m(step: &Step<'_>) -> Result<f64, Fault> {
+pub(super) fn film_m(step: &Step<'_>) -> Result<f64, UserError> {
     Ok(step.keys.number("um")?.unwrap_or(FILM_UM) * 1e-6)
 }
 
-pub(super) fn fill_with_brush(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn fill_with_brush(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
     switched_on(step)?;
     let thickness_m = film_m(step)?;
     // The brush in hand is known only when the step comes.
@@ -140,7 +140,7 @@ pub(super) fn fill_with_brush(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, 
     Ok(Act::FillWith(thickness_m))
 }
 
-pub(super) fn take(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn take(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, UserError> {
     let keys = &step.keys;
     let path = keys.source.folder.join(step.due(keys.text("take")?)?);
     let name = path.display().to_string();
@@ -162,7 +162,7 @@ fn within(
     step: &Step<'_>,
     key: &str,
     range: std::ops::RangeInclusive<f64>,
-) -> Result<Option<f64>, Fault> {
+) -> Result<Option<f64>, UserError> {
     let number = step.keys.number(key)?;
     match number {
         Some(number) if !range.contains(&number) => {
@@ -173,7 +173,7 @@ fn within(
     }
 }
 
-pub(super) fn stroke(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn stroke(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
     let keys = &step.keys;
     let rows = step.due(keys.rows("stroke")?)?;
     let wrong = |what: String, help: &str| Err(keys.fault("stroke", what).help(help));
@@ -236,7 +236,7 @@ pub(super) fn stroke(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
 }
 
 /// A drying at once, or over a time.
-pub(super) fn dry(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn dry(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
     let (keys, surface) = (&step.keys, CANVAS);
     let share = step.due(keys.number("dry")?)? as f32;
     let name = keys.word("layer")?.unwrap_or_default();
@@ -257,18 +257,18 @@ pub(super) fn dry(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
         });
     };
     if share != 1.0 {
-        return Err(Fault::usage("over a time all that is wet dries")
+        return Err(UserError::usage("over a time all that is wet dries")
             .help("{ dry = 1.0, over = \"90s\" }; a `stop_drying` leaves the rest wet"));
     }
     command(Command::DryOver {
         surface,
-        ticks: ticks_in(time).map_err(Fault::told)?,
+        ticks: ticks_in(time).map_err(UserError::told)?,
         name,
         region,
     })
 }
 
-pub(super) fn wet(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn wet(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
     let layers = step.due(step.keys.word("wet")?)?;
     let layers = match layers.parse() {
         Ok(count) if count > 0 => count,
@@ -277,7 +277,7 @@ pub(super) fn wet(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
         _ => {
             let what =
                 format!("'wet' takes how many of the newest layers, or \"all\", not {layers}");
-            return Err(Fault::usage(what));
+            return Err(UserError::usage(what));
         }
     };
     command(Command::Wet {
@@ -287,10 +287,10 @@ pub(super) fn wet(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
     })
 }
 
-pub(super) fn opacity(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn opacity(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
     let opacity = step.due(step.keys.number("opacity")?)? as f32;
     let Some(layer) = step.keys.word("layer")? else {
-        return Err(Fault::usage("no layer is named"));
+        return Err(UserError::usage("no layer is named"));
     };
     command(Command::LayerOpacity { layer, opacity })
 }
@@ -300,7 +300,7 @@ fn is_held(name: &str) -> bool {
     name.starts_with(IMAGE) || name.starts_with(SPECTRUM)
 }
 
-pub(super) fn ground(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn ground(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
     let name = step.keys.beside(step.due(step.keys.text("ground")?)?);
     let ground = GroundFile::read(&name);
     let ground = step.keys.named("ground", file(&name), ground)?;
@@ -313,7 +313,7 @@ pub(super) fn ground(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
     Ok(Act::Ground(ground))
 }
 
-pub(super) fn tooth(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn tooth(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
     let keys = &step.keys;
     let tooth = keys.beside(step.due(keys.text("tooth")?)?);
     let seed: Option<u64> = keys.whole("seed")?;
@@ -349,7 +349,7 @@ pub(super) fn tooth(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
     })
 }
 
-pub(super) fn light(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn light(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
     let keys = step.due(step.keys.table("light")?)?;
     let given = keys.keys();
     if let Some(key) = given.iter().find(|key| !LIGHT.contains(key)) {
@@ -357,7 +357,7 @@ pub(super) fn light(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
         return Err(fault.help(choice(key, LIGHT)));
     }
     if given.is_empty() {
-        return Err(Fault::usage(
+        return Err(UserError::usage(
             "a light of which nothing is said changes nothing",
         ));
     }

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::is_path;
 use toml::Spanned;
 use toml::de::{DeArray, DeInteger, DeTable, DeValue};
@@ -36,15 +36,15 @@ impl<'a> Source<'a> {
     }
 
     /// A script that TOML's reader does not understand.
-    pub(super) fn no_toml(&self, error: &toml::de::Error) -> Fault {
+    pub(super) fn no_toml(&self, error: &toml::de::Error) -> UserError {
         let message = error.message().lines().next().unwrap_or_default();
-        Fault::usage(format!("this is no TOML: {message}"))
+        UserError::usage(format!("this is no TOML: {message}"))
             .at(self.place(error.span().map_or(0, |span| span.start)))
             .help(EXAMPLE)
     }
 
     /// Size of a new canvas, mm, if a script says it.
-    pub(super) fn canvas_mm(&self, file: &'a DeTable<'a>) -> Result<Option<[f64; 2]>, Fault> {
+    pub(super) fn canvas_mm(&self, file: &'a DeTable<'a>) -> Result<Option<[f64; 2]>, UserError> {
         let entries = Entries {
             source: *self,
             table: file,
@@ -65,9 +65,9 @@ impl<'a> Source<'a> {
     pub(super) fn listed(
         &self,
         file: &'a DeTable<'a>,
-    ) -> Result<Vec<(usize, &'a DeTable<'a>)>, Fault> {
+    ) -> Result<Vec<(usize, &'a DeTable<'a>)>, UserError> {
         let fault =
-            |what: String, byte: usize| Fault::usage(what).at(self.place(byte)).help(EXAMPLE);
+            |what: String, byte: usize| UserError::usage(what).at(self.place(byte)).help(EXAMPLE);
         let known = |key: &str| [CANVAS_MM, "step"].contains(&key);
         if let Some((key, _)) = file.iter().find(|(key, _)| !known(key.get_ref())) {
             let what = format!(
@@ -77,7 +77,7 @@ impl<'a> Source<'a> {
             return Err(fault(what, key.span().start));
         }
         let Some((_, step)) = file.iter().find(|(key, _)| key.get_ref() == "step") else {
-            return Err(Fault::usage("there are no steps")
+            return Err(UserError::usage("there are no steps")
                 .at(self.name)
                 .help(EXAMPLE));
         };
@@ -163,8 +163,8 @@ impl<'a> Entries<'a> {
     }
 
     /// Something wrong at a key.
-    pub(super) fn fault(&self, key: &str, what: impl Into<String>) -> Fault {
-        Fault::usage(what).at(self.place(key))
+    pub(super) fn fault(&self, key: &str, what: impl Into<String>) -> UserError {
+        UserError::usage(what).at(self.place(key))
     }
 
     /// The example as help.
@@ -182,7 +182,7 @@ impl<'a> Entries<'a> {
         key: &str,
         due: &str,
         read: impl Fn(&'a DeValue<'a>) -> Option<T>,
-    ) -> Result<Option<T>, Fault> {
+    ) -> Result<Option<T>, UserError> {
         let Some(value) = self.find(key) else {
             return Ok(None);
         };
@@ -192,23 +192,23 @@ impl<'a> Entries<'a> {
         })
     }
 
-    pub(super) fn text(&self, key: &str) -> Result<Option<&'a str>, Fault> {
+    pub(super) fn text(&self, key: &str) -> Result<Option<&'a str>, UserError> {
         self.due(key, "a text", text_of)
     }
 
-    pub(super) fn number(&self, key: &str) -> Result<Option<f64>, Fault> {
+    pub(super) fn number(&self, key: &str) -> Result<Option<f64>, UserError> {
         self.due(key, "a number", number_of)
     }
 
     /// A whole number that is not negative.
-    pub(super) fn whole<T: TryFrom<u64>>(&self, key: &str) -> Result<Option<T>, Fault> {
+    pub(super) fn whole<T: TryFrom<u64>>(&self, key: &str) -> Result<Option<T>, UserError> {
         self.due(key, "a whole number, 0 or more", |value| match value {
             DeValue::Integer(number) => whole_of(number)?.try_into().ok(),
             _ => None,
         })
     }
 
-    pub(super) fn switch(&self, key: &str) -> Result<Option<bool>, Fault> {
+    pub(super) fn switch(&self, key: &str) -> Result<Option<bool>, UserError> {
         self.due(key, "true or false", |value| match value {
             DeValue::Boolean(switch) => Some(*switch),
             _ => None,
@@ -216,14 +216,14 @@ impl<'a> Entries<'a> {
     }
 
     /// A name, or a whole number in its digits.
-    pub(super) fn word(&self, key: &str) -> Result<Option<String>, Fault> {
+    pub(super) fn word(&self, key: &str) -> Result<Option<String>, UserError> {
         self.due(key, "a name or a number", |value| match value {
             DeValue::Integer(number) => whole_of(number).map(|number| number.to_string()),
             value => text_of(value).map(str::to_owned),
         })
     }
 
-    pub(super) fn texts(&self, key: &str) -> Result<Option<Vec<&'a str>>, Fault> {
+    pub(super) fn texts(&self, key: &str) -> Result<Option<Vec<&'a str>>, UserError> {
         self.due(key, "a list of texts", |value| {
             list_of(value)?
                 .iter()
@@ -232,12 +232,12 @@ impl<'a> Entries<'a> {
         })
     }
 
-    pub(super) fn numbers(&self, key: &str) -> Result<Option<Vec<f64>>, Fault> {
+    pub(super) fn numbers(&self, key: &str) -> Result<Option<Vec<f64>>, UserError> {
         self.due(key, "a list of numbers", |value| numbers_of(value))
     }
 
     /// Lists of numbers.
-    pub(super) fn rows(&self, key: &str) -> Result<Option<Vec<Vec<f64>>>, Fault> {
+    pub(super) fn rows(&self, key: &str) -> Result<Option<Vec<Vec<f64>>>, UserError> {
         self.due(key, "a list of lists of numbers", |value| {
             let rows = list_of(value)?.iter();
             rows.map(|row| numbers_of(row.get_ref())).collect()
@@ -245,7 +245,7 @@ impl<'a> Entries<'a> {
     }
 
     /// A vector.
-    pub(super) fn three(&self, key: &str) -> Result<Option<[f64; 3]>, Fault> {
+    pub(super) fn three(&self, key: &str) -> Result<Option<[f64; 3]>, UserError> {
         let Some(list) = self.due(key, "three numbers", list_of)? else {
             return Ok(None);
         };
@@ -263,7 +263,7 @@ impl<'a> Entries<'a> {
         three.map(Some).map_err(|_| wrong(count.to_string()))
     }
 
-    pub(super) fn table(&self, key: &str) -> Result<Option<Self>, Fault> {
+    pub(super) fn table(&self, key: &str) -> Result<Option<Self>, UserError> {
         self.due(key, "a table in braces", |value| match value {
             DeValue::Table(table) => Some(Self { table, ..*self }),
             _ => None,
@@ -283,8 +283,8 @@ impl<'a> Entries<'a> {
         &self,
         key: &str,
         file: Option<&str>,
-        read: Result<T, Fault>,
-    ) -> Result<T, Fault> {
+        read: Result<T, UserError>,
+    ) -> Result<T, UserError> {
         read.map_err(|mut fault| {
             if file.is_some_and(|file| !Path::new(file).exists()) {
                 fault = fault.help("check the path: it counts from the script's folder");

@@ -31,7 +31,7 @@ use std::path::Path;
 use maulstick_brush::BrushFile;
 use maulstick_device::Take;
 use maulstick_optics::PaintLibrary;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
 use maulstick_types::scene::BrushMode;
@@ -99,7 +99,7 @@ const ADVICE: [(&str, &str); 3] = [
 
 /// A refusal of a step: its help names steps in the place of commands to a running rig.
 #[must_use]
-pub fn in_steps(fault: Fault) -> Fault {
+pub fn in_steps(fault: UserError) -> UserError {
     let Some(mut help) = fault.help.clone() else {
         return fault;
     };
@@ -118,10 +118,10 @@ impl Script {
     /// Reads a script, its takes, brushes and pictures.
     ///
     /// # Errors
-    /// A [`Fault`] with file and line, and what to do.
-    pub fn read(path: &Path, library: &PaintLibrary) -> Result<Self, Fault> {
+    /// A [`UserError`] with file and line, and what to do.
+    pub fn read(path: &Path, library: &PaintLibrary) -> Result<Self, UserError> {
         let text = std::fs::read_to_string(path).map_err(|error| {
-            let fault = Fault::reading(path, &error);
+            let fault = UserError::reading(path, &error);
             match path
                 .extension()
                 .is_some_and(|extension| extension == "mcap")
@@ -143,7 +143,7 @@ impl Script {
         name: &str,
         folder: &Path,
         library: &PaintLibrary,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, UserError> {
         let text = text.trim_start_matches('\u{feff}');
         let line_ends: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
         let source = Source {

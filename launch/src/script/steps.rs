@@ -1,7 +1,7 @@
 //! The kinds of steps, and the keys of each.
 
 use maulstick_optics::PaintLibrary;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::advice::nearest;
 use maulstick_types::command::Command;
 use maulstick_types::scene::CANVAS;
@@ -27,14 +27,14 @@ pub(super) struct Kind {
     with: &'static [&'static str],
     /// Example of its form.
     pub(super) example: &'static str,
-    act: fn(&Step<'_>, &PaintLibrary) -> Result<Act, Fault>,
+    act: fn(&Step<'_>, &PaintLibrary) -> Result<Act, UserError>,
 }
 
 const fn kind(
     does: &'static str,
     with: &'static [&'static str],
     example: &'static str,
-    act: fn(&Step<'_>, &PaintLibrary) -> Result<Act, Fault>,
+    act: fn(&Step<'_>, &PaintLibrary) -> Result<Act, UserError>,
 ) -> Kind {
     Kind {
         does,
@@ -108,7 +108,7 @@ pub(super) static KINDS: [Kind; 21] = [
     ),
     kind("wait", &[], "{ wait = \"20min\" }", |step, _| {
         let time = step.due(step.keys.text("wait")?)?;
-        Ok(Act::Wait(ticks_in(time).map_err(Fault::told)?))
+        Ok(Act::Wait(ticks_in(time).map_err(UserError::told)?))
     }),
     kind("stop_drying", &[], "{ stop_drying = true }", |step, _| {
         switched_on(step)?;
@@ -154,7 +154,7 @@ pub(super) static KINDS: [Kind; 21] = [
     ),
     kind("undo", &[], "{ undo = 1 }", |step, _| {
         match step.due(step.keys.whole("undo")?)? {
-            0 => Err(Fault::usage("an undo of 0 steps does nothing").help("leave it out")),
+            0 => Err(UserError::usage("an undo of 0 steps does nothing").help("leave it out")),
             times => Ok(Act::Undo(times)),
         }
     }),
@@ -182,7 +182,7 @@ pub(super) struct Step<'a> {
 
 impl<'a> Step<'a> {
     /// A step that does one thing, and whose other keys are that thing's.
-    fn of(source: Source<'a>, table: &'a DeTable<'a>, start: usize) -> Result<Self, Fault> {
+    fn of(source: Source<'a>, table: &'a DeTable<'a>, start: usize) -> Result<Self, UserError> {
         let all = || KINDS.each_ref().map(|kind| kind.does).join(", ");
         let keys = Entries {
             source,
@@ -211,7 +211,7 @@ impl<'a> Step<'a> {
         }
         let [kind] = kinds[..] else {
             let fault = match given.first() {
-                None => Fault::usage("a step that does nothing").at(source.place(start)),
+                None => UserError::usage("a step that does nothing").at(source.place(start)),
                 Some(key) if kinds.is_empty() => {
                     keys.fault(key, format!("'{key}' alone is a step that does nothing"))
                 }
@@ -243,15 +243,15 @@ impl<'a> Step<'a> {
     }
 
     /// Value of a required key: it makes the step one of its kind, or is reported as missing.
-    pub(super) fn due<T>(&self, value: Option<T>) -> Result<T, Fault> {
-        value.ok_or_else(|| Fault::usage(format!("'{}' lacks a key", self.kind.does)))
+    pub(super) fn due<T>(&self, value: Option<T>) -> Result<T, UserError> {
+        value.ok_or_else(|| UserError::usage(format!("'{}' lacks a key", self.kind.does)))
     }
 
     pub(super) fn mixture(
         &self,
         key: &str,
         library: &PaintLibrary,
-    ) -> Result<Option<Mixture>, Fault> {
+    ) -> Result<Option<Mixture>, UserError> {
         let Some(text) = self.keys.text(key)? else {
             return Ok(None);
         };
@@ -260,9 +260,9 @@ impl<'a> Step<'a> {
             .map(Some)
     }
 
-    pub(super) fn region(&self) -> Result<Option<Region>, Fault> {
+    pub(super) fn region(&self) -> Result<Option<Region>, UserError> {
         let text = self.keys.text("region")?;
-        text.map(|text| text.parse().map_err(Fault::told))
+        text.map(|text| text.parse().map_err(UserError::told))
             .transpose()
     }
 }
@@ -280,7 +280,7 @@ impl Kind {
 pub(super) fn listed<'a>(
     source: Source<'a>,
     script: &'a DeTable<'a>,
-) -> Result<Vec<Step<'a>>, Fault> {
+) -> Result<Vec<Step<'a>>, UserError> {
     let tables = source.listed(script)?.into_iter();
     tables
         .map(|(start, table)| Step::of(source, table, start))
@@ -288,7 +288,7 @@ pub(super) fn listed<'a>(
 }
 
 /// Action of a step. An error has its place, and advice.
-pub(super) fn act(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, Fault> {
+pub(super) fn act(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, UserError> {
     (step.kind.act)(step, library).map_err(|mut fault| {
         fault.place.get_or_insert_with(|| step.place());
         fault.help.get_or_insert_with(|| step.keys.for_example());

@@ -1,7 +1,7 @@
 use super::steps::KINDS;
 use super::*;
 
-fn read_text(text: &str) -> Result<Script, Fault> {
+fn read_text(text: &str) -> Result<Script, UserError> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("day.toml");
     std::fs::write(&path, text).expect("written");
@@ -11,7 +11,7 @@ fn read_text(text: &str) -> Result<Script, Fault> {
     Script::read(&path, &PaintLibrary::measured().expect("whole"))
 }
 
-fn read(steps: &str) -> Result<Script, Fault> {
+fn read(steps: &str) -> Result<Script, UserError> {
     read_text(&format!("# a day\nstep = [\n{steps}\n]\n"))
 }
 
@@ -49,7 +49,7 @@ fn the_examples_of_the_help_are_right() {
 }
 
 /// What is said of a script has these words, a place and help.
-fn says(fault: Result<Script, Fault>, words: &[&str]) {
+fn says(fault: Result<Script, UserError>, words: &[&str]) {
     let fault = fault.expect_err(words[0]);
     let text = fault.to_string();
     for word in words {

@@ -3,7 +3,7 @@
 use maulstick_appearance::picture::Picture;
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::command::Command;
 use maulstick_types::scene::CANVAS;
 
@@ -29,7 +29,7 @@ struct Effect {
     name: &'static str,
     words: &'static str,
     /// Paints it on cells of a side, mm.
-    paint: fn(PaintLibrary, f64) -> Result<Panel, Fault>,
+    paint: fn(PaintLibrary, f64) -> Result<Panel, UserError>,
 }
 
 const EFFECTS: [Effect; 8] = [
@@ -78,12 +78,12 @@ const EFFECTS: [Effect; 8] = [
 /// The sheet, on cells of this side; `told` hears of each panel.
 ///
 /// # Errors
-/// A [`Fault`] where a brush or a paint is refused, or where it would have too many pixels.
+/// A [`UserError`] where a brush or a paint is refused, or where it would have too many pixels.
 pub fn effects(
     library: &PaintLibrary,
     cell_mm: f64,
     mut told: impl FnMut(usize, usize),
-) -> Result<Picture, Fault> {
+) -> Result<Picture, UserError> {
     let [across, up] = PANEL_MM;
     let columns = 2;
     let rows = EFFECTS.len().div_ceil(columns);
@@ -107,7 +107,7 @@ impl Panel {
         kind: &str,
         width_mm: f64,
         (library, cell_mm): (PaintLibrary, f64),
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, UserError> {
         Self::new(
             (PANEL_MM, cell_mm),
             "gesso",
@@ -116,12 +116,12 @@ impl Panel {
         )
     }
 
-    fn take_up(&mut self, name: &str, file: BrushFile) -> Result<(), Fault> {
+    fn take_up(&mut self, name: &str, file: BrushFile) -> Result<(), UserError> {
         let taken = self.offline.take_up(name, file, DEPTH_SHARE);
         taken.map_err(refused)
     }
 
-    fn dry(&mut self, share: f32) -> Result<(), Fault> {
+    fn dry(&mut self, share: f32) -> Result<(), UserError> {
         let command = Command::Dry {
             surface: CANVAS,
             share,
@@ -131,9 +131,9 @@ impl Panel {
     }
 }
 
-fn sized(kind: &str, width_mm: f64) -> Result<BrushFile, Fault> {
+fn sized(kind: &str, width_mm: f64) -> Result<BrushFile, UserError> {
     let sized = library_brush(kind)?.scaled_to(width_mm);
-    sized.map_err(|error| Fault::failure(error.to_string()))
+    sized.map_err(|error| UserError::failure(error.to_string()))
 }
 
 /// A straight stroke, pressed evenly.
@@ -151,7 +151,7 @@ fn wave(points: Vec<[f64; 2]>, pressure: f64, seconds: f64) -> Gesture {
     })
 }
 
-fn transfer(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
+fn transfer(library: PaintLibrary, cell_mm: f64) -> Result<Panel, UserError> {
     let mut panel = Panel::of("flat", 8.0, (library, cell_mm))?;
     for (row, mixture) in ["Ultramarine Blue", YELLOW, RED].into_iter().enumerate() {
         let y = 40.0 - 15.0 * row as f64;
@@ -172,7 +172,7 @@ fn transfer(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn loading(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
+fn loading(library: PaintLibrary, cell_mm: f64) -> Result<Panel, UserError> {
     let mut panel = Panel::of("flat", 10.0, (library, cell_mm))?;
     let pairs = [
         ["Quinacridone Magenta=0.6,Pyrrole Red=0.4", WHITE],
@@ -196,7 +196,7 @@ fn loading(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn drying(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
+fn drying(library: PaintLibrary, cell_mm: f64) -> Result<Panel, UserError> {
     let mut panel = Panel::of("flat", 8.0, (library, cell_mm))?;
     // The stripe painted first dries most often: .75⁴ = .32 of it stays wet.
     for stripe in 0..5 {
@@ -215,7 +215,7 @@ fn drying(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn blending(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
+fn blending(library: PaintLibrary, cell_mm: f64) -> Result<Panel, UserError> {
     let mut panel = Panel::of("flat", 13.0, (library, cell_mm))?;
     for (mixture, rows) in [
         ("Ultramarine Blue=0.7,Titanium White=0.3", [18.0, 8.0]),
@@ -242,7 +242,7 @@ fn blending(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn glazing(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
+fn glazing(library: PaintLibrary, cell_mm: f64) -> Result<Panel, UserError> {
     let mut panel = Panel::of("filbert", 11.0, (library, cell_mm))?;
     let greys = [
         "Bone Black=0.7,Titanium White=0.3",
@@ -270,7 +270,7 @@ fn glazing(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn impasto(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
+fn impasto(library: PaintLibrary, cell_mm: f64) -> Result<Panel, UserError> {
     let mut panel = Panel::of("bright", 8.0, (library, cell_mm))?;
     // Petals around two hearts, each of six loads.
     for (middle, colour) in [
@@ -300,7 +300,7 @@ fn impasto(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
 /// Share of its load on a brush that is wiped for scumbling.
 const NEARLY_EMPTY: f64 = 0.2;
 
-fn scumbling(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
+fn scumbling(library: PaintLibrary, cell_mm: f64) -> Result<Panel, UserError> {
     let mut panel = Panel::of("bright", 10.0, (library, cell_mm))?;
     for i in 0..14 {
         let (column, row) = (i % 7, i / 7);
@@ -327,7 +327,7 @@ fn scumbling(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn thinning(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
+fn thinning(library: PaintLibrary, cell_mm: f64) -> Result<Panel, UserError> {
     let mut panel = Panel::of("round", 8.0, (library, cell_mm))?;
     let mixtures = [
         "Ultramarine Blue",

@@ -23,7 +23,7 @@ use maulstick_optics::PaintLibrary;
 use maulstick_painting::paint_error;
 use maulstick_painting::picture::picture;
 use maulstick_painting::{Painting, PaintingSetup};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_session::Offline;
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
@@ -56,11 +56,11 @@ struct Sheet {
 }
 
 impl Sheet {
-    fn new(size_mm: [f64; 2], cell_mm: f64) -> Result<Self, Fault> {
+    fn new(size_mm: [f64; 2], cell_mm: f64) -> Result<Self, UserError> {
         let [width, height] = size_mm.map(|mm| pixels(mm, cell_mm));
         if width.saturating_mul(height) > MOST_PIXELS {
             let what = format!("a sheet of {width}×{height} pixels with cells of {cell_mm} mm");
-            return Err(Fault::usage(what).at("--cell-mm").help(format!(
+            return Err(UserError::usage(what).at("--cell-mm").help(format!(
                 "choose larger cells: {} million pixels are the most",
                 MOST_PIXELS / 1_000_000
             )));
@@ -112,7 +112,7 @@ impl Panel {
         ground: &str,
         file: BrushFile,
         library: PaintLibrary,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, UserError> {
         let setup = PaintingSetup {
             ground: ground.to_owned(),
             cells: size_mm.map(|mm| pixels(mm, cell_mm) as u32),
@@ -128,7 +128,7 @@ impl Panel {
         })
     }
 
-    fn load(&mut self, brush: &str, mixture: &str) -> Result<(), Fault> {
+    fn load(&mut self, brush: &str, mixture: &str) -> Result<(), UserError> {
         let command = Command::Load {
             brush: brush.to_owned(),
             mixture: mixture_of(mixture)?,
@@ -136,7 +136,7 @@ impl Panel {
         self.offline.command(command).map_err(refused)
     }
 
-    fn paint(&mut self, gesture: &gesture::Gesture) -> Result<(), Fault> {
+    fn paint(&mut self, gesture: &gesture::Gesture) -> Result<(), UserError> {
         self.hand.paint(&mut self.offline, gesture).map_err(refused)
     }
 
@@ -145,7 +145,7 @@ impl Panel {
     }
 }
 
-fn mixture_of(text: &str) -> Result<Mixture, Fault> {
+fn mixture_of(text: &str) -> Result<Mixture, UserError> {
     let error = |error| refused(paint_error(maulstick_optics::PaintError::Mixture(error)));
     text.parse().map_err(error)
 }
@@ -153,12 +153,12 @@ fn mixture_of(text: &str) -> Result<Mixture, Fault> {
 /// The marks of one brush, on cells of this side.
 ///
 /// # Errors
-/// A [`Fault`] where a brush or a paint is refused.
+/// A [`UserError`] where a brush or a paint is refused.
 pub fn brush_panel(
     file: &BrushFile,
     library: PaintLibrary,
     cell_mm: f64,
-) -> Result<Picture, Fault> {
+) -> Result<Picture, UserError> {
     let mut panel = Panel::new((marks::PANEL_MM, cell_mm), "gesso", file.clone(), library)?;
     for mark in marks::marks(file) {
         if let Some(mixture) = mark.load {
@@ -177,7 +177,7 @@ pub fn one_stroke_panel(
     file: &BrushFile,
     library: PaintLibrary,
     cell_mm: f64,
-) -> Result<Picture, Fault> {
+) -> Result<Picture, UserError> {
     let mut panel = Panel::new(
         (one_stroke::PANEL_MM, cell_mm),
         "grey",
@@ -204,7 +204,7 @@ pub fn softening_panel(
     blender: &BrushFile,
     library: PaintLibrary,
     cell_mm: f64,
-) -> Result<Picture, Fault> {
+) -> Result<Picture, UserError> {
     let flat = library_brush("flat")?;
     let mut panel = Panel::new((softening::PANEL_MM, cell_mm), "gesso", flat, library)?;
     for (mixture, gesture) in softening::bands() {
@@ -221,8 +221,8 @@ pub fn softening_panel(
     Ok(panel.picture())
 }
 
-fn library_brush(kind: &str) -> Result<BrushFile, Fault> {
-    BrushFile::library(kind).map_err(|error| Fault::failure(error.to_string()))
+fn library_brush(kind: &str) -> Result<BrushFile, UserError> {
+    BrushFile::library(kind).map_err(|error| UserError::failure(error.to_string()))
 }
 
 /// The whole sheet, on cells of this side; `told` hears of each panel.
@@ -233,7 +233,7 @@ pub fn sheet(
     library: &PaintLibrary,
     cell_mm: f64,
     mut told: impl FnMut(usize, usize),
-) -> Result<Picture, Fault> {
+) -> Result<Picture, UserError> {
     let double = ["flat", "filbert"];
     let blenders = ["badger", "chisel"];
     let panels = LIBRARY.len() + double.len() + blenders.len();
@@ -269,7 +269,7 @@ pub fn sheet(
     for kind in double {
         let file = library_brush(kind)?
             .scaled_to(ONE_STROKE_MM)
-            .map_err(|error| Fault::failure(error.to_string()))?;
+            .map_err(|error| UserError::failure(error.to_string()))?;
         let words = [
             &*format!("double-loaded {kind}"),
             "petal, leaf, shell,",

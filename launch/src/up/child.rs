@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::Restart;
 use nix::sys::signal::{Signal, killpg};
 use nix::unistd::Pid;
@@ -108,12 +108,12 @@ impl Node {
     /// Starts the process.
     ///
     /// # Errors
-    /// A [`Fault`] where the system cannot.
-    pub fn start(&mut self, folder: &Path) -> Result<(), Fault> {
+    /// A [`UserError`] where the system cannot.
+    pub fn start(&mut self, folder: &Path) -> Result<(), UserError> {
         let program = self.spec.program;
         let failed = |error: std::io::Error| {
             let what = format!("node '{}' cannot be started: {error}", self.spec.name);
-            Fault::failure(what).help("is the program still installed? start the rig anew")
+            UserError::failure(what).help("is the program still installed? start the rig anew")
         };
         let mut child = Command::new(std::env::current_exe().map_err(failed)?)
             .arg0(program.process_name())
@@ -210,7 +210,7 @@ impl Drop for Node {
 fn judge(status: ExitStatus) -> Ended {
     match status.code() {
         Some(0) => Ended::Well,
-        Some(code) if code == maulstick_rig::fault::EXIT_USAGE => Ended::Refused(code),
+        Some(code) if code == maulstick_rig::user_error::EXIT_USAGE => Ended::Refused(code),
         _ => Ended::Badly,
     }
 }

@@ -6,10 +6,10 @@ use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Bus, BusError, Class, Queue, Wake};
+use maulstick_bus::{Bus, BusError, Qos, Queue, Wake};
 use maulstick_device::player::Rate;
-use maulstick_rig::Fault;
-use maulstick_rig::commander::Commander;
+use maulstick_rig::UserError;
+use maulstick_rig::command_client::CommandClient;
 use maulstick_rig::config::RigConfig;
 use maulstick_types::command::Command;
 use maulstick_types::stylus::{TakeEnd, TakeStatus};
@@ -56,7 +56,7 @@ pub struct Conductor {
 /// The picture being written: its outcome, and a flag for an abandoned wait.
 #[derive(Debug)]
 struct Writing {
-    outcome: mpsc::Receiver<Result<(), Fault>>,
+    outcome: mpsc::Receiver<Result<(), UserError>>,
     given_up: Arc<AtomicBool>,
 }
 
@@ -75,7 +75,7 @@ impl Conductor {
         wake: &Wake,
     ) -> Result<Self, BusError> {
         let topic = topics.take_status(PLAYER);
-        let statuses = Receiver::new(bus, &topic, Class::Background, Queue::Ring(64), wake)?;
+        let statuses = Receiver::new(bus, &topic, Qos::Background, Queue::Ring(64), wake)?;
         Ok(Self {
             performance,
             statuses,
@@ -141,8 +141,8 @@ impl Conductor {
     /// Has the picture written once paint has consumed the end of the take; true when it is there.
     ///
     /// # Errors
-    /// A [`Fault`] where it cannot be written.
-    pub fn snapshot(&mut self, bus: &Arc<dyn Bus>, topics: &Topics) -> Result<bool, Fault> {
+    /// A [`UserError`] where it cannot be written.
+    pub fn snapshot(&mut self, bus: &Arc<dyn Bus>, topics: &Topics) -> Result<bool, UserError> {
         let Some(end) = &self.end else {
             return Ok(false);
         };
@@ -171,7 +171,7 @@ impl Conductor {
         let (to_conductor, outcome) = mpsc::channel();
         let given_up = Arc::new(AtomicBool::new(false));
         let stop = Arc::clone(&given_up);
-        let mut commander = Commander::new(Arc::clone(bus), topics);
+        let mut commander = CommandClient::new(Arc::clone(bus), topics);
         let after = Some(end.after.clone());
         std::thread::Builder::new()
             .name("snapshot".into())
@@ -180,7 +180,7 @@ impl Conductor {
                 let sent = commander.send(command, after, SNAPSHOT, &stop);
                 to_conductor.send(sent.map(|_| ())).ok();
             })
-            .map_err(|error| Fault::failure(error.to_string()))?;
+            .map_err(|error| UserError::failure(error.to_string()))?;
         self.writing = Some(Writing { outcome, given_up });
         Ok(false)
     }

@@ -20,7 +20,7 @@ use maulstick_device::Take;
 use maulstick_device::player::Rate;
 use maulstick_document::scene;
 use maulstick_optics::PaintLibrary;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::{DEFAULT, RigConfig, is_path};
 use maulstick_rig::files::Kind;
 use maulstick_rig::log::log_to_stderr;
@@ -87,7 +87,7 @@ pub struct UpOptions {
 
 impl UpOptions {
     /// Checks that the file written at the end of the take is none that the rig uses.
-    fn check_files(&self, take: &Path, config: &RigConfig) -> Result<(), Fault> {
+    fn check_files(&self, take: &Path, config: &RigConfig) -> Result<(), UserError> {
         let outputs: Vec<_> = UsedFile::written("the picture", self.snapshot.as_ref(), Kind::Png)
             .into_iter()
             .chain(UsedFile::written(
@@ -110,14 +110,14 @@ impl UpOptions {
 /// Runs the rig until it is told to stop.
 ///
 /// # Errors
-/// A [`Fault`] for bad settings or input, an occupied name, or nodes that do not stay up.
-pub fn run(options: &UpOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for bad settings or input, an occupied name, or nodes that do not stay up.
+pub fn run(options: &UpOptions) -> Result<i32, UserError> {
     if options.print_config {
         crate::commands::print_text(DEFAULT)?;
         return Ok(0);
     }
     if options.play.is_none() && options.painting.ledger.is_some() {
-        return Err(Fault::usage("--ledger needs --play TAKE")
+        return Err(UserError::usage("--ledger needs --play TAKE")
             .help("`maulstick snapshot --ledger FILE` asks a running rig"));
     }
     log_to_stderr("info");
@@ -217,6 +217,6 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
 
 /// An absolute path: nodes may be started by hand from another folder, and the paint node writes to the name it is
 /// given.
-fn absolute(path: &std::path::Path) -> Result<PathBuf, Fault> {
-    std::path::absolute(path).map_err(|error| Fault::reading(path, &error))
+fn absolute(path: &std::path::Path) -> Result<PathBuf, UserError> {
+    std::path::absolute(path).map_err(|error| UserError::reading(path, &error))
 }

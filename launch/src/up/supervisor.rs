@@ -12,9 +12,9 @@ use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
 use maulstick_bus::{Bus, Dial, RigClock, RigFolder, Subscription, Wake, ZenohBus};
-use maulstick_rig::fault::EXIT_FAILURE;
-use maulstick_rig::member::{CONFIG_FILE, HUB};
-use maulstick_rig::{Fault, RigConfig, Stop};
+use maulstick_rig::node_handle::{CONFIG_FILE, HUB};
+use maulstick_rig::user_error::EXIT_FAILURE;
+use maulstick_rig::{RigConfig, Stop, UserError};
 use maulstick_types::Mixture;
 use maulstick_types::topics::Topics;
 
@@ -71,21 +71,21 @@ enum End {
     /// With this exit code.
     Code(i32),
     /// With a fault.
-    Fault(Fault),
+    Fault(UserError),
 }
 
 impl Supervisor {
     /// Opens the hub and starts the nodes.
     ///
     /// # Errors
-    /// A [`Fault`] where the folder, the bus or a process cannot be used.
+    /// A [`UserError`] where the folder, the bus or a process cannot be used.
     pub fn start(
         folder: RigFolder,
         config: &RigConfig,
         specs: Vec<NodeSpec>,
         performance: Option<Performance>,
         first_load: Option<Mixture>,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, UserError> {
         maulstick_bus::clear_shared_memory();
         let clock = RigClock::start();
         let dial = Dial {
@@ -97,10 +97,12 @@ impl Supervisor {
         let bus: Arc<dyn Bus> = Arc::clone(&session) as Arc<dyn Bus>;
         let topics = Topics::new(folder.rig());
         let wake = Wake::new();
-        let stop = Stop::on_signals(&wake).map_err(|error| Fault::failure(error.to_string()))?;
+        let stop =
+            Stop::on_signals(&wake).map_err(|error| UserError::failure(error.to_string()))?;
         let tokens = bus.watch(&topics.node("*"), &wake)?;
         let path = folder.path().join(CONFIG_FILE);
-        std::fs::write(&path, config.to_toml()?).map_err(|error| Fault::writing(&path, &error))?;
+        std::fs::write(&path, config.to_toml()?)
+            .map_err(|error| UserError::writing(&path, &error))?;
         folder.announce(HUB, clock)?;
         let orders = Orders::new(&*bus, &topics, &wake)?;
         let conductor = match performance {
@@ -136,7 +138,7 @@ impl Supervisor {
         Ok(supervisor)
     }
 
-    fn start_node(&mut self, place: usize) -> Result<(), Fault> {
+    fn start_node(&mut self, place: usize) -> Result<(), UserError> {
         let node = &mut self.nodes[place];
         node.start(self.folder.path())?;
         let name = node.spec.name.clone();
@@ -148,8 +150,8 @@ impl Supervisor {
     /// Keeps the rig running until it is told to stop, and returns the exit code.
     ///
     /// # Errors
-    /// A [`Fault`] where a node that the rig cannot do without does not stay up.
-    pub fn run(&mut self) -> Result<i32, Fault> {
+    /// A [`UserError`] where a node that the rig cannot do without does not stay up.
+    pub fn run(&mut self) -> Result<i32, UserError> {
         let end = loop {
             if self.stop.requested() {
                 break End::Code(self.stop.exit_code(EXIT_INTERRUPTED));
@@ -178,7 +180,7 @@ impl Supervisor {
     }
 
     /// One look at everything; an exit code where the rig is to end.
-    fn turn(&mut self) -> Result<Option<i32>, Fault> {
+    fn turn(&mut self) -> Result<Option<i32>, UserError> {
         self.watch_tokens();
         if let Some(code) = self.watch_children()? {
             return Ok(Some(code));
@@ -215,7 +217,7 @@ impl Supervisor {
         }
     }
 
-    fn watch_children(&mut self) -> Result<Option<i32>, Fault> {
+    fn watch_children(&mut self) -> Result<Option<i32>, UserError> {
         let ended: Vec<(String, Ended)> = self
             .nodes
             .iter_mut()
@@ -280,8 +282,8 @@ impl Supervisor {
         }
     }
 
-    fn failed(&self, name: &str) -> Fault {
-        Fault::failure(format!("node '{name}' does not stay up"))
+    fn failed(&self, name: &str) -> UserError {
+        UserError::failure(format!("node '{name}' does not stay up"))
             .at(self.topics.node(name))
             .help("its own messages above say why; three failures in ten seconds are the limit")
     }
@@ -309,7 +311,7 @@ impl Supervisor {
         self.nodes.retain(|node| node.spec.role != Role::Player);
     }
 
-    fn restart_due(&mut self) -> Result<(), Fault> {
+    fn restart_due(&mut self) -> Result<(), UserError> {
         let now = Instant::now();
         let due: Vec<String> = self
             .due
@@ -400,7 +402,7 @@ impl Supervisor {
     }
 
     /// Starts the player when all others are ready; has the picture written at the take's end.
-    fn conduct(&mut self) -> Result<Option<i32>, Fault> {
+    fn conduct(&mut self) -> Result<Option<i32>, UserError> {
         let ready = self.ready();
         let Some(conductor) = &mut self.conductor else {
             return Ok(None);

@@ -2,7 +2,7 @@
 
 use maulstick_types::{Header, Message, Origin};
 
-use crate::bus::{Bus, BusError, Class, Subscription};
+use crate::bus::{Bus, BusError, Qos, Subscription};
 use crate::inbox::{Queue, Wake};
 use crate::rivals::SILENCE_NS;
 use crate::typed::Sender;
@@ -31,9 +31,9 @@ impl<M: Message + Clone> Announcer<M> {
     /// [`BusError::Topic`].
     pub fn new(bus: &dyn Bus, topic: &str, origin: Origin, wake: &Wake) -> Result<Self, BusError> {
         Ok(Self {
-            sender: Sender::new(bus, topic, Class::Cached, origin)?,
+            sender: Sender::new(bus, topic, Qos::Cached, origin)?,
             // Earlier messages are no contradiction: the topic is not cached here.
-            heard: bus.subscribe(topic, Class::Control, Queue::Ring(16), wake)?,
+            heard: bus.subscribe(topic, Qos::Control, Queue::Ring(16), wake)?,
             topic: topic.to_owned(),
             origin,
             newest: None,

@@ -54,7 +54,7 @@ pub enum BusError {
 
 /// Quality of service of a topic. Every class may drop: a slow receiver never delays a sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Class {
+pub enum Qos {
     /// Samples, states and contact models.
     RealTime,
     /// Credits, commands, lost messages, and the replies to them.
@@ -275,7 +275,7 @@ pub trait Bus: Send + Sync {
     ///
     /// # Errors
     /// [`BusError::Topic`].
-    fn publisher(&self, key: &str, class: Class) -> Result<Box<dyn Publish>, BusError>;
+    fn publisher(&self, key: &str, qos: Qos) -> Result<Box<dyn Publish>, BusError>;
 
     /// Receives what matches `key`; `Cached` topics give their last value at once.
     ///
@@ -284,7 +284,7 @@ pub trait Bus: Send + Sync {
     fn subscribe(
         &self,
         key: &str,
-        class: Class,
+        qos: Qos,
         queue: Queue,
         wake: &Wake,
     ) -> Result<Subscription, BusError>;
@@ -303,7 +303,7 @@ pub trait Bus: Send + Sync {
     fn ask(
         &self,
         key: &str,
-        class: Class,
+        qos: Qos,
         bytes: Vec<u8>,
         limit: Duration,
         wake: &Wake,

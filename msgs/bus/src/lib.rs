@@ -30,7 +30,7 @@ pub mod typed;
 mod zenoh_bus;
 
 pub use announce::Announcer;
-pub use bus::{Arrival, Bus, BusError, Class, Pending, Publish, Request, Server, Subscription};
+pub use bus::{Arrival, Bus, BusError, Pending, Publish, Qos, Request, Server, Subscription};
 pub use clock::RigClock;
 pub use credit::{CreditReceiver, CreditSender};
 pub use inbox::{Counts, Inbox, Queue, Wake};

@@ -11,7 +11,7 @@ use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng as _;
 
 use crate::bus::{
-    Answer, Answering, Arrival, Bus, BusError, Class, Pending, Publish, Request, Server,
+    Answer, Answering, Arrival, Bus, BusError, Pending, Publish, Qos, Request, Server,
     Subscription, Token,
 };
 use crate::inbox::{Inbox, Queue, Wake};
@@ -269,13 +269,13 @@ impl Drop for Leave {
 struct MemoryPublisher {
     net: Arc<Mutex<Net>>,
     key: String,
-    class: Class,
+    qos: Qos,
 }
 
 impl Publish for MemoryPublisher {
     fn put(&self, bytes: Vec<u8>) -> Result<(), BusError> {
         let mut net = lock(&self.net);
-        let cached = self.class == Class::Cached;
+        let cached = self.qos == Qos::Cached;
         if cached {
             net.cached.insert(self.key.clone(), bytes.clone());
         }
@@ -320,23 +320,23 @@ impl MemoryBus {
 }
 
 impl Bus for MemoryBus {
-    fn publisher(&self, key: &str, class: Class) -> Result<Box<dyn Publish>, BusError> {
+    fn publisher(&self, key: &str, qos: Qos) -> Result<Box<dyn Publish>, BusError> {
         Ok(Box::new(MemoryPublisher {
             net: Arc::clone(&self.net),
             key: key.to_owned(),
-            class,
+            qos,
         }))
     }
 
     fn subscribe(
         &self,
         key: &str,
-        class: Class,
+        qos: Qos,
         queue: Queue,
         wake: &Wake,
     ) -> Result<Subscription, BusError> {
         let subscription = self.listen(key, queue, wake, Kind::Topics);
-        if class == Class::Cached {
+        if qos == Qos::Cached {
             let net = lock(&self.net);
             for (cached, bytes) in &net.cached {
                 if matches(key, cached) {
@@ -372,7 +372,7 @@ impl Bus for MemoryBus {
     fn ask(
         &self,
         key: &str,
-        _class: Class,
+        _qos: Qos,
         bytes: Vec<u8>,
         limit: Duration,
         wake: &Wake,

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use maulstick_types::{DecodeError, Flags, Header, Message, Origin, decode, encode};
 
-use crate::bus::{Bus, BusError, Class, Publish, Subscription};
+use crate::bus::{Bus, BusError, Publish, Qos, Subscription};
 use crate::inbox::{Queue, Wake};
 use crate::rivals::{Once, Rivals, Verdict};
 
@@ -37,8 +37,8 @@ impl<M: Message> Sender<M> {
     ///
     /// # Errors
     /// [`BusError::Topic`].
-    pub fn new(bus: &dyn Bus, topic: &str, class: Class, origin: Origin) -> Result<Self, BusError> {
-        let publish = bus.publisher(topic, class)?;
+    pub fn new(bus: &dyn Bus, topic: &str, qos: Qos, origin: Origin) -> Result<Self, BusError> {
+        let publish = bus.publisher(topic, qos)?;
         Ok(Self {
             publish,
             topic: topic.to_owned(),
@@ -164,7 +164,7 @@ const STREAMS: usize = 64;
 pub struct Receiver<M> {
     subscription: Subscription,
     reader: Reader,
-    class: Class,
+    qos: Qos,
     /// By topic and source.
     streams: BTreeMap<(String, u32), Rivals>,
     /// Error of a message that decodes, if any.
@@ -179,15 +179,15 @@ impl<M: Message> Receiver<M> {
     pub fn new(
         bus: &dyn Bus,
         topic: &str,
-        class: Class,
+        qos: Qos,
         queue: Queue,
         wake: &Wake,
     ) -> Result<Self, BusError> {
-        let subscription = bus.subscribe(topic, class, queue, wake)?;
+        let subscription = bus.subscribe(topic, qos, queue, wake)?;
         Ok(Self {
             subscription,
             reader: Reader::default(),
-            class,
+            qos,
             streams: BTreeMap::new(),
             fault: |_| None,
         })
@@ -229,7 +229,7 @@ impl<M: Message> Receiver<M> {
                     self.reader.refuse(&key, Reason::Fault(fault));
                     continue;
                 }
-                if self.class == Class::RealTime && !self.follows(&header, &key, arrived_ns) {
+                if self.qos == Qos::RealTime && !self.follows(&header, &key, arrived_ns) {
                     continue;
                 }
                 return Some(Received {
@@ -288,7 +288,7 @@ pub struct Received<M> {
 pub fn ask<Q: Message, A: Message>(
     bus: &dyn Bus,
     topic: &str,
-    class: Class,
+    qos: Qos,
     origin: Origin,
     question: &Q,
     limit: Duration,
@@ -300,6 +300,6 @@ pub fn ask<Q: Message, A: Message>(
         source,
     };
     let bytes = encode(&origin, Flags::NONE, 0, now, now, question).map_err(refused)?;
-    let answer = bus.ask(topic, class, bytes, limit, &wake)?.wait(&wake)?;
+    let answer = bus.ask(topic, qos, bytes, limit, &wake)?.wait(&wake)?;
     Ok(decode::<A>(&answer).map_err(refused)?.1)
 }

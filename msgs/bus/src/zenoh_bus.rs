@@ -16,7 +16,7 @@ use zenoh_ext::{
 };
 
 use crate::bus::{
-    Answer, Answering, Arrival, Bus, BusError, Class, Pending, Publish, Request, Server,
+    Answer, Answering, Arrival, Bus, BusError, Pending, Publish, Qos, Request, Server,
     Subscription, Token,
 };
 use crate::clock::RigClock;
@@ -56,13 +56,13 @@ fn topic_error(topic: &str, error: impl std::fmt::Display) -> BusError {
     }
 }
 
-fn priority(class: Class) -> Priority {
-    match class {
-        Class::RealTime => Priority::RealTime,
-        Class::Control => Priority::InteractiveHigh,
-        Class::Cached => Priority::InteractiveLow,
-        Class::Data => Priority::Data,
-        Class::Background => Priority::Background,
+fn priority(qos: Qos) -> Priority {
+    match qos {
+        Qos::RealTime => Priority::RealTime,
+        Qos::Control => Priority::InteractiveHigh,
+        Qos::Cached => Priority::InteractiveLow,
+        Qos::Data => Priority::Data,
+        Qos::Background => Priority::Background,
     }
 }
 
@@ -272,13 +272,13 @@ fn arrive(inbox: &Inbox<Arrival>, clock: RigClock, sample: &Sample) {
 }
 
 impl Bus for ZenohBus {
-    fn publisher(&self, key: &str, class: Class) -> Result<Box<dyn Publish>, BusError> {
+    fn publisher(&self, key: &str, qos: Qos) -> Result<Box<dyn Publish>, BusError> {
         let builder = self
             .session
             .declare_publisher(key.to_owned())
             .congestion_control(CongestionControl::Drop)
-            .priority(priority(class));
-        let send: Box<dyn Fn(Vec<u8>) -> zenoh::Result<()> + Send> = if class == Class::Cached {
+            .priority(priority(qos));
+        let send: Box<dyn Fn(Vec<u8>) -> zenoh::Result<()> + Send> = if qos == Qos::Cached {
             let publisher = builder
                 .cache(CacheConfig::default().max_samples(1))
                 .publisher_detection()
@@ -301,7 +301,7 @@ impl Bus for ZenohBus {
     fn subscribe(
         &self,
         key: &str,
-        class: Class,
+        qos: Qos,
         queue: Queue,
         wake: &Wake,
     ) -> Result<Subscription, BusError> {
@@ -311,7 +311,7 @@ impl Bus for ZenohBus {
             .session
             .declare_subscriber(key.to_owned())
             .callback(move |sample| arrive(&to, clock, &sample));
-        let keep: Box<dyn std::any::Any + Send> = if class == Class::Cached {
+        let keep: Box<dyn std::any::Any + Send> = if qos == Qos::Cached {
             let subscriber = builder
                 .history(
                     HistoryConfig::default()
@@ -361,7 +361,7 @@ impl Bus for ZenohBus {
     fn ask(
         &self,
         key: &str,
-        class: Class,
+        qos: Qos,
         bytes: Vec<u8>,
         limit: Duration,
         wake: &Wake,
@@ -381,7 +381,7 @@ impl Bus for ZenohBus {
             .payload(bytes)
             .timeout(limit)
             .congestion_control(CongestionControl::Drop)
-            .priority(priority(class))
+            .priority(priority(qos))
             .consolidation(ConsolidationMode::None)
             .with(callback)
             .wait()

@@ -7,7 +7,7 @@ use zenoh::qos::Priority;
 
 use maulstick_bus::bus::Answer;
 use maulstick_bus::{
-    Bus, BusError, Class, Dial, Payload, Queue, RigClock, RigFolder, Server, Wake, ZenohBus,
+    Bus, BusError, Dial, Payload, Qos, Queue, RigClock, RigFolder, Server, Wake, ZenohBus,
 };
 
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -78,14 +78,14 @@ fn nodes_that_know_only_the_hub_find_each_other() {
     let rig = rig();
     let (one, two, client) = (rig.node("one"), rig.node("two"), rig.client());
     let wake = Wake::new();
-    let publisher = one.publisher("t/a", Class::RealTime).expect("declared");
+    let publisher = one.publisher("t/a", Qos::RealTime).expect("declared");
     for (who, bus) in [
         ("a node", &two),
         ("a client", &client),
         ("the hub", &rig.hub),
     ] {
         let subscription = bus
-            .subscribe("t/*", Class::RealTime, Queue::Ring(8), &wake)
+            .subscribe("t/*", Qos::RealTime, Queue::Ring(8), &wake)
             .expect("subscribed");
         let arrival = until(&wake, || {
             publisher.put(vec![1, 2, 3]).expect("sent");
@@ -105,12 +105,12 @@ fn a_late_joiner_gets_the_last_cached_value() {
     let rig = rig();
     let one = rig.node("one");
     let wake = Wake::new();
-    let publisher = one.publisher("t/scene", Class::Cached).expect("declared");
+    let publisher = one.publisher("t/scene", Qos::Cached).expect("declared");
     publisher.put(vec![1]).expect("sent");
     publisher.put(vec![2]).expect("sent");
     let two = rig.node("two");
     let late = two
-        .subscribe("t/*", Class::Cached, Queue::Ring(8), &wake)
+        .subscribe("t/*", Qos::Cached, Queue::Ring(8), &wake)
         .expect("subscribed");
     assert_eq!(until(&wake, || late.try_recv()).bytes, vec![2]);
 }
@@ -124,7 +124,7 @@ fn queries_are_answered_or_end() {
     let answer = until(&wake, || {
         let limit = Duration::from_millis(500);
         let pending = two
-            .ask("t/q", Class::Control, vec![7], limit, &wake)
+            .ask("t/q", Qos::Control, vec![7], limit, &wake)
             .expect("asked");
         until(&wake, || {
             if let Some(request) = server.try_recv() {
@@ -138,7 +138,7 @@ fn queries_are_answered_or_end() {
     assert_eq!(answer, vec![7, 7]);
     let limit = Duration::from_millis(50);
     let nobody = two
-        .ask("t/nobody", Class::Control, vec![], limit, &wake)
+        .ask("t/nobody", Qos::Control, vec![], limit, &wake)
         .expect("asked")
         .wait(&wake);
     assert!(
@@ -153,8 +153,8 @@ fn a_question_travels_in_its_class() {
     let (one, two) = (rig.node("one"), rig.client());
     let wake = Wake::new();
     let classes = [
-        ("t/frame", Class::Data, Priority::Data),
-        ("t/command", Class::Control, Priority::InteractiveHigh),
+        ("t/frame", Qos::Data, Priority::Data),
+        ("t/command", Qos::Control, Priority::InteractiveHigh),
     ];
     for (key, class, priority) in classes {
         let (to, heard) = std::sync::mpsc::channel();
@@ -234,7 +234,7 @@ fn sharing(rig: &Rig, name: &str) -> ZenohBus {
 
 /// Asks for `length` bytes of a value, until somebody answers.
 fn asked(from: &ZenohBus, server: &Server, wake: &Wake, length: usize, value: u8) -> Payload {
-    let (class, limit) = (Class::Data, Duration::from_secs(5));
+    let (class, limit) = (Qos::Data, Duration::from_secs(5));
     let mut pending = None;
     let answer = until(wake, || {
         let question = pending.get_or_insert_with(|| {
@@ -353,9 +353,9 @@ fn a_locator_that_is_asked_for_is_dialled_over_tcp_too() {
     };
     let client = ZenohBus::open(&dial, rig.clock).expect("a client over TCP");
     let wake = Wake::new();
-    let heard = remote.subscribe("t/a", Class::RealTime, Queue::Ring(8), &wake);
+    let heard = remote.subscribe("t/a", Qos::RealTime, Queue::Ring(8), &wake);
     let heard = heard.expect("subscribed");
-    let publisher = client.publisher("t/a", Class::RealTime).expect("declared");
+    let publisher = client.publisher("t/a", Qos::RealTime).expect("declared");
     until(&wake, || {
         publisher.put(vec![1]).expect("sent");
         heard.try_recv()

@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::fault::Fault;
 use crate::size::parse_bytes;
+use crate::user_error::UserError;
 
 pub use device::{ACTIONS, DRIVERS, DeviceSection, FORCES, HID_DRIVERS};
 pub use light::LightSection;
@@ -277,9 +277,10 @@ impl RigConfig {
     /// Reads a file.
     ///
     /// # Errors
-    /// A [`Fault`] with the line.
-    pub fn read(path: &Path) -> Result<Self, Fault> {
-        let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
+    /// A [`UserError`] with the line.
+    pub fn read(path: &Path) -> Result<Self, UserError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|error| UserError::reading(path, &error))?;
         let mut config = Self::parse(&text, &path.display().to_string())?;
         if let Some(folder) = std::path::absolute(path)
             .ok()
@@ -326,8 +327,8 @@ impl RigConfig {
     /// Reads a text; `name` is how errors call it.
     ///
     /// # Errors
-    /// A [`Fault`] with the line.
-    pub fn parse(text: &str, name: &str) -> Result<Self, Fault> {
+    /// A [`UserError`] with the line.
+    pub fn parse(text: &str, name: &str) -> Result<Self, UserError> {
         let mut config: Self =
             toml::from_str(text).map_err(|error| toml_fault(text, name, &error))?;
         if config.brush.is_empty() {
@@ -352,9 +353,9 @@ impl RigConfig {
     /// As the file that nodes read.
     ///
     /// # Errors
-    /// A [`Fault`] where a value cannot be written as TOML.
-    pub fn to_toml(&self) -> Result<String, Fault> {
-        toml::to_string(self).map_err(|error| Fault::failure(error.to_string()))
+    /// A [`UserError`] where a value cannot be written as TOML.
+    pub fn to_toml(&self) -> Result<String, UserError> {
+        toml::to_string(self).map_err(|error| UserError::failure(error.to_string()))
     }
 
     /// The brush called `name`.
@@ -373,17 +374,17 @@ pub fn is_path(text: &str) -> bool {
 
 /// A fault of the TOML reader, with its line, and the nearest key where a key is unknown.
 #[must_use]
-pub fn toml_fault(text: &str, name: &str, error: &toml::de::Error) -> Fault {
+pub fn toml_fault(text: &str, name: &str, error: &toml::de::Error) -> UserError {
     let start = error.span().map_or(0, |span| span.start.min(text.len()));
     let line = text[..start].matches('\n').count() + 1;
     let message = error.message();
     let fault =
-        Fault::usage(message.lines().next().unwrap_or(message)).at(format!("{name}:{line}"));
+        UserError::usage(message.lines().next().unwrap_or(message)).at(format!("{name}:{line}"));
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     match quoted.as_slice() {
-        [key, keys @ ..] if message.starts_with("unknown field") && !keys.is_empty() => Fault {
+        [key, keys @ ..] if message.starts_with("unknown field") && !keys.is_empty() => UserError {
             place: fault.place,
-            ..Fault::unknown(format!("unknown key '{key}'"), key, keys.iter().copied())
+            ..UserError::unknown(format!("unknown key '{key}'"), key, keys.iter().copied())
         },
         _ => fault.help("see the commented default: `maulstick up --print-config`"),
     }

@@ -2,24 +2,24 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`commander`] | commands to a node, repeated until answered |
+//! | [`command_client`] | commands to a node, repeated until answered |
 //! | [`config`] | the settings of a rig |
-//! | [`fault`] | an error as the user sees it: what, where, advice |
+//! | [`user_error`] | an error as the user sees it: what, where, advice |
 //! | [`files`] | files: whole under their name, of one's own kind, open here |
 //! | [`log`] | log lines |
-//! | [`member`] | joining a rig, living in it, leaving it |
+//! | [`node_handle`] | joining a rig, living in it, leaving it |
 //! | [`stop`] | the stop flag: a signal, or the launcher's end |
 
-pub mod commander;
+pub mod command_client;
 pub mod config;
-pub mod fault;
 pub mod log;
-pub mod member;
+pub mod node_handle;
 pub mod size;
 pub mod stop;
+pub mod user_error;
 
 pub use config::RigConfig;
-pub use fault::Fault;
 pub use maulstick_files as files;
-pub use member::{Member, MemberArgs};
+pub use node_handle::{NodeArgs, NodeHandle};
 pub use stop::Stop;
+pub use user_error::UserError;

@@ -57,7 +57,7 @@ impl Stop {
                 flag.store(true, Ordering::SeqCst);
                 wake.ring();
                 std::thread::sleep(Duration::from_millis(1500));
-                std::process::exit(crate::fault::EXIT_FAILURE);
+                std::process::exit(crate::user_error::EXIT_FAILURE);
             })?;
         Ok(())
     }

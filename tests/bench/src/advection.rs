@@ -10,7 +10,7 @@ use maulstick_gpu::Device;
 use maulstick_gpu::impasto::measure::Measured;
 use maulstick_impasto::stages::advection::{Advection, Axis, STAIN};
 use maulstick_impasto::stages::velocity::Faces;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use crate::report::{Report, quantile, sorted};
 use crate::thread_cpu::thread_cpu;
@@ -25,11 +25,11 @@ const TIMES: usize = 16;
 const SPEED: f32 = 0.3;
 
 /// Measures and reports: cells × (1 + paints) × 8 bytes a time.
-pub(crate) fn run(report: &mut Report, gpu: Option<Device>) -> Result<(), Fault> {
+pub(crate) fn run(report: &mut Report, gpu: Option<Device>) -> Result<(), UserError> {
     let mut pairs = Vec::new();
     match gpu {
         Some(gpu) => {
-            let fault = |error| Fault::failure(format!("the graphics device: {error}"));
+            let fault = |error| UserError::failure(format!("the graphics device: {error}"));
             let mut measured = Measured::new(gpu, SIDE, PAINTS).map_err(fault)?;
             for _ in 0..=ROUNDS {
                 let took = measured.advection(TIMES).map_err(fault)?;
@@ -61,12 +61,12 @@ struct OnProcessor {
 }
 
 impl OnProcessor {
-    fn new() -> Result<Self, Fault> {
+    fn new() -> Result<Self, UserError> {
         let mut store = TileStore::new([SIDE as u32; 2]);
         let window = store
             .around([0; 2], [SIDE as i64; 2])
             .and_then(|all| Window::open(&mut store, all, &Relief::flat(2.5e-4)));
-        let mut window = window.ok_or_else(|| Fault::failure("no window opens"))?;
+        let mut window = window.ok_or_else(|| UserError::failure("no window opens"))?;
         for slot in 0..PAINTS {
             let cells = window.plane_mut(slot).iter_mut().enumerate();
             cells.for_each(|(i, count)| *count = 26_843.0 + (i * 7919 % 4096) as f32);

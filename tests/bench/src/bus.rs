@@ -11,7 +11,7 @@ use maulstick_bus::credit::Stamp;
 use maulstick_bus::{
     Bus as _, CreditReceiver, CreditSender, Dial, RigClock, RigFolder, Wake, ZenohBus,
 };
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::stylus::StylusSample;
 use maulstick_types::topics::Topics;
 use maulstick_types::{Flags, Origin};
@@ -30,12 +30,12 @@ const BARE: &str = "bench/bare";
 /// Bytes of a sample with its header, which the bare put carries too.
 const BYTES: usize = 200;
 
-fn fault(error: impl std::fmt::Display) -> Fault {
-    Fault::failure(error.to_string())
+fn fault(error: impl std::fmt::Display) -> UserError {
+    UserError::failure(error.to_string())
 }
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     let base = tempfile::tempdir().map_err(fault)?;
     let folder = RigFolder::create_in(&base.path().join("rigs"), "bench")?;
     let clock = RigClock::start();
@@ -69,10 +69,10 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
         .map_err(fault)?;
     // The far end says when it has heard both.
     let sample = StylusSample::away();
-    let send = |ours: &mut CreditSender<StylusSample>, which: u64| -> Result<(), Fault> {
+    let send = |ours: &mut CreditSender<StylusSample>, which: u64| -> Result<(), UserError> {
         if which == 0 {
             let now_ns = bus.now_ns();
-            ours.forgive();
+            ours.reset_credit();
             ours.send(
                 Flags::NONE,
                 Stamp {
@@ -136,7 +136,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
 
 /// The process that receives: prints `ready` once it has heard both, and at the end of its input
 /// the latencies of ours and of the bare ones, ns.
-pub(crate) fn far_end(argument: &str) -> Result<(), Fault> {
+pub(crate) fn far_end(argument: &str) -> Result<(), UserError> {
     let (locator, offset) = argument.split_once(' ').ok_or_else(|| fault("no clock"))?;
     let clock = RigClock::with_offset(offset.parse().map_err(fault)?);
     let dial = Dial {

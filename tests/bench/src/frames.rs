@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use maulstick_bus::{Bus as _, Class, Dial, Payload, RigClock, RigFolder, Server, Wake, ZenohBus};
-use maulstick_rig::Fault;
+use maulstick_bus::{Bus as _, Dial, Payload, Qos, RigClock, RigFolder, Server, Wake, ZenohBus};
+use maulstick_rig::UserError;
 use maulstick_types::paint::{FrameReply, FrameTile};
 use maulstick_types::{Flags, FrameView, Origin, encode, encode_into, encoded_bytes};
 
@@ -25,8 +25,8 @@ const ME: Origin = Origin {
 };
 const TOPIC: &str = "bench/frame";
 
-fn fault(error: impl std::fmt::Display) -> Fault {
-    Fault::failure(error.to_string())
+fn fault(error: impl std::fmt::Display) -> UserError {
+    UserError::failure(error.to_string())
 }
 
 fn reply(tiles: usize) -> FrameReply {
@@ -69,7 +69,7 @@ fn answer(server: &Server, wake: &Wake, reply: &FrameReply, stop: &AtomicBool) {
 }
 
 /// Reads every tile, as a view does.
-fn read(bytes: &Payload, into: &mut Vec<u8>) -> Result<usize, Fault> {
+fn read(bytes: &Payload, into: &mut Vec<u8>) -> Result<usize, UserError> {
     let (_, view) = FrameView::of(bytes).map_err(fault)?;
     for tile in &view.tiles {
         into.clear();
@@ -79,7 +79,7 @@ fn read(bytes: &Payload, into: &mut Vec<u8>) -> Result<usize, Fault> {
 }
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     let base = tempfile::tempdir().map_err(fault)?;
     let folder = RigFolder::create_in(&base.path().join("rigs"), "bench")?;
     let clock = RigClock::start();
@@ -106,7 +106,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
             for (way, times) in times.iter_mut().enumerate() {
                 let limit = Duration::from_secs(2);
                 let begun = Instant::now();
-                let pending = ui.ask(TOPIC, Class::Data, vec![0; 1 + way], limit, &asking)?;
+                let pending = ui.ask(TOPIC, Qos::Data, vec![0; 1 + way], limit, &asking)?;
                 let Ok(bytes) = pending.wait(&asking) else {
                     continue;
                 };

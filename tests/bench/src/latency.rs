@@ -7,8 +7,8 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::{Receiver, ask};
-use maulstick_bus::{Bus as _, BusError, Class, Dial, Queue, RigClock, Wake, ZenohBus};
-use maulstick_rig::Fault;
+use maulstick_bus::{Bus as _, BusError, Dial, Qos, Queue, RigClock, Wake, ZenohBus};
+use maulstick_rig::UserError;
 use maulstick_types::Origin;
 use maulstick_types::brush::BrushState;
 use maulstick_types::paint::{FrameReply, FrameRequest};
@@ -20,7 +20,7 @@ use crate::running::{Running, fault, joined, maulstick};
 use crate::window_latency;
 
 /// A rig called `latency` in the folder `place` that plays a take at rate 1.
-pub(crate) fn playing(place: &Path, take: &Path) -> Result<Command, Fault> {
+pub(crate) fn playing(place: &Path, take: &Path) -> Result<Command, UserError> {
     let mut command = Command::new(maulstick()?);
     command
         .args(["up", "--name", "latency", "--rate", "1"])
@@ -32,7 +32,7 @@ pub(crate) fn playing(place: &Path, take: &Path) -> Result<Command, Fault> {
 }
 
 /// A bus of that rig, once it is there, for a program called `name`.
-pub(crate) fn joined_as(place: &Path, name: &str) -> Result<ZenohBus, Fault> {
+pub(crate) fn joined_as(place: &Path, name: &str) -> Result<ZenohBus, UserError> {
     let path = place.join("maulstick/latency");
     let (folder, info) = joined(&path, Instant::now() + Duration::from_secs(30))?;
     let dial = Dial {
@@ -45,7 +45,7 @@ pub(crate) fn joined_as(place: &Path, name: &str) -> Result<ZenohBus, Fault> {
 }
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     let place = tempfile::tempdir().map_err(fault)?;
     let (take, seconds) = performance(place.path())?;
     window_latency::run(report, place.path(), &take, seconds)?;
@@ -79,14 +79,14 @@ fn pull(
     topics: &Topics,
     seconds: f64,
     rig: &mut Running,
-) -> Result<Latencies, Fault> {
+) -> Result<Latencies, UserError> {
     let wake = Wake::new();
     let me = Origin {
         source: 1,
         epoch: 1,
     };
     let topic = topics.brush_state("main");
-    let class = Class::RealTime;
+    let class = Qos::RealTime;
     let mut states = Receiver::<BrushState>::new(bus, &topic, class, Queue::Ring(65_536), &wake)?;
     let mut waiting: BTreeMap<u64, u64> = BTreeMap::new();
     let mut latencies = Latencies {
@@ -108,12 +108,12 @@ fn pull(
             shared: true,
         };
         let limit = Duration::from_millis(500);
-        let reply =
-            match ask::<_, FrameReply>(bus, &topics.frame(), Class::Data, me, &request, limit) {
-                Ok(reply) => reply,
-                Err(BusError::NoAnswer { .. }) => continue,
-                Err(error) => return Err(error.into()),
-            };
+        let reply = match ask::<_, FrameReply>(bus, &topics.frame(), Qos::Data, me, &request, limit)
+        {
+            Ok(reply) => reply,
+            Err(BusError::NoAnswer { .. }) => continue,
+            Err(error) => return Err(error.into()),
+        };
         let now_ns = bus.now_ns();
         (since, epoch, look) = (reply.version, reply.epoch, reply.look);
         latencies.frames += usize::from(!reply.tiles.is_empty());

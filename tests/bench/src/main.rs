@@ -41,7 +41,7 @@ mod window;
 mod window_latency;
 
 use clap::Parser;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::MODELS;
 
 use crate::report::Report;
@@ -68,7 +68,10 @@ struct Options {
 }
 
 /// An area's name and what measures it.
-type Area = (&'static str, fn(&mut Report, &Options) -> Result<(), Fault>);
+type Area = (
+    &'static str,
+    fn(&mut Report, &Options) -> Result<(), UserError>,
+);
 
 const AREAS: [Area; 12] = [
     ("brush", |report, _| brush::run(report)),
@@ -95,7 +98,7 @@ fn main() {
     }
 }
 
-fn measure(options: &Options) -> Result<(), Fault> {
+fn measure(options: &Options) -> Result<(), UserError> {
     if let Some(locator) = &options.far_end {
         return bus::far_end(locator);
     }
@@ -104,7 +107,7 @@ fn measure(options: &Options) -> Result<(), Fault> {
     if let (true, Some(area)) = (areas.is_empty(), &options.area) {
         let names = AREAS.map(|(name, _)| name);
         let what = format!("there is no benchmark called '{area}'");
-        return Err(Fault::unknown(what, area, names));
+        return Err(UserError::unknown(what, area, names));
     }
     let mut report = Report::new();
     for (_, run) in areas {

@@ -8,7 +8,7 @@ use maulstick_gpu::{Choice, Device, GpuImpasto, Traffic};
 use maulstick_num::fork_join::with_help;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::command::Command;
@@ -36,8 +36,8 @@ const SIZES: [(usize, usize); 2] = [(26, 64), (88, 256)];
 /// As [`SIZES`], of one that cores are worth sharing.
 const WIDE: (usize, usize) = (352, 1024);
 
-fn fault(error: impl ToString) -> Fault {
-    Fault::failure(error.to_string())
+fn fault(error: impl ToString) -> UserError {
+    UserError::failure(error.to_string())
 }
 
 /// A brush that goes round over wet paint.
@@ -50,7 +50,12 @@ struct Round {
 }
 
 impl Round {
-    fn new(width_mm: f64, strips: usize, side: usize, gpu: Option<&Device>) -> Result<Self, Fault> {
+    fn new(
+        width_mm: f64,
+        strips: usize,
+        side: usize,
+        gpu: Option<&Device>,
+    ) -> Result<Self, UserError> {
         let mut file = BrushFile::library("round").map_err(fault)?;
         file.strips.count = strips;
         let file = file.scaled_to(width_mm).map_err(fault)?;
@@ -116,7 +121,7 @@ impl Round {
     }
 
     /// Paints the states; steps and footprint cells of them, and the time they took.
-    fn paint(&mut self) -> Result<([u64; 2], Duration), Fault> {
+    fn paint(&mut self) -> Result<([u64; 2], Duration), UserError> {
         let before = self.sequencer.painting().work();
         let begun = Instant::now();
         for state in &self.states {
@@ -139,7 +144,7 @@ impl Round {
 }
 
 /// A brush whose footprint covers the share of the square that is wanted.
-fn fitted(side: usize, strips: usize, gpu: Option<&Device>) -> Result<Round, Fault> {
+fn fitted(side: usize, strips: usize, gpu: Option<&Device>) -> Result<Round, UserError> {
     let wanted = COVERED * (side * side) as f64;
     let mut width_mm = 0.25 * side as f64;
     for _ in 0..6 {
@@ -154,7 +159,7 @@ fn fitted(side: usize, strips: usize, gpu: Option<&Device>) -> Result<Round, Fau
 }
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report, backend: &str) -> Result<(), Fault> {
+pub(crate) fn run(report: &mut Report, backend: &str) -> Result<(), UserError> {
     let gpu = match backend {
         "gpu" => Some(Device::open(Choice::Forced).map_err(fault)?),
         _ => None,
@@ -171,7 +176,7 @@ pub(crate) fn run(report: &mut Report, backend: &str) -> Result<(), Fault> {
 }
 
 /// Cells in contact that a core paints, beside the copy of as many.
-fn cells(report: &mut Report) -> Result<(), Fault> {
+fn cells(report: &mut Report) -> Result<(), UserError> {
     let (side, strips) = SIZES[1];
     let mut round = fitted(side, strips, None)?;
     round.paint()?;
@@ -187,7 +192,7 @@ fn cells(report: &mut Report) -> Result<(), Fault> {
 }
 
 /// How many times as fast two cores paint with a wide brush as one.
-fn speed_up(report: &mut Report) -> Result<(), Fault> {
+fn speed_up(report: &mut Report) -> Result<(), UserError> {
     let (side, strips) = WIDE;
     let mut round = fitted(side, strips, None)?;
     round.paint()?;
@@ -203,7 +208,7 @@ fn speed_up(report: &mut Report) -> Result<(), Fault> {
 }
 
 /// Both sizes.
-fn rounds(report: &mut Report, gpu: Option<&Device>) -> Result<(), Fault> {
+fn rounds(report: &mut Report, gpu: Option<&Device>) -> Result<(), UserError> {
     for (side, strips) in SIZES {
         let mut round = fitted(side, strips, gpu)?;
         round.paint()?;

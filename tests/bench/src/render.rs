@@ -7,7 +7,7 @@ use std::time::Instant;
 use maulstick_device::Take;
 use maulstick_device::demo;
 use maulstick_device::table::{TableLayout, import};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use crate::peers::Libmypaint;
 use crate::report::Report;
@@ -27,7 +27,7 @@ const LOADS: [&str; 4] = [
 
 /// The recording of a person's strokes if it lies beside the project, else the demo; and its length
 /// in seconds.
-pub(crate) fn performance(place: &Path) -> Result<(PathBuf, f64), Fault> {
+pub(crate) fn performance(place: &Path) -> Result<(PathBuf, f64), UserError> {
     let table =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/painting30sec.dat");
     let take = if table.exists() {
@@ -45,8 +45,8 @@ pub(crate) fn performance(place: &Path) -> Result<(PathBuf, f64), Fault> {
 }
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
-    let fault = |error: std::io::Error| Fault::failure(error.to_string());
+pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
+    let fault = |error: std::io::Error| UserError::failure(error.to_string());
     let place = tempfile::tempdir().map_err(fault)?;
     let place = place.path();
     let (take, _) = performance(place)?;
@@ -70,7 +70,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
     }
     let ledger = std::fs::read(place.join("l.json")).map_err(fault)?;
     let ledger: serde_json::Value =
-        serde_json::from_slice(&ledger).map_err(|error| Fault::failure(error.to_string()))?;
+        serde_json::from_slice(&ledger).map_err(|error| UserError::failure(error.to_string()))?;
     for (name, key) in [
         ("recording.steps", "steps"),
         ("recording.footprint_cells", "footprint_cells"),
@@ -89,8 +89,8 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
 }
 
 /// Paints the take on cells of a side; how long that takes, s.
-fn painted(place: &Path, take: &Path, cell_mm: f64) -> Result<f64, Fault> {
-    let fault = |error: std::io::Error| Fault::failure(error.to_string());
+fn painted(place: &Path, take: &Path, cell_mm: f64) -> Result<f64, UserError> {
+    let fault = |error: std::io::Error| UserError::failure(error.to_string());
     let start = Instant::now();
     let side = (SIDE_MM / cell_mm).round();
     let mut command = Command::new(maulstick()?);
@@ -101,6 +101,6 @@ fn painted(place: &Path, take: &Path, cell_mm: f64) -> Result<f64, Fault> {
     let status = command.current_dir(place).status().map_err(fault)?;
     match status.success() {
         true => Ok(start.elapsed().as_secs_f64()),
-        false => Err(Fault::failure("the recording cannot be rendered")),
+        false => Err(UserError::failure("the recording cannot be rendered")),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::io::Write as _;
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use serde::Serialize;
 
 /// One measured number, with that of a peer measured in the same run.
@@ -106,14 +106,14 @@ impl Report {
     }
 
     /// Prints the report as JSON.
-    pub(crate) fn print_json(&self) -> Result<(), Fault> {
+    pub(crate) fn print_json(&self) -> Result<(), UserError> {
         let text = serde_json::to_string_pretty(self)
-            .map_err(|error| Fault::failure(error.to_string()))?;
+            .map_err(|error| UserError::failure(error.to_string()))?;
         out(&(text + "\n"))
     }
 
     /// Prints the report as a table.
-    pub(crate) fn print_table(&self) -> Result<(), Fault> {
+    pub(crate) fn print_table(&self) -> Result<(), UserError> {
         let mut text = format!("{}; {}\n", self.machine, self.adapter);
         for row in &self.rows {
             text += &format!("{:<28} {:>12} {:<8}", row.name, short(row.value), row.unit);
@@ -127,10 +127,10 @@ impl Report {
 }
 
 /// Prints; a reader that has seen enough is no error.
-fn out(text: &str) -> Result<(), Fault> {
+fn out(text: &str) -> Result<(), UserError> {
     match std::io::stdout().lock().write_all(text.as_bytes()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Fault::failure(format!("cannot print: {error}")))
+            Err(UserError::failure(format!("cannot print: {error}")))
         }
         _ => Ok(()),
     }

@@ -6,25 +6,25 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use maulstick_bus::{RigFolder, RigInfo};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 /// A process that ends with this value.
 pub(crate) struct Running(Child);
 
 impl Running {
     /// Starts `command` as it is.
-    pub(crate) fn begin(command: &mut Command) -> Result<Self, Fault> {
+    pub(crate) fn begin(command: &mut Command) -> Result<Self, UserError> {
         command.spawn().map(Self).map_err(fault)
     }
 
     /// Starts `command` without its words.
-    pub(crate) fn start(command: &mut Command) -> Result<Self, Fault> {
+    pub(crate) fn start(command: &mut Command) -> Result<Self, UserError> {
         let quiet = command.stdout(Stdio::null()).stderr(Stdio::null());
         quiet.spawn().map(Self).map_err(fault)
     }
 
     /// Whether it has ended by itself.
-    pub(crate) fn has_ended(&mut self) -> Result<bool, Fault> {
+    pub(crate) fn has_ended(&mut self) -> Result<bool, UserError> {
         Ok(self.0.try_wait().map_err(fault)?.is_some())
     }
 }
@@ -36,12 +36,12 @@ impl Drop for Running {
     }
 }
 
-pub(crate) fn fault(error: impl std::fmt::Display) -> Fault {
-    Fault::failure(error.to_string())
+pub(crate) fn fault(error: impl std::fmt::Display) -> UserError {
+    UserError::failure(error.to_string())
 }
 
 /// The command beside this program.
-pub(crate) fn maulstick() -> Result<PathBuf, Fault> {
+pub(crate) fn maulstick() -> Result<PathBuf, UserError> {
     Ok(std::env::current_exe()
         .map_err(fault)?
         .with_file_name("maulstick"))
@@ -51,7 +51,7 @@ pub(crate) fn maulstick() -> Result<PathBuf, Fault> {
 const LOOK: Duration = Duration::from_millis(5);
 
 /// The rig of a folder, once it is there.
-pub(crate) fn joined(path: &Path, give_up: Instant) -> Result<(RigFolder, RigInfo), Fault> {
+pub(crate) fn joined(path: &Path, give_up: Instant) -> Result<(RigFolder, RigInfo), UserError> {
     loop {
         match RigFolder::join_at(path) {
             Ok(joined) => return Ok(joined),
@@ -62,12 +62,12 @@ pub(crate) fn joined(path: &Path, give_up: Instant) -> Result<(RigFolder, RigInf
 }
 
 /// The display that is there, or one without a screen, of `size` pixels; and its name.
-pub(crate) fn display(size: [u32; 2]) -> Result<(Option<Running>, String), Fault> {
+pub(crate) fn display(size: [u32; 2]) -> Result<(Option<Running>, String), UserError> {
     if let Ok(name) = std::env::var("DISPLAY") {
         return Ok((None, name));
     }
     let missing = |error: std::io::Error| {
-        Fault::failure(format!("there is no display, and no Xvfb: {error}"))
+        UserError::failure(format!("there is no display, and no Xvfb: {error}"))
             .help("set DISPLAY, or install xvfb")
     };
     let mut server = Command::new("Xvfb")

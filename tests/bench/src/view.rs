@@ -11,7 +11,7 @@ use maulstick_brush::{BrushFile, BrushModel, Head};
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_num::geometry::Rigid;
 use maulstick_painting::PaintingSetup;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::Origin;
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::{CANVAS, PALETTE, Scene, Surface};
@@ -37,8 +37,8 @@ const CELLS: u32 = 2048;
 const FRAMES: u32 = 150;
 const BRUSH: &str = "flat";
 
-fn fault(error: impl ToString) -> Fault {
-    Fault::failure(error.to_string())
+fn fault(error: impl ToString) -> UserError {
+    UserError::failure(error.to_string())
 }
 
 /// A tile of paint with relief; another at each turn.
@@ -70,7 +70,7 @@ struct Sheet {
 }
 
 impl Sheet {
-    fn new(scene: &Scene, id: u32, view: &View) -> Result<Self, Fault> {
+    fn new(scene: &Scene, id: u32, view: &View) -> Result<Self, UserError> {
         let surface = scene.surfaces.iter().find(|surface| surface.id == id);
         let surface = surface
             .ok_or_else(|| fault("a surface is missing"))?
@@ -117,7 +117,7 @@ impl Sheet {
 }
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     let mut picture = Offscreen::new(PIXELS).map_err(fault)?;
     report.on(picture.adapter());
     let setup = PaintingSetup {

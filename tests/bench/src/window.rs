@@ -7,9 +7,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Bus, Class, Dial, Queue, RigClock, Wake, ZenohBus};
-use maulstick_rig::Fault;
-use maulstick_rig::commander::Commander;
+use maulstick_bus::{Bus, Dial, Qos, Queue, RigClock, Wake, ZenohBus};
+use maulstick_rig::UserError;
+use maulstick_rig::command_client::CommandClient;
 use maulstick_types::command::Command as Act;
 use maulstick_types::scene::{CANVAS, Scene, Surface};
 use maulstick_types::topics::Topics;
@@ -44,7 +44,7 @@ fn window_of(folder: &Path) -> Option<u32> {
 }
 
 /// Resident memory, bytes.
-fn resident(pid: u32) -> Result<u64, Fault> {
+fn resident(pid: u32) -> Result<u64, UserError> {
     let status = std::fs::read_to_string(format!("/proc/{pid}/status")).map_err(fault)?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
     let kib = line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<u64>().ok());
@@ -55,7 +55,7 @@ fn resident(pid: u32) -> Result<u64, Fault> {
 const LOOK: Duration = Duration::from_millis(100);
 
 /// Resident memory once it has settled: the system tells of no change, so it is looked at.
-fn settled(pid: u32) -> Result<u64, Fault> {
+fn settled(pid: u32) -> Result<u64, UserError> {
     let give_up = Instant::now() + PATIENCE;
     let (mut last, mut since) = (resident(pid)?, Instant::now());
     while since.elapsed() < STEADY {
@@ -72,7 +72,7 @@ fn settled(pid: u32) -> Result<u64, Fault> {
 }
 
 /// What a window takes at each zoom.
-fn measured(side_mm: u32, zooms: &[f64], display: &str) -> Result<Vec<u64>, Fault> {
+fn measured(side_mm: u32, zooms: &[f64], display: &str) -> Result<Vec<u64>, UserError> {
     let place = tempfile::tempdir().map_err(fault)?;
     let rig = place.path().join("rig.toml");
     let settings = format!("[canvas]\nwidth_mm = {side_mm}\nheight_mm = {side_mm}\n");
@@ -100,13 +100,8 @@ fn measured(side_mm: u32, zooms: &[f64], display: &str) -> Result<Vec<u64>, Faul
     let topics = Topics::new("window");
     let wake = Wake::new();
     let token = bus.watch(&topics.node("ui"), &wake)?;
-    let mut scenes = Receiver::<Scene>::new(
-        &*bus,
-        &topics.scene(),
-        Class::Cached,
-        Queue::Ring(16),
-        &wake,
-    )?;
+    let mut scenes =
+        Receiver::<Scene>::new(&*bus, &topics.scene(), Qos::Cached, Queue::Ring(16), &wake)?;
     let mut canvas: Option<Surface> = None;
     let give_up = Instant::now() + PATIENCE;
     let mut is_there = false;
@@ -119,7 +114,7 @@ fn measured(side_mm: u32, zooms: &[f64], display: &str) -> Result<Vec<u64>, Faul
         }
     }
     let canvas = canvas.ok_or_else(|| fault("no canvas"))?;
-    let mut commands = Commander::of(Arc::clone(&bus) as Arc<dyn Bus>, &topics, "paint");
+    let mut commands = CommandClient::of(Arc::clone(&bus) as Arc<dyn Bus>, &topics, "paint");
     let mut send = |act: Act| commands.send(act, None, PATIENCE, &|| false);
     let mixture = "Ultramarine Blue=0.5,Titanium White=0.5"
         .parse()
@@ -149,7 +144,7 @@ fn measured(side_mm: u32, zooms: &[f64], display: &str) -> Result<Vec<u64>, Faul
 }
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     let (_server, name) = display(SCREEN)?;
     let [small, large] = SIDES_MM;
     let empty = measured(small, &ZOOMS[..1], &name)?[0];

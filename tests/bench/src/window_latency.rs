@@ -7,8 +7,8 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Class, Queue, Wake, ZenohBus};
-use maulstick_rig::Fault;
+use maulstick_bus::{Qos, Queue, Wake, ZenohBus};
+use maulstick_rig::UserError;
 use maulstick_types::brush::BrushState;
 use maulstick_types::stylus::TakeStatus;
 use maulstick_types::topics::Topics;
@@ -31,7 +31,7 @@ pub(crate) fn run(
     place: &Path,
     take: &Path,
     seconds: f64,
-) -> Result<(), Fault> {
+) -> Result<(), UserError> {
     let (_server, name) = display(SIZE)?;
     let habits = place.join("config/maulstick");
     std::fs::create_dir_all(&habits).map_err(fault)?;
@@ -66,13 +66,12 @@ struct Seen {
     draw_ms: Vec<f64>,
 }
 
-fn watch(bus: &ZenohBus, seconds: f64, rig: &mut Running) -> Result<Seen, Fault> {
+fn watch(bus: &ZenohBus, seconds: f64, rig: &mut Running) -> Result<Seen, UserError> {
     let (topics, wake) = (Topics::new("latency"), Wake::new());
     let states = topics.brush_state("main");
     let many = Queue::Ring(65_536);
-    let mut states: Receiver<BrushState> =
-        Receiver::new(bus, &states, Class::RealTime, many, &wake)?;
-    let quiet = Class::Background;
+    let mut states: Receiver<BrushState> = Receiver::new(bus, &states, Qos::RealTime, many, &wake)?;
+    let quiet = Qos::Background;
     let mut frames: Receiver<Presented> =
         Receiver::new(bus, &topics.presented(), quiet, many, &wake)?;
     let mut takes: Receiver<TakeStatus> =
@@ -100,7 +99,7 @@ fn watch(bus: &ZenohBus, seconds: f64, rig: &mut Running) -> Result<Seen, Fault>
     match is_over && !seen.frames.is_empty() {
         true => Ok(seen),
         false => Err(
-            Fault::failure("the window showed nothing, or the take did not end")
+            UserError::failure("the window showed nothing, or the take did not end")
                 .help("`maulstick up --play` on this display says why"),
         ),
     }

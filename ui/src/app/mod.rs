@@ -16,9 +16,9 @@ use eframe::egui_wgpu::RenderState;
 use maulstick_appearance::picture::Export;
 use maulstick_brush::palette_place::Side;
 use maulstick_bus::typed::{ask, random_epoch};
-use maulstick_bus::{Bus, Class, Wake};
+use maulstick_bus::{Bus, Qos, Wake};
 use maulstick_optics::PaintLibrary;
-use maulstick_rig::{Fault, Member, Stop};
+use maulstick_rig::{NodeHandle, Stop, UserError};
 use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
 use maulstick_types::scene::Surface;
 use maulstick_types::topics::Topics;
@@ -95,15 +95,15 @@ pub struct App {
     preferences: Preferences,
     /// Preferences as they were last saved, and their file.
     kept: (Preferences, Option<PathBuf>),
-    member: Option<Member>,
+    member: Option<NodeHandle>,
 }
 
 impl App {
     /// The view of a rig whose paints are those of `library`.
     ///
     /// # Errors
-    /// A [`Fault`] where the bus is closed.
-    pub fn new(member: &Member, mouse: &str, library: PaintLibrary) -> Result<Self, Fault> {
+    /// A [`UserError`] where the bus is closed.
+    pub fn new(member: &NodeHandle, mouse: &str, library: PaintLibrary) -> Result<Self, UserError> {
         let (bus, topics, brushes) = (&member.bus, &member.topics, &member.config.brush);
         let names: Vec<String> = brushes.iter().map(|brush| brush.name.clone()).collect();
         let brush = names.first().map_or("main", String::as_str);
@@ -168,7 +168,7 @@ impl App {
 
     /// Keeps the membership for as long as the window lives.
     #[must_use]
-    pub fn with_member(mut self, member: Member) -> Self {
+    pub fn with_member(mut self, member: NodeHandle) -> Self {
         self.member = Some(member);
         self
     }
@@ -269,7 +269,7 @@ impl App {
 }
 
 /// Fetches small pictures of versions from the paint node.
-fn fetcher(member: &Member) -> ThumbnailFetcher {
+fn fetcher(member: &NodeHandle) -> ThumbnailFetcher {
     let (bus, topic) = (Arc::clone(&member.bus), member.topics.thumbnail());
     let me = member.origin("ui");
     let fetch = move |version: &str| {
@@ -277,7 +277,7 @@ fn fetcher(member: &Member) -> ThumbnailFetcher {
             version: version.to_owned(),
             side: THUMBNAIL,
         };
-        let reply = ask(&*bus, &topic, Class::Data, me, &request, FETCH).ok()?;
+        let reply = ask(&*bus, &topic, Qos::Data, me, &request, FETCH).ok()?;
         let ThumbnailReply {
             width, height, rgb, ..
         } = reply;

@@ -1,7 +1,7 @@
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use maulstick_brush::BrushFile;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::command::{ExportOrder, NewCanvas};
 use maulstick_types::paint::ExportStatus;
 
@@ -47,7 +47,7 @@ fn a_new_painting_is_begun_by_keys_alone() {
     // It is asked for once, however often Enter is pressed.
     press(&mut harness, Key::Enter);
     assert!(harness.state_mut().asked().is_empty());
-    let refusal = Fault::usage("the disk is full").help("free some space");
+    let refusal = UserError::usage("the disk is full").help("free some space");
     harness.state_mut().answer(&asked[0], Err(refusal));
     harness.run_steps(3);
     harness.get_by_label("The disk is full. Free some space.");

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 use maulstick_brush::file::library::LIBRARY;
 use maulstick_brush::{BrushError, BrushFile};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::command::Command;
 
 use crate::rig::dispatcher::Outcome;
@@ -108,9 +108,9 @@ pub(crate) fn next_width_mm(now_mm: f64, up: bool) -> f64 {
 /// Reads a brush file of the painter's own: TOML, or a model of it, .glb or .gltf.
 ///
 /// # Errors
-/// A [`Fault`] where it cannot be read or is no brush.
-pub(crate) fn read(path: &Path) -> Result<BrushFile, Fault> {
-    let bytes = std::fs::read(path).map_err(|error| Fault::reading(path, &error))?;
+/// A [`UserError`] where it cannot be read or is no brush.
+pub(crate) fn read(path: &Path) -> Result<BrushFile, UserError> {
+    let bytes = std::fs::read(path).map_err(|error| UserError::reading(path, &error))?;
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     let read = match extension == "glb" || extension == "gltf" {
         true => maulstick_brush::gltf::read(&bytes).map_err(|error| error.to_string()),
@@ -119,7 +119,7 @@ pub(crate) fn read(path: &Path) -> Result<BrushFile, Fault> {
             .and_then(|text| BrushFile::parse(text).map_err(|error| error.to_string())),
     };
     read.map_err(|what| {
-        Fault::failure(what)
+        UserError::failure(what)
             .at(path.display().to_string())
             .help("docs/brushes.md says what a brush file holds")
     })

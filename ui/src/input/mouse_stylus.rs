@@ -6,7 +6,7 @@
 use maulstick_brush::model::BRIDGED_NS;
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Receiver, Sender};
-use maulstick_bus::{Bus, BusError, Class, CreditSender, Queue, Wake};
+use maulstick_bus::{Bus, BusError, CreditSender, Qos, Queue, Wake};
 use maulstick_rig::config::MOUSE_PRIORITY;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusInfo, StylusPose, StylusSample, axes};
 use maulstick_types::topics::Topics;
@@ -57,7 +57,7 @@ impl Mouse {
         me: Origin,
     ) -> Result<Self, BusError> {
         let wake = Wake::new();
-        let mut info = Sender::new(bus, &topics.stylus_info(name), Class::Cached, me)?;
+        let mut info = Sender::new(bus, &topics.stylus_info(name), Qos::Cached, me)?;
         let now = bus.now_ns();
         let told = StylusInfo {
             device: name.to_owned(),
@@ -75,7 +75,7 @@ impl Mouse {
         let others = topics.sample("*");
         Ok(Self {
             samples: CreditSender::new(bus, topics, &topics.sample(name), me, &wake)?,
-            others: Receiver::new(bus, &others, Class::RealTime, Queue::Ring(256), &wake)?,
+            others: Receiver::new(bus, &others, Qos::RealTime, Queue::Ring(256), &wake)?,
             info,
             told,
             me,
@@ -117,7 +117,7 @@ impl Mouse {
                 self.silent_until_ns = now_ns + SILENCE_NS;
             }
         }
-        self.samples.forgive();
+        self.samples.reset_credit();
         self.samples.serve(now_ns)?;
         let places = if now_ns < self.silent_until_ns {
             &[]
@@ -235,9 +235,9 @@ mod tests {
             };
             let mouse = Mouse::new(&bus, &topics, "mouse", "main", me).expect("a mouse");
             let (topic, ring) = (topics.sample("mouse"), Queue::Ring(64));
-            let samples = Receiver::new(&bus, &topic, Class::RealTime, ring, &wake);
+            let samples = Receiver::new(&bus, &topic, Qos::RealTime, ring, &wake);
             let (topic, ring) = (topics.stylus_info("mouse"), Queue::Ring(8));
-            let infos = Receiver::new(&bus, &topic, Class::Cached, ring, &wake);
+            let infos = Receiver::new(&bus, &topic, Qos::Cached, ring, &wake);
             Self {
                 mouse,
                 samples: samples.expect("a receiver"),
@@ -264,7 +264,7 @@ mod tests {
             epoch: 1,
         };
         let topic = desk.topics.sample("pen");
-        let mut pen = Sender::new(&desk.net.bus(), &topic, Class::RealTime, pen).expect("a pen");
+        let mut pen = Sender::new(&desk.net.bus(), &topic, Qos::RealTime, pen).expect("a pen");
         assert_eq!(desk.turn(), Some(true));
         let near = StylusSample {
             in_range: true,

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui::Context;
 use eframe::egui_wgpu::wgpu;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 /// File in the rig's folder in which the closing window leaves the reason for the next one.
 const WORD: &str = "window-lost";
@@ -70,12 +70,12 @@ impl DeviceLoss {
     /// As what the window ends by it: a failure, after which the rig opens it again.
     ///
     /// # Errors
-    /// A [`Fault`] where the device is lost.
-    pub fn check(&self) -> Result<(), Fault> {
+    /// A [`UserError`] where the device is lost.
+    pub fn check(&self) -> Result<(), UserError> {
         match self.why() {
             None => Ok(()),
             Some(why) => Err(
-                Fault::failure(format!("the graphics device is lost: {why}"))
+                UserError::failure(format!("the graphics device is lost: {why}"))
                     .help("the window is opened again; where that recurs, update its driver"),
             ),
         }

@@ -7,7 +7,7 @@ use std::time::Duration;
 use eframe::egui::{Rect, Shape};
 use eframe::egui_wgpu::{self, CallbackResources, CallbackTrait, wgpu};
 use maulstick_bus::typed::Sender;
-use maulstick_bus::{Bus, BusError, Class};
+use maulstick_bus::{Bus, BusError, Qos};
 use maulstick_types::Origin;
 use maulstick_types::paint::FrameHolds;
 use maulstick_types::topics::Topics;
@@ -78,7 +78,7 @@ impl Presenter {
         me: Origin,
         device: &wgpu::Device,
     ) -> Result<Self, BusError> {
-        let sender = Sender::new(&*bus, &topics.presented(), Class::Background, me)?;
+        let sender = Sender::new(&*bus, &topics.presented(), Qos::Background, me)?;
         let line = Arc::new(Line::default());
         let (listened, clock, device) = (Arc::clone(&line), Arc::clone(&bus), device.clone());
         let ask = move || {
@@ -245,7 +245,7 @@ mod tests {
         let gpu = crate::render::gpu::testing::gpu();
         let net = MemoryNet::new(1, 5, Faults::default());
         let (bus, topics, wake) = (Arc::new(net.bus()), Topics::new("t"), Wake::new());
-        let (topic, class) = (topics.presented(), Class::Background);
+        let (topic, class) = (topics.presented(), Qos::Background);
         let mut told: Receiver<Presented> =
             Receiver::new(&*bus, &topic, class, Queue::Ring(4), &wake).expect("a topic");
         let me = Origin {

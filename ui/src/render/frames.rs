@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use half::f16;
 use maulstick_bus::bus::Answer;
-use maulstick_bus::{Bus, BusError, Class, Payload, Wake};
+use maulstick_bus::{Bus, BusError, Payload, Qos, Wake};
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_rig::Stop;
 use maulstick_types::paint::{FrameHolds, FrameRequest};
@@ -269,7 +269,7 @@ impl Puller<'_> {
             }
         })?;
         let asking = &self.inbox.asking;
-        let pending = bus.ask(topic, Class::Data, bytes, LIMIT, asking)?;
+        let pending = bus.ask(topic, Qos::Data, bytes, LIMIT, asking)?;
         let give_up = Instant::now() + LIMIT + PAUSE;
         while !self.stop.requested() {
             match pending.try_recv() {

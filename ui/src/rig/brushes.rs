@@ -10,7 +10,7 @@ use glam::DVec3;
 use maulstick_brush::desk::{Desk, Plane, aim, ferrule};
 use maulstick_brush::{BrushFile, Head};
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Bus, BusError, Class, Queue, Wake};
+use maulstick_bus::{Bus, BusError, Qos, Queue, Wake};
 use maulstick_num::geometry::Rigid;
 use maulstick_types::brush::{BrushDef, BrushLook, BrushState, Solve};
 use maulstick_types::name_hash;
@@ -121,15 +121,15 @@ impl BrushTracker {
             topics.brush_look("*"),
         );
         Ok(Self {
-            samples: Receiver::new(bus, &samples, Class::RealTime, Queue::Ring(256), wake)?,
-            states: Receiver::new(bus, &states, Class::RealTime, Queue::Ring(64), wake)?,
-            defs: Receiver::new(bus, &defs, Class::Cached, Queue::Ring(16), wake)?,
-            looks: Receiver::new(bus, &looks, Class::Cached, Queue::Ring(16), wake)?,
+            samples: Receiver::new(bus, &samples, Qos::RealTime, Queue::Ring(256), wake)?,
+            states: Receiver::new(bus, &states, Qos::RealTime, Queue::Ring(64), wake)?,
+            defs: Receiver::new(bus, &defs, Qos::Cached, Queue::Ring(16), wake)?,
+            looks: Receiver::new(bus, &looks, Qos::Cached, Queue::Ring(16), wake)?,
             coats: BTreeMap::new(),
             credit: Receiver::new(
                 bus,
                 &topics.paint_consumed(),
-                Class::Control,
+                Qos::Control,
                 Queue::Ring(16),
                 wake,
             )?,

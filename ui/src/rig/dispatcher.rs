@@ -7,9 +7,9 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::{ask, random_epoch};
-use maulstick_bus::{Bus, Class, Wake};
-use maulstick_rig::Fault;
-use maulstick_rig::commander::Commander;
+use maulstick_bus::{Bus, Qos, Wake};
+use maulstick_rig::UserError;
+use maulstick_rig::command_client::CommandClient;
 use maulstick_types::command::Command;
 use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::topics::Topics;
@@ -40,7 +40,7 @@ pub struct Outcome {
     /// The request.
     pub request: Request,
     /// Answer of the process.
-    pub result: Result<String, Fault>,
+    pub result: Result<String, UserError>,
 }
 
 /// Requests for one process.
@@ -155,7 +155,7 @@ impl CommandDispatcher {
             queue.given_up = queue.since.is_some();
             outcomes.extend(queue.waiting.drain(..).map(|ready| Outcome {
                 request: ready.request,
-                result: Err(Fault::failure("it was not sent")),
+                result: Err(UserError::failure("it was not sent")),
             }));
         }
         drop(outcomes);
@@ -217,7 +217,7 @@ fn push(waiting: &mut VecDeque<Ready>, ready: Ready) {
 struct Worker {
     bus: Arc<dyn Bus>,
     topics: Topics,
-    commander: Option<Commander>,
+    commander: Option<CommandClient>,
     queue_of: Arc<Queue>,
     outcomes: Arc<Mutex<Vec<Outcome>>>,
     wake: Wake,
@@ -265,7 +265,7 @@ impl Worker {
             .unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn deliver(&mut self, ready: &Ready) -> Result<String, Fault> {
+    fn deliver(&mut self, ready: &Ready) -> Result<String, UserError> {
         match &ready.request {
             Request::Command { node, command } => {
                 let queue_of = Arc::clone(&self.queue_of);
@@ -278,7 +278,7 @@ impl Worker {
                 };
                 let (bus, topics) = (&self.bus, &self.topics);
                 let commander = self.commander.get_or_insert_with(|| {
-                    Commander::of(Arc::clone(bus), topics, node).asking(ASK)
+                    CommandClient::of(Arc::clone(bus), topics, node).asking(ASK)
                 });
                 commander.send(
                     command.clone(),
@@ -297,10 +297,10 @@ impl Worker {
                     order: order.clone(),
                 };
                 let reply: ForceReply =
-                    ask(&*self.bus, &topic, Class::Control, me, &request, ANSWER)?;
+                    ask(&*self.bus, &topic, Qos::Control, me, &request, ANSWER)?;
                 match reply.fault.is_empty() {
                     true => Ok(String::new()),
-                    false => Err(Fault::failure(reply.fault).at(device.clone())),
+                    false => Err(UserError::failure(reply.fault).at(device.clone())),
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Bus, BusError, Class, Queue, Wake};
+use maulstick_bus::{Bus, BusError, Qos, Queue, Wake};
 use maulstick_types::brush::BrushDef;
 use maulstick_types::paint::{Entry, JournalEntry, PaintStatus};
 use maulstick_types::scene::Scene;
@@ -33,22 +33,22 @@ impl RigListener {
     /// # Errors
     /// [`BusError::Topic`].
     pub(crate) fn new(bus: &dyn Bus, topics: &Topics, wake: &Wake) -> Result<Self, BusError> {
-        let quiet = Class::Background;
+        let quiet = Qos::Background;
         Ok(Self {
-            scenes: Receiver::new(bus, &topics.scene(), Class::Cached, Queue::Latest, wake)?
+            scenes: Receiver::new(bus, &topics.scene(), Qos::Cached, Queue::Latest, wake)?
                 .checking(Scene::fault),
             paint: Receiver::new(bus, &topics.paint_status(), quiet, Queue::Latest, wake)?,
             defs: Receiver::new(
                 bus,
                 &topics.brush_def("*"),
-                Class::Cached,
+                Qos::Cached,
                 Queue::Ring(16),
                 wake,
             )?,
             infos: Receiver::new(
                 bus,
                 &topics.stylus_info("*"),
-                Class::Cached,
+                Qos::Cached,
                 Queue::Ring(32),
                 wake,
             )?,
@@ -63,14 +63,14 @@ impl RigListener {
             samples: Receiver::new(
                 bus,
                 &topics.sample("*"),
-                Class::RealTime,
+                Qos::RealTime,
                 Queue::Ring(1024),
                 &Wake::new(),
             )?,
             journal: Receiver::new(
                 bus,
                 &topics.journal(),
-                Class::Data,
+                Qos::Data,
                 Queue::Ring(256),
                 &Wake::new(),
             )?,

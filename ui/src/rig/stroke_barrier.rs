@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Bus, BusError, Class, Queue, Wake};
+use maulstick_bus::{Bus, BusError, Qos, Queue, Wake};
 use maulstick_types::brush::BrushConsumed;
 use maulstick_types::command::{After, Command};
 use maulstick_types::name_hash;
@@ -64,8 +64,8 @@ impl StrokeBarrier {
         let (from_brush, from_paint) = (topics.brush_consumed("*"), topics.paint_consumed());
         Ok(Self {
             topics: topics.clone(),
-            consumed: Receiver::new(bus, &from_brush, Class::Control, Queue::Ring(1024), wake)?,
-            painted: Receiver::new(bus, &from_paint, Class::Control, Queue::Ring(16), wake)?,
+            consumed: Receiver::new(bus, &from_brush, Qos::Control, Queue::Ring(1024), wake)?,
+            painted: Receiver::new(bus, &from_paint, Qos::Control, Queue::Ring(16), wake)?,
             brushes: BTreeMap::new(),
             credits: BTreeMap::new(),
             waiting: VecDeque::new(),
@@ -256,9 +256,9 @@ mod tests {
             };
             let barrier = StrokeBarrier::new(&bus, &topics, &Wake::new()).expect("listens");
             let topic = topics.brush_consumed(BRUSH);
-            let brush = Sender::new(&bus, &topic, Class::Control, me(BRUSH)).expect("sends");
+            let brush = Sender::new(&bus, &topic, Qos::Control, me(BRUSH)).expect("sends");
             let topic = topics.paint_consumed();
-            let paint = Sender::new(&bus, &topic, Class::Control, me(PAINT)).expect("sends");
+            let paint = Sender::new(&bus, &topic, Qos::Control, me(PAINT)).expect("sends");
             let mut desk = Self {
                 barrier,
                 brush,

@@ -1,7 +1,7 @@
 //! Load of a brush: a paint or mixture, another one beside it, and thinner in both.
 
 use maulstick_optics::{PaintLibrary, THINNER};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
 use maulstick_types::mixture::Part;
@@ -25,7 +25,7 @@ pub struct BrushLoad {
 
 impl BrushLoad {
     /// A mixture of it, thinned.
-    fn mixture(&self, text: &str, library: &PaintLibrary) -> Result<Mixture, Fault> {
+    fn mixture(&self, text: &str, library: &PaintLibrary) -> Result<Mixture, UserError> {
         let mixture = read(text, library)?;
         let thinner = match self.thinner.is_finite() {
             true => self.thinner.clamp(0.0, MOST_THINNER),
@@ -37,8 +37,8 @@ impl BrushLoad {
     /// The command that loads a brush so.
     ///
     /// # Errors
-    /// A [`Fault`] that quotes what is no mixture of the paints.
-    pub fn command(&self, brush: &str, library: &PaintLibrary) -> Result<Command, Fault> {
+    /// A [`UserError`] that quotes what is no mixture of the paints.
+    pub fn command(&self, brush: &str, library: &PaintLibrary) -> Result<Command, UserError> {
         let brush = brush.to_owned();
         let mixture = self.mixture(&self.paint, library)?;
         Ok(match &self.beside {
@@ -55,14 +55,14 @@ impl BrushLoad {
 /// A mixture as a painter writes it, of the paints of a library.
 ///
 /// # Errors
-/// A [`Fault`] that says what is wrong with it.
-pub(crate) fn read(text: &str, library: &PaintLibrary) -> Result<Mixture, Fault> {
+/// A [`UserError`] that says what is wrong with it.
+pub(crate) fn read(text: &str, library: &PaintLibrary) -> Result<Mixture, UserError> {
     let help = "a paint's name, or a mixture such as \"Cobalt Blue=0.7,Titanium White=0.3\"";
     let mixture = text.trim().parse::<Mixture>();
-    let mixture = mixture.map_err(|error| Fault::usage(error.to_string()).help(help))?;
+    let mixture = mixture.map_err(|error| UserError::usage(error.to_string()).help(help))?;
     library
         .check(&mixture)
-        .map_err(|error| Fault::usage(error.to_string()).help(help))
+        .map_err(|error| UserError::usage(error.to_string()).help(help))
 }
 
 /// A mixture with a share of its volume of thinner added to its own.

@@ -1,7 +1,7 @@
 //! The painter's own sets of paints for the palette.
 
 use maulstick_optics::PaintLibrary;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::Mixture;
 use serde::{Deserialize, Serialize};
 
@@ -34,8 +34,8 @@ impl PaintSet {
     /// Its mixtures.
     ///
     /// # Errors
-    /// A [`Fault`] for a paint that the rig does not have.
-    pub fn mixtures(&self, library: &PaintLibrary) -> Result<Vec<Mixture>, Fault> {
+    /// A [`UserError`] for a paint that the rig does not have.
+    pub fn mixtures(&self, library: &PaintLibrary) -> Result<Vec<Mixture>, UserError> {
         let read = |text: &String| brush_load::read(text, library);
         self.paints.iter().map(read).collect()
     }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, write_whole};
 
 use crate::reference::ReferencePreferences;
@@ -77,18 +77,18 @@ impl Preferences {
     /// Reads the file; defaults if there is none.
     ///
     /// # Errors
-    /// A [`Fault`] if the file cannot be read or understood; the defaults are used then, and the next save replaces the
+    /// A [`UserError`] if the file cannot be read or understood; the defaults are used then, and the next save replaces the
     /// file.
-    pub fn read(path: &Path) -> Result<Self, Fault> {
+    pub fn read(path: &Path) -> Result<Self, UserError> {
         let text = match std::fs::read_to_string(path) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 return Ok(Self::default());
             }
-            Err(error) => return Err(Fault::reading(path, &error)),
+            Err(error) => return Err(UserError::reading(path, &error)),
         };
         let mut preferences: Self = toml::from_str(&text).map_err(|error| {
-            Fault::failure("the window's habits cannot be read; it begins with new ones")
+            UserError::failure("the window's habits cannot be read; it begins with new ones")
                 .at(format!("{}: {}", path.display(), error.message()))
         })?;
         let sane = |side: f32| side.is_finite() && (200.0..=20_000.0).contains(&side);
@@ -101,11 +101,11 @@ impl Preferences {
     /// Keeps them.
     ///
     /// # Errors
-    /// A [`Fault`] where the file cannot be written.
-    pub fn keep(&self, path: &Path) -> Result<(), Fault> {
-        let failed = |error: std::io::Error| Fault::writing(path, &error);
+    /// A [`UserError`] where the file cannot be written.
+    pub fn keep(&self, path: &Path) -> Result<(), UserError> {
+        let failed = |error: std::io::Error| UserError::writing(path, &error);
         let text = toml::to_string(self)
-            .map_err(|error| Fault::failure(format!("habits that are no TOML: {error}")))?;
+            .map_err(|error| UserError::failure(format!("habits that are no TOML: {error}")))?;
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).map_err(failed)?;
         }

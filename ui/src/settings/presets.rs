@@ -1,7 +1,7 @@
 //! Presets: brushes with their paint, by name.
 
 use maulstick_brush::BrushFile;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::command::Command;
 use maulstick_types::scene::{BrushHandling, BrushMode, MARKER_FLOW, Tuning};
 use serde::{Deserialize, Serialize};
@@ -86,10 +86,10 @@ impl Preset {
     /// The brush.
     ///
     /// # Errors
-    /// A [`Fault`] if the file is invalid, as after an edit by hand.
-    pub fn brush(&self) -> Result<BrushFile, Fault> {
+    /// A [`UserError`] if the file is invalid, as after an edit by hand.
+    pub fn brush(&self) -> Result<BrushFile, UserError> {
         let wrong = |what: String| {
-            Fault::failure(format!("the preset '{}': {what}", self.name)).help("save it anew")
+            UserError::failure(format!("the preset '{}': {what}", self.name)).help("save it anew")
         };
         if !self.file.is_empty() {
             return BrushFile::parse(&self.file).map_err(|error| wrong(error.to_string()));
@@ -103,11 +103,11 @@ impl Preset {
     /// Takes it up: the brush, how it is used, and then its paint.
     ///
     /// # Errors
-    /// A [`Fault`] where something of it is wrong; then nothing is changed.
-    pub fn apply(&self, work: &mut PanelContext<'_>) -> Result<(), Fault> {
+    /// A [`UserError`] where something of it is wrong; then nothing is changed.
+    pub fn apply(&self, work: &mut PanelContext<'_>) -> Result<(), UserError> {
         let file = self.brush()?;
         let brush = work.rig.brush_name().to_owned();
-        let mode = BrushMode::called(&self.mode).map_err(Fault::told)?;
+        let mode = BrushMode::called(&self.mode).map_err(UserError::told)?;
         let tuning = Tuning {
             brush: brush.clone(),
             stiffness: self.stiffness,
@@ -121,7 +121,7 @@ impl Preset {
         };
         let commands = [Command::Tune { tuning }, Command::Handle { handling }];
         for command in &commands {
-            command.check().map_err(Fault::told)?;
+            command.check().map_err(UserError::told)?;
         }
         let load = match self.loading.paint.is_empty() {
             true => None,

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::{DroppedFile, Key, Modifiers, Theme, Ui};
 use egui_kittest::kittest::Queryable as _;
 use egui_kittest::{Harness, SnapshotOptions};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::command::Command;
 
 use crate::app::overlay::Overlay;
@@ -55,7 +55,7 @@ impl Bench {
     }
 
     /// Answers a command.
-    pub(crate) fn answer(&mut self, asked: &(String, Command), result: Result<&str, Fault>) {
+    pub(crate) fn answer(&mut self, asked: &(String, Command), result: Result<&str, UserError>) {
         let told = Outcome {
             request: Request::Command {
                 node: asked.0.clone(),

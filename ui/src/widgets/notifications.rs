@@ -2,7 +2,7 @@
 //! through.
 
 use eframe::egui::{self, Align2, Area, Color32, Context, Frame, Id, Order, RichText};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 /// Most notifications at once; the oldest is dropped.
 const MOST: usize = 4;
@@ -52,7 +52,7 @@ impl Notifications {
     }
 
     /// Tells of a fault of the rig.
-    pub fn of(&mut self, fault: &Fault) {
+    pub fn of(&mut self, fault: &UserError) {
         self.fault(fault.what.clone(), fault.help.clone().unwrap_or_default());
     }
 

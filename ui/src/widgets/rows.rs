@@ -7,7 +7,7 @@ use eframe::egui::{
     Align, ComboBox, Layout, Response, RichText, Slider, SliderClamping, TextWrapMode, Ui,
     UiBuilder, vec2,
 };
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::command::Command;
 
 use crate::widgets::context::PanelContext;
@@ -24,7 +24,7 @@ pub(crate) fn ask(work: &mut PanelContext<'_>, command: Command) -> bool {
             true
         }
         Err(line) => {
-            work.notifications.of(&Fault::told(line));
+            work.notifications.of(&UserError::told(line));
             false
         }
     }

@@ -1,7 +1,7 @@
 //! Publisher of contact models for the devices that move the brush.
 
 use maulstick_bus::typed::Sender;
-use maulstick_bus::{BusError, Class};
+use maulstick_bus::{BusError, Qos};
 use maulstick_types::Origin;
 
 use super::{BrushNode, Painter};
@@ -31,7 +31,7 @@ impl BrushNode {
         if !self.models.has(device) {
             let topic = self.topics.contact_model(device);
             let me = self.states.origin();
-            let sender = Sender::new(&*self.bus, &topic, Class::RealTime, me)?;
+            let sender = Sender::new(&*self.bus, &topic, Qos::RealTime, me)?;
             self.models.set(device, (sender, 0));
         }
         let Some((sender, sent_ns)) = self.models.get_mut(device) else {

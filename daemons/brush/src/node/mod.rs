@@ -18,7 +18,7 @@ use maulstick_bus::credit::Stamp;
 use maulstick_bus::rivals::Once;
 use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
 use maulstick_bus::{
-    Announcer, Bus, BusError, Class, CreditReceiver, CreditSender, Queue, Recent, Server,
+    Announcer, Bus, BusError, CreditReceiver, CreditSender, Qos, Queue, Recent, Server,
     Subscription, Wake,
 };
 use maulstick_types::brush::{BrushConsumed, BrushDef, BrushState, Solve};
@@ -125,21 +125,21 @@ impl BrushNode {
             credit: Receiver::new(
                 b,
                 &topics.paint_consumed(),
-                Class::Control,
+                Qos::Control,
                 Queue::Ring(64),
                 wake,
             )?,
-            scene: Receiver::new(b, &topics.scene(), Class::Cached, Queue::Ring(16), wake)?
+            scene: Receiver::new(b, &topics.scene(), Qos::Cached, Queue::Ring(16), wake)?
                 .checking(Scene::fault),
             scene_ns: 0,
             infos: Receiver::new(
                 b,
                 &topics.stylus_info("*"),
-                Class::Cached,
+                Qos::Cached,
                 Queue::Ring(64),
                 wake,
             )?,
-            consumed: Sender::new(b, &topics.brush_consumed(name), Class::Control, me)?,
+            consumed: Sender::new(b, &topics.brush_consumed(name), Qos::Control, me)?,
             model: BrushModel::new(settings.file.clone(), settings.depth_share),
             devices: Recent::default(),
             models: Recent::default(),
@@ -275,7 +275,7 @@ impl BrushNode {
             .heads()
             .any(|next| next.header.flags.has(anew) && mine(next))
         {
-            self.states.forgive();
+            self.states.reset_credit();
         }
         let has_scene = self.model.has_scene();
         let has_credit = self.outbox.is_empty() && self.states.has_credit();

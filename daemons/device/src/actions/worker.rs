@@ -7,16 +7,16 @@ use std::time::{Duration, Instant};
 
 use maulstick_brush::palette_place::{Side, beside, is_same, over};
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Bus, Class, Queue, Wake};
-use maulstick_rig::Fault;
-use maulstick_rig::fault::EXIT_USAGE;
+use maulstick_bus::{Bus, Qos, Queue, Wake};
+use maulstick_rig::UserError;
+use maulstick_rig::user_error::EXIT_USAGE;
 use maulstick_types::Pose;
 use maulstick_types::command::Command;
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE, Scene};
 use maulstick_types::topics::Topics;
 
 use super::{Action, Edge, SwitchEvent};
-use maulstick_rig::commander::Commander;
+use maulstick_rig::command_client::CommandClient;
 
 /// Longest wait for a command.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -63,7 +63,7 @@ struct Restored {
 
 /// The thread that talks to the paint node.
 pub(super) struct Worker {
-    commander: Commander,
+    commander: CommandClient,
     scenes: Receiver<Scene>,
     wake: Wake,
     scene: Option<Scene>,
@@ -89,13 +89,13 @@ impl Worker {
         topics: &Topics,
         brush: &str,
         stop: Arc<AtomicBool>,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, UserError> {
         let wake = Wake::new();
         let topic = topics.scene();
-        let scenes = Receiver::new(&*bus, &topic, Class::Cached, Queue::Latest, &wake)?
-            .checking(Scene::fault);
+        let scenes =
+            Receiver::new(&*bus, &topic, Qos::Cached, Queue::Latest, &wake)?.checking(Scene::fault);
         Ok(Self {
-            commander: Commander::new(bus, topics).asking(ASK),
+            commander: CommandClient::new(bus, topics).asking(ASK),
             scenes,
             wake,
             scene: None,

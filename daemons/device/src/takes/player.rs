@@ -8,15 +8,15 @@ use std::time::Duration;
 
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Receiver, Sender};
-use maulstick_bus::{Class, CreditSender, Queue};
-use maulstick_rig::{Fault, Member, config};
+use maulstick_bus::{CreditSender, Qos, Queue};
+use maulstick_rig::{NodeHandle, UserError, config};
 use maulstick_types::brush::BrushConsumed;
 use maulstick_types::command::{After, Command};
 use maulstick_types::stylus::{StylusInfo, StylusSample, TakeEnd, TakeStatus, axes};
 use maulstick_types::{Flags, Mixture, Origin, name_hash};
 
 use crate::take::Take;
-use maulstick_rig::commander::Commander;
+use maulstick_rig::command_client::CommandClient;
 
 /// Playback rate of a take.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,12 +77,12 @@ const ANNOUNCE: Duration = Duration::from_secs(20);
 /// Plays a take in the rig of `member`.
 ///
 /// # Errors
-/// A [`Fault`] where the take is refused or the rig is gone.
-pub fn run(member: &mut Member, settings: &PlayerSettings) -> Result<(), Fault> {
+/// A [`UserError`] where the take is refused or the rig is gone.
+pub fn run(member: &mut NodeHandle, settings: &PlayerSettings) -> Result<(), UserError> {
     let origin = member.origin(&member.node);
     let mut player = Player::new(member, settings, origin)?;
     let stop = member.stop.clone();
-    let mut commander = Commander::new(member.bus.clone(), &member.topics);
+    let mut commander = CommandClient::new(member.bus.clone(), &member.topics);
     let announce = Command::Take {
         again: settings.again,
         brush: settings.brush.clone(),
@@ -119,10 +119,14 @@ struct Player<'a> {
 }
 
 impl<'a> Player<'a> {
-    fn new(member: &Member, settings: &'a PlayerSettings, origin: Origin) -> Result<Self, Fault> {
+    fn new(
+        member: &NodeHandle,
+        settings: &'a PlayerSettings,
+        origin: Origin,
+    ) -> Result<Self, UserError> {
         let (bus, topics, node) = (&*member.bus, &member.topics, &member.node);
         let consumed = topics.brush_consumed(&settings.brush);
-        let mut info = Sender::new(bus, &topics.stylus_info(node), Class::Cached, origin)?;
+        let mut info = Sender::new(bus, &topics.stylus_info(node), Qos::Cached, origin)?;
         let now = bus.now_ns();
         let told = StylusInfo {
             device: node.clone(),
@@ -145,14 +149,8 @@ impl<'a> Player<'a> {
         Ok(Self {
             settings,
             samples: CreditSender::new(bus, topics, &topics.sample(node), origin, &member.wake)?,
-            credit: Receiver::new(
-                bus,
-                &consumed,
-                Class::Control,
-                Queue::Ring(256),
-                &member.wake,
-            )?,
-            status: Sender::new(bus, &topics.take_status(node), Class::Background, origin)?,
+            credit: Receiver::new(bus, &consumed, Qos::Control, Queue::Ring(256), &member.wake)?,
+            status: Sender::new(bus, &topics.take_status(node), Qos::Background, origin)?,
             _info: info,
             start_ns: 0,
             pace_ns: None,
@@ -174,7 +172,7 @@ impl<'a> Player<'a> {
         self.sent == self.settings.take.samples.len() && self.samples.outstanding() == 0
     }
 
-    fn turn(&mut self) -> Result<Duration, Fault> {
+    fn turn(&mut self) -> Result<Duration, UserError> {
         let now_ns = self.bus.now_ns();
         if self.sent == 0 {
             self.start_ns = now_ns;
@@ -232,7 +230,7 @@ impl<'a> Player<'a> {
         Some(pace_ns + ((time_ns - self.pace_from_ns) as f64 / rate) as u64)
     }
 
-    fn tell(&mut self, now_ns: u64) -> Result<(), Fault> {
+    fn tell(&mut self, now_ns: u64) -> Result<(), UserError> {
         if now_ns < self.status_ns + STATUS_PERIOD_NS {
             return Ok(());
         }

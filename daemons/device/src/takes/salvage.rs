@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::decode;
 use maulstick_types::stylus::StylusSample;
 use mcap::MAGIC;
@@ -32,9 +32,9 @@ pub struct Salvage {
 /// Reads as much of a take as can be read.
 ///
 /// # Errors
-/// A [`Fault`] where the file cannot be read, is no MCAP file, or holds no sample.
-pub fn salvage(path: &Path) -> Result<Salvage, Fault> {
-    let bytes = std::fs::read(path).map_err(|error| Fault::reading(path, &error))?;
+/// A [`UserError`] where the file cannot be read, is no MCAP file, or holds no sample.
+pub fn salvage(path: &Path) -> Result<Salvage, UserError> {
+    let bytes = std::fs::read(path).map_err(|error| UserError::reading(path, &error))?;
     from_bytes(&bytes).map_err(|refusal| {
         let (what, help) = match refusal {
             Refusal::Foreign => (
@@ -54,7 +54,9 @@ pub fn salvage(path: &Path) -> Result<Salvage, Fault> {
                 "play takes of one stylus",
             ),
         };
-        Fault::usage(what).at(path.display().to_string()).help(help)
+        UserError::usage(what)
+            .at(path.display().to_string())
+            .help(help)
     })
 }
 

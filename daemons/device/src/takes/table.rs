@@ -7,7 +7,7 @@
 use std::path::Path;
 
 use maulstick_brush::model::BRIDGED_NS;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, FARTHEST_M, StylusPose, StylusSample, axes};
 
 use crate::take::{Take, TakeSample};
@@ -119,20 +119,25 @@ impl Row {
 /// Reads a table as a take of the device `device`.
 ///
 /// # Errors
-/// A [`Fault`] with the line and the column, and what to do.
-pub fn import(path: &Path, layout: TableLayout, device: &str) -> Result<Imported, Fault> {
-    let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
+/// A [`UserError`] with the line and the column, and what to do.
+pub fn import(path: &Path, layout: TableLayout, device: &str) -> Result<Imported, UserError> {
+    let text = std::fs::read_to_string(path).map_err(|error| UserError::reading(path, &error))?;
     parse(&text, &path.display().to_string(), layout, device)
 }
 
 /// As [`import`], from a text that errors call `name`.
 ///
 /// # Errors
-/// A [`Fault`] with the line and the column, and what to do.
-pub fn parse(text: &str, name: &str, layout: TableLayout, device: &str) -> Result<Imported, Fault> {
+/// A [`UserError`] with the line and the column, and what to do.
+pub fn parse(
+    text: &str,
+    name: &str,
+    layout: TableLayout,
+    device: &str,
+) -> Result<Imported, UserError> {
     let rows = rows(text, name)?;
     let Some(first) = rows.first() else {
-        return Err(Fault::usage("the table holds no samples")
+        return Err(UserError::usage("the table holds no samples")
             .at(name)
             .help("each line is: t x y pressure [tilt_x tilt_y [twist]]"));
     };
@@ -162,7 +167,7 @@ pub fn parse(text: &str, name: &str, layout: TableLayout, device: &str) -> Resul
 }
 
 /// The rows, of those of the same time the last.
-fn rows(text: &str, name: &str) -> Result<Vec<Row>, Fault> {
+fn rows(text: &str, name: &str) -> Result<Vec<Row>, UserError> {
     let mut places: Option<Places> = None;
     let mut rows: Vec<Row> = Vec::new();
     // Spreadsheets begin a table with a byte order mark.
@@ -198,7 +203,9 @@ fn rows(text: &str, name: &str) -> Result<Vec<Row>, Fault> {
         let last = rows.last().map_or(f64::NEG_INFINITY, |row| row.values[0]);
         if values[0] < last {
             let what = format!("time runs backward: {} after {last}", values[0]);
-            return Err(Fault::usage(what).at(place).help("sort the table by time"));
+            return Err(UserError::usage(what)
+                .at(place)
+                .help("sort the table by time"));
         }
         if values[0] == last {
             rows.pop();
@@ -214,7 +221,7 @@ fn time_unit(
     name: &str,
     layout: TableLayout,
     notes: &mut Vec<String>,
-) -> Result<TimeUnit, Fault> {
+) -> Result<TimeUnit, UserError> {
     let pairs = rows
         .windows(2)
         .filter(|two| two[0].touches() && two[1].touches());
@@ -242,7 +249,7 @@ fn time_unit(
         return Ok(unit);
     }
     let apart = seconds(given.unwrap_or(TimeUnit::S));
-    Err(Fault::usage(format!(
+    Err(UserError::usage(format!(
         "samples of a stroke lie {apart} s apart; nothing is painted over more than {longest} s"
     ))
     .at(name)
@@ -250,7 +257,7 @@ fn time_unit(
 }
 
 /// The error that a point is out of reach.
-fn too_far(row: &Row, rows: &[Row], name: &str, layout: TableLayout) -> Fault {
+fn too_far(row: &Row, rows: &[Row], name: &str, layout: TableLayout) -> UserError {
     let most = |column: usize| {
         rows.iter()
             .map(|row| row.values[column])
@@ -258,7 +265,7 @@ fn too_far(row: &Row, rows: &[Row], name: &str, layout: TableLayout) -> Fault {
             .ceil()
     };
     let (x, y) = (row.values[1], row.values[2]);
-    Fault::usage(format!(
+    UserError::usage(format!(
         "({x}, {y}) lies more than {FARTHEST_M} m from the middle of the desk, at {} mm a unit",
         layout.unit_mm
     ))
@@ -308,7 +315,7 @@ fn in_order(count: usize) -> Places {
 }
 
 /// The places of the columns that a header names.
-fn header(cells: &[&str], place: &str) -> Result<Places, Fault> {
+fn header(cells: &[&str], place: &str) -> Result<Places, UserError> {
     let mut places = [None; COLUMNS.len()];
     for (at, cell) in cells.iter().enumerate() {
         let word = cell.to_lowercase();
@@ -316,7 +323,7 @@ fn header(cells: &[&str], place: &str) -> Result<Places, Fault> {
             Some(column) => places[column] = Some(at),
             None => {
                 let what = format!("there is no column '{cell}'");
-                return Err(Fault::unknown(what, &word, COLUMNS).at(place));
+                return Err(UserError::unknown(what, &word, COLUMNS).at(place));
             }
         }
     }
@@ -324,10 +331,10 @@ fn header(cells: &[&str], place: &str) -> Result<Places, Fault> {
 }
 
 /// The numbers of a row in the order of [`COLUMNS`]; a missing optional one is NaN.
-fn numbers(cells: &[&str], places: &Places, place: &str) -> Result<[f64; 7], Fault> {
+fn numbers(cells: &[&str], places: &Places, place: &str) -> Result<[f64; 7], UserError> {
     let mut values = [f64::NAN; COLUMNS.len()];
     for (column, value) in values.iter_mut().enumerate() {
-        let fault = |what: String| Fault::usage(what).at(place);
+        let fault = |what: String| UserError::usage(what).at(place);
         let Some(cell) = places[column].and_then(|at| cells.get(at)) else {
             if column < NEEDED || (places[column].is_some()) {
                 let what = format!("column {} ({}) is missing", column + 1, COLUMNS[column]);

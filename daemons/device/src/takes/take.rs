@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, write_whole};
 use maulstick_types::stylus::StylusSample;
 use maulstick_types::{Flags, Message as _, Origin, encode, name_hash};
@@ -55,14 +55,14 @@ impl Take {
     /// Reads a take.
     ///
     /// # Errors
-    /// A [`Fault`] where the file cannot be read, is damaged, or holds no samples of one stylus.
-    pub fn read(path: &Path) -> Result<Self, Fault> {
+    /// A [`UserError`] where the file cannot be read, is damaged, or holds no samples of one stylus.
+    pub fn read(path: &Path) -> Result<Self, UserError> {
         let salvage = salvage(path)?;
         match salvage.damage {
             None => Ok(salvage.take),
             Some(damage) => {
                 let (count, name) = (salvage.take.samples.len(), path.display());
-                Err(Fault::usage(format!("the take is damaged: {damage}"))
+                Err(UserError::usage(format!("the take is damaged: {damage}"))
                     .at(name.to_string())
                     .help(format!(
                         "{count} samples can be read: `maulstick take recover {name} -o whole.mcap` keeps them, \
@@ -75,12 +75,12 @@ impl Take {
     /// Writes the take: whole under its name, or not at all.
     ///
     /// # Errors
-    /// A [`Fault`] where the file cannot be written.
-    pub fn write(&self, path: &Path) -> Result<(), Fault> {
+    /// A [`UserError`] where the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), UserError> {
         write_whole(path, Kind::Take, |file| {
             self.write_to(file).map_err(std::io::Error::other)
         })
-        .map_err(|error| Fault::writing(path, &error))
+        .map_err(|error| UserError::writing(path, &error))
     }
 
     fn write_to(&self, file: &mut BufWriter<File>) -> mcap::McapResult<()> {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use maulstick_device::registration::Registration;
 use maulstick_device::{Take, brush_file};
 use maulstick_rig::config::DeviceSection;
-use maulstick_rig::{Fault, RigConfig};
+use maulstick_rig::{RigConfig, UserError};
 
 use crate::device::driver::Opened;
 use crate::drivers::simulated::Simulated;
@@ -24,19 +24,21 @@ pub struct HapticSettings {
 /// Opens the device.
 ///
 /// # Errors
-/// [`Fault`] that names what is missing; a later attempt may find it.
-pub fn open(config: &RigConfig, settings: &HapticSettings) -> Result<Opened, Fault> {
+/// [`UserError`] that names what is missing; a later attempt may find it.
+pub fn open(config: &RigConfig, settings: &HapticSettings) -> Result<Opened, UserError> {
     let device = &settings.device;
     match device.driver.as_str() {
         "simulated" => simulated(config, settings),
         "openhaptics" => openhaptics::open(device),
         "polhem" => polhem::open(device),
         "inverse3" => inverse3::open(device),
-        other => Err(Fault::usage(format!("this daemon has no driver '{other}'"))),
+        other => Err(UserError::usage(format!(
+            "this daemon has no driver '{other}'"
+        ))),
     }
 }
 
-fn simulated(config: &RigConfig, settings: &HapticSettings) -> Result<Opened, Fault> {
+fn simulated(config: &RigConfig, settings: &HapticSettings) -> Result<Opened, UserError> {
     let opened = |driver: Simulated, what: &str| Opened {
         driver: Box::new(driver),
         clock: Box::new(MonotonicClock),
@@ -48,7 +50,7 @@ fn simulated(config: &RigConfig, settings: &HapticSettings) -> Result<Opened, Fa
     let take = Take::read(path)?;
     let section = config
         .brush_named(&settings.device.brush)
-        .ok_or_else(|| Fault::usage(format!("no brush '{}'", settings.device.brush)))?;
+        .ok_or_else(|| UserError::usage(format!("no brush '{}'", settings.device.brush)))?;
     let file = brush_file(section)?;
     let (length_m, share) = (file.length_m(), section.depth_share);
     let registration = Registration::of(&settings.device, &config.canvas)?;

@@ -13,7 +13,7 @@ use maulstick_haptic::servo::servo_thread::ServoThread;
 use maulstick_haptics::{Contact, Limits};
 use maulstick_libhd::{Call, Control, Script};
 use maulstick_rig::config::DeviceSection;
-use maulstick_rig::{Fault, RigConfig};
+use maulstick_rig::{RigConfig, UserError};
 use maulstick_types::haptics::{ContactModel, ForceLaw};
 
 /// Beyond this a test gives up.
@@ -28,7 +28,7 @@ pub(crate) fn section() -> DeviceSection {
 }
 
 /// Opens the device of a section, as the daemon does.
-pub(crate) fn open(section: &DeviceSection) -> Result<Opened, Fault> {
+pub(crate) fn open(section: &DeviceSection) -> Result<Opened, UserError> {
     let settings = HapticSettings {
         device: section.clone(),
         hand: None,
@@ -37,7 +37,7 @@ pub(crate) fn open(section: &DeviceSection) -> Result<Opened, Fault> {
 }
 
 /// Why a device cannot be opened.
-pub(crate) fn refusal(section: &DeviceSection) -> Fault {
+pub(crate) fn refusal(section: &DeviceSection) -> UserError {
     open(section).err().expect("a fault")
 }
 

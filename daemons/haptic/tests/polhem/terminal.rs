@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 use maulstick_haptic::device::driver::{DeviceError, Driver, Reading, Wrench};
 use maulstick_haptic::drivers::polhem;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 use serialport::{SerialPort, TTYPort};
 
@@ -226,7 +226,7 @@ fn reading_and_writing_a_terminal_allocate_nothing() {
     assert!(allocations(|| drop(Box::new(1))) > 0);
 }
 
-fn fault(path: &str) -> Fault {
+fn fault(path: &str) -> UserError {
     polhem::open(&at(path)).map(|_| ()).expect_err(path)
 }
 

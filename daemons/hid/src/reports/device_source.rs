@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Duration;
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 /// Identity of a HID device.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -37,13 +37,13 @@ pub trait HidSource: Send {
     /// Waits at most `limit` for a report; returns its length in `report`, bytes, or 0 if none came.
     ///
     /// # Errors
-    /// [`Fault`] if the device is gone.
-    fn read(&mut self, report: &mut [u8], limit: Duration) -> Result<usize, Fault>;
+    /// [`UserError`] if the device is gone.
+    fn read(&mut self, report: &mut [u8], limit: Duration) -> Result<usize, UserError>;
     /// Sends a report to the device, its number first.
     ///
     /// # Errors
-    /// [`Fault`] if the device refuses it.
-    fn write(&mut self, report: &[u8]) -> Result<(), Fault>;
+    /// [`UserError`] if the device refuses it.
+    fn write(&mut self, report: &[u8]) -> Result<(), UserError>;
 }
 
 /// A device that is plugged in.
@@ -60,11 +60,11 @@ pub trait Ports: Send {
     /// Lists the devices that are plugged in.
     ///
     /// # Errors
-    /// [`Fault`] if the system cannot list them.
-    fn list(&mut self) -> Result<Vec<Found>, Fault>;
+    /// [`UserError`] if the system cannot list them.
+    fn list(&mut self) -> Result<Vec<Found>, UserError>;
     /// Opens a device.
     ///
     /// # Errors
-    /// [`Fault`] with the reason and the remedy.
-    fn open(&mut self, found: &Found) -> Result<Box<dyn HidSource>, Fault>;
+    /// [`UserError`] with the reason and the remedy.
+    fn open(&mut self, found: &Found) -> Result<Box<dyn HidSource>, UserError>;
 }

@@ -5,7 +5,7 @@ use std::io::ErrorKind;
 use std::time::Duration;
 
 use hidapi::{BusType, HidApi, HidDevice, HidError};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use crate::descriptor::LONGEST;
 use crate::device_source::{Found, HidSource, Identity, Ports};
@@ -20,12 +20,12 @@ struct Device {
     name: String,
 }
 
-fn failed(what: &str, error: &HidError) -> Fault {
-    Fault::failure(format!("{what}: {error}")).help("see what the kernel says of it: `dmesg`")
+fn failed(what: &str, error: &HidError) -> UserError {
+    UserError::failure(format!("{what}: {error}")).help("see what the kernel says of it: `dmesg`")
 }
 
 impl Ports for Hidraw {
-    fn list(&mut self) -> Result<Vec<Found>, Fault> {
+    fn list(&mut self) -> Result<Vec<Found>, UserError> {
         let api = HidApi::new().map_err(|error| failed("the devices cannot be listed", &error))?;
         let mut found: Vec<Found> = Vec::new();
         for info in api.device_list() {
@@ -67,7 +67,7 @@ impl Ports for Hidraw {
         Ok(found)
     }
 
-    fn open(&mut self, found: &Found) -> Result<Box<dyn HidSource>, Fault> {
+    fn open(&mut self, found: &Found) -> Result<Box<dyn HidSource>, UserError> {
         let Identity { place, .. } = &found.identity;
         let name = found.identity.to_string();
         // hidapi says in words alone why a device does not open.
@@ -78,7 +78,7 @@ impl Ports for Hidraw {
             .map_err(|error| closed(&found.identity, &error))?;
         let api = HidApi::new().map_err(|error| failed("the devices cannot be listed", &error))?;
         let path = CString::new(place.as_bytes())
-            .map_err(|_| Fault::usage(format!("'{place}' is no path")))?;
+            .map_err(|_| UserError::usage(format!("'{place}' is no path")))?;
         let what = format!("{name} cannot be opened");
         let device = api
             .open_path(&path)
@@ -98,7 +98,7 @@ impl Ports for Hidraw {
 
 /// The reason why a device does not open, with advice.
 #[must_use]
-pub fn closed(device: &Identity, error: &std::io::Error) -> Fault {
+pub fn closed(device: &Identity, error: &std::io::Error) -> UserError {
     let name = device.to_string();
     let (what, help) = match error.kind() {
         ErrorKind::PermissionDenied => (
@@ -115,7 +115,7 @@ pub fn closed(device: &Identity, error: &std::io::Error) -> Fault {
             "plug it in again",
         ),
     };
-    Fault::failure(what).at(device.place.clone()).help(help)
+    UserError::failure(what).at(device.place.clone()).help(help)
 }
 
 impl HidSource for Device {
@@ -123,7 +123,7 @@ impl HidSource for Device {
         &self.descriptor
     }
 
-    fn read(&mut self, report: &mut [u8], limit: Duration) -> Result<usize, Fault> {
+    fn read(&mut self, report: &mut [u8], limit: Duration) -> Result<usize, UserError> {
         let limit = i32::try_from(limit.as_millis()).unwrap_or(i32::MAX);
         match self.device.read_timeout(report, limit) {
             Ok(length) => Ok(length),
@@ -131,12 +131,12 @@ impl HidSource for Device {
             Err(error) => {
                 let name = &self.name;
                 let what = format!("{name} was unplugged, or does not answer: {error}");
-                Err(Fault::failure(what).help("plug it in again"))
+                Err(UserError::failure(what).help("plug it in again"))
             }
         }
     }
 
-    fn write(&mut self, report: &[u8]) -> Result<(), Fault> {
+    fn write(&mut self, report: &[u8]) -> Result<(), UserError> {
         let what = format!("{} does not take an order", self.name);
         self.device
             .write(report)

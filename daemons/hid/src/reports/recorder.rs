@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, check_writable, write_whole};
 
 use crate::device_source::Identity;
@@ -29,9 +29,9 @@ impl Recorder {
     /// Begins a recording.
     ///
     /// # Errors
-    /// A [`Fault`] where the file cannot be written.
-    pub fn begin(path: &Path) -> Result<Self, Fault> {
-        check_writable(path, Kind::Recording).map_err(|error| Fault::writing(path, &error))?;
+    /// A [`UserError`] where the file cannot be written.
+    pub fn begin(path: &Path) -> Result<Self, UserError> {
+        check_writable(path, Kind::Recording).map_err(|error| UserError::writing(path, &error))?;
         let (lines, written) = sync_channel::<String>(WAITING);
         let to = path.to_owned();
         let write = move || {
@@ -43,7 +43,7 @@ impl Recorder {
         let thread = std::thread::Builder::new()
             .name("recorder".into())
             .spawn(write)
-            .map_err(|error| Fault::failure(format!("the recording has no thread: {error}")))?;
+            .map_err(|error| UserError::failure(format!("the recording has no thread: {error}")))?;
         Ok(Self {
             path: path.to_owned(),
             lines: Some(lines),
@@ -113,16 +113,16 @@ impl Recorder {
     /// Ends the recording: it is there under its name.
     ///
     /// # Errors
-    /// A [`Fault`] where it could not be written.
-    pub fn end(mut self) -> Result<(), Fault> {
+    /// A [`UserError`] where it could not be written.
+    pub fn end(mut self) -> Result<(), UserError> {
         self.lines = None;
         match self.thread.take().map(JoinHandle::join) {
             Some(Ok(Ok(()))) | None => Ok(()),
-            Some(Ok(Err(error))) => Err(Fault::writing(&self.path, &error)),
-            Some(Err(_)) => Err(
-                Fault::failure("the recording has ended by a fault of its own")
-                    .help("its own message above says why"),
-            ),
+            Some(Ok(Err(error))) => Err(UserError::writing(&self.path, &error)),
+            Some(Err(_)) => Err(UserError::failure(
+                "the recording has ended by a fault of its own",
+            )
+            .help("its own message above says why")),
         }
     }
 }

@@ -12,7 +12,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use crate::descriptor::LONGEST;
 use crate::device_source::Identity;
@@ -48,11 +48,11 @@ pub struct Recorded {
 /// Reads a recording from a file.
 ///
 /// # Errors
-/// A [`Fault`] that names the line.
-pub fn read(path: &Path) -> Result<Vec<Recorded>, Fault> {
-    let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
+/// A [`UserError`] that names the line.
+pub fn read(path: &Path) -> Result<Vec<Recorded>, UserError> {
+    let text = std::fs::read_to_string(path).map_err(|error| UserError::reading(path, &error))?;
     parse(&text).map_err(|(line, what)| {
-        Fault::usage(what)
+        UserError::usage(what)
             .at(format!("{}:{line}", path.display()))
             .help(HELP)
     })
@@ -61,8 +61,8 @@ pub fn read(path: &Path) -> Result<Vec<Recorded>, Fault> {
 /// The first device of a recording that can stand in for one of `kind`.
 ///
 /// # Errors
-/// A [`Fault`] that says what the first of them is instead.
-pub fn playable(kind: Kind, recorded: Vec<Recorded>) -> Result<Recorded, Fault> {
+/// A [`UserError`] that says what the first of them is instead.
+pub fn playable(kind: Kind, recorded: Vec<Recorded>) -> Result<Recorded, UserError> {
     let mut first = None;
     for device in recorded {
         match open::means(kind, &device.identity, &device.descriptor) {
@@ -70,7 +70,7 @@ pub fn playable(kind: Kind, recorded: Vec<Recorded>) -> Result<Recorded, Fault> 
             Err(fault) => first = first.or(Some(fault)),
         }
     }
-    Err(first.unwrap_or_else(|| Fault::usage("there is no device in the recording")))
+    Err(first.unwrap_or_else(|| UserError::usage("there is no device in the recording")))
 }
 
 /// Reads the text of a recording: its devices, at least one.

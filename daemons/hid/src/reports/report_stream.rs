@@ -10,7 +10,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use maulstick_bus::{Bus, Inbox, Queue, Wake};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use crate::device_source::HidSource;
 use crate::recording::{Event, LONGEST_REPORT};
@@ -30,7 +30,7 @@ pub enum StreamItem {
     /// End of a recording.
     Over,
     /// Loss of the device.
-    Lost(Fault),
+    Lost(UserError),
 }
 
 /// Reports of a device in order.
@@ -64,7 +64,7 @@ impl ReportStream {
 /// Reports of a device that a thread reads.
 #[derive(Debug)]
 pub struct Live {
-    inbox: Inbox<Result<Event, Fault>>,
+    inbox: Inbox<Result<Event, UserError>>,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
@@ -73,12 +73,12 @@ impl Live {
     /// Starts to read a device; each report rings `wake` and carries the bus's time of its reading.
     ///
     /// # Errors
-    /// A [`Fault`] where the system has no thread for it.
+    /// A [`UserError`] where the system has no thread for it.
     pub fn start(
         mut source: Box<dyn HidSource>,
         bus: Arc<dyn Bus>,
         wake: &Wake,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, UserError> {
         let inbox = Inbox::new(Queue::Bounded(WAITING), wake);
         let stop = Arc::new(AtomicBool::new(false));
         let (queue, ended) = (inbox.clone(), Arc::clone(&stop));
@@ -103,7 +103,7 @@ impl Live {
         let thread = std::thread::Builder::new()
             .name("hid".into())
             .spawn(run)
-            .map_err(|error| Fault::failure(format!("the device has no thread: {error}")))?;
+            .map_err(|error| UserError::failure(format!("the device has no thread: {error}")))?;
         Ok(Self {
             inbox,
             stop,
@@ -120,7 +120,7 @@ impl Live {
                 && self.inbox.is_empty() =>
             {
                 StreamItem::Lost(
-                    Fault::failure("the device is not read any more").help("plug it in again"),
+                    UserError::failure("the device is not read any more").help("plug it in again"),
                 )
             }
             None => StreamItem::Nothing(None),

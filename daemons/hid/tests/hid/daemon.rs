@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use maulstick_bus::bus::Token;
 use maulstick_bus::typed::{Received, Receiver};
-use maulstick_bus::{Bus, Class, Faults, MemoryNet, Queue, Wake};
+use maulstick_bus::{Bus, Faults, MemoryNet, Qos, Queue, Wake};
 use maulstick_hid::daemon::{Daemon, HidSettings};
 use maulstick_hid::device_source::{Found, HidSource, Ports};
 use maulstick_hid::recording::{Event, Recorded};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, DeviceSection};
 use maulstick_types::control::ControlSample;
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus, switch};
@@ -35,12 +35,12 @@ pub(crate) struct Rig {
 struct Bare;
 
 impl Ports for Bare {
-    fn list(&mut self) -> Result<Vec<Found>, Fault> {
+    fn list(&mut self) -> Result<Vec<Found>, UserError> {
         Ok(Vec::new())
     }
 
-    fn open(&mut self, _: &Found) -> Result<Box<dyn HidSource>, Fault> {
-        Err(Fault::failure("nothing is plugged in"))
+    fn open(&mut self, _: &Found) -> Result<Box<dyn HidSource>, UserError> {
+        Err(UserError::failure("nothing is plugged in"))
     }
 }
 
@@ -54,7 +54,7 @@ pub(crate) fn settings(driver: &str) -> HidSettings {
 }
 
 impl Rig {
-    pub(crate) fn new(settings: &HidSettings, ports: Box<dyn Ports>) -> Result<Self, Fault> {
+    pub(crate) fn new(settings: &HidSettings, ports: Box<dyn Ports>) -> Result<Self, UserError> {
         let net = MemoryNet::new(1, START_NS, Faults::default());
         let (bus, topics, wake): (Arc<dyn Bus>, _, _) =
             (Arc::new(net.bus()), Topics::new("studio"), Wake::new());
@@ -63,11 +63,11 @@ impl Rig {
             epoch: 1,
         };
         let (at, all) = (&*bus, Queue::Bounded(100_000));
-        let samples = Receiver::new(at, &topics.sample("pen"), Class::RealTime, all, &wake)?;
-        let controls = Receiver::new(at, &topics.control("pen"), Class::RealTime, all, &wake)?;
-        let infos = Receiver::new(at, &topics.stylus_info("pen"), Class::Cached, all, &wake)?;
+        let samples = Receiver::new(at, &topics.sample("pen"), Qos::RealTime, all, &wake)?;
+        let controls = Receiver::new(at, &topics.control("pen"), Qos::RealTime, all, &wake)?;
+        let infos = Receiver::new(at, &topics.stylus_info("pen"), Qos::Cached, all, &wake)?;
         let topic = topics.stylus_status("pen");
-        let statuses = Receiver::new(at, &topic, Class::Background, all, &wake)?;
+        let statuses = Receiver::new(at, &topic, Qos::Background, all, &wake)?;
         let brush = Some(at.token(&topics.node("brush-main"))?);
         let daemon = Daemon::new(Arc::clone(&bus), &topics, &wake, origin, settings, ports)?;
         Ok(Self {

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use maulstick_hid::device_source::{Found, HidSource, Identity, Ports};
 use maulstick_hid::recording;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::stylus::StylusSample;
 
 use crate::daemon::{Rig, settings, stroke_report};
@@ -26,7 +26,7 @@ struct Desk {
     deeds: VecDeque<Deed>,
     orders: Vec<Vec<u8>>,
     opened: Vec<String>,
-    closed: Option<Fault>,
+    closed: Option<UserError>,
 }
 
 #[derive(Clone, Default)]
@@ -56,11 +56,11 @@ impl Plugs {
 }
 
 impl Ports for Plugs {
-    fn list(&mut self) -> Result<Vec<Found>, Fault> {
+    fn list(&mut self) -> Result<Vec<Found>, UserError> {
         Ok(self.with(|desk| desk.found.iter().map(|(found, _)| found.clone()).collect()))
     }
 
-    fn open(&mut self, found: &Found) -> Result<Box<dyn HidSource>, Fault> {
+    fn open(&mut self, found: &Found) -> Result<Box<dyn HidSource>, UserError> {
         let descriptor = self.with(|desk| {
             desk.opened.push(found.identity.place.clone());
             match desk.closed.clone() {
@@ -86,14 +86,14 @@ impl HidSource for Device {
         &self.descriptor
     }
 
-    fn read(&mut self, report: &mut [u8], _: Duration) -> Result<usize, Fault> {
+    fn read(&mut self, report: &mut [u8], _: Duration) -> Result<usize, UserError> {
         match self.plugs.with(|desk| desk.deeds.pop_front()) {
             Some(Deed::Report(bytes)) => {
                 report[..bytes.len()].copy_from_slice(&bytes);
                 Ok(bytes.len())
             }
             Some(Deed::Unplug) => {
-                Err(Fault::failure("the tablet was unplugged").help("plug it in again"))
+                Err(UserError::failure("the tablet was unplugged").help("plug it in again"))
             }
             None => {
                 std::thread::yield_now();
@@ -102,7 +102,7 @@ impl HidSource for Device {
         }
     }
 
-    fn write(&mut self, report: &[u8]) -> Result<(), Fault> {
+    fn write(&mut self, report: &[u8]) -> Result<(), UserError> {
         self.plugs.with(|desk| desk.orders.push(report.to_vec()));
         Ok(())
     }
@@ -214,8 +214,8 @@ fn a_machine_that_slept_does_not_catch_up() {
 fn a_device_that_is_not_there_is_looked_for_each_second() {
     let plugs = Plugs::default();
     plugs.plug(identity(0x28BD, 0x0935, "Deco L"), &deco_l(), PEN);
-    let denied =
-        Fault::failure("you may not read it").help("`maulstick devices --udev` prints the rule");
+    let denied = UserError::failure("you may not read it")
+        .help("`maulstick devices --udev` prints the rule");
     plugs.with(|desk| desk.closed = Some(denied));
     let mut rig = Rig::new(&settings("pen"), Box::new(plugs.clone())).expect("a daemon");
     rig.run(5_500_000_000, 10_000_000);

@@ -8,7 +8,7 @@ use maulstick_device::corner_calibration::{CornerCalibration, HandReading, Progr
 use maulstick_hid::device_source::{Found, HidSource, Ports};
 use maulstick_hid::probe;
 use maulstick_hid::recording::{Event, Recorded};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 
 use crate::daemon::{stroke_report, write};
@@ -46,14 +46,14 @@ fn reports(senses: Senses, rest_ms: u64) -> Vec<(u64, Vec<u8>)> {
 struct Desk(VecDeque<Vec<u8>>, Vec<u8>);
 
 impl Ports for Desk {
-    fn list(&mut self) -> Result<Vec<Found>, Fault> {
+    fn list(&mut self) -> Result<Vec<Found>, UserError> {
         Ok(vec![Found {
             identity: identity(0x28BD, 0x0935, "Deco L"),
             usages: vec![(DIGITIZER, 0x02)],
         }])
     }
 
-    fn open(&mut self, _: &Found) -> Result<Box<dyn HidSource>, Fault> {
+    fn open(&mut self, _: &Found) -> Result<Box<dyn HidSource>, UserError> {
         Ok(Box::new(Desk(self.0.clone(), self.1.clone())))
     }
 }
@@ -63,19 +63,22 @@ impl HidSource for Desk {
         &self.1
     }
 
-    fn read(&mut self, report: &mut [u8], _: Duration) -> Result<usize, Fault> {
-        let said = self.0.pop_front().ok_or_else(|| Fault::failure("gone"))?;
+    fn read(&mut self, report: &mut [u8], _: Duration) -> Result<usize, UserError> {
+        let said = self
+            .0
+            .pop_front()
+            .ok_or_else(|| UserError::failure("gone"))?;
         report[..said.len()].copy_from_slice(&said);
         Ok(said.len())
     }
 
-    fn write(&mut self, _: &[u8]) -> Result<(), Fault> {
+    fn write(&mut self, _: &[u8]) -> Result<(), UserError> {
         Ok(())
     }
 }
 
 /// The corners that are found, and how the probe ended.
-fn shown(ports: &mut dyn Ports, device: &DeviceSection) -> (usize, Result<(), Fault>) {
+fn shown(ports: &mut dyn Ports, device: &DeviceSection) -> (usize, Result<(), UserError>) {
     let (mut corners, mut found) = (CornerCalibration::new(), 0);
     let ended = probe::open(ports, device).expect("open").probe(|reading| {
         match reading {

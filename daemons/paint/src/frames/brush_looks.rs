@@ -6,7 +6,7 @@ use std::sync::Arc;
 use maulstick_appearance::Appearance;
 use maulstick_brush::file::sections::Hair;
 use maulstick_bus::typed::Sender;
-use maulstick_bus::{Bus, BusError, Class};
+use maulstick_bus::{Bus, BusError, Qos};
 use maulstick_painting::brush_colour::{Carried, hair};
 use maulstick_types::Origin;
 use maulstick_types::brush::BrushLook;
@@ -58,7 +58,7 @@ impl BrushLooks {
         for (brush, carried) in &fed.carried {
             if !self.told.contains_key(brush) {
                 let topic = self.topics.brush_look(brush);
-                let sender = Sender::new(bus, &topic, Class::Cached, me)?;
+                let sender = Sender::new(bus, &topic, Qos::Cached, me)?;
                 self.told.insert(brush.clone(), Told { sender, of: None });
             }
             let Some(told) = self.told.get_mut(brush) else {

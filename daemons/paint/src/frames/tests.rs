@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use maulstick_bus::bus::Answer;
-use maulstick_bus::{Class, Faults, MemoryNet};
+use maulstick_bus::{Faults, MemoryNet, Qos};
 use maulstick_types::decode;
 
 use maulstick_appearance::display::{DisplayTile, WetFilms};
@@ -63,7 +63,7 @@ fn ask(rig: &mut Rig, asked: &FrameRequest) -> Option<FrameReply> {
     let pending = rig
         .net
         .bus()
-        .ask("frame", Class::Data, bytes, limit, &Wake::new())
+        .ask("frame", Qos::Data, bytes, limit, &Wake::new())
         .expect("asked");
     rig.net.advance(1);
     rig.server.turn();
@@ -353,7 +353,7 @@ fn a_look_of_a_brush_is_told_once_for_each_load_and_light() {
     let bus = rig.net.bus();
     let key = topics.brush_look("main");
     let mut looks: Receiver<BrushLook> =
-        Receiver::new(&bus, &key, Class::Cached, Queue::Ring(16), &Wake::new()).expect("one");
+        Receiver::new(&bus, &key, Qos::Cached, Queue::Ring(16), &Wake::new()).expect("one");
     let mut told = |rig: &mut Rig| {
         rig.server.turn();
         rig.net.advance(1_000_000);

@@ -64,7 +64,7 @@ impl Rig {
         let bytes = encode(&ME, Flags::NONE, 0, 0, 0, question).expect("it fits");
         let limit = Duration::from_secs(3600);
         self.client
-            .ask(topic, Class::Control, bytes, limit, &Wake::new())
+            .ask(topic, Qos::Control, bytes, limit, &Wake::new())
             .expect("asked")
     }
 
@@ -312,7 +312,7 @@ fn a_painting_that_is_refused_its_name_says_none_and_gets_another() {
     let topic = rig.topics.paint_status();
     let (wake, queue) = (Wake::new(), Queue::Ring(64));
     let mut statuses: Receiver<PaintStatus> =
-        Receiver::new(&rig.client, &topic, Class::Background, queue, &wake).expect("one");
+        Receiver::new(&rig.client, &topic, Qos::Background, queue, &wake).expect("one");
     rig.fill("Yellow Ochre");
     begins_to_save(&mut rig, &at("a.maul"));
     std::fs::write(at("a.maul"), "a shopping list").expect("written");

@@ -137,7 +137,7 @@ fn a_painting_whose_file_is_removed_says_where_it_goes_on() {
     let topic = rig.topics.paint_status();
     let queue = Queue::Ring(64);
     let mut statuses: Receiver<PaintStatus> =
-        Receiver::new(&rig.client, &topic, Class::Background, queue, &Wake::new()).expect("one");
+        Receiver::new(&rig.client, &topic, Qos::Background, queue, &Wake::new()).expect("one");
     rig.fill("Yellow Ochre");
     rig.done(save_as(&at("a.maul"), false));
     std::fs::remove_file(at("a.maul")).expect("removed");

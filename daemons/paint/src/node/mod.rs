@@ -16,7 +16,7 @@ use maulstick_brush::BrushFile;
 use maulstick_bus::rivals::Once;
 use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
 use maulstick_bus::{
-    Announcer, Arrival, Bus, BusError, Class, CreditReceiver, Queue, Server, Subscription, Wake,
+    Announcer, Arrival, Bus, BusError, CreditReceiver, Qos, Queue, Server, Subscription, Wake,
 };
 use maulstick_document::{Document, DocumentError};
 use maulstick_painting::{Painting, Sequencer};
@@ -126,7 +126,7 @@ impl PaintNode {
             defs: Receiver::new(
                 b,
                 &topics.brush_def("*"),
-                Class::Cached,
+                Qos::Cached,
                 Queue::Ring(64),
                 wake,
             )?,
@@ -139,9 +139,9 @@ impl PaintNode {
             thumbnails: Thumbnails::new(b, &topics.thumbnail(), wake, me)?,
             tokens: b.watch(&topics.node("*"), wake)?,
             reader: Reader::default(),
-            journal: Sender::new(b, &topics.journal(), Class::Data, me)?,
-            consumed: Sender::new(b, &topics.paint_consumed(), Class::Control, me)?,
-            status: Sender::new(b, &topics.paint_status(), Class::Background, me)?,
+            journal: Sender::new(b, &topics.journal(), Qos::Data, me)?,
+            consumed: Sender::new(b, &topics.paint_consumed(), Qos::Control, me)?,
+            status: Sender::new(b, &topics.paint_status(), Qos::Background, me)?,
             scene,
             feed: Feed::new(),
             fed_version: 1,

@@ -118,7 +118,7 @@ fn an_answer_that_does_not_fit_is_given_in_short() {
         .bus()
         .ask(
             &topic,
-            Class::Control,
+            Qos::Control,
             Vec::new(),
             Duration::from_secs(1),
             &wake,

@@ -15,7 +15,7 @@ use maulstick_brush::BrushFile;
 use maulstick_brush_node::{BrushNode, BrushSettings};
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Bus, Class, CreditSender, MemoryNet, Queue, Wake};
+use maulstick_bus::{Bus, CreditSender, MemoryNet, Qos, Queue, Wake};
 use maulstick_optics::PaintLibrary;
 use maulstick_paint_node::PaintNode;
 use maulstick_painting::picture::picture;
@@ -141,7 +141,7 @@ impl Live {
         let player = CreditSender::new(&*bus, &topics, &topic, origin, &wake).expect("a player");
         let consumed = topics.brush_consumed("main");
         let credit =
-            Receiver::new(&*bus, &consumed, Class::Control, Queue::Ring(64), &wake).expect("one");
+            Receiver::new(&*bus, &consumed, Qos::Control, Queue::Ring(64), &wake).expect("one");
         let paint = Self::paint_node(&bus, &topics, 5);
         Self {
             net,
@@ -193,7 +193,7 @@ impl Live {
             let pending = self
                 .net
                 .bus()
-                .ask(&topic, Class::Control, bytes, limit, &Wake::new())
+                .ask(&topic, Qos::Control, bytes, limit, &Wake::new())
                 .expect("asked");
             for _ in 0..100 {
                 self.net.advance(1_000_000);
@@ -234,7 +234,7 @@ impl Live {
         let bus = self.net.bus();
         let origin = Origin { source, epoch: 11 };
         let (sample, consumed) = (topics.sample(name), topics.brush_consumed("main"));
-        let credit = Receiver::new(&bus, &consumed, Class::Control, Queue::Ring(64), &wake);
+        let credit = Receiver::new(&bus, &consumed, Qos::Control, Queue::Ring(64), &wake);
         Device {
             samples: CreditSender::new(&bus, topics, &sample, origin, &wake).expect("a device"),
             credit: credit.expect("subscribed"),
@@ -307,7 +307,7 @@ impl Device {
             now_ns,
             event_ns: now_ns,
         };
-        self.samples.forgive();
+        self.samples.reset_credit();
         self.samples.serve(now_ns).expect("served");
         self.samples.send(Flags::NONE, stamp, sample).expect("sent");
     }
@@ -315,7 +315,7 @@ impl Device {
     /// ReplyCache for what was lost.
     pub fn serve(&mut self) {
         let now_ns = self.net.bus().now_ns();
-        self.samples.forgive();
+        self.samples.reset_credit();
         self.samples.serve(now_ns).expect("served");
     }
 

@@ -7,7 +7,7 @@ use maulstick_document::DocumentError;
 use maulstick_optics::colour::{RgbSpace, apply, delta_e_2000, lab, srgb_decode};
 use maulstick_painting::picture::picture;
 use maulstick_painting::{NOW, Sequencer};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 use maulstick_types::command::Command;
 use maulstick_types::scene::CANVAS;
@@ -26,13 +26,13 @@ const WHITE: f64 = 20.0;
 /// Draws `one`, `other` and their difference, left to right, and says how far they are apart.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown version, or a picture that cannot be written.
+/// A [`UserError`] for an unknown version, or a picture that cannot be written.
 pub(super) fn compare(
     path: &Path,
     [one, other]: [&str; 2],
     output: &Path,
     as_json: bool,
-) -> Result<i32, Fault> {
+) -> Result<i32, UserError> {
     check_outputs(
         &[UsedFile::new("the picture", output).of(Kind::Png)],
         &[UsedFile::painting(path)],
@@ -86,7 +86,7 @@ pub(super) fn compare(
 }
 
 /// The picture of a version; the painting is as it was before.
-fn seen(sequencer: &mut Sequencer, version: &str) -> Result<Picture, Fault> {
+fn seen(sequencer: &mut Sequencer, version: &str) -> Result<Picture, UserError> {
     let is_now = version == NOW;
     if !is_now {
         let name = version.to_owned();

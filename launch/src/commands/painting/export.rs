@@ -9,7 +9,7 @@ use maulstick_appearance::picture::Depth;
 use maulstick_exchange::{ExchangeError, Format, Order};
 use maulstick_paint_node::exporter::kind_of;
 use maulstick_rig::config::ViewSection;
-use maulstick_rig::{Fault, files};
+use maulstick_rig::{UserError, files};
 use maulstick_types::scene::{CANVAS, PALETTE};
 
 use crate::commands::say;
@@ -58,23 +58,23 @@ pub struct ExportOptions {
 }
 
 impl ExportOptions {
-    fn format(&self) -> Result<Format, Fault> {
+    fn format(&self) -> Result<Format, UserError> {
         let format = match &self.format {
             Some(name) => Format::named(name),
             None => Format::of(&self.output),
         };
         format.ok_or_else(|| {
-            Fault::usage("the name does not say which format to write")
+            UserError::usage("the name does not say which format to write")
                 .at(self.output.display().to_string())
                 .help("end it in .png, .exr, .ora or .stl, or give --format")
         })
     }
 
-    fn depth(&self) -> Result<Depth, Fault> {
+    fn depth(&self) -> Result<Depth, UserError> {
         match self.bits {
             8 => Ok(Depth::Eight),
             16 => Ok(Depth::Sixteen),
-            other => Err(Fault::usage(format!("a PNG of {other} bits a channel"))
+            other => Err(UserError::usage(format!("a PNG of {other} bits a channel"))
                 .at("--bits")
                 .help("choose 8 or 16")),
         }
@@ -84,8 +84,8 @@ impl ExportOptions {
 /// Writes a painting for other programs.
 ///
 /// # Errors
-/// A [`Fault`] where the painting cannot be read or the file not be written.
-pub(super) fn run(options: &ExportOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where the painting cannot be read or the file not be written.
+pub(super) fn run(options: &ExportOptions) -> Result<i32, UserError> {
     let (format, depth) = (options.format()?, options.depth()?);
     let view = ViewSection {
         profile: options.profile.clone(),
@@ -131,7 +131,7 @@ fn write<T>(
     format: Format,
     bar: &ProgressBar,
     fill: impl FnOnce(&mut std::io::BufWriter<std::fs::File>) -> Result<T, ExchangeError>,
-) -> Result<T, Fault> {
+) -> Result<T, UserError> {
     let (mut made, mut failed) = (None, None);
     let written = files::write_whole(&options.output, kind_of(format), |file| {
         match fill(file) {
@@ -151,9 +151,9 @@ fn write<T>(
                 &options.file,
                 &maulstick_document::DocumentError::Damaged(what),
             ),
-            other => Fault::told(other.to_string()).at(options.output.display().to_string()),
+            other => UserError::told(other.to_string()).at(options.output.display().to_string()),
         });
     }
-    written.map_err(|error| Fault::writing(&options.output, &error))?;
-    made.ok_or_else(|| Fault::failure("nothing was written"))
+    written.map_err(|error| UserError::writing(&options.output, &error))?;
+    made.ok_or_else(|| UserError::failure("nothing was written"))
 }

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use maulstick_exchange::underpaint::underpaint;
 use maulstick_exchange::{Image, ImportError, Support, embed};
 use maulstick_painting::{Painting, Sequencer, Wetness};
-use maulstick_rig::{Fault, RigConfig};
+use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::Autosave;
 use maulstick_types::command::Command;
 use maulstick_types::scene::{CANVAS, WellKind};
@@ -61,8 +61,8 @@ pub struct ImportOptions {
 /// Takes a picture into a painting.
 ///
 /// # Errors
-/// A [`Fault`] where picture or painting cannot be read; the painting is as it was then.
-pub(super) fn run(options: &ImportOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where picture or painting cannot be read; the painting is as it was then.
+pub(super) fn run(options: &ImportOptions) -> Result<i32, UserError> {
     let path = &options.file;
     there(path)?;
     let image = Image::open(&options.picture).map_err(|error| options.fault(&error))?;
@@ -81,22 +81,22 @@ pub(super) fn run(options: &ImportOptions) -> Result<i32, Fault> {
 }
 
 impl ImportOptions {
-    fn fault(&self, error: &ImportError) -> Fault {
+    fn fault(&self, error: &ImportError) -> UserError {
         match error {
-            ImportError::File(error) => Fault::reading(&self.picture, error),
-            ImportError::Thickness(_) => Fault::told(error.to_string()).at("--um"),
-            ImportError::Paints(_) => Fault::told(error.to_string()).at("--paint"),
+            ImportError::File(error) => UserError::reading(&self.picture, error),
+            ImportError::Thickness(_) => UserError::told(error.to_string()).at("--um"),
+            ImportError::Paints(_) => UserError::told(error.to_string()).at("--paint"),
             ImportError::Refused(refusal) => refused(refusal.clone()).at("--paint"),
-            ImportError::Canvas(..) => Fault::usage(error.to_string())
+            ImportError::Canvas(..) => UserError::usage(error.to_string())
                 .at(self.file.display().to_string())
                 .help("give it as a ground, which may be coarser than the cells"),
-            other => Fault::usage(other.to_string())
+            other => UserError::usage(other.to_string())
                 .at(self.picture.display().to_string())
                 .help("give a PNG, JPEG or TIFF of at most 20,000 pixels either way"),
         }
     }
 
-    fn paint(&self, sequencer: &mut Sequencer, image: &Image) -> Result<String, Fault> {
+    fn paint(&self, sequencer: &mut Sequencer, image: &Image) -> Result<String, UserError> {
         let painting = sequencer.painting_mut();
         let paints = match self.paints.is_empty() {
             true => paints_at_hand(painting),
@@ -124,7 +124,7 @@ impl ImportOptions {
         ))
     }
 
-    fn ground(&self, sequencer: &mut Sequencer, image: &Image) -> Result<String, Fault> {
+    fn ground(&self, sequencer: &mut Sequencer, image: &Image) -> Result<String, UserError> {
         let cells = sequencer.painting().scene().surfaces[0].cells;
         let bytes = embed::ground(image, cells).map_err(|error| self.fault(&error))?;
         let hash = sequencer.painting_mut().embed(bytes).map_err(refused)?;
@@ -136,7 +136,7 @@ impl ImportOptions {
         Ok("the picture is its ground".to_owned())
     }
 
-    fn tooth(&self, sequencer: &mut Sequencer, image: Image) -> Result<String, Fault> {
+    fn tooth(&self, sequencer: &mut Sequencer, image: Image) -> Result<String, UserError> {
         let file = self.picture.display().to_string();
         let picture = ToothPicture::new(image, &file, self.width_mm, self.depth_um)
             .map_err(|fault| fault.at("--width-mm, --depth-um"))?;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use maulstick_document::{DocumentError, DocumentStats};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::size::show_bytes;
 use serde_json::json;
 
@@ -28,8 +28,8 @@ pub struct InfoOptions {
 /// Shows what a painting holds.
 ///
 /// # Errors
-/// A [`Fault`] where it cannot be read, or is damaged.
-pub(super) fn run(options: &InfoOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where it cannot be read, or is damaged.
+pub(super) fn run(options: &InfoOptions) -> Result<i32, UserError> {
     let path = &options.file;
     let stats = DocumentStats::read(path).map_err(|error| wrong(path, &error))?;
     if options.check {

@@ -12,7 +12,7 @@ pub(super) use export::formats;
 
 use clap::Subcommand;
 use indicatif::{ProgressBar, ProgressStyle};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 /// Subcommands of `maulstick painting`.
 #[derive(Subcommand, Clone, Debug)]
@@ -34,8 +34,8 @@ pub enum PaintingCommand {
 /// Runs the subcommand.
 ///
 /// # Errors
-/// A [`Fault`] where the painting cannot be read, or something cannot be written.
-pub fn run(command: &PaintingCommand) -> Result<i32, Fault> {
+/// A [`UserError`] where the painting cannot be read, or something cannot be written.
+pub fn run(command: &PaintingCommand) -> Result<i32, UserError> {
     match command {
         PaintingCommand::Info(options) => info::run(options),
         PaintingCommand::Export(options) => export::run(options),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use maulstick_document::pack::{History, pack};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::size::show_bytes;
 
 use crate::commands::say;
@@ -23,8 +23,8 @@ pub struct PackOptions {
 /// Packs a painting.
 ///
 /// # Errors
-/// A [`Fault`] where it cannot be read or written; it is as it was then.
-pub(super) fn run(options: &PackOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where it cannot be read or written; it is as it was then.
+pub(super) fn run(options: &PackOptions) -> Result<i32, UserError> {
     let path = &options.file;
     let history = match options.forget_history {
         true => History::Forgotten,

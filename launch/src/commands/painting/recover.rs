@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use maulstick_document::DocumentError;
 use maulstick_painting::history::TilePlace;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, Unfinished, check_writable};
 use maulstick_salvage::{SalvageError, SalvageReport, recover, temporary_path};
 use maulstick_types::scene::{CANVAS, PALETTE};
@@ -33,14 +33,14 @@ pub struct RecoverOptions {
 /// Recovers a painting.
 ///
 /// # Errors
-/// A [`Fault`] where nothing can be recovered, or the new painting cannot be written.
-pub(super) fn run(options: &RecoverOptions) -> Result<i32, Fault> {
+/// A [`UserError`] where nothing can be recovered, or the new painting cannot be written.
+pub(super) fn run(options: &RecoverOptions) -> Result<i32, UserError> {
     let (path, output) = (&options.file, &options.output);
     if output.exists() {
         return Err(wrong(output, &DocumentError::Taken));
     }
-    std::fs::File::open(path).map_err(|error| Fault::reading(path, &error))?;
-    check_writable(output, Kind::Own).map_err(|error| Fault::writing(output, &error))?;
+    std::fs::File::open(path).map_err(|error| UserError::reading(path, &error))?;
+    check_writable(output, Kind::Own).map_err(|error| UserError::writing(output, &error))?;
     let part = temporary_path(output);
     let beside = |suffix: &str| PathBuf::from(format!("{}{suffix}", part.display()));
     let _unfinished = Unfinished::new(["", "-wal", "-journal"].map(beside).into());
@@ -55,7 +55,7 @@ pub(super) fn run(options: &RecoverOptions) -> Result<i32, Fault> {
             | DocumentError::Unwritten(_)),
         ) => wrong(output, &error),
         SalvageError::Document(error) => wrong(path, &error),
-        error @ SalvageError::Lost(_) => Fault::usage(error.to_string())
+        error @ SalvageError::Lost(_) => UserError::usage(error.to_string())
             .at(path.display().to_string())
             .help(error.help()),
     })?;
@@ -96,7 +96,7 @@ fn as_json(salvage: &SalvageReport) -> serde_json::Value {
     })
 }
 
-fn show(salvage: &SalvageReport) -> Result<(), Fault> {
+fn show(salvage: &SalvageReport) -> Result<(), UserError> {
     say!("tiles     {} are whole", salvage.tiles);
     let tiles = [
         (&salvage.older, "are as they were earlier"),

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use maulstick_bus::Class;
-use maulstick_rig::{Fault, RigConfig};
+use maulstick_bus::Qos;
+use maulstick_rig::{RigConfig, UserError};
 use maulstick_types::command::Command;
 use maulstick_types::scene::{NamedVersion, Scene};
 use serde_json::json;
@@ -65,18 +65,18 @@ impl VersionsOptions {
 /// Lists versions, or does what is asked of them.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown version, or where there is no painting.
-pub(super) fn run(options: &VersionsOptions) -> Result<i32, Fault> {
+/// A [`UserError`] for an unknown version, or where there is no painting.
+pub(super) fn run(options: &VersionsOptions) -> Result<i32, UserError> {
     let command = options.command();
     if let Some(command) = &command {
-        command.check().map_err(Fault::told)?;
+        command.check().map_err(UserError::told)?;
     }
     let Some(path) = &options.file else {
         let session = Session::open(&options.target)?;
         if let Some(command) = command {
             session.send(PAINT, command)?;
         }
-        let mut scenes = session.follow::<Scene>(&session.topics().scene(), Class::Cached)?;
+        let mut scenes = session.follow::<Scene>(&session.topics().scene(), Qos::Cached)?;
         return list(&scenes.hear()?.message, options.json);
     };
     if let (Some([one, other]), Some(output)) = (options.compare.as_deref(), &options.output) {
@@ -100,7 +100,7 @@ pub(super) fn run(options: &VersionsOptions) -> Result<i32, Fault> {
     list(sequencer.painting().scene(), options.json)
 }
 
-fn list(scene: &Scene, as_json: bool) -> Result<i32, Fault> {
+fn list(scene: &Scene, as_json: bool) -> Result<i32, UserError> {
     if as_json {
         let versions: Vec<_> = scene
             .versions
@@ -123,7 +123,7 @@ fn list(scene: &Scene, as_json: bool) -> Result<i32, Fault> {
     Ok(0)
 }
 
-fn show(all: &[NamedVersion], version: &NamedVersion, depth: usize) -> Result<(), Fault> {
+fn show(all: &[NamedVersion], version: &NamedVersion, depth: usize) -> Result<(), UserError> {
     let here = if version.here {
         "  ← painted on from here"
     } else {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use maulstick_rig::commander::Commander;
+use maulstick_rig::command_client::CommandClient;
 use maulstick_types::command::Command;
 
 use super::Supervisor;
@@ -32,7 +32,7 @@ impl Supervisor {
         };
         let stop = self.stop.clone();
         let load = move || {
-            let mut commander = Commander::new(bus, &topics);
+            let mut commander = CommandClient::new(bus, &topics);
             for brush in brushes {
                 let command = Command::Load {
                     brush,

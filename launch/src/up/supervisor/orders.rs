@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use maulstick_bus::typed::{Reader, Receiver, random_epoch};
-use maulstick_bus::{Bus, BusError, Class, Queue, Request, Server, Wake};
-use maulstick_rig::Fault;
+use maulstick_bus::{Bus, BusError, Qos, Queue, Request, Server, Wake};
+use maulstick_rig::UserError;
 use maulstick_types::advice::parted;
 use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
 use maulstick_types::paint::PaintStatus;
@@ -61,7 +61,7 @@ impl Orders {
                 epoch: random_epoch(),
             },
             replies: ReplyCache::default(),
-            statuses: Receiver::new(bus, &topic, Class::Background, Queue::Ring(4), wake)?,
+            statuses: Receiver::new(bus, &topic, Qos::Background, Queue::Ring(4), wake)?,
             status: None,
             heard: 0,
             leaving: Leaving::default(),
@@ -97,7 +97,7 @@ impl Orders {
 }
 
 /// A fault as the refusal that a client receives.
-pub(super) fn refusal(fault: Fault) -> Outcome {
+pub(super) fn refusal(fault: UserError) -> Outcome {
     let what = match &fault.place {
         Some(place) => format!("{place}: {}", fault.what),
         None => fault.what,
@@ -167,13 +167,13 @@ impl Supervisor {
     }
 
     /// Begins to do what is asked.
-    fn order(&mut self, asked: &CommandRequest) -> Result<Outcome, Fault> {
+    fn order(&mut self, asked: &CommandRequest) -> Result<Outcome, UserError> {
         asked.command.check().map_err(|line| {
             let (what, help) = parted(&line);
-            Fault::usage(what).help(help.unwrap_or("correct the command"))
+            UserError::usage(what).help(help.unwrap_or("correct the command"))
         })?;
         if asked.after.is_some() {
-            return Err(Fault::usage("the rig has no journal in which to wait")
+            return Err(UserError::usage("the rig has no journal in which to wait")
                 .help("ask without a place in it"));
         }
         let here = self.config.paint.document.clone();
@@ -201,7 +201,7 @@ impl Supervisor {
                 Ask::SaveAs(PathBuf::from(path), *replace)
             }
             _ => {
-                return Err(Fault::usage("this is no matter of the rig as a whole")
+                return Err(UserError::usage("this is no matter of the rig as a whole")
                     .help("send it to the paint node, or to that of the brush"));
             }
         };
@@ -210,21 +210,25 @@ impl Supervisor {
     }
 
     /// Sees that the painting may be left.
-    pub(super) fn may_leave(&self, forget: bool) -> Result<(), Fault> {
+    pub(super) fn may_leave(&self, forget: bool) -> Result<(), UserError> {
         let status = self.orders.status.as_ref();
         if self.conductor.is_some() || status.is_some_and(|status| status.take) {
-            return Err(Fault::usage("a take is being played into this painting")
-                .help("wait for its end, or end its player, and ask again"));
+            return Err(
+                UserError::usage("a take is being played into this painting")
+                    .help("wait for its end, or end its player, and ask again"),
+            );
         }
         if let Some(export) = status.and_then(|status| status.export.as_ref()) {
-            return Err(Fault::usage(format!("{} is being exported", export.path))
-                .help("wait for its end, or stop it: `maulstick export --stop`"));
+            return Err(
+                UserError::usage(format!("{} is being exported", export.path))
+                    .help("wait for its end, or stop it: `maulstick export --stop`"),
+            );
         }
         let in_memory = self.config.paint.document.is_none();
         let is_blank = status.is_some_and(|status| status.blank);
         match in_memory && !is_blank && !forget {
             true => Err(
-                Fault::usage("what was painted is in memory alone, and would be gone").help(
+                UserError::usage("what was painted is in memory alone, and would be gone").help(
                     "keep it first: `maulstick save-as FILE.maul`; or say that it may go: `--forget`",
                 ),
             ),

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use maulstick_rig::{Fault, RigConfig};
+use maulstick_rig::{RigConfig, UserError};
 
 use super::Supervisor;
 use crate::up::child::{Node, State};
@@ -22,7 +22,7 @@ pub(super) fn start_time(role: Role, config: &RigConfig) -> Duration {
 
 impl Supervisor {
     /// A node that shows no token in time is killed, and with that has failed.
-    pub(super) fn watch_starts(&mut self) -> Result<(), Fault> {
+    pub(super) fn watch_starts(&mut self) -> Result<(), UserError> {
         let now = Instant::now();
         // The switch itself sees to the painting that it opens.
         let is_opening = self.is_opening(Role::Paint);
@@ -40,7 +40,7 @@ impl Supervisor {
                 node.terminate();
                 node.kill();
                 if !node.fail(&mut self.failures) {
-                    return Err(Fault::failure(format!(
+                    return Err(UserError::failure(format!(
                         "node '{}' does not get ready",
                         node.spec.name
                     ))

@@ -8,11 +8,11 @@ use std::time::{Duration, Instant};
 
 use maulstick_bus::Bus;
 use maulstick_document::DocumentError;
-use maulstick_rig::Fault;
-use maulstick_rig::commander::Commander;
+use maulstick_rig::UserError;
+use maulstick_rig::command_client::CommandClient;
 use maulstick_rig::config::{RigConfig, is_path};
 use maulstick_rig::files::{Kind, check_writable, write_whole};
-use maulstick_rig::member::CONFIG_FILE;
+use maulstick_rig::node_handle::CONFIG_FILE;
 use maulstick_types::Mixture;
 use maulstick_types::command::{Command, NewCanvas, Outcome};
 use maulstick_types::topics::Topics;
@@ -52,7 +52,7 @@ pub(super) struct Switch {
 #[derive(Debug)]
 enum Stage {
     /// Another thread checks that it can be opened or created; the flag: the painting in memory may be discarded.
-    Checking(mpsc::Receiver<Result<Plan, Fault>>, bool),
+    Checking(mpsc::Receiver<Result<Plan, UserError>>, bool),
     /// The paint node keeps what was painted, and ends.
     Closing(Box<Plan>, Instant),
     /// It starts with the other painting; the settings were these.
@@ -63,7 +63,7 @@ enum Stage {
     Saving(
         PathBuf,
         Arc<AtomicBool>,
-        mpsc::Receiver<Result<String, Fault>>,
+        mpsc::Receiver<Result<String, UserError>>,
     ),
 }
 
@@ -89,12 +89,12 @@ impl Switch {
     /// Begins with it.
     ///
     /// # Errors
-    /// A [`Fault`] where there is no thread to do it.
+    /// A [`UserError`] where there is no thread to do it.
     pub(super) fn begin(
         supervisor: &Supervisor,
         asker: (u64, u64),
         ask: Ask,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, UserError> {
         let mut config = supervisor.config.clone();
         let wake = supervisor.wake.clone();
         let stage = match ask {
@@ -140,12 +140,12 @@ impl Switch {
 /// Does work on a thread of its own.
 fn beside<T: Send + 'static>(
     work: impl FnOnce() -> T + Send + 'static,
-) -> Result<mpsc::Receiver<T>, Fault> {
+) -> Result<mpsc::Receiver<T>, UserError> {
     let (to_rig, outcome) = mpsc::channel();
     std::thread::Builder::new()
         .name("switch".into())
         .spawn(move || to_rig.send(work()).ok())
-        .map_err(|error| Fault::failure(error.to_string()))?;
+        .map_err(|error| UserError::failure(error.to_string()))?;
     Ok(outcome)
 }
 
@@ -155,14 +155,14 @@ fn save(
     to: &Path,
     replace: bool,
     stops: &dyn Fn() -> bool,
-) -> Result<String, Fault> {
+) -> Result<String, UserError> {
     let path = to.display().to_string();
     let command = Command::SaveAs { path, replace };
-    Commander::new(bus, topics).send(command, None, SAVE_TIME, stops)
+    CommandClient::new(bus, topics).send(command, None, SAVE_TIME, stops)
 }
 
 /// Sees that a painting can go on, and what is painted on.
-fn opened(config: &mut RigConfig, path: PathBuf) -> Result<(), Fault> {
+fn opened(config: &mut RigConfig, path: PathBuf) -> Result<(), UserError> {
     if !path.exists() {
         return Err(wrong(&path, &DocumentError::Missing));
     }
@@ -179,10 +179,10 @@ fn begun(
     config: &mut RigConfig,
     path: Option<PathBuf>,
     canvas: &NewCanvas,
-) -> Result<Mixture, Fault> {
+) -> Result<Mixture, UserError> {
     if is_path(&canvas.ground) && !Path::new(&canvas.ground).is_absolute() {
         return Err(
-            Fault::usage("the path of the ground does not begin at the root")
+            UserError::usage("the path of the ground does not begin at the root")
                 .help("give the whole path, for each program has a folder of its own"),
         );
     }
@@ -197,7 +197,7 @@ fn begun(
         if path.exists() {
             return Err(wrong(path, &DocumentError::Taken));
         }
-        check_writable(path, Kind::Own).map_err(|error| Fault::writing(path, &error))?;
+        check_writable(path, Kind::Own).map_err(|error| UserError::writing(path, &error))?;
     }
     config.paint.document = path;
     let library = library_from(config.paint.paints.as_deref())?;
@@ -222,8 +222,8 @@ impl Supervisor {
     /// Goes on with the switch as far as that is possible now.
     ///
     /// # Errors
-    /// A [`Fault`] where a process cannot be started.
-    pub(super) fn go_on_switching(&mut self) -> Result<(), Fault> {
+    /// A [`UserError`] where a process cannot be started.
+    pub(super) fn go_on_switching(&mut self) -> Result<(), UserError> {
         let Some(Switch { asker, stage }) = self.switch.take() else {
             return Ok(());
         };
@@ -267,7 +267,7 @@ impl Supervisor {
                 _ if gone.load(Ordering::SeqCst) => Err(ended_as_it_saved(&to)),
                 Err(mpsc::TryRecvError::Empty) => Ok(Stage::Saving(to, gone, saved)),
                 Err(mpsc::TryRecvError::Disconnected) => Err(fallen()),
-                Ok(Err(fault)) => Err(refusal(Fault {
+                Ok(Err(fault)) => Err(refusal(UserError {
                     place: None,
                     ..fault
                 })),
@@ -307,7 +307,7 @@ impl Supervisor {
         plan: Box<Plan>,
         before: Box<RigConfig>,
         since: Instant,
-    ) -> Result<Result<Stage, Outcome>, Fault> {
+    ) -> Result<Result<Stage, Outcome>, UserError> {
         if !self.paint_runs() {
             if since.elapsed() < start_time(Role::Paint, &plan.config) {
                 return Ok(Ok(Stage::Opening(plan, before, since)));
@@ -336,8 +336,8 @@ impl Supervisor {
     /// A node that was asked to end for it has ended, or the paint node while it started.
     ///
     /// # Errors
-    /// A [`Fault`] where a process cannot be started.
-    pub(super) fn has_left(&mut self, place: usize, ended: Ended) -> Result<(), Fault> {
+    /// A [`UserError`] where a process cannot be started.
+    pub(super) fn has_left(&mut self, place: usize, ended: Ended) -> Result<(), UserError> {
         if self.nodes[place].spec.role != Role::Paint {
             return self.start_node(place);
         }
@@ -378,7 +378,7 @@ impl Supervisor {
     }
 
     /// Starts the paint node with the other painting.
-    fn open(&mut self, place: usize, plan: Box<Plan>) -> Result<Stage, Fault> {
+    fn open(&mut self, place: usize, plan: Box<Plan>) -> Result<Stage, UserError> {
         let before = std::mem::replace(&mut self.config, plan.config.clone());
         self.orders.forget_status();
         let [path, former] = self.settings();
@@ -396,7 +396,12 @@ impl Supervisor {
     }
 
     /// Starts the paint node with the painting that there was.
-    fn go_back(&mut self, place: usize, plan: &Plan, before: RigConfig) -> Result<Stage, Fault> {
+    fn go_back(
+        &mut self,
+        place: usize,
+        plan: &Plan,
+        before: RigConfig,
+    ) -> Result<Stage, UserError> {
         self.config = before;
         // Renaming needs no room on the disk.
         let [path, former] = self.settings();
@@ -423,7 +428,7 @@ impl Supervisor {
     }
 
     /// Starts the paint node; what was in memory alone is gone, and its brushes are loaded anew.
-    fn start_paint(&mut self, place: usize) -> Result<(), Fault> {
+    fn start_paint(&mut self, place: usize) -> Result<(), UserError> {
         self.unloaded |= self.config.paint.document.is_none();
         self.start_node(place)
     }
@@ -436,14 +441,14 @@ impl Supervisor {
     }
 
     /// Writes the settings where the nodes read them.
-    pub(super) fn write_config(&self) -> Result<(), Fault> {
+    pub(super) fn write_config(&self) -> Result<(), UserError> {
         let [path, _] = self.settings();
         let text = self.config.to_toml()?;
         write_whole(&path, Kind::Own, |file| {
             use std::io::Write as _;
             file.write_all(text.as_bytes())
         })
-        .map_err(|error| Fault::writing(&path, &error))
+        .map_err(|error| UserError::writing(&path, &error))
     }
 }
 

@@ -13,7 +13,7 @@ use maulstick_types::{Flags, Message, Origin, encode};
 use super::sender::split_messages;
 use super::stream::{Gap, Stream, Taken};
 use super::{PATIENCE, RETRY_NS, RING};
-use crate::bus::{Answer, Bus, BusError, Class, Subscription};
+use crate::bus::{Answer, Bus, BusError, Qos, Subscription};
 use crate::inbox::{Queue, Wake};
 use crate::typed::{Reader, Reason, Received};
 
@@ -51,7 +51,7 @@ type StreamKey = (String, u32);
 
 /// Delivery of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Way {
+enum Delivery {
     /// By its sender's own sending.
     Sent,
     /// In the answer to a question for a gap.
@@ -78,7 +78,7 @@ impl<M: Message> CreditReceiver<M> {
         wake: &Wake,
     ) -> Result<Self, BusError> {
         Ok(Self {
-            subscription: bus.subscribe(topic, Class::RealTime, Queue::Ring(RING), wake)?,
+            subscription: bus.subscribe(topic, Qos::RealTime, Queue::Ring(RING), wake)?,
             topics: topics.clone(),
             me,
             wake: wake.clone(),
@@ -97,7 +97,12 @@ impl<M: Message> CreditReceiver<M> {
     pub fn poll(&mut self, bus: &dyn Bus) -> Result<(), BusError> {
         let now_ns = bus.now_ns();
         while let Some(arrival) = self.subscription.try_recv() {
-            self.take_in(&arrival.key, arrival.arrived_ns, &arrival.bytes, Way::Sent);
+            self.take_in(
+                &arrival.key,
+                arrival.arrived_ns,
+                &arrival.bytes,
+                Delivery::Sent,
+            );
         }
         self.streams.retain(|_, stream| {
             !stream.is_idle() || now_ns < stream.rivals.heard_ns().saturating_add(FORGOTTEN_NS)
@@ -155,7 +160,7 @@ impl<M: Message> CreditReceiver<M> {
         self.streams.len()
     }
 
-    fn take_in(&mut self, topic: &str, arrived_ns: u64, bytes: &[u8], way: Way) {
+    fn take_in(&mut self, topic: &str, arrived_ns: u64, bytes: &[u8], delivery: Delivery) {
         let Some((header, message)) = self.reader.read::<M>(topic, bytes) else {
             return;
         };
@@ -171,7 +176,7 @@ impl<M: Message> CreditReceiver<M> {
         };
         let begun = || Stream::begin(&header, arrived_ns);
         let stream = self.streams.entry(key).or_insert_with(begun);
-        if way == Way::AskedFor {
+        if delivery == Delivery::AskedFor {
             if stream.fill(received, &mut self.ordered) == Taken::New {
                 self.counts.recovered += 1;
             }
@@ -244,7 +249,7 @@ impl<M: Message> CreditReceiver<M> {
             }
         }
         for message in answers.iter().flat_map(|answer| split_messages(answer)) {
-            self.take_in(&key.0, now_ns, message, Way::AskedFor);
+            self.take_in(&key.0, now_ns, message, Delivery::AskedFor);
         }
         answers.len()
     }
@@ -281,7 +286,7 @@ impl<M: Message> CreditReceiver<M> {
         }
         stream
             .asked
-            .push_back(bus.ask(&topic, Class::Control, bytes, limit, &self.wake)?);
+            .push_back(bus.ask(&topic, Qos::Control, bytes, limit, &self.wake)?);
         stream.asked_ns = now_ns;
         stream.askings += 1;
         Ok(())

@@ -6,7 +6,7 @@ use maulstick_types::{Flags, Origin, encode};
 use proptest::prelude::*;
 
 use super::{CreditReceiver, CreditSender, Stamp};
-use crate::bus::{Bus, Class};
+use crate::bus::{Bus, Qos};
 use crate::inbox::Wake;
 use crate::memory::{Faults, MemoryBus, MemoryNet};
 
@@ -67,7 +67,7 @@ impl Rig {
                 },
                 StylusSample::away(),
             );
-            self.device.forgive();
+            self.device.reset_credit();
             if sends {
                 self.device.send(Flags::NONE, stamp, &away).expect("sent");
             }
@@ -92,7 +92,7 @@ impl Rig {
             &StylusSample::away(),
         );
         let topic = Topics::new("t").sample("d");
-        let publisher = self.bus.publisher(&topic, Class::RealTime).expect("one");
+        let publisher = self.bus.publisher(&topic, Qos::RealTime).expect("one");
         publisher.put(bytes.expect("encoded")).expect("sent");
     }
 
@@ -227,7 +227,7 @@ fn five_seconds_of_a_receiver_that_stood_still_are_made_up_for() {
             now_ns,
             event_ns: now_ns,
         };
-        rig.device.forgive();
+        rig.device.reset_credit();
         rig.device
             .send(Flags::NONE, stamp, &StylusSample::away())
             .expect("sent");

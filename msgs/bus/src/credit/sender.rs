@@ -8,7 +8,7 @@ use maulstick_types::topics::Topics;
 use maulstick_types::{Flags, Header, Message, Origin, encode};
 
 use super::{RETRY_NS, RING, RING_BYTES, WINDOW};
-use crate::bus::{Bus, BusError, Class, Publish, Server};
+use crate::bus::{Bus, BusError, Publish, Qos, Server};
 use crate::inbox::Wake;
 use crate::typed::Reader;
 
@@ -60,7 +60,7 @@ impl<M: Message> CreditSender<M> {
     ) -> Result<Self, BusError> {
         let stream = topics.relative(topic).unwrap_or(topic);
         Ok(Self {
-            publish: bus.publisher(topic, Class::RealTime)?,
+            publish: bus.publisher(topic, Qos::RealTime)?,
             gaps: bus.serve(&topics.gap(stream), 64, wake)?,
             reader: Reader::default(),
             topic: topic.to_owned(),
@@ -135,7 +135,7 @@ impl<M: Message> CreditSender<M> {
     }
 
     /// Forgets what is outstanding: its consumer is gone.
-    pub fn forgive(&mut self) {
+    pub fn reset_credit(&mut self) {
         self.consumed = self.next;
     }
 

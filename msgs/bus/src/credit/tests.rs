@@ -6,7 +6,7 @@ use maulstick_types::{Flags, Origin, encode};
 use proptest::prelude::*;
 
 use super::{CreditReceiver, CreditSender, Stamp};
-use crate::bus::{Bus, Class};
+use crate::bus::{Bus, Qos};
 use crate::inbox::Wake;
 use crate::memory::{Faults, MemoryBus, MemoryNet};
 use crate::typed::Received;
@@ -120,7 +120,7 @@ impl Stream {
         let away = StylusSample::away();
         let bytes = encode(&origin, flags, seq, sent_ns, sent_ns, &away).expect("encoded");
         let topic = Topics::new("t").sample(device);
-        let publisher = self.bus.publisher(&topic, Class::RealTime);
+        let publisher = self.bus.publisher(&topic, Qos::RealTime);
         publisher.expect("declared").put(bytes).expect("sent");
         self.net.advance(STEP_NS);
     }

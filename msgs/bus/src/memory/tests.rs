@@ -30,24 +30,18 @@ fn nothing_arrives_before_its_time_and_late_joiners_get_cached_values() {
     );
     let wake = Wake::new();
     let bus = net.bus();
-    bus.publisher("a/def", Class::Cached)
+    bus.publisher("a/def", Qos::Cached)
         .expect("a publisher")
         .put(vec![7])
         .expect("sent");
     let late = net
         .bus()
-        .subscribe("a/*", Class::Cached, Queue::Ring(4), &wake)
+        .subscribe("a/*", Qos::Cached, Queue::Ring(4), &wake)
         .expect("late");
     assert_eq!(late.try_recv().map(|arrival| arrival.bytes), Some(vec![7]));
     let server = bus.serve("q", 4, &wake).expect("a server");
     let pending = bus
-        .ask(
-            "q",
-            Class::Control,
-            vec![1],
-            Duration::from_millis(1),
-            &wake,
-        )
+        .ask("q", Qos::Control, vec![1], Duration::from_millis(1), &wake)
         .expect("asked");
     assert!(server.try_recv().is_none());
     net.advance(1000);

@@ -7,7 +7,7 @@ use super::{
     ACTIONS, BACKENDS, BRUSH_NODE, BrushSection, DRIVERS, DeviceSection, FORCES, GAMUTS, MODELS,
     RESERVED, RigConfig,
 };
-use crate::fault::Fault;
+use crate::user_error::UserError;
 
 /// Nodes of every rig, and what all brush nodes are called.
 const NODES: [&str; 4] = ["paint", "brush", "ui", "player"];
@@ -15,9 +15,9 @@ const NODES: [&str; 4] = ["paint", "brush", "ui", "player"];
 const UNIT_TOLERANCE: f64 = 1e-3;
 
 impl RigConfig {
-    pub(super) fn check(&self, text: &str, name: &str) -> Result<(), Fault> {
+    pub(super) fn check(&self, text: &str, name: &str) -> Result<(), UserError> {
         let fault = |what: String, key: &str, value: &str| {
-            Fault::usage(what).at(format!("{name}:{}", line_of(text, key, value)))
+            UserError::usage(what).at(format!("{name}:{}", line_of(text, key, value)))
         };
         let names = [&self.rig.name]
             .into_iter()
@@ -66,7 +66,7 @@ impl RigConfig {
         )
         .map_err(|(what, help)| fault(what, "piles", "").help(help))?;
         self.light.light().check().map_err(|what| {
-            Fault::told(what).at(format!("{name}:{}", line_of(text, "[light]", "")))
+            UserError::told(what).at(format!("{name}:{}", line_of(text, "[light]", "")))
         })?;
         self.check_nodes()
             .map_err(|(what, help, node)| fault(what, "[node.", &node).help(help))?;
@@ -256,8 +256,8 @@ struct Wrong {
 }
 
 impl Wrong {
-    fn fault(self, text: &str, name: &str) -> Fault {
-        Fault::usage(self.what)
+    fn fault(self, text: &str, name: &str) -> UserError {
+        UserError::usage(self.what)
             .at(format!("{name}:{}", line_of(text, self.key, &self.value)))
             .help(self.help)
     }

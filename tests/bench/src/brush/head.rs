@@ -6,7 +6,7 @@ use maulstick_brush::desk::Obstacle;
 use maulstick_brush::head_solver::settings_of;
 use maulstick_brush::head_solver::{HeadSolver, SolvedHead};
 use maulstick_brush::{BrushFile, Head, HeadPose, Hold, SpineLayout};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use super::stroke::stroke;
 use crate::report::{Report, quantile, sorted};
@@ -15,8 +15,8 @@ use crate::report::{Report, quantile, sorted};
 const STRIPS: usize = 1000;
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
-    let fault = |error: maulstick_brush::BrushError| Fault::failure(error.to_string());
+pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
+    let fault = |error: maulstick_brush::BrushError| UserError::failure(error.to_string());
     let mut file = BrushFile::library("round").map_err(fault)?;
     file.strips.count = STRIPS;
     let tuft = SpineLayout::of(&file);
@@ -29,7 +29,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
     for brush in &poses {
         let clock = Instant::now();
         if !held.solve(&mut room, &tuft, brush, &walls, &settings) {
-            return Err(Fault::failure("a pose of the stroke has no solution"));
+            return Err(UserError::failure("a pose of the stroke has no solution"));
         }
         solves.push(clock.elapsed().as_secs_f64() * 1e6);
         let angles = held.angles();

@@ -12,12 +12,12 @@ mod head;
 mod spine;
 mod stroke;
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use crate::report::Report;
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     for joints in [3, 5, 10] {
         spine::beside_slsqp(report, joints)?;
     }

@@ -5,7 +5,7 @@ use std::time::Instant;
 use maulstick_brush::energy::friction::Anisotropy;
 use maulstick_brush::solver::{ContactConstraint, Settings, Solver};
 use maulstick_brush::{Spine, SpineShape};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use super::angles::Angles;
 use super::stroke::stroke;
@@ -40,7 +40,7 @@ pub(crate) fn settings() -> Settings {
 }
 
 /// Both on the poses of a stroke, each from our state at the pose before.
-pub(crate) fn beside_slsqp(report: &mut Report, joints: usize) -> Result<(), Fault> {
+pub(crate) fn beside_slsqp(report: &mut Report, joints: usize) -> Result<(), UserError> {
     let (spine, settings) = (spine(joints), settings());
     let poses = stroke(joints as u64, LENGTH_M);
     let mut solver = Solver::default();
@@ -60,7 +60,7 @@ pub(crate) fn beside_slsqp(report: &mut Report, joints: usize) -> Result<(), Fau
             let solution = solver.solve(&spine, &mut shape, &mut constraints, &[], &settings);
             ours.push(clock.elapsed().as_secs_f64() * 1e6);
             if !solution.converged {
-                return Err(Fault::failure("a pose of the stroke has no solution"));
+                return Err(UserError::failure("a pose of the stroke has no solution"));
             }
             residual.push(solution.residual / spine.stiffest());
             iterations.push(solution.iterations as f64);

@@ -7,7 +7,7 @@ use maulstick_brush::BrushFile;
 use maulstick_document::{Access, Document, DocumentSettings};
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_session::Autosave;
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
@@ -55,7 +55,12 @@ pub(super) struct Took {
 
 impl Easel {
     /// A canvas of so many cells either way, in a new file.
-    pub(super) fn new(path: &Path, cells: u32, memory: usize, quota: u64) -> Result<Self, Fault> {
+    pub(super) fn new(
+        path: &Path,
+        cells: u32,
+        memory: usize,
+        quota: u64,
+    ) -> Result<Self, UserError> {
         let settings = DocumentSettings {
             memory,
             ..DocumentSettings::new(path, Access::Paint)
@@ -86,7 +91,7 @@ impl Easel {
     }
 
     /// A canvas that was painted before.
-    pub(super) fn again(path: &Path, memory: usize) -> Result<Self, Fault> {
+    pub(super) fn again(path: &Path, memory: usize) -> Result<Self, UserError> {
         let settings = DocumentSettings {
             memory,
             ..DocumentSettings::new(path, Access::Paint)
@@ -115,7 +120,7 @@ impl Easel {
     }
 
     /// Loads a paint in turn.
-    pub(super) fn load(&mut self) -> Result<(), Fault> {
+    pub(super) fn load(&mut self) -> Result<(), UserError> {
         let text = PAINTS[self.stroke as usize % PAINTS.len()];
         let command = Command::Load {
             brush: BRUSH.to_owned(),
@@ -126,7 +131,7 @@ impl Easel {
     }
 
     /// A stroke of `length_m` anywhere, in any direction.
-    pub(super) fn stroke(&mut self, length_m: f64, took: &mut Took) -> Result<(), Fault> {
+    pub(super) fn stroke(&mut self, length_m: f64, took: &mut Took) -> Result<(), UserError> {
         let margin = 0.02f64.min(0.25 * self.size_m[0]);
         let from = [0, 1].map(|i| margin + self.unit() * (self.size_m[i] - 2.0 * margin));
         let (sine, cosine) = maulstick_num::sin_cos(std::f64::consts::TAU * self.unit());
@@ -149,7 +154,7 @@ impl Easel {
         self.autosave.turn(&mut self.sequencer, now_ns);
     }
 
-    fn state(&mut self, [x, y]: [f64; 2], took: &mut Took) -> Result<(), Fault> {
+    fn state(&mut self, [x, y]: [f64; 2], took: &mut Took) -> Result<(), UserError> {
         let joints = self.file.spines.all_joints();
         let solve = Solve {
             event_ns: 0,

@@ -14,12 +14,12 @@ mod packing;
 mod undoing;
 mod vast;
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use crate::report::Report;
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     vast::run(report)?;
     undoing::run(report)?;
     opening::run(report)?;
@@ -27,6 +27,6 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
 }
 
 /// What went wrong, as the user sees it.
-fn fault(error: impl ToString) -> Fault {
-    Fault::failure(error.to_string())
+fn fault(error: impl ToString) -> UserError {
+    UserError::failure(error.to_string())
 }

@@ -4,11 +4,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use maulstick_bus::bus::Answer;
-use maulstick_bus::{Bus, Class, Faults, MemoryNet, Wake};
+use maulstick_bus::{Bus, Faults, MemoryNet, Qos, Wake};
 use maulstick_document::{Access, Document, DocumentSettings};
 use maulstick_paint_node::PaintNode;
 use maulstick_paint_node::frames::FrameServer;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::paint::{FrameReply, FrameRequest};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::topics::Topics;
@@ -26,7 +26,7 @@ const LEVEL: u32 = 2;
 const ROUNDS: usize = 5;
 
 /// Until the picture is there, and until the paint node takes the first stroke, ms.
-fn once(path: &std::path::Path) -> Result<[f64; 2], Fault> {
+fn once(path: &std::path::Path) -> Result<[f64; 2], UserError> {
     let begun = Instant::now();
     let ms = |since: Instant| 1e3 * since.elapsed().as_secs_f64();
     let settings = DocumentSettings {
@@ -63,7 +63,7 @@ fn once(path: &std::path::Path) -> Result<[f64; 2], Fault> {
     while more {
         let bytes = encode(&me, Flags::NONE, 0, 0, 0, &asked).map_err(fault)?;
         let limit = Duration::from_secs(60);
-        let query = bus.ask(&topics.frame(), Class::Data, bytes, limit, &Wake::new())?;
+        let query = bus.ask(&topics.frame(), Qos::Data, bytes, limit, &Wake::new())?;
         net.advance(1);
         frames.turn();
         net.advance(1);
@@ -81,7 +81,7 @@ fn once(path: &std::path::Path) -> Result<[f64; 2], Fault> {
     Ok([seen, ready])
 }
 
-pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
     let folder = tempfile::tempdir().map_err(fault)?;
     let path = folder.path().join("open.maul");
     let mut easel = Easel::new(&path, CELLS, 512 << 20, 2 << 30)?;

@@ -3,7 +3,7 @@
 use maulstick_document::pack::{History, pack};
 use maulstick_exchange::write_open_exr;
 use maulstick_painting::Painting;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::scene::CANVAS;
 
 use super::fault;
@@ -14,7 +14,7 @@ const CELLS: u32 = 2048;
 const STROKES: usize = 400;
 const STROKE_M: f64 = 0.06;
 
-pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
     let folder = tempfile::tempdir().map_err(fault)?;
     let path = folder.path().join("pack.maul");
     let mut easel = Easel::new(&path, CELLS, 512 << 20, 2 << 30)?;
@@ -42,7 +42,7 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
     Ok(())
 }
 
-fn dry(painting: &mut Painting) -> Result<(), Fault> {
+fn dry(painting: &mut Painting) -> Result<(), UserError> {
     painting.dry(CANVAS, 1.0, "first").map_err(fault)?;
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! Ten thousand steps taken back.
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::command::Command;
 
 use super::fault;
@@ -13,7 +13,7 @@ const STEPS: usize = 10_000;
 /// A dab.
 const STROKE_M: f64 = 4e-3;
 
-pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
     let folder = tempfile::tempdir().map_err(fault)?;
     let path = folder.path().join("long.maul");
     let mut easel = Easel::new(&path, CELLS, 512 << 20, u64::MAX)?;

@@ -1,6 +1,6 @@
 //! A canvas larger than memory beside a small one: the same strokes, taken in turns.
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use super::fault;
 use super::hand::{Easel, Took, resident};
@@ -18,7 +18,7 @@ const TURN: usize = 10;
 const STROKE_M: f64 = 0.04;
 const QUOTA: u64 = 2 << 30;
 
-pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
     let folder = tempfile::tempdir().map_err(fault)?;
     let small = Easel::new(&folder.path().join("small.maul"), SMALL, MEMORY, QUOTA)?;
     let before = resident();
@@ -86,7 +86,7 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
 }
 
 /// The vast canvas opened again, with little memory: what is painted on comes from the file.
-fn again(report: &mut Report, path: &std::path::Path) -> Result<(), Fault> {
+fn again(report: &mut Report, path: &std::path::Path) -> Result<(), UserError> {
     let mut easel = Easel::again(path, 64 << 20)?;
     let mut took = Took::default();
     for _ in 0..60 {

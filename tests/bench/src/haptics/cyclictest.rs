@@ -4,7 +4,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::process::Command;
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use serde_json::Value;
 
 use super::fault;
@@ -16,23 +16,25 @@ const MOST_US: u64 = 100_000;
 /// Runs it for so many ticks, a millisecond apart, with memory locked and SCHED_FIFO, priority 80.
 ///
 /// # Errors
-/// A [`Fault`] where it is not installed or fails.
-pub(super) fn run(place: &Path, ticks: u64) -> Result<Histogram, Fault> {
+/// A [`UserError`] where it is not installed or fails.
+pub(super) fn run(place: &Path, ticks: u64) -> Result<Histogram, UserError> {
     let json = place.join("cyclictest.json");
     let mut command = Command::new("cyclictest");
     command.args(["-q", "-m", "-p80", "-i1000"]);
     command.args(["-l", &ticks.to_string(), "-h", &MOST_US.to_string()]);
     command.arg(format!("--json={}", json.display()));
     let output = command.output().map_err(|error| match error.kind() {
-        ErrorKind::NotFound => Fault::failure("cyclictest, the peer of `lateness`, is not there")
-            .help("install rt-tests: sudo apt-get install rt-tests"),
+        ErrorKind::NotFound => {
+            UserError::failure("cyclictest, the peer of `lateness`, is not there")
+                .help("install rt-tests: sudo apt-get install rt-tests")
+        }
         _ => fault(format!("cyclictest cannot be started: {error}")),
     })?;
     if !output.status.success() {
         let said = String::from_utf8_lossy(&output.stderr);
         return Err(fault(format!("cyclictest failed: {}", said.trim())));
     }
-    let text = std::fs::read_to_string(&json).map_err(|error| Fault::reading(&json, &error))?;
+    let text = std::fs::read_to_string(&json).map_err(|error| UserError::reading(&json, &error))?;
     read(&text, ticks).ok_or_else(|| fault("cyclictest's histogram cannot be read"))
 }
 

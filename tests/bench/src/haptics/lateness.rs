@@ -12,7 +12,7 @@ use maulstick_haptic::drivers::simulated::Simulated;
 use maulstick_haptic::servo::clock::MonotonicClock;
 use maulstick_haptic::servo::servo_thread::ServoThread;
 use maulstick_haptics::Limits;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use super::histogram::Histogram;
 use super::load::Load;
@@ -36,7 +36,7 @@ enum Scheduling {
 }
 
 /// Measures and reports. Without the peer there are our own numbers, and it is said what is missing.
-pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
     let place = tempfile::tempdir().map_err(fault)?;
     let (_, scheduling) = ours(10)?;
     let tried = match scheduling {
@@ -82,7 +82,7 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
 }
 
 /// How late so many ticks of our servo are, and how it was scheduled.
-fn ours(ticks: u64) -> Result<(Histogram, Scheduling), Fault> {
+fn ours(ticks: u64) -> Result<(Histogram, Scheduling), UserError> {
     let device = MountedDevice::new(Box::new(Simulated::at_rest()), Registration::IDENTITY, 0);
     let mut servo =
         ServoThread::start(device, Box::new(MonotonicClock), Limits::default()).map_err(fault)?;

@@ -5,9 +5,9 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Class, Dial, Queue, RigClock, Wake, ZenohBus};
+use maulstick_bus::{Dial, Qos, Queue, RigClock, Wake, ZenohBus};
 use maulstick_device::{Take, TakeSample};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::brush::BrushState;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
 use maulstick_types::topics::Topics;
@@ -39,8 +39,8 @@ impl Load {
     /// Starts it and waits until it paints.
     ///
     /// # Errors
-    /// A [`Fault`] where it does not.
-    pub(super) fn start(place: &Path) -> Result<Self, Fault> {
+    /// A [`UserError`] where it does not.
+    pub(super) fn start(place: &Path) -> Result<Self, UserError> {
         const NAME: &str = "load";
         let take = place.join("load.mcap");
         to_and_fro().write(&take)?;
@@ -67,7 +67,7 @@ impl Load {
         let bus = ZenohBus::open(&dial, RigClock::with_offset(info.clock_offset_ns))?;
         let (topic, wake) = (Topics::new(NAME).brush_state("main"), Wake::new());
         let queue = Queue::Ring(64);
-        let mut states = Receiver::<BrushState>::new(&bus, &topic, Class::RealTime, queue, &wake)?;
+        let mut states = Receiver::<BrushState>::new(&bus, &topic, Qos::RealTime, queue, &wake)?;
         let paints = |state: BrushState| state.solves.iter().any(|solve| solve.stroke > 0);
         while !states.try_recv().is_some_and(|state| paints(state.message)) {
             load.check()?;
@@ -93,8 +93,8 @@ impl Load {
     /// Whether it is still there.
     ///
     /// # Errors
-    /// A [`Fault`] where it has ended: what was measured then was measured without load.
-    pub(super) fn check(&mut self) -> Result<(), Fault> {
+    /// A [`UserError`] where it has ended: what was measured then was measured without load.
+    pub(super) fn check(&mut self) -> Result<(), UserError> {
         match self.0.try_wait().map_err(fault)? {
             None => Ok(()),
             Some(status) => Err(fault(format!("the load has ended: {status}"))),

@@ -17,17 +17,17 @@ mod load;
 mod stability;
 mod tick;
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use crate::report::Report;
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     stability::run(report)?;
     tick::run(report)?;
     lateness::run(report)
 }
 
-fn fault(error: impl std::fmt::Display) -> Fault {
-    Fault::failure(error.to_string())
+fn fault(error: impl std::fmt::Display) -> UserError {
+    UserError::failure(error.to_string())
 }

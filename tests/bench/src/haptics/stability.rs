@@ -1,13 +1,13 @@
 //! The stability grid of the servo, the same that `./test` asserts, on its own clock.
 
 use maulstick_haptics::stability_grid::{HANDS, Outcome, Path, Run, Worst, grid};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use super::fault;
 use crate::report::Report;
 
 /// Goes through the grid and reports its worst.
-pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
     let worst = Worst::of(&went(&grid(Path::Servo))?);
     report.row("grid.runs", worst.runs as f64, "");
     report.row("grid.fails", worst.fails as f64, "runs");
@@ -24,7 +24,7 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
 }
 
 /// How runs went, in their order, found by a thread a core.
-fn went(runs: &[Run]) -> Result<Vec<(Run, Outcome)>, Fault> {
+fn went(runs: &[Run]) -> Result<Vec<(Run, Outcome)>, UserError> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let some = |runs: &[Run]| -> Result<Vec<(Run, Outcome)>, &'static str> {
         runs.iter().map(|run| Ok((*run, run.go()?))).collect()

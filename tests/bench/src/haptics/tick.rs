@@ -18,7 +18,7 @@ use maulstick_haptic::servo::servo_thread::ServoThread;
 use maulstick_haptics::Limits;
 use maulstick_haptics::contact::Contact;
 use maulstick_num::{cos, sin};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::haptics::{ContactModel, ForceLaw, Grain};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
 
@@ -58,7 +58,7 @@ impl ServoClock for Timed {
 }
 
 /// Measures and reports.
-pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
     let brush = BrushFile::library("round").map_err(fault)?;
     let take = sliding();
     let desk = Registration::IDENTITY;

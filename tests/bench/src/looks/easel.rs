@@ -6,7 +6,7 @@ use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_num::atan2;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_session::Offline;
 use maulstick_types::command::Command;
 use maulstick_types::paint::TILE;
@@ -55,16 +55,16 @@ pub(crate) struct Easel {
     now_s: f64,
 }
 
-fn refused(refusal: EditError) -> Fault {
-    Fault::failure(format!("{}; {}", refusal.what, refusal.help))
+fn refused(refusal: EditError) -> UserError {
+    UserError::failure(format!("{}; {}", refusal.what, refusal.help))
 }
 
 /// A brush of the library, so wide.
-pub(crate) fn brush(kind: &str, width_mm: f64) -> Result<BrushFile, Fault> {
-    let found = BrushFile::library(kind).map_err(|error| Fault::failure(error.to_string()))?;
+pub(crate) fn brush(kind: &str, width_mm: f64) -> Result<BrushFile, UserError> {
+    let found = BrushFile::library(kind).map_err(|error| UserError::failure(error.to_string()))?;
     found
         .scaled_to(width_mm)
-        .map_err(|error| Fault::failure(error.to_string()))
+        .map_err(|error| UserError::failure(error.to_string()))
 }
 
 impl Easel {
@@ -74,9 +74,9 @@ impl Easel {
         cell_mm: f64,
         tooth: &str,
         file: BrushFile,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, UserError> {
         let library =
-            PaintLibrary::measured().map_err(|error| Fault::failure(error.to_string()))?;
+            PaintLibrary::measured().map_err(|error| UserError::failure(error.to_string()))?;
         let setup = PaintingSetup {
             tooth: tooth.to_owned(),
             cells: size_mm.map(|mm| (mm / cell_mm).round() as u32),
@@ -94,25 +94,25 @@ impl Easel {
         })
     }
 
-    pub(crate) fn command(&mut self, command: Command) -> Result<(), Fault> {
+    pub(crate) fn command(&mut self, command: Command) -> Result<(), UserError> {
         self.offline.command(command).map_err(refused)
     }
 
-    pub(crate) fn take_up(&mut self, name: &str, file: BrushFile) -> Result<(), Fault> {
+    pub(crate) fn take_up(&mut self, name: &str, file: BrushFile) -> Result<(), UserError> {
         self.offline
             .take_up(name, file, DEPTH_SHARE)
             .map_err(refused)
     }
 
-    pub(crate) fn load(&mut self, mixture: &str) -> Result<(), Fault> {
+    pub(crate) fn load(&mut self, mixture: &str) -> Result<(), UserError> {
         let mixture = mixture
             .parse()
-            .map_err(|error| Fault::failure(format!("{error}")))?;
+            .map_err(|error| UserError::failure(format!("{error}")))?;
         let brush = self.offline.brush().to_owned();
         self.command(Command::Load { brush, mixture })
     }
 
-    pub(crate) fn dry(&mut self) -> Result<(), Fault> {
+    pub(crate) fn dry(&mut self) -> Result<(), UserError> {
         self.command(Command::Dry {
             surface: CANVAS,
             share: 1.0,
@@ -120,7 +120,7 @@ impl Easel {
         })
     }
 
-    pub(crate) fn stroke(&mut self, stroke: &Stroke) -> Result<(), Fault> {
+    pub(crate) fn stroke(&mut self, stroke: &Stroke) -> Result<(), UserError> {
         let way = [0, 1].map(|i| stroke.to[i] - stroke.from[i]);
         let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
         let samples = (length / SPEED * RATE_HZ).ceil().max(2.0) as usize;

@@ -1,13 +1,13 @@
 //! The measurements: each paints a few strokes and reads films and heights.
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use super::easel::{Easel, Map, Stroke, brush, correlation, slope};
 
 /// Name, value, unit.
 pub(crate) type Number = (&'static str, f64, &'static str);
 /// A measurement.
-pub(crate) type Measure = fn(Trial) -> Result<Vec<Number>, Fault>;
+pub(crate) type Measure = fn(Trial) -> Result<Vec<Number>, UserError>;
 
 /// How a measurement is made.
 #[derive(Clone, Copy, Debug)]
@@ -53,7 +53,7 @@ const PAINT: &str = "Ultramarine Blue=0.6,Titanium White=0.4";
 
 /// Long strokes of a fully loaded 14 mm flat, each loaded anew: films, roughness, how far they fill the tooth. Bristles
 /// lie otherwise in each, so the numbers are means of several.
-pub(crate) fn long_strokes(trial: Trial) -> Result<Vec<Number>, Fault> {
+pub(crate) fn long_strokes(trial: Trial) -> Result<Vec<Number>, UserError> {
     let mut flat = brush("flat", 14.0)?;
     flat.load.film_um *= trial.pick(1.0, 0.1);
     let mut easel = Easel::new([190.0, 105.0], trial.cell_mm, "linen", flat)?;
@@ -142,7 +142,7 @@ pub(crate) fn towers(map: &Map) -> f64 {
 }
 
 /// Six full loads on one petal.
-pub(crate) fn six_loads(trial: Trial) -> Result<Vec<Number>, Fault> {
+pub(crate) fn six_loads(trial: Trial) -> Result<Vec<Number>, UserError> {
     let mut easel = Easel::new([50.0, 30.0], trial.cell_mm, "linen", brush("flat", 14.0)?)?;
     for load in 0..6 {
         if load < trial.pick(6, 1) {
@@ -160,7 +160,7 @@ pub(crate) fn six_loads(trial: Trial) -> Result<Vec<Number>, Fault> {
 }
 
 /// How much of a load three strokes of 120 mm use.
-pub(crate) fn three_strokes(trial: Trial) -> Result<Vec<Number>, Fault> {
+pub(crate) fn three_strokes(trial: Trial) -> Result<Vec<Number>, UserError> {
     let mut easel = Easel::new([160.0, 70.0], trial.cell_mm, "linen", brush("flat", 14.0)?)?;
     easel.load(PAINT)?;
     let held = |easel: &mut Easel| {
@@ -211,7 +211,7 @@ fn by_height(film: &Map, ground: &Map) -> [f64; 4] {
 const NEARLY_EMPTY: f64 = 0.15;
 
 /// A nearly empty brush, lightly.
-pub(crate) fn dry_brush(trial: Trial) -> Result<Vec<Number>, Fault> {
+pub(crate) fn dry_brush(trial: Trial) -> Result<Vec<Number>, UserError> {
     let flat = brush("flat", 14.0)?.wiped(trial.pick(NEARLY_EMPTY, 1.0));
     let mut easel = Easel::new([115.0, 24.0], trial.cell_mm, "linen", flat)?;
     easel.load(PAINT)?;
@@ -232,7 +232,7 @@ pub(crate) fn dry_brush(trial: Trial) -> Result<Vec<Number>, Fault> {
 }
 
 /// White lightly over dried ridges.
-pub(crate) fn scumble(trial: Trial) -> Result<Vec<Number>, Fault> {
+pub(crate) fn scumble(trial: Trial) -> Result<Vec<Number>, UserError> {
     let mut easel = Easel::new([100.0, 64.0], trial.cell_mm, "linen", brush("round", 6.0)?)?;
     for row in 0..12 {
         easel.load("Burnt Umber")?;
@@ -274,7 +274,7 @@ pub(crate) fn scumble(trial: Trial) -> Result<Vec<Number>, Fault> {
 }
 
 /// A clean knife through a level film.
-pub(crate) fn knife(trial: Trial) -> Result<Vec<Number>, Fault> {
+pub(crate) fn knife(trial: Trial) -> Result<Vec<Number>, UserError> {
     let mut easel = Easel::new(
         [90.0, 50.0],
         trial.cell_mm,
@@ -285,7 +285,7 @@ pub(crate) fn knife(trial: Trial) -> Result<Vec<Number>, Fault> {
         surface: 0,
         mixture: PAINT
             .parse()
-            .map_err(|error| Fault::failure(format!("{error}")))?,
+            .map_err(|error| UserError::failure(format!("{error}")))?,
         thickness_m: 500e-6,
     })?;
     easel.stroke(&Stroke::along(25.0, 15.0, 75.0, 0.5))?;
@@ -306,7 +306,7 @@ pub(crate) fn knife(trial: Trial) -> Result<Vec<Number>, Fault> {
 }
 
 /// Streak profiles of separate loads.
-pub(crate) fn separate_loads(trial: Trial) -> Result<Vec<Number>, Fault> {
+pub(crate) fn separate_loads(trial: Trial) -> Result<Vec<Number>, UserError> {
     let mut easel = Easel::new([70.0, 100.0], trial.cell_mm, "linen", brush("flat", 14.0)?)?;
     let mut profiles = Vec::new();
     for row in 0..4 {
@@ -334,7 +334,7 @@ pub(crate) fn separate_loads(trial: Trial) -> Result<Vec<Number>, Fault> {
 }
 
 /// White through wet blue.
-pub(crate) fn through_wet(trial: Trial) -> Result<Vec<Number>, Fault> {
+pub(crate) fn through_wet(trial: Trial) -> Result<Vec<Number>, UserError> {
     let mut easel = Easel::new([80.0, 50.0], trial.cell_mm, "linen", brush("flat", 14.0)?)?;
     for y in [15.0, 25.0, 35.0] {
         easel.load(trial.pick("Ultramarine Blue", PAINT))?;

@@ -12,7 +12,7 @@ mod marks;
 #[cfg(test)]
 mod tests;
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use crate::report::Report;
 use marks::{Painter, Trial};
@@ -21,7 +21,7 @@ use marks::{Painter, Trial};
 const CELL_MM: f64 = 0.125;
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     let trial = Trial {
         cell_mm: CELL_MM,
         painter: Painter::Able,

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use maulstick_optics::colour::{delta_e_2000, lab};
 use maulstick_optics::{Illuminant, Observer, PaintLibrary, SamplingRule, Spectrum};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use super::mixtures::held_out;
 use crate::report::{Report, quantile, sorted};
@@ -31,12 +31,13 @@ fn off(rule: &SamplingRule, light: &Illuminant, mixtures: &[Spectrum]) -> Vec<f6
 }
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
-    let library = PaintLibrary::measured().map_err(|error| Fault::failure(error.to_string()))?;
+pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
+    let library =
+        PaintLibrary::measured().map_err(|error| UserError::failure(error.to_string()))?;
     let paints = library.paints();
     let mixtures = held_out(paints, COUNT);
     for name in LIGHTS {
-        let light = Illuminant::named(name).ok_or_else(|| Fault::failure("no such light"))?;
+        let light = Illuminant::named(name).ok_or_else(|| UserError::failure("no such light"))?;
         let fitted = |n| SamplingRule::fitted(n, OBSERVER, &light, paints);
         let gauss = SamplingRule::gauss(8, OBSERVER, &light);
         let mut rows = |rule_name: &str, rule: &SamplingRule, shares: &[(&str, f64)]| {

@@ -3,7 +3,7 @@
 use maulstick_optics::backend::TILE_CELLS;
 use maulstick_optics::studio::StudioSettings;
 use maulstick_optics::{FilmPlanes, PaintLibrary, Studio, Under};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng as _, SeedableRng as _};
 
@@ -16,8 +16,9 @@ const MOST_M: f32 = 5e-5;
 const SEED: u64 = 512;
 
 /// A studio of the first paints, under its usual light with its usual sixteen samples.
-pub(crate) fn studio() -> Result<Studio, Fault> {
-    let library = PaintLibrary::measured().map_err(|error| Fault::failure(error.to_string()))?;
+pub(crate) fn studio() -> Result<Studio, UserError> {
+    let library =
+        PaintLibrary::measured().map_err(|error| UserError::failure(error.to_string()))?;
     let mut studio = Studio::new(&StudioSettings::default(), library.paints());
     for paint in library.paints().iter().take(PAINTS) {
         studio.add(paint);

@@ -13,12 +13,12 @@ mod films;
 mod mixtures;
 mod rate;
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use crate::report::Report;
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     colours::run(report)?;
     rate::run(report)
 }

@@ -7,7 +7,7 @@ use std::time::Instant;
 use maulstick_gpu::{Choice, Device, GpuError, GpuFilms};
 use maulstick_optics::backend::{CpuFilms, FilmBackend};
 use maulstick_optics::{BackendError, FilmPlanes, Studio};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use super::films::{Layer, TILES, studio, tiles};
 use crate::report::{Report, quantile, sorted};
@@ -21,12 +21,12 @@ const LAYERS: usize = 10;
 /// Times that it is relit.
 const RELIT: usize = 3;
 
-fn fault(error: impl std::fmt::Display) -> Fault {
-    Fault::failure(error.to_string())
+fn fault(error: impl std::fmt::Display) -> UserError {
+    UserError::failure(error.to_string())
 }
 
 /// Seconds that `work` takes.
-fn seconds<T>(work: impl FnOnce() -> Result<T, Fault>) -> Result<f64, Fault> {
+fn seconds<T>(work: impl FnOnce() -> Result<T, UserError>) -> Result<f64, UserError> {
     let clock = Instant::now();
     black_box(work()?);
     Ok(clock.elapsed().as_secs_f64())
@@ -34,9 +34,9 @@ fn seconds<T>(work: impl FnOnce() -> Result<T, Fault>) -> Result<f64, Fault> {
 
 /// Tiles a second of ours and of a copy, in turn.
 fn in_turn(
-    mut ours: impl FnMut() -> Result<(), Fault>,
-    mut copy: impl FnMut() -> Result<(), Fault>,
-) -> Result<Vec<(f64, f64)>, Fault> {
+    mut ours: impl FnMut() -> Result<(), UserError>,
+    mut copy: impl FnMut() -> Result<(), UserError>,
+) -> Result<Vec<(f64, f64)>, UserError> {
     let mut pairs = Vec::with_capacity(PAIRS);
     for number in 0..WARM_UP + PAIRS {
         let pair = (seconds(&mut ours)?, seconds(&mut copy)?);
@@ -48,7 +48,7 @@ fn in_turn(
 }
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     let studio = studio()?;
     let layer = Layer::random(&studio);
     let paints = layer.paints();
@@ -73,7 +73,7 @@ fn on_cpu(
     studio: &Studio,
     tiles: &[FilmPlanes<'_>],
     [read, written]: [usize; 2],
-) -> Result<(), Fault> {
+) -> Result<(), UserError> {
     let mut films = CpuFilms::with_threads(NonZero::<usize>::MIN);
     let shade = |films: &mut CpuFilms| films.shade(studio, tiles).map(|_| ()).map_err(fault);
     // A copy reads as much as it writes: half of both moves as many bytes.
@@ -90,7 +90,7 @@ fn on_cpu(
     report.paired("km.cpu.tiles_per_s", "tiles/s", "memcpy", &pairs);
     let mut films = CpuFilms::new();
     let rate = |_| Ok(TILES as f64 / seconds(|| shade(&mut films))?);
-    let rates = sorted((0..PAIRS).map(rate).collect::<Result<_, Fault>>()?);
+    let rates = sorted((0..PAIRS).map(rate).collect::<Result<_, UserError>>()?);
     let median = quantile(&rates, 0.5);
     report.row("km.cpu_threads.tiles_per_s", median, "tiles/s");
     Ok(())
@@ -102,7 +102,7 @@ fn on_gpu(
     studio: &Studio,
     tiles: &[FilmPlanes<'_>],
     layer: &Layer,
-) -> Result<(), Fault> {
+) -> Result<(), UserError> {
     let copy = DeviceCopy::new(&device, layer.bytes()).map_err(fault)?;
     let mut films = GpuFilms::new(device).map_err(fault)?;
     let pairs = in_turn(
@@ -116,7 +116,7 @@ fn on_gpu(
 }
 
 /// Median time in which all dry layers are baked anew, s.
-fn relight(films: &mut dyn FilmBackend, studio: &Studio, layer: &Layer) -> Result<f64, Fault> {
+fn relight(films: &mut dyn FilmBackend, studio: &Studio, layer: &Layer) -> Result<f64, UserError> {
     let paints = layer.paints();
     let mut once = |_| {
         seconds(|| {
@@ -128,7 +128,9 @@ fn relight(films: &mut dyn FilmBackend, studio: &Studio, layer: &Layer) -> Resul
             Ok(under)
         })
     };
-    let times = (0..RELIT).map(&mut once).collect::<Result<_, Fault>>()?;
+    let times = (0..RELIT)
+        .map(&mut once)
+        .collect::<Result<_, UserError>>()?;
     Ok(quantile(&sorted(times), 0.5))
 }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use maulstick_device::Take;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::stylus::StylusPose;
 
 /// Strokes painted by libmypaint.
@@ -52,8 +52,8 @@ impl Libmypaint {
     }
 
     /// Paints the strokes once.
-    pub(crate) fn paint(&self) -> Result<(), Fault> {
-        let fault = |error: std::io::Error| Fault::failure(error.to_string());
+    pub(crate) fn paint(&self) -> Result<(), UserError> {
+        let fault = |error: std::io::Error| UserError::failure(error.to_string());
         let events = std::fs::File::open(&self.events).map_err(fault)?;
         let mut command = Command::new(&self.program);
         let status = command
@@ -63,7 +63,7 @@ impl Libmypaint {
             .map_err(fault)?;
         match status.success() {
             true => Ok(()),
-            false => Err(Fault::failure("libmypaint cannot paint the recording")),
+            false => Err(UserError::failure("libmypaint cannot paint the recording")),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Requests of rack, keys and presets.
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use super::*;
 use crate::rig::requests::PAINT;
@@ -95,7 +95,7 @@ fn a_brush_comes_back_at_the_width_it_was_used_at() {
 
 #[test]
 fn a_brush_that_refuses_keeps_what_it_has_and_one_that_does_takes_up_its_paint() {
-    let refused = || Err(Fault::failure("the brush is painting"));
+    let refused = || Err(UserError::failure("the brush is painting"));
     let load = || Command::Clean {
         brush: "main".into(),
     };

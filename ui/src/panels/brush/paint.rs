@@ -1,7 +1,7 @@
 //! Controls that load and clean the brush in the hand.
 
 use eframe::egui::{Button, TextEdit, Ui};
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::command::Command;
 
 use crate::settings::brush_load::{MOST_THINNER, completed, completions};
@@ -14,7 +14,7 @@ const PROPOSED: usize = 4;
 /// The rows.
 #[derive(Debug, Default)]
 pub(super) struct PaintRows {
-    fault: Option<Fault>,
+    fault: Option<UserError>,
 }
 
 impl PaintRows {

@@ -4,7 +4,7 @@ use eframe::egui::{
     Align, Button, Color32, Key, Layout, Rect, Response, Role, Sense, TextEdit, Ui, WidgetInfo,
     vec2,
 };
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_types::Mixture;
 
 use super::{Carried, SWATCH};
@@ -23,7 +23,7 @@ pub(super) struct WellRows {
     /// The well that the next paint goes into.
     chosen: Option<usize>,
     text: String,
-    fault: Option<Fault>,
+    fault: Option<UserError>,
 }
 
 /// Action on a well.

@@ -9,7 +9,7 @@ use eframe::egui::{
 };
 use maulstick_brush::BrushFile;
 use maulstick_optics::colour::srgb_decode;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use crate::input::brush_choice::read;
 use crate::render::brush::thumbnail::brush_thumbnail;
@@ -27,7 +27,7 @@ struct Gallery(Arc<Mutex<Kept>>);
 #[derive(Default)]
 struct Kept {
     textures: BTreeMap<(String, [u32; 2]), TextureHandle>,
-    own: BTreeMap<PathBuf, Result<Arc<BrushFile>, Fault>>,
+    own: BTreeMap<PathBuf, Result<Arc<BrushFile>, UserError>>,
 }
 
 fn kept(context: &Context) -> Gallery {
@@ -83,7 +83,7 @@ fn texture(
 ///
 /// # Errors
 /// As [`read`].
-pub(crate) fn own(context: &Context, path: &Path) -> Result<Arc<BrushFile>, Fault> {
+pub(crate) fn own(context: &Context, path: &Path) -> Result<Arc<BrushFile>, UserError> {
     let gallery = kept(context);
     let mut kept = gallery.0.lock().unwrap_or_else(PoisonError::into_inner);
     let found = kept.own.entry(path.to_owned());

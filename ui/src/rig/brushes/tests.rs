@@ -39,7 +39,7 @@ impl Rig {
         let toml = BrushFile::library_text("round").expect("text");
         let file = BrushFile::parse(toml).expect("round");
         let mut def =
-            Sender::new(&bus, &topics.brush_def("main"), Class::Cached, BRUSH).expect("a sender");
+            Sender::new(&bus, &topics.brush_def("main"), Qos::Cached, BRUSH).expect("a sender");
         let told = BrushDef {
             brush: "main".into(),
             toml: toml.into(),
@@ -50,7 +50,7 @@ impl Rig {
         let mut model = BrushModel::new(file, DEPTH);
         model.set_scene(&scene);
         let shares = BTreeMap::from([("main".to_owned(), DEPTH)]);
-        let real_time = Class::RealTime;
+        let real_time = Qos::RealTime;
         Self {
             pen: Sender::new(&bus, &topics.sample("pen"), real_time, PEN).expect("a pen"),
             states: Sender::new(&bus, &topics.brush_state("main"), real_time, BRUSH)
@@ -163,7 +163,7 @@ fn a_device_out_of_range_or_silent_holds_no_brush_but_a_still_mouse_does() {
 fn a_brush_has_the_paint_that_was_told_newest() {
     let mut rig = Rig::new(0);
     let key = Topics::new("t").brush_look("main");
-    let mut looks = Sender::new(&rig.bus, &key, Class::Cached, BRUSH).expect("a sender");
+    let mut looks = Sender::new(&rig.bus, &key, Qos::Cached, BRUSH).expect("a sender");
     rig.sample(&pen(0.0, 0.4));
     rig.solve(0, &pen(0.0, 0.4));
     let mut told = |rig: &mut Rig, look: &BrushLook| {

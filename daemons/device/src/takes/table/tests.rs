@@ -1,10 +1,10 @@
 use super::*;
 
-fn imported(text: &str) -> Result<Imported, Fault> {
+fn imported(text: &str) -> Result<Imported, UserError> {
     parse(text, "strokes.dat", TableLayout::default(), "table")
 }
 
-fn read(text: &str) -> Result<Take, Fault> {
+fn read(text: &str) -> Result<Take, UserError> {
     imported(text).map(|imported| imported.take)
 }
 

@@ -1,6 +1,6 @@
 //! Address of an Inverse3: `ws://host:port#device+grip`, each part of which may be left out.
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 /// Default URL of the service, of version 3.1 and later.
 pub const DEFAULT_URL: &str = "ws://localhost:10001";
@@ -22,11 +22,11 @@ impl Address {
     /// Reads an `address`.
     ///
     /// # Errors
-    /// A [`Fault`] if it is invalid.
-    pub fn read(address: Option<&str>) -> Result<Self, Fault> {
+    /// A [`UserError`] if it is invalid.
+    pub fn read(address: Option<&str>) -> Result<Self, UserError> {
         let text = address.unwrap_or_default();
         let wrong = || {
-            Fault::usage(format!("address = {text:?} is no Inverse3's")).help(format!(
+            UserError::usage(format!("address = {text:?} is no Inverse3's")).help(format!(
                 "write {DEFAULT_URL}, and with several devices {DEFAULT_URL}#device or \
                  {DEFAULT_URL}#device+grip with their ids"
             ))

@@ -4,7 +4,7 @@ use std::net::{TcpStream, ToSocketAddrs};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use tungstenite::client::client_with_config;
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Bytes, Error, HandshakeError, Message, WebSocket};
@@ -47,8 +47,8 @@ impl Connection {
     /// Connects to the service of an address.
     ///
     /// # Errors
-    /// A [`Fault`] if there is no service.
-    pub fn open(address: &Address) -> Result<Self, Fault> {
+    /// A [`UserError`] if there is no service.
+    pub fn open(address: &Address) -> Result<Self, UserError> {
         let stream = reach(address)?;
         let config = WebSocketConfig::default()
             .read_buffer_size(BUFFER)
@@ -63,7 +63,7 @@ impl Connection {
                         "it says nothing".into()
                     }
                 };
-                Fault::failure(format!(
+                UserError::failure(format!(
                     "what listens at {} is no Inverse service: {why}",
                     address.url
                 ))
@@ -160,7 +160,7 @@ fn bear(error: &Error) -> Result<(), End> {
     }
 }
 
-fn reach(address: &Address) -> Result<TcpStream, Fault> {
+fn reach(address: &Address) -> Result<TcpStream, UserError> {
     let hosts = address
         .host
         .to_socket_addrs()
@@ -181,8 +181,8 @@ fn reach(address: &Address) -> Result<TcpStream, Fault> {
     Err(absent(address, &why))
 }
 
-fn absent(address: &Address, why: &str) -> Fault {
-    Fault::failure(format!(
+fn absent(address: &Address, why: &str) -> UserError {
+    UserError::failure(format!(
         "no Inverse service answers at {}: {why}",
         address.url
     ))

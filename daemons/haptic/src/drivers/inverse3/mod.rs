@@ -22,7 +22,7 @@ use std::sync::atomic::AtomicBool;
 use glam::DVec3;
 use maulstick_haptics::Switch;
 use maulstick_haptics::contact::HandleState;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::stylus;
 
@@ -52,8 +52,8 @@ const WORKSPACE_M: [f64; 6] = [-0.2, -0.05, -0.05, 0.2, 0.35, 0.3];
 /// Opens the Inverse3 of a section: see [`Address`].
 ///
 /// # Errors
-/// A [`Fault`] that says what is missing.
-pub fn open(device: &DeviceSection) -> Result<Opened, Fault> {
+/// A [`UserError`] that says what is missing.
+pub fn open(device: &DeviceSection) -> Result<Opened, UserError> {
     let address = Address::read(device.address.as_deref())?;
     let driver = Inverse3::connect(&address)?;
     Ok(Opened {
@@ -81,8 +81,8 @@ impl Inverse3 {
     /// Connects to the device of an address.
     ///
     /// # Errors
-    /// A [`Fault`] that says what is missing.
-    pub fn connect(address: &Address) -> Result<Self, Fault> {
+    /// A [`UserError`] that says what is missing.
+    pub fn connect(address: &Address) -> Result<Self, UserError> {
         let mut connection = Connection::open(address)?;
         let update = inventory(&mut connection, address)?;
         let device = chosen(&update, address)?;
@@ -92,13 +92,13 @@ impl Inverse3 {
                 "the Inverse3 {id} at {} is in use by another program",
                 address.url
             );
-            return Err(Fault::failure(what).help("end the other program"));
+            return Err(UserError::failure(what).help("end the other program"));
         }
         let max_force_n = max_force_n(device.kind());
         let has_grip = update.grip(address.grip.as_deref()).is_some();
         if let (Some(grip), false) = (&address.grip, has_grip) {
             let ids: Vec<&str> = update.grips().collect();
-            return Err(Fault::failure(format!(
+            return Err(UserError::failure(format!(
                 "the Inverse service at {} sees no VerseGrip {grip}",
                 address.url
             ))
@@ -110,10 +110,10 @@ impl Inverse3 {
         let mut tracker = DeviceTracker::new(&id, address.grip.as_deref());
         if let state::Seen::Hindered(hindrance) = tracker.take(&update, monotonic_ns()) {
             let what = format!("{} ({id} at {})", hindrance.what(), address.url);
-            return Err(Fault::failure(what).help(hindrance.help()));
+            return Err(UserError::failure(what).help(hindrance.help()));
         }
         let link = Link::start(connection, tracker, update.dialect())
-            .map_err(|error| Fault::failure(format!("no thread for the Inverse3: {error}")))?;
+            .map_err(|error| UserError::failure(format!("no thread for the Inverse3: {error}")))?;
         let handle = match has_grip {
             true => stylus::axes::ORIENTATION | stylus::axes::SWITCHES,
             false => 0,
@@ -149,9 +149,9 @@ fn max_force_n(kind: Option<&str>) -> f64 {
 }
 
 /// The service's first message, which names all devices.
-fn inventory(connection: &mut Connection, address: &Address) -> Result<Update, Fault> {
+fn inventory(connection: &mut Connection, address: &Address) -> Result<Update, UserError> {
     let foreign = |why: String| {
-        Fault::failure(format!(
+        UserError::failure(format!(
             "what answers at {} is no Inverse service: {why}",
             address.url
         ))
@@ -168,7 +168,7 @@ fn inventory(connection: &mut Connection, address: &Address) -> Result<Update, F
 }
 
 /// The device that an address means.
-fn chosen<'a>(update: &'a Update, address: &Address) -> Result<&'a Device, Fault> {
+fn chosen<'a>(update: &'a Update, address: &Address) -> Result<&'a Device, UserError> {
     let ids = || {
         let ids: Vec<&str> = update
             .devices()
@@ -179,18 +179,18 @@ fn chosen<'a>(update: &'a Update, address: &Address) -> Result<&'a Device, Fault
     };
     let url = &address.url;
     match (&address.device, update.devices()) {
-        (_, []) => Err(
-            Fault::failure(format!("the Inverse service at {url} sees no Inverse3"))
-                .help("plug it in and switch it on, and look whether Haply Hub sees it"),
-        ),
+        (_, []) => Err(UserError::failure(format!(
+            "the Inverse service at {url} sees no Inverse3"
+        ))
+        .help("plug it in and switch it on, and look whether Haply Hub sees it")),
         (Some(id), _) => update.device(id).ok_or_else(|| {
-            Fault::failure(format!(
+            UserError::failure(format!(
                 "the Inverse service at {url} sees no Inverse3 {id}"
             ))
             .help(format!("switch it on; there are: {}", ids()))
         }),
         (None, [device]) => Ok(device),
-        (None, _) => Err(Fault::failure(format!(
+        (None, _) => Err(UserError::failure(format!(
             "the Inverse service at {url} sees several Inverse3s: {}",
             ids()
         ))

@@ -4,7 +4,7 @@
 //! leaves out 0x202, a force that changes too fast, which the device bears by itself like its sisters: it cuts the
 //! amplifiers and lets the force come up anew. Any unknown error ends the device: a hand is at the other end.
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use super::abi::{ErrorInfo, error};
 use crate::device::driver::DeviceError;
@@ -155,10 +155,10 @@ pub fn device_error(code: u32) -> DeviceError {
 
 /// An error on opening; `words` is what the library says of it.
 #[must_use]
-pub fn fault(error: ErrorInfo, words: &str) -> Fault {
+pub fn fault(error: ErrorInfo, words: &str) -> UserError {
     let device_error = device_error(error.code);
     let internal = error.internal;
-    Fault::failure(format!(
+    UserError::failure(format!(
         "{device_error}: the library says '{words}' (internal {internal})"
     ))
     .help(device_error.help)

@@ -11,7 +11,7 @@ use std::ffi::{CStr, CString, c_char, c_int, c_uchar, c_ulong, c_ushort, c_void}
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 
 use super::abi::{
     Boolean, Capability, Doubles, ErrorInfo, Handle, Integer, MOST_DOUBLES, Text, error,
@@ -92,11 +92,11 @@ impl Library {
     /// The library in the file `asked`, or by its usual names where the system looks for libraries.
     ///
     /// # Errors
-    /// A [`Fault`]: it is missing, it cannot be loaded, or it is not OpenHaptics'.
-    pub fn find(asked: Option<&Path>) -> Result<&'static Self, Fault> {
+    /// A [`UserError`]: it is missing, it cannot be loaded, or it is not OpenHaptics'.
+    pub fn find(asked: Option<&Path>) -> Result<&'static Self, UserError> {
         if let Some(path) = asked {
             if path.components().count() > 1 && !path.exists() {
-                return Err(Fault::usage("there is no such library")
+                return Err(UserError::usage("there is no such library")
                     .at(path.display().to_string())
                     .help("correct `library` in rig.toml, or leave it out"));
             }
@@ -112,7 +112,7 @@ impl Library {
         }
         Err(match broken {
             Some((name, why)) => why.fault(name),
-            None => Fault::failure("OpenHaptics is not installed: the system has no libHD.so")
+            None => UserError::failure("OpenHaptics is not installed: the system has no libHD.so")
                 .help(INSTALL),
         })
     }
@@ -345,24 +345,24 @@ impl Unusable {
         }
     }
 
-    fn fault(self, name: &Path) -> Fault {
+    fn fault(self, name: &Path) -> UserError {
         let place = name.display().to_string();
         match self {
-            Self::Missing => Fault::failure("there is no such library").help(INSTALL),
-            Self::Needs(other) => Fault::failure(format!(
+            Self::Missing => UserError::failure("there is no such library").help(INSTALL),
+            Self::Needs(other) => UserError::failure(format!(
                 "OpenHaptics' library cannot be loaded: it needs {other}, which is not installed"
             ))
             .help(format!("install the package that has {other}")),
             Self::Foreign(said) => {
-                Fault::failure(format!("this is no library for this machine ({said})")).help(
+                UserError::failure(format!("this is no library for this machine ({said})")).help(
                     format!("install OpenHaptics for 64-bit {}", std::env::consts::ARCH),
                 )
             }
-            Self::Lacks(function) => Fault::failure(format!(
+            Self::Lacks(function) => UserError::failure(format!(
                 "this is no HD library of OpenHaptics: it has no function {function}"
             ))
             .help("`library` in rig.toml is to name libHD.so, of OpenHaptics 3.0 or newer"),
-            Self::Other(said) => Fault::failure(format!(
+            Self::Other(said) => UserError::failure(format!(
                 "OpenHaptics' library cannot be loaded: {said}"
             ))
             .help("see that OpenHaptics and the driver of the device are installed completely"),

@@ -31,7 +31,7 @@ pub mod vendor_clock;
 
 use std::ffi::CString;
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::stylus::axes;
 
@@ -56,10 +56,10 @@ const STIFFEST_N_M: f64 = 1000.0;
 /// Opens the device that a section of `rig.toml` asks for.
 ///
 /// # Errors
-/// A [`Fault`]: no library, no such device, or another program has it. Nothing is left behind.
-pub fn open(section: &DeviceSection) -> Result<Opened, Fault> {
+/// A [`UserError`]: no library, no such device, or another program has it. Nothing is left behind.
+pub fn open(section: &DeviceSection) -> Result<Opened, UserError> {
     let claim = Claim::take().ok_or_else(|| {
-        Fault::usage("this process already has a device of OpenHaptics")
+        UserError::usage("this process already has a device of OpenHaptics")
             .help("give each haptic device its own daemon")
     })?;
     let library = Library::find(section.library.as_deref())?;
@@ -101,7 +101,7 @@ pub fn open(section: &DeviceSection) -> Result<Opened, Fault> {
 }
 
 /// Initiates the device of a name, or the default one by the names that it may have.
-fn initiate(library: &Library, name: Option<&str>) -> Result<abi::Handle, Fault> {
+fn initiate(library: &Library, name: Option<&str>) -> Result<abi::Handle, UserError> {
     let names = match name {
         Some(name) => vec![Some(name)],
         None => [None].into_iter().chain(DEFAULT_NAMES.map(Some)).collect(),
@@ -109,7 +109,7 @@ fn initiate(library: &Library, name: Option<&str>) -> Result<abi::Handle, Fault>
     let mut first = None;
     for name in &names {
         let text = name.map(CString::new).transpose().map_err(|_| {
-            Fault::usage("a device's name has a zero in it").help("correct `address`")
+            UserError::usage("a device's name has a zero in it").help("correct `address`")
         })?;
         match library.init_device(text.as_deref()) {
             Ok(handle) => return Ok(handle),

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use serialport::{SerialPortInfo, SerialPortType};
 
 /// USB vendor of the Teensy boards that the devices are built around.
@@ -13,14 +13,14 @@ const PRODUCTS: std::ops::RangeInclusive<u16> = 0x0483..=0x048F;
 /// The serial ports of this machine.
 ///
 /// # Errors
-/// A [`Fault`] if the system does not list them.
-pub fn ports() -> Result<Vec<SerialPortInfo>, Fault> {
+/// A [`UserError`] if the system does not list them.
+pub fn ports() -> Result<Vec<SerialPortInfo>, UserError> {
     // On a system without any terminals serialport panics.
     if cfg!(target_os = "linux") && !Path::new("/sys/class/tty").is_dir() {
         return Ok(Vec::new());
     }
     serialport::available_ports().map_err(|error| {
-        Fault::failure(format!("serial ports cannot be listed: {error}"))
+        UserError::failure(format!("serial ports cannot be listed: {error}"))
             .help("name the stylus' port as the device's `address`")
     })
 }
@@ -28,25 +28,25 @@ pub fn ports() -> Result<Vec<SerialPortInfo>, Fault> {
 /// The one of `ports` that a stylus is at.
 ///
 /// # Errors
-/// A [`Fault`] where none or several may be.
-pub fn only(ports: &[SerialPortInfo]) -> Result<&str, Fault> {
+/// A [`UserError`] where none or several may be.
+pub fn only(ports: &[SerialPortInfo]) -> Result<&str, UserError> {
     let mut fits = ports.iter().filter(|port| fits(port));
     match (fits.next(), fits.next()) {
         (Some(port), None) => Ok(&port.port_name),
         (None, _) => Err(
-            Fault::failure("no WoodenHaptics or Polhem stylus is plugged in").help(
-                match ports.is_empty() {
-                    true => "plug it in; this machine has no serial port now".to_owned(),
-                    false => format!(
-                        "plug it in, or name its port as the device's `address`; there are: {}",
-                        listed(ports.iter())
-                    ),
-                },
-            ),
+            UserError::failure("no WoodenHaptics or Polhem stylus is plugged in").help(match ports
+                .is_empty()
+            {
+                true => "plug it in; this machine has no serial port now".to_owned(),
+                false => format!(
+                    "plug it in, or name its port as the device's `address`; there are: {}",
+                    listed(ports.iter())
+                ),
+            }),
         ),
         (Some(_), Some(_)) => {
             let names = listed(ports.iter().filter(|port| self::fits(port)));
-            Err(Fault::failure(format!(
+            Err(UserError::failure(format!(
                 "several ports may be a WoodenHaptics or Polhem stylus: {names}"
             ))
             .help("name one as the device's `address`"))

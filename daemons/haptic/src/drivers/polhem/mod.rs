@@ -22,7 +22,7 @@ use std::time::Duration;
 use glam::DVec3;
 use maulstick_haptics::Switch;
 use maulstick_haptics::contact::HandleState;
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::stylus;
 
@@ -49,8 +49,8 @@ const BUTTON_S: f64 = 0.05;
 /// Opens the stylus of a section: at its `address`, a serial port, or at the only port that may be one.
 ///
 /// # Errors
-/// A [`Fault`] that says what is missing.
-pub fn open(device: &DeviceSection) -> Result<Opened, Fault> {
+/// A [`UserError`] that says what is missing.
+pub fn open(device: &DeviceSection) -> Result<Opened, UserError> {
     let path = match &device.address {
         Some(path) => path.clone(),
         None => find::only(&find::ports()?)?.to_owned(),
@@ -68,13 +68,13 @@ pub fn open(device: &DeviceSection) -> Result<Opened, Fault> {
     })
 }
 
-fn refused(path: &str, error: HandshakeError) -> Fault {
+fn refused(path: &str, error: HandshakeError) -> UserError {
     match error {
-        HandshakeError::Silent => Fault::failure(format!("nothing answers at {path}")).help(
+        HandshakeError::Silent => UserError::failure(format!("nothing answers at {path}")).help(
             "switch the stylus on; if this is another device's port, name the stylus' own as the \
              device's `address`",
         ),
-        HandshakeError::Foreign(said) => Fault::failure(format!(
+        HandshakeError::Foreign(said) => UserError::failure(format!(
             "what answers at {path} is no WoodenHaptics or Polhem stylus: it says {}",
             match said.chars().all(|c| c.is_ascii_graphic() || c == ' ') {
                 true => format!("{said:?}"),
@@ -84,10 +84,10 @@ fn refused(path: &str, error: HandshakeError) -> Fault {
         ))
         .help("name the stylus' own port as the device's `address`"),
         HandshakeError::NoPoses => {
-            Fault::failure(format!("the stylus at {path} tells encoders, but no poses"))
+            UserError::failure(format!("the stylus at {path} tells encoders, but no poses"))
                 .help("give it firmware that knows forces (command 2), of November 2020 or later")
         }
-        HandshakeError::Broken(errno) => Fault::failure(format!("{path} is gone: {errno}"))
+        HandshakeError::Broken(errno) => UserError::failure(format!("{path} is gone: {errno}"))
             .help("unplug the stylus and plug it in again"),
     }
 }

@@ -8,7 +8,7 @@
 
 use std::os::fd::{AsRawFd, BorrowedFd};
 
-use maulstick_rig::Fault;
+use maulstick_rig::UserError;
 use nix::errno::Errno;
 use nix::fcntl::{FcntlArg, OFlag, fcntl};
 use serialport::{ClearBuffer, ErrorKind, SerialPort, TTYPort};
@@ -28,14 +28,14 @@ impl Port {
     /// Opens a port by its path.
     ///
     /// # Errors
-    /// A [`Fault`]: it is missing, it is another user's, it is in use, it is no serial port.
-    pub fn open(path: &str) -> Result<Self, Fault> {
+    /// A [`UserError`]: it is missing, it is another user's, it is in use, it is no serial port.
+    pub fn open(path: &str) -> Result<Self, UserError> {
         let port = serialport::new(path, BAUD)
             .open_native()
             .map_err(|error| refused(path, &error))?;
         let port = Self { port };
         fcntl(port.descriptor(), FcntlArg::F_SETFL(OFlag::O_NONBLOCK)).map_err(|errno| {
-            Fault::failure(format!("{path} cannot be read without waiting: {errno}"))
+            UserError::failure(format!("{path} cannot be read without waiting: {errno}"))
                 .help("name a serial port as the device's `address`")
         })?;
         // Bytes for the port's former user; if they cannot be discarded, they are no answer of ours.
@@ -147,20 +147,20 @@ impl Default for SerialSettings {
     }
 }
 
-fn refused(path: &str, error: &serialport::Error) -> Fault {
+fn refused(path: &str, error: &serialport::Error) -> UserError {
     use std::io::ErrorKind as Io;
     match error.kind() {
-        ErrorKind::Io(Io::NotFound) => Fault::failure(format!("there is no {path}"))
+        ErrorKind::Io(Io::NotFound) => UserError::failure(format!("there is no {path}"))
             .help("plug the stylus in, or leave `address` out: its port is found by itself"),
         ErrorKind::Io(Io::PermissionDenied) => {
-            Fault::failure(format!("{path} may not be opened by you")).help(
+            UserError::failure(format!("{path} may not be opened by you")).help(
                 "install the rules that `maulstick devices --udev` prints, or join the group \
                  dialout and log in anew",
             )
         }
-        ErrorKind::NoDevice => Fault::failure(format!("{path} is in use by another program"))
+        ErrorKind::NoDevice => UserError::failure(format!("{path} is in use by another program"))
             .help("end the other program; ModemManager tries new ports for some seconds"),
-        _ => Fault::failure(format!("{path} is no serial port: {}", error.description))
+        _ => UserError::failure(format!("{path} is no serial port: {}", error.description))
             .help("name a serial port as the device's `address`, such as /dev/ttyACM0"),
     }
 }

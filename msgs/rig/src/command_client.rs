@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::fault::Fault;
+use crate::user_error::UserError;
 use maulstick_bus::typed::{ask, random_epoch, random_u64};
-use maulstick_bus::{Bus, BusError, Class};
+use maulstick_bus::{Bus, BusError, Qos};
 use maulstick_types::command::{After, Command, CommandReply, CommandRequest, Outcome};
 use maulstick_types::topics::Topics;
 use maulstick_types::{Origin, name_hash};
@@ -14,7 +14,7 @@ use maulstick_types::{Origin, name_hash};
 const ASK: Duration = Duration::from_secs(2);
 
 /// Client that sends commands to a node.
-pub struct Commander {
+pub struct CommandClient {
     bus: Arc<dyn Bus>,
     topic: String,
     client: u64,
@@ -23,7 +23,7 @@ pub struct Commander {
     ask: Duration,
 }
 
-impl Commander {
+impl CommandClient {
     /// Client of the paint node, with a number of its own.
     #[must_use]
     pub fn new(bus: Arc<dyn Bus>, topics: &Topics) -> Self {
@@ -57,18 +57,18 @@ impl Commander {
     /// Sends a command and waits until it is done or refused, at most for `patience`; gives up early on `stop`.
     ///
     /// # Errors
-    /// A [`Fault`] with the node's own words if it is refused, or if nobody answers.
+    /// A [`UserError`] with the node's own words if it is refused, or if nobody answers.
     pub fn send(
         &mut self,
         command: Command,
         after: Option<After>,
         patience: Duration,
         stop: &dyn Fn() -> bool,
-    ) -> Result<String, Fault> {
+    ) -> Result<String, UserError> {
         // A failure at the end of a take, or of a write, is no wrong usage.
-        let refusal: fn(String) -> Fault = match &command {
-            Command::Snapshot { .. } | Command::Mark => Fault::failure,
-            _ => Fault::usage,
+        let refusal: fn(String) -> UserError = match &command {
+            Command::Snapshot { .. } | Command::Mark => UserError::failure,
+            _ => UserError::usage,
         };
         self.number += 1;
         let number = self.number;
@@ -85,7 +85,7 @@ impl Commander {
             match ask::<_, CommandReply>(
                 &*self.bus,
                 &self.topic,
-                Class::Control,
+                Qos::Control,
                 self.me,
                 &request,
                 limit,
@@ -108,7 +108,7 @@ impl Commander {
                 Err(error) => return Err(error.into()),
             }
             if Instant::now() >= give_up || stop() {
-                return Err(Fault::failure("the node does not answer")
+                return Err(UserError::failure("the node does not answer")
                     .at(self.topic.clone())
                     .help("see whether it runs: `maulstick up` shows its nodes"));
             }
@@ -118,9 +118,9 @@ impl Commander {
     }
 }
 
-impl std::fmt::Debug for Commander {
+impl std::fmt::Debug for CommandClient {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Commander")
+        f.debug_struct("CommandClient")
             .field("topic", &self.topic)
             .finish_non_exhaustive()
     }

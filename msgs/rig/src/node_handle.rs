@@ -11,8 +11,8 @@ use maulstick_types::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
 use crate::config::RigConfig;
-use crate::fault::Fault;
 use crate::stop::Stop;
+use crate::user_error::UserError;
 
 /// Socket of the launcher, to which every other process connects first.
 pub const HUB: &str = "hub";
@@ -23,7 +23,7 @@ pub const CONFIG_FILE: &str = "rig.toml";
 
 /// Place of a process in a rig.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct MemberArgs {
+pub struct NodeArgs {
     /// The rig's folder.
     pub folder: PathBuf,
     /// Name of the node.
@@ -33,7 +33,7 @@ pub struct MemberArgs {
 }
 
 /// A process in a rig.
-pub struct Member {
+pub struct NodeHandle {
     /// Its name.
     pub node: String,
     /// The bus.
@@ -54,12 +54,12 @@ pub struct Member {
     token: Option<Token>,
 }
 
-impl Member {
+impl NodeHandle {
     /// Joins a running rig.
     ///
     /// # Errors
-    /// A [`Fault`] where the rig does not run or cannot be reached.
-    pub fn join(args: &MemberArgs) -> Result<Self, Fault> {
+    /// A [`UserError`] where the rig does not run or cannot be reached.
+    pub fn join(args: &NodeArgs) -> Result<Self, UserError> {
         let (folder, info) = RigFolder::join_at(&args.folder)?;
         let config = RigConfig::read(&folder.path().join(CONFIG_FILE))?;
         let dial = Dial {
@@ -75,7 +75,7 @@ impl Member {
         };
         let session = Arc::new(open(&dial, clock)?);
         let wake = Wake::new();
-        let system = |error: std::io::Error| Fault::failure(error.to_string());
+        let system = |error: std::io::Error| UserError::failure(error.to_string());
         let stop = Stop::on_signals(&wake).map_err(system)?;
         if args.guarded {
             stop.on_launcher_end(&wake).map_err(system)?;
@@ -106,8 +106,8 @@ impl Member {
     /// Tells the rig that this node is ready.
     ///
     /// # Errors
-    /// A [`Fault`] where the bus is closed.
-    pub fn ready(&mut self) -> Result<(), Fault> {
+    /// A [`UserError`] where the bus is closed.
+    pub fn ready(&mut self) -> Result<(), UserError> {
         self.token = Some(self.bus.token(&self.topics.node(&self.node))?);
         Ok(())
     }
@@ -116,7 +116,10 @@ impl Member {
     ///
     /// # Errors
     /// The error of `turn`.
-    pub fn run(&self, mut turn: impl FnMut() -> Result<Duration, Fault>) -> Result<(), Fault> {
+    pub fn run(
+        &self,
+        mut turn: impl FnMut() -> Result<Duration, UserError>,
+    ) -> Result<(), UserError> {
         while !self.stop.requested() {
             let wait = turn()?;
             self.wake.wait(wait);
@@ -131,9 +134,9 @@ impl Member {
     }
 }
 
-impl std::fmt::Debug for Member {
+impl std::fmt::Debug for NodeHandle {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Member")
+        f.debug_struct("NodeHandle")
             .field("node", &self.node)
             .finish_non_exhaustive()
     }

@@ -12,7 +12,7 @@ pub const EXIT_FAILURE: i32 = 1;
 
 /// An error with its place and advice.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
+pub struct UserError {
     /// The error.
     pub what: String,
     /// A file with its line, or a topic.
@@ -23,7 +23,7 @@ pub struct Fault {
     pub code: i32,
 }
 
-impl Fault {
+impl UserError {
     /// Bad usage or a bad input file.
     #[must_use]
     pub fn usage(what: impl Into<String>) -> Self {
@@ -110,7 +110,7 @@ impl Fault {
     }
 }
 
-impl fmt::Display for Fault {
+impl fmt::Display for UserError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "error: {}", plain(&self.what))?;
         if let Some(place) = &self.place {
@@ -123,9 +123,9 @@ impl fmt::Display for Fault {
     }
 }
 
-impl std::error::Error for Fault {}
+impl std::error::Error for UserError {}
 
-impl From<BusError> for Fault {
+impl From<BusError> for UserError {
     fn from(error: BusError) -> Self {
         match error {
             BusError::Open { at, reason } => {
@@ -155,7 +155,7 @@ mod tests {
 
     #[test]
     fn what_is_quoted_forges_no_line() {
-        let fault = Fault::usage("there is no paint called 'x\nerror: all is lost'")
+        let fault = UserError::usage("there is no paint called 'x\nerror: all is lost'")
             .at("a\u{1b}[2J.toml:3")
             .help("take\r'y'");
         assert_eq!(
