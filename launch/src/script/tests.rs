@@ -310,12 +310,12 @@ fn another_kind_of_value_is_told_with_key_and_line() {
         ),
         (
             "{ opacity = 1, layer = true }",
-            &["'layer' takes a name or a number, not true"],
+            &["'layer'", "boolean `true`"],
         ),
-        ("{ fill = 1979-05-27 }", &["the date 1979-05-27"]),
+        ("{ fill = 1979-05-27 }", &["'fill'", "expected a text"]),
         (
-            "{ dry = \"\"\"all\nof it, as soon as it can be managed at all\"\"\" }",
-            &["day.toml:3", r#"not the text "all\nof it"#, "managed \"…"],
+            "{ dry = \"\"\"all\nof it, as soon as it can be managed at all, by whoever is there, with whatever lies at hand, wherever that may be, and however long it takes to do it all\"\"\" }",
+            &["day.toml:3", r#"string "all\nof it"#, "…"],
         ),
     ] {
         says(read(steps), words);
