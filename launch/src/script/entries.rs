@@ -14,6 +14,9 @@ const EXAMPLE: &str = "a script is `step = [ { load = \"Bone Black\" }, … ]`";
 /// The key of a new canvas's size.
 const CANVAS_MM: &str = "canvas_mm";
 
+/// Longer messages of a reader are cut, characters.
+const MESSAGE: usize = 160;
+
 /// Longer texts are cut where they are quoted.
 const SHORT: usize = 40;
 
@@ -127,6 +130,16 @@ fn described(value: &DeValue<'_>) -> String {
     }
 }
 
+/// The first line of a message, cut where it quotes a long text.
+fn short(message: &str) -> String {
+    let line = message.lines().next().unwrap_or_default();
+    let cut: String = line.chars().take(MESSAGE).collect();
+    match cut.len() < line.len() {
+        true => format!("{cut}…"),
+        false => cut,
+    }
+}
+
 fn number_of(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix())
@@ -168,7 +181,7 @@ impl<'a> Entries<'a> {
             let holds =
                 |value: &Spanned<DeValue<'_>>| start.is_some_and(|at| value.span().contains(&at));
             let found = self.table.iter().find(|(_, value)| holds(value));
-            let message = error.message().lines().next().unwrap_or_default();
+            let message = short(error.message());
             let fault = match found {
                 Some((key, _)) => {
                     self.fault(key.get_ref(), format!("'{}': {message}", key.get_ref()))

@@ -82,7 +82,7 @@ fn what_is_wrong_has_its_line_the_nearest_name_and_help() {
         ("{}", &["day.toml:3", "does nothing"]),
         (
             "{ dry = 1.0, undo = 1 }",
-            &["several things: dry, undo", "brush, load"],
+            &["several things: dry, undo", "brush, take"],
         ),
         (
             "{ fill = \"Bone Black\", layer = \"x\" }",
@@ -262,13 +262,16 @@ fn another_kind_of_value_is_told_with_key_and_line() {
             "{ dry = \"all\" }",
             &[
                 "day.toml:3",
-                "'dry' takes a number, not the text \"all\"",
+                "'dry': invalid type: string \"all\", expected a number",
                 "{ dry = 0.5",
             ][..],
         ),
         (
             "{ load = 3 }",
-            &["'load' takes a text, not the number 3", "{ load = \""],
+            &[
+                "'load': invalid type: integer `3`, expected a text",
+                "{ load = \"",
+            ],
         ),
         (
             "{ brush = \"flat\",\n size_mm = \"big\" }",
@@ -277,10 +280,10 @@ fn another_kind_of_value_is_told_with_key_and_line() {
         ("{ clean = \"yes\" }", &["'clean' takes true or false"]),
         (
             "{ undo = 1.5 }",
-            &["'undo' takes a whole number, 0 or more, not the number 1.5"],
+            &["'undo': invalid type: floating point `1.5`"],
         ),
-        ("{ undo = -1 }", &["not the number -1"]),
-        ("{ undo = 5000000000 }", &["whole number"]),
+        ("{ undo = -1 }", &["integer `-1`"]),
+        ("{ undo = 5000000000 }", &["integer `5000000000`"]),
         (
             "{ take = \"x\", loads = \"Bone Black\" }",
             &["'loads' takes a list of texts"],
@@ -295,24 +298,24 @@ fn another_kind_of_value_is_told_with_key_and_line() {
         ),
         (
             "{ light = { direction = [1, 2] } }",
-            &["'direction' takes three numbers, not 2"],
+            &["'direction'", "length 3"],
         ),
         (
             "{ light = { direction = [1, \"up\", 2] } }",
-            &["'direction' takes three numbers, not the text \"up\""],
+            &["'direction'", "string \"up\""],
         ),
         (
             "{ light = { direction = 1 } }",
-            &["'direction' takes three numbers, not the number 1"],
+            &["'direction'", "integer `1`"],
         ),
         (
             "{ opacity = 1, layer = true }",
-            &["'layer' takes a name or a number, not true"],
+            &["'layer'", "boolean `true`"],
         ),
-        ("{ fill = 1979-05-27 }", &["the date 1979-05-27"]),
+        ("{ fill = 1979-05-27 }", &["'fill'", "expected a text"]),
         (
-            "{ dry = \"\"\"all\nof it, as soon as it can be managed at all\"\"\" }",
-            &["day.toml:3", r#"not the text "all\nof it"#, "managed \"…"],
+            "{ dry = \"\"\"all\nof it, as soon as it can be managed at all, by whoever is there, with whatever lies at hand, wherever that may be, and however long it takes to do it all\"\"\" }",
+            &["day.toml:3", r#"string "all\nof it"#, "…"],
         ),
     ] {
         says(read(steps), words);
@@ -343,7 +346,7 @@ fn what_would_do_nothing_is_refused() {
         ("{ light = {} }", &["changes nothing"]),
         (
             "{ light = { rule = \"reference\", samples = 8 } }",
-            &["'samples' does nothing"],
+            &["samples does nothing"],
         ),
         (
             "{ take = \"x\", loads = [] }",
@@ -351,7 +354,7 @@ fn what_would_do_nothing_is_refused() {
         ),
         (
             "{ dry = 0.5, over = \"9s\" }",
-            &["all that is wet dries", "dry = 1.0"],
+            &["all wet paint dries", "dry = 1.0"],
         ),
     ] {
         says(read(steps), words);
@@ -413,7 +416,9 @@ macro_rules! walk {
                 let example: Edit = edits::$edit::example().expect("in range").into();
                 match edits::$edit::STEPS {
                     [form, ..] => {
-                        let script = read(form.example).expect(form.example);
+                        // Of several examples the first.
+                        let end = form.example.find(" }, {").map_or(form.example.len(), |at| at + 2);
+                        let script = read(&form.example[..end]).expect(form.example);
                         match (&script.steps[0].1, example) {
                             (Act::Edit(edit), example) => assert_eq!(**edit, example),
                             (Act::Undo(1), Edit::Undo(_)) => {}
