@@ -29,31 +29,24 @@
 
 pub mod advice;
 pub mod attached;
-pub mod backend;
-pub mod cells;
 pub mod chart;
 pub mod cli;
 pub mod commands;
-pub mod destination;
-pub mod document;
-pub mod duration;
-pub mod easel;
-pub mod ground;
-pub mod kit;
-pub mod lamp;
-pub mod memory;
+mod figures;
 pub mod outputs;
-pub mod page;
 pub mod paintings;
 pub mod performance;
-pub mod plot;
 pub mod processes;
 pub mod script;
+mod setup;
 pub mod sheet;
-pub mod swatch;
-pub mod tooth;
 pub mod up;
-pub mod viewing;
+
+pub use figures::{page, plot, swatch};
+pub use setup::{
+    backend, cells, destination, document, duration, easel, ground, kit, lamp, memory, tooth,
+    viewing,
+};
 
 use maulstick_rig::UserError;
 

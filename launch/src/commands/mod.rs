@@ -1,31 +1,20 @@
 //! The subcommands, one file each.
 
-pub mod begin;
 pub mod bench;
 pub mod brush;
-pub mod calibrate;
-pub mod demo;
-pub mod devices;
+mod colour;
+mod device;
 pub mod edit;
-pub mod endpoint;
 pub mod export;
-pub mod fit;
-pub mod force;
-pub mod force_order;
-pub mod import;
-pub mod light;
-pub mod matching;
-pub mod mix;
 pub mod mode;
-pub mod open;
 pub mod painting;
-pub mod paints;
-pub mod render;
-pub mod save_as;
-pub mod schema;
-pub mod session;
-pub mod snapshot;
-pub mod take;
+mod rig;
+mod takes;
+
+pub use colour::{fit, light, matching, mix, paints};
+pub use device::{calibrate, devices, force, force_order};
+pub use rig::{begin, endpoint, open, save_as, schema, session, snapshot};
+pub use takes::{demo, import, render, take};
 
 use std::io::{ErrorKind, Write as _};
 use std::path::Path;

@@ -12,7 +12,7 @@ use crate::commands::say;
 use crate::commands::session::{Session, Target};
 
 /// Longest wait for a painting to be open: its last journal records may have to be done again.
-pub(super) const LONGEST: Duration = Duration::from_secs(3600);
+pub(crate) const LONGEST: Duration = Duration::from_secs(3600);
 
 /// Options of `maulstick open`.
 #[derive(Args, Clone, Debug)]

@@ -8,7 +8,7 @@ use maulstick_rig::config::{CanvasSection, is_path};
 use maulstick_types::command::{NewCanvas, RigCommand};
 use maulstick_types::values::MaterialName;
 
-use super::open::{LONGEST, whole};
+use crate::commands::open::{LONGEST, whole};
 use crate::commands::say;
 use crate::commands::session::{Session, Target};
 

@@ -6,7 +6,7 @@ use clap::Args;
 use maulstick_rig::UserError;
 use maulstick_types::command::{RigCommand, SaveAs};
 
-use super::open::{LONGEST, whole};
+use crate::commands::open::{LONGEST, whole};
 use crate::commands::say;
 use crate::commands::session::{Session, Target};
 

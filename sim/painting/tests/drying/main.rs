@@ -1,5 +1,7 @@
 //! Paint that dries in part, in places and while time goes by, and becomes wet again.
 
+mod easel;
+
 use std::collections::BTreeSet;
 
 use maulstick_appearance::Bakery;
@@ -21,205 +23,13 @@ use maulstick_types::values::{BrushName, FilmThickness, LayerName, OpacityFactor
 use maulstick_types::{Flags, Header, Pose, Region, name_hash};
 use proptest::prelude::*;
 
+use easel::{
+    both, colours, counts, depth, dry, dry_over, farthest, fill, load, mean_off, painted,
+    sequencer, stroke, sum, ticks, wet, wet_cells,
+};
+
 const CELLS: [u32; 2] = [150, 100];
 const CELL_M: f64 = 2.5e-4;
-
-fn brush() -> BrushFile {
-    let mut file = BrushFile::library("round").expect("round");
-    file.strips.count = 48;
-    file.scaled_to(8.0).expect("a size")
-}
-
-fn sequencer() -> Sequencer {
-    let setup = PaintingSetup {
-        cells: CELLS,
-        cell_m: CELL_M,
-        ..PaintingSetup::default()
-    };
-    let library = PaintLibrary::measured().expect("whole");
-    let painting = Painting::new(&setup, library).expect("a painting");
-    let mut sequencer = Sequencer::new(painting);
-    sequencer.define_brush("main", brush());
-    sequencer
-}
-
-fn fill(mixture: &str, um: f64) -> Fill {
-    Fill {
-        paint: FillPaint::Mixture {
-            mixture: mixture.parse().expect("a mixture"),
-        },
-        thickness: FilmThickness::new(um * 1e-6).expect("in range"),
-        surface: CANVAS,
-    }
-}
-
-fn load(mixture: &str) -> Load {
-    Load {
-        mixture: mixture.parse().expect("a mixture"),
-        beside: None,
-        brush: BrushName::main(),
-    }
-}
-
-fn dry(share: f32, layer: &str, region: Option<Region>) -> Dry {
-    Dry {
-        share: Share::new(share).expect("in range"),
-        layer: LayerName::new(layer).ok(),
-        region,
-        ..Dry::whole(CANVAS)
-    }
-}
-
-fn dry_over(ticks: u32) -> Dry {
-    Dry {
-        layer: LayerName::new("slow").ok(),
-        over: Some(Ticks::new(ticks).expect("in range")),
-        ..Dry::whole(CANVAS)
-    }
-}
-
-fn wet(layers: u32, region: Option<Region>) -> Wet {
-    Wet {
-        layers: (layers > 0).then_some(layers),
-        region,
-        surface: CANVAS,
-    }
-}
-
-/// A part of a stroke from left to right; at the end the brush is lifted if `lifts`.
-fn stroke(sequencer: &mut Sequencer, seq: u64, stroke: u64, y_mm: f64, lifts: bool) {
-    let file = brush();
-    let solve = |x_mm: f64, stroke: u64| Solve {
-        event_ns: 0,
-        stroke,
-        surface: CANVAS,
-        flags: 0,
-        pose: Pose {
-            position_m: [x_mm * 1e-3, y_mm * 1e-3, 0.6 * file.length_m()],
-            ..Pose::IDENTITY
-        },
-        zoom: 1.0,
-        angles_rad: vec![[0.2, 0.3]; file.spines.all_joints()],
-        contacts: Vec::new(),
-    };
-    let mut solves = vec![solve(6.0, stroke), solve(18.0, stroke), solve(30.0, stroke)];
-    if lifts {
-        solves.push(solve(30.0, 0));
-    }
-    let header = Header {
-        version: 1,
-        schema: 0,
-        source: name_hash("main"),
-        epoch: 1,
-        flags: Flags::NONE,
-        length: 0,
-        seq,
-        event_ns: 0,
-        sent_ns: 0,
-    };
-    let state = BrushState {
-        device: 1,
-        device_epoch: 1,
-        device_seq: seq,
-        solves,
-    };
-    sequencer.state("main", &header, &state).1.expect("it fits");
-}
-
-fn ticks(sequencer: &mut Sequencer, count: u32) {
-    (0..count).for_each(|_| sequencer.tick());
-}
-
-/// Wet and dry counts of the canvas.
-fn counts(sequencer: &mut Sequencer) -> [Counts; 2] {
-    let painting = sequencer.painting_mut();
-    assert_eq!(painting.report().quanta_missing, 0);
-    let store = painting.store(CANVAS).expect("a canvas");
-    [store.counts(), store.dry_counts()]
-}
-
-fn sum(counts: &Counts) -> u64 {
-    counts.iter().sum()
-}
-
-fn both([wet, dry]: [Counts; 2]) -> Counts {
-    std::array::from_fn(|slot| wet[slot] + dry[slot])
-}
-
-/// The wet counts of all cells by slot, row after row from the bottom.
-fn wet_cells(sequencer: &mut Sequencer) -> Vec<[u32; SLOTS]> {
-    let painting = sequencer.painting_mut();
-    painting.commit();
-    let store = painting.store(CANVAS).expect("a canvas");
-    let mut cells = vec![[0; SLOTS]; (CELLS[0] * CELLS[1]) as usize];
-    for (id, version) in store.iter() {
-        let planes = version
-            .tile
-            .as_ref()
-            .map(|tile| tile.wet())
-            .unwrap_or_default();
-        for (slot, plane) in &*planes {
-            for (cell, count) in plane.iter().enumerate().filter(|(_, count)| **count > 0.0) {
-                let at = [
-                    id.x as usize * 64 + cell % 64,
-                    id.y as usize * 64 + cell / 64,
-                ];
-                cells[at[1] * CELLS[0] as usize + at[0]][*slot] = *count as u32;
-            }
-        }
-    }
-    cells
-}
-
-/// Unlit linear colours of all cells of the canvas.
-fn colours(sequencer: &mut Sequencer) -> Vec<[f32; 3]> {
-    let painting = sequencer.painting_mut();
-    painting.commit();
-    let store = painting.store(CANVAS).expect("a canvas");
-    let bare = painting.bare(CANVAS).expect("a canvas");
-    let banded = Banded::new(store, bare, painting.look(), CELL_M);
-    let mut bakery = Bakery::default();
-    let shown = store.iter().map(|(id, version)| {
-        let tile = banded.shown(id, version.tile.as_deref(), &mut bakery);
-        (0..TILE_CELLS).map(move |cell| [0, 1, 2].map(|c| tile.rgb[c][cell]))
-    });
-    shown.flatten().collect()
-}
-
-fn farthest(one: &[[f32; 3]], other: &[[f32; 3]]) -> f32 {
-    let pairs = one.iter().flatten().zip(other.iter().flatten());
-    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
-}
-
-/// The mean of how far channels are apart.
-fn mean_off(one: &[[f32; 3]], other: &[[f32; 3]]) -> f64 {
-    let pairs = one.iter().flatten().zip(other.iter().flatten());
-    let sum: f64 = pairs.map(|(a, b)| f64::from((a - b).abs())).sum();
-    sum / (3 * one.len()) as f64
-}
-
-/// Links of the stacks, at most.
-fn depth(sequencer: &Sequencer) -> usize {
-    let store = sequencer.painting().store(CANVAS).expect("a canvas");
-    let tiles = store.iter().filter_map(|(_, version)| version.tile.clone());
-    tiles
-        .filter_map(|tile| Some(tile.dry()?.depth()))
-        .max()
-        .unwrap_or(0)
-}
-
-fn painted() -> Sequencer {
-    let mut sequencer = sequencer();
-    sequencer
-        .edit(fill("Yellow Ochre=0.3,Titanium White=0.7", 30.0))
-        .expect("filled");
-    sequencer
-        .edit(load("Ultramarine Blue=0.6,Titanium White=0.4"))
-        .expect("loaded");
-    stroke(&mut sequencer, 0, 1, 8.0, true);
-    stroke(&mut sequencer, 1, 2, 14.0, true);
-    sequencer
-}
 
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(12) })]

@@ -1,0 +1,9 @@
+//! Commands of a rig: sessions, paintings opened and saved, snapshots, messages.
+
+pub mod begin;
+pub mod endpoint;
+pub mod open;
+pub mod save_as;
+pub mod schema;
+pub mod session;
+pub mod snapshot;
