@@ -359,7 +359,7 @@ fn bad_settings_are_refused_with_their_line() {
     );
     has(
         &rig(("driver = \"simulated\"", "driver = \"phantom\"")),
-        &["driver", "simulated", "rig.toml:31"],
+        &["driver", "simulated", "rig.toml:32"],
     );
     has(
         &rig(("kind = \"round\"", "kind = \"flatt\"")),

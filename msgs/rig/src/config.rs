@@ -421,7 +421,7 @@ mod tests {
         let text = error("driver = \"simulated\"", "driver = \"simulted\"");
         assert!(text.contains("no driver called 'simulted'"), "{text}");
         assert!(
-            text.contains("did you mean 'simulated'") && text.contains("rig.toml:31"),
+            text.contains("did you mean 'simulated'") && text.contains("rig.toml:32"),
             "{text}"
         );
         let text = error("brush = \"main\"", "brush = \"mian\"");
@@ -432,7 +432,7 @@ mod tests {
             text.contains("no node called 'piant'") && text.contains("did you mean 'paint'"),
             "{text}"
         );
-        assert!(text.contains("rig.toml:78"), "{text}");
+        assert!(text.contains("rig.toml:79"), "{text}");
         let text = error("[node.paint]", "[node.brush-mian]");
         assert!(text.contains("did you mean 'brush-main'"), "{text}");
         for node in ["brush", "brush-main", "ui", "player", "phantom"] {
@@ -441,10 +441,10 @@ mod tests {
         }
         let text = error("profile = \"srgb\"", "profile = \"sgrb\"");
         assert!(text.contains("'srgb'") && text.contains("ICC"), "{text}");
-        assert!(text.contains("rig.toml:74"), "{text}");
+        assert!(text.contains("rig.toml:75"), "{text}");
         let text = error("gamut = \"soft\"", "gamut = \"sfot\"");
         assert!(
-            text.contains("did you mean 'soft'") && text.contains("rig.toml:75"),
+            text.contains("did you mean 'soft'") && text.contains("rig.toml:76"),
             "{text}"
         );
     }

@@ -361,7 +361,7 @@ mod tests {
         for force in ["-1", "-1e-9", "nan", "inf"] {
             let text = error("max_force_n = 3.0", &format!("max_force_n = {force}"));
             assert!(
-                text.contains("max_force_n") && text.contains("rig.toml:36"),
+                text.contains("max_force_n") && text.contains("rig.toml:37"),
                 "{text}"
             );
         }
@@ -377,7 +377,7 @@ mod tests {
                 &format!("orientation = [{turn}]"),
             );
             assert!(
-                text.contains("orientation") && text.contains("rig.toml:35"),
+                text.contains("orientation") && text.contains("rig.toml:36"),
                 "{text}"
             );
         }
@@ -400,12 +400,12 @@ mod tests {
             let key = line.split(' ').next().expect("a key");
             let told = if key == "switches" { "cluch" } else { key };
             assert!(text.contains(told) && text.contains(help), "{text}");
-            assert!(text.contains("rig.toml:36"), "{text}");
+            assert!(text.contains("rig.toml:37"), "{text}");
         }
         for place in ["nan, 0, 0", "0, inf, 0", "0, 0, -inf"] {
             let text = error("position_m = [0, 0, 0]", &format!("position_m = [{place}]"));
             assert!(
-                text.contains("position_m") && text.contains("rig.toml:34"),
+                text.contains("position_m") && text.contains("rig.toml:35"),
                 "{text}"
             );
         }
@@ -436,7 +436,7 @@ mod tests {
                 let refused = RigConfig::parse(&section(driver, line), "rig.toml").expect_err(line);
                 let text = refused.to_string();
                 assert!(
-                    text.contains(driver) && text.contains("rig.toml:36"),
+                    text.contains(driver) && text.contains("rig.toml:37"),
                     "{text}"
                 );
                 assert!(refused.help.is_some(), "{text}");
@@ -464,7 +464,7 @@ mod tests {
         ] {
             let text = error("name = \"phantom\"", &format!("name = \"{name}\""));
             assert!(
-                text.contains(&format!("'{name}'")) && text.contains("rig.toml:30"),
+                text.contains(&format!("'{name}'")) && text.contains("rig.toml:31"),
                 "{text}"
             );
         }
