@@ -11,6 +11,7 @@ use maulstick_painting::{PaintingSetup, paint_error};
 use maulstick_rig::UserError;
 use maulstick_rig::config::{BACKENDS, BrushSection, LightSection, RigConfig};
 use maulstick_types::Mixture;
+use maulstick_types::advice::Advice;
 use maulstick_types::scene::Light;
 
 use crate::cells::{check_canvas, parse_cell_mm};
@@ -85,8 +86,7 @@ pub fn brush_file(section: &BrushSection) -> Result<BrushFile, UserError> {
 /// Error of a brush file, without the advice for settings of a rig, which does not apply.
 #[must_use]
 pub fn of_a_brush(fault: UserError) -> UserError {
-    let is_of_settings = |help: &String| help.contains("--print-config");
-    match fault.help.as_ref().is_some_and(is_of_settings) {
+    match fault.advice == Some(Advice::DefaultSettings) {
         true => fault.help(
             "docs/brushes.md says what a brush file holds; `maulstick brush list` shows the library",
         ),

@@ -44,8 +44,8 @@ fn a_wrong_bit_in_one_copy_of_the_state_costs_nothing() {
 #[test]
 fn a_newer_programs_painting_is_not_called_whole() {
     let folder = tempfile::tempdir().expect("a folder");
-    let newer = "PRAGMA journal_mode = DELETE; PRAGMA user_version = 2";
+    let newer = "PRAGMA journal_mode = DELETE; PRAGMA user_version = 3";
     let report = recovered(folder.path(), newer);
-    assert_eq!(report.format, Some(2));
+    assert_eq!(report.format, Some(3));
     assert!(!report.is_whole());
 }

@@ -254,7 +254,7 @@ fn a_painting_in_memory_becomes_a_file_and_then_another() {
     rig.fill("Pyrrole Red");
     rig.done(save_as(&at("b.maul"), false));
     rig.fill("Titanium White");
-    rig.refused(save_as(&at("a.maul"), false), &["already", "--replace"]);
+    rig.refused(save_as(&at("a.maul"), false), &["already", "may go"]);
     rig.done(save_as(&at("b.maul"), false));
     let depth = rig.node.sequencer.painting().history_depth().0;
     let counts = |painting: &Painting| painting.store(CANVAS).expect("a canvas").counts();
