@@ -20,7 +20,7 @@ pub enum EditError {
         /// The nearest name, if one is near.
         nearest: Option<String>,
     },
-    /// A mixture that is none.
+    /// An invalid mixture.
     #[error(transparent)]
     Mixture(#[from] MixtureError),
     /// A line of a paint file that cannot be read.
@@ -59,7 +59,7 @@ pub enum EditError {
     /// A state of another brush file.
     #[error("a state of brush '{0}' does not fit its brush file")]
     Unfit(String),
-    /// A surface that there is not.
+    /// An unknown surface.
     #[error("there is no surface {0}")]
     NoSurface(u32),
     /// A value out of its range.
@@ -96,7 +96,7 @@ pub enum EditError {
     /// No drying of this surface is in progress.
     #[error("no drying of this surface goes on")]
     NotDrying,
-    /// A dry layer that there is not.
+    /// An unknown dry layer.
     #[error("there is no dry layer {which}")]
     NoLayer {
         /// How it was called.
@@ -118,7 +118,7 @@ pub enum EditError {
         /// The later one.
         over: Option<String>,
     },
-    /// A version that there is not.
+    /// An unknown version.
     #[error("there is no version called '{name}'")]
     NoVersion {
         /// Its name.
@@ -129,7 +129,7 @@ pub enum EditError {
     /// A version's name that is taken.
     #[error("there is a version called '{0}' already")]
     VersionTaken(String),
-    /// The name by which the painting as it is goes.
+    /// The name reserved for the current painting.
     #[error("'{0}' is the painting as it is, not a version")]
     VersionNow(&'static str),
     /// A well beyond the edge of its surface.
@@ -146,7 +146,7 @@ pub enum EditError {
     /// A spectrum that does not reach the eye.
     #[error("{0}")]
     Dark(String),
-    /// An illuminant that there is not.
+    /// An unknown illuminant.
     #[error("there is no illuminant called '{name}'")]
     NoIlluminant {
         /// Its name.
@@ -154,7 +154,7 @@ pub enum EditError {
         /// Those that there are.
         known: Vec<&'static str>,
     },
-    /// A ground that there is not.
+    /// An unknown ground.
     #[error("there is no ground called '{name}'")]
     NoGround {
         /// Its name.
@@ -162,7 +162,7 @@ pub enum EditError {
         /// Those that there are.
         known: Vec<&'static str>,
     },
-    /// A paint model that there is not.
+    /// An unknown paint model.
     #[error("there is no paint model called '{name}'")]
     NoModel {
         /// Its name.
@@ -170,7 +170,7 @@ pub enum EditError {
         /// Those that there are.
         known: Vec<&'static str>,
     },
-    /// A tooth that there is not.
+    /// An unknown tooth.
     #[error("there is no tooth called '{name}'")]
     NoTooth {
         /// Its name.
@@ -186,16 +186,16 @@ pub enum EditError {
         /// What is wrong with it.
         fault: &'static str,
     },
-    /// A text that is no table of reflectances.
+    /// A text that is not a table of reflectances.
     #[error("this is no spectrum of a ground: {0}")]
     Spectrum(String),
-    /// Bytes that are no picture, or one of another kind or size.
+    /// Bytes that are not a picture, or a picture of another kind or size.
     #[error("{0}")]
     Picture(String),
     /// A picture that the painting does not hold.
     #[error("this painting holds no picture {0}")]
     NoPicture(String),
-    /// A text that is no hash.
+    /// A text that is not a hash.
     #[error("'{0}' is not the hash of a picture")]
     NoHash(String),
     /// A picture of heights where one of colours is due.

@@ -1,28 +1,29 @@
-//! The film that a marker leaves: in each cell a share of what it lacks to its most, as far as the cell is covered, of
-//! the mixture that the whole tip holds.
+//! The film of a marker: each covered cell is filled up towards [`FILM_M`], in proportion to its cover, with the mixture
+//! of the whole tip.
 
 use maulstick_canvas::quantum::{Counts, QUANTUM_M, SLOTS};
 use maulstick_model::brush::load::BrushLoad;
 use maulstick_model::footprint::Footprint;
 use maulstick_model::interface::Step;
 
-/// Thickness of the film at most, m.
+/// Largest thickness of the film, m.
 pub const FILM_M: f64 = 30e-6;
-/// Factor on shares: reduced so that rounding never gives more than there is.
+/// Factor on shares, 1 − 2⁻⁴⁰: rounding then never gives more paint than the tip holds.
 const SAFE: f64 = 1.0 - 1.0 / 1_099_511_627_776.0;
 
-/// Room for a step.
+/// Scratch buffers of a step.
 #[derive(Debug, Default)]
 pub(crate) struct Film {
-    /// Quanta that each contact lacks.
+    /// Quanta that each contact's cell lacks.
     wants: Vec<f64>,
     /// Quanta of all paints on its cell.
     lying: Vec<f32>,
+    /// Cell of each contact.
     cells: Vec<u32>,
 }
 
 impl Film {
-    /// Lays the film of a step; by slot, what came onto the cells.
+    /// Lays the film of a step and returns the quanta laid, by slot.
     pub(crate) fn lay(&mut self, footprint: &Footprint, step: &mut Step<'_>) -> Counts {
         let held = step.load.counts();
         let total: u64 = held.iter().sum();
@@ -56,7 +57,7 @@ impl Film {
         given
     }
 
-    /// Draws what was given out of the tip: from all of it alike.
+    /// Takes the paint laid out of the tip, the same share from each texel.
     pub(crate) fn draw(&self, given: &Counts, load: &mut BrushLoad) {
         let held = load.counts();
         for slot in 0..SLOTS {
@@ -78,7 +79,7 @@ impl Film {
     }
 }
 
-/// Takes quanta that are there, and returns how many.
+/// Takes `count` quanta, which must be there, from a texel, and returns `count`.
 fn take(texel: &mut u32, count: u64) -> u64 {
     *texel -= count as u32;
     count

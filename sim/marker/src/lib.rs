@@ -1,5 +1,5 @@
-//! A felt marker: under the brush it leaves an even film of the brush's colour, up to a most, pushes nothing and takes
-//! nothing up.
+//! A felt marker: it leaves an even film of the brush's colour, at most [`FILM_M`] thick, and neither pushes paint nor
+//! takes any up.
 //!
 //! The smallest [`PaintModel`](maulstick_model::interface::PaintModel) that paints, and the one to copy for another:
 //! footprint, head and load are those of every model, [`Marker`] is the step, [`Matte`] how its ink is shown.

@@ -1,11 +1,10 @@
-//! Work that cores share.
+//! Fork and join: work shared among cores.
 //!
-//! How many share it, and which does what, never matters to what comes out: shares that are done beside each other
-//! write to different places, and what they find is put together in the same order.
+//! Results do not depend on the number of threads, nor on which thread does which share: shares done at the same time
+//! write to different places, and their results are combined in a fixed order.
 //!
-//! The shares are tens of microseconds long and follow each other as closely, so helpers wait for
-//! the next awake. Pools of threads that sleep in between (rayon) take longer to wake than the shares
-//! take.
+//! A share takes tens of microseconds and the next follows at once, so helpers stay awake between them. Pools whose
+//! threads sleep in between (rayon) take longer to wake than a share takes.
 
 use std::any::Any;
 use std::cell::{RefCell, UnsafeCell};
@@ -21,24 +20,23 @@ use std::time::Instant;
 const SPIN_LIMIT: u32 = 2_000;
 /// Iterations, spinning and yielding, before sleeping.
 const AWAKE: u32 = SPIN_LIMIT + 200;
-/// Threads that [`with_cores_beyond`] uses at most: what one core does alone in a step takes longer than a share of
-/// more.
+/// Threads that [`with_cores_beyond`] uses at most: beyond that, the serial part of a step takes longer than a share.
 const MOST_THREADS: usize = 16;
 
-/// Nothing to do.
+/// No job.
 const EMPTY: u32 = 0;
-/// A job lies there.
+/// A job waits.
 const OFFERED: u32 = 1;
-/// One of the two threads does it.
+/// A thread does the job.
 const TAKEN: u32 = 2;
-/// It is done.
+/// The job is done.
 const DONE: u32 = 3;
-/// No more jobs come.
+/// The helper is to end.
 const CLOSED: u32 = 4;
 
 type Job<'a> = dyn FnMut() + Send + 'a;
 
-/// Where a thread leaves a job for one of its helpers, on cache lines of its own.
+/// Slot for one job from a thread to a helper, on cache lines of its own.
 #[derive(Default)]
 #[repr(align(128))]
 struct JobSlot {
@@ -59,7 +57,7 @@ unsafe impl Sync for JobSlot {}
     unsafe_code,
     reason = "a slot hands a job from one thread to the other"
 )]
-// SAFETY: the job is `Send`, and its pointer is used as told above alone.
+// SAFETY: the job is `Send`, and its pointer is used only as stated for `Sync`.
 unsafe impl Send for JobSlot {}
 
 /// A thread that waits for jobs.
@@ -199,8 +197,8 @@ impl Drop for Closing {
     }
 }
 
-/// Does the work with so many threads, this one among them, so that [`each`] has them for as long as it takes.
-/// Where this thread has helpers already, or no thread is to be had, it does with those that are there.
+/// Runs `work` with a number of threads, this one included, which [`each`] can use until it returns.
+/// If this thread has helpers already, or no thread can be started, it uses those that there are.
 pub fn with_threads<T>(threads: usize, work: impl FnOnce() -> T) -> T {
     if threads < 2 || self::threads() > 1 {
         return work();
@@ -222,7 +220,7 @@ pub fn with_threads<T>(threads: usize, work: impl FnOnce() -> T) -> T {
     })
 }
 
-/// As [`with_threads`], as many as the machine has cores but for so many busy ones.
+/// As [`with_threads`], with one thread for each core except `busy` of them.
 pub fn with_cores_beyond<T>(busy: usize, work: impl FnOnce() -> T) -> T {
     let cores = available_parallelism().map_or(1, usize::from);
     with_threads(cores.saturating_sub(busy).min(MOST_THREADS), work)
@@ -266,18 +264,18 @@ fn spread<S: Send>(helpers: &[Helper], shares: &mut [S], work: &(impl Fn(&mut S)
     }
 }
 
-/// How work is best cut into shares, learnt from how long they took. It changes nothing but the time.
+/// Cuts of work into shares, learnt from the time that shares took. Results do not depend on them.
 #[derive(Clone, Debug, Default)]
 pub struct Balance {
-    /// Where each share but the first begins, by the whole.
+    /// Begin of each share but the first, as a fraction of the work.
     cuts: Vec<f32>,
 }
 
-/// Share of what was found wrong by which the next cut is better.
+/// Fraction of the error that one step of learning corrects.
 const LEARNS: f32 = 0.2;
 
 impl Balance {
-    /// So many pieces of work in so many shares.
+    /// Cuts a number of pieces into a number of shares.
     #[must_use]
     pub fn cut(&mut self, pieces: usize, shares: usize) -> Vec<Range<usize>> {
         if self.cuts.len() + 1 != shares {
@@ -290,14 +288,14 @@ impl Balance {
         ends.chain([pieces]).map(share).collect()
     }
 
-    /// Begin of the share after so many, which need not be whole, by all of them.
+    /// Begin of a share, by a number that may have a fraction; as a fraction of the work.
     fn at(&self, share: f32) -> f32 {
         let place = share * (self.cuts.len() + 1) as f32;
         let [low, high] = [0, 1].map(|on| self.edge(place as usize + on));
         low + (high - low) * place.fract()
     }
 
-    /// Begin of a share, by the whole.
+    /// Begin of a share, as a fraction of the work.
     fn edge(&self, share: usize) -> f32 {
         let before = share.checked_sub(1);
         before.map_or(0.0, |at| self.cuts.get(at).copied().unwrap_or(1.0))
@@ -318,7 +316,7 @@ impl Balance {
         self.learn(&took);
     }
 
-    /// Moves the cuts towards where all shares would have taken as long.
+    /// Moves the cuts towards equal times of all shares.
     fn learn(&mut self, took: &[f32]) {
         let whole: f32 = took.iter().sum();
         let even = whole / took.len() as f32;

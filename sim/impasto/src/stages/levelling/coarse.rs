@@ -1,9 +1,9 @@
-//! Levelling on coarser grids: of each four cells one.
+//! Levelling on coarser grids, each cell the mean of four.
 //!
-//! An explicit round on cells of side a bounds the mobility by a (`STABLE`), and to level a wave takes rounds by the
-//! fourth power of the cells across it. A grid twice as coarse bears sixteen times the flow of the finer one; what of
-//! the mobility the finer grid has is left out there, so each share of the flow is counted once. Fluxes through
-//! coarse faces go back through the finer faces on them, and halfway between two of them through their mean: volumes
+//! On cells of side a, an explicit round is stable only for mobilities up to a bound (`STABLE`), and the rounds that
+//! level a wave grow with the fourth power of its length in cells. A grid twice as coarse bears sixteen times the flow.
+//! It leaves out the mobility that the finer grid has used, so each share of the flow counts once. A flux through a
+//! coarse face goes through the fine faces on it; a fine face halfway between two coarse ones gets their mean. So volumes
 //! are kept, and the two cells between change alike.
 
 use maulstick_canvas::window::Area;
@@ -21,7 +21,7 @@ impl Round {
             tension: 0.5 * self.tension,
             weight: 2.0 * self.weight,
             most: 2.0 * self.most,
-            // Of heights in cells a mobility is by their third power, its gradient in yields by cell.
+            // Heights in cells halve on the coarser grid; mobility goes with their cube, so the finer grid's bound is 1/8 there.
             finer: 0.125 * self.most,
             coarser: self.coarser - 1,
             to_cells: 0.5 * self.to_cells,
@@ -31,7 +31,7 @@ impl Round {
 }
 
 impl Levelling {
-    /// Lets the heights of an area flow on coarser grids, where there are some; the largest flow of a round there.
+    /// Lets paint flow on coarser grids, if any; returns the largest flow of a round there.
     pub(super) fn flow_on_coarser(
         &mut self,
         area: &Area,
