@@ -136,7 +136,7 @@ struct Unordered(Impasto);
 
 impl PaintModel for Unordered {
     fn name(&self) -> &'static str {
-        "unordered"
+        self.0.name()
     }
 
     fn step(&mut self, step: &mut Step<'_>) -> StepReport {
