@@ -404,7 +404,11 @@ mod tests {
             let met = Barrier::new(count);
             // Each waits for all: one after the other they would wait for ever. A helper takes its share at the
             // latest when it wakes up.
-            with_threads(count, || each(&mut vec![(); count], |()| drop(met.wait())));
+            with_threads(count, || {
+                each(&mut vec![(); count], |()| {
+                    met.wait();
+                })
+            });
         }
     }
 

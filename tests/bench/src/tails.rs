@@ -45,7 +45,7 @@ pub(crate) fn run(
         ..PaintingSetup::default()
     };
     let library = PaintLibrary::measured().map_err(fault)?;
-    let painting = Painting::new(&setup, library).map_err(|refusal| fault(refusal))?;
+    let painting = Painting::new(&setup, library).map_err(fault)?;
     let brush = BrushFile::library("round").map_err(fault)?;
     let brush = brush.scaled_to(BRUSH_MM).map_err(fault)?;
     let loads: Result<Vec<_>, _> = loads.iter().map(|load| load.parse()).collect();
@@ -125,7 +125,7 @@ fn packing(side: usize, pixels: Vec<u8>) -> Result<f64, UserError> {
 fn tooth(setup: &PaintingSetup) -> Result<f64, UserError> {
     let (took, _) = median(|| {
         let library = PaintLibrary::measured().map_err(fault)?;
-        let painting = Painting::new(setup, library).map_err(|refusal| fault(refusal))?;
+        let painting = Painting::new(setup, library).map_err(fault)?;
         let canvas = painting.store(CANVAS).zip(painting.bare(CANVAS));
         let (store, bare) = canvas.ok_or_else(|| fault("there is no canvas"))?;
         let begun = thread_cpu();
