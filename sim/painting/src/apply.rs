@@ -19,10 +19,10 @@ pub trait Apply {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError>;
 }
 
-/// What an edit has done.
+/// Result of an edit.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Applied {
-    /// All that it says.
+    /// Nothing to report.
     Done,
     /// Paint has dried into a layer of this name.
     Dried(String),
@@ -61,7 +61,6 @@ impl fmt::Display for Applied {
 
 macro_rules! apply_edits {
     ($($edit:ident),*) => {
-        // One arm an edit, each with the `Apply` of its own type.
         impl Apply for Edit {
             fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
                 match self {

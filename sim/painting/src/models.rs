@@ -9,17 +9,17 @@ use maulstick_impasto::Impasto;
 use maulstick_marker::{Marker, Matte};
 use maulstick_model::interface::PaintModel;
 
-/// A paint model.
+/// Entry of a paint model in [`MODELS`].
 pub struct ModelEntry {
     /// Its name in `rig.toml`, in the scene and in a document.
     pub name: &'static str,
     /// How its paint is shown.
     pub shown: &'static dyn ShowPaint,
-    /// A new one, on the processor.
+    /// Makes one that runs on the processor.
     make: fn() -> Box<dyn PaintModel>,
 }
 
-/// All of them.
+/// All paint models.
 pub static MODELS: [ModelEntry; 2] = [
     ModelEntry {
         name: "impasto",
@@ -33,7 +33,7 @@ pub static MODELS: [ModelEntry; 2] = [
     },
 ];
 
-/// Their names.
+/// Names of the paint models.
 pub fn model_names() -> impl Iterator<Item = &'static str> + Clone {
     MODELS.iter().map(|entry| entry.name)
 }
@@ -41,7 +41,7 @@ pub fn model_names() -> impl Iterator<Item = &'static str> + Clone {
 /// The model of this name.
 ///
 /// # Errors
-/// [`EditError`] with the names that there are, and the nearest.
+/// [`EditError::NoModel`] with the known names.
 pub fn model_called(name: &str) -> Result<&'static ModelEntry, EditError> {
     let found = MODELS.iter().find(|entry| entry.name == name);
     found.ok_or_else(|| EditError::NoModel {
@@ -66,7 +66,7 @@ impl Models {
         self.0.entry(entry.name).or_insert_with(entry.make).as_mut()
     }
 
-    /// Has another one of the same name compute its steps.
+    /// Replaces the model of the same name, for another backend.
     pub(crate) fn replace(&mut self, model: Box<dyn PaintModel>) {
         self.0.insert(model.name(), model);
     }
@@ -77,7 +77,7 @@ impl Models {
         model.map_or_else(|| (entry.make)().backend(), |model| model.backend())
     }
 
-    /// The reason why one of them changed its backend, returned once.
+    /// Reason why a model changed its backend; returned once.
     pub(crate) fn take_fall(&mut self) -> Option<String> {
         self.0.values_mut().find_map(|model| model.take_fall())
     }
