@@ -199,14 +199,14 @@ fn drying(library: PaintLibrary, board: Board) -> Result<Panel, UserError> {
         if stripe > 0 {
             panel.dry(0.25)?;
         }
-        let y = 42.5 - 9.2 * f64::from(stripe);
+        let y = 43.0 - 8.9 * f64::from(stripe);
         panel.load(BRUSH, "Ultramarine Blue=0.8,Titanium White=0.2")?;
         panel.paint(&line([5.0, y], [81.0, y], 0.45, 90.0))?;
         panel.paint(&line([81.0, y], [5.0, y], 0.4, 90.0))?;
     }
     for (i, x) in [15.0, 33.0, 51.0, 69.0].into_iter().enumerate() {
         panel.take_up(&format!("clean-{i}"), sized("filbert", 8.0)?)?;
-        panel.paint(&line([x, 48.5], [x, 1.5], 1.0, 0.0))?;
+        panel.paint(&line([x, 48.0], [x, 4.5], 1.0, 0.0))?;
     }
     Ok(panel)
 }
@@ -239,17 +239,17 @@ fn blending(library: PaintLibrary, board: Board) -> Result<Panel, UserError> {
 }
 
 fn glazing(library: PaintLibrary, board: Board) -> Result<Panel, UserError> {
-    let mut panel = Panel::of("filbert", 11.0, (library, board))?;
+    let mut panel = Panel::of("flat", 15.0, (library, board))?;
     let greys = [
         "Bone Black=0.7,Titanium White=0.3",
         "Bone Black=0.2,Titanium White=0.8",
         "Bone Black=0.03,Titanium White=0.97",
     ];
     for (row, grey) in greys.into_iter().enumerate() {
-        let y = 39.0 - 15.0 * row as f64;
+        let y = 38.0 - 14.0 * row as f64;
         panel.load(BRUSH, grey)?;
         panel.paint(&line([6.0, y], [80.0, y], 0.5, 90.0))?;
-        panel.paint(&line([80.0, y + 1.5], [6.0, y - 1.5], 0.4, 90.0))?;
+        panel.paint(&line([80.0, y], [6.0, y], 0.3, 90.0))?;
     }
     panel.dry(1.0)?;
     panel.take_up("glaze", sized("flat", 14.0)?)?;

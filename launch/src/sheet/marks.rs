@@ -13,7 +13,7 @@ pub struct Mark {
 }
 
 /// Size of the panel of a brush's marks, mm.
-pub const PANEL_MM: [f64; 2] = [250.0, 44.0];
+pub const PANEL_MM: [f64; 2] = [290.0, 52.0];
 
 /// A stroke along points, whose brush leads with its broad side across the way; `edge` turns it on
 /// its edge.
@@ -59,16 +59,17 @@ pub fn marks(file: &BrushFile) -> Vec<Mark> {
     let mut marks = vec![Mark {
         load: blue,
         gesture: stroke(
-            vec![[8.0, middle - 4.0], [34.0, middle + 3.0], [64.0, middle]],
+            vec![[10.0, middle - 3.0], [34.0, middle + 3.0], [60.0, middle]],
             1.6,
             90.0,
             |t| 0.02 + 0.9 * ease(t) * ease((1.0 - t) / 0.04),
         ),
     }];
+    let swing = if width_mm > 20.0 { 6.0 } else { 9.0 };
     let wave = |i: i32| {
         let t = f64::from(i) / 16.0;
         let turn = maulstick_num::sin(2.0 * std::f64::consts::PI * 2.0 * t);
-        [76.0 + 46.0 * t, middle + 9.0 * turn]
+        [88.0 + 40.0 * t, middle + swing * turn]
     };
     marks.push(Mark {
         load: red,
@@ -76,6 +77,7 @@ pub fn marks(file: &BrushFile) -> Vec<Mark> {
             0.08 + 0.36 * swell(t, 0.15)
         }),
     });
+    let edge = [150.0 + 0.5 * width_mm, 194.0 - 0.5 * width_mm];
     for (row, pressure) in [0.1, 0.24].into_iter().enumerate() {
         let y = middle + 9.0 - 18.0 * row as f64;
         marks.push(Mark {
@@ -83,7 +85,7 @@ pub fn marks(file: &BrushFile) -> Vec<Mark> {
             gesture: Gesture {
                 seconds: 1.0,
                 hand: Box::new(move |t| Moment {
-                    at: [132.0 + 30.0 * ease(t), y],
+                    at: [edge[0] + (edge[1] - edge[0]) * ease(t), y],
                     pressure: 0.02 + pressure * swell(t, 0.2),
                     tilt_deg: [tilt, 0.0],
                     twist_deg,
@@ -95,7 +97,7 @@ pub fn marks(file: &BrushFile) -> Vec<Mark> {
     let (apart, dabs) = if wide { (width_mm, 1) } else { (10.0, 3) };
     for dab in 0..dabs {
         let at = [
-            if wide { 183.0 } else { 174.0 } + apart * f64::from(dab),
+            if wide { 222.0 } else { 211.0 } + apart * f64::from(dab),
             middle,
         ];
         let pressure = 0.35 + 0.2 * f64::from(dab);
@@ -122,7 +124,7 @@ pub fn marks(file: &BrushFile) -> Vec<Mark> {
         marks.push(Mark {
             load: (row == 0).then_some(()).and(green),
             gesture: stroke(
-                vec![[208.0, y], [224.0, y + 2.0], [238.0, y]],
+                vec![[250.0, y], [265.0, y + 2.0], [278.0, y]],
                 1.0,
                 90.0,
                 move |t| 0.02 + (0.28 - 0.14 * f64::from(row)) * swell(t, 0.12),

@@ -213,7 +213,8 @@ pub fn one_stroke_panel(
         file.clone(),
         library,
     )?;
-    for gesture in one_stroke::marks(file.head.width_mm) {
+    let round = file.length_share([1.0, 0.0]) < 0.9;
+    for gesture in one_stroke::marks(file.head.width_mm, round) {
         let load = Load {
             mixture: mixture_of(DOUBLE[0])?,
             beside: Some(mixture_of(DOUBLE[1])?),

@@ -11,22 +11,48 @@ use maulstick_num::{cos, sin};
 use super::gesture::{Gesture, Moment, ease, swell};
 
 /// Size of the panel of the six marks, mm.
-pub const PANEL_MM: [f64; 2] = [250.0, 52.0];
+pub const PANEL_MM: [f64; 2] = [290.0, 52.0];
 
-/// The marks in order, for a brush of this width: each in a sixth of the panel.
-pub fn marks(width_mm: f64) -> [Gesture; 6] {
+/// The marks in order, for a brush of this width: each in a sixth of the panel. A brush that is `round` at its corners
+/// cannot turn on one: its petal is pressed and pulled to a point, and five of these are its shell.
+pub fn marks(width_mm: f64, round: bool) -> [Gesture; 6] {
     let place = |i: usize| {
         let across = PANEL_MM[0] / 6.0;
         [across * (i as f64 + 0.5), 0.5 * PANEL_MM[1]]
     };
+    let (first, third) = if round {
+        (pulled(place(0), 1), pulled(place(2), 5))
+    } else {
+        (petal(place(0), width_mm), shell(place(2), width_mm))
+    };
     [
-        petal(place(0), width_mm),
+        first,
         leaf(place(1)),
-        shell(place(2), width_mm),
+        third,
         comma(place(3)),
         chisel_line(place(4)),
         c_stroke(place(5)),
     ]
+}
+
+/// Petals around a point, each pressed outside, pulled inward and lifted to its point.
+fn pulled(middle: [f64; 2], petals: u32) -> Gesture {
+    let base = [middle[0], middle[1] - 12.0];
+    Gesture {
+        seconds: 1.2 * f64::from(petals),
+        hand: Box::new(move |t| {
+            let along = t * f64::from(petals);
+            let petal = along.floor().min(f64::from(petals - 1));
+            let way = along - petal;
+            let turn = 90.0 + 38.0 * (0.5 * f64::from(petals - 1) - petal);
+            Moment {
+                at: polar(base, 21.0 - 17.0 * ease(way), turn),
+                pressure: 0.26 * ease(way / 0.35) * ease((1.0 - way) / 0.6),
+                tilt_deg: [0.0; 2],
+                twist_deg: turn - 90.0,
+            }
+        }),
+    }
 }
 
 fn polar(middle: [f64; 2], radius: f64, degrees: f64) -> [f64; 2] {

@@ -4,41 +4,41 @@ use super::gesture::{Gesture, Moment, ease, swell};
 use super::marks::stroke;
 
 /// Size of the panel, mm.
-pub const PANEL_MM: [f64; 2] = [250.0, 40.0];
+pub const PANEL_MM: [f64; 2] = [290.0, 40.0];
 
 /// Two bands of colour that meet in the middle of the panel, with their mixtures.
 pub fn bands() -> Vec<(&'static str, Gesture)> {
-    let band = |y: f64| {
-        stroke(vec![[12.0, y], [125.0, y], [238.0, y]], 3.0, 90.0, |t| {
-            0.04 + 0.4 * swell(t, 0.08)
-        })
+    let band = |y: f64, [from, to]: [f64; 2]| {
+        let way = vec![[from, y], [0.5 * (from + to), y], [to, y]];
+        stroke(way, 3.5, 90.0, |t| 0.04 + 0.4 * swell(t, 0.08))
     };
-    vec![
-        (
-            "Ultramarine Blue=0.36,Titanium White=0.24,Thinner=0.4",
-            band(29.0),
-        ),
-        (
-            "Hansa Yellow Opaque=0.36,Titanium White=0.24,Thinner=0.4",
-            band(11.0),
-        ),
-    ]
+    let blue = "Ultramarine Blue=0.36,Titanium White=0.24,Thinner=0.4";
+    let yellow = "Hansa Yellow Opaque=0.36,Titanium White=0.24,Thinner=0.4";
+    let way = |x: f64| [x, PANEL_MM[0] - x];
+    [(blue, 29.0), (yellow, 11.0)]
+        .into_iter()
+        .flat_map(|(mixture, y)| [12.0, 278.0].map(|x| (mixture, band(y, way(x)))))
+        .collect()
 }
 
-/// Light sweeps across the edge, over the right half.
+/// Light sweeps across the edge, up and down in turn, anywhere over the right half.
 pub fn sweeps() -> Vec<Gesture> {
-    (0..88)
+    // Multiples of the golden ratio are even and never in step (Steinhaus's theorem of three gaps).
+    let share = |i: u32, ratio: f64| (f64::from(i) * ratio).fract();
+    (0..120)
         .map(|i| {
-            let x = 134.0 + 9.5 * f64::from(i % 11);
-            let up = i % 2 == 0;
+            let x = 150.0 + 118.0 * share(i, 0.618_033_988_7);
+            let aside = 6.0 * (share(i, 0.754_877_666_2) - 0.5);
+            let reach = 6.0 + 5.0 * share(i, 0.569_840_290_9);
+            let up = if i % 2 == 0 { 1.0 } else { -1.0 };
             Gesture {
                 seconds: 0.5,
                 hand: Box::new(move |t| {
-                    let way = if up { ease(t) } else { 1.0 - ease(t) };
+                    let way = 2.0 * ease(t) - 1.0;
                     Moment {
-                        at: [x, 12.0 + 16.0 * way],
-                        pressure: 0.02 + 0.5 * swell(t, 0.25),
-                        tilt_deg: [0.0, if up { 18.0 } else { -18.0 }],
+                        at: [x + aside * way, 20.0 + up * reach * way],
+                        pressure: 0.02 + 0.42 * swell(t, 0.4),
+                        tilt_deg: [0.0, 18.0 * up],
                         twist_deg: 0.0,
                     }
                 }),

@@ -55,21 +55,24 @@ fn shadow_of_bar(x: f32, r: f32, soft: f32) -> f32 {
     return smoothstep(-soft, soft, r - x) - smoothstep(-soft, soft, -r - x);
 }
 
+fn disc(at: vec2<f32>, node: vec4<f32>, shade: f32) -> f32 {
+    return shade * shadow_of_bar(distance(at, node.xy), node.z, node.w);
+}
+
+// The darkest of the discs and of those between neighbours. A disc that holds its neighbour is not covered by what lies
+// between them, so each is taken by itself, too.
 fn darkness(at: vec2<f32>) -> f32 {
-    var dark = 0.0;
     var b = chain.nodes[0];
     var b_shade = chain.shades[0].x;
+    var dark = disc(at, b, b_shade);
     for (var i = 1u; i < count; i += 1u) {
         let a = b;
         let a_shade = b_shade;
         b = chain.nodes[i];
         b_shade = chain.shades[i].x;
         let ab = b.xy - a.xy;
-        let square = dot(ab, ab);
-        // Where neighbours fall together, each is a disc.
-        let t = select(0.0, clamp(dot(at - a.xy, ab) / max(square, 1e-6), 0.0, 1.0), square > 1e-6);
-        let node = mix(a, b, t);
-        dark = max(dark, mix(a_shade, b_shade, t) * shadow_of_bar(distance(at, node.xy), node.z, node.w));
+        let t = clamp(dot(at - a.xy, ab) / max(dot(ab, ab), 1e-6), 0.0, 1.0);
+        dark = max(dark, max(disc(at, b, b_shade), disc(at, mix(a, b, t), mix(a_shade, b_shade, t))));
     }
     return dark;
 }
