@@ -37,6 +37,7 @@ impl App {
             counts.then(|| Pointer {
                 at: view.to_desk(at, &scene.surfaces).to_array(),
                 pressed,
+                twist_rad: 0.0,
             })
         };
         let places = context.input(|input| {
@@ -117,7 +118,9 @@ impl App {
         let aim = self.tracker.aim(brush);
         let now_s = context.input(|input| input.time);
         let typing = context.memory(|memory| memory.focused().is_some());
-        let is_down = !typing && context.input(|input| input.key_down(keys::CLEAN));
+        // A tap may be shorter than a frame.
+        let is_down = !typing
+            && context.input(|input| input.key_down(keys::CLEAN) || input.key_pressed(keys::CLEAN));
         let painting = aim.is_some_and(|(_, in_air)| !in_air);
         if painting && typing {
             // A stylus that is no pointer takes the keyboard from no field.

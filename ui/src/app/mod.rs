@@ -3,6 +3,7 @@
 //! | module | holds |
 //! | --- | --- |
 //! | `actions` | actions of the painter: keys, clicks and gestures |
+//! | `bar` | menu, undo, redo and help in a corner |
 //! | `overlay` | what lies over the desk: panels, dialogs, help |
 //! | [`rack`] | the brush rack at the edge |
 //! | `first_run` | the line of help for a new painter |
@@ -26,7 +27,9 @@ use maulstick_types::{Origin, name_hash};
 
 use self::actions::side;
 use crate::app::overlay::Overlay;
+use crate::input::brush_turn::BrushTurn;
 use crate::input::clean_key::CleanKey;
+use crate::input::keys;
 use crate::input::mouse_stylus::Mouse;
 use crate::input::navigation::Navigation;
 use crate::input::palette_gesture::PaletteGesture;
@@ -50,6 +53,7 @@ use crate::widgets::notifications::Notifications;
 use crate::widgets::progress::Progress;
 
 mod actions;
+mod bar;
 mod first_run;
 pub(crate) mod overlay;
 pub mod rack;
@@ -78,6 +82,7 @@ pub struct App {
     progress: Progress,
     watch: HealthMonitor,
     mouse: Mouse,
+    brush_turn: BrushTurn,
     view: Option<View>,
     pressed: bool,
     navigation: Navigation,
@@ -146,6 +151,7 @@ impl App {
             stop: member.stop.clone(),
             wake: member.wake.clone(),
             topics: topics.clone(),
+            brush_turn: BrushTurn::default(),
             navigation: Navigation::default(),
             palette_slide: PaletteSlide::default(),
             clean_key: CleanKey::default(),
@@ -291,11 +297,14 @@ impl eframe::App for App {
         if self.stop.requested() || self.lost.is_lost() {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
         }
+        keys::return_keyboard(context);
         let places = self.pointer(context);
         let now_ns = self.bus.now_ns();
         let brush = self.rig.brush_name();
         let taken = self.mouse.take(now_ns, brush);
-        if let Err(error) = taken.and_then(|()| self.mouse.send(now_ns, &places)) {
+        let grip = self.preferences.grip();
+        let places = self.brush_turn.turned(now_ns, &places, &grip);
+        if let Err(error) = taken.and_then(|()| self.mouse.send(now_ns, &places, grip.pressure)) {
             tracing::warn!("the mouse: {error}");
         }
         // After the mouse has sent its position: its brush is drawn there.
@@ -303,7 +312,7 @@ impl eframe::App for App {
         self.barrier.take_in();
         self.send(context);
         self.follow(context, now_ns);
-        if self.pressed {
+        if self.pressed || self.brush_turn.is_waiting() {
             context.request_repaint_after(STILL);
         }
     }

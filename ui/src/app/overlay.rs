@@ -6,6 +6,7 @@ use eframe::egui::{
 use maulstick_types::edits::{Dry, Redo, Undo};
 use maulstick_types::scene::CANVAS;
 
+use crate::app::bar;
 use crate::app::first_run::FirstRun;
 use crate::app::rack;
 use crate::dialogs::Files;
@@ -17,6 +18,10 @@ use crate::widgets::context::PanelContext;
 
 /// Width of the column of panels, points.
 const COLUMN: f32 = 300.0;
+/// A key turns the mouse's brush by this, degrees.
+const TURN_DEG: f64 = 15.0;
+/// A key changes the mouse's pressure by this.
+const PRESS: f64 = 0.05;
 /// Its distance from the window's edges, points.
 const MARGIN: f32 = 8.0;
 
@@ -56,6 +61,11 @@ impl Overlay {
             false => keys::pressed(&context),
         };
         acts.append(&mut work.requests.take_acts());
+        if self.keys && context.input_mut(keys::leaves) {
+            self.keys = false;
+            acts.retain(|act| *act != Action::Keys);
+        }
+        acts.extend(bar::show(&context, work.preferences));
         for act in acts {
             if !self.follow(&context, act, work) {
                 rest.push(act);
@@ -99,6 +109,33 @@ impl Overlay {
             Action::Smaller => work.step_width(false),
             Action::Larger => work.step_width(true),
             Action::NextBrush => work.next_brush(),
+            Action::TurnLeft | Action::TurnRight => {
+                let by_deg = if act == Action::TurnLeft {
+                    TURN_DEG
+                } else {
+                    -TURN_DEG
+                };
+                work.preferences.turn_brush(by_deg);
+                let turn = work.preferences.brush_turn_deg;
+                work.notifications
+                    .note(format!("Brush turned by {turn:.0}°"));
+            }
+            Action::Follow => {
+                let follows = &mut work.preferences.brush_follows;
+                *follows = !*follows;
+                let words = match *follows {
+                    true => "The mouse's brush follows the stroke",
+                    false => "The mouse's brush keeps its turn",
+                };
+                work.notifications.note(words.to_owned());
+            }
+            Action::Lighter | Action::Harder => {
+                let by = if act == Action::Harder { PRESS } else { -PRESS };
+                work.preferences.press(by);
+                let percent = 100.0 * work.preferences.mouse_pressure;
+                work.notifications
+                    .note(format!("Mouse presses with {percent:.0} %"));
+            }
             Action::Panels => work.preferences.panels = !work.preferences.panels,
             Action::Focus => {
                 work.preferences.panels = true;

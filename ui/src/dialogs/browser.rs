@@ -171,7 +171,7 @@ impl Browser {
             None => Some("Looking …".to_owned()),
             Some(Err(what)) => Some(dialog::in_words(what, "")),
             Some(Ok(_)) if fitting.is_empty() && self.purpose == Purpose::Read => {
-                Some("Nothing here begins so.".to_owned())
+                Some("No file here starts with that.".to_owned())
             }
             Some(Ok(_)) => None,
         };

@@ -134,7 +134,7 @@ impl Files {
         let Some(node) = &work.rig.paint else {
             work.notifications.fault(
                 "nothing is known of the painting yet",
-                "wait for the paint node: it comes back by itself",
+                "wait for the painting engine: it comes back by itself",
             );
             return;
         };
@@ -143,8 +143,8 @@ impl Files {
             (path, all) => {
                 let file = paths::shown(Path::new(path));
                 work.notifications.note(match all {
-                    true => format!("All is saved in {file}"),
-                    false => format!("Being saved in {file}, as always by itself"),
+                    true => format!("Saved to {file}"),
+                    false => format!("Saving to {file} …"),
                 });
             }
         }
@@ -349,7 +349,7 @@ fn done(command: &Command) -> Option<String> {
         Command::Rig(RigCommand::SaveAs(save_as)) | Command::File(FileCommand::SaveAs(save_as)) => {
             format!("The painting is in {} now.", file(&save_as.path))
         }
-        Command::File(FileCommand::Export(order)) => format!("Written: {}.", file(&order.path)),
+        Command::File(FileCommand::Export(order)) => format!("Exported to {}.", file(&order.path)),
         Command::File(FileCommand::StopExport) => "The export has ended without a file.".to_owned(),
         Command::Edit(_) | Command::Take(_) | Command::Brush(_) => return None,
     })

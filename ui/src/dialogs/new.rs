@@ -165,7 +165,7 @@ impl NewPainting {
             };
             self.unkept.show(ui);
             Foot {
-                go: "Begin",
+                go: "Create",
                 wrong,
                 entered,
                 busy: busy.then_some("Laying out the canvas …"),
@@ -189,7 +189,7 @@ impl NewPainting {
                     changed = true;
                 }
             }
-            let turn = ui.button("Turn").on_hover_text("Upright, or lying");
+            let turn = ui.button("Swap width and height");
             if turn.clicked() {
                 std::mem::swap(&mut self.width, &mut self.height);
             }
@@ -254,7 +254,7 @@ impl NewPainting {
                 });
                 ui.checkbox(
                     &mut self.in_memory,
-                    "No file: a sketch that goes with the rig",
+                    "Do not save: the sketch is lost when you quit",
                 );
             });
             ui.end_row();

@@ -32,7 +32,7 @@ impl ChoosePicture {
         let answer = dialog::show(context, "Pin a reference picture", |ui| {
             taken = self.browser.show(ui, "Picture");
             Foot {
-                go: "Pin",
+                go: "Open",
                 wrong: self.wrong.clone(),
                 entered: taken.is_some(),
                 busy: None,

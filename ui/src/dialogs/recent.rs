@@ -69,7 +69,7 @@ impl RecentList {
             return None;
         }
         let mut chosen = None;
-        ui.label(RichText::new("Painted in lately").weak());
+        ui.label(RichText::new("Recent paintings").weak());
         for recent in &self.here {
             let folder = recent.path.parent().map_or_else(String::new, paths::shown);
             let age = recent.age.as_deref().unwrap_or("no longer there");

@@ -188,7 +188,7 @@ fn saving_is_confirmed_and_what_is_in_no_file_gets_one() {
     assert_eq!(harness.state().preferences.recent[0], path);
     ctrl(&mut harness, Key::S, gone());
     assert!(harness.query_by_label("Save under another name").is_none());
-    assert!(harness.state().told().contains("All is saved in"));
+    assert!(harness.state().told().contains("Saved to"));
     // Under another name, over a painting that is there.
     std::fs::write(&path, "").expect("written");
     ctrl(&mut harness, Key::S, Modifiers::SHIFT);
@@ -231,7 +231,7 @@ fn an_export_goes_on_by_itself_and_can_be_stopped() {
     let stop = (PAINT.to_owned(), Command::from(FileCommand::StopExport));
     assert_eq!(harness.state_mut().asked(), [stop]);
     harness.state_mut().answer(&asked, Ok("Painting.png"));
-    assert!(harness.state().told().contains("Written: "));
+    assert!(harness.state().told().contains("Exported to "));
 }
 
 #[test]

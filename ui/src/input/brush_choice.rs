@@ -19,8 +19,8 @@ use crate::widgets::context::PanelContext;
 const STEP: f64 = 0.15;
 /// Widths are whole numbers of these, mm.
 const GRAIN_MM: f64 = 0.5;
-/// Widths that a painter is offered, mm.
-const OFFERED_MM: RangeInclusive<f64> = 0.5..=150.0;
+/// Widths that a painter is offered of a brush file without sizes of its own, mm.
+const OFFERED_MM: RangeInclusive<f64> = 0.5..=60.0;
 
 /// The brushes of the library, in their order.
 pub(crate) fn library() -> &'static [BrushFile] {
@@ -70,7 +70,8 @@ pub(crate) fn millimetres(width_mm: f64) -> String {
     format!("{} mm", (width_mm * 100.0).round() / 100.0)
 }
 
-/// The widths that a brush can have, mm: what of it scales with them stays in its bounds.
+/// The widths that a brush can have, mm: those of its file's sizes, as far as what scales with them stays in its
+/// bounds.
 #[must_use]
 pub(crate) fn widths_mm(file: &BrushFile) -> RangeInclusive<f64> {
     let now = file.head.width_mm;
@@ -90,7 +91,12 @@ pub(crate) fn widths_mm(file: &BrushFile) -> RangeInclusive<f64> {
         }
         good
     };
-    farthest(OFFERED_MM.start().min(now))..=farthest(OFFERED_MM.end().max(now))
+    let sizes = file.sizes_mm.iter().copied();
+    let [least, most] = match file.sizes_mm.is_empty() {
+        true => [*OFFERED_MM.start(), *OFFERED_MM.end()],
+        false => [sizes.clone().fold(now, f64::min), sizes.fold(now, f64::max)],
+    };
+    farthest(least.min(now))..=farthest(most.max(now))
 }
 
 /// The next width up or down, mm.

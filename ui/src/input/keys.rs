@@ -1,6 +1,8 @@
 //! Key bindings, one table for input and for help.
 
-use eframe::egui::{Context, Event, Key, KeyboardShortcut, Modifiers, Plugin, RawInput};
+use eframe::egui::{
+    Context, Event, InputState, Key, KeyboardShortcut, Modifiers, Plugin, RawInput, TextEdit,
+};
 
 /// Action of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +29,16 @@ pub enum Action {
     Larger,
     /// The next brush of the rack.
     NextBrush,
+    /// The mouse's brush turned to the left.
+    TurnLeft,
+    /// The mouse's brush turned to the right.
+    TurnRight,
+    /// The mouse's brush across its stroke, or as it is turned.
+    Follow,
+    /// The mouse presses lighter.
+    Lighter,
+    /// The mouse presses harder.
+    Harder,
     /// All wet paint becomes a dry layer.
     Dry,
     /// The palette over the canvas, and back.
@@ -67,12 +79,12 @@ const fn key(act: Action, modifiers: Modifiers, key: Key, words: &'static str) -
 }
 
 /// Bindings of keys that act once per press. One with more modifiers comes before the same with fewer.
-pub(crate) const BINDINGS: [Binding; 21] = [
+pub(crate) const BINDINGS: [Binding; 26] = [
     key(
         Action::Palette,
         Modifiers::NONE,
         Key::Space,
-        "Palette out, and back",
+        "Show or hide the palette",
     ),
     key(
         Action::Panels,
@@ -93,6 +105,36 @@ pub(crate) const BINDINGS: [Binding; 21] = [
         "Larger brush",
     ),
     key(Action::NextBrush, Modifiers::NONE, Key::B, "Next brush"),
+    key(
+        Action::TurnLeft,
+        Modifiers::NONE,
+        Key::Comma,
+        "Mouse: turn the brush left",
+    ),
+    key(
+        Action::TurnRight,
+        Modifiers::NONE,
+        Key::Period,
+        "Mouse: turn the brush right",
+    ),
+    key(
+        Action::Follow,
+        Modifiers::NONE,
+        Key::T,
+        "Mouse: the brush follows the stroke, or not",
+    ),
+    key(
+        Action::Lighter,
+        Modifiers::NONE,
+        Key::Minus,
+        "Mouse: press lighter",
+    ),
+    key(
+        Action::Harder,
+        Modifiers::NONE,
+        Key::Equals,
+        "Mouse: press harder",
+    ),
     key(Action::Dry, Modifiers::NONE, Key::D, "Dry the canvas"),
     key(
         Action::Fit,
@@ -104,20 +146,15 @@ pub(crate) const BINDINGS: [Binding; 21] = [
         Action::Hundred,
         Modifiers::NONE,
         Key::Num1,
-        "A cell of the canvas a pixel",
+        "Actual pixels (1:1)",
     ),
     key(
         Action::Focus,
         Modifiers::NONE,
         Key::F6,
-        "The keyboard to the panels; Escape: back",
+        "Move the keyboard to the panels (Escape returns)",
     ),
-    key(
-        Action::FullScreen,
-        Modifiers::NONE,
-        Key::F11,
-        "Whole screen, and back",
-    ),
+    key(Action::FullScreen, Modifiers::NONE, Key::F11, "Full screen"),
     key(
         Action::Redo,
         Modifiers::COMMAND.plus(Modifiers::SHIFT),
@@ -144,7 +181,7 @@ pub(crate) const BINDINGS: [Binding; 21] = [
         Action::Reference,
         Modifiers::COMMAND,
         Key::R,
-        "Reference picture, and away",
+        "Show or hide the reference picture",
     ),
     key(
         Action::Keys,
@@ -157,7 +194,7 @@ pub(crate) const BINDINGS: [Binding; 21] = [
         Action::ForceOff,
         Modifiers::NONE,
         Key::F9,
-        "Force off, of every device",
+        "Switch off force on all devices",
     ),
 ];
 
@@ -174,16 +211,23 @@ pub(crate) const HELD: [(&str, &str); 6] = [
     ),
     ("… with Shift", "Turn the canvas"),
     ("… with Alt", "Tilt the canvas"),
-    ("A wave to the palette's side", "Palette out, and back"),
+    (
+        "Flick the brush off the palette's side",
+        "Show or hide the palette",
+    ),
 ];
 
 /// A key as it is written: signs as themselves.
 #[must_use]
 pub(crate) fn written(context: &Context, shortcut: &KeyboardShortcut) -> String {
     match shortcut.logical_key {
-        key @ (Key::OpenBracket | Key::CloseBracket | Key::Questionmark) => {
-            key.symbol_or_name().to_owned()
-        }
+        key @ (Key::OpenBracket
+        | Key::CloseBracket
+        | Key::Questionmark
+        | Key::Comma
+        | Key::Period
+        | Key::Minus
+        | Key::Equals) => key.symbol_or_name().to_owned(),
         _ => context.format_shortcut(shortcut),
     }
 }
@@ -215,6 +259,22 @@ impl Plugin for TabKey {
     }
 }
 
+/// True if a key closes the table of keys, also while a control has the keyboard; it is taken from the input.
+pub(crate) fn leaves(input: &mut InputState) -> bool {
+    input.consume_key(Modifiers::NONE, Key::Escape)
+        || input.consume_key(Modifiers::SHIFT, Key::Questionmark)
+        || input.consume_key(Modifiers::NONE, Key::F1)
+}
+
+/// Gives the keyboard back to the desk after a click on a control in which nothing is typed.
+pub(crate) fn return_keyboard(context: &Context) {
+    let clicked = context.input(|input| input.pointer.any_released());
+    let focused = context.memory(|memory| memory.focused());
+    if let Some(id) = focused.filter(|id| clicked && TextEdit::load_state(context, *id).is_none()) {
+        context.memory_mut(|memory| memory.surrender_focus(id));
+    }
+}
+
 /// The one key that acts whatever else is open.
 #[must_use]
 pub(crate) fn force_off(context: &Context) -> Vec<Action> {
@@ -234,7 +294,14 @@ pub(crate) fn pressed(context: &Context) -> Vec<Action> {
             // A held key acts once, except undo and redo.
             let repeats = matches!(
                 binding.act,
-                Action::Undo | Action::Redo | Action::Smaller | Action::Larger
+                Action::Undo
+                    | Action::Redo
+                    | Action::Smaller
+                    | Action::Larger
+                    | Action::TurnLeft
+                    | Action::TurnRight
+                    | Action::Lighter
+                    | Action::Harder
             );
             let KeyboardShortcut {
                 modifiers: own,

@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | [`keys`] | key bindings |
 //! | [`mouse_stylus`] | the mouse as a stylus |
+//! | [`brush_turn`] | turn of the brush that the mouse moves |
 //! | [`navigation`] | wheel, drag and touch: moves the surfaces |
 //! | [`clean_key`] | the key that cleans the brush, or lifts paint while it is held |
 //! | [`palette_gesture`] | the wave of the brush that fetches the palette |
@@ -11,6 +12,7 @@
 //! | [`palette_wells`] | the mixtures in the wells of the palette |
 
 pub(crate) mod brush_choice;
+pub(crate) mod brush_turn;
 pub(crate) mod clean_key;
 pub(crate) mod keys;
 pub(crate) mod mouse_stylus;

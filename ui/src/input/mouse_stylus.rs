@@ -16,18 +16,15 @@ use maulstick_types::{Flags, Origin};
 const SILENCE_NS: u64 = 1_000_000_000;
 /// A frame takes no longer, ns; a longer time is a pause.
 const FRAME_NS: u64 = 90_000_000;
-/// Longest frame of a stroke that continues, ns.
-const LONG_FRAME_NS: u64 = 1_000_000_000;
-/// Pressure of a pressed button.
-const PRESSED: f64 = 0.5;
-
-/// Position of the pointer on the desk, and its button.
+/// Position of the pointer on the desk, its button, and the turn of the brush there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pointer {
     /// On the desk, m.
     pub at: [f64; 3],
     /// The primary button.
     pub pressed: bool,
+    /// Turn of the brush about its axis, rad.
+    pub twist_rad: f64,
 }
 
 /// The mouse.
@@ -40,8 +37,8 @@ pub(crate) struct Mouse {
     silent_until_ns: u64,
     sent_ns: u64,
     was_in_range: bool,
-    /// Position of the brush when the mouse last sent a pressed sample; `None` in the air.
-    pressed: Option<[f64; 3]>,
+    /// The last place that was sent, if it was pressed; `None` in the air.
+    pressed: Option<Pointer>,
 }
 
 impl Mouse {
@@ -95,7 +92,7 @@ impl Mouse {
             return Ok(());
         }
         // The brush that was in the hand is lifted first.
-        self.send(now_ns, &[])?;
+        self.send(now_ns, &[], 0.0)?;
         brush.clone_into(&mut self.told.brush);
         self.info.send(now_ns, now_ns, &self.told)
     }
@@ -106,12 +103,17 @@ impl Mouse {
         now_ns < self.silent_until_ns
     }
 
-    /// Sends the movement of the pointer since the last call: its positions in order, evenly spread over that time;
-    /// none while it is not over the desk.
+    /// Sends the movement of the pointer since the last call, pressed so hard, 0 to 1: its positions in order, evenly
+    /// spread over that time; none while it is not over the desk.
     ///
     /// # Errors
     /// [`BusError::Topic`].
-    pub(crate) fn send(&mut self, now_ns: u64, places: &[Pointer]) -> Result<(), BusError> {
+    pub(crate) fn send(
+        &mut self,
+        now_ns: u64,
+        places: &[Pointer],
+        pressure: f64,
+    ) -> Result<(), BusError> {
         while let Some(other) = self.others.try_recv() {
             if other.header.source != self.me.source && other.message.in_range {
                 self.silent_until_ns = now_ns + SILENCE_NS;
@@ -139,16 +141,14 @@ impl Mouse {
             return Ok(());
         }
         self.was_in_range = true;
-        // After a pause the pointer has not crept here. A frame may be long where the processor draws: what
-        // was moved in it took all of it, or the brush would leap and rest by turns.
-        let goes_on = self.pressed.is_some() && places[0].pressed;
-        let longest_ns = if goes_on { LONG_FRAME_NS } else { FRAME_NS };
-        let since_ns = self.sent_ns.max(now_ns.saturating_sub(longest_ns));
+        // After a pause the pointer has not crept here. In a stroke a frame may be as long as it likes: what was moved
+        // in it took all of it, or the brush would leap and rest by turns.
+        let since_ns = match self.pressed.is_some() && places[0].pressed {
+            true => self.sent_ns,
+            false => self.sent_ns.max(now_ns.saturating_sub(FRAME_NS)),
+        };
         let places = self.finer(places, now_ns - since_ns);
-        self.pressed = places
-            .last()
-            .filter(|last| last.pressed)
-            .map(|last| last.at);
+        self.pressed = places.last().copied().filter(|last| last.pressed);
         for (number, place) in places.iter().enumerate() {
             let share = (number + 1) as f64 / places.len() as f64;
             let event_ns = since_ns + ((now_ns - since_ns) as f64 * share) as u64;
@@ -157,8 +157,8 @@ impl Mouse {
                 pose: StylusPose::Contact {
                     point_m: place.at,
                     tilt_rad: DEFAULT_TILT_RAD,
-                    twist_rad: 0.0,
-                    pressure: if place.pressed { PRESSED } else { 0.0 },
+                    twist_rad: place.twist_rad,
+                    pressure: if place.pressed { pressure } else { 0.0 },
                 },
                 switches: u32::from(place.pressed),
                 in_range: true,
@@ -184,12 +184,16 @@ impl Mouse {
             if let (Some(from), true) = (before, place.pressed) {
                 all.extend((1..parts).map(|part| {
                     let share = part as f64 / parts as f64;
-                    let at = std::array::from_fn(|i| from[i] + share * (place.at[i] - from[i]));
-                    Pointer { at, pressed: true }
+                    let between = |from: f64, to: f64| from + share * (to - from);
+                    Pointer {
+                        at: std::array::from_fn(|i| between(from.at[i], place.at[i])),
+                        pressed: true,
+                        twist_rad: between(from.twist_rad, place.twist_rad),
+                    }
                 }));
             }
             all.push(*place);
-            before = place.pressed.then_some(place.at);
+            before = place.pressed.then_some(*place);
         }
         all
     }
@@ -206,7 +210,9 @@ mod tests {
     const PRESSED: Pointer = Pointer {
         at: [0.0; 3],
         pressed: true,
+        twist_rad: 0.0,
     };
+    const PRESSURE: f64 = 0.5;
 
     /// A mouse, and who hears it.
     struct Desk {
@@ -242,7 +248,7 @@ mod tests {
         /// The mouse sends its position; returns the range state that was received.
         fn turn(&mut self) -> Option<bool> {
             let now_ns = self.net.bus().now_ns();
-            self.mouse.send(now_ns, &[PRESSED]).expect("sent");
+            self.mouse.send(now_ns, &[PRESSED], PRESSURE).expect("sent");
             self.net.advance(SECOND / 10);
             self.samples.newest().map(|sample| sample.message.in_range)
         }
@@ -274,7 +280,7 @@ mod tests {
     #[test]
     fn another_brush_is_taken_after_the_first_was_put_down() {
         let mut desk = Desk::new();
-        desk.mouse.send(SECOND, &[PRESSED]).expect("sent");
+        desk.mouse.send(SECOND, &[PRESSED], PRESSURE).expect("sent");
         for brush in ["main", "second", "second"] {
             desk.mouse.take(SECOND + 1, brush).expect("told");
         }
@@ -297,23 +303,30 @@ mod tests {
         let at = |x: f64| Pointer {
             at: [x, 0.0, 0.0],
             pressed: true,
+            twist_rad: x,
         };
-        desk.mouse.send(SECOND, &[at(0.0)]).expect("sent");
-        let slow = SECOND + 960_000_000;
-        desk.mouse.send(slow, &[at(0.01), at(0.06)]).expect("sent");
+        let mut send = |now_ns: u64, places: &[Pointer]| {
+            desk.mouse.send(now_ns, places, PRESSURE).expect("sent");
+        };
+        send(SECOND, &[at(0.0)]);
+        let slow = 4 * SECOND;
+        send(slow, &[at(0.01), at(0.06)]);
         desk.net.advance(SECOND / 10);
         let mut heard = Vec::new();
         while let Some(sample) = desk.samples.try_recv() {
             let StylusPose::Contact {
-                point_m, pressure, ..
+                point_m,
+                pressure,
+                twist_rad,
+                ..
             } = sample.message.pose
             else {
                 panic!("no contact");
             };
-            assert!(pressure > 0.0);
+            assert!(pressure == PRESSURE && twist_rad == point_m[0]);
             heard.push((sample.header.event_ns, point_m[0]));
         }
-        assert_eq!((heard.len(), heard[heard.len() - 1]), (5, (slow, 0.06)));
+        assert_eq!((heard.len(), heard[heard.len() - 1]), (11, (slow, 0.06)));
         for pair in heard.windows(2) {
             let [(from_ns, from), (to_ns, to)] = [pair[0], pair[1]];
             assert!(to_ns - from_ns <= BRIDGED_NS && to > from, "{heard:?}");
@@ -323,8 +336,9 @@ mod tests {
             pressed: false,
             ..at(0.0)
         };
-        desk.mouse.send(slow + 1, &[lifted]).expect("sent");
-        desk.mouse.send(slow + SECOND, &[lifted]).expect("sent");
+        let mut send = |now_ns: u64| desk.mouse.send(now_ns, &[lifted], PRESSURE).expect("sent");
+        send(slow + 1);
+        send(slow + SECOND);
         desk.net.advance(SECOND / 10);
         assert_eq!(std::iter::from_fn(|| desk.samples.try_recv()).count(), 2);
     }
@@ -333,7 +347,8 @@ mod tests {
     fn what_is_moved_in_a_long_frame_is_spread_over_it() {
         let mut desk = Desk::new();
         for frame in 1..=3 {
-            let sent = desk.mouse.send(SECOND + frame * 80_000_000, &[PRESSED; 8]);
+            let now_ns = SECOND + frame * 80_000_000;
+            let sent = desk.mouse.send(now_ns, &[PRESSED; 8], PRESSURE);
             sent.expect("sent");
         }
         desk.net.advance(SECOND / 10);

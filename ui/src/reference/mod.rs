@@ -346,7 +346,7 @@ impl Reference {
     /// The picked colour, and the mixtures that come near it.
     fn proposals(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let Some(linear) = self.picked else {
-            ui.weak("Click a colour: mixtures of it. Wheel: closer.");
+            ui.weak("Click a colour to see mixtures for it. Scroll to zoom.");
             return;
         };
         let bytes = linear.map(|channel| (srgb_encode(channel) * 255.0).round() as u8);

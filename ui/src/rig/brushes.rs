@@ -274,15 +274,17 @@ impl TrackedBrush {
             plane.to_desk.inverse().after(&on_desk)
         };
         let mut brush = place(sample);
-        // A pen's brush stands beside its point, as far as in its newest state.
+        // A pen's brush stands beside its point, or hovers above it, as far as in its newest state.
         if let Some((solve, then)) = &self.led
             && solve.surface == plane.id
-            && !then.in_air()
-            && !sample.in_air()
+            && then.in_air() == sample.in_air()
         {
             let led = DVec3::from_array(solve.pose.position_m) * solve.zoom;
             let shift = led - place(then).translation;
-            brush.translation += DVec3::new(shift.x, shift.y, 0.0);
+            brush.translation += match sample.in_air() {
+                true => DVec3::new(0.0, 0.0, shift.z),
+                false => DVec3::new(shift.x, shift.y, 0.0),
+            };
         }
         let far = brush.translation.abs().max_element();
         (far < 100.0).then(|| BrushPose {

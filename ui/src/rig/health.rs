@@ -139,7 +139,7 @@ impl HealthMonitor {
         let who = match relative.split('/').collect::<Vec<_>>()[..] {
             ["stylus" | "control" | "haptics", device, ..] => format!("The device '{device}'"),
             ["brush", brush, ..] => format!("The node of the brush '{brush}'"),
-            ["paint", ..] | ["scene"] => "The paint node".to_owned(),
+            ["paint", ..] | ["scene"] => "The painting engine".to_owned(),
             _ => format!("Who sends {relative}"),
         };
         if !self.strange.insert(who.clone()) {
@@ -166,7 +166,7 @@ impl HealthMonitor {
 fn who(node: &str, state: &RigState) -> Option<(String, &'static str)> {
     if node == PAINT {
         let help = "The canvas stays as it is shown, and goes on when it is back.";
-        return Some(("The paint node".to_owned(), help));
+        return Some(("The painting engine".to_owned(), help));
     }
     if let Some(brush) = node.strip_prefix(BRUSH) {
         let help = "Lift the stylus; the brush follows again when it is back.";
@@ -269,7 +269,7 @@ mod tests {
     #[test]
     fn a_node_that_goes_and_comes_is_told_once_each_time() {
         for (node, who) in [
-            ("paint", "The paint node"),
+            ("paint", "The painting engine"),
             ("brush-main", "The node of the brush 'main'"),
             ("arm", "The driver of 'arm'"),
         ] {
@@ -344,7 +344,7 @@ mod tests {
                 "{who} is of another version of Maulstick than this window."
             ))
         };
-        assert_eq!(rig.look(), strange("The paint node"));
+        assert_eq!(rig.look(), strange("The painting engine"));
         rig.state.events = vec![refused(topics.paint_status())];
         assert_eq!(rig.look(), []);
         rig.state.events = vec![refused(topics.stylus_info("arm"))];

@@ -5,9 +5,11 @@
 //! | [`preferences`] | the file of them |
 //! | `presets` | brushes with their paint, by name |
 //! | `paint_sets` | sets of paints for the palette |
+//! | `grip` | how the mouse holds the brush |
 //! | `brush_load` | the mixtures that a brush takes up |
 
 pub(crate) mod brush_load;
+pub(crate) mod grip;
 pub(crate) mod paint_sets;
 pub mod preferences;
 pub(crate) mod presets;

@@ -11,11 +11,15 @@ use maulstick_rig::files::{Kind, write_whole};
 
 use crate::reference::ReferencePreferences;
 use crate::settings::brush_load::BrushLoad;
+use crate::settings::grip::Grip;
 use crate::settings::paint_sets::PaintSet;
 use crate::settings::presets::Preset;
 
 /// Recent paintings that are remembered.
 const RECENT: usize = 12;
+
+/// Pressures that a mouse can have.
+pub(crate) const MOUSE_PRESSURE: std::ops::RangeInclusive<f64> = 0.05..=1.0;
 
 /// Settings of the window.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,6 +43,12 @@ pub struct Preferences {
     pub own_brushes: Vec<PathBuf>,
     /// Load for the next dip of the brush.
     pub loading: BrushLoad,
+    /// True if a brush that is moved by the mouse stays across its stroke.
+    pub brush_follows: bool,
+    /// Turn of that brush, degrees counter-clockwise.
+    pub brush_turn_deg: f64,
+    /// Pressure of the mouse's button, 0 to 1.
+    pub mouse_pressure: f64,
     /// Widths at which brushes were last used, by their kind, mm.
     pub widths_mm: BTreeMap<String, f64>,
     /// Brushes that are ready with their paint.
@@ -59,6 +69,9 @@ impl Default for Preferences {
             reference: ReferencePreferences::default(),
             own_brushes: Vec::new(),
             loading: BrushLoad::default(),
+            brush_follows: true,
+            brush_turn_deg: 0.0,
+            mouse_pressure: 0.5,
             widths_mm: BTreeMap::new(),
             presets: Vec::new(),
             paint_sets: Vec::new(),
@@ -95,6 +108,12 @@ impl Preferences {
         if !preferences.size.iter().all(|side| sane(*side)) {
             preferences.size = Self::default().size;
         }
+        if !preferences.brush_turn_deg.is_finite() {
+            preferences.brush_turn_deg = 0.0;
+        }
+        if !MOUSE_PRESSURE.contains(&preferences.mouse_pressure) {
+            preferences.mouse_pressure = Self::default().mouse_pressure;
+        }
         Ok(preferences)
     }
 
@@ -110,6 +129,28 @@ impl Preferences {
             std::fs::create_dir_all(folder).map_err(failed)?;
         }
         write_whole(path, Kind::Own, |file| file.write_all(text.as_bytes())).map_err(failed)
+    }
+
+    /// How the mouse holds the brush.
+    #[must_use]
+    pub(crate) fn grip(&self) -> Grip {
+        Grip {
+            follows: self.brush_follows,
+            turn_rad: self.brush_turn_deg.to_radians(),
+            pressure: self.mouse_pressure,
+        }
+    }
+
+    /// Turns the brush of the mouse further, within half a turn of where it began.
+    pub(crate) fn turn_brush(&mut self, by_deg: f64) {
+        let turned = self.brush_turn_deg + by_deg + 90.0;
+        self.brush_turn_deg = turned.rem_euclid(180.0) - 90.0;
+    }
+
+    /// Presses the mouse harder by this share, or lighter.
+    pub(crate) fn press(&mut self, by: f64) {
+        let pressed = ((self.mouse_pressure + by) * 100.0).round() / 100.0;
+        self.mouse_pressure = pressed.clamp(*MOUSE_PRESSURE.start(), *MOUSE_PRESSURE.end());
     }
 
     /// Remembers that a painting was open.
@@ -167,8 +208,12 @@ mod tests {
         std::fs::write(&path, "panels = 7").expect("written");
         let fault = Preferences::read(&path).expect_err("no truth value");
         assert!(fault.to_string().contains("window.toml"), "{fault}");
-        std::fs::write(&path, "size = [nan, 1e9]\nunknown = 1").expect("written");
+        std::fs::write(
+            &path,
+            "size = [nan, 1e9]\nunknown = 1\nmouse_pressure = 7.0\nbrush_turn_deg = nan",
+        )
+        .expect("written");
         let preferences = Preferences::read(&path).expect("of a newer window");
-        assert_eq!(preferences.size, Preferences::default().size);
+        assert_eq!(preferences, Preferences::default());
     }
 }

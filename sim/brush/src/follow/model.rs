@@ -1,13 +1,13 @@
 //! The brush that follows a stylus: samples in, solved states out.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use maulstick_num::geometry::Rigid;
 use maulstick_types::Origin;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
 use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::stylus::{StylusPose, StylusSample};
 
-use crate::desk::{Desk, Obstacle, Plane, aim, ferrule};
+use crate::desk::{Desk, HOVER_M, Obstacle, Plane, aim, ferrule};
 use crate::file::BrushFile;
 use crate::handle_path::{HandlePath, PathSegment, Sampled};
 use crate::head_solver::{HeadSolver, SolvedHead, settings_of};
@@ -189,11 +189,14 @@ impl BrushModel {
         if !sample.in_range {
             brush.translation.z = brush.translation.z.max(2.0 * length);
         }
+        let is_pen = matches!(sample.pose, StylusPose::Contact { .. });
+        if is_pen && sample.in_air() {
+            self.hover(&mut brush, &plane);
+        }
         let here = Sampled {
             pose: brush,
             event_ns,
         };
-        let is_pen = matches!(sample.pose, StylusPose::Contact { .. });
         if is_pen && sample.in_range {
             // While it hovers there is time.
             self.solve_table();
@@ -229,6 +232,20 @@ impl BrushModel {
         tracked.newest = here;
         self.tracked = Some(tracked);
         solves
+    }
+
+    /// Lifts the brush of a pen in the air until each joint of its head is [`HOVER_M`] above what lies under it: a wide
+    /// head that leans reaches lower than its middle, and to the palette beside the canvas.
+    fn hover(&self, brush: &mut Rigid, plane: &Plane) {
+        let Some(desk) = &self.desk else { return };
+        let gap = |joint: DVec3| {
+            let in_desk = plane.to_desk.point(joint);
+            let under = desk.under(in_desk).unwrap_or(plane);
+            under.half_space().gap(in_desk)
+        };
+        let joints = self.tuft.joints_at_rest(brush).into_iter();
+        let lowest = joints.map(gap).fold(f64::INFINITY, f64::min);
+        brush.translation.z += (HOVER_M - lowest).max(0.0);
     }
 
     /// Begins another stroke with a head that is bent as it was before a pause in contact: one that

@@ -111,6 +111,18 @@ impl SpineLayout {
         brush.translation.z += lacking.max(0.0);
     }
 
+    /// Joints of all spines of a brush at pose `brush`, unbent.
+    #[must_use]
+    pub fn joints_at_rest(&self, brush: &Rigid) -> Vec<DVec3> {
+        let mut joints = Vec::new();
+        let mut all = Vec::new();
+        for root in &self.roots {
+            root.at_rest(brush).joints(&root.spine, &mut joints);
+            all.extend_from_slice(&joints);
+        }
+        all
+    }
+
     /// Multiplies all stiffness by a factor.
     pub fn stiffen(&mut self, factor: f64) {
         self.repulsion_n_m *= factor;

@@ -25,6 +25,7 @@ use maulstick_types::scene::{BrushHandling, Tuning};
 use crate::input::brush_choice::{called, library, resized, widths_mm};
 use crate::panels::Panel;
 use crate::render::brush::icon_cache;
+use crate::settings::preferences::{MOUSE_PRESSURE, Preferences};
 use crate::widgets::context::PanelContext;
 use crate::widgets::labelled::{self, PendingValue};
 
@@ -62,6 +63,7 @@ impl Panel for BrushPanel {
         let mut is_held = self.width(ui, work, &file);
         self.tuning(ui, work);
         modes::show(ui, work, &mut self.handling);
+        ui.collapsing("Mouse", |ui| mouse(ui, work.preferences));
         ui.separator();
         self.paint.show(ui, work);
         ui.separator();
@@ -106,6 +108,23 @@ fn shape(ui: &mut Ui, work: &mut PanelContext<'_>, file: &BrushFile) {
             ui.label(RichText::new(&file.about).small());
         });
     });
+}
+
+/// Turn and pressure of a brush that the mouse moves.
+fn mouse(ui: &mut Ui, preferences: &mut Preferences) {
+    let check = ui.checkbox(&mut preferences.brush_follows, "Brush follows the stroke");
+    check.on_hover_text("Its broad side stays across the stroke.  T");
+    let slider =
+        labelled::slider(&mut preferences.brush_turn_deg, -90.0..=90.0, "°").max_decimals(0);
+    let hover = "Turn of the brush, from there or from left to right.  , and .";
+    labelled::named(ui, "Turn", hover, slider);
+    let mut percent = (100.0 * preferences.mouse_pressure).round();
+    let [least, most] = [MOUSE_PRESSURE.start(), MOUSE_PRESSURE.end()].map(|share| 100.0 * share);
+    let slider = labelled::slider(&mut percent, least..=most, " %").max_decimals(0);
+    let hover = "Pressure while the button is down.  - and =";
+    if labelled::named(ui, "Pressure", hover, slider).changed() {
+        preferences.mouse_pressure = 0.01 * percent;
+    }
 }
 
 /// A brush of the list; whether it was chosen.

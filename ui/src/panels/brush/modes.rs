@@ -21,17 +21,17 @@ const WAYS: [(BrushMode, &str, &str); 7] = [
     ),
     (
         BrushMode::NoPush,
-        "Glides",
+        "Paint without pushing",
         "It leaves paint and takes some up, but pushes none aside.",
     ),
     (
         BrushMode::Sponge,
-        "Sponge",
+        "Never runs out",
         "It stays as it is, full or empty, whatever it leaves or takes up.",
     ),
     (
         BrushMode::SpongeNoPush,
-        "Sponge, glides",
+        "Never runs out, without pushing",
         "As a sponge, and it pushes nothing aside.",
     ),
     (
@@ -41,12 +41,12 @@ const WAYS: [(BrushMode, &str, &str); 7] = [
     ),
     (
         BrushMode::Sampler,
-        "Samples colours",
+        "Pick up colour",
         "It takes on the colours that it touches; the surface stays as it is.",
     ),
     (
         BrushMode::Vacuum,
-        "Lifts off",
+        "Lift paint",
         "It lifts off the wet paint that it touches, and is clean.",
     ),
 ];
@@ -61,7 +61,7 @@ pub(super) fn show(
     let mut wanted = handling.clone();
     ui.horizontal(|ui| {
         let hover = "What the brush does with the paint that it touches.";
-        let name = labelled::label(ui, "Way", hover);
+        let name = labelled::label(ui, "Mode", hover);
         let mut ways = WAYS.iter();
         let own = ways.find(|(mode, ..)| *mode == handling.mode);
         ComboBox::from_id_salt("way")
@@ -105,7 +105,7 @@ pub(super) fn show(
 fn most(ui: &mut Ui, handling: &BrushHandling, wanted: &mut BrushHandling) {
     let hover = "The brush adds no paint where as much lies wet already.";
     let mut bounded = handling.most_m > 0.0;
-    let check = ui.checkbox(&mut bounded, "No thicker than");
+    let check = ui.checkbox(&mut bounded, "Limit the thickness");
     if check.on_hover_text(hover).changed() {
         wanted.most_m = if bounded { PROPOSED_M } else { 0.0 };
     }

@@ -25,7 +25,7 @@ impl PaintRows {
             "A paint's name, or a mixture by volume such as Cobalt Blue=0.7,Titanium White=0.3";
         let mut enter = field(ui, work, "Paint", hover, |loading| Some(&mut loading.paint));
         let mut two = work.preferences.loading.beside.is_some();
-        let check = ui.checkbox(&mut two, "Another on the other half");
+        let check = ui.checkbox(&mut two, "Second colour on the right half");
         let hover = "Two paints side by side on one brush (double loading).";
         if check.on_hover_text(hover).changed() {
             work.preferences.loading.beside = two.then(String::new);

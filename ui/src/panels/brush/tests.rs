@@ -92,7 +92,7 @@ fn what_the_rig_says_is_shown_where_nothing_was_asked() {
 fn the_way_shows_what_belongs_to_it() {
     let mut harness = panel(Bench::new());
     assert!(harness.query_by_label("Flow").is_none());
-    harness.get_by_label("Way").click();
+    harness.get_by_label("Mode").click();
     harness.run();
     harness.get_by_label("Marker").click();
     harness.run();
@@ -115,7 +115,7 @@ fn the_way_shows_what_belongs_to_it() {
         .numeric_value();
     assert_eq!(flow, Some(MARKER_FLOW * 1e3));
     harness
-        .get_by_role_and_label(Role::CheckBox, "No thicker than")
+        .get_by_role_and_label(Role::CheckBox, "Limit the thickness")
         .click();
     harness.run();
     let handling = BrushHandling {
@@ -133,11 +133,11 @@ fn the_way_shows_what_belongs_to_it() {
             .query_by_role_and_label(Role::Slider, "Thickness")
             .is_some()
     );
-    harness.get_by_label("Way").click();
+    harness.get_by_label("Mode").click();
     harness.run();
-    harness.get_by_label("Lifts off").click();
+    harness.get_by_label("Lift paint").click();
     harness.run();
-    assert!(harness.query_by_label("No thicker than").is_none());
+    assert!(harness.query_by_label("Limit the thickness").is_none());
 }
 
 #[test]
@@ -175,7 +175,9 @@ fn a_paint_is_completed_thinned_and_loaded() {
 fn two_paints_side_by_side_and_one_that_there_is_not() {
     let mut harness = panel(Bench::new());
     write(&mut harness, "Paint", "Bone Black");
-    harness.get_by_label("Another on the other half").click();
+    harness
+        .get_by_label("Second colour on the right half")
+        .click();
     harness.run();
     write(&mut harness, "Right half", "Colbat Blue");
     harness.key_press(Key::Enter);

@@ -51,7 +51,7 @@ impl FilmForm {
         let change = self.sliders.row(ui, &THICKNESS, self.thickness_um);
         self.thickness_um = change.moved.unwrap_or(self.thickness_um);
         below(ui, |ui| {
-            let button = ui.button("Lay it");
+            let button = ui.button("Cover");
             let button = button.on_hover_text("Over the whole canvas; it can be undone");
             if button.clicked() {
                 ask(work, self.edit(work.rig.brush_name()));

@@ -29,7 +29,7 @@ use film::FilmForm;
 use placement::Posture;
 
 const SIZING: Number<'_> = Number {
-    word: "Stain",
+    word: "Absorbency",
     hover: "How thick a film stays however hard it is wiped: little on a heavily sized canvas, µm",
     range: 0.0..=50.0,
     unit: " µm",
@@ -94,7 +94,8 @@ impl Panel for CanvasPanel {
         self.place(ui, work, &canvas);
         ui.separator();
         preferences(ui, work);
-        CollapsingHeader::new("Lay a film").show(ui, |ui| self.film.show(ui, work));
+        CollapsingHeader::new("Cover the canvas with paint")
+            .show(ui, |ui| self.film.show(ui, work));
     }
 }
 
@@ -137,7 +138,7 @@ fn preferences(ui: &mut Ui, work: &mut PanelContext<'_>) {
         return;
     };
     let lasts = ui
-        .checkbox(&mut last, "Paint on the palette lasts")
+        .checkbox(&mut last, "Palette never runs out")
         .on_hover_text("Brushes take paint from the palette, and it stays there all the same");
     if lasts.changed() {
         let surface = PALETTE;
@@ -163,7 +164,7 @@ impl CanvasPanel {
             return;
         }
         let mut piece = seed;
-        let changed = row(ui, "Piece", |ui| {
+        let changed = row(ui, "Pattern no.", |ui| {
             let number = DragValue::new(&mut piece)
                 .speed(0.1)
                 .update_while_editing(false);
@@ -221,8 +222,8 @@ impl CanvasPanel {
                 work.requests.act(Action::Fit);
             }
             let cells = ui
-                .button("Cells as pixels")
-                .on_hover_text("A cell of the canvas a pixel of the display: 1");
+                .button("Actual pixels (1:1)")
+                .on_hover_text("A point of the canvas a pixel of the display.  1");
             if cells.clicked() {
                 work.requests.act(Action::Hundred);
             }

@@ -32,9 +32,9 @@ fn tooth_ground_and_sizing_are_asked_for() {
     let mut harness = panel();
     let seed = harness.state().rig.canvas().expect("one").tooth_seed;
     choose(&mut harness, "Tooth", "paper");
-    set(&mut harness, Role::SpinButton, "Piece", 7.0);
+    set(&mut harness, Role::SpinButton, "Pattern no.", 7.0);
     choose(&mut harness, "Ground", "grey");
-    set(&mut harness, Role::Slider, "Stain", 12.0);
+    set(&mut harness, Role::Slider, "Absorbency", 12.0);
     let tooth = |tooth: &str, seed: u64| {
         Command::from(Tooth {
             tooth: MaterialName::new(tooth).expect("valid"),
@@ -52,7 +52,7 @@ fn tooth_ground_and_sizing_are_asked_for() {
         }),
     ];
     assert_eq!(harness.state_mut().asked(), expected);
-    set(&mut harness, Role::Slider, "Stain", 5e4);
+    set(&mut harness, Role::Slider, "Absorbency", 5e4);
     assert!(harness.state_mut().asked().is_empty());
     let told = harness.state().notifications.told();
     assert!(
@@ -114,7 +114,7 @@ fn the_canvas_is_tilted_turned_and_zoomed_each_beside_the_others() {
 #[test]
 fn buttons_do_what_keys_do() {
     let mut harness = panel();
-    for label in ["Fit", "Cells as pixels", "New…"] {
+    for label in ["Fit", "Actual pixels (1:1)", "New…"] {
         harness.get_by_label(label).click();
         harness.run();
     }
@@ -128,7 +128,7 @@ fn the_hand_and_the_lasting_paint_are_switched() {
     harness.get_by_label("Left-handed").click();
     harness.run();
     assert!(harness.state().preferences.left_handed);
-    harness.get_by_label("Paint on the palette lasts").click();
+    harness.get_by_label("Palette never runs out").click();
     harness.run();
     let expected = Command::from(Piles {
         last: true,
@@ -140,13 +140,13 @@ fn the_hand_and_the_lasting_paint_are_switched() {
 #[test]
 fn a_film_is_of_a_paint_or_of_what_the_brush_carries() {
     let mut harness = panel();
-    harness.get_by_label("Lay a film").click();
+    harness.get_by_label("Cover the canvas with paint").click();
     harness.run();
-    harness.get_by_label("Lay it").click();
+    harness.get_by_label("Cover").click();
     harness.run();
     choose(&mut harness, "Paint", "Titanium White");
     set(&mut harness, Role::Slider, "Thickness", 20.0);
-    harness.get_by_label("Lay it").click();
+    harness.get_by_label("Cover").click();
     harness.run();
     let surface = CANVAS;
     let expected = [
@@ -167,7 +167,7 @@ fn a_film_is_of_a_paint_or_of_what_the_brush_carries() {
     ];
     assert_eq!(harness.state_mut().asked(), expected);
     set(&mut harness, Role::Slider, "Thickness", 9000.0);
-    harness.get_by_label("Lay it").click();
+    harness.get_by_label("Cover").click();
     harness.run();
     let told = harness.state().notifications.told();
     assert!(told[0].what.contains("5000 µm"), "{told:?}");
@@ -176,7 +176,7 @@ fn a_film_is_of_a_paint_or_of_what_the_brush_carries() {
 #[test]
 fn the_panel_looks_as_it_did() {
     let open = |harness: &mut Harness<'static, Bench<CanvasPanel>>| {
-        harness.get_by_label("Lay a film").click();
+        harness.get_by_label("Cover the canvas with paint").click();
         harness.run();
         harness.remove_cursor();
     };

@@ -48,7 +48,7 @@ impl Panel for DevicePanel {
         let painting = force_history::active_device(work.rig).map(|(name, _)| name.to_owned());
         match &painting {
             Some(name) => ui.label(RichText::new(format!("{} paints", worded(name))).strong()),
-            None => ui.label("No stylus is near the desk."),
+            None => ui.label("No pen in range. You are painting with the mouse."),
         };
         let mut devices: Vec<(&String, &Device)> = work.rig.devices.iter().collect();
         let priority = |device: &Device| device.info.as_ref().map_or(i32::MIN, |it| it.priority);
@@ -200,7 +200,7 @@ fn what(info: &StylusInfo) -> String {
         true => format!(", {:.0} Hz", info.rate_hz),
         false => String::new(),
     };
-    format!("{}, moves '{}'{rate}", info.driver, info.brush)
+    format!("{}, controls brush '{}'{rate}", info.driver, info.brush)
 }
 
 /// Sensors of a device, in words.
@@ -245,7 +245,7 @@ fn numbers(ui: &mut Ui, force_n: Option<[f64; 3]>, most_n: f64, status: &StylusS
                 ),
                 ("Stiffness", stiffness, "Given, of what the brush asks for"),
                 (
-                    "Motors",
+                    "Motor heat",
                     motors,
                     "The hottest motor; amplifiers rest for want of contact",
                 ),

@@ -100,7 +100,7 @@ fn who_paints_and_what_is_wrong_stand_in_words() {
     harness.get_by_label_contains("Force on the hand: ");
     harness.state_mut().rig.now_ns += 60_000_000_000;
     harness.run();
-    harness.get_by_label("No stylus is near the desk.");
+    harness.get_by_label("No pen in range. You are painting with the mouse.");
     harness.get_by_label("silent");
 }
 

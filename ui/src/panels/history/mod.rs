@@ -150,11 +150,11 @@ impl HistoryPanel {
 
     fn buttons(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, name: &str) {
         if self.forgetting.as_deref() == Some(name) {
-            ui.label("Forget?");
+            ui.label("Delete?");
             let yes = small(
                 ui,
                 "Yes",
-                &format!("Forget {name}"),
+                &format!("Delete {name}"),
                 "It cannot be had back",
             );
             if yes.clicked() {
@@ -167,18 +167,18 @@ impl HistoryPanel {
             return;
         }
         let hover = "The painting becomes as it was then; this can be undone";
-        if small(ui, "Return", &format!("Return to {name}"), hover).clicked() {
+        if small(ui, "Go back", &format!("Go back to {name}"), hover).clicked() {
             ask(work, VersionName::new(name).map(|name| ReturnTo { name }));
         }
         let hover = "Begin another version from this one";
-        if small(ui, "Branch", &format!("Branch from {name}"), hover).clicked() {
+        if small(ui, "New branch", &format!("New branch from {name}"), hover).clicked() {
             self.branching = match self.branching.take() {
                 Some((from, _)) if from == name => None,
                 _ => Some((name.to_owned(), String::new())),
             };
         }
         let hover = "Take it off the list, after a question";
-        if small(ui, "Forget", &format!("Forget {name}?"), hover).clicked() {
+        if small(ui, "Delete", &format!("Delete {name}?"), hover).clicked() {
             self.forgetting = Some(name.to_owned());
         }
     }
@@ -191,7 +191,7 @@ impl HistoryPanel {
         if parent != from {
             return;
         }
-        let (_, done) = naming(ui, name, "Name of the new version", "Begin");
+        let (_, done) = naming(ui, name, "Name of the new version", "Create");
         if done {
             let name = VersionName::new(name.trim());
             let branch = VersionName::new(from).and_then(|from| Ok(Branch { from, name: name? }));

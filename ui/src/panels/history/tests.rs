@@ -89,8 +89,8 @@ fn versions_are_kept_returned_to_and_branched_from() {
     assert!(harness.state_mut().asked().is_empty(), "it has no name yet");
     write(&mut harness, "Name of a version", " Trees ");
     click(&mut harness, "Keep");
-    click(&mut harness, "Return to Sketch");
-    click(&mut harness, "Branch from Warm");
+    click(&mut harness, "Go back to Sketch");
+    click(&mut harness, "New branch from Warm");
     write(&mut harness, "Name of the new version", "Hot");
     harness.key_press(Key::Enter);
     harness.run();
@@ -114,11 +114,11 @@ fn versions_are_kept_returned_to_and_branched_from() {
 #[test]
 fn a_version_is_forgotten_after_a_question() {
     let mut harness = panel();
-    click(&mut harness, "Forget Warm?");
+    click(&mut harness, "Delete Warm?");
     click(&mut harness, "Keep Warm");
     assert!(harness.state_mut().asked().is_empty());
-    click(&mut harness, "Forget Warm?");
-    click(&mut harness, "Forget Warm");
+    click(&mut harness, "Delete Warm?");
+    click(&mut harness, "Delete Warm");
     let name = "Warm".to_owned();
     assert_eq!(
         harness.state_mut().asked(),
@@ -151,8 +151,8 @@ fn pictures_of_forgotten_versions_go() {
 #[test]
 fn the_panel_looks_as_it_did() {
     let ask = |harness: &mut Harness<'static, Bench<HistoryPanel>>| {
-        click(harness, "Forget Cold evening?");
-        click(harness, "Branch from Warm");
+        click(harness, "Delete Cold evening?");
+        click(harness, "New branch from Warm");
         harness.remove_cursor();
     };
     picture::<HistoryPanel>("history", &versioned(), ask, |rig| {

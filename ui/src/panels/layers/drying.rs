@@ -14,7 +14,7 @@ use crate::widgets::context::PanelContext;
 use crate::widgets::rows::{Number, Sliders, ask, choice, row};
 
 /// Choice of region.
-const PLACES: [&str; 2] = ["All of it", "A part"];
+const PLACES: [&str; 2] = ["Whole canvas", "A part"];
 
 const SHARE: Number<'_> = Number {
     word: "Share",
@@ -134,7 +134,7 @@ impl DryingForm {
 
     /// Drying while time goes by.
     fn in_time(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
-        row(ui, "In time", |ui| {
+        row(ui, "Dry over", |ui| {
             let most = f64::from(*DRYING_TICKS.end()) / f64::from(TICKS_A_SECOND);
             let time = DragValue::new(&mut self.time_s)
                 .range(1.0..=most)

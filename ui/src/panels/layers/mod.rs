@@ -56,7 +56,7 @@ impl Panel for LayersPanel {
             return;
         };
         let layers = scene.layers.clone();
-        ui.checkbox(&mut work.rig.show_wet, "Tint what is wet")
+        ui.checkbox(&mut work.rig.show_wet, "Highlight wet paint")
             .on_hover_text("Wet paint is shown under a tint, so that it is told from dry paint");
         self.hidden
             .retain(|number, _| layers.iter().any(|layer| layer.number == *number));

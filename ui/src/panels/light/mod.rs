@@ -108,7 +108,7 @@ impl Panel for LightPanel {
             let change = self.sliders.row(ui, number, *value);
             *value = change.moved.unwrap_or(*value);
         }
-        CollapsingHeader::new("For researchers").show(ui, |ui| self.research(ui, &mut light));
+        CollapsingHeader::new("Advanced colour").show(ui, |ui| self.research(ui, &mut light));
         if light == before && !expose {
             return;
         }
@@ -142,7 +142,7 @@ impl LightPanel {
         let change = self.sliders.row(ui, &EXPOSURE, light.exposure);
         light.exposure = change.moved.unwrap_or(light.exposure);
         below(ui, |ui| {
-            let button = ui.button("Choose exposure");
+            let button = ui.button("Auto exposure");
             let button = button.on_hover_text("So that the bare canvas is as bright as it can be");
             button.clicked()
         })
@@ -197,7 +197,7 @@ impl LightPanel {
         if !self.told.is_empty() {
             wrong(ui, &self.told);
         }
-        ui.checkbox(&mut light.adapted, "The eye is used to this light")
+        ui.checkbox(&mut light.adapted, "White-balance to this light")
             .on_hover_text("White looks white; else the light's own colour is seen");
     }
 

@@ -92,7 +92,7 @@ fn another_spectrum_is_exposed_anew_and_an_exposure_is_chosen_by_a_button() {
     harness.run();
     harness.get_by_label("A, light bulb").click();
     harness.run();
-    harness.get_by_label("Choose exposure").click();
+    harness.get_by_label("Auto exposure").click();
     harness.run();
     let lights = lights(&mut harness);
     assert_eq!(lights.len(), 2);
@@ -151,7 +151,7 @@ fn a_strength_beyond_all_lamps_is_told() {
 #[test]
 fn researchers_choose_observer_rule_and_samples() {
     let mut harness = panel();
-    harness.get_by_label("For researchers").click();
+    harness.get_by_label("Advanced colour").click();
     harness.run();
     for (combo, entry) in [("Observer", "1964, 10°"), ("Rule", "gauss")] {
         harness.get_by_role_and_label(Role::ComboBox, combo).click();
@@ -173,7 +173,7 @@ fn researchers_choose_observer_rule_and_samples() {
 #[test]
 fn the_panel_looks_as_it_did() {
     let open = |harness: &mut Harness<'static, Bench<LightPanel>>| {
-        harness.get_by_label("For researchers").click();
+        harness.get_by_label("Advanced colour").click();
         harness.run();
         harness.remove_cursor();
     };

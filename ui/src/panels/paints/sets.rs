@@ -45,7 +45,7 @@ impl SetRows {
         }
         let enter = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         ui.horizontal(|ui| {
-            let button = ui.button("Keep the palette");
+            let button = ui.button("Save palette as set");
             let hover = "Keeps the paints that lie on the palette as a set of this name.";
             if button.on_hover_text(hover).clicked() || enter {
                 self.keep(work, shown);

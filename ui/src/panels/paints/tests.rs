@@ -93,7 +93,7 @@ fn paints_go_onto_the_palette_into_a_well_and_off_it() {
     let names = laid(&mut harness);
     assert_eq!((names.len(), names[3].as_str()), (before, "Cobalt Blue"));
     harness
-        .get_by_label("Take off the palette: Titanium White")
+        .get_by_label("Remove from the palette: Titanium White")
         .click();
     harness.run();
     let names = laid(&mut harness);
@@ -139,7 +139,7 @@ fn a_mixture_of_ones_own_lies_on_the_palette() {
     harness.get_by_label_contains("sum to 0.9");
     assert!(harness.state_mut().commands().is_empty());
     write(&mut harness, "Mixture", "5");
-    harness.get_by_label("Onto the palette").click();
+    harness.get_by_label("Add to palette").click();
     harness.run();
     assert!(harness.state_mut().commands().is_empty(), "0.25 is no 0.3");
     let mut harness = panel(Bench::new());
@@ -148,7 +148,7 @@ fn a_mixture_of_ones_own_lies_on_the_palette() {
         "Mixture",
         "Cobalt Blue=0.7,Titanium White=0.3",
     );
-    harness.get_by_label("Onto the palette").click();
+    harness.get_by_label("Add to palette").click();
     harness.run();
     let names = laid(&mut harness);
     assert_eq!(
@@ -160,11 +160,11 @@ fn a_mixture_of_ones_own_lies_on_the_palette() {
 #[test]
 fn sets_are_kept_shown_laid_out_renamed_deleted_and_brought_back() {
     let mut harness = panel(Bench::new());
-    harness.get_by_label("Keep the palette").click();
+    harness.get_by_label("Save palette as set").click();
     harness.run();
     harness.get_by_label("Give it a name first.");
     write(&mut harness, "Name", "Studio");
-    harness.get_by_label("Keep the palette").click();
+    harness.get_by_label("Save palette as set").click();
     harness.run();
     let own = PaintSet {
         name: "Earth".into(),

@@ -125,7 +125,7 @@ impl WellRows {
         }
         let words = match self.chosen {
             Some(place) => format!("Into well {}", place + 1),
-            None => "Onto the palette".to_owned(),
+            None => "Add to palette".to_owned(),
         };
         let is_room = self.chosen.is_some() || count < MOST;
         let button = ui.add_enabled(is_room && !self.text.trim().is_empty(), Button::new(words));
@@ -171,14 +171,14 @@ fn well(
                     deed = Some(asked);
                 }
             };
-            tool(ui, "Off", true, "Take off the palette:", Deed::Remove);
+            tool(ui, "Remove", true, "Remove from the palette:", Deed::Remove);
             tool(ui, "Down", !is_last, "Down:", Deed::Down);
             tool(ui, "Up", place > 0, "Up:", Deed::Up);
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 let button = Button::selectable(is_chosen, &name).truncate();
                 let shown: Response = ui.add(button.min_size(vec2(ui.available_width(), 0.0)));
                 let hover = format!(
-                    "Well {}: {name}\nClick: the next paint goes here instead.",
+                    "Well {}: {name}\nClick, then choose a tube to replace this paint.",
                     place + 1
                 );
                 if shown.on_hover_text(hover).clicked() {

@@ -316,3 +316,52 @@ fn the_edge_of_the_palette_holds_the_bristles() {
     );
     assert!(held < 1e-6, "{held}");
 }
+
+/// The desk with a palette 10 mm higher to the left of the canvas.
+fn scene_with_palette() -> Scene {
+    let mut scene = scene();
+    let mut palette = scene.surfaces[0].clone();
+    palette.id = 1;
+    palette.pose.position_m = [-0.394, -0.128, 0.01];
+    scene.surfaces.push(palette);
+    scene
+}
+
+#[test]
+fn no_brush_of_any_size_touches_in_the_air() {
+    let postures = [
+        (0.0, DEFAULT_TILT_RAD),
+        (1.2, [0.0, 1.0]),
+        (2.8, [-1.0, 0.3]),
+    ];
+    for (kind, _) in LIBRARY {
+        let file = BrushFile::library(kind).expect("a brush");
+        for (width_mm, (twist_rad, tilt_rad)) in file
+            .sizes_mm
+            .iter()
+            .flat_map(|width_mm| postures.map(|posture| (*width_mm, posture)))
+        {
+            let mut model = BrushModel::new(file.scaled_to(width_mm).expect("a size"), 0.5);
+            model.set_scene(&scene_with_palette());
+            // Over the canvas, its left edge, the gap, and the palette.
+            for step in 0..12_u32 {
+                let pose = StylusPose::Contact {
+                    point_m: [-0.06 - 0.012 * f64::from(step), 0.01, 0.0],
+                    tilt_rad,
+                    twist_rad,
+                    pressure: 0.0,
+                };
+                let sample = StylusSample {
+                    pose,
+                    ..pen(0.0, 0.0, 0.0)
+                };
+                for solve in model.follow(DEVICE, (1000 + 8 * u64::from(step)) * MS, &sample) {
+                    assert!(
+                        solve.contacts.is_empty(),
+                        "{kind} {width_mm} mm, step {step}, {tilt_rad:?}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! The bar in a lower corner: a menu of everything, undo, redo and help.
+
+use eframe::egui::containers::menu::MenuButton;
+use eframe::egui::{
+    Align2, Area, Button, Context, Frame, Id, Margin, Order, Response, Role, TextWrapMode, Ui,
+    WidgetInfo,
+};
+
+use crate::input::keys::{self, Action, BINDINGS};
+use crate::settings::preferences::Preferences;
+
+/// Entries of the menu, by what they concern.
+const GROUPS: [(&str, &[Action]); 4] = [
+    (
+        "Painting",
+        &[
+            Action::New,
+            Action::Open,
+            Action::Save,
+            Action::SaveAs,
+            Action::Export,
+            Action::Undo,
+            Action::Redo,
+            Action::Dry,
+        ],
+    ),
+    (
+        "Brush",
+        &[
+            Action::NextBrush,
+            Action::Larger,
+            Action::Smaller,
+            Action::Follow,
+            Action::TurnLeft,
+            Action::TurnRight,
+            Action::Harder,
+            Action::Lighter,
+        ],
+    ),
+    (
+        "View",
+        &[
+            Action::Palette,
+            Action::Panels,
+            Action::Reference,
+            Action::Fit,
+            Action::Hundred,
+            Action::FullScreen,
+            Action::Focus,
+        ],
+    ),
+    ("Help", &[Action::Keys, Action::ForceOff]),
+];
+
+/// Distance from the window's edges, points.
+const MARGIN: f32 = 6.0;
+
+/// Shows the bar; the action that was chosen.
+pub(super) fn show(context: &Context, preferences: &Preferences) -> Option<Action> {
+    let (corner, inward) = match preferences.left_handed {
+        false => (Align2::LEFT_BOTTOM, 1.0),
+        true => (Align2::RIGHT_BOTTOM, -1.0),
+    };
+    let mut chosen = None;
+    Area::new(Id::unique("bar"))
+        .order(Order::Middle)
+        .anchor(corner, [inward * MARGIN, -MARGIN])
+        .accessible_name("Commands")
+        .show(context, |ui| {
+            ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);
+            let back = ui.visuals().window_fill.gamma_multiply(0.8);
+            let frame = Frame::NONE.fill(back).corner_radius(6.0);
+            frame.inner_margin(Margin::same(3)).show(ui, |ui| {
+                ui.horizontal(|ui| {
+                    ui.spacing_mut().item_spacing.x = 2.0;
+                    chosen = menu(ui);
+                    for (sign, action) in [
+                        ("⮪", Action::Undo),
+                        ("⮫", Action::Redo),
+                        ("?", Action::Keys),
+                    ] {
+                        let button = ui.add(Button::new(sign).min_size([26.0, 24.0].into()));
+                        if named(button, action).clicked() {
+                            chosen = Some(action);
+                        }
+                    }
+                });
+            });
+        });
+    chosen
+}
+
+/// The button of the menu; the action that was chosen in it.
+fn menu(ui: &mut Ui) -> Option<Action> {
+    let mut chosen = None;
+    let button = Button::new("☰").min_size([26.0, 24.0].into());
+    let (shown, _) = MenuButton::from_button(button).ui(ui, |ui| {
+        for (title, actions) in GROUPS {
+            ui.menu_button(title, |ui| {
+                for action in actions {
+                    if let Some(binding) = binding(*action) {
+                        let keys = keys::written(ui.ctx(), &binding.shortcut);
+                        let entry = Button::new(binding.words).shortcut_text(keys);
+                        if ui.add(entry).clicked() {
+                            chosen = Some(*action);
+                            ui.close();
+                        }
+                    }
+                }
+            });
+        }
+    });
+    shown.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Menu"));
+    shown.on_hover_text("All commands");
+    chosen
+}
+
+/// A button with a sign, named for screen readers by its action.
+fn named(button: Response, action: Action) -> Response {
+    let Some(binding) = binding(action) else {
+        return button;
+    };
+    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, binding.words));
+    let keys = keys::written(&button.ctx, &binding.shortcut);
+    button.on_hover_text(format!("{}  {keys}", binding.words))
+}
+
+fn binding(action: Action) -> Option<&'static keys::Binding> {
+    BINDINGS.iter().find(|known| known.act == action)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_menu_has_every_command_once() {
+        let offered: Vec<Action> = GROUPS.iter().flat_map(|(_, acts)| acts.to_vec()).collect();
+        for binding in &BINDINGS {
+            let times = offered.iter().filter(|act| **act == binding.act).count();
+            assert_eq!(times, 1, "{}", binding.words);
+        }
+    }
+}

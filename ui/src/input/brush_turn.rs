@@ -1,0 +1,204 @@
+//! Turn of the brush that the mouse moves, over a stroke.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use glam::DVec2;
+use maulstick_num::atan2;
+
+use crate::input::mouse_stylus::Pointer;
+use crate::settings::grip::Grip;
+
+/// Way of the pointer after which the direction of a stroke is known, m.
+const KNOWN_M: f64 = 1.5e-3;
+/// Longest time for which a stroke waits for its direction, ns: a dab has none.
+const WAIT_NS: u64 = 80_000_000;
+/// Length of the string at which the pointer draws the turning point behind it, m.
+const STRING_M: f64 = 4e-3;
+
+/// The turn of the brush over a stroke.
+#[derive(Debug, Default)]
+pub(crate) struct BrushTurn {
+    across_rad: f64,
+    turning_point: Option<DVec2>,
+    /// The first places of a stroke whose direction is not known, and its begin.
+    waiting: Option<(u64, Vec<Pointer>)>,
+}
+
+impl BrushTurn {
+    /// The places with the turn of the brush there. The first of a stroke wait until its direction is known, so that
+    /// the brush is set down across it; meanwhile it hovers where the stroke begins.
+    pub(crate) fn turned(&mut self, now_ns: u64, places: &[Pointer], grip: &Grip) -> Vec<Pointer> {
+        let mut turned = Vec::new();
+        if places.is_empty() {
+            (self.waiting, self.turning_point) = (None, None);
+        }
+        for place in places {
+            let at = DVec2::new(place.at[0], place.at[1]);
+            if !place.pressed {
+                self.release(&mut turned, grip);
+                self.turning_point = None;
+            } else if !grip.follows {
+                self.release(&mut turned, grip);
+            } else if let Some(point) = self.turning_point {
+                self.draw(point, at);
+            } else {
+                self.turning_point = Some(at);
+                self.waiting = Some((now_ns, Vec::new()));
+            }
+            match &mut self.waiting {
+                Some((_, waiting)) => waiting.push(*place),
+                None => turned.push(self.held(place, grip)),
+            }
+        }
+        if let Some((since_ns, waiting)) = &self.waiting {
+            let known = waiting
+                .first()
+                .zip(waiting.last())
+                .is_some_and(|(first, last)| {
+                    let way = [0, 1].map(|i| last.at[i] - first.at[i]);
+                    DVec2::from_array(way).length() >= KNOWN_M
+                });
+            if known || now_ns.saturating_sub(*since_ns) > WAIT_NS {
+                self.release(&mut turned, grip);
+            } else if let Some(first) = waiting.first() {
+                let hovers = Pointer {
+                    pressed: false,
+                    ..*first
+                };
+                turned.push(self.held(&hovers, grip));
+            }
+        }
+        turned
+    }
+
+    /// True while the begin of a stroke waits for its direction.
+    #[must_use]
+    pub(crate) fn is_waiting(&self) -> bool {
+        self.waiting.is_some()
+    }
+
+    /// Draws the turning point to a place, and turns the brush across the string.
+    fn draw(&mut self, point: DVec2, at: DVec2) {
+        let string = at - point;
+        let length = string.length();
+        if length >= KNOWN_M {
+            let across = atan2(string.y, string.x) + FRAC_PI_2;
+            // A brush turned by half is the same: it takes the shorter way.
+            let halves = ((self.across_rad - across) / PI).round();
+            self.across_rad = across + halves * PI;
+        }
+        self.turning_point = Some(at - string * (STRING_M / length.max(STRING_M)));
+    }
+
+    fn held(&self, place: &Pointer, grip: &Grip) -> Pointer {
+        let across = if grip.follows { self.across_rad } else { 0.0 };
+        Pointer {
+            twist_rad: across + grip.turn_rad,
+            ..*place
+        }
+    }
+
+    fn release(&mut self, into: &mut Vec<Pointer>, grip: &Grip) {
+        if let Some((_, waiting)) = self.waiting.take() {
+            into.extend(waiting.iter().map(|place| self.held(place, grip)));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FOLLOWS: Grip = Grip {
+        follows: true,
+        turn_rad: 0.0,
+        pressure: 0.5,
+    };
+    const FRAME_NS: u64 = 16_000_000;
+
+    fn at(x: f64, y: f64, pressed: bool) -> Pointer {
+        Pointer {
+            at: [x, y, 0.0],
+            pressed,
+            twist_rad: 0.0,
+        }
+    }
+
+    /// Places of a stroke that begins at the origin, a frame each.
+    fn stroke(grip: &Grip, to: impl Fn(f64) -> [f64; 2]) -> Vec<Pointer> {
+        let mut turn = BrushTurn::default();
+        let mut all = turn.turned(0, &[at(0.0, 0.0, false)], grip);
+        for frame in 0..40_u32 {
+            let [x, y] = to(f64::from(frame) * 1e-3);
+            all.extend(turn.turned(FRAME_NS * u64::from(frame + 1), &[at(x, y, true)], grip));
+        }
+        let [x, y] = to(0.04);
+        all.extend(turn.turned(FRAME_NS * 41, &[at(x, y, false)], grip));
+        all
+    }
+
+    fn pressed(all: &[Pointer]) -> Vec<&Pointer> {
+        all.iter().filter(|place| place.pressed).collect()
+    }
+
+    /// Angle between the broad side and a direction, 0 to π/2.
+    fn between(twist_rad: f64, along_rad: f64) -> f64 {
+        let off = (twist_rad - along_rad).rem_euclid(PI);
+        off.min(PI - off)
+    }
+
+    #[test]
+    fn a_brush_is_set_down_and_stays_across_its_stroke() {
+        for degrees in [0.0_f64, 37.0, 90.0, 180.0, -120.0] {
+            let along = degrees.to_radians();
+            let all = stroke(&FOLLOWS, |way| [way * along.cos(), way * along.sin()]);
+            let places = pressed(&all);
+            assert_eq!(places.len(), 40, "no place is lost");
+            for place in places {
+                let off = between(place.twist_rad, along + FRAC_PI_2);
+                assert!(off < 1e-9, "{degrees}°: off by {off}");
+            }
+        }
+    }
+
+    #[test]
+    fn in_a_curve_it_turns_evenly_and_by_the_shorter_way() {
+        let radius = 0.01;
+        let all = stroke(&FOLLOWS, |way| {
+            let angle = way / radius;
+            [radius * angle.sin(), radius * (1.0 - angle.cos())]
+        });
+        let places = pressed(&all);
+        for pair in places.windows(2) {
+            let turned = (pair[1].twist_rad - pair[0].twist_rad).abs();
+            assert!(turned < 0.2, "{turned}");
+        }
+        let whole = places[39].twist_rad - places[0].twist_rad;
+        assert!((3.0..4.0).contains(&whole), "{whole} of 3.9 rad");
+    }
+
+    #[test]
+    fn a_dab_is_painted_with_the_turn_it_had() {
+        let mut turn = BrushTurn::default();
+        let first = turn.turned(0, &[at(0.0, 0.0, true)], &FOLLOWS);
+        assert_eq!(first, [at(0.0, 0.0, false)], "it hovers meanwhile");
+        assert!(turn.is_waiting());
+        let later = turn.turned(WAIT_NS + 1, &[at(0.0, 0.0, true)], &FOLLOWS);
+        assert_eq!(later, [at(0.0, 0.0, true); 2]);
+        let click = [at(0.0, 0.0, true), at(0.0, 0.0, false)];
+        let mut turn = BrushTurn::default();
+        assert_eq!(turn.turned(0, &click, &FOLLOWS), click);
+    }
+
+    #[test]
+    fn without_following_the_painter_sets_the_turn() {
+        let grip = Grip {
+            follows: false,
+            turn_rad: 0.3,
+            ..FOLLOWS
+        };
+        let all = stroke(&grip, |way| [0.0, way]);
+        assert_eq!(pressed(&all).len(), 40);
+        assert!(all.iter().all(|place| place.twist_rad == 0.3));
+    }
+}
