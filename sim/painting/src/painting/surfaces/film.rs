@@ -5,17 +5,17 @@ use std::sync::Arc;
 
 use maulstick_canvas::EditError;
 use maulstick_canvas::dry::DryStack;
-use maulstick_canvas::page::Page;
+use maulstick_canvas::page::{Page, Pager};
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::quantum::{CELL_MAX, Counts, QUANTUM_M, SLOTS};
 use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_types::Mixture;
 use maulstick_types::edits::{Fill, FillPaint};
 
-use super::Painting;
+use super::SurfaceState;
 use crate::apply::{Applied, Apply};
-use crate::history::TilePlace;
 use crate::ledger::Ledger;
+use crate::painting::Painting;
 
 /// Wet paint of a tile with more applied to it.
 #[derive(Clone)]
@@ -30,7 +30,7 @@ struct Laid {
 /// Results of an even film on tiles that were alike: they share their pages, so that a vast canvas takes no more room
 /// than a tile.
 #[derive(Default)]
-pub(super) struct Films {
+pub(crate) struct Films {
     /// By the page of what was wet; 0 where nothing was.
     laid: HashMap<u64, Laid>,
     /// Most quanta that has dried on a cell, by the pages of the layers.
@@ -55,7 +55,7 @@ impl Apply for Fill {
                 painting.lay_from(self.surface, mixture, thickness_m, Ledger::from_tube)?;
             }
             FillPaint::Carried { brush } => {
-                painting.surface(self.surface)?;
+                painting.surfaces.at(self.surface)?;
                 let mixture = painting.carried_mixture(brush)?;
                 painting.lay_from(
                     self.surface,
@@ -78,19 +78,18 @@ impl Painting {
         thickness_m: f64,
         book: fn(&mut Ledger, &Counts),
     ) -> Result<(), EditError> {
-        self.surface(surface)?;
-        let slots = self.slots(mixture)?;
+        let on = self.surfaces.at(surface)?;
+        let slots = self.optics.slots(&mut self.scene, mixture)?;
         let mut quanta = [0.0f32; SLOTS];
         for (slot, share) in slots {
             quanta[slot] += (share * thickness_m / QUANTUM_M).round() as f32;
         }
         self.begin_step("fill", None);
-        let store = self.sheet(surface).map(|sheet| sheet.store.grid());
-        let [across, up] = store.unwrap_or_default();
+        let [across, up] = self.surfaces[on].store.grid();
         let mut films = Films::default();
         for y in 0..up {
             for x in 0..across {
-                let place = (surface, TileId { x, y });
+                let place = (on, TileId { x, y });
                 self.lay_on(place, |_, slot| quanta[slot], Some(&mut films), book);
             }
         }
@@ -98,20 +97,18 @@ impl Painting {
         Ok(())
     }
 
-    /// Adds wet paint to a tile, `quanta` by cell and slot: as much as the cells still hold. Cells
+    /// Adds wet paint to a tile of a surface, `quanta` by cell and slot: as much as the cells still hold. Cells
     /// beyond the surface's edge and in wells get none. With `films` it is as much on every cell.
-    pub(super) fn lay_on(
+    pub(crate) fn lay_on(
         &mut self,
-        place: TilePlace,
+        (on, id): (usize, TileId),
         quanta: impl Fn(usize, usize) -> f32,
         films: Option<&mut Films>,
         book: fn(&mut Ledger, &Counts),
     ) {
-        let Some(sheet) = self.sheets.iter().find(|sheet| sheet.id == place.0) else {
-            return;
-        };
-        let before = sheet.store.version(place.1).tile.clone();
-        let (room, is_whole) = self.room(place);
+        let surface = &self.surfaces[on];
+        let before = surface.store.version(id).tile.clone();
+        let (room, is_whole) = surface.room(id);
         let mut alone = Films::default();
         let films = match films {
             Some(films) if is_whole => films,
@@ -122,7 +119,7 @@ impl Painting {
         let laid = match films.laid.get(&key) {
             Some(laid) => laid.clone(),
             None => {
-                let Some(laid) = self.laid(wet, room, quanta) else {
+                let Some(laid) = laid(wet, room, quanta, &self.surfaces.pager) else {
                     return;
                 };
                 films.laid.insert(key, laid.clone());
@@ -132,22 +129,19 @@ impl Painting {
         let dry = before.as_deref().and_then(Tile::dry).cloned();
         let beneath = dry.as_ref().map_or(0.0, |stack| films.beneath(stack));
         let tile = Tile::of_pages(Some(laid.page), dry);
-        let replaced = self.put(place, Some(Arc::new(tile)));
-        self.history.replaced(None, place, replaced);
-        book(&mut self.ledger, &laid.given);
+        self.replace((surface.id, id), Some(Arc::new(tile)));
+        book(&mut self.accounts.ledger, &laid.given);
         self.book(None);
-        if let Some(sheet) = self.sheets.iter_mut().find(|sheet| sheet.id == place.0) {
-            sheet.top = sheet.top.max(laid.top + beneath);
-        }
+        let top = &mut self.surfaces[on].top;
+        *top = top.max(laid.top + beneath);
     }
+}
 
+impl SurfaceState {
     /// Most quanta that each cell of a tile takes, and true if all cells take paint, none of them a well's.
-    fn room(&self, (surface, id): TilePlace) -> (Vec<f32>, bool) {
+    fn room(&self, id: TileId) -> (Vec<f32>, bool) {
         let mut room = vec![CELL_MAX as f32; TILE_CELLS];
-        let Some(sheet) = self.sheets.iter().find(|sheet| sheet.id == surface) else {
-            return (room, false);
-        };
-        let [width, height] = sheet.store.cells().map(|cells| cells as usize);
+        let [width, height] = self.store.cells().map(|cells| cells as usize);
         let side = maulstick_types::paint::TILE;
         for (cell, room) in room.iter_mut().enumerate() {
             let x = id.x as usize * side + cell % side;
@@ -156,50 +150,50 @@ impl Painting {
                 *room = 0.0;
             }
         }
-        for (cell, _) in sheet.bare.in_wells(id) {
+        for (cell, _) in self.bare.in_wells(id) {
             room[cell] = 0.0;
         }
         let is_whole = room.iter().all(|room| *room > 0.0);
         (room, is_whole)
     }
+}
 
-    /// Wet paint with more applied to it; `None` if there is no room.
-    fn laid(
-        &self,
-        wet: Option<&Page<Planes>>,
-        mut room: Vec<f32>,
-        quanta: impl Fn(usize, usize) -> f32,
-    ) -> Option<Laid> {
-        let before = wet.map(Page::get).unwrap_or_default();
-        let mut planes: Vec<Option<Vec<f32>>> = vec![None; SLOTS];
-        for (slot, plane) in &*before {
-            room.iter_mut()
-                .zip(plane.iter())
-                .for_each(|(room, held)| *room = (*room - held).max(0.0));
-            planes[*slot] = Some(plane.to_vec());
-        }
-        let mut given = [0u64; SLOTS];
-        for (cell, room) in room.iter_mut().enumerate() {
-            for (slot, plane) in planes.iter_mut().enumerate() {
-                let part = quanta(cell, slot).min(*room).max(0.0).floor();
-                if part > 0.0 {
-                    plane.get_or_insert_with(|| vec![0.0; TILE_CELLS])[cell] += part;
-                    *room -= part;
-                    given[slot] += part as u64;
-                }
+/// Wet paint with more applied to it; `None` if there is no room.
+fn laid(
+    wet: Option<&Page<Planes>>,
+    mut room: Vec<f32>,
+    quanta: impl Fn(usize, usize) -> f32,
+    pager: &Arc<Pager>,
+) -> Option<Laid> {
+    let before = wet.map(Page::get).unwrap_or_default();
+    let mut planes: Vec<Option<Vec<f32>>> = vec![None; SLOTS];
+    for (slot, plane) in &*before {
+        room.iter_mut()
+            .zip(plane.iter())
+            .for_each(|(room, held)| *room = (*room - held).max(0.0));
+        planes[*slot] = Some(plane.to_vec());
+    }
+    let mut given = [0u64; SLOTS];
+    for (cell, room) in room.iter_mut().enumerate() {
+        for (slot, plane) in planes.iter_mut().enumerate() {
+            let part = quanta(cell, slot).min(*room).max(0.0).floor();
+            if part > 0.0 {
+                plane.get_or_insert_with(|| vec![0.0; TILE_CELLS])[cell] += part;
+                *room -= part;
+                given[slot] += part as u64;
             }
         }
-        if given.iter().all(|count| *count == 0) {
-            return None;
-        }
-        let planes = planes.into_iter().enumerate();
-        let planes = planes.filter_map(|(slot, plane)| Some((slot, plane?.into())));
-        let planes = Planes::from_iter(planes).with_own(before.own().iter().cloned());
-        let sums = (0..TILE_CELLS).map(|cell| planes.iter().map(|(_, plane)| plane[cell]).sum());
-        Some(Laid {
-            top: sums.fold(0.0, f32::max),
-            page: Page::new(&self.pager, Arc::new(planes), wet),
-            given,
-        })
     }
+    if given.iter().all(|count| *count == 0) {
+        return None;
+    }
+    let planes = planes.into_iter().enumerate();
+    let planes = planes.filter_map(|(slot, plane)| Some((slot, plane?.into())));
+    let planes = Planes::from_iter(planes).with_own(before.own().iter().cloned());
+    let sums = (0..TILE_CELLS).map(|cell| planes.iter().map(|(_, plane)| plane[cell]).sum());
+    Some(Laid {
+        top: sums.fold(0.0, f32::max),
+        page: Page::new(pager, Arc::new(planes), wet),
+        given,
+    })
 }

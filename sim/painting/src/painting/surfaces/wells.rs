@@ -11,14 +11,13 @@ use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::{QUANTUM_M, SLOTS};
 use maulstick_canvas::window::Window;
 use maulstick_model::brush::traits::BrushTraits;
-use maulstick_types::Mixture;
 use maulstick_types::edits::Wells;
 use maulstick_types::scene::{Well, WellKind};
 
-use super::{Painting, bare};
 use crate::apply::{Applied, Apply};
 use crate::error::paint_error;
 use crate::ledger::Ledger;
+use crate::painting::Painting;
 
 /// Wells may reach beyond the edge of their surface by what rounding makes of it, m.
 const EDGE_M: f64 = 1e-6;
@@ -75,7 +74,8 @@ impl Apply for Wells {
 
 impl Painting {
     fn set_wells(&mut self, surface: u32, wells: &[Well]) -> Result<(), EditError> {
-        let mut changed = self.surface(surface)?.clone();
+        let on = self.surfaces.at(surface)?;
+        let mut changed = self.scene.surfaces[on].clone();
         let size = changed.cells.map(|cells| f64::from(cells) * changed.cell_m);
         changed.wells = wells.to_vec();
         for (place, well) in changed.wells.iter_mut().enumerate() {
@@ -90,41 +90,26 @@ impl Painting {
                 });
             }
             if let WellKind::Paint { mixture } = &mut well.kind {
-                *mixture = self.library.check(mixture).map_err(paint_error)?;
+                *mixture = self.optics.library.check(mixture).map_err(paint_error)?;
             }
         }
         self.close_windows();
-        let Some(sheet) = self.sheets.iter_mut().find(|sheet| sheet.id == surface) else {
-            return Ok(());
-        };
-        let relief = Some(Arc::clone(&sheet.bare.relief));
-        let makers = (&self.library, &self.embedded);
-        sheet.bare = Arc::new(bare(&changed, &self.look.studio, makers, relief)?);
-        let mut surfaces = self.scene.surfaces.iter_mut();
-        if let Some(own) = surfaces.find(|own| own.id == surface) {
-            own.wells = changed.wells;
-        }
+        let relief = Some(Arc::clone(&self.surfaces[on].bare.relief));
+        self.surfaces[on].bare = Arc::new(self.optics.blank(&changed, relief)?);
+        self.scene.surfaces[on] = changed;
         self.scene.version += 1;
-        Arc::make_mut(&mut self.look).renew();
-        self.note_look();
+        self.optics.renew(&self.scene);
         Ok(())
     }
 
     /// Tends the wells in the cells `from`..`to` of a surface before a brush steps there.
-    pub(super) fn tend_wells(
+    pub(crate) fn tend_wells(
         &mut self,
-        name: &str,
-        sheet: usize,
+        (brush, on): (usize, usize),
         (from, to): ([i64; 2], [i64; 2]),
         head: (&HeadPose, &BrushTraits),
     ) {
-        let id = self.sheets[sheet].id;
-        let Some(surface) = self.scene.surfaces.iter().find(|surface| surface.id == id) else {
-            return;
-        };
-        if surface.wells.is_empty() {
-            return;
-        }
+        let surface = &self.scene.surfaces[on];
         let cell_m = surface.cell_m;
         let near = |well: &&Well| {
             (0..2).all(|i| {
@@ -134,58 +119,40 @@ impl Painting {
             })
         };
         let wells: Vec<Well> = surface.wells.iter().filter(near).cloned().collect();
+        let ledger = &mut self.accounts.ledger;
         for well in wells {
+            let brush = &mut self.brushes[brush];
+            let Some((_, window)) = &mut brush.window else {
+                return;
+            };
             match &well.kind {
                 WellKind::Paint { mixture } => {
-                    self.fill_well(name, cell_m, &well, mixture, (from, to));
+                    // A paint without a slot: its well stays dry, and a command says why.
+                    let Ok(slots) = self.optics.slots(&mut self.scene, mixture) else {
+                        continue;
+                    };
+                    let mut fresh = [0u32; SLOTS];
+                    for (slot, share) in slots {
+                        fresh[slot] += (share * WELL_M / QUANTUM_M) as u32;
+                    }
+                    let cells: Vec<usize> =
+                        cells_within(window, &well, cell_m, (from, to)).collect();
+                    renew(window, &cells, &fresh, ledger);
+                    window.note_top(fresh.iter().sum::<u32>() as f32);
                 }
                 // Whatever else of the head is low, the jar cleans a brush that is in it.
                 WellKind::Cleaner if is_in(head, &well, cell_m) => {
-                    self.clean_in(name, cell_m, &well, (from, to));
+                    let cells: Vec<usize> =
+                        cells_within(window, &well, cell_m, (from, to)).collect();
+                    if !cells.is_empty() {
+                        renew(window, &cells, &[0; SLOTS], ledger);
+                        let left = Arc::make_mut(&mut brush.load).take_all();
+                        ledger.to_cleaner(&left);
+                    }
                 }
                 WellKind::Cleaner => {}
             }
         }
-    }
-
-    fn fill_well(
-        &mut self,
-        name: &str,
-        cell_m: f64,
-        well: &Well,
-        mixture: &Mixture,
-        within: ([i64; 2], [i64; 2]),
-    ) {
-        // A 17th paint has no slot: its well stays dry, and a command says why.
-        let Ok(slots) = self.slots(mixture) else {
-            return;
-        };
-        let mut fresh = [0u32; SLOTS];
-        for (slot, share) in slots {
-            fresh[slot] += (share * WELL_M / QUANTUM_M) as u32;
-        }
-        let Some((_, window)) = self.brushes.get_mut(name).and_then(|t| t.window.as_mut()) else {
-            return;
-        };
-        let cells: Vec<usize> = cells_within(window, well, cell_m, within).collect();
-        renew(window, &cells, &fresh, &mut self.ledger);
-        window.note_top(fresh.iter().sum::<u32>() as f32);
-    }
-
-    fn clean_in(&mut self, name: &str, cell_m: f64, well: &Well, within: ([i64; 2], [i64; 2])) {
-        let Some(track) = self.brushes.get_mut(name) else {
-            return;
-        };
-        let Some((_, window)) = track.window.as_mut() else {
-            return;
-        };
-        let cells: Vec<usize> = cells_within(window, well, cell_m, within).collect();
-        if cells.is_empty() {
-            return;
-        }
-        renew(window, &cells, &[0; SLOTS], &mut self.ledger);
-        let left = Arc::make_mut(&mut track.load).take_all();
-        self.ledger.to_cleaner(&left);
     }
 }
 

@@ -6,18 +6,19 @@
 use maulstick_model::interface::Rest;
 use maulstick_types::paint::TILE;
 
-use super::Painting;
-use super::brush_modes::Prepared;
+use crate::painting::Painting;
+use crate::painting::brushes::handling::Prepared;
+use crate::painting::optics::thinner_slot;
 
 impl Painting {
     /// Has the model move the paint that a brush's stroke has reached on a surface.
-    pub(super) fn relax(&mut self, name: &str, sheet: usize) {
-        let halo = self.models.of(self.sheets[sheet].model).rest_halo();
-        let Some(halo) = halo.filter(|_| !self.has_wells(sheet)) else {
+    pub(super) fn relax(&mut self, brush: usize, on: usize) {
+        let (surface, model) = (self.surfaces[on].id, self.surfaces[on].model);
+        let halo = self.backend.models.of(model).rest_halo();
+        let Some(halo) = halo.filter(|_| self.scene.surfaces[on].wells.is_empty()) else {
             return;
         };
-        let surface = self.sheets[sheet].id;
-        let Some(open) = self.history.open_of(Some(name)) else {
+        let Some(open) = self.history.open_of(Some(&self.brushes[brush].name)) else {
             return;
         };
         let reached = open.reached.iter().filter(|(on, _)| *on == surface);
@@ -35,25 +36,22 @@ impl Painting {
         // With what the model looks at beside it, whatever the window held before.
         let halo = halo as i64;
         let (outer_from, outer_to) = (from.map(|cell| cell - halo), to.map(|cell| cell + halo));
-        if !self.reach(name, sheet, outer_from, outer_to) {
+        if !self.reach((brush, on), outer_from, outer_to) {
             return;
         }
-        let (thinner, cell_m) = (self.thinner(), self.sheets[sheet].cell_m);
-        let mut surfaces = self.scene.surfaces.iter();
-        let stain = Prepared::of(surfaces.find(|own| own.id == surface)).stain;
-        let Some((_, window)) = self.brushes.get_mut(name).and_then(|t| t.window.as_mut()) else {
+        let Some((_, window)) = &mut self.brushes[brush].window else {
             return;
         };
         let area = window.area(from, to);
         if area.is_empty() {
             return;
         }
-        self.models.of(self.sheets[sheet].model).rest(&mut Rest {
+        self.backend.models.of(model).rest(&mut Rest {
             window,
             area,
-            cell_m,
-            stain,
-            thinner,
+            cell_m: self.surfaces[on].cell_m,
+            stain: Prepared::of(&self.scene.surfaces[on]).stain,
+            thinner: thinner_slot(&self.scene),
         });
     }
 }

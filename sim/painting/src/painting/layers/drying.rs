@@ -11,26 +11,20 @@ use maulstick_canvas::EditError;
 use maulstick_types::edits::{Dry, StopDrying};
 use maulstick_types::values::Ticks;
 
-use super::Painting;
-use super::layers::{Changed, Part};
+use super::next_layer;
 use crate::apply::{Applied, Apply};
 use crate::clock::{Clock, Drying, Round, TICKS_A_SECOND};
+use crate::painting::Painting;
+use crate::painting::surfaces::{Changed, Part, SurfaceState};
 
 /// Most tiles that dry in a tick.
 const TILES_A_TICK: usize = 32;
-/// A brush counts as painting for so many ticks after it was last in contact, .2 s: contacts less than
-/// 150 ms apart are one stroke.
-const LIFTED_TICKS: u32 = 12;
-/// Ticks for which a brush in contact counts as painting although no state arrives.
-const STILL_TICKS: u32 = 120;
 /// Name of its steps.
 const STEP: &str = "drying";
 
 impl Apply for StopDrying {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let count = painting.clock.dryings.len();
-        painting.let_stay_wet(Some(self.surface));
-        match painting.clock.dryings.len() < count {
+        match painting.clock.stop(Some(self.surface)) {
             true => Ok(Applied::Done),
             false => Err(EditError::NotDrying),
         }
@@ -45,12 +39,12 @@ impl Painting {
     /// drying goes on.
     pub(super) fn dry_over(&mut self, edit: &Dry, over: Ticks) -> Result<Applied, EditError> {
         let (surface, region) = (edit.surface, edit.region.as_ref());
-        let part = self.part(surface, region)?;
+        let (on, part) = self.surfaces.part(surface, region)?;
         if self.clock.dryings.iter().any(|it| it.surface == surface) {
             return Err(EditError::Drying);
         }
         self.commit();
-        if !self.is_wet(&part) {
+        if !self.surfaces[on].is_wet(&part) {
             return Err(EditError::NothingWet(edit.region.clone()));
         }
         let ticks = over.get();
@@ -69,12 +63,6 @@ impl Painting {
         ))
     }
 
-    /// Ends the drying of a surface, if one goes on there, or of all surfaces: what is wet still stays wet.
-    pub(super) fn let_stay_wet(&mut self, surface: Option<u32>) {
-        let stays = |drying: &Drying| surface.is_some_and(|surface| drying.surface != surface);
-        self.clock.dryings.retain(stays);
-    }
-
     /// True while time is to advance: something dries.
     #[must_use]
     pub fn is_drying(&self) -> bool {
@@ -89,74 +77,47 @@ impl Painting {
 
     /// Notes that a brush did something: whether it is in contact says whether paint may dry.
     pub(crate) fn note_contact(&mut self, brush: &str) {
-        let track = self.brushes.get(brush);
-        if track.is_some_and(|track| track.path.is_some()) {
+        if self
+            .brushes
+            .find(brush)
+            .is_some_and(|own| own.path.is_some())
+        {
             self.clock.quiet = 0;
         }
     }
 
-    /// True while a brush paints: then no tile dries under it, and no stroke is split.
-    fn is_painted_on(&self) -> bool {
-        let in_contact = self.brushes.values().any(|track| track.path.is_some());
-        let patience = if in_contact {
-            STILL_TICKS
-        } else {
-            LIFTED_TICKS
-        };
-        self.clock.quiet < patience
-    }
-
     /// A sixtieth of a second goes by.
     pub fn tick(&mut self) {
-        let clock = &mut self.clock;
-        clock.ticks += 1;
-        clock.quiet = clock.quiet.saturating_add(1);
-        for drying in &mut clock.dryings {
-            drying.elapsed = (drying.elapsed + 1).min(drying.ticks);
-        }
-        if self.is_painted_on() {
-            return;
-        }
-        let due = self.clock.dryings.iter().filter_map(|drying| {
-            let round = drying.due()?;
-            Some((drying.surface, round))
-        });
-        for (surface, round) in due.collect::<Vec<_>>() {
+        for (surface, round) in self.clock.tick(self.brushes.in_contact()) {
             self.go_on_drying(surface, round);
         }
     }
 
     /// Dries the next tiles of a round.
     fn go_on_drying(&mut self, surface: u32, mut round: Round) {
-        let found = self
-            .clock
-            .dryings
-            .iter()
-            .position(|it| it.surface == surface);
-        let Some(place) = found else {
+        let mut dryings = self.clock.dryings.iter();
+        let Some(place) = dryings.position(|it| it.surface == surface) else {
             return;
         };
         let drying = self.clock.dryings[place].clone();
         // It was found when the drying began, and surfaces stay as large as they are.
-        let Ok(part) = self.part(surface, drying.region.as_ref()) else {
+        let Ok((on, part)) = self.surfaces.part(surface, drying.region.as_ref()) else {
             self.clock.dryings.remove(place);
             return;
         };
         self.close_windows();
-        let known = |number: &u32| {
-            self.scene
-                .layers
-                .iter()
-                .any(|layer| layer.number == *number)
-        };
-        let layer = drying.layer.filter(known);
-        let number = layer.unwrap_or_else(|| self.next_layer());
-        let (dried, next) = self.some_dried(&part, number, drying.share(round), round.next);
+        let mut layers = self.scene.layers.iter();
+        let layer = drying
+            .layer
+            .filter(|number| layers.any(|layer| layer.number == *number));
+        let number = layer.unwrap_or_else(|| next_layer(&self.scene));
+        let share = drying.share(round);
+        let (dried, next) = self.surfaces[on].some_dried(&part, number, share, round.next);
         if !dried.is_empty() {
             if self.history.open_of(None).is_none() {
                 self.begin_step(STEP, None);
             }
-            self.put_changed(surface, dried);
+            self.put_changed(on, dried);
             if layer.is_none() {
                 self.add_layer(number, &drying.name);
             }
@@ -175,7 +136,9 @@ impl Painting {
             }
         }
     }
+}
 
+impl SurfaceState {
     /// So many tiles as dry in a tick, from the one with number `first` on, and which is next.
     fn some_dried(
         &self,
@@ -184,23 +147,14 @@ impl Painting {
         share: f32,
         first: u32,
     ) -> (Changed, Option<u32>) {
-        let store = &self.sheets[part.sheet].store;
-        let across = store.grid()[0];
         let mut dried = Vec::new();
         let mut seen = 0;
-        for (id, version) in store.iter().skip(first as usize) {
-            let Some(tile) = version
-                .tile
-                .as_ref()
-                .filter(|tile| tile.wet_page().is_some())
-            else {
-                continue;
-            };
+        for (id, tile) in self.wet_tiles_from(first) {
             let Some(stays) = self.staying(part, id) else {
                 continue;
             };
             if seen == TILES_A_TICK {
-                return (dried, Some(id.y * across + id.x));
+                return (dried, Some(id.y * self.store.grid()[0] + id.x));
             }
             seen += 1;
             if let Some(tile) = tile.dried(number, share, &stays) {
