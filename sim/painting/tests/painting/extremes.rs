@@ -5,13 +5,11 @@ use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::CELL_MAX;
 use maulstick_model::brush::traits::BrushTraits;
 use maulstick_num::fork_join::with_threads;
-use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup};
-use maulstick_types::Pose;
-use maulstick_types::brush::{BrushState, Solve, solve_flags};
-use maulstick_types::edits::Load;
+use maulstick_types::brush::{Solve, solve_flags};
 use maulstick_types::scene::CANVAS;
-use maulstick_types::values::BrushName;
+
+use crate::studio::{BRUSH, load, painting, round, solve, state};
 
 /// A brush on a canvas, and where it goes.
 #[derive(Clone, Copy, Debug)]
@@ -38,54 +36,32 @@ const USUAL: Case = Case {
 
 impl Case {
     fn brush(&self) -> BrushFile {
-        let mut file = BrushFile::library("round").expect("round");
-        file.strips.count = self.strips;
-        file.scaled_to(self.brush_mm).expect("a size")
+        round(self.brush_mm, self.strips)
     }
 
     /// A painting with what a full brush leaves there twice, lifted between.
     fn painted(&self) -> Painting {
-        let setup = PaintingSetup {
+        let mut painting = painting(&PaintingSetup {
             cells: [self.side; 2],
             cell_m: self.cell_m,
             ..PaintingSetup::default()
-        };
-        let library = PaintLibrary::measured().expect("whole");
-        let mut painting = Painting::new(&setup, library).expect("a painting");
+        });
         let file = self.brush();
-        painting.define_brush("main", file.clone());
-        for (number, paint) in ["Titanium White", "Ultramarine Blue"]
-            .into_iter()
-            .enumerate()
-        {
-            let mixture = paint.parse().expect("a mixture");
-            let load = Load {
-                mixture,
-                beside: None,
-                brush: BrushName::main(),
-            };
-            painting.apply(load).expect("known");
-            let middle_m = 0.5 * f64::from(self.side) * self.cell_m;
+        painting.define_brush(BRUSH, file.clone());
+        let middle_mm = 0.5e3 * f64::from(self.side) * self.cell_m;
+        for (stroke, paint) in (1..).zip(["Titanium White", "Ultramarine Blue"]) {
+            painting.apply(load(paint)).expect("known");
             let solves = self.ways_m.iter().map(|way| Solve {
-                event_ns: 0,
-                stroke: number as u64 + 1,
-                surface: CANVAS,
                 flags: self.flags,
-                pose: Pose {
-                    position_m: [middle_m + way[0], middle_m + way[1], 0.5 * file.length_m()],
-                    orientation: [0.0, 0.0, 0.0, 1.0],
-                },
-                zoom: 1.0,
-                angles_rad: vec![[0.1, 0.2]; file.spines.all_joints()],
-                contacts: Vec::new(),
+                ..solve(
+                    &file,
+                    stroke,
+                    way.map(|m| middle_mm + 1e3 * m),
+                    0.5,
+                    [0.1, 0.2],
+                )
             });
-            let state = BrushState {
-                device: 1,
-                device_epoch: 1,
-                device_seq: 0,
-                solves: solves.collect(),
-            };
-            painting.state("main", 1, &state).expect("it fits");
+            painting.state(BRUSH, 1, &state(solves)).expect("it fits");
         }
         painting.commit();
         painting

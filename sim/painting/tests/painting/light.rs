@@ -15,11 +15,11 @@ use maulstick_optics::light::{Facet, Lamp, LampSetup, Spot, lit};
 use maulstick_optics::{PaintLibrary, Under};
 use maulstick_painting::picture::{picture_for, unlit_picture};
 use maulstick_painting::{Painting, PaintingSetup};
-use maulstick_types::Pose;
-use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::edits::{Dry, LayerRef, Load, Opacity};
+use maulstick_types::edits::{Dry, LayerRef, Opacity};
 use maulstick_types::scene::{CANVAS, Light, PALETTE};
-use maulstick_types::values::{BrushName, LayerName, OpacityFactor, Share};
+use maulstick_types::values::{LayerName, OpacityFactor, Share};
+
+use crate::studio::{self, BRUSH};
 
 fn painting(light: Light) -> Painting {
     let setup = PaintingSetup {
@@ -28,8 +28,7 @@ fn painting(light: Light) -> Painting {
         light,
         ..PaintingSetup::default()
     };
-    let library = PaintLibrary::measured().expect("whole");
-    let mut painting = Painting::new(&setup, library).expect("a painting");
+    let mut painting = studio::painting(&setup);
     let file = BrushFile::library("round").expect("round");
     painting.define_brush("main", file.scaled_to(8.0).expect("a size"));
     painting
@@ -37,36 +36,13 @@ fn painting(light: Light) -> Painting {
 
 /// A stroke from left to right, `y_mm` up the canvas.
 fn stroke(painting: &mut Painting, number: u64, load: &str, y_mm: f64) {
-    painting
-        .apply(Load {
-            mixture: load.parse().expect("a mixture"),
-            beside: None,
-            brush: BrushName::main(),
-        })
-        .expect("known");
+    painting.apply(studio::load(load)).expect("known");
     let file = BrushFile::library("round")
         .and_then(|file| file.scaled_to(8.0))
         .expect("round");
-    let solve = |x_mm: f64| Solve {
-        event_ns: 0,
-        stroke: number,
-        surface: CANVAS,
-        flags: 0,
-        pose: Pose {
-            position_m: [x_mm * 1e-3, y_mm * 1e-3, 0.6 * file.length_m()],
-            ..Pose::IDENTITY
-        },
-        zoom: 1.0,
-        angles_rad: vec![[0.2, 0.3]; file.spines.all_joints()],
-        contacts: Vec::new(),
-    };
-    let state = BrushState {
-        device: 1,
-        device_epoch: 1,
-        device_seq: 0,
-        solves: vec![solve(3.0), solve(12.0), solve(20.0)],
-    };
-    painting.state("main", 1, &state).expect("it fits");
+    let solve = |x_mm: f64| studio::solve(&file, number, [x_mm, y_mm], 0.6, [0.2, 0.3]);
+    let state = studio::state([3.0, 12.0, 20.0].map(solve));
+    painting.state(BRUSH, 1, &state).expect("it fits");
     painting.commit();
 }
 

@@ -1,8 +1,7 @@
 //! What the sequencer owes to clients and brushes.
 
 use maulstick_brush::BrushFile;
-use maulstick_optics::PaintLibrary;
-use maulstick_painting::{Effect, Painting, PaintingSetup, Sequencer};
+use maulstick_painting::{Effect, PaintingSetup, Sequencer};
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::command::TakeCommand;
 use maulstick_types::command::{After, Command, CommandRequest, Outcome};
@@ -10,15 +9,15 @@ use maulstick_types::edits::Clean;
 use maulstick_types::values::{BrushName, WholePath};
 use maulstick_types::{Flags, Header, Pose};
 
+use crate::studio;
+
 const BRUSH: u32 = 3;
 
 fn sequencer() -> Sequencer {
-    let setup = PaintingSetup {
+    let mut sequencer = Sequencer::new(studio::painting(&PaintingSetup {
         cells: [256, 192],
         ..PaintingSetup::default()
-    };
-    let library = PaintLibrary::measured().expect("whole");
-    let mut sequencer = Sequencer::new(Painting::new(&setup, library).expect("a painting"));
+    }));
     let file = BrushFile::library("round").expect("round");
     sequencer.painting_mut().define_brush("main", file);
     sequencer

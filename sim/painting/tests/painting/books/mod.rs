@@ -5,8 +5,8 @@ mod acts;
 use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::CELL_MAX;
 use maulstick_num::fork_join::with_threads;
-use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup};
+use maulstick_types::Mixture;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
 use maulstick_types::edits::{
     Clean, Dry, Fill, FillPaint, Handle, LayerRef, Load, Opacity, Piles, Size,
@@ -15,11 +15,11 @@ use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE};
 use maulstick_types::values::{
     BrushName, FilmThickness, LayerName, OpacityFactor, Share, StainThickness,
 };
-use maulstick_types::{Mixture, Pose};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 
+use crate::studio::{self, mixture, round, state};
 use acts::{act, perform, way};
 
 const BRUSHES: [&str; 2] = ["main", "other"];
@@ -53,13 +53,6 @@ fn opacity(number: u32, opacity: f32) -> Opacity {
     }
 }
 
-/// The library's round brush at a size, with so many strips, for speed.
-fn brush(size_mm: f64, strips: usize) -> BrushFile {
-    let mut file = BrushFile::library("round").expect("round");
-    file.strips.count = strips;
-    file.scaled_to(size_mm).expect("a size")
-}
-
 /// A canvas of 16 mm and a palette with three wells.
 fn painting(size_mm: f64) -> Painting {
     let setup = PaintingSetup {
@@ -67,16 +60,11 @@ fn painting(size_mm: f64) -> Painting {
         wells: MIXTURES.map(mixture).to_vec(),
         ..PaintingSetup::default()
     };
-    let library = PaintLibrary::measured().expect("whole");
-    let mut painting = Painting::new(&setup, library).expect("a painting");
+    let mut painting = studio::painting(&setup);
     for name in BRUSHES {
-        painting.define_brush(name, brush(size_mm, 48));
+        painting.define_brush(name, round(size_mm, 48));
     }
     painting
-}
-
-fn mixture(text: &str) -> Mixture {
-    text.parse().expect("a mixture")
 }
 
 /// Where a brush is: ferrule, bend of its joints, turn.
@@ -92,36 +80,22 @@ struct Place {
 }
 
 fn solve(file: &BrushFile, stroke: u64, flags: u32, place: &Place) -> Solve {
-    let [x, y] = place.at_mm.map(|mm| mm * 1e-3);
     let (sine, cosine) = maulstick_num::sin_cos(0.5 * place.turn);
     let joint = |i: usize| place.bend.map(|angle| angle * (0.7 + 0.1 * (i % 5) as f32));
+    let mut solve = studio::solve(file, stroke, place.at_mm, place.height, [0.0; 2]);
+    solve.pose.orientation = [0.0, 0.0, sine, cosine];
     Solve {
-        event_ns: 0,
-        stroke,
         surface: place.surface,
         flags,
-        pose: Pose {
-            position_m: [x, y, place.height * file.length_m()],
-            orientation: [0.0, 0.0, sine, cosine],
-        },
-        zoom: 1.0,
         angles_rad: (0..file.spines.all_joints()).map(joint).collect(),
-        contacts: Vec::new(),
+        ..solve
     }
 }
 
 fn paint(painting: &mut Painting, name: &str, size_mm: f64, stroke: u64, places: &[Place]) {
-    let file = brush(size_mm, 48);
-    let state = BrushState {
-        device: 1,
-        device_epoch: 1,
-        device_seq: 0,
-        solves: places
-            .iter()
-            .map(|place| solve(&file, stroke, 0, place))
-            .collect(),
-    };
-    painting.state(name, 1, &state).expect("it fits");
+    let file = round(size_mm, 48);
+    let solves = places.iter().map(|place| solve(&file, stroke, 0, place));
+    painting.state(name, 1, &state(solves)).expect("it fits");
 }
 
 /// The books balance, and every cell holds a whole number of quanta that it can hold.
@@ -290,7 +264,7 @@ fn a_load_from_before_a_brush_had_other_strips_comes_back() {
         painting
             .apply(load("main", mixture(MIXTURES[1])))
             .expect("known");
-        painting.define_brush("main", brush(10.0, strips));
+        painting.define_brush("main", round(10.0, strips));
         painting.undo(None).expect("the second load");
         assert_eq!(painting.report().quanta_missing, 0);
         paint(&mut painting, "main", 10.0, 1, &across(4.0, 12.0));
@@ -323,7 +297,7 @@ fn a_restart_paints_nothing_on_its_way() {
     painting
         .apply(load("main", mixture(MIXTURES[0])))
         .expect("known");
-    let file = brush(10.0, 48);
+    let file = round(10.0, 48);
     for place in across(4.0, 12.0) {
         let state = BrushState {
             device: 1,

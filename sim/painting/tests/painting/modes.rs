@@ -2,23 +2,19 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::{Counts, QUANTUM_M, SLOTS};
-use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup};
-use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::edits::{Fill, FillPaint, Handle, Load, Piles, Size};
+use maulstick_types::brush::Solve;
+use maulstick_types::edits::{Fill, FillPaint, Handle, Piles, Size};
+use maulstick_types::name_hash;
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE};
 use maulstick_types::values::{BrushName, FilmThickness, StainThickness};
-use maulstick_types::{Mixture, Pose, name_hash};
 
-const BRUSH: &str = "main";
+use crate::studio::{BRUSH, fill, load, mixture, painting, solve, state};
+
 const BLUE: &str = "Ultramarine Blue";
 const WHITE: &str = "Titanium White";
 /// Cells of the canvas either way.
 const SIDE: u32 = 128;
-
-fn mixture(text: &str) -> Mixture {
-    text.parse().expect("a mixture")
-}
 
 fn brush() -> BrushFile {
     let mut file = BrushFile::library("round").expect("round");
@@ -33,13 +29,15 @@ struct Easel {
 
 impl Easel {
     fn new() -> Self {
-        let setup = PaintingSetup {
+        Self::of(PaintingSetup {
             cells: [SIDE, SIDE],
             tooth: "panel".into(),
             ..PaintingSetup::default()
-        };
-        let library = PaintLibrary::measured().expect("whole");
-        let mut painting = Painting::new(&setup, library).expect("a painting");
+        })
+    }
+
+    fn of(setup: PaintingSetup) -> Self {
+        let mut painting = painting(&setup);
         painting.define_brush(BRUSH, brush());
         Self {
             painting,
@@ -50,17 +48,7 @@ impl Easel {
     /// A brush that is used like this, on wet white.
     fn on_white(mode: BrushMode, um: f64) -> Self {
         let mut easel = Self::new();
-        let white = mixture(WHITE);
-        easel
-            .painting
-            .apply(Fill {
-                paint: FillPaint::Mixture {
-                    mixture: white.clone(),
-                },
-                thickness: FilmThickness::new(um * 1e-6).expect("in range"),
-                surface: CANVAS,
-            })
-            .expect("laid");
+        easel.painting.apply(fill(WHITE, um)).expect("laid");
         easel.use_as(mode, |_| {});
         easel
     }
@@ -77,13 +65,7 @@ impl Easel {
     }
 
     fn load(&mut self, text: &str) {
-        self.painting
-            .apply(Load {
-                mixture: mixture(text),
-                beside: None,
-                brush: BrushName::new(BRUSH).expect("valid"),
-            })
-            .expect("loaded");
+        self.painting.apply(load(text)).expect("loaded");
     }
 
     /// From left to right over the middle of the canvas, or of another place of a surface, mm.
@@ -91,28 +73,16 @@ impl Easel {
         self.strokes += 1;
         let file = brush();
         let solves = (0..=60).map(|i| Solve {
-            event_ns: 0,
-            stroke: self.strokes,
             surface,
-            flags: 0,
-            pose: Pose {
-                position_m: [
-                    (x + 0.2 * f64::from(i)) * 1e-3,
-                    y * 1e-3,
-                    0.6 * file.length_m(),
-                ],
-                orientation: [0.0, 0.0, 0.0, 1.0],
-            },
-            zoom: 1.0,
-            angles_rad: vec![[0.2, 0.1]; file.spines.all_joints()],
-            contacts: Vec::new(),
+            ..solve(
+                &file,
+                self.strokes,
+                [x + 0.2 * f64::from(i), y],
+                0.6,
+                [0.2, 0.1],
+            )
         });
-        let state = BrushState {
-            device: 1,
-            device_epoch: 1,
-            device_seq: 0,
-            solves: solves.collect(),
-        };
+        let state = state(solves);
         self.painting.state(BRUSH, 1, &state).expect("it fits");
     }
 
@@ -444,27 +414,11 @@ fn the_jar_cleans_a_brush_that_is_in_it() {
 #[test]
 fn narrow_surfaces_are_painted_on() {
     for cells in [[1, 1], [1, 40], [2, 40], [40, 1], [3, 3]] {
-        let setup = PaintingSetup {
+        let mut easel = Easel::of(PaintingSetup {
             cells,
             ..PaintingSetup::default()
-        };
-        let library = PaintLibrary::measured().expect("whole");
-        let mut painting = Painting::new(&setup, library).expect("a painting");
-        painting.define_brush(BRUSH, brush());
-        let white = mixture(WHITE);
-        painting
-            .apply(Fill {
-                paint: FillPaint::Mixture {
-                    mixture: white.clone(),
-                },
-                thickness: FilmThickness::new(1e-4).expect("in range"),
-                surface: CANVAS,
-            })
-            .expect("laid");
-        let mut easel = Easel {
-            painting,
-            strokes: 0,
-        };
+        });
+        easel.painting.apply(fill(WHITE, 100.0)).expect("laid");
         easel.load(BLUE);
         easel.stroke(CANVAS, [-4.0, 0.2]);
         assert!(total(&easel.on(CANVAS)) > 0);

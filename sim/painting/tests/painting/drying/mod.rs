@@ -10,22 +10,19 @@ use maulstick_brush::BrushFile;
 use maulstick_canvas::EditError;
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::quantum::{Counts, SLOTS};
-use maulstick_optics::PaintLibrary;
-use maulstick_painting::{Painting, PaintingSetup, Sequencer};
-use maulstick_types::advice::Advice;
-use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::edits::{
-    Dry, Edit, Fill, FillPaint, Load, NameLayer, Opacity, Redo, StopDrying, Undo, Wet,
-};
+use maulstick_painting::{PaintingSetup, Sequencer};
+use maulstick_types::Region;
+use maulstick_types::command::advice::Advice;
+use maulstick_types::edits::{Dry, Edit, NameLayer, Opacity, Redo, StopDrying, Undo, Wet};
 use maulstick_types::paint::Entry;
 use maulstick_types::scene::CANVAS;
-use maulstick_types::values::{BrushName, FilmThickness, LayerName, OpacityFactor, Share, Ticks};
-use maulstick_types::{Flags, Header, Pose, Region, name_hash};
+use maulstick_types::values::{LayerName, OpacityFactor, Share, Ticks};
 use proptest::prelude::*;
 
+use crate::studio::{fill, load};
 use easel::{
-    both, colours, counts, depth, dry, dry_over, farthest, fill, load, mean_off, painted,
-    sequencer, stroke, sum, ticks, wet, wet_cells,
+    both, colours, counts, depth, dry, dry_over, farthest, mean_off, painted, sequencer, stroke,
+    sum, ticks, wet, wet_cells,
 };
 
 const CELLS: [u32; 2] = [150, 100];

@@ -4,42 +4,20 @@ use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_marker::{FILM_M, Marker};
 use maulstick_model::interface::{PaintModel, Step, StepReport};
-use maulstick_optics::PaintLibrary;
 use maulstick_painting::models::model_names;
 use maulstick_painting::picture::picture;
 use maulstick_painting::{Painting, PaintingSetup};
-use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::edits::{Clean, Dry, Fill, FillPaint, Load, Wet};
-use maulstick_types::scene::{CANVAS, PALETTE};
-use maulstick_types::values::{BrushName, FilmThickness, Share};
-use maulstick_types::{Mixture, Pose};
+use maulstick_types::brush::Solve;
+use maulstick_types::edits::{Clean, Dry, Handle, Wet};
+use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE};
+use maulstick_types::values::{BrushName, Share};
+
+use crate::studio::{BRUSH, fill, load, mixture, painting, round, solve, state};
 
 const BLUE: &str = "Ultramarine Blue=0.6,Titanium White=0.4";
 
 fn brush() -> BrushFile {
-    let mut file = BrushFile::library("round").expect("round");
-    file.strips.count = 48;
-    file.scaled_to(6.0).expect("a size")
-}
-
-fn load(mixture: Mixture) -> Load {
-    Load {
-        mixture,
-        beside: None,
-        brush: BrushName::main(),
-    }
-}
-
-fn fill(mixture: Mixture, thickness_m: f64) -> Fill {
-    Fill {
-        paint: FillPaint::Mixture { mixture },
-        thickness: FilmThickness::new(thickness_m).expect("in range"),
-        surface: CANVAS,
-    }
-}
-
-fn mixture(text: &str) -> Mixture {
-    text.parse().expect("a mixture")
+    round(6.0, 48)
 }
 
 fn easel(model: &str, palette_model: &str) -> Painting {
@@ -50,9 +28,8 @@ fn easel(model: &str, palette_model: &str) -> Painting {
         palette_model: palette_model.to_owned(),
         ..PaintingSetup::default()
     };
-    let library = PaintLibrary::measured().expect("whole");
-    let mut painting = Painting::new(&setup, library).expect("a painting");
-    painting.define_brush("main", brush());
+    let mut painting = painting(&setup);
+    painting.define_brush(BRUSH, brush());
     painting
 }
 
@@ -60,27 +37,12 @@ fn easel(model: &str, palette_model: &str) -> Painting {
 fn stroke(painting: &mut Painting, number: u64, surface: u32, x: &[f64], y: f64) {
     let file = brush();
     let solve = |stroke: u64, x: f64| Solve {
-        event_ns: 0,
-        stroke,
         surface,
-        flags: 0,
-        pose: Pose {
-            position_m: [x * 1e-3, y * 1e-3, 0.6 * file.length_m()],
-            ..Pose::IDENTITY
-        },
-        zoom: 1.0,
-        angles_rad: vec![[0.2, 0.3]; file.spines.all_joints()],
-        contacts: Vec::new(),
+        ..solve(&file, stroke, [x, y], 0.6, [0.2, 0.3])
     };
     let mut solves: Vec<Solve> = x.iter().map(|x| solve(number, *x)).collect();
     solves.push(solve(0, 0.0));
-    let state = BrushState {
-        device: 1,
-        device_epoch: 1,
-        device_seq: 0,
-        solves,
-    };
-    painting.state("main", 1, &state).expect("it fits");
+    painting.state(BRUSH, 1, &state(solves)).expect("it fits");
 }
 
 fn seen(painting: &mut Painting) -> Vec<u8> {
@@ -99,12 +61,10 @@ fn whatever_the_model_strokes_are_undone_redone_and_booked() {
         assert_eq!(painting.model(CANVAS), Some(model));
         assert_eq!(painting.model(PALETTE), Some("impasto"));
         let bare = seen(&mut painting);
-        painting.apply(load(mixture(BLUE))).expect("loaded");
+        painting.apply(load(BLUE)).expect("loaded");
         stroke(&mut painting, 1, CANVAS, &[4.0, 12.0, 22.0], 6.0);
         let once = seen(&mut painting);
-        painting
-            .apply(load(mixture("Pyrrole Red")))
-            .expect("loaded");
+        painting.apply(load("Pyrrole Red")).expect("loaded");
         stroke(&mut painting, 2, CANVAS, &[22.0, 12.0, 4.0], 8.0);
         let twice = seen(&mut painting);
         assert!(once != bare && twice != once, "{model} paints");
@@ -133,9 +93,7 @@ fn whatever_the_model_strokes_are_undone_redone_and_booked() {
             ..Dry::whole(CANVAS)
         };
         painting.apply(half_dry).expect("wet");
-        painting
-            .apply(fill(mixture("Yellow Ochre"), 2e-5))
-            .expect("laid");
+        painting.apply(fill("Yellow Ochre", 20.0)).expect("laid");
         painting
             .apply(Wet {
                 layers: None,
@@ -172,7 +130,7 @@ fn lying(painting: &mut Painting) -> (f32, u64) {
 #[test]
 fn a_marker_lays_a_film_up_to_its_most_and_pushes_and_lifts_nothing() {
     let mut painting = easel("marker", "impasto");
-    painting.apply(load(mixture(BLUE))).expect("loaded");
+    painting.apply(load(BLUE)).expect("loaded");
     let film = (FILM_M / QUANTUM_M) as f32;
     for number in 1..=6 {
         stroke(&mut painting, number, CANVAS, &[4.0, 12.0, 22.0], 6.0);
@@ -194,17 +152,42 @@ fn a_marker_lays_a_film_up_to_its_most_and_pushes_and_lifts_nothing() {
     assert_eq!(painting.fullness(maulstick_types::name_hash("main")), 0.0);
     // Of impasto it does both.
     let mut impasto = easel("impasto", "impasto");
-    impasto.apply(fill(mixture(BLUE), FILM_M)).expect("laid");
+    impasto.apply(fill(BLUE, 1e6 * FILM_M)).expect("laid");
     let before = seen(&mut impasto);
     stroke(&mut impasto, 1, CANVAS, &[4.0, 12.0, 22.0], 6.0);
     assert!(seen(&mut impasto) != before, "a fault would pass");
 }
 
 #[test]
+fn in_the_mode_of_a_marker_it_lays_by_its_flow_up_to_the_same_film() {
+    let laid = |flow: Option<f64>| {
+        let mut painting = easel("marker", "impasto");
+        painting.apply(load(BLUE)).expect("loaded");
+        if let Some(flow) = flow {
+            let handling = BrushHandling {
+                mode: BrushMode::Marker,
+                flow,
+                ..BrushHandling::normal("main")
+            };
+            let handle = Handle::try_from(&handling).expect("in range");
+            painting.apply(handle).expect("a brush");
+        }
+        stroke(&mut painting, 1, CANVAS, &[4.0, 12.0, 22.0], 6.0);
+        assert_eq!(missing(&mut painting), 0);
+        lying(&mut painting)
+    };
+    let [thin, thick, most] = [Some(1e-4), Some(4e-4), Some(0.1)].map(laid);
+    let factor = thick.1 as f64 / thin.1 as f64;
+    assert!((3.5..4.5).contains(&factor), "{thin:?} {thick:?}");
+    assert!(thick.0 < 0.5 * most.0 && most.0 <= (FILM_M / QUANTUM_M) as f32);
+    assert!(laid(None).1 > 2 * thick.1, "a fault would pass");
+}
+
+#[test]
 fn its_ink_is_matt_and_paint_is_not() {
     for (model, matt) in [("marker", true), ("impasto", false)] {
         let mut painting = easel(model, "impasto");
-        painting.apply(fill(mixture(BLUE), FILM_M)).expect("laid");
+        painting.apply(fill(BLUE, 1e6 * FILM_M)).expect("laid");
         let banded = maulstick_painting::picture::banded(&mut painting, CANVAS).expect("a canvas");
         let (id, tile) = banded.tiles(0).next().expect("a tile");
         let shown = banded.shown(id, tile, &mut Default::default());
@@ -243,7 +226,7 @@ fn a_model_that_loses_a_quantum_is_found() {
         if leaky {
             painting.set_model(Box::new(Leaky::default()));
         }
-        painting.apply(load(mixture("Bone Black"))).expect("loaded");
+        painting.apply(load("Bone Black")).expect("loaded");
         stroke(&mut painting, 1, CANVAS, &[10.0, 11.0], 6.0);
         missing(&mut painting)
     };

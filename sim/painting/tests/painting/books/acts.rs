@@ -92,7 +92,7 @@ pub(super) fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act
             painting.take(BRUSHES[*b], &loads).expect("known");
         }
         Act::Redefine(b, strips) => {
-            painting.define_brush(BRUSHES[*b], brush(10.0, *strips));
+            painting.define_brush(BRUSHES[*b], round(10.0, *strips));
         }
         // There may be nothing to dry, to undo or to redo.
         Act::Dry(surface, share) => drop(painting.apply(dry(*surface, *share, ""))),

@@ -1,42 +1,20 @@
 //! A painting to dry, and what is looked at in it.
 
 use super::*;
+use crate::studio::{BRUSH, header, painting, round, solve, state};
 
 pub(super) fn brush() -> BrushFile {
-    let mut file = BrushFile::library("round").expect("round");
-    file.strips.count = 48;
-    file.scaled_to(8.0).expect("a size")
+    round(8.0, 48)
 }
 
 pub(super) fn sequencer() -> Sequencer {
-    let setup = PaintingSetup {
+    let mut sequencer = Sequencer::new(painting(&PaintingSetup {
         cells: CELLS,
         cell_m: CELL_M,
         ..PaintingSetup::default()
-    };
-    let library = PaintLibrary::measured().expect("whole");
-    let painting = Painting::new(&setup, library).expect("a painting");
-    let mut sequencer = Sequencer::new(painting);
-    sequencer.define_brush("main", brush());
+    }));
+    sequencer.define_brush(BRUSH, brush());
     sequencer
-}
-
-pub(super) fn fill(mixture: &str, um: f64) -> Fill {
-    Fill {
-        paint: FillPaint::Mixture {
-            mixture: mixture.parse().expect("a mixture"),
-        },
-        thickness: FilmThickness::new(um * 1e-6).expect("in range"),
-        surface: CANVAS,
-    }
-}
-
-pub(super) fn load(mixture: &str) -> Load {
-    Load {
-        mixture: mixture.parse().expect("a mixture"),
-        beside: None,
-        brush: BrushName::main(),
-    }
 }
 
 pub(super) fn dry(share: f32, layer: &str, region: Option<Region>) -> Dry {
@@ -67,41 +45,13 @@ pub(super) fn wet(layers: u32, region: Option<Region>) -> Wet {
 /// A part of a stroke from left to right; at the end the brush is lifted if `lifts`.
 pub(super) fn stroke(sequencer: &mut Sequencer, seq: u64, stroke: u64, y_mm: f64, lifts: bool) {
     let file = brush();
-    let solve = |x_mm: f64, stroke: u64| Solve {
-        event_ns: 0,
-        stroke,
-        surface: CANVAS,
-        flags: 0,
-        pose: Pose {
-            position_m: [x_mm * 1e-3, y_mm * 1e-3, 0.6 * file.length_m()],
-            ..Pose::IDENTITY
-        },
-        zoom: 1.0,
-        angles_rad: vec![[0.2, 0.3]; file.spines.all_joints()],
-        contacts: Vec::new(),
-    };
+    let solve = |x_mm: f64, stroke: u64| solve(&file, stroke, [x_mm, y_mm], 0.6, [0.2, 0.3]);
     let mut solves = vec![solve(6.0, stroke), solve(18.0, stroke), solve(30.0, stroke)];
     if lifts {
         solves.push(solve(30.0, 0));
     }
-    let header = Header {
-        version: 1,
-        schema: 0,
-        source: name_hash("main"),
-        epoch: 1,
-        flags: Flags::NONE,
-        length: 0,
-        seq,
-        event_ns: 0,
-        sent_ns: 0,
-    };
-    let state = BrushState {
-        device: 1,
-        device_epoch: 1,
-        device_seq: seq,
-        solves,
-    };
-    sequencer.state("main", &header, &state).1.expect("it fits");
+    let (_, painted) = sequencer.state(BRUSH, &header(seq, 0), &state(solves));
+    painted.expect("it fits");
 }
 
 pub(super) fn ticks(sequencer: &mut Sequencer, count: u32) {

@@ -2,18 +2,14 @@
 
 use std::ops::Range;
 
-use maulstick_brush::{BrushFile, BrushModel};
+use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::QUANTUM_M;
-use maulstick_optics::PaintLibrary;
-
-use maulstick_painting::{Painting, PaintingSetup, Sequencer};
-use maulstick_types::brush::BrushState;
-use maulstick_types::edits::{Load, Undo};
+use maulstick_painting::Painting;
+use maulstick_types::edits::Undo;
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::CANVAS;
-use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
-use maulstick_types::values::BrushName;
-use maulstick_types::{Flags, Header, Message as _, Origin};
+
+use crate::studio::Drawing;
 
 const CELL_MM: f64 = 0.25;
 const SIZE_MM: [f64; 2] = [96.0, 32.0];
@@ -57,32 +53,14 @@ fn along(moved_ms: u64) -> f64 {
 
 /// A stroke without the samples of a pause.
 fn stroke(kind: &str, pause: Range<u64>, hand: Hand, after: After) -> Stroke {
-    let cells = SIZE_MM.map(|mm| (mm / CELL_MM) as u32);
-    let setup = PaintingSetup {
-        cells,
-        cell_m: 1e-3 * CELL_MM,
-        tooth: "panel".into(),
-        ..PaintingSetup::default()
-    };
-    let painting = Painting::new(&setup, PaintLibrary::measured().expect("whole")).expect("one");
-    let mut sequencer = Sequencer::new(painting);
-    let file = BrushFile::library(kind).expect(kind);
-    let mut model = BrushModel::new(file.clone(), 0.5);
-    model.set_scene(sequencer.painting_mut().scene());
-    sequencer.define_brush("main", file);
-    let load = Load {
-        mixture: "Bone Black".parse().expect("a mixture"),
-        beside: None,
-        brush: BrushName::main(),
-    };
-    sequencer.edit(load).expect("loaded");
+    let mut drawing = Drawing::new(BrushFile::library(kind).expect(kind), SIZE_MM, CELL_MM);
     let rested = match hand {
         Hand::Moves => 0,
         Hand::Rests => pause.end - pause.start,
     };
     let mut numbers = Vec::new();
     let times = (0..=STROKE_MS + rested).step_by(STEP_MS as usize);
-    for (seq, ms) in (0u64..).zip(times.filter(|ms| !(pause.start + 1..pause.end).contains(ms))) {
+    for ms in times.filter(|ms| !(pause.start + 1..pause.end).contains(ms)) {
         let moved_ms = match ms > pause.start {
             true => ms - rested,
             false => ms,
@@ -92,46 +70,19 @@ fn stroke(kind: &str, pause: Range<u64>, hand: Hand, after: After) -> Stroke {
             Hand::Moves => along(moved_ms),
             Hand::Rests => SIZE_MM[0] - along(moved_ms),
         };
-        let sample = StylusSample {
-            pose: StylusPose::Contact {
-                point_m: [1e-3 * (x - 0.5 * SIZE_MM[0]), 0.0, 0.0],
-                tilt_rad: DEFAULT_TILT_RAD,
-                // A flat draws with its broad side.
-                twist_rad: std::f64::consts::FRAC_PI_2,
-                pressure: if ms == 0 { 0.0 } else { 0.4 },
-            },
-            in_range: true,
-            ..StylusSample::away()
-        };
-        let origin = Origin {
-            source: 1,
-            epoch: 1 + u32::from(after == After::Another && ms > pause.start),
-        };
-        let event_ns = 1_000_000_000 + 1_000_000 * ms;
-        let state = model
-            .state(origin, seq, event_ns, &sample)
-            .expect("a state");
-        numbers.extend(state.solves.iter().map(|solve| solve.stroke));
-        let header = Header {
-            version: BrushState::VERSION,
-            schema: 0,
-            source: maulstick_types::name_hash("main"),
-            epoch: 1,
-            flags: Flags::NONE,
-            length: 0,
-            seq,
-            event_ns,
-            sent_ns: event_ns,
-        };
-        sequencer.state("main", &header, &state).1.expect("painted");
-        sequencer.drain_journal();
+        // A flat draws with its broad side.
+        let twist_rad = std::f64::consts::FRAC_PI_2;
+        let pressure = if ms == 0 { 0.0 } else { 0.4 };
+        let epoch = 1 + u32::from(after == After::Another && ms > pause.start);
+        let x_m = 1e-3 * (x - 0.5 * SIZE_MM[0]);
+        numbers.extend(drawing.sample(ms, x_m, [twist_rad, pressure], epoch));
     }
     numbers.retain(|number| *number > 0);
     numbers.dedup();
-    let film = film(sequencer.painting_mut(), cells);
+    let film = film(drawing.sequencer.painting_mut());
     let undo = || Undo { brush: None };
     let undone = (0..8)
-        .take_while(|_| sequencer.edit(undo()).is_ok())
+        .take_while(|_| drawing.sequencer.edit(undo()).is_ok())
         .count();
     Stroke {
         cells: film,
@@ -141,7 +92,8 @@ fn stroke(kind: &str, pause: Range<u64>, hand: Hand, after: After) -> Stroke {
 }
 
 /// Wet film of each cell of a canvas, µm.
-fn film(painting: &mut Painting, cells: [u32; 2]) -> Vec<f64> {
+fn film(painting: &mut Painting) -> Vec<f64> {
+    let cells = SIZE_MM.map(|mm| (mm / CELL_MM) as u32);
     painting.commit();
     let [width, height] = cells.map(|cells| cells as usize);
     let mut film = vec![0.0; width * height];

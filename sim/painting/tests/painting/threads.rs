@@ -1,16 +1,12 @@
 //! However many threads share a step, and whatever size its brush, it paints the same bytes.
 
-use maulstick_brush::BrushFile;
 use maulstick_impasto::Impasto;
 use maulstick_model::interface::{PaintModel, Step, StepReport};
 use maulstick_num::fork_join::{threads, with_threads};
-use maulstick_optics::PaintLibrary;
-use maulstick_painting::{Painting, PaintingSetup};
-use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::edits::{Fill, FillPaint, Load};
+use maulstick_painting::PaintingSetup;
 use maulstick_types::scene::CANVAS;
-use maulstick_types::values::{BrushName, FilmThickness};
-use maulstick_types::{Mixture, Pose};
+
+use crate::studio::{BRUSH, fill, load, painting, round, solve, state};
 
 const FILM: &str = "Ultramarine Blue=0.25,Titanium White=0.25,Yellow Ochre=0.25,Pyrrole Red=0.25";
 /// More than one, up to more than any machine gives.
@@ -39,62 +35,30 @@ const LARGE: Size = Size {
 
 /// All wet paint of the canvas after a stroke over a wet film, levelled once it has ended: slot, tile and counts.
 fn painted(size: Size, model: Option<Box<dyn PaintModel>>) -> Vec<(usize, u32, u32, Vec<f32>)> {
-    let mut file = BrushFile::library("round").expect("round");
-    file.strips.count = size.strips;
-    let file = file.scaled_to(size.mm).expect("a size");
+    let file = round(size.mm, size.strips);
     let side = if size.mm > 20.0 { 512 } else { 128 };
     let setup = PaintingSetup {
         cells: [side; 2],
         ..PaintingSetup::default()
     };
-    let library = PaintLibrary::measured().expect("whole");
-    let mut painting = Painting::new(&setup, library).expect("a painting");
+    let mut painting = painting(&setup);
     if let Some(model) = model {
         painting.set_model(model);
     }
-    painting.define_brush("main", file.clone());
-    let mixture: Mixture = FILM.parse().expect("a mixture");
-    let load = Load {
-        mixture: mixture.clone(),
-        beside: None,
-        brush: BrushName::main(),
-    };
-    painting.apply(load).expect("known");
-    let fill = Fill {
-        paint: FillPaint::Mixture { mixture },
-        thickness: FilmThickness::new(120e-6).expect("in range"),
-        surface: CANVAS,
-    };
-    painting.apply(fill).expect("a canvas");
-    let size_m = f64::from(side) * setup.cell_m;
+    painting.define_brush(BRUSH, file.clone());
+    painting.apply(load(FILM)).expect("known");
+    painting.apply(fill(FILM, 120.0)).expect("a canvas");
+    let size_mm = 1e3 * f64::from(side) * setup.cell_m;
     let solves = (0..=size.solves).map(|at| {
         let along = at as f64 / size.solves as f64;
-        Solve {
-            event_ns: 0,
-            // The brush is lifted at the end, and what it left levels.
-            stroke: u64::from(at < size.solves),
-            surface: CANVAS,
-            flags: 0,
-            pose: Pose {
-                position_m: [
-                    (0.35 + 0.3 * along) * size_m,
-                    (0.5 + 0.1 * along * along) * size_m,
-                    (0.45 + 2.0 * f64::from(u8::from(at == size.solves))) * file.length_m(),
-                ],
-                orientation: [0.0, 0.0, 0.0, 1.0],
-            },
-            zoom: 1.0,
-            angles_rad: vec![[0.3, 0.2]; file.spines.all_joints()],
-            contacts: Vec::new(),
-        }
+        let place = [0.35 + 0.3 * along, 0.5 + 0.1 * along * along];
+        // The brush is lifted at the end, and what it left levels.
+        let lifted = at == size.solves;
+        let height = 0.45 + 2.0 * f64::from(u8::from(lifted));
+        let place_mm = place.map(|share| share * size_mm);
+        solve(&file, u64::from(!lifted), place_mm, height, [0.3, 0.2])
     });
-    let state = BrushState {
-        device: 1,
-        device_epoch: 1,
-        device_seq: 0,
-        solves: solves.collect(),
-    };
-    painting.state("main", 1, &state).expect("it fits");
+    painting.state(BRUSH, 1, &state(solves)).expect("it fits");
     painting.commit();
     assert_eq!(painting.report().quanta_missing, 0);
     assert!(painting.work().0 > 20, "{:?}", painting.work());
