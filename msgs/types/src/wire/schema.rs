@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::header::HEADER_FIELDS;
+use crate::wire::header::HEADER_FIELDS;
 
 /// A type that can travel: it knows its name and describes itself to a [`TypeTable`].
 pub trait Wire: Serialize + DeserializeOwned {

@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use crate::define::wire_enum;
+use crate::wire::define::wire_enum;
 
 wire_enum! {
     /// Advice with a refusal. A window, a command line and a script say it in their own words, by a table from these

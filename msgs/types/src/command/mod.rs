@@ -1,13 +1,16 @@
 //! Commands to the nodes of a rig, by who carries them out, and their replies.
 
+pub mod advice;
+pub mod reply_cache;
+
 use serde::de::Error as _;
 
-use crate::advice::Advice;
-use crate::define::{message, wire_enum, wire_struct};
+use crate::command::advice::Advice;
 use crate::edits::Edit;
 use crate::mixture::Mixture;
 use crate::scene::{CANVAS, STAINS_M};
 use crate::values::{BrushName, BrushToml, MaterialName, ValueError, WholePath};
+use crate::wire::define::{message, wire_enum, wire_struct};
 
 /// The node that has the painting.
 pub const PAINT_NODE: &str = "paint";
@@ -358,7 +361,7 @@ impl CommandRequest {
     /// The number of a request, read before its command: one whose command is out of range is answered, too.
     #[must_use]
     pub fn number_in(bytes: &[u8]) -> Option<u64> {
-        let (_, body) = crate::codec::body_of::<Self>(bytes).ok()?;
+        let (_, body) = crate::wire::codec::body_of::<Self>(bytes).ok()?;
         let number = body.get(8..16)?.try_into().ok()?;
         Some(u64::from_le_bytes(number))
     }

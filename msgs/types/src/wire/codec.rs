@@ -3,8 +3,8 @@
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use crate::header::{DecodeError, Flags, HEADER_BYTES, Header, Origin};
-use crate::schema::{Schema, Wire};
+use crate::wire::header::{DecodeError, Flags, HEADER_BYTES, Header, Origin};
+use crate::wire::schema::{Schema, Wire};
 
 /// A message of the rig: a schema with a version and a size limit.
 ///

@@ -3,9 +3,9 @@
 use serde::Deserialize;
 
 use crate::Message as _;
-use crate::codec::{body_of, borrow_limited};
-use crate::header::{DecodeError, Header};
 use crate::paint::{FrameHolds, FrameReply};
+use crate::wire::codec::{body_of, borrow_limited};
+use crate::wire::header::{DecodeError, Header};
 
 /// A [`FrameTile`](crate::paint::FrameTile) in the bytes of its reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]

@@ -2,10 +2,10 @@
 
 mod fault;
 
-use crate::define::{message, wire_enum, wire_struct};
 use crate::mixture::Mixture;
 use crate::pose::Pose;
 use crate::values::ValueError;
+use crate::wire::define::{message, wire_enum, wire_struct};
 
 /// The canvas.
 pub const CANVAS: u32 = 0;
@@ -160,7 +160,7 @@ impl std::str::FromStr for BrushMode {
             ValueError::Unknown {
                 what: "mode",
                 name: name.chars().take(40).collect(),
-                choice: crate::advice::choice(name, names),
+                choice: crate::command::advice::choice(name, names),
             }
         })
     }

@@ -1,8 +1,8 @@
 //! Every message of the rig with its topic, for `maulstick schema`, takes and decoders.
 
-use crate::codec::Message;
-use crate::header::DecodeError;
-use crate::schema::Schema;
+use crate::wire::codec::Message;
+use crate::wire::header::DecodeError;
+use crate::wire::schema::Schema;
 use crate::{brush, command, control, haptics, paint, scene, stylus, window};
 
 /// One message of the rig.

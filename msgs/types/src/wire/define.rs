@@ -14,14 +14,14 @@ macro_rules! wire_struct {
             $( $(#[$field_meta])* pub $field: $ty, )*
         }
 
-        impl $crate::schema::Wire for $name {
+        impl $crate::wire::schema::Wire for $name {
             fn type_name() -> String {
                 stringify!($name).to_owned()
             }
 
-            fn describe(table: &mut $crate::schema::TypeTable) {
+            fn describe(table: &mut $crate::wire::schema::TypeTable) {
                 table.define(stringify!($name), |table| {
-                    $crate::schema::Shape::Struct(vec![
+                    $crate::wire::schema::Shape::Struct(vec![
                         $( table.field::<$ty>(stringify!($field)), )*
                     ])
                 });
@@ -55,17 +55,17 @@ macro_rules! wire_enum {
             )*
         }
 
-        impl $crate::schema::Wire for $name {
+        impl $crate::wire::schema::Wire for $name {
             fn type_name() -> String {
                 stringify!($name).to_owned()
             }
 
-            fn describe(table: &mut $crate::schema::TypeTable) {
+            fn describe(table: &mut $crate::wire::schema::TypeTable) {
                 table.define(stringify!($name), |table| {
                     let _ = &table;
-                    $crate::schema::Shape::Enum(vec![
+                    $crate::wire::schema::Shape::Enum(vec![
                         $(
-                            $crate::schema::Variant {
+                            $crate::wire::schema::Variant {
                                 name: stringify!($variant).to_owned(),
                                 fields: vec![
                                     $( table.field::<$inner>("value"), )?
@@ -86,7 +86,7 @@ macro_rules! message {
         $(#[$meta:meta])*
         pub struct $name:ident [version $version:literal, at most $max:literal bytes] { $($body:tt)* }
     ) => {
-        $crate::define::wire_struct! {
+        $crate::wire::define::wire_struct! {
             $(#[$meta])*
             pub struct $name { $($body)* }
         }
@@ -96,14 +96,14 @@ macro_rules! message {
             const VERSION: u16 = $version;
             const MAX_BYTES: usize = $max;
 
-            fn schema() -> &'static $crate::schema::Schema {
-                static SCHEMA: std::sync::OnceLock<$crate::schema::Schema> =
+            fn schema() -> &'static $crate::wire::schema::Schema {
+                static SCHEMA: std::sync::OnceLock<$crate::wire::schema::Schema> =
                     std::sync::OnceLock::new();
-                SCHEMA.get_or_init($crate::schema::Schema::of::<$name>)
+                SCHEMA.get_or_init($crate::wire::schema::Schema::of::<$name>)
             }
 
             fn decode_body(body: &[u8]) -> Result<Self, $crate::DecodeError> {
-                $crate::codec::decode_limited::<$name, $max>(stringify!($name), body)
+                $crate::wire::codec::decode_limited::<$name, $max>(stringify!($name), body)
             }
         }
     };

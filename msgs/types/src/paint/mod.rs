@@ -1,9 +1,11 @@
 //! Messages of the paint node: credit, journal, frames, status.
 
+pub(crate) mod frame_view;
+
 use serde_bytes::ByteBuf;
 
 use crate::command::Command;
-use crate::define::{message, wire_enum, wire_struct};
+use crate::wire::define::{message, wire_enum, wire_struct};
 
 /// Side of a tile in cells.
 pub const TILE: usize = 64;
