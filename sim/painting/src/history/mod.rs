@@ -35,8 +35,8 @@ pub struct History {
     touched: BTreeSet<u64>,
     /// See [`part_at`](Self::part_at).
     part: u64,
-    /// Most bytes.
-    quota: u64,
+    /// Most bytes of the pages that it holds.
+    pub(crate) quota: u64,
 }
 
 impl Default for History {
@@ -235,17 +235,6 @@ impl History {
     /// Steps up to this one and later ones are never merged with each other; 0 for none.
     pub(crate) fn part_at(&mut self, id: u64) {
         self.part = id;
-    }
-
-    /// Most bytes of the pages that it holds.
-    #[must_use]
-    pub(crate) fn quota(&self) -> u64 {
-        self.quota
-    }
-
-    /// Limits the bytes of the pages that it holds.
-    pub(crate) fn set_quota(&mut self, bytes: u64) {
-        self.quota = bytes;
     }
 
     /// Merges the oldest steps until the history keeps to its quota, or only the newest are apart; `besides` counts the

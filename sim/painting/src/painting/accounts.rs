@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::quantum::{Counts, SLOTS, add, quantum_m3};
-use maulstick_canvas::store::TileStore;
 use maulstick_canvas::tile::Tile;
 use maulstick_model::interface::{CountOwn, StepReport};
 use maulstick_types::scene::{CANVAS, PALETTE};
 
 use super::Painting;
+use super::surfaces::SurfaceState;
 use crate::ledger::{Booked, Ledger, LedgerReport, Stocks, Tallies, balance};
 
 /// What was booked and counted.
@@ -80,7 +80,7 @@ impl Painting {
         let mut covered_cells = 0;
         for surface in self.surfaces.iter() {
             if let Some(count) = self.backend.models.of(surface.model).count_own() {
-                let (wet, dry) = counts_own(&surface.store, count);
+                let (wet, dry) = counts_own(surface, count);
                 add(&mut stocks.dry, &dry);
                 match surface.id {
                     PALETTE => add(&mut stocks.palette, &wet),
@@ -91,7 +91,7 @@ impl Painting {
             match surface.id {
                 CANVAS => {
                     add(&mut stocks.canvas, &surface.store.counts());
-                    covered_cells += covered(&surface.store);
+                    covered_cells += covered(surface);
                 }
                 PALETTE => add(&mut stocks.palette, &surface.store.counts()),
                 _ => {}
@@ -112,12 +112,9 @@ impl Painting {
 }
 
 /// Paint in the planes that a model keeps of its own, wet and dry.
-fn counts_own(store: &TileStore, count: CountOwn) -> (Counts, Counts) {
+fn counts_own(surface: &SurfaceState, count: CountOwn) -> (Counts, Counts) {
     let (mut wet, mut dry) = ([0; SLOTS], [0; SLOTS]);
-    let tiles = store
-        .iter()
-        .filter_map(|(_, version)| version.tile.as_ref());
-    for tile in tiles {
+    for tile in surface.tiles() {
         add(&mut wet, &count(tile.wet().own()));
         for layer in tile.dry().into_iter().flat_map(|stack| stack.layers()) {
             add(&mut dry, &count(layer.planes.get().own()));
@@ -127,10 +124,7 @@ fn counts_own(store: &TileStore, count: CountOwn) -> (Counts, Counts) {
 }
 
 /// Cells with paint, wet or dry.
-fn covered(store: &TileStore) -> u64 {
-    let tiles = store
-        .iter()
-        .filter_map(|(_, version)| version.tile.as_ref());
+fn covered(surface: &SurfaceState) -> u64 {
     let painted = |tile: &Arc<Tile>| {
         let (wet, dry) = (tile.wet(), tile.dry().map(|stack| stack.height()));
         let covered = |cell: &usize| {
@@ -139,5 +133,5 @@ fn covered(store: &TileStore) -> u64 {
         };
         (0..TILE_CELLS).filter(covered).count() as u64
     };
-    tiles.map(painted).sum()
+    surface.tiles().map(painted).sum()
 }

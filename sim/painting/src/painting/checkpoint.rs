@@ -75,7 +75,7 @@ impl Painting {
             steps: self.accounts.steps,
             footprint_cells: self.accounts.footprint_cells,
             span_ns: self.accounts.span_ns,
-            quota: self.history.quota(),
+            quota: self.history.quota,
             clock: self.clock.clone(),
             rows: Some(RowCounts {
                 tiles: all_tiles,

@@ -5,7 +5,7 @@ mod loads;
 mod snapshot;
 
 use std::collections::BTreeMap;
-use std::ops::{Index, IndexMut};
+use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
 use maulstick_brush::{BrushFile, Head};
@@ -218,16 +218,6 @@ impl Brushes {
         brush.map(|brush| self.0[brush].name.as_str())
     }
 
-    /// All brushes.
-    pub(crate) fn iter(&self) -> std::slice::Iter<'_, PaintingBrush> {
-        self.0.iter()
-    }
-
-    /// All brushes.
-    pub(crate) fn iter_mut(&mut self) -> std::slice::IterMut<'_, PaintingBrush> {
-        self.0.iter_mut()
-    }
-
     /// Introduces a brush, or gives a known one another file.
     pub(crate) fn define(&mut self, name: &str, file: BrushFile, cell_m: f64) {
         match self.place(name) {
@@ -256,16 +246,16 @@ impl Brushes {
     }
 }
 
-impl Index<usize> for Brushes {
-    type Output = PaintingBrush;
+impl Deref for Brushes {
+    type Target = [PaintingBrush];
 
-    fn index(&self, brush: usize) -> &PaintingBrush {
-        &self.0[brush]
+    fn deref(&self) -> &[PaintingBrush] {
+        &self.0
     }
 }
 
-impl IndexMut<usize> for Brushes {
-    fn index_mut(&mut self, brush: usize) -> &mut PaintingBrush {
-        &mut self.0[brush]
+impl DerefMut for Brushes {
+    fn deref_mut(&mut self) -> &mut [PaintingBrush] {
+        &mut self.0
     }
 }

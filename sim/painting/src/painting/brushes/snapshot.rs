@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use maulstick_brush::BrushFile;
+use maulstick_brush::{BrushFile, Head};
 use maulstick_canvas::EditError;
 use maulstick_canvas::page::Page;
 use maulstick_model::brush::head::Waypoint;
@@ -75,7 +75,7 @@ impl PaintingBrush {
             let load = page.get();
             if load.texels() > 0 {
                 brush.thinned = brush.file.thinned_to(load.texels() / TEXELS_PER_STRIP);
-                brush.tidy = Arc::new(maulstick_brush::Head::of(&brush.thinned));
+                brush.tidy = Arc::new(Head::of(&brush.thinned));
             }
             let strips = brush.tidy.strips();
             if load.texels() == strips * TEXELS_PER_STRIP {

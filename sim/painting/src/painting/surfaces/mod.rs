@@ -9,7 +9,7 @@ pub(crate) mod wells;
 pub(crate) use part::{Changed, Part};
 
 use std::collections::{BTreeMap, HashSet};
-use std::ops::{Index, IndexMut};
+use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
 use maulstick_appearance::blank_surface::BlankSurface;
@@ -50,7 +50,7 @@ impl SurfaceState {
     }
 
     /// Its tiles on which something was painted.
-    fn tiles(&self) -> impl Iterator<Item = &Arc<Tile>> {
+    pub(crate) fn tiles(&self) -> impl Iterator<Item = &Arc<Tile>> {
         let versions = self.store.iter();
         versions.filter_map(|(_, version)| version.tile.as_ref())
     }
@@ -110,16 +110,6 @@ impl Surfaces {
         self.states.iter_mut().find(|surface| surface.id == id)
     }
 
-    /// All surfaces.
-    pub(crate) fn iter(&self) -> std::slice::Iter<'_, SurfaceState> {
-        self.states.iter()
-    }
-
-    /// All surfaces.
-    pub(crate) fn iter_mut(&mut self) -> std::slice::IterMut<'_, SurfaceState> {
-        self.states.iter_mut()
-    }
-
     /// Current content of a tile.
     pub(crate) fn held(&self, (surface, id): TilePlace) -> TileRef {
         self.find(surface)?.store.version(id).tile.clone()
@@ -173,16 +163,16 @@ impl Surfaces {
     }
 }
 
-impl Index<usize> for Surfaces {
-    type Output = SurfaceState;
+impl Deref for Surfaces {
+    type Target = [SurfaceState];
 
-    fn index(&self, on: usize) -> &SurfaceState {
-        &self.states[on]
+    fn deref(&self) -> &[SurfaceState] {
+        &self.states
     }
 }
 
-impl IndexMut<usize> for Surfaces {
-    fn index_mut(&mut self, on: usize) -> &mut SurfaceState {
-        &mut self.states[on]
+impl DerefMut for Surfaces {
+    fn deref_mut(&mut self) -> &mut [SurfaceState] {
+        &mut self.states
     }
 }

@@ -25,12 +25,12 @@ const EDGE_M: f64 = 1e-6;
 const DIPS: f32 = 1.0;
 
 /// The cells of a window that are in a well and in a rectangle.
-fn cells_within<'a>(
-    window: &'a Window,
+fn cells_within(
+    window: &Window,
     well: &Well,
     cell_m: f64,
     (from, to): ([i64; 2], [i64; 2]),
-) -> impl Iterator<Item = usize> + use<'a> {
+) -> Vec<usize> {
     let origin = window.origin();
     let limit = window.limit();
     let center = well.center_m.map(|m| m / cell_m);
@@ -44,12 +44,13 @@ fn cells_within<'a>(
     let (across, up) = (span(0), span(1));
     let width = window.width();
     up.flat_map(move |y| across.clone().map(move |x| (x, y)))
-        .filter(move |(x, y)| {
+        .filter(|(x, y)| {
             let dx = (origin[0] + x) as f64 + 0.5 - center[0];
             let dy = (origin[1] + y) as f64 + 0.5 - center[1];
             dx * dx + dy * dy < radius * radius
         })
-        .map(move |(x, y)| y as usize * width + x as usize)
+        .map(|(x, y)| y as usize * width + x as usize)
+        .collect()
 }
 
 /// True if a strip is down on the surface within a well.
@@ -135,15 +136,13 @@ impl Painting {
                     for (slot, share) in slots {
                         fresh[slot] += (share * WELL_M / QUANTUM_M) as u32;
                     }
-                    let cells: Vec<usize> =
-                        cells_within(window, &well, cell_m, (from, to)).collect();
+                    let cells = cells_within(window, &well, cell_m, (from, to));
                     renew(window, &cells, &fresh, ledger);
                     window.note_top(fresh.iter().sum::<u32>() as f32);
                 }
                 // Whatever else of the head is low, the jar cleans a brush that is in it.
                 WellKind::Cleaner if is_in(head, &well, cell_m) => {
-                    let cells: Vec<usize> =
-                        cells_within(window, &well, cell_m, (from, to)).collect();
+                    let cells = cells_within(window, &well, cell_m, (from, to));
                     if !cells.is_empty() {
                         renew(window, &cells, &[0; SLOTS], ledger);
                         let left = Arc::make_mut(&mut brush.load).take_all();

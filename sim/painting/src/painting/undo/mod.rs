@@ -238,7 +238,7 @@ impl Painting {
 
     /// Limit of the history, bytes; beyond that its oldest steps are merged.
     pub fn set_quota(&mut self, bytes: u64) {
-        self.history.set_quota(bytes);
+        self.history.quota = bytes;
         self.keep_to_quota();
     }
 }
