@@ -1,6 +1,6 @@
 //! The command line's words for the advice that comes with a refusal.
 
-use maulstick_types::advice::Advice;
+use maulstick_types::command::advice::Advice;
 
 /// What to do about it on a command line; `None` where the general words do.
 #[must_use]

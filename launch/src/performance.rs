@@ -11,7 +11,7 @@ use maulstick_painting::{PaintingSetup, paint_error};
 use maulstick_rig::UserError;
 use maulstick_rig::config::{BACKENDS, BrushSection, LightSection, RigConfig};
 use maulstick_types::Mixture;
-use maulstick_types::advice::Advice;
+use maulstick_types::command::advice::Advice;
 use maulstick_types::scene::Light;
 
 use crate::cells::{check_canvas, parse_cell_mm};

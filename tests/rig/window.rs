@@ -13,7 +13,7 @@ use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Qos, ZenohBus};
 use maulstick_types::scene::{CANVAS, PALETTE, Scene, Surface};
 use maulstick_types::stylus::StylusSample;
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 use support::display::{CONTROL, Display, RETURN, SHIFT, TAB, over};
 use support::{Launcher, PATIENCE, Place, listen, wait_for};
 

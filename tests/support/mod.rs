@@ -21,7 +21,7 @@ use maulstick_bus::{Dial, Qos, Queue, RigClock, RigFolder, Wake, ZenohBus};
 use maulstick_device::{Take, TakeSample};
 use maulstick_types::Message;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 

@@ -1,6 +1,6 @@
 //! The window's words for the advice that comes with a refusal.
 
-use maulstick_types::advice::Advice;
+use maulstick_types::command::advice::Advice;
 
 /// What to do about it in this window; `None` where the general words do.
 #[must_use]

@@ -12,7 +12,7 @@ use maulstick_bus::Bus;
 use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::stylus::{StylusSample, switch};
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 
 use self::worker::Worker;
 

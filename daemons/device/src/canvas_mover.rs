@@ -19,7 +19,7 @@ use maulstick_rig::UserError;
 use maulstick_types::control::ControlSample;
 use maulstick_types::edits::Place;
 use maulstick_types::scene::{CANVAS, Scene};
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 
 use maulstick_rig::command_client::CommandClient;
 

@@ -313,7 +313,7 @@ fn a_rig_without_a_paint_node_does_not_hold_the_device_up() {
     let mut device = DeviceSection::new("arm", "polhem", "main");
     device.switches = Some(vec!["undo".into()]);
     let bus: Arc<dyn Bus> = Arc::new(net.bus());
-    let topics = maulstick_types::topics::Topics::new("t");
+    let topics = maulstick_types::wire::topics::Topics::new("t");
     let mut actor = Actor::start(bus, &topics, "main", Actions::of(&device)).expect("an actor");
     // More edges than fit; each call returns, and so does the end.
     for _ in 0..1000 {

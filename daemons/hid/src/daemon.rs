@@ -13,7 +13,7 @@ use maulstick_rig::config::{BRUSH_NODE, CanvasSection, DeviceSection};
 use maulstick_rig::{NodeHandle, UserError};
 use maulstick_types::Origin;
 use maulstick_types::stylus::StylusStatus;
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 
 use crate::device_source::{Identity, Ports};
 use crate::hidraw::Hidraw;

@@ -11,7 +11,7 @@ use maulstick_rig::config::DeviceSection;
 use maulstick_types::Origin;
 use maulstick_types::control::ControlSample;
 use maulstick_types::stylus::StylusInfo;
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 
 use crate::spacemouse::{SILENCE_NS, SpaceMouse};
 

@@ -13,7 +13,7 @@ use maulstick_device::actions::{Actions, Actor};
 use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::stylus::{StylusInfo, StylusSample};
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin};
 
 use crate::open::Decoder;

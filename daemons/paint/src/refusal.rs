@@ -1,8 +1,8 @@
 //! Refusals of what the node does besides painting, with advice.
 
 use maulstick_canvas::EditError;
-use maulstick_types::advice::Advice;
 use maulstick_types::command::Outcome;
+use maulstick_types::command::advice::Advice;
 
 /// A command that is not carried out.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -10,10 +10,10 @@ use maulstick_painting::PaintingSetup;
 use maulstick_painting::setup::relief_called;
 use maulstick_rig::UserError;
 use maulstick_rig::config::{BrushSection, is_path};
-use maulstick_types::advice::choice;
+use maulstick_types::command::advice::choice;
 use maulstick_types::edits::{Edit, Form, Ground, LightChange, Tooth};
 use maulstick_types::scene::CANVAS;
-use maulstick_types::topics::check_name;
+use maulstick_types::wire::topics::check_name;
 use serde::Deserialize as _;
 
 use super::Act;

@@ -1,6 +1,6 @@
 //! A script's words for the advice that comes with a refusal: steps in the place of commands.
 
-use maulstick_types::advice::Advice;
+use maulstick_types::command::advice::Advice;
 
 /// What to do about it in a script; `None` where other words do.
 #[must_use]

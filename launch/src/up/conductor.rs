@@ -13,7 +13,7 @@ use maulstick_rig::command_client::CommandClient;
 use maulstick_rig::config::RigConfig;
 use maulstick_types::command::TakeCommand;
 use maulstick_types::stylus::{TakeEnd, TakeStatus};
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 
 use crate::outputs::Relayed;
 use crate::processes::{PLAYER, Program};

@@ -16,7 +16,7 @@ use maulstick_rig::node_handle::{CONFIG_FILE, HUB};
 use maulstick_rig::user_error::EXIT_FAILURE;
 use maulstick_rig::{RigConfig, Stop, UserError};
 use maulstick_types::Mixture;
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 
 use crate::EXIT_INTERRUPTED;
 use crate::commands::progress_bar;

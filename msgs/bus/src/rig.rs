@@ -6,7 +6,7 @@ use std::os::unix::fs::{DirBuilderExt as _, MetadataExt as _, PermissionsExt as 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use maulstick_types::topics::check_name;
+use maulstick_types::wire::topics::check_name;
 use nix::fcntl::{Flock, FlockArg};
 use serde::{Deserialize, Serialize};
 

@@ -9,7 +9,7 @@ use maulstick_bus::{Bus, BusError, Qos};
 use maulstick_types::command::{
     After, Command, CommandReply, CommandRequest, Outcome, TakeCommand,
 };
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
 /// Time after which an unanswered command is sent again.

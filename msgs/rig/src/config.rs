@@ -8,7 +8,7 @@ mod palette;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use maulstick_types::advice::Advice;
+use maulstick_types::command::advice::Advice;
 use maulstick_types::scene::default_model;
 use serde::{Deserialize, Serialize};
 

@@ -7,7 +7,7 @@ use std::time::Duration;
 use maulstick_bus::bus::Token;
 use maulstick_bus::typed::random_epoch;
 use maulstick_bus::{Bus, Dial, RigClock, RigFolder, Wake, ZenohBus};
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
 use crate::config::RigConfig;

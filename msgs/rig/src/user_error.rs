@@ -3,7 +3,7 @@
 use std::fmt;
 
 use maulstick_bus::BusError;
-use maulstick_types::advice::Advice;
+use maulstick_types::command::advice::Advice;
 use maulstick_types::plain;
 use maulstick_types::scene::LightError;
 use maulstick_types::values::ValueError;
@@ -122,7 +122,7 @@ impl UserError {
         name: &str,
         names: impl IntoIterator<Item = &'a str>,
     ) -> Self {
-        Self::usage(what).help(maulstick_types::advice::choice(name, names))
+        Self::usage(what).help(maulstick_types::command::advice::choice(name, names))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Messages of the brush node: the brush file, solved states, and credit to devices.
 
-use crate::define::{message, wire_struct};
 use crate::pose::Pose;
+use crate::wire::define::{message, wire_struct};
 
 /// Bits of [`Solve::flags`].
 pub mod solve_flags {

@@ -1,6 +1,6 @@
 //! Messages of the free hand's device: a 6-DOF mouse that moves the canvas while the other hand paints.
 
-use crate::define::message;
+use crate::wire::define::message;
 
 message! {
     /// One sample of a device for the free hand; `event_ns` of its header is the time of sampling.

@@ -1,7 +1,7 @@
 //! Messages to a force-feedback device: models that it evaluates by itself, never forces.
 
-use crate::define::{message, wire_enum, wire_struct};
 use crate::pose::Pose;
+use crate::wire::define::{message, wire_enum, wire_struct};
 
 wire_struct! {
     /// Canvas grain: a small band-limited tangential texture.

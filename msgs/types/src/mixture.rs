@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::command::{PAINT_NAME_MAX, PARTS_MAX};
-use crate::define::wire_struct;
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// One paint of a mixture.

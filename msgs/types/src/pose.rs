@@ -1,6 +1,6 @@
 //! Position and orientation.
 
-use crate::define::wire_struct;
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// A rigid transform from a child frame to its parent: `p_parent = q·p_child + position`.

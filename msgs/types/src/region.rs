@@ -3,8 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::define::wire_struct;
 use crate::values::ValueError;
+use crate::wire::define::wire_struct;
 
 /// No region reaches farther than this from its surface's origin, m.
 const FARTHEST_M: f64 = 1e4;

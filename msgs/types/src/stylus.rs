@@ -1,8 +1,8 @@
 //! Messages of an input device: samples, properties, status, and the position of a played take.
 
 use crate::command::After;
-use crate::define::{message, wire_enum, wire_struct};
 use crate::pose::Pose;
+use crate::wire::define::{message, wire_enum, wire_struct};
 
 /// Bits of [`StylusSample::senses`], [`StylusInfo::senses`] and [`StylusInfo::drives`].
 pub mod axes {

@@ -1,7 +1,7 @@
 //! Message of the window about the frames that it has shown.
 
-use crate::define::message;
 use crate::paint::FrameHolds;
+use crate::wire::define::message;
 
 message! {
     /// A frame of the window that the graphics device has completed; `event_ns` of its header is the time of completion.

@@ -2,7 +2,7 @@
 
 use maulstick_types::command::CommandRequest;
 use maulstick_types::edits::{Edit, examples};
-use maulstick_types::schema::{Shape, TypeTable};
+use maulstick_types::wire::schema::{Shape, TypeTable};
 use maulstick_types::{Flags, Message as _, Origin, decode, encode};
 
 const ORIGIN: Origin = Origin {

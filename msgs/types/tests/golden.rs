@@ -2,8 +2,8 @@
 
 mod parts;
 
-use maulstick_types::advice::Advice;
 use maulstick_types::brush::{BrushConsumed, BrushDef, BrushLook, BrushState, Contact, Solve};
+use maulstick_types::command::advice::Advice;
 use maulstick_types::command::{After, Command, CommandReply, CommandRequest, GapRequest, Outcome};
 use maulstick_types::edits::{Undo, examples};
 use maulstick_types::haptics::{

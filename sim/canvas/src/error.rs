@@ -1,8 +1,8 @@
 //! Errors of edits. They become words where a person reads them: a reply has the sentence and the advice, and each front
 //! end has its own words for that.
 
-use maulstick_types::advice::{Advice, choice};
 use maulstick_types::command::Outcome;
+use maulstick_types::command::advice::{Advice, choice};
 use maulstick_types::scene::LightError;
 use maulstick_types::values::ValueError;
 use maulstick_types::{MixtureError, Region};
@@ -35,7 +35,7 @@ pub enum EditError {
     #[error("'{0}' would be paint {count} of this painting", count = SLOTS + 1)]
     TooManyPaints(String),
     /// A paint that the painting does not use.
-    #[error("'{0}' has no slot")]
+    #[error("paint '{0}' is not in use in this painting")]
     NoSlot(String),
     /// A brush that the rig does not have.
     #[error("there is no brush called '{name}' in this rig")]
@@ -46,10 +46,10 @@ pub enum EditError {
         known: Vec<String>,
     },
     /// A brush without paint.
-    #[error("brush '{0}' carries no paint to fill with")]
+    #[error("brush '{0}' carries no paint")]
     EmptyBrush(String),
     /// A state with numbers that no brush has.
-    #[error("a state of brush '{brush}' is wrong: {fault}")]
+    #[error("brush '{brush}' sent an invalid state: {fault}")]
     State {
         /// Name of the brush.
         brush: String,
@@ -57,7 +57,7 @@ pub enum EditError {
         fault: &'static str,
     },
     /// A state of another brush file.
-    #[error("a state of brush '{0}' does not fit its brush file")]
+    #[error("brush '{0}' sent a state of another brush file")]
     Unfit(String),
     /// An unknown surface.
     #[error("there is no surface {0}")]
@@ -66,7 +66,7 @@ pub enum EditError {
     #[error(transparent)]
     Value(#[from] ValueError),
     /// A region without a cell of its surface.
-    #[error("the region {region} holds no cell")]
+    #[error("the region {region} holds no cell of the surface")]
     NoCell {
         /// The region.
         region: Region,
@@ -83,7 +83,7 @@ pub enum EditError {
     #[error("no cell{} has room for more wet paint", within(.0.as_ref()))]
     NoRoom(Option<Region>),
     /// A layer whose opacity wet paint cannot have.
-    #[error("wet paint cannot keep the opacity of layer {number} ({name})")]
+    #[error("layer {number} ({name}) has an opacity other than 1, which wet paint cannot have")]
     Veiled {
         /// Number of the layer.
         number: u32,
@@ -91,10 +91,10 @@ pub enum EditError {
         name: String,
     },
     /// A drying of this surface is in progress.
-    #[error("a drying of this surface goes on already")]
+    #[error("this surface is drying already")]
     Drying,
     /// No drying of this surface is in progress.
-    #[error("no drying of this surface goes on")]
+    #[error("this surface is not drying")]
     NotDrying,
     /// An unknown dry layer.
     #[error("there is no dry layer {which}")]
@@ -105,13 +105,13 @@ pub enum EditError {
         known: Vec<(u32, String)>,
     },
     /// Nothing to undo, of a brush or at all.
-    #[error("there is nothing{} to undo", .0.as_ref().map_or(String::new(), |brush| format!(" of brush '{brush}'")))]
+    #[error("there is nothing{} to undo", .0.as_ref().map_or(String::new(), |brush| format!(" by brush '{brush}'")))]
     NothingToUndo(Option<String>),
     /// Nothing to redo.
     #[error("there is nothing to redo")]
     NothingToRedo,
     /// A step under a later one.
-    #[error("'{what}' lies under {}, which came later", .over.as_ref().map_or("something".to_owned(), |over| format!("'{over}'")))]
+    #[error("'{what}' is covered by a later step{}", .over.as_ref().map_or(String::new(), |over| format!(", '{over}'")))]
     Covered {
         /// The step.
         what: String,
@@ -130,10 +130,10 @@ pub enum EditError {
     #[error("there is a version called '{0}' already")]
     VersionTaken(String),
     /// The name reserved for the current painting.
-    #[error("'{0}' is the painting as it is, not a version")]
+    #[error("'{0}' stands for the current painting and cannot name a version")]
     VersionNow(&'static str),
     /// A well beyond the edge of its surface.
-    #[error("well {place} does not lie on the surface")]
+    #[error("well {place} is not wholly on its surface")]
     WellBeside {
         /// Its place, from 1.
         place: usize,
@@ -179,7 +179,7 @@ pub enum EditError {
         known: Vec<&'static str>,
     },
     /// The name of a pictured tooth that cannot be read.
-    #[error("'{name}' is no tooth: {fault}")]
+    #[error("'{name}' does not name a tooth: {fault}")]
     ToothName {
         /// The name.
         name: String,
@@ -187,28 +187,28 @@ pub enum EditError {
         fault: &'static str,
     },
     /// A text that is not a table of reflectances.
-    #[error("this is no spectrum of a ground: {0}")]
+    #[error("not a spectrum of a ground: {0}")]
     Spectrum(String),
     /// Bytes that are not a picture, or a picture of another kind or size.
     #[error("{0}")]
     Picture(String),
     /// A picture that the painting does not hold.
-    #[error("this painting holds no picture {0}")]
+    #[error("this painting has no picture with the hash {0}")]
     NoPicture(String),
     /// A text that is not a hash.
     #[error("'{0}' is not the hash of a picture")]
     NoHash(String),
     /// A picture of heights where one of colours is due.
-    #[error("this picture is one of heights")]
+    #[error("a picture of heights cannot be a ground")]
     Heights,
     /// A picture of colours where one of heights is due.
-    #[error("this picture is one of colours")]
+    #[error("a picture of colours cannot be a tooth")]
     Colours,
     /// A surface of too few or too many cells.
-    #[error("a canvas of {}×{} cells", .0[0], .0[1])]
+    #[error("a canvas cannot have {}×{} cells", .0[0], .0[1])]
     Cells([u32; 2]),
     /// Cells that are too small or too large, mm.
-    #[error("cells of {0} mm")]
+    #[error("cells cannot be {0} mm wide")]
     CellSize(f64),
     /// A document whose parts do not fit together.
     #[error("{0}")]
@@ -230,24 +230,30 @@ impl EditError {
             Self::Mixture(_) | Self::PaintFile { .. } => {
                 say("write mixtures as \"Cobalt Blue=0.7,Titanium White=0.3\"")
             }
-            Self::TooManyPaints(_) => {
-                say("a painting has at most 16 paints: mix it from those in use")
-            }
-            Self::NoSlot(_) | Self::EmptyBrush(_) => say("load it first"),
+            Self::TooManyPaints(_) => Advice::say(format!(
+                "a painting has at most {SLOTS} paints: mix it from those in use"
+            )),
+            Self::NoSlot(_) => say("load a brush with it first"),
+            Self::EmptyBrush(_) => say("load it first"),
             Self::NoBrush { known, .. } => {
                 Advice::say(format!("choose one of: {}", known.join(", ")))
             }
-            Self::State { .. } => say("restart the program that sends it, or report its fault"),
-            Self::Unfit(_) => say("restart the brush node: it runs with another file"),
+            Self::State { .. } => say(
+                "restart the brush node, or report the fault of the program that sends the states",
+            ),
+            Self::Unfit(_) => say("restart the brush node"),
             Self::NoSurface(_) => say("the canvas is 0, the palette 1"),
             Self::Value(_) | Self::Light(_) => say("choose a value in range"),
             Self::NoCell { surface_mm, .. } => Advice::say(format!(
-                "the surface is {}, its origin at the lower left corner",
+                "the surface measures {} from its lower left corner",
                 size(surface_mm)
             )),
-            Self::NothingWet(_) | Self::NothingToUndo(_) => say("paint something first"),
+            Self::NothingWet(_) | Self::NothingToUndo(None) => say("paint something first"),
+            Self::NothingToUndo(Some(_)) => {
+                say("undo the newest step of all brushes, or name another brush")
+            }
             Self::NothingDry(_) => Advice::DryFirst,
-            Self::NoRoom(_) => say("take some of the wet paint off first, or dry it"),
+            Self::NoRoom(_) => say("remove some wet paint first, or dry it"),
             Self::Veiled { number, .. } => Advice::FullOpacity { layer: *number },
             Self::Drying => Advice::StopDrying,
             Self::NotDrying => Advice::BeginDrying,
@@ -264,7 +270,7 @@ impl EditError {
             Self::NothingToRedo => say("only what was undone and not painted over can be redone"),
             Self::Covered { .. } => Advice::UndoNewest,
             Self::NoVersion { known, .. } if known.is_empty() => {
-                say("this painting has none yet: keep one first")
+                say("this painting has no versions yet: keep one first")
             }
             Self::NoVersion { name, known } => {
                 Advice::say(choice(name, known.iter().map(String::as_str)))
@@ -275,9 +281,9 @@ impl EditError {
                 surface_mm: [width, height],
                 ..
             } => Advice::say(format!(
-                "it is {width:.0}×{height:.0} mm: give a middle and a radius within"
+                "the surface is {width:.0}×{height:.0} mm: give a middle and a radius within"
             )),
-            Self::Dark(_) => say("give a light of more wavelengths"),
+            Self::Dark(_) => say("give a spectrum with more of the visible wavelengths"),
             Self::NoIlluminant { name, known } => Advice::say(format!(
                 "{}, and any spectrum from a CSV file",
                 choice(name, known.iter().copied())
@@ -288,16 +294,18 @@ impl EditError {
             Self::ToothName { .. } => {
                 say("write image:HASH@120mm,80um: a picture 120 mm wide, 80 µm deep")
             }
-            Self::Spectrum(_) => say("a row a wavelength: nm,reflectance, rising, 0 to 1"),
-            Self::Picture(_) => say(
-                "a painting holds PNG pictures of 8-bit RGB or 16-bit grey, of 67 million pixels at most",
+            Self::Spectrum(_) => say(
+                "write one row for each wavelength: nm,reflectance, wavelengths rising, reflectances 0 to 1",
             ),
+            Self::Picture(_) => {
+                say("use a PNG of 8-bit RGB or 16-bit grey with at most 67 million pixels")
+            }
             Self::NoPicture(_) => say("import the picture first"),
             Self::NoHash(_) => say("write image: and the 64 digits of its SHA-256"),
-            Self::Heights => say("import it as a ground: then it is kept with its colours"),
-            Self::Colours => say("import it as a tooth: then it is kept as 16-bit heights"),
-            Self::Cells(_) => say("choose 1 to 65536 cells either way"),
-            Self::CellSize(_) => say("choose .01 to 10 mm"),
+            Self::Heights => say("import it as a ground, which keeps its colours"),
+            Self::Colours => say("import it as a tooth, which keeps it as 16-bit heights"),
+            Self::Cells(_) => say("choose 1 to 65536 cells across and up"),
+            Self::CellSize(_) => say("choose cells of 0.01 to 10 mm"),
             Self::Damaged(_) => Advice::Recover,
         }
     }

@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use maulstick_canvas::page::Pager;
 use maulstick_painting::sequencer::Record;
+use maulstick_types::command::advice::Advice;
 
 use crate::error::DocumentError;
 use crate::file::database::{Access, Database};
@@ -186,7 +187,7 @@ impl Document {
     }
 
     fn unwritten(&self) -> DocumentError {
-        DocumentError::Unwritten(self.shared.lock().fault.clone())
+        DocumentError::Unwritten(self.shared.lock().fault_text())
     }
 
     /// Path of the file.
@@ -227,7 +228,7 @@ impl Document {
     pub fn is_saved(&self) -> bool {
         let queues = self.shared.lock();
         let idle = queues.checkpoint.is_none() && queues.records.is_empty();
-        idle && !queues.writing && queues.fault.is_empty()
+        idle && !queues.writing && queues.fault.is_none()
     }
 
     /// Hands over a checkpoint. It has to include all records handed over before, and the previous one has to be written
@@ -251,10 +252,9 @@ impl Document {
 
     /// The reason why nothing is written at present, or a notice about the file, with advice; `None` if there is neither.
     #[must_use]
-    pub fn fault(&self) -> Option<(String, &'static str)> {
+    pub fn fault(&self) -> Option<(String, Advice)> {
         let queues = self.shared.lock();
-        let fault = (!queues.fault.is_empty()).then(|| (queues.fault.clone(), queues.help));
-        fault.or_else(|| queues.notice.clone())
+        queues.fault.as_ref().or(queues.notice.as_ref()).cloned()
     }
 
     /// Updates the path after the file was removed and the painting continued in another one.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use maulstick_types::advice::Advice;
+use maulstick_types::command::advice::Advice;
 use rusqlite::ffi;
 
 /// The reason why a document cannot be opened, read or written.
@@ -64,25 +64,13 @@ pub enum DocumentError {
 }
 
 impl DocumentError {
-    /// Advice for which front ends have their own words.
+    /// What to do about it.
     #[must_use]
     pub fn advice(&self) -> Advice {
-        match self {
-            Self::NoPainting => Advice::NamePainting,
-            Self::Missing => Advice::BeginPainting,
-            Self::Damaged(_) => Advice::Recover,
-            other => Advice::say(other.help()),
-        }
-    }
-
-    /// Advice, in words that hold everywhere.
-    #[must_use]
-    pub fn help(&self) -> &'static str {
-        match self {
-            Self::NoPainting => {
-                "name the file of a painting, or a new one; of a damaged painting recover what is whole"
-            }
-            Self::Missing => "check the path, or begin a painting there",
+        Advice::say(match self {
+            Self::NoPainting => return Advice::NamePainting,
+            Self::Missing => return Advice::BeginPainting,
+            Self::Damaged(_) => return Advice::Recover,
             Self::Older(_) => "open it with the Maulstick that made it; nothing was changed",
             Self::Newer { .. } => "open it with that newer Maulstick; nothing was changed",
             Self::InUse { .. } => {
@@ -91,12 +79,11 @@ impl DocumentError {
             Self::ReadOnly(_) => "check the permissions of the file and its folder, or copy it",
             Self::Full | Self::Unmerged(_) => "free some space: nothing that was written is lost",
             Self::Unwritten(_) => "nothing that was written before is lost",
-            Self::Damaged(_) => "recover from the file what is whole",
             Self::OpenHere | Self::Companion => "give another name",
             Self::Taken => "give another name: nothing is written over",
             Self::Vanished(_) => "save it under another name now: until then it is in memory alone",
             Self::Other(_) => "check the path and the disk",
-        }
+        })
     }
 }
 

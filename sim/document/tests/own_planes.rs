@@ -1,16 +1,16 @@
 //! A plane of 8 bits that a toy model keeps of its own: through store, history and document, byte for byte.
 
+mod studio;
+
 use std::sync::Arc;
 
-use maulstick_brush::BrushFile;
 use maulstick_canvas::own_plane::{OwnPlane, OwnShape, ValueType};
 use maulstick_canvas::quantum::{Counts, SLOTS};
 use maulstick_canvas::tile::TileId;
 use maulstick_document::{Access, Checkpoint, Document, DocumentSettings};
 use maulstick_model::footprint::Footprint;
 use maulstick_model::interface::{CountOwn, PaintModel, Step, StepReport};
-use maulstick_optics::PaintLibrary;
-use maulstick_painting::{Painting, PaintingSetup, Sequencer};
+use maulstick_painting::Sequencer;
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::edits::Load;
@@ -81,13 +81,8 @@ impl PaintModel for Toy {
     }
 }
 
-fn brush() -> BrushFile {
-    let file = BrushFile::library("round").and_then(|file| file.scaled_to(8.0));
-    file.expect("round")
-}
-
 fn stroke(sequencer: &mut Sequencer, number: u64, y_mm: f64) {
-    let file = brush();
+    let file = studio::brush(48);
     let solve = |stroke: u64, x_mm: f64| Solve {
         event_ns: 0,
         stroke,
@@ -145,21 +140,12 @@ fn they_are_undone_redone_saved_and_reopened_byte_for_byte() {
     let folder = tempfile::tempdir().expect("a folder");
     let settings = DocumentSettings::new(&folder.path().join("toy.maul"), Access::Paint);
     let (document, _) = Document::open(&settings).expect("begun");
-    let setup = PaintingSetup {
-        cells: [150, 100],
-        model: "marker".to_owned(),
-        ..PaintingSetup::default()
-    };
-    let library = PaintLibrary::measured().expect("whole");
-    let pager = Arc::clone(document.pager());
-    let painting = Painting::paged(&setup, library, pager).expect("a painting");
-    let mut sequencer = Sequencer::new(painting);
-    sequencer.define_brush("main", brush());
+    let mut sequencer = studio::sequencer_of("marker", Arc::clone(document.pager()));
+    sequencer.define_brush("main", studio::brush(48));
     let painting = sequencer.painting_mut();
     painting.set_model(Box::new(Toy::counted()));
-    let black = "Bone Black".parse().expect("a mixture");
     let load = Load {
-        mixture: black,
+        mixture: studio::mixture("Bone Black"),
         beside: None,
         brush: BrushName::main(),
     };

@@ -1,10 +1,10 @@
 //! The film of a marker: each covered cell is filled up towards [`FILM_M`], in proportion to its cover, with the mixture
-//! of the whole tip.
+//! of the whole tip; in the brush mode `marker` by its flow along the way at most.
 
-use maulstick_canvas::quantum::{Counts, QUANTUM_M, SLOTS};
+use maulstick_canvas::quantum::{CELL_MAX, Counts, QUANTUM_M, SLOTS};
 use maulstick_model::brush::load::BrushLoad;
 use maulstick_model::footprint::Footprint;
-use maulstick_model::interface::Step;
+use maulstick_model::interface::{Step, Transfer};
 
 /// Largest thickness of the film, m.
 pub const FILM_M: f64 = 30e-6;
@@ -34,8 +34,12 @@ impl Film {
         let most = ((FILM_M / QUANTUM_M) as f32).min(step.handling.most);
         let contacts = footprint.contacts.iter().zip(&self.lying);
         let wants = contacts.map(|(contact, lying)| {
-            let lacks = (most - lying).max(0.0) * contact.cover;
-            f64::from(lacks.floor())
+            let lacks = (most - lying).max(0.0);
+            let flows = match step.handling.transfer {
+                Transfer::Marker { flow } => flow * CELL_MAX as f32 * contact.travel(&step.traits),
+                _ => f32::INFINITY,
+            };
+            f64::from((lacks.min(flows) * contact.cover).floor())
         });
         self.wants.clear();
         self.wants.extend(wants);

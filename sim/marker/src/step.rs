@@ -31,7 +31,6 @@ impl PaintModel for Marker {
                 return report;
             }
             Transfer::Vacuum => report.lifted = vacuum(footprint, step),
-            // The film's thickness is the model's own, so the flow of the mode does not count.
             Transfer::Paint | Transfer::Marker { .. } => {
                 let given = self.film.lay(footprint, step);
                 self.film.draw(&given, step.load);

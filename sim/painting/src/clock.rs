@@ -7,6 +7,11 @@ use serde::{Deserialize, Serialize};
 /// Most rounds of a drying, and the fewest ticks of one.
 const ROUNDS: u32 = 32;
 const ROUND_TICKS: u32 = 30;
+/// A brush counts as painting for so many ticks after it was last in contact, .2 s: contacts less than
+/// 150 ms apart are one stroke.
+const LIFTED_TICKS: u32 = 12;
+/// Ticks for which a brush in contact counts as painting although no state arrives.
+const STILL_TICKS: u32 = 120;
 
 /// A drying that goes on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -72,4 +77,35 @@ pub struct Clock {
     pub quiet: u32,
     /// The dryings that go on, one a surface at most.
     pub dryings: Vec<Drying>,
+}
+
+impl Clock {
+    /// A tick goes by. Returns the rounds that are due, by surface: none while a brush paints, so that no tile dries
+    /// under it, and no stroke is split.
+    pub(crate) fn tick(&mut self, in_contact: bool) -> Vec<(u32, Round)> {
+        self.ticks += 1;
+        self.quiet = self.quiet.saturating_add(1);
+        for drying in &mut self.dryings {
+            drying.elapsed = (drying.elapsed + 1).min(drying.ticks);
+        }
+        let patience = match in_contact {
+            true => STILL_TICKS,
+            false => LIFTED_TICKS,
+        };
+        if self.quiet < patience {
+            return Vec::new();
+        }
+        let dryings = self.dryings.iter();
+        let due = dryings.filter_map(|drying| Some((drying.surface, drying.due()?)));
+        due.collect()
+    }
+
+    /// Ends the drying of a surface, if one goes on there, or of all surfaces: what is wet still stays wet. True if any
+    /// ended.
+    pub(crate) fn stop(&mut self, surface: Option<u32>) -> bool {
+        let count = self.dryings.len();
+        let stays = |drying: &Drying| surface.is_some_and(|surface| drying.surface != surface);
+        self.dryings.retain(stays);
+        self.dryings.len() < count
+    }
 }

@@ -8,9 +8,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use maulstick_canvas::EditError;
 use maulstick_types::brush::BrushState;
+use maulstick_types::command::reply_cache::ReplyCache;
 use maulstick_types::command::{Command, CommandRequest, Outcome, TakeCommand};
 use maulstick_types::paint::{Entry, JournalEntry};
-use maulstick_types::reply_cache::ReplyCache;
 use maulstick_types::{Flags, Header, Mixture, Origin};
 
 use crate::apply::{Applied, Apply as _};

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use maulstick_model::brush::head::WaypointSnapshot;
 use maulstick_model::brush::scale::Scale;
 use maulstick_types::Mixture;
-use maulstick_types::reply_cache::ReplyCache;
+use maulstick_types::command::reply_cache::ReplyCache;
 use maulstick_types::scene::Scene;
 use serde::{Deserialize, Serialize};
 

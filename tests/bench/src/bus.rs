@@ -13,7 +13,7 @@ use maulstick_bus::{
 };
 use maulstick_rig::UserError;
 use maulstick_types::stylus::StylusSample;
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin};
 use zenoh::Wait as _;
 use zenoh::handlers::RingChannel;

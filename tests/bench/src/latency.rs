@@ -16,7 +16,7 @@ use maulstick_types::Origin;
 use maulstick_types::brush::{BrushState, solve_flags};
 use maulstick_types::paint::{FrameReply, FrameRequest};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 
 use crate::render::performance;
 use crate::report::{Report, quantile, sorted};

@@ -12,8 +12,8 @@ use maulstick_rig::UserError;
 use maulstick_rig::command_client::CommandClient;
 use maulstick_types::edits::{Edit, Fill, FillPaint, Place};
 use maulstick_types::scene::{CANVAS, Scene, Surface};
-use maulstick_types::topics::Topics;
 use maulstick_types::values::FilmThickness;
+use maulstick_types::wire::topics::Topics;
 
 use crate::report::Report;
 use crate::running::{Running, display, fault, joined, maulstick};

@@ -11,8 +11,8 @@ use maulstick_bus::{Qos, Queue, Wake, ZenohBus};
 use maulstick_rig::UserError;
 use maulstick_types::brush::BrushState;
 use maulstick_types::stylus::TakeStatus;
-use maulstick_types::topics::Topics;
 use maulstick_types::window::Presented;
+use maulstick_types::wire::topics::Topics;
 
 use crate::latency::{USUAL, joined_as, playing};
 use crate::report::{Report, quantile, sorted};

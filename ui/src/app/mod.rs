@@ -22,7 +22,7 @@ use maulstick_optics::PaintLibrary;
 use maulstick_rig::{NodeHandle, Stop, UserError};
 use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
 use maulstick_types::scene::Surface;
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
 use self::actions::side;

@@ -9,7 +9,7 @@ use maulstick_bus::typed::{Receiver, Sender};
 use maulstick_bus::{Bus, BusError, CreditSender, Qos, Queue, Wake};
 use maulstick_rig::config::MOUSE_PRIORITY;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusInfo, StylusPose, StylusSample, axes};
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin};
 
 /// Another stylus in range silences the mouse for this long, ns.

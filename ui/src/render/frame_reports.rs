@@ -10,8 +10,8 @@ use maulstick_bus::typed::Sender;
 use maulstick_bus::{Bus, BusError, Qos};
 use maulstick_types::Origin;
 use maulstick_types::paint::FrameHolds;
-use maulstick_types::topics::Topics;
 use maulstick_types::window::Presented;
+use maulstick_types::wire::topics::Topics;
 
 /// Polling interval while a frame is in flight: a device reports completion only when polled.
 const ASK: Duration = Duration::from_millis(1);

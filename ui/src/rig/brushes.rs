@@ -16,7 +16,7 @@ use maulstick_types::brush::{BrushDef, BrushLook, BrushState, Solve};
 use maulstick_types::name_hash;
 use maulstick_types::paint::PaintConsumed;
 use maulstick_types::stylus::StylusSample;
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 
 use crate::render::brush::paint_colour::PaintColour;
 

@@ -13,7 +13,7 @@ use maulstick_rig::command_client::CommandClient;
 use maulstick_types::command::{Command, FileCommand};
 use maulstick_types::edits::{Edit, Relight};
 use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
 use crate::advice;

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use maulstick_bus::typed::{Reason, Refusal};
 use maulstick_types::DecodeError;
-use maulstick_types::advice::parted;
-use maulstick_types::topics::Topics;
+use maulstick_types::command::advice::parted;
+use maulstick_types::wire::topics::Topics;
 
 use crate::rig::state::RigState;
 use crate::widgets::notifications::Notifications;

@@ -7,7 +7,7 @@ use maulstick_types::brush::BrushDef;
 use maulstick_types::paint::{Entry, JournalEntry, PaintStatus};
 use maulstick_types::scene::Scene;
 use maulstick_types::stylus::{StylusInfo, StylusSample, StylusStatus};
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 
 use crate::rig::health::RigEvent;
 use crate::rig::requests::PAINT;

@@ -9,7 +9,7 @@ use maulstick_types::brush::BrushConsumed;
 use maulstick_types::command::{After, Command, FileCommand};
 use maulstick_types::name_hash;
 use maulstick_types::paint::{BrushCredit, PaintConsumed};
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 
 use crate::rig::brushes::SampleNumber;
 use crate::rig::requests::{PAINT, Request};

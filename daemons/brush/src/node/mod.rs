@@ -22,12 +22,12 @@ use maulstick_bus::{
     Subscription, Wake,
 };
 use maulstick_types::brush::{BrushConsumed, BrushDef, BrushState, Solve};
+use maulstick_types::command::reply_cache::ReplyCache;
 use maulstick_types::haptics::{ContactModel, Grain};
 use maulstick_types::paint::PaintConsumed;
-use maulstick_types::reply_cache::ReplyCache;
 use maulstick_types::scene::Scene;
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample};
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin, name_hash};
 
 use crate::arbiter::{Arbiter, Range, Stroke};

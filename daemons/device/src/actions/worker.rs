@@ -14,8 +14,8 @@ use maulstick_types::Pose;
 use maulstick_types::command::Command;
 use maulstick_types::edits::{Clean, Handle, Place, Undo};
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE, Scene};
-use maulstick_types::topics::Topics;
 use maulstick_types::values::BrushName;
+use maulstick_types::wire::topics::Topics;
 
 use super::{Action, Edge, SwitchEvent};
 use maulstick_rig::command_client::CommandClient;

@@ -13,7 +13,7 @@ use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, DeviceSection};
 use maulstick_types::control::ControlSample;
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus, switch};
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
 use crate::support::{DESKTOP, DIGITIZER, Descriptor, deco_l, identity, spacemouse};

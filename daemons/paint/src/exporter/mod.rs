@@ -15,7 +15,7 @@ use maulstick_optics::colour::RgbSpace;
 use maulstick_optics::gamut::GamutMapping;
 use maulstick_optics::icc::Profile;
 use maulstick_painting::Painting;
-use maulstick_types::advice::Advice;
+use maulstick_types::command::advice::Advice;
 use maulstick_types::command::{ExportOrder, Outcome};
 use maulstick_types::paint::ExportStatus;
 

@@ -10,7 +10,7 @@ use maulstick_bus::{Bus, BusError, Qos};
 use maulstick_painting::brush_colour::{Carried, hair};
 use maulstick_types::Origin;
 use maulstick_types::brush::BrushLook;
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 
 use super::FrameState;
 

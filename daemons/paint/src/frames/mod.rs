@@ -21,7 +21,7 @@ use maulstick_document::TileCache;
 use maulstick_optics::backend::FilmBackend;
 use maulstick_painting::brush_colour::Carried;
 use maulstick_types::paint::{FrameHolds, FrameReply, FrameRequest, FrameTile};
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 use maulstick_types::{DecodeError, Flags, Origin, encode, encode_into, encoded_bytes};
 
 use brush_looks::BrushLooks;

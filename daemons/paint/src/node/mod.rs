@@ -23,7 +23,7 @@ use maulstick_painting::{Painting, Sequencer};
 use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::paint::{BrushCredit, JournalEntry, PaintConsumed, PaintStatus};
 use maulstick_types::scene::Scene;
-use maulstick_types::topics::{Topics, check_name};
+use maulstick_types::wire::topics::{Topics, check_name};
 use maulstick_types::{Origin, name_hash};
 
 use crate::exporter::Exporter;
@@ -33,7 +33,7 @@ use crate::thumbnails::Thumbnails;
 use frame_feed::FEED_PERIOD_NS;
 use maulstick_session::Autosave;
 use maulstick_session::ticker::Ticker;
-use maulstick_types::reply_cache::ReplyCache;
+use maulstick_types::command::reply_cache::ReplyCache;
 use save_as::Saving;
 
 /// Time between two statuses, ns.

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use maulstick_document::{
     Access, Document, DocumentError, DocumentSettings, Relocate, Relocation, make_room, unfinished,
 };
-use maulstick_types::advice::Advice;
 use maulstick_types::command::Outcome;
+use maulstick_types::command::advice::Advice;
 
 use super::PaintNode;
 use crate::exporter::Asker;
@@ -112,7 +112,7 @@ impl PaintNode {
                 {
                     // A painting in memory stays there, and leaves no part of it elsewhere.
                     let what = format!("{}: {what}", saving.to.display());
-                    let refusal = Refusal::say(what, help);
+                    let refusal = Refusal::new(what, help);
                     self.give_document_up();
                     Some(Err(refusal))
                 } else {

@@ -25,8 +25,8 @@ use maulstick_types::brush::BrushConsumed;
 use maulstick_types::command::TakeCommand;
 use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
-use maulstick_types::topics::Topics;
 use maulstick_types::values::BrushName;
+use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Mixture, Origin, decode, encode, name_hash};
 
 pub const START_NS: u64 = 1_000_000_000_000;

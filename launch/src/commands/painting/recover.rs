@@ -57,7 +57,7 @@ pub(super) fn run(options: &RecoverOptions) -> Result<i32, UserError> {
         SalvageError::Document(error) => wrong(path, &error),
         error @ SalvageError::Lost(_) => UserError::usage(error.to_string())
             .at(path.display().to_string())
-            .help(error.help()),
+            .advise(error.advice()),
     })?;
     if options.json {
         print_json(&as_json(&salvage))?;

@@ -3,7 +3,7 @@
 use clap::Args;
 use maulstick_rig::UserError;
 use maulstick_types::CATALOGUE;
-use maulstick_types::schema::{ENCODING, Field, Shape, header_fields};
+use maulstick_types::wire::schema::{ENCODING, Field, Shape, header_fields};
 use serde_json::json;
 
 use crate::commands::{print_json, print_text, say};

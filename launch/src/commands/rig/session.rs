@@ -11,7 +11,7 @@ use maulstick_rig::command_client::CommandClient;
 use maulstick_rig::node_handle::CONFIG_FILE;
 use maulstick_rig::{RigConfig, UserError};
 use maulstick_types::command::Command;
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Message, Origin, name_hash};
 
 /// Which rig a command is for.

@@ -7,13 +7,13 @@ use std::sync::Arc;
 use maulstick_bus::typed::{Reader, Receiver, random_epoch};
 use maulstick_bus::{Bus, BusError, Qos, Queue, Request, Server, Wake};
 use maulstick_rig::UserError;
-use maulstick_types::advice::Advice;
+use maulstick_types::command::advice::Advice;
+use maulstick_types::command::reply_cache::ReplyCache;
 use maulstick_types::command::{
     Command, CommandReply, CommandRequest, Outcome, RIG_NODE, RigCommand,
 };
 use maulstick_types::paint::PaintStatus;
-use maulstick_types::reply_cache::ReplyCache;
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin, encode, name_hash};
 
 use super::Supervisor;

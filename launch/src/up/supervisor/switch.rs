@@ -15,7 +15,7 @@ use maulstick_rig::files::{Kind, check_writable, write_whole};
 use maulstick_rig::node_handle::CONFIG_FILE;
 use maulstick_types::Mixture;
 use maulstick_types::command::{FileCommand, NewCanvas, Outcome, SaveAs};
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 
 use super::orders::{refusal, starts_again};
 use super::starts::start_time;

@@ -1,7 +1,7 @@
 //! A second sender mutes no stream for good, whatever it sends.
 
 use maulstick_types::stylus::StylusSample;
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin, encode};
 use proptest::prelude::*;
 

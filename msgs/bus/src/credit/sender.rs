@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::marker::PhantomData;
 
 use maulstick_types::command::GapRequest;
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Header, Message, Origin, encode};
 
 use super::{RETRY_NS, RING, RING_BYTES, WINDOW};

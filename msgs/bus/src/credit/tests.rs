@@ -1,7 +1,7 @@
 //! A stream arrives whole and in order, whatever the network loses and reorders.
 
 use maulstick_types::stylus::StylusSample;
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin, encode};
 use proptest::prelude::*;
 

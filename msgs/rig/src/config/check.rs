@@ -1,7 +1,7 @@
 //! Allowed values of the settings of a rig.
 
-use maulstick_types::advice::choice;
-use maulstick_types::topics::check_name;
+use maulstick_types::command::advice::choice;
+use maulstick_types::wire::topics::check_name;
 
 use super::{
     ACTIONS, BACKENDS, BRUSH_NODE, BrushSection, DRIVERS, DeviceSection, FORCES, GAMUTS, RESERVED,

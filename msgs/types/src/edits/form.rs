@@ -1,8 +1,8 @@
 //! How an edit is written in a script and on the command line.
 
 use crate::Mixture;
-use crate::schema::Wire;
 use crate::values::{BrushName, ValueError};
+use crate::wire::schema::Wire;
 
 use super::Edit;
 

@@ -40,7 +40,7 @@ macro_rules! for_each_edit {
 
 macro_rules! edit_enum {
     ($($edit:ident),*) => {
-        crate::define::wire_enum! {
+        crate::wire::define::wire_enum! {
             /// An edit of a painting.
             #[allow(clippy::large_enum_variant, reason = "a light is large; edits are few")]
             pub enum Edit {

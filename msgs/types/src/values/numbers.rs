@@ -9,7 +9,7 @@ use super::ValueError;
 use crate::brush::ZOOMS;
 use crate::command::{FILM_M, STIFFNESS};
 use crate::scene::{FLOWS, STAINS_M};
-use crate::schema::{TypeTable, Wire};
+use crate::wire::schema::{TypeTable, Wire};
 
 /// Reads a number, whole or not.
 struct Number;

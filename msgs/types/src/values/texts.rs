@@ -10,8 +10,8 @@ use super::ValueError;
 use crate::command::{
     BRUSH_FILE_MAX, LAYER_NAME_MAX, PAINT_NAME_MAX, PATH_MAX, SPECTRUM_MAX, VERSION_NAME_MAX,
 };
-use crate::schema::{TypeTable, Wire};
-use crate::topics::check_name;
+use crate::wire::schema::{TypeTable, Wire};
+use crate::wire::topics::check_name;
 
 /// Reads a text, or a whole number in its digits.
 struct Word;

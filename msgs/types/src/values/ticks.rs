@@ -7,7 +7,7 @@ use serde::de::{Deserialize, Deserializer, Error, Visitor};
 
 use super::ValueError;
 use crate::command::DRYING_TICKS;
-use crate::schema::{TypeTable, Wire};
+use crate::wire::schema::{TypeTable, Wire};
 
 /// Ticks of the painting's clock in a second.
 pub const TICKS_A_SECOND: u32 = 60;

@@ -4,6 +4,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::{DocumentThread, Part, Retry};
+use maulstick_types::command::advice::Advice;
+
 use crate::error::DocumentError;
 use crate::file::database::{Access, Database};
 use crate::file::relocate;
@@ -37,7 +39,7 @@ impl DocumentThread {
                 tracing::error!("{what}; {help}");
                 let mut queues = self.shared.lock();
                 queues.moved_to = Some(to);
-                queues.notice = Some((what, help));
+                queues.notice = Some((what, Advice::say(help)));
             }
             Err(error) => {
                 let error = DocumentError::Vanished(format!(
@@ -47,9 +49,9 @@ impl DocumentThread {
                 ));
                 let mut queues = self.shared.lock();
                 if self.file.failed.is_none() {
-                    tracing::error!("{error}; {}", error.help());
+                    tracing::error!("{error}; {}", error.advice());
                 }
-                (queues.fault, queues.help) = (error.to_string(), error.help());
+                queues.fault = Some((error.to_string(), error.advice()));
                 drop(queues);
                 self.file = Retry {
                     failed: Some(Instant::now()),
@@ -81,11 +83,11 @@ impl DocumentThread {
     fn note_links(&self, is_linked: bool) {
         let mut queues = self.shared.lock();
         let notice = queues.notice.as_ref();
-        let is_noted = notice.is_some_and(|(_, help)| *help == LINK_ADVICE);
+        let is_noted = notice.is_some_and(|(_, help)| *help == Advice::say(LINK_ADVICE));
         if is_linked && notice.is_none() {
             let what = format!("{} has a second name, a hard link", self.path.display());
             tracing::warn!("{what}; {LINK_ADVICE}");
-            queues.notice = Some((what, LINK_ADVICE));
+            queues.notice = Some((what, Advice::say(LINK_ADVICE)));
         } else if !is_linked && is_noted {
             queues.notice = None;
         }

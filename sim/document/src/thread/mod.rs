@@ -148,7 +148,7 @@ impl DocumentThread {
             Err(error) => {
                 let mut queues = self.shared.lock();
                 queues.broken = Some(error.to_string());
-                (queues.fault, queues.help) = (error.to_string(), error.help());
+                queues.fault = Some((error.to_string(), error.advice()));
                 return Err(error);
             }
         }
@@ -181,7 +181,7 @@ impl DocumentThread {
         let (fault, left, broken) = {
             let queues = self.shared.lock();
             let left = queues.checkpoint.is_some() || !queues.records.is_empty();
-            (queues.fault.clone(), left, queues.broken.clone())
+            (queues.fault_text(), left, queues.broken.clone())
         };
         if self.file.failed.is_some() {
             self.database.abandon();
@@ -380,17 +380,20 @@ impl DocumentThread {
             tracing::info!("the painting is written again");
             let mut queues = self.shared.lock();
             if queues.broken.is_none() {
-                queues.fault.clear();
+                queues.fault = None;
             }
         }
     }
 
     fn note_failure(&mut self, part: Part, error: &DocumentError) {
         let mut queues = self.shared.lock();
-        if queues.fault.is_empty() {
-            tracing::error!("the painting cannot be written: {error}; {}", error.help());
+        if queues.fault.is_none() {
+            tracing::error!(
+                "the painting cannot be written: {error}; {}",
+                error.advice()
+            );
         }
-        (queues.fault, queues.help) = (error.to_string(), error.help());
+        queues.fault = Some((error.to_string(), error.advice()));
         let closing = queues.life == Life::Closing;
         // Threads that wait for a flush must not wait for a retry.
         queues.flushes.clear();
@@ -440,7 +443,7 @@ fn serve_fetches(shared: &Shared, database: &Database) {
     let begun = thread_cpu();
     let broken = |error: DocumentError| {
         let mut queues = shared.lock();
-        (queues.fault, queues.help) = (error.to_string(), error.help());
+        queues.fault = Some((error.to_string(), error.advice()));
         let what = match error {
             DocumentError::Damaged(what) => what,
             error => error.to_string(),

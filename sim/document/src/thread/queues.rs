@@ -10,6 +10,7 @@ use maulstick_canvas::page::backing::Backing;
 use maulstick_canvas::planes::Planes;
 use maulstick_model::brush::load::BrushLoad;
 use maulstick_painting::sequencer::Record;
+use maulstick_types::command::advice::Advice;
 
 use crate::file::relocate::RelocateRequest;
 use crate::writing::{Checkpoint, ShownTile};
@@ -52,12 +53,20 @@ pub(crate) struct Queues {
     pub(crate) life: Life,
     /// Error that makes the painting in memory unreliable: a page could not be read. Nothing is written any more.
     pub(crate) broken: Option<String>,
-    pub(crate) fault: String,
-    pub(crate) help: &'static str,
+    /// Why nothing is written at present, with advice.
+    pub(crate) fault: Option<(String, Advice)>,
     /// Notice about the file, with advice, although everything is written.
-    pub(crate) notice: Option<(String, &'static str)>,
+    pub(crate) notice: Option<(String, Advice)>,
     /// File in which the painting continues after its own was removed.
     pub(crate) moved_to: Option<PathBuf>,
+}
+
+impl Queues {
+    /// The fault in words; empty without one.
+    pub(crate) fn fault_text(&self) -> String {
+        let fault = self.fault.as_ref();
+        fault.map_or(String::new(), |(what, _)| what.clone())
+    }
 }
 
 /// State shared by the painter's threads and the document's.
@@ -98,9 +107,9 @@ impl Drop for EndGuard {
         let mut queues = self.0.lock();
         queues.life = Life::Ended;
         if std::thread::panicking() {
-            queues.fault = PANICKED.to_owned();
-            queues.broken = Some(queues.fault.clone());
-            queues.help = "start the rig again: what was committed is in the file";
+            queues.broken = Some(PANICKED.to_owned());
+            let help = "start the rig again: what was committed is in the file";
+            queues.fault = Some((PANICKED.to_owned(), Advice::say(help)));
         }
         queues.fetches.clear();
         queues.flushes.clear();

@@ -80,10 +80,6 @@ struct Meetings {
 
 impl Meetings {
     fn of(&mut self, contacts: &[Contact], films: &[u32], traits: &BrushTraits) {
-        let travel = |contact: &Contact| {
-            let [u, v] = contact.moved;
-            (u * u + v * v).sqrt() * traits.cell_per_reference
-        };
         let on_brush = |contact: &Contact| {
             films[contact.texel as usize] as f32 * traits.film_units_per_quantum
         };
@@ -96,7 +92,8 @@ impl Meetings {
         ] {
             plane.clear();
         }
-        self.travel.extend(contacts.iter().map(travel));
+        self.travel
+            .extend(contacts.iter().map(|contact| contact.travel(traits)));
         self.cover
             .extend(contacts.iter().map(|contact| contact.cover));
         self.on_brush.extend(contacts.iter().map(on_brush));

@@ -30,6 +30,8 @@ pub const STABLE: f64 = 1.0 / 40.0;
 /// Slope at which an edge of wet paint advances onto bare ground; without a yield stress it wets all.
 pub const ADVANCES: f32 = 1.0;
 
+/// Largest part of a cell's paint that flows through a face at once.
+const LARGEST_SHARE: f32 = 0.25;
 /// Largest cells of a coarser grid, m: on such and larger ones a second's rounds level all that a stroke leaves.
 const COARSEST_M: f64 = 1.25e-4;
 
@@ -326,7 +328,7 @@ fn flow(round: &Round, bare: f32, own: &Run<'_>, next: &Run<'_>, i: usize) -> [f
     let share = goes / larger(donor, 1e-9);
     let share = if pinned { 0.0 } else { share };
     [
-        larger(smaller(share, 0.25), -0.25),
+        larger(smaller(share, LARGEST_SHARE), -LARGEST_SHARE),
         larger(donor - bare, 0.0),
     ]
 }

@@ -1,6 +1,6 @@
 //! Samples of a table of measurements: what they are made of, and what the instrument read of them.
 
-use maulstick_types::advice::{choice, nearest};
+use maulstick_types::command::advice::{choice, nearest};
 
 use crate::error::MeasureError;
 use crate::headings::Headings;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use maulstick_optics::surface::SurfaceCorrection;
-use maulstick_types::advice::choice;
+use maulstick_types::command::advice::choice;
 
 use crate::error::MeasureError;
 use crate::headings::Headings;

@@ -49,7 +49,7 @@ impl Table {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut notes = Vec::new();
         let mut found: Option<Self> = None;
-        let mut separator = ',';
+        let mut separator = b',';
         for (line, row) in text.lines().enumerate().map(|(i, row)| (i + 1, row.trim())) {
             if let Some(comment) = row.trim_start_matches('"').strip_prefix('#') {
                 notes.extend(note(line, comment));
@@ -70,7 +70,7 @@ impl Table {
                     heading_line: line,
                     rows: Vec::new(),
                     notes: Vec::new(),
-                    decimal_comma: separator != ',',
+                    decimal_comma: separator != b',',
                 });
                 continue;
             };
@@ -137,36 +137,25 @@ fn note(line: usize, comment: &str) -> Option<Note> {
 }
 
 /// Whichever of the separators stands most often in the headings.
-fn separator_of(headings: &str) -> char {
-    let count = |separator: char| headings.chars().filter(|c| *c == separator).count();
-    [',', ';', '\t']
+fn separator_of(headings: &str) -> u8 {
+    let count = |separator: u8| headings.bytes().filter(|byte| *byte == separator).count();
+    [b',', b';', b'\t']
         .into_iter()
         .rev()
         .max_by_key(|separator| count(*separator))
-        .unwrap_or(',')
+        .unwrap_or(b',')
 }
 
-/// Cells of a line; within quotes a separator is text and two quotes are one.
-fn cells(row: &str, separator: char) -> Vec<String> {
-    let mut cells = vec![String::new()];
-    let mut quoted = false;
-    let mut letters = row.chars().peekable();
-    while let Some(letter) = letters.next() {
-        let last = cells.len() - 1;
-        match letter {
-            '"' if quoted && letters.peek() == Some(&'"') => {
-                letters.next();
-                cells[last].push('"');
-            }
-            '"' => quoted = !quoted,
-            _ if letter == separator && !quoted => cells.push(String::new()),
-            _ => cells[last].push(letter),
-        }
-    }
-    for cell in &mut cells {
-        *cell = cell.trim().to_owned();
-    }
-    cells
+/// Cells of a line, without surrounding blanks and quotes.
+fn cells(row: &str, separator: u8) -> Vec<String> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .delimiter(separator)
+        .trim(csv::Trim::All)
+        .from_reader(row.as_bytes());
+    let row = reader.records().next().and_then(Result::ok);
+    let cells = row.iter().flatten();
+    cells.map(str::to_owned).collect()
 }
 
 #[cfg(test)]

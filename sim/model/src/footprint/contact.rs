@@ -1,5 +1,7 @@
 //! Contact of a brush texel with a cell.
 
+use crate::brush::traits::BrushTraits;
+
 /// A cell in contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Contact {
@@ -19,4 +21,14 @@ pub struct Contact {
     pub fraction: f32,
     /// Gap above the top of the wet paint, bridged by its film, cells.
     pub gap: f32,
+}
+
+impl Contact {
+    /// Travel of the strip of a brush with these traits, reference cells.
+    #[must_use]
+    #[inline(always)]
+    pub fn travel(&self, traits: &BrushTraits) -> f32 {
+        let [u, v] = self.moved;
+        (u * u + v * v).sqrt() * traits.cell_per_reference
+    }
 }

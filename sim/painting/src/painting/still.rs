@@ -1,52 +1,28 @@
 //! A painting as it is at a moment, to be looked at beside the one that is painted on.
 
-use std::collections::BTreeMap;
-use std::sync::Arc;
-
 use maulstick_canvas::EditError;
-use maulstick_canvas::tile::Version;
+use maulstick_canvas::tile::{TileId, Version};
 
-use super::backend::BackendFallback;
-use super::{Painting, SurfaceState};
+use super::Painting;
+use super::brushes::Brushes;
+use super::strokes::backend::Backend;
 use crate::clock::Clock;
 use crate::history::History;
-use crate::models::Models;
 
 impl Painting {
     /// The painting as it is, with its versions, without brushes and history. Its tiles are shared with
     /// this one, whatever becomes of that; to make it takes as long as to count them.
     pub fn still(&mut self) -> Self {
         self.commit();
-        let sheets = self.sheets.iter().map(|sheet| SurfaceState {
-            id: sheet.id,
-            cell_m: sheet.cell_m,
-            model: sheet.model,
-            store: sheet.store.clone(),
-            bare: Arc::clone(&sheet.bare),
-            top: sheet.top,
-        });
         Self {
-            sheets: sheets.collect(),
             scene: self.scene.clone(),
-            library: self.library.clone(),
-            look: Arc::clone(&self.look),
-            embedded: self.embedded.clone(),
-            brushes: BTreeMap::new(),
-            models: Models::default(),
-            unsettled: None,
-            fall: BackendFallback::default(),
-            ledger: self.ledger.clone(),
-            accounted: self.accounted.clone(),
+            optics: self.optics.clone(),
+            surfaces: self.surfaces.clone(),
+            brushes: Brushes::default(),
+            backend: Backend::default(),
+            accounts: self.accounts.clone(),
             history: History::default(),
-            quota: self.quota,
-            named: self.named.clone(),
-            named_touched: Default::default(),
-            line: self.line.clone(),
-            pager: Arc::clone(&self.pager),
-            versions: self.versions,
-            steps: self.steps,
-            footprint_cells: self.footprint_cells,
-            span_ns: self.span_ns,
+            versions: self.versions.clone(),
             clock: Clock::default(),
         }
     }
@@ -56,15 +32,13 @@ impl Painting {
     /// # Errors
     /// [`EditError`] for an unknown version.
     pub fn show_version(&mut self, name: &str) -> Result<(), EditError> {
-        let version = self.version(name)?.clone();
-        for sheet in &mut self.sheets {
-            let [across, up] = sheet.store.grid();
-            let ids = (0..up)
-                .flat_map(|y| (0..across).map(move |x| maulstick_canvas::tile::TileId { x, y }));
-            for id in ids {
-                let tile = version.tiles.get(&(sheet.id, id)).cloned().flatten();
-                let number = sheet.store.version(id).number;
-                sheet.store.replace(id, Version { number, tile });
+        let version = self.versions.find(name)?.clone();
+        for surface in self.surfaces.iter_mut() {
+            let [across, up] = surface.store.grid();
+            for id in (0..up).flat_map(|y| (0..across).map(move |x| TileId { x, y })) {
+                let tile = version.tiles.get(&(surface.id, id)).cloned().flatten();
+                let number = surface.store.version(id).number;
+                surface.store.replace(id, Version { number, tile });
             }
         }
         self.turn_rest(Some(&version.rest.layers), Some(&version.rest.makes));
@@ -75,7 +49,7 @@ impl Painting {
     #[must_use]
     pub fn is_blank(&self) -> bool {
         let untouched = self.history.steps().all(|step| step.tiles.is_empty());
-        self.steps == 0 && self.named.is_empty() && untouched
+        self.accounts.steps == 0 && self.versions.iter().len() == 0 && untouched
     }
 }
 

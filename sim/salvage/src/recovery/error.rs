@@ -1,6 +1,7 @@
 //! Errors of a recovery.
 
 use maulstick_document::DocumentError;
+use maulstick_types::command::advice::Advice;
 
 /// The reason why a painting cannot be recovered.
 #[derive(Debug, thiserror::Error)]
@@ -14,12 +15,12 @@ pub enum SalvageError {
 }
 
 impl SalvageError {
-    /// Advice to the painter.
+    /// What to do about it.
     #[must_use]
-    pub fn help(&self) -> &'static str {
+    pub fn advice(&self) -> Advice {
         match self {
-            Self::Lost(_) => "take the newest copy of it that is whole",
-            Self::Document(error) => error.help(),
+            Self::Lost(_) => Advice::say("take the newest copy of it that is whole"),
+            Self::Document(error) => error.advice(),
         }
     }
 }

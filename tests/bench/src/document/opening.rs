@@ -11,7 +11,7 @@ use maulstick_paint_node::frames::FrameServer;
 use maulstick_rig::UserError;
 use maulstick_types::paint::{FrameReply, FrameRequest};
 use maulstick_types::scene::CANVAS;
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin, decode, encode};
 
 use super::fault;

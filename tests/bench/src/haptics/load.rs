@@ -10,7 +10,7 @@ use maulstick_device::{Take, TakeSample};
 use maulstick_rig::UserError;
 use maulstick_types::brush::BrushState;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
-use maulstick_types::topics::Topics;
+use maulstick_types::wire::topics::Topics;
 
 use super::fault;
 use crate::running::{joined, maulstick};

@@ -14,7 +14,7 @@ use eframe::egui::{
     Ui, WidgetInfo, pos2, vec2,
 };
 use egui_plot::{HLine, Line, LineStyle, Plot, PlotPoints};
-use maulstick_types::advice::parted;
+use maulstick_types::command::advice::parted;
 use maulstick_types::haptics::ForceOrder;
 use maulstick_types::stylus::{StylusInfo, StylusStatus, axes};
 

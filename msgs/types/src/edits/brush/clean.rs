@@ -1,8 +1,8 @@
 //! Takes all paint off a brush.
 
-use crate::define::wire_struct;
 use crate::edits::{Form, StepForm};
 use crate::values::{BrushName, ValueError};
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Clean a brush

@@ -1,9 +1,9 @@
 //! Sets the mode of a brush.
 
-use crate::define::wire_struct;
 use crate::edits::{Form, StepForm, read};
 use crate::scene::{BrushHandling, BrushMode, MARKER_FLOW};
 use crate::values::{BrushName, FilmThickness, MarkerFlow, ValueError};
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Set the mode of a brush: sponge, marker, sampler, vacuum, …

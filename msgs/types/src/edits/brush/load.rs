@@ -1,9 +1,9 @@
 //! Loads a brush with paint.
 
 use crate::Mixture;
-use crate::define::wire_struct;
 use crate::edits::{Form, StepForm, read};
 use crate::values::{BrushName, ValueError};
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Load a brush with paint

@@ -1,9 +1,9 @@
 //! Makes a brush stiffer or softer than its file says.
 
-use crate::define::wire_struct;
 use crate::edits::{Form, StepForm};
 use crate::scene::Tuning;
 use crate::values::{BrushName, Stiffness, ValueError, Wetness};
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Make a brush stiffer or softer

@@ -1,8 +1,8 @@
 //! Begins a version from another one.
 
-use crate::define::wire_struct;
 use crate::edits::{Form, StepForm};
 use crate::values::{ValueError, VersionName};
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Begin a version from another one, and return the painting to it

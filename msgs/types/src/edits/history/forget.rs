@@ -1,8 +1,8 @@
 //! Deletes a version.
 
-use crate::define::wire_struct;
 use crate::edits::{Form, StepForm};
 use crate::values::{ValueError, VersionName};
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Delete a version

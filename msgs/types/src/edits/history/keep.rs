@@ -1,8 +1,8 @@
 //! Keeps the painting as a version.
 
-use crate::define::wire_struct;
 use crate::edits::{Form, StepForm};
 use crate::values::{ValueError, VersionName};
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Keep the painting as a version

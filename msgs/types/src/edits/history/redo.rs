@@ -1,8 +1,8 @@
 //! Does the newest undone step again.
 
-use crate::define::wire_struct;
 use crate::edits::{Form, StepForm};
 use crate::values::{BrushName, ValueError};
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Redo the newest undone step

@@ -1,8 +1,8 @@
 //! Makes the painting as it was in a version.
 
-use crate::define::wire_struct;
 use crate::edits::{Form, StepForm};
 use crate::values::{ValueError, VersionName};
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Return the painting to a version; this can be undone

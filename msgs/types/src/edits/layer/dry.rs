@@ -1,10 +1,10 @@
 //! Dries wet paint, at once or while time goes by.
 
 use crate::Region;
-use crate::define::wire_struct;
 use crate::edits::{Form, StepForm, read};
 use crate::scene::CANVAS;
 use crate::values::{LayerName, Share, Ticks, ValueError};
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Dry the wet paint into a new layer

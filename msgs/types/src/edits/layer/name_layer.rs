@@ -1,8 +1,8 @@
 //! Gives a dry layer another name.
 
-use crate::define::wire_struct;
 use crate::edits::{Form, StepForm};
 use crate::values::{LayerName, ValueError};
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Give a dry layer another name

@@ -3,9 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::define::{wire_enum, wire_struct};
 use crate::edits::{Form, StepForm};
 use crate::values::{LayerName, OpacityFactor, ValueError};
+use crate::wire::define::{wire_enum, wire_struct};
 
 wire_enum! {
     /// A dry layer.

@@ -1,9 +1,9 @@
 //! Ends a drying.
 
-use crate::define::wire_struct;
 use crate::edits::{Form, StepForm, read};
 use crate::scene::CANVAS;
 use crate::values::ValueError;
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Stop a running drying; what is still wet stays wet

@@ -6,10 +6,10 @@ use std::num::NonZeroU32;
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
 
 use crate::Region;
-use crate::define::wire_struct;
 use crate::edits::{Form, StepForm, read};
 use crate::scene::CANVAS;
 use crate::values::ValueError;
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Make dry layers wet again

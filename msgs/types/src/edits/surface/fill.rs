@@ -3,10 +3,10 @@
 use serde::de::{Deserialize as _, Deserializer};
 
 use crate::Mixture;
-use crate::define::{wire_enum, wire_struct};
 use crate::edits::{Form, StepForm, read};
 use crate::scene::CANVAS;
 use crate::values::{BrushName, FilmThickness, ValueError};
+use crate::wire::define::{wire_enum, wire_struct};
 
 wire_enum! {
     /// Paint of a film.

@@ -2,10 +2,10 @@
 
 use std::str::FromStr;
 
-use crate::define::{wire_enum, wire_struct};
 use crate::edits::{Form, StepForm, read};
 use crate::scene::CANVAS;
 use crate::values::{MaterialName, SpectrumText, ValueError};
+use crate::wire::define::{wire_enum, wire_struct};
 
 wire_enum! {
     /// What a ground is made of.

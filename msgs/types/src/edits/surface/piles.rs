@@ -2,11 +2,11 @@
 
 use serde::de::{Deserialize, Deserializer};
 
-use crate::advice::choice;
-use crate::define::wire_struct;
+use crate::command::advice::choice;
 use crate::edits::{Form, StepForm};
 use crate::scene::PALETTE;
 use crate::values::ValueError;
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Let paint on the palette deplete or last

@@ -3,11 +3,11 @@
 use serde::de::{Deserialize, Deserializer, Error};
 
 use crate::Pose;
-use crate::define::wire_struct;
 use crate::edits::{Form, StepForm};
 use crate::scene::CANVAS;
 use crate::stylus::FARTHEST_M;
 use crate::values::{ValueError, Zoom};
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Move, turn or zoom a surface

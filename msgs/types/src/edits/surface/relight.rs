@@ -2,10 +2,10 @@
 
 use serde::de::{Deserialize, Deserializer, Error};
 
-use crate::define::wire_struct;
 use crate::edits::{Form, StepForm};
 use crate::scene::{Light, LightError};
 use crate::values::ValueError;
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Change the light

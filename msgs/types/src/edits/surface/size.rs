@@ -1,9 +1,9 @@
 //! Sizes a surface.
 
-use crate::define::wire_struct;
 use crate::edits::{Form, StepForm, read};
 use crate::scene::CANVAS;
 use crate::values::{StainThickness, ValueError};
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Size the canvas

@@ -1,9 +1,9 @@
 //! Gives a surface another tooth.
 
-use crate::define::wire_struct;
 use crate::edits::{Form, StepForm, read};
 use crate::scene::CANVAS;
 use crate::values::{MaterialName, ValueError};
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Change the tooth of the canvas

@@ -3,11 +3,11 @@
 use serde::de::{Deserialize, Deserializer, Error};
 
 use crate::command::WELLS_MAX;
-use crate::define::wire_struct;
 use crate::edits::{Form, StepForm};
 use crate::scene::{PALETTE, Well, WellKind};
 use crate::stylus::FARTHEST_M;
 use crate::values::ValueError;
+use crate::wire::define::wire_struct;
 
 wire_struct! {
     /// Give a surface other wells

@@ -9,10 +9,7 @@
 use maulstick_canvas::window::Area;
 use maulstick_num::select::{larger, smaller};
 
-use super::{BLOCK, HALO, Levelling, Round};
-
-/// Largest part of a cell's paint that flows through a face at once.
-const LARGEST_SHARE: f32 = 0.25;
+use super::{BLOCK, HALO, LARGEST_SHARE, Levelling, Round};
 
 impl Round {
     /// The round on cells twice as large, without what the finer ones bear.

@@ -1,0 +1,466 @@
+//! Commands to the nodes of a rig, by who carries them out, and their replies.
+
+pub mod advice;
+pub mod reply_cache;
+
+use serde::de::Error as _;
+
+use crate::command::advice::Advice;
+use crate::edits::Edit;
+use crate::mixture::Mixture;
+use crate::scene::{CANVAS, STAINS_M};
+use crate::values::{BrushName, BrushToml, MaterialName, ValueError, WholePath};
+use crate::wire::define::{message, wire_enum, wire_struct};
+
+/// The node that has the painting.
+pub const PAINT_NODE: &str = "paint";
+/// Name of the launcher, which carries out commands to the rig as a whole.
+pub const RIG_NODE: &str = "rig";
+
+/// A path of a command has at most this many bytes; Linux takes no longer ones.
+pub const PATH_MAX: usize = 4096;
+/// A mixture of a command has at most this many parts.
+pub const PARTS_MAX: usize = 64;
+/// The name of a paint has at most this many bytes.
+pub const PAINT_NAME_MAX: usize = 128;
+/// The name of a layer has at most this many bytes.
+pub const LAYER_NAME_MAX: usize = 128;
+/// The name of a version has at most this many bytes.
+pub const VERSION_NAME_MAX: usize = 128;
+/// How thick a film of paint can be laid, m.
+pub const FILM_M: std::ops::RangeInclusive<f64> = 1e-6..=5e-3;
+/// A brush file has at most this many bytes.
+pub const BRUSH_FILE_MAX: usize = 1_000_000;
+/// A spectrum of a command has at most this many bytes.
+pub const SPECTRUM_MAX: usize = 1 << 18;
+/// How long a drying may take, in sixtieths of a second: up to a year.
+pub const DRYING_TICKS: std::ops::RangeInclusive<u32> = 1..=60 * 60 * 60 * 24 * 365;
+/// Sides of a cell, m.
+pub const CELLS_M: std::ops::RangeInclusive<f64> = 1e-5..=1e-2;
+/// Cells of a canvas either way: half of one is rounded up.
+pub const CELLS: std::ops::RangeInclusive<f64> = 0.5..=65_536.0;
+/// Cells of a new canvas in all, at most: twice what can be shown in comfort on a large machine.
+pub const CELLS_IN_ALL: f64 = 1_073_741_824.0;
+/// A surface has at most this many wells.
+pub const WELLS_MAX: usize = 64;
+/// Factors on the stiffness of a brush.
+pub const STIFFNESS: std::ops::RangeInclusive<f64> = 0.05..=20.0;
+
+wire_struct! {
+    /// A place in a brush's stream: a command with it enters the journal right after that state.
+    pub struct After {
+        /// The brush: the source of its states.
+        pub brush: u32,
+        /// Its epoch.
+        pub epoch: u32,
+        /// The state.
+        pub sequence: u64,
+    }
+}
+
+wire_struct! {
+    /// What a new painting is painted on.
+    #[serde(try_from = "CanvasFields")]
+    pub struct NewCanvas {
+        /// Width, m.
+        pub width_m: f64,
+        /// Height, m.
+        pub height_m: f64,
+        /// Side of a cell, m.
+        pub cell_m: f64,
+        /// Name of the ground, or the whole path of a CSV file of nm,reflectance or of a picture.
+        pub ground: MaterialName,
+        /// Name of the tooth.
+        pub tooth: MaterialName,
+        /// Seed of the tooth.
+        pub tooth_seed: u64,
+        /// Thickness of paint that stays however hard it is brushed, m.
+        pub stain_m: f64,
+    }
+}
+
+/// A canvas as it is decoded.
+#[derive(serde::Deserialize)]
+struct CanvasFields {
+    width_m: f64,
+    height_m: f64,
+    cell_m: f64,
+    ground: MaterialName,
+    tooth: MaterialName,
+    tooth_seed: u64,
+    stain_m: f64,
+}
+
+impl TryFrom<CanvasFields> for NewCanvas {
+    type Error = ValueError;
+
+    fn try_from(fields: CanvasFields) -> Result<Self, ValueError> {
+        let canvas = Self {
+            width_m: fields.width_m,
+            height_m: fields.height_m,
+            cell_m: fields.cell_m,
+            ground: fields.ground,
+            tooth: fields.tooth,
+            tooth_seed: fields.tooth_seed,
+            stain_m: fields.stain_m,
+        };
+        canvas.check()?;
+        Ok(canvas)
+    }
+}
+
+impl NewCanvas {
+    /// Checks that it can be made: whether there are such a ground and tooth is seen later.
+    ///
+    /// # Errors
+    /// [`ValueError`].
+    pub fn check(&self) -> Result<(), ValueError> {
+        if !CELLS_M.contains(&self.cell_m) {
+            return Err(ValueError::Range {
+                what: "cell",
+                value: self.cell_m * 1e3,
+                unit: " mm",
+                range: ".01 to 10",
+            });
+        }
+        let size_m = [self.width_m, self.height_m];
+        let [width, height] = size_m.map(|side| side / self.cell_m);
+        if !(CELLS.contains(&width) && CELLS.contains(&height)) {
+            let cell_m = self.cell_m;
+            return Err(ValueError::Canvas { size_m, cell_m });
+        }
+        if width * height > CELLS_IN_ALL {
+            return Err(ValueError::Cells(width * height));
+        }
+        match STAINS_M.contains(&self.stain_m) {
+            true => Ok(()),
+            false => Err(ValueError::Range {
+                what: "stain",
+                value: self.stain_m * 1e6,
+                unit: " µm",
+                range: "0 to 1000",
+            }),
+        }
+    }
+}
+
+wire_struct! {
+    /// A painting for other programs.
+    pub struct ExportOrder {
+        /// The whole path of the file.
+        pub path: WholePath,
+        /// `png`, `exr`, `ora`, `height` or `stl`; as the path ends if empty.
+        pub format: String,
+        /// The surface.
+        pub surface: u32,
+        /// Bits a channel of a PNG: 8 or 16.
+        #[serde(deserialize_with = "bits")]
+        pub bits: u32,
+        /// Thickness of a solid under its lowest place, m.
+        pub base_m: f64,
+        /// Factor on the heights of a solid.
+        pub exaggeration: f64,
+        /// Cells from one point of a solid to the next; 0 so that it has 4 million triangles at most.
+        pub step: u32,
+        /// Profile of a PNG: `srgb`, `display-p3`; that of the rig if empty.
+        pub profile: String,
+        /// How colours of a PNG come into its gamut: `soft`, `clamp`; as in the rig if empty.
+        pub gamut: String,
+    }
+}
+
+/// Bits per channel that a PNG may have.
+///
+/// # Errors
+/// [`ValueError::Bits`].
+pub fn png_bits(bits: u32) -> Result<u32, ValueError> {
+    match [8, 16].contains(&bits) {
+        true => Ok(bits),
+        false => Err(ValueError::Bits(bits)),
+    }
+}
+
+fn bits<'de, D: serde::Deserializer<'de>>(from: D) -> Result<u32, D::Error> {
+    let bits = serde::Deserialize::deserialize(from)?;
+    png_bits(bits).map_err(D::Error::custom)
+}
+
+impl ExportOrder {
+    /// The canvas, in the format that the path says, with what is usual for all else.
+    #[must_use]
+    pub fn to(path: WholePath) -> Self {
+        Self {
+            path,
+            format: String::new(),
+            surface: CANVAS,
+            bits: 8,
+            base_m: 2e-3,
+            exaggeration: 1.0,
+            step: 0,
+            profile: String::new(),
+            gamut: String::new(),
+        }
+    }
+}
+
+wire_struct! {
+    /// The painting, with its history, in another file, in which it goes on.
+    pub struct SaveAs {
+        /// The whole path of the file.
+        pub path: WholePath,
+        /// Whether a painting that is there already may go.
+        pub replace: bool,
+    }
+}
+
+wire_enum! {
+    /// A command, by who carries it out.
+    #[allow(clippy::large_enum_variant, reason = "commands are few and short-lived")]
+    pub enum Command {
+        /// The painting: it changes by an edit.
+        Edit(Edit),
+        /// The sequencer: something takes its place in the journal and changes no paint.
+        Take(TakeCommand),
+        /// The paint node, beside the journal: files are written.
+        File(FileCommand),
+        /// The node of a brush.
+        Brush(BrushCommand),
+        /// The launcher: the rig goes on in another painting.
+        Rig(RigCommand),
+    }
+}
+
+wire_enum! {
+    /// What takes its place in the journal besides edits.
+    pub enum TakeCommand {
+        /// Announces a take: only announced takes paint. Each new stroke takes the next load in
+        /// turn; without loads the brush keeps what it has.
+        Begin {
+            /// Name of the brush that will follow it.
+            brush: BrushName,
+            /// Source of the player's samples.
+            device: u32,
+            /// Epoch of this playing.
+            device_epoch: u32,
+            /// The loads.
+            loads: Vec<Mixture>,
+            /// Whether it begins again, after a crash: what was painted of it is undone first.
+            again: bool,
+        },
+        /// Ends nothing and changes nothing: its reply says that the place it names is reached.
+        Mark,
+        /// Writes a picture of the canvas as it is there and, if asked, the ledger.
+        Snapshot {
+            /// A PNG; written beside and renamed.
+            path: WholePath,
+            /// A JSON file with the ledger.
+            ledger: Option<WholePath>,
+        },
+    }
+}
+
+wire_enum! {
+    /// What the paint node does with files while it is painted on.
+    pub enum FileCommand {
+        /// Writes the painting for other programs.
+        Export(ExportOrder),
+        /// Ends the export that goes on: its file is not written.
+        StopExport,
+        /// Puts the painting into another file.
+        SaveAs(SaveAs),
+    }
+}
+
+wire_enum! {
+    /// What a brush's own node does.
+    pub enum BrushCommand {
+        /// Gives a brush another file.
+        Define {
+            /// Name of the brush.
+            brush: BrushName,
+            /// The file, TOML.
+            toml: BrushToml,
+        },
+    }
+}
+
+wire_enum! {
+    /// What the launcher does.
+    pub enum RigCommand {
+        /// Goes on in another painting.
+        Open {
+            /// The whole path of a painting that there is.
+            path: WholePath,
+            /// Whether what was painted in memory alone may go.
+            forget: bool,
+        },
+        /// Begins another painting and goes on in it.
+        New {
+            /// The whole path of its file, which is not there yet; in memory alone if absent.
+            path: Option<WholePath>,
+            /// What it is painted on.
+            canvas: NewCanvas,
+            /// Whether what was painted in memory alone may go.
+            forget: bool,
+        },
+        /// As [`FileCommand::SaveAs`], so that the rig starts with that file again.
+        SaveAs(SaveAs),
+    }
+}
+
+macro_rules! from {
+    ($($inner:ident => $variant:ident),*) => {
+        $(
+            impl From<$inner> for Command {
+                fn from(command: $inner) -> Self {
+                    Self::$variant(command)
+                }
+            }
+        )*
+    };
+}
+
+from!(Edit => Edit, TakeCommand => Take, FileCommand => File, BrushCommand => Brush, RigCommand => Rig);
+
+impl Command {
+    /// Name of the node that carries it out.
+    #[must_use]
+    pub fn node(&self) -> &str {
+        match self {
+            Self::Edit(_) | Self::Take(_) | Self::File(_) => PAINT_NODE,
+            Self::Brush(BrushCommand::Define { brush, .. }) => brush,
+            Self::Rig(_) => RIG_NODE,
+        }
+    }
+
+    /// Its refusal by a node that it is not for.
+    #[must_use]
+    pub fn misaddressed(&self) -> Outcome {
+        Outcome::Refused {
+            what: "this node does not carry out this command".to_owned(),
+            advice: Advice::say(format!("it is for the node '{}'", self.node())),
+        }
+    }
+}
+
+message! {
+    /// A command with its sender and number; sending it again with the same number is safe.
+    pub struct CommandRequest [version 7, at most 1048576 bytes] {
+        /// A number that the client drew at random.
+        pub client: u64,
+        /// Counts the client's commands.
+        pub number: u64,
+        /// Where it takes its place in the journal; at once if absent.
+        pub after: Option<After>,
+        /// What it does.
+        pub command: Command,
+    }
+}
+
+impl CommandRequest {
+    /// The number of a request, read before its command: one whose command is out of range is answered, too.
+    #[must_use]
+    pub fn number_in(bytes: &[u8]) -> Option<u64> {
+        let (_, body) = crate::wire::codec::body_of::<Self>(bytes).ok()?;
+        let number = body.get(8..16)?.try_into().ok()?;
+        Some(u64::from_le_bytes(number))
+    }
+}
+
+wire_enum! {
+    /// What became of a command.
+    pub enum Outcome {
+        /// It is done.
+        Done {
+            /// Its index in the journal.
+            journal: u64,
+            /// What it wrote or found, in words; may be empty.
+            detail: String,
+        },
+        /// It is accepted and waits for its place; ask again with the same number.
+        Waiting,
+        /// It was not done.
+        Refused {
+            /// What is wrong.
+            what: String,
+            /// What to do about it; each front end has its own words for it.
+            advice: Advice,
+        },
+    }
+}
+
+impl Outcome {
+    /// It is done, beside the journal.
+    #[must_use]
+    pub fn done(detail: impl Into<String>) -> Self {
+        Self::Done {
+            journal: 0,
+            detail: detail.into(),
+        }
+    }
+
+    /// It was not done, with advice in words.
+    #[must_use]
+    pub fn refused(what: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::Refused {
+            what: what.into(),
+            advice: Advice::say(help),
+        }
+    }
+}
+
+message! {
+    /// The reply to a command.
+    pub struct CommandReply [version 2, at most 65536 bytes] {
+        /// The command's number.
+        pub number: u64,
+        /// What became of it.
+        pub outcome: Outcome,
+    }
+}
+
+message! {
+    /// Asks a sender for messages that were lost on the way.
+    pub struct GapRequest [version 1, at most 64 bytes] {
+        /// The sender's epoch.
+        pub epoch: u32,
+        /// First number.
+        pub from: u64,
+        /// Last number.
+        pub to: u64,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn canvases_are_sound_or_rejected_with_what_to_do() {
+        let new = |width_m: f64, cell_m: f64| NewCanvas {
+            width_m,
+            height_m: 0.2,
+            cell_m,
+            ground: MaterialName::new("gesso").expect("a name"),
+            tooth: MaterialName::new("linen").expect("a name"),
+            tooth_seed: 1,
+            stain_m: 3e-6,
+        };
+        assert_eq!(new(0.3, 2.5e-4).check(), Ok(()));
+        for (width_m, cell_m, word) in [
+            (0.0, 2.5e-4, "0×20 cm"),
+            (1e4, 2.5e-4, "1638 cm"),
+            (f64::NAN, 2.5e-4, "NaN"),
+            (0.3, 0.0, "cell of 0 mm"),
+            (0.3, f64::INFINITY, "cell of inf mm"),
+            (0.6, 1e-5, "million cells"),
+        ] {
+            let what = new(width_m, cell_m)
+                .check()
+                .expect_err("rejected")
+                .to_string();
+            assert!(what.contains(word) && what.contains("choose"), "{what}");
+        }
+        assert!(png_bits(16).is_ok() && png_bits(12).is_err());
+    }
+}

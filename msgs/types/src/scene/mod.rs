@@ -1,0 +1,410 @@
+//! What lies on the desk: surfaces, paints, light. The paint node owns it.
+
+mod fault;
+
+use crate::mixture::Mixture;
+use crate::pose::Pose;
+use crate::values::ValueError;
+use crate::wire::define::{message, wire_enum, wire_struct};
+
+/// The canvas.
+pub const CANVAS: u32 = 0;
+/// The palette.
+pub const PALETTE: u32 = 1;
+/// Factors on the light's strength and on what the eye makes of it.
+pub const INTENSITY: std::ops::RangeInclusive<f64> = 0.0..=100.0;
+/// Names of the sampling rules.
+pub const RULES: [&str; 3] = ["gauss", "fitted", "reference"];
+/// Wavelengths of the rules `gauss` and `fitted`.
+pub const SAMPLES: std::ops::RangeInclusive<u32> = 4..=16;
+/// Flow of a marker for which nothing is said: 4 µm along a millimetre.
+pub const MARKER_FLOW: f64 = 4e-3;
+/// Flows of a marker.
+pub const FLOWS: std::ops::RangeInclusive<f64> = 1e-6..=0.1;
+/// Thickness that stays however hard it is brushed, m.
+pub const STAINS_M: std::ops::RangeInclusive<f64> = 0.0..=1e-3;
+/// The name of an illuminant has at most this many bytes.
+pub const ILLUMINANT_NAME_MAX: usize = 128;
+
+wire_enum! {
+    /// What a round region of the palette does.
+    pub enum WellKind {
+        /// Holds a mixture that never runs out.
+        Paint {
+            /// What it holds.
+            mixture: Mixture,
+        },
+        /// Takes all paint off the brush.
+        Cleaner,
+    }
+}
+
+wire_struct! {
+    /// A round region of a surface.
+    pub struct Well {
+        /// Middle in the surface's frame, m.
+        pub center_m: [f64; 2],
+        /// Radius, m.
+        pub radius_m: f64,
+        /// What it does.
+        pub kind: WellKind,
+    }
+}
+
+wire_struct! {
+    /// A canvas or a palette. Its frame: origin at the lower left corner, x right, y up, z out;
+    /// cell (i, j) covers [i·h, (i+1)·h) × [j·h, (j+1)·h).
+    pub struct Surface {
+        /// [`CANVAS`] or [`PALETTE`].
+        pub id: u32,
+        /// Surface frame to desk frame.
+        pub pose: Pose,
+        /// Desk lengths per surface length; scales x, y and height alike.
+        pub zoom: f64,
+        /// Cells across and up.
+        pub cells: [u32; 2],
+        /// Side h of a cell, m.
+        pub cell_m: f64,
+        /// Name of the ground.
+        pub ground: String,
+        /// Name of the tooth.
+        pub tooth: String,
+        /// Seed of the tooth.
+        pub tooth_seed: u64,
+        /// Regions of their own behaviour.
+        pub wells: Vec<Well>,
+        /// Thickness of paint that stays however hard it is brushed, m: little on a canvas that is
+        /// heavily sized (Baxter 2004, § 6.4.1).
+        pub stain_m: f64,
+        /// Whether paint that brushes take up from it stays there all the same (Baxter 2004, § 6.7).
+        pub piles_last: bool,
+        /// Name of the model of its paint.
+        #[serde(default = "default_model")]
+        pub model: String,
+    }
+}
+
+/// The paint model where nothing else is said.
+#[must_use]
+pub fn default_model() -> String {
+    "impasto".to_owned()
+}
+
+/// Thickness that stays where nothing else is said, m.
+#[must_use]
+pub fn default_stain_m() -> f64 {
+    3e-6
+}
+
+wire_enum! {
+    /// What a brush does (Baxter 2004, § 6.8).
+    pub enum BrushMode {
+        /// It pushes paint, leaves some and takes some up.
+        Normal,
+        /// It leaves and takes up, but pushes nothing.
+        NoPush,
+        /// It stays as it is, full or empty, whatever it leaves or takes up.
+        Sponge,
+        /// As a sponge, and it pushes nothing.
+        SpongeNoPush,
+        /// It leaves as much as its flow says, and takes up nothing.
+        Marker,
+        /// It takes on the colours that it touches; the surface stays as it is.
+        Sampler,
+        /// It lifts off what it touches, and is clean.
+        Vacuum,
+    }
+}
+
+wire_struct! {
+    /// How a brush is used.
+    pub struct BrushHandling {
+        /// Name of the brush.
+        pub brush: String,
+        /// What it does.
+        pub mode: BrushMode,
+        /// Flow of the marker: thickness that it leaves along a metre of its way, m/m.
+        pub flow: f64,
+        /// It adds no paint where as much is wet, m; 0 for no such bound.
+        pub most_m: f64,
+    }
+}
+
+impl BrushMode {
+    /// All modes by name.
+    pub const NAMES: [(&str, Self); 7] = [
+        ("normal", Self::Normal),
+        ("no-push", Self::NoPush),
+        ("sponge", Self::Sponge),
+        ("sponge-no-push", Self::SpongeNoPush),
+        ("marker", Self::Marker),
+        ("sampler", Self::Sampler),
+        ("vacuum", Self::Vacuum),
+    ];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        let found = Self::NAMES.iter().find(|(_, mode)| mode == self);
+        found.map_or("", |(name, _)| name)
+    }
+}
+
+impl std::str::FromStr for BrushMode {
+    type Err = ValueError;
+
+    fn from_str(name: &str) -> Result<Self, ValueError> {
+        let found = Self::NAMES.iter().find(|(known, _)| *known == name);
+        found.map(|(_, mode)| mode.clone()).ok_or_else(|| {
+            let names = Self::NAMES.map(|(name, _)| name);
+            ValueError::Unknown {
+                what: "mode",
+                name: name.chars().take(40).collect(),
+                choice: crate::command::advice::choice(name, names),
+            }
+        })
+    }
+}
+
+impl BrushHandling {
+    /// A brush that is used as brushes are.
+    #[must_use]
+    pub fn normal(brush: &str) -> Self {
+        Self {
+            brush: brush.to_owned(),
+            mode: BrushMode::Normal,
+            flow: MARKER_FLOW,
+            most_m: 0.0,
+        }
+    }
+}
+
+wire_struct! {
+    /// A paint that the painting uses.
+    pub struct PaintSlot {
+        /// Name as in the paint file.
+        pub name: String,
+        /// Colour of an opaque layer, linear sRGB.
+        pub masstone: [f32; 3],
+        /// Colour of one part in ten of titanium white, linear sRGB.
+        pub tint: [f32; 3],
+        /// Hash of the paint file.
+        pub file_hash: u32,
+    }
+}
+
+wire_struct! {
+    /// The lamp, and how its light becomes colour.
+    pub struct Light {
+        /// Toward the lamp, canvas frame; of any length.
+        pub direction: [f64; 3],
+        /// Factor on the light's strength.
+        pub intensity: f64,
+        /// Name of the spectrum.
+        pub illuminant: String,
+        /// The spectrum itself where it is none of the CIE's: relative power at 101 wavelengths,
+        /// 380 to 780 nm; empty for one that is known by its name.
+        pub spectrum: Vec<f64>,
+        /// Factor of the eye, or camera, that looks at it.
+        pub exposure: f64,
+        /// Factor on the slopes of the relief.
+        pub relief: f64,
+        /// Tangent of half the angle under which the lamp is seen: how soft shadows are.
+        pub softness: f64,
+        /// Year of the CIE observer: 1931 or 1964.
+        pub observer: u32,
+        /// Sampling rule: `gauss`, `fitted` or `reference`.
+        pub rule: String,
+        /// Wavelengths of the rule, 4 to 16; `reference` has 101.
+        pub samples: u32,
+        /// Whether the eye is adapted to the light's white; if not, its cast stays.
+        pub adapted: bool,
+    }
+}
+
+wire_struct! {
+    /// Paint that dried at one time.
+    pub struct Layer {
+        /// Its number, from 1; a layer lies over all of lower numbers.
+        pub number: u32,
+        /// Its name.
+        pub name: String,
+        /// Factor on its optical thickness, 0 to 1; its height stays.
+        pub opacity: f32,
+    }
+}
+
+wire_struct! {
+    /// A version of the painting that was kept.
+    pub struct NamedVersion {
+        /// Its name.
+        pub name: String,
+        /// The version that it was painted from; empty where that was none.
+        pub parent: String,
+        /// Whether the painter goes on from here.
+        pub here: bool,
+    }
+}
+
+wire_struct! {
+    /// How a brush was changed while painting.
+    pub struct Tuning {
+        /// Name of the brush.
+        pub brush: String,
+        /// Factor on the stiffness of its file.
+        pub stiffness: f64,
+        /// From 0, as in its file, to 1, soaked: a soaked head is half as stiff.
+        pub wetness: f64,
+    }
+}
+
+impl Default for Light {
+    /// Average daylight from the upper left.
+    fn default() -> Self {
+        Self {
+            direction: [-0.5, 0.5, 0.7],
+            intensity: 1.0,
+            illuminant: "D65".to_owned(),
+            spectrum: Vec::new(),
+            exposure: 1.0,
+            relief: 1.0,
+            softness: 0.3,
+            observer: 1931,
+            rule: "fitted".to_owned(),
+            samples: 16,
+            adapted: true,
+        }
+    }
+}
+
+/// A light that cannot be.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LightError {
+    /// A number out of range.
+    #[error("the {name} is {value}: choose {least} to {most}")]
+    Range {
+        /// The quantity.
+        name: &'static str,
+        /// The number.
+        value: f64,
+        /// The least that it can be.
+        least: f64,
+        /// The most.
+        most: f64,
+    },
+    /// A lamp below the canvas, or of no direction.
+    #[error("the light must come from above the canvas: give x, y, z with z > 0")]
+    Below,
+    /// The name of a spectrum that is too long.
+    #[error("an illuminant's name of {0} bytes: it has at most {ILLUMINANT_NAME_MAX}")]
+    Name(usize),
+    /// Powers that are no spectrum.
+    #[error("this is no spectrum: give 101 powers of 0 or more, not all of them 0")]
+    Spectrum,
+    /// An observer that the CIE does not have.
+    #[error("there is no CIE observer of {0}: take 1931 or 1964")]
+    Observer(u32),
+    /// An unknown sampling rule.
+    #[error("there is no such sampling rule: choose one of {}", RULES.join(", "))]
+    Rule,
+    /// Too few or too many wavelengths.
+    #[error("a rule of {0} samples: take 4 to 16")]
+    Samples(u32),
+}
+
+impl Light {
+    /// Checks that it shines, in bounds.
+    ///
+    /// # Errors
+    /// [`LightError`].
+    pub fn check(&self) -> Result<(), LightError> {
+        let bounded = [
+            ("intensity", self.intensity, INTENSITY),
+            ("exposure", self.exposure, INTENSITY),
+            ("relief strength", self.relief, 0.0..=10.0),
+            ("softness of shadows", self.softness, 0.0..=1.0),
+        ];
+        for (name, value, range) in bounded {
+            if !range.contains(&value) {
+                return Err(LightError::Range {
+                    name,
+                    value,
+                    least: *range.start(),
+                    most: *range.end(),
+                });
+            }
+        }
+        let length: f64 = self.direction.iter().map(|v| v * v).sum();
+        if !(1e-6..=1e6).contains(&length) || self.direction[2] <= 0.0 {
+            return Err(LightError::Below);
+        }
+        if self.illuminant.len() > ILLUMINANT_NAME_MAX {
+            return Err(LightError::Name(self.illuminant.len()));
+        }
+        let power = &self.spectrum;
+        let good = power.iter().all(|v| (0.0..=1e9).contains(v)) && power.iter().any(|v| *v > 0.0);
+        if !power.is_empty() && (power.len() != 101 || !good) {
+            return Err(LightError::Spectrum);
+        }
+        if ![1931, 1964].contains(&self.observer) {
+            return Err(LightError::Observer(self.observer));
+        }
+        if !RULES.contains(&self.rule.as_str()) {
+            return Err(LightError::Rule);
+        }
+        if self.rule != "reference" && !SAMPLES.contains(&self.samples) {
+            return Err(LightError::Samples(self.samples));
+        }
+        Ok(())
+    }
+}
+
+impl Tuning {
+    /// Factor on the stiffness of a head.
+    #[must_use]
+    pub fn factor(&self) -> f64 {
+        self.stiffness * (1.0 - 0.5 * self.wetness)
+    }
+}
+
+message! {
+    /// The desk; cached for late joiners.
+    pub struct Scene [version 6, at most 16777216 bytes] {
+        /// Grows with every change.
+        pub version: u64,
+        /// The canvas first.
+        pub surfaces: Vec<Surface>,
+        /// At most 16.
+        pub paints: Vec<PaintSlot>,
+        /// The lamp.
+        pub light: Light,
+        /// Brushes that are not as in their files.
+        pub tunings: Vec<Tuning>,
+        /// What has dried, the oldest first.
+        pub layers: Vec<Layer>,
+        /// The versions that were kept, by name.
+        pub versions: Vec<NamedVersion>,
+        /// Brushes that are used in a way of their own.
+        pub handlings: Vec<BrushHandling>,
+    }
+}
+
+impl Scene {
+    /// Factor on the stiffness of the brush called `brush`.
+    #[must_use]
+    pub fn tuning(&self, brush: &str) -> f64 {
+        let mut tunings = self.tunings.iter();
+        tunings
+            .find(|tuning| tuning.brush == brush)
+            .map_or(1.0, Tuning::factor)
+    }
+
+    /// How soaked the brush called `brush` is, 0 to 1.
+    #[must_use]
+    pub fn wetness(&self, brush: &str) -> f64 {
+        let mut tunings = self.tunings.iter();
+        tunings
+            .find(|tuning| tuning.brush == brush)
+            .map_or(0.0, |tuning| tuning.wetness)
+    }
+}

@@ -1,0 +1,17 @@
+//! The form of messages on the wire.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`header`] | the header, flags, and the errors of reading a message |
+//! | [`schema`] | field tables and their hash |
+//! | [`topics`] | the key expressions of a rig |
+//! | `define` | the macro that makes struct, codec and field table of one definition |
+//! | `catalogue` | all messages |
+
+pub(crate) mod catalogue;
+pub(crate) mod codec;
+pub(crate) mod define;
+pub mod header;
+pub(crate) mod plain;
+pub mod schema;
+pub mod topics;

@@ -1,0 +1,141 @@
+//! Loads of the brushes: loading, cleaning, the loads of a take.
+
+use std::sync::Arc;
+
+use maulstick_canvas::EditError;
+use maulstick_model::brush::load::Half;
+use maulstick_types::edits::{Clean, Load};
+use maulstick_types::scene::Scene;
+use maulstick_types::{Mixture, mixture::Part};
+
+use super::PaintingBrush;
+use crate::apply::{Applied, Apply};
+use crate::ledger::Ledger;
+use crate::painting::Painting;
+use crate::painting::optics::thinner_slot;
+use crate::painting::strokes::backend::Deferral;
+
+/// What a brush takes up, by the halves of its head: slots and shares.
+type Halves<'a> = [(&'a [(usize, f64)], Half)];
+
+impl Apply for Load {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let brush = painting.brushes.at(&self.brush)?;
+        let mixtures: Vec<Mixture> = std::iter::once(&self.mixture)
+            .chain(&self.beside)
+            .cloned()
+            .collect();
+        let slots = painting.optics.all_slots(&mut painting.scene, &mixtures)?;
+        painting.begin_step(&format!("load {}", self.brush.as_str()), Some(brush));
+        let parts: Vec<_> = match &slots[..] {
+            [both] => vec![(&both[..], Half::Both)],
+            halves => halves
+                .iter()
+                .map(|slots| &slots[..])
+                .zip([Half::Left, Half::Right])
+                .collect(),
+        };
+        let seed = painting.brushes[brush].next_seed();
+        painting.fill(brush, &parts, seed);
+        painting.end_step_of(brush);
+        Ok(Applied::Done)
+    }
+}
+
+impl Apply for Clean {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let brush = painting.brushes.at(&self.brush)?;
+        painting.begin_step(&format!("clean {}", self.brush.as_str()), Some(brush));
+        painting.brushes[brush].empty(&mut painting.accounts.ledger);
+        painting.end_step_of(brush);
+        Ok(Applied::Done)
+    }
+}
+
+impl PaintingBrush {
+    /// Gives what it carries to the cleaner.
+    pub(crate) fn empty(&mut self, ledger: &mut Ledger) {
+        self.deferral = Deferral::default();
+        let left = Arc::make_mut(&mut self.load).take_all();
+        ledger.to_cleaner(&left);
+    }
+
+    /// Fills it from the tubes after it is cleaned; the scene says which slot is the thinner's.
+    fn fill(
+        &mut self,
+        parts: &Halves<'_>,
+        (scene, cell_m): (&Scene, f64),
+        seed: u64,
+        ledger: &mut Ledger,
+    ) {
+        self.empty(ledger);
+        let traits = self.traits(cell_m);
+        let load = Arc::make_mut(&mut self.load);
+        for (slots, half) in parts {
+            load.fill(
+                &self.tidy,
+                &traits,
+                slots,
+                thinner_slot(scene),
+                (*half, seed),
+            );
+        }
+        ledger.from_tube(&load.counts());
+    }
+
+    /// The mean colour of the paint on it.
+    fn mixture(&self, scene: &Scene) -> Result<Mixture, EditError> {
+        let counts = self.load.counts();
+        let total: u64 = counts.iter().sum();
+        if total == 0 {
+            return Err(EditError::EmptyBrush(self.name.clone()));
+        }
+        let carried = scene.paints.iter().zip(counts);
+        let parts = carried
+            .filter(|(_, count)| *count > 0)
+            .map(|(slot, count)| Part {
+                paint: slot.name.clone(),
+                share: count as f64 / total as f64,
+            });
+        Ok(Mixture {
+            parts: parts.collect(),
+        })
+    }
+}
+
+impl Painting {
+    /// Fills a brush from the tubes, once its deferred steps are settled.
+    pub(crate) fn fill(&mut self, brush: usize, parts: &Halves<'_>, seed: u64) {
+        self.settle();
+        let from = (&self.scene, self.surfaces.cell_m());
+        self.brushes[brush].fill(parts, from, seed, &mut self.accounts.ledger);
+    }
+
+    /// The mean colour of the paint on a brush.
+    ///
+    /// # Errors
+    /// [`EditError`] for an unknown brush, or one that carries nothing.
+    pub(crate) fn carried_mixture(&mut self, brush: &str) -> Result<Mixture, EditError> {
+        self.commit();
+        let brush = self.brushes.at(brush)?;
+        self.brushes[brush].mixture(&self.scene)
+    }
+
+    /// Gives a brush the loads that its next strokes take in turn.
+    ///
+    /// # Errors
+    /// [`EditError`] for an unknown brush or paint, or one paint more than there are slots.
+    pub fn take(&mut self, brush: &str, loads: &[Mixture]) -> Result<(), EditError> {
+        let brush = self.brushes.at(brush)?;
+        self.optics.all_slots(&mut self.scene, loads)?;
+        self.close_windows();
+        let cell_m = self.surfaces.cell_m();
+        let brush = &mut self.brushes[brush];
+        brush.loads = loads.to_vec();
+        (brush.strokes, brush.seed) = (0, 0);
+        (brush.stroke, brush.path) = (None, None);
+        brush.head = brush.disordered();
+        brush.thin_for(cell_m);
+        Ok(())
+    }
+}

@@ -1,0 +1,166 @@
+//! Paint that dries over time.
+//!
+//! Time is the journal's ticks of 1/60 s. A drying goes over its tiles in rounds, of which there are 32 at most, half a
+//! second or more apart: in a round each tile's film dries by the share of the remaining time that has elapsed since
+//! the round before, so that paint applied meanwhile dries in the rest. A tick dries 32 tiles at most, and none while a
+//! brush paints: time goes on, and due tiles are dried when the brush is lifted.
+
+use std::sync::Arc;
+
+use maulstick_canvas::EditError;
+use maulstick_types::edits::{Dry, StopDrying};
+use maulstick_types::values::Ticks;
+
+use super::next_layer;
+use crate::apply::{Applied, Apply};
+use crate::clock::{Clock, Drying, Round, TICKS_A_SECOND};
+use crate::painting::Painting;
+use crate::painting::surfaces::{Changed, Part, SurfaceState};
+
+/// Most tiles that dry in a tick.
+const TILES_A_TICK: usize = 32;
+/// Name of its steps.
+const STEP: &str = "drying";
+
+impl Apply for StopDrying {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        match painting.clock.stop(Some(self.surface)) {
+            true => Ok(Applied::Done),
+            false => Err(EditError::NotDrying),
+        }
+    }
+}
+
+impl Painting {
+    /// Has the wet paint of a part dry evenly into one new layer over a time.
+    ///
+    /// # Errors
+    /// [`EditError`] for an unknown surface, a part beside it, where nothing is wet, and where a
+    /// drying goes on.
+    pub(super) fn dry_over(&mut self, edit: &Dry, over: Ticks) -> Result<Applied, EditError> {
+        let (surface, region) = (edit.surface, edit.region.as_ref());
+        let (on, part) = self.surfaces.part(surface, region)?;
+        if self.clock.dryings.iter().any(|it| it.surface == surface) {
+            return Err(EditError::Drying);
+        }
+        self.commit();
+        if !self.surfaces[on].is_wet(&part) {
+            return Err(EditError::NothingWet(edit.region.clone()));
+        }
+        let ticks = over.get();
+        self.clock.dryings.push(Drying {
+            surface,
+            region: region.cloned(),
+            name: edit.layer.clone().map_or(String::new(), Into::into),
+            layer: None,
+            ticks,
+            elapsed: 0,
+            reached: 0,
+            round: None,
+        });
+        Ok(Applied::Drying(
+            f64::from(ticks) / f64::from(TICKS_A_SECOND),
+        ))
+    }
+
+    /// True while time is to advance: something dries.
+    #[must_use]
+    pub fn is_drying(&self) -> bool {
+        !self.clock.dryings.is_empty()
+    }
+
+    /// The dryings that go on, and the ticks so far.
+    #[must_use]
+    pub fn clock(&self) -> &Clock {
+        &self.clock
+    }
+
+    /// Notes that a brush did something: whether it is in contact says whether paint may dry.
+    pub(crate) fn note_contact(&mut self, brush: &str) {
+        if self
+            .brushes
+            .find(brush)
+            .is_some_and(|own| own.path.is_some())
+        {
+            self.clock.quiet = 0;
+        }
+    }
+
+    /// A sixtieth of a second goes by.
+    pub fn tick(&mut self) {
+        for (surface, round) in self.clock.tick(self.brushes.in_contact()) {
+            self.go_on_drying(surface, round);
+        }
+    }
+
+    /// Dries the next tiles of a round.
+    fn go_on_drying(&mut self, surface: u32, mut round: Round) {
+        let mut dryings = self.clock.dryings.iter();
+        let Some(place) = dryings.position(|it| it.surface == surface) else {
+            return;
+        };
+        let drying = self.clock.dryings[place].clone();
+        // It was found when the drying began, and surfaces stay as large as they are.
+        let Ok((on, part)) = self.surfaces.part(surface, drying.region.as_ref()) else {
+            self.clock.dryings.remove(place);
+            return;
+        };
+        self.close_windows();
+        let mut layers = self.scene.layers.iter();
+        let layer = drying
+            .layer
+            .filter(|number| layers.any(|layer| layer.number == *number));
+        let number = layer.unwrap_or_else(|| next_layer(&self.scene));
+        let share = drying.share(round);
+        let (dried, next) = self.surfaces[on].some_dried(&part, number, share, round.next);
+        if !dried.is_empty() {
+            if self.history.open_of(None).is_none() {
+                self.begin_step(STEP, None);
+            }
+            self.put_changed(on, dried);
+            if layer.is_none() {
+                self.add_layer(number, &drying.name);
+            }
+            self.clock.dryings[place].layer = Some(number);
+        }
+        let drying = &mut self.clock.dryings[place];
+        drying.reached = round.to;
+        drying.round = next.map(|next| {
+            round.next = next;
+            round
+        });
+        if next.is_none() && round.to >= drying.ticks {
+            self.clock.dryings.remove(place);
+            if !self.is_drying() {
+                self.end_own_step();
+            }
+        }
+    }
+}
+
+impl SurfaceState {
+    /// So many tiles as dry in a tick, from the one with number `first` on, and which is next.
+    fn some_dried(
+        &self,
+        part: &Part,
+        number: u32,
+        share: f32,
+        first: u32,
+    ) -> (Changed, Option<u32>) {
+        let mut dried = Vec::new();
+        let mut seen = 0;
+        for (id, tile) in self.wet_tiles_from(first) {
+            let Some(stays) = self.staying(part, id) else {
+                continue;
+            };
+            if seen == TILES_A_TICK {
+                return (dried, Some(id.y * self.store.grid()[0] + id.x));
+            }
+            seen += 1;
+            if let Some(tile) = tile.dried(number, share, &stays) {
+                dried.push((id, Arc::new(tile)));
+            }
+        }
+        (dried, None)
+    }
+}

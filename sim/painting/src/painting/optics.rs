@@ -1,0 +1,284 @@
+//! Optics of a painting: its paints, and how they look under its light.
+
+use std::sync::Arc;
+
+use maulstick_appearance::Appearance;
+use maulstick_appearance::blank_surface::{
+    BlankSurface, CLEANER_RGB, WELL_M, WellLook, well_colour,
+};
+use maulstick_appearance::ground::Ground;
+use maulstick_appearance::light::{changes_colour, studio_settings};
+use maulstick_canvas::EditError;
+use maulstick_canvas::assets::Assets;
+use maulstick_canvas::quantum::SLOTS;
+use maulstick_canvas::relief::Relief;
+use maulstick_model::brush::load::by_slot;
+use maulstick_optics::{Paint, PaintLibrary, Spectrum, Studio, THINNER};
+use maulstick_types::Mixture;
+use maulstick_types::edits::Relight;
+use maulstick_types::scene::{Light, PaintSlot, Scene, Surface, WellKind};
+
+use super::Painting;
+use super::undo::makes;
+use crate::apply::{Applied, Apply};
+use crate::error::paint_error;
+use crate::models::model_called;
+use crate::setup::relief_called;
+
+/// Thickness of an opaque layer, m.
+const OPAQUE_M: f64 = 0.01;
+
+/// Paints by slot, and shares of them.
+pub(crate) type SlotShares = Vec<(usize, f64)>;
+
+/// Paints, their look under the light, and the files that grounds and teeth are made of.
+#[derive(Clone)]
+pub(crate) struct Optics {
+    pub(crate) library: PaintLibrary,
+    pub(crate) look: Arc<Appearance>,
+    pub(crate) assets: Assets,
+}
+
+impl Optics {
+    /// The optics of a scene.
+    pub(crate) fn of(
+        scene: &Scene,
+        library: PaintLibrary,
+        assets: Assets,
+    ) -> Result<Self, EditError> {
+        let settings = studio_settings(&scene.light)?;
+        let mut look = Appearance::new(Studio::new(&settings, library.paints()));
+        for (place, slot) in scene.paints.iter().enumerate() {
+            let paint = library.find(&slot.name).map_err(paint_error)?;
+            paint_slot(&mut look.studio, paint, slot.file_hash);
+            if paint.is_thinner() {
+                look.thinner = Some(place);
+            }
+        }
+        look.set_layers(&scene.layers);
+        Ok(Self {
+            library,
+            look: Arc::new(look),
+            assets,
+        })
+    }
+
+    /// A surface before anything is painted on it; `relief` is that of before, if it is known.
+    pub(crate) fn blank(
+        &self,
+        surface: &Surface,
+        relief: Option<Arc<Relief>>,
+    ) -> Result<BlankSurface, EditError> {
+        self.blank_in(&self.look.studio, surface, relief)
+    }
+
+    fn blank_in(
+        &self,
+        studio: &Studio,
+        surface: &Surface,
+        relief: Option<Arc<Relief>>,
+    ) -> Result<BlankSurface, EditError> {
+        let ground = Ground::called(&surface.ground, surface.cells, studio, &self.assets)?;
+        let relief = match relief {
+            Some(relief) => relief,
+            None => {
+                let (name, seed) = (&surface.tooth, surface.tooth_seed);
+                Arc::new(relief_called(name, seed, surface.cell_m, &self.assets)?)
+            }
+        };
+        let mut wells = Vec::new();
+        for well in &surface.wells {
+            let center = well.center_m.map(|m| m / surface.cell_m);
+            let radius = well.radius_m / surface.cell_m;
+            let WellKind::Paint { mixture } = &well.kind else {
+                wells.push(WellLook {
+                    center,
+                    radius,
+                    rgb: CLEANER_RGB,
+                    height_m: 0.0,
+                });
+                continue;
+            };
+            let mixture = self.library.check(mixture).map_err(paint_error)?;
+            let mut mixed = studio.clone();
+            let mut shares = Vec::new();
+            for part in &mixture.parts {
+                let paint = self.library.find(&part.paint).map_err(paint_error)?;
+                shares.push((mixed.add(paint), part.share));
+            }
+            wells.push(WellLook {
+                center,
+                radius,
+                rgb: well_colour(&mixed, &shares, ground.mean()),
+                height_m: WELL_M as f32,
+            });
+        }
+        Ok(BlankSurface {
+            ground,
+            relief,
+            wells,
+            shown: model_called(&surface.model)?.shown,
+        })
+    }
+
+    /// The slots of several mixtures; where one is refused no paint gets a slot.
+    pub(crate) fn all_slots(
+        &mut self,
+        scene: &mut Scene,
+        mixtures: &[Mixture],
+    ) -> Result<Vec<SlotShares>, EditError> {
+        let known = (scene.paints.clone(), Arc::clone(&self.look));
+        let slots = mixtures.iter().map(|mixture| self.slots(scene, mixture));
+        let slots: Result<_, _> = slots.collect();
+        if Result::is_err(&slots) {
+            (scene.paints, self.look) = known;
+        }
+        slots
+    }
+
+    /// The slots of a mixture's paints; new paints get the next free ones of the scene.
+    pub(crate) fn slots(
+        &mut self,
+        scene: &mut Scene,
+        mixture: &Mixture,
+    ) -> Result<SlotShares, EditError> {
+        let mixture = self.library.check(mixture).map_err(paint_error)?;
+        let mut new = Vec::new();
+        for part in &mixture.parts {
+            if slot_of(scene, &part.paint).is_none() {
+                new.push(self.library.find(&part.paint).map_err(paint_error)?);
+            }
+        }
+        // All or none: a refused mixture changes nothing.
+        if scene.paints.len() + new.len() > SLOTS {
+            let first = &new[SLOTS - scene.paints.len()];
+            return Err(EditError::TooManyPaints(first.name.clone()));
+        }
+        for paint in new {
+            let look = Arc::make_mut(&mut self.look);
+            let slot = paint_slot(&mut look.studio, paint, self.library.hash());
+            if paint.is_thinner() {
+                look.thinner = Some(scene.paints.len());
+            }
+            scene.paints.push(slot);
+            scene.version += 1;
+        }
+        by_slot(&mixture, |name| {
+            slot_of(scene, name).ok_or_else(|| EditError::NoSlot(name.to_owned()))
+        })
+    }
+
+    /// Takes over the dry layers of a scene.
+    pub(crate) fn set_layers(&mut self, scene: &Scene) {
+        Arc::make_mut(&mut self.look).set_layers(&scene.layers);
+        self.note(scene);
+    }
+
+    /// Counts all that was shown of the scene as outdated.
+    pub(crate) fn renew(&mut self, scene: &Scene) {
+        Arc::make_mut(&mut self.look).renew();
+        self.note(scene);
+    }
+
+    /// Notes in the look what it is made of: light, layers, grounds, wells, paints.
+    pub(crate) fn note(&mut self, scene: &Scene) {
+        let makes = makes(scene);
+        let light = Light {
+            exposure: 1.0,
+            intensity: 1.0,
+            direction: [0.0, 0.0, 1.0],
+            relief: 1.0,
+            softness: 0.0,
+            ..scene.light.clone()
+        };
+        // Of the layers only how opaque they are is seen.
+        let layers = scene.layers.iter();
+        let veiled = layers.filter(|layer| layer.opacity != 1.0);
+        let veiled: Vec<(u32, f32)> = veiled.map(|layer| (layer.number, layer.opacity)).collect();
+        let wells: Vec<_> = scene.surfaces.iter().map(|own| &own.wells).collect();
+        let hash = self.library.hash();
+        let made_of = format!("4 {light:?} {veiled:?} {makes:?} {wells:?} {hash}");
+        Arc::make_mut(&mut self.look).note(&made_of);
+    }
+}
+
+/// Slot of a paint in a scene.
+pub(crate) fn slot_of(scene: &Scene, paint: &str) -> Option<usize> {
+    scene.paints.iter().position(|slot| slot.name == paint)
+}
+
+/// Slot of the thinner, if the scene has one.
+pub(crate) fn thinner_slot(scene: &Scene) -> Option<usize> {
+    slot_of(scene, THINNER)
+}
+
+impl Apply for Relight {
+    /// Changes the light. If its spectrum, or its conversion to colour, changes, dry layers are baked anew on demand,
+    /// tile by tile.
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.relight(&self.light)?;
+        if self.expose {
+            painting.expose();
+        }
+        Ok(Applied::Done)
+    }
+}
+
+impl Painting {
+    /// Changes the light, without choosing the exposure anew.
+    ///
+    /// # Errors
+    /// [`EditError`] for an invalid light.
+    pub fn relight(&mut self, light: &Light) -> Result<(), EditError> {
+        let settings = studio_settings(light)?;
+        if changes_colour(light, &self.scene.light) {
+            let mut studio = Studio::new(&settings, self.optics.library.paints());
+            let mut slots = Vec::new();
+            for slot in &self.scene.paints {
+                let paint = self.optics.library.find(&slot.name).map_err(paint_error)?;
+                slots.push(paint_slot(&mut studio, paint, slot.file_hash));
+            }
+            let mut bares = Vec::new();
+            for (own, surface) in self.surfaces.iter().zip(&self.scene.surfaces) {
+                let relief = Some(Arc::clone(&own.bare.relief));
+                bares.push(Arc::new(self.optics.blank_in(&studio, surface, relief)?));
+            }
+            let surfaces = self.surfaces.iter_mut().zip(bares);
+            surfaces.for_each(|(surface, bare)| surface.bare = bare);
+            self.scene.paints = slots;
+            Arc::make_mut(&mut self.optics.look).relight(studio);
+        }
+        self.scene.light = light.clone();
+        self.scene.version += 1;
+        self.optics.note(&self.scene);
+        Ok(())
+    }
+
+    /// Sets the exposure so that the bare canvas does not clip.
+    pub fn expose(&mut self) {
+        let ground = self.surfaces[0].bare.ground.mean();
+        let rgb = self.optics.look.studio.colour(&[], ground);
+        let light = &mut self.scene.light;
+        light.exposure = maulstick_optics::light::starting_exposure(rgb, light.intensity);
+        self.scene.version += 1;
+    }
+}
+
+/// Gives a paint a slot of the studio and of the scene.
+fn paint_slot(studio: &mut Studio, paint: &Paint, file_hash: u32) -> PaintSlot {
+    let slot = studio.add(paint);
+    let seen = |films: &[(usize, f64)], ground: f64| {
+        let ground = studio.sample(&Spectrum::flat(ground));
+        studio.colour(films, &ground).map(|channel| channel as f32)
+    };
+    PaintSlot {
+        name: paint.name.clone(),
+        masstone: seen(
+            &[(slot, OPAQUE_M)],
+            if paint.is_thinner() { 1.0 } else { 0.0 },
+        ),
+        // A tint is one part in ten of the strongest white's scattering.
+        tint: seen(&[(slot, 1e-5)], 0.9),
+        file_hash,
+    }
+}

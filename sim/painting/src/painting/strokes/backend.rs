@@ -1,0 +1,146 @@
+//! The paint models and their backends. Deferred steps reach planes and load once they are settled: before anything
+//! else looks at them.
+
+use std::sync::Arc;
+
+use maulstick_model::brush::traits::BrushTraits;
+use maulstick_model::interface::{PaintModel, StepReport};
+
+use crate::models::Models;
+use crate::painting::Painting;
+use crate::painting::brushes::handling::UnderBrush;
+use crate::painting::surfaces::SurfaceState;
+
+/// Largest number of deferred steps. The fullness of the brush is read just when they are settled: the time at which a
+/// caller looks at the painting must not matter.
+const SETTLE_EVERY: u32 = 256;
+
+/// Progress of the deferred steps of a brush.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Deferral {
+    /// Deferred steps since its stroke began.
+    steps: u32,
+    /// Those of them that are not settled.
+    unsettled: u32,
+    /// Fullness of the brush when it was last read.
+    fullness: Option<f32>,
+}
+
+impl Deferral {
+    /// Deferred steps that are not settled.
+    pub(super) fn unsettled_steps(&self) -> u32 {
+        self.unsettled
+    }
+}
+
+/// The reason why a model changed its backend. It is reported where a stroke ends.
+#[derive(Debug, Default)]
+pub(super) struct BackendFallback {
+    found: Option<String>,
+    due: bool,
+}
+
+impl BackendFallback {
+    /// A stroke ends or begins.
+    pub(super) fn stroke_ends(&mut self) {
+        self.due |= self.found.is_some();
+    }
+}
+
+/// The paint models at work, and what they have not written back.
+#[derive(Default)]
+pub(crate) struct Backend {
+    pub(crate) models: Models,
+    /// Index of the brush whose newest steps the model has not settled.
+    pub(super) unsettled: Option<usize>,
+    pub(super) fallback: BackendFallback,
+}
+
+impl Backend {
+    /// True if steps on a surface are deferred. Those on one with wells never are: wells are tended on the CPU, step by
+    /// step.
+    pub(super) fn defers(&mut self, surface: &SurfaceState, has_wells: bool) -> bool {
+        self.models.of(surface.model).defers() && !has_wells
+    }
+}
+
+impl Painting {
+    /// Has the steps of surfaces with a model of this name computed by this one from now on.
+    pub fn set_model(&mut self, model: Box<dyn PaintModel>) {
+        self.close_windows();
+        self.backend.models.replace(model);
+    }
+
+    /// Backend of the steps on its canvas: `cpu`, or `gpu` and the adapter's name.
+    #[must_use]
+    pub fn backend(&self) -> String {
+        self.backend.models.backend(self.surfaces[0].model)
+    }
+
+    /// The reason why its backend changed, returned once, after the stroke in which it changed.
+    pub fn take_fall(&mut self) -> Option<String> {
+        let fallback = &mut self.backend.fallback;
+        if !std::mem::take(&mut fallback.due) {
+            return None;
+        }
+        fallback.found.take()
+    }
+
+    /// Fullness of a brush, as far as its stroke on a surface may know.
+    pub(super) fn seen_fullness(&mut self, brush: usize, on: usize, traits: &BrushTraits) -> f32 {
+        let defers = self.backend.defers(&self.surfaces[on], false);
+        if !defers {
+            return self.brushes[brush].load.fullness(traits);
+        }
+        if let Some(seen) = self.brushes[brush].deferral.fullness {
+            return seen;
+        }
+        self.settle();
+        let own = &mut self.brushes[brush];
+        let seen = own.load.fullness(traits);
+        own.deferral.fullness = Some(seen);
+        seen
+    }
+
+    /// Notes a deferred step.
+    pub(super) fn defer(&mut self, brush: usize) {
+        self.backend.unsettled = Some(brush);
+        let deferral = &mut self.brushes[brush].deferral;
+        deferral.steps += 1;
+        deferral.unsettled += 1;
+        if deferral.steps.is_multiple_of(SETTLE_EVERY) {
+            deferral.fullness = None;
+            self.settle();
+        }
+    }
+
+    /// Has the model write back what it holds.
+    pub(crate) fn settle(&mut self) {
+        if let Some(brush) = self.backend.unsettled.take()
+            && let own = &mut self.brushes[brush]
+            && let Some((on, window)) = &mut own.window
+        {
+            let on = *on;
+            let surface = &mut self.surfaces[on];
+            let model = self.backend.models.of(surface.model);
+            let report = model.settle(window, Arc::make_mut(&mut own.load));
+            let steps = std::mem::take(&mut own.deferral.unsettled);
+            surface.top = surface.top.max(window.top());
+            self.note((brush, on), &report, steps);
+            self.book(Some(brush));
+        }
+        if let Some(what) = self.backend.models.take_fall() {
+            self.backend.fallback.found = Some(what);
+        }
+    }
+
+    /// Notes what so many steps of a brush did on a surface; of deferred ones that is known when they are settled.
+    pub(super) fn note(&mut self, (brush, on): (usize, usize), report: &StepReport, steps: u32) {
+        self.accounts.note(report);
+        let defers = self.backend.defers(&self.surfaces[on], false);
+        if !defers || report.footprint_cells > 0 {
+            let under = UnderBrush::mean(report, steps, self.surfaces.cell_m());
+            self.brushes[brush].under = under;
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! Films of paint over tiles, without a brush.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use maulstick_canvas::EditError;
+use maulstick_canvas::dry::DryStack;
+use maulstick_canvas::page::{Page, Pager};
+use maulstick_canvas::planes::{Planes, TILE_CELLS};
+use maulstick_canvas::quantum::{CELL_MAX, Counts, QUANTUM_M, SLOTS};
+use maulstick_canvas::tile::{Tile, TileId};
+use maulstick_types::Mixture;
+use maulstick_types::edits::{Fill, FillPaint};
+
+use super::SurfaceState;
+use crate::apply::{Applied, Apply};
+use crate::ledger::Ledger;
+use crate::painting::Painting;
+
+/// Wet paint of a tile with more applied to it.
+#[derive(Clone)]
+struct Laid {
+    page: Page<Planes>,
+    /// Paint that was applied.
+    given: Counts,
+    /// Most quanta of a cell.
+    top: f32,
+}
+
+/// Results of an even film on tiles that were alike: they share their pages, so that a vast canvas takes no more room
+/// than a tile.
+#[derive(Default)]
+pub(crate) struct Films {
+    /// By the page of what was wet; 0 where nothing was.
+    laid: HashMap<u64, Laid>,
+    /// Most quanta that has dried on a cell, by the pages of the layers.
+    beneath: HashMap<Vec<u64>, f32>,
+}
+
+impl Films {
+    fn beneath(&mut self, stack: &DryStack) -> f32 {
+        let pages = stack.layers().map(|layer| layer.planes.id()).collect();
+        let highest = || stack.height().iter().copied().fold(0.0, f32::max);
+        *self.beneath.entry(pages).or_insert_with(highest)
+    }
+}
+
+impl Apply for Fill {
+    /// Lays an even film of paint from the tubes, or of the colour that a brush carries on the whole; the brush keeps
+    /// what it has.
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let thickness_m = self.thickness.get();
+        match &self.paint {
+            FillPaint::Mixture { mixture } => {
+                painting.lay_from(self.surface, mixture, thickness_m, Ledger::from_tube)?;
+            }
+            FillPaint::Carried { brush } => {
+                painting.surfaces.at(self.surface)?;
+                let mixture = painting.carried_mixture(brush)?;
+                painting.lay_from(
+                    self.surface,
+                    &mixture,
+                    thickness_m,
+                    Ledger::from_mode_counts,
+                )?;
+            }
+        }
+        Ok(Applied::Done)
+    }
+}
+
+impl Painting {
+    /// Lays an even film of wet paint over a whole surface, but for its wells; from where `book` says.
+    fn lay_from(
+        &mut self,
+        surface: u32,
+        mixture: &Mixture,
+        thickness_m: f64,
+        book: fn(&mut Ledger, &Counts),
+    ) -> Result<(), EditError> {
+        let on = self.surfaces.at(surface)?;
+        let slots = self.optics.slots(&mut self.scene, mixture)?;
+        let mut quanta = [0.0f32; SLOTS];
+        for (slot, share) in slots {
+            quanta[slot] += (share * thickness_m / QUANTUM_M).round() as f32;
+        }
+        self.begin_step("fill", None);
+        let [across, up] = self.surfaces[on].store.grid();
+        let mut films = Films::default();
+        for y in 0..up {
+            for x in 0..across {
+                let place = (on, TileId { x, y });
+                self.lay_on(place, |_, slot| quanta[slot], Some(&mut films), book);
+            }
+        }
+        self.end_own_step();
+        Ok(())
+    }
+
+    /// Adds wet paint to a tile of a surface, `quanta` by cell and slot: as much as the cells still hold. Cells
+    /// beyond the surface's edge and in wells get none. With `films` it is as much on every cell.
+    pub(crate) fn lay_on(
+        &mut self,
+        (on, id): (usize, TileId),
+        quanta: impl Fn(usize, usize) -> f32,
+        films: Option<&mut Films>,
+        book: fn(&mut Ledger, &Counts),
+    ) {
+        let surface = &self.surfaces[on];
+        let before = surface.store.version(id).tile.clone();
+        let (room, is_whole) = surface.room(id);
+        let mut alone = Films::default();
+        let films = match films {
+            Some(films) if is_whole => films,
+            _ => &mut alone,
+        };
+        let wet = before.as_deref().and_then(Tile::wet_page);
+        let key = wet.map_or(0, Page::id);
+        let laid = match films.laid.get(&key) {
+            Some(laid) => laid.clone(),
+            None => {
+                let Some(laid) = laid(wet, room, quanta, &self.surfaces.pager) else {
+                    return;
+                };
+                films.laid.insert(key, laid.clone());
+                laid
+            }
+        };
+        let dry = before.as_deref().and_then(Tile::dry).cloned();
+        let beneath = dry.as_ref().map_or(0.0, |stack| films.beneath(stack));
+        let tile = Tile::of_pages(Some(laid.page), dry);
+        self.replace((surface.id, id), Some(Arc::new(tile)));
+        book(&mut self.accounts.ledger, &laid.given);
+        self.book(None);
+        let top = &mut self.surfaces[on].top;
+        *top = top.max(laid.top + beneath);
+    }
+}
+
+impl SurfaceState {
+    /// Most quanta that each cell of a tile takes, and true if all cells take paint, none of them a well's.
+    fn room(&self, id: TileId) -> (Vec<f32>, bool) {
+        let mut room = vec![CELL_MAX as f32; TILE_CELLS];
+        let [width, height] = self.store.cells().map(|cells| cells as usize);
+        let side = maulstick_types::paint::TILE;
+        for (cell, room) in room.iter_mut().enumerate() {
+            let x = id.x as usize * side + cell % side;
+            let y = id.y as usize * side + cell / side;
+            if x >= width || y >= height {
+                *room = 0.0;
+            }
+        }
+        for (cell, _) in self.bare.in_wells(id) {
+            room[cell] = 0.0;
+        }
+        let is_whole = room.iter().all(|room| *room > 0.0);
+        (room, is_whole)
+    }
+}
+
+/// Wet paint with more applied to it; `None` if there is no room.
+fn laid(
+    wet: Option<&Page<Planes>>,
+    mut room: Vec<f32>,
+    quanta: impl Fn(usize, usize) -> f32,
+    pager: &Arc<Pager>,
+) -> Option<Laid> {
+    let before = wet.map(Page::get).unwrap_or_default();
+    let mut planes: Vec<Option<Vec<f32>>> = vec![None; SLOTS];
+    for (slot, plane) in &*before {
+        room.iter_mut()
+            .zip(plane.iter())
+            .for_each(|(room, held)| *room = (*room - held).max(0.0));
+        planes[*slot] = Some(plane.to_vec());
+    }
+    let mut given = [0u64; SLOTS];
+    for (cell, room) in room.iter_mut().enumerate() {
+        for (slot, plane) in planes.iter_mut().enumerate() {
+            let part = quanta(cell, slot).min(*room).max(0.0).floor();
+            if part > 0.0 {
+                plane.get_or_insert_with(|| vec![0.0; TILE_CELLS])[cell] += part;
+                *room -= part;
+                given[slot] += part as u64;
+            }
+        }
+    }
+    if given.iter().all(|count| *count == 0) {
+        return None;
+    }
+    let planes = planes.into_iter().enumerate();
+    let planes = planes.filter_map(|(slot, plane)| Some((slot, plane?.into())));
+    let planes = Planes::from_iter(planes).with_own(before.own().iter().cloned());
+    let sums = (0..TILE_CELLS).map(|cell| planes.iter().map(|(_, plane)| plane[cell]).sum());
+    Some(Laid {
+        top: sums.fold(0.0, f32::max),
+        page: Page::new(pager, Arc::new(planes), wet),
+        given,
+    })
+}

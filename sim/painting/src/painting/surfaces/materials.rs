@@ -1,0 +1,112 @@
+//! Materials and places of the surfaces.
+
+use std::sync::Arc;
+
+use maulstick_appearance::ground::{add_spectrum, check_ground};
+use maulstick_canvas::EditError;
+use maulstick_canvas::assets::SPECTRUM;
+use maulstick_types::edits::{Ground, GroundSource, Piles, Place, Size, Tooth};
+use maulstick_types::scene::Surface;
+
+use crate::apply::{Applied, Apply};
+use crate::history::SurfaceMaterial;
+use crate::painting::Painting;
+use crate::painting::undo::makes;
+use crate::setup::relief_called;
+
+impl Apply for Ground {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let on = painting.surfaces.at(self.surface)?;
+        let assets = &mut painting.optics.assets;
+        let ground = match &self.ground {
+            GroundSource::Named { name } => name.to_string(),
+            GroundSource::Spectrum { csv } => {
+                format!("{SPECTRUM}{}", add_spectrum(assets, csv)?)
+            }
+        };
+        check_ground(&ground, assets)?;
+        painting.make("ground", on, |make| make.ground = ground);
+        Ok(Applied::Done)
+    }
+}
+
+impl Apply for Tooth {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let on = painting.surfaces.at(self.surface)?;
+        let cell_m = painting.surfaces[on].cell_m;
+        relief_called(&self.tooth, self.seed, cell_m, &painting.optics.assets)?;
+        painting.make("tooth", on, |make| {
+            make.tooth = self.tooth.to_string();
+            make.tooth_seed = self.seed;
+        });
+        Ok(Applied::Done)
+    }
+}
+
+impl Apply for Size {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.change_surface(self.surface, |own| own.stain_m = self.stain.get())
+    }
+}
+
+impl Apply for Piles {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.change_surface(self.surface, |own| own.piles_last = self.last)
+    }
+}
+
+impl Apply for Place {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let zoom = self.zoom.get();
+        Place::new(self.surface, self.pose.clone(), zoom)?;
+        painting.change_surface(self.surface, |own| {
+            (own.pose, own.zoom) = (self.pose.clone(), zoom);
+        })
+    }
+}
+
+impl Painting {
+    fn change_surface(
+        &mut self,
+        id: u32,
+        change: impl FnOnce(&mut Surface),
+    ) -> Result<Applied, EditError> {
+        let on = self.surfaces.at(id)?;
+        change(&mut self.scene.surfaces[on]);
+        self.scene.version += 1;
+        Ok(Applied::Done)
+    }
+
+    fn make(&mut self, what: &str, on: usize, change: impl FnOnce(&mut SurfaceMaterial)) {
+        self.begin_step(what, None);
+        let mut makes = makes(&self.scene);
+        change(&mut makes[on]);
+        self.remake(&makes);
+        self.end_own_step();
+    }
+
+    /// Makes the surfaces of what they are to be made of.
+    pub(crate) fn remake(&mut self, makes: &[SurfaceMaterial]) {
+        self.close_windows();
+        for make in makes {
+            let Ok(on) = self.surfaces.at(make.surface) else {
+                continue;
+            };
+            let (surface, own) = (&mut self.scene.surfaces[on], &mut self.surfaces[on]);
+            let tooth = (&surface.tooth, surface.tooth_seed) != (&make.tooth, make.tooth_seed);
+            if !tooth && surface.ground == make.ground {
+                continue;
+            }
+            surface.ground.clone_from(&make.ground);
+            surface.tooth.clone_from(&make.tooth);
+            surface.tooth_seed = make.tooth_seed;
+            let relief = (!tooth).then(|| Arc::clone(&own.bare.relief));
+            // A material that a step brings back was checked when it was made.
+            if let Ok(bare) = self.optics.blank(surface, relief) {
+                own.bare = Arc::new(bare);
+            }
+        }
+        self.optics.renew(&self.scene);
+        self.scene.version += 1;
+    }
+}

@@ -1,0 +1,177 @@
+//! The wells of a palette: paint that never runs out, and the cleaner.
+//!
+//! Under the brush a well's cells hold its mixture, fresh: paint that was pushed into them goes to the cleaner, paint
+//! that was taken comes from the tubes. A brush that touches the cleaner is clean.
+
+use std::sync::Arc;
+
+use maulstick_appearance::blank_surface::WELL_M;
+use maulstick_brush::HeadPose;
+use maulstick_canvas::EditError;
+use maulstick_canvas::quantum::{QUANTUM_M, SLOTS};
+use maulstick_canvas::window::Window;
+use maulstick_model::brush::traits::BrushTraits;
+use maulstick_types::edits::Wells;
+use maulstick_types::scene::{Well, WellKind};
+
+use crate::apply::{Applied, Apply};
+use crate::error::paint_error;
+use crate::ledger::Ledger;
+use crate::painting::Painting;
+
+/// Wells may reach beyond the edge of their surface by what rounding makes of it, m.
+const EDGE_M: f64 = 1e-6;
+/// A strip is down within this of the surface, cells.
+const DIPS: f32 = 1.0;
+
+/// The cells of a window that are in a well and in a rectangle.
+fn cells_within(
+    window: &Window,
+    well: &Well,
+    cell_m: f64,
+    (from, to): ([i64; 2], [i64; 2]),
+) -> Vec<usize> {
+    let origin = window.origin();
+    let limit = window.limit();
+    let center = well.center_m.map(|m| m / cell_m);
+    let radius = well.radius_m / cell_m;
+    let span = |i: usize| {
+        let low = (center[i] - radius).floor() as i64;
+        let high = (center[i] + radius).ceil() as i64;
+        let inside = |cell: i64| (cell - origin[i]).clamp(0, limit[i] as i64);
+        inside(low.max(from[i]))..inside(high.min(to[i])).max(inside(low.max(from[i])))
+    };
+    let (across, up) = (span(0), span(1));
+    let width = window.width();
+    up.flat_map(move |y| across.clone().map(move |x| (x, y)))
+        .filter(|(x, y)| {
+            let dx = (origin[0] + x) as f64 + 0.5 - center[0];
+            let dy = (origin[1] + y) as f64 + 0.5 - center[1];
+            dx * dx + dy * dy < radius * radius
+        })
+        .map(|(x, y)| y as usize * width + x as usize)
+        .collect()
+}
+
+/// True if a strip is down on the surface within a well.
+fn is_in((pose, traits): (&HeadPose, &BrushTraits), well: &Well, cell_m: f64) -> bool {
+    let low = traits.half_thickness + traits.sink + DIPS;
+    let [x, y] = well.center_m.map(|m| (m / cell_m) as f32);
+    let radius = (well.radius_m / cell_m) as f32;
+    let places = pose.x.iter().zip(&pose.y).zip(&pose.z);
+    places.into_iter().any(|((at_x, at_y), z)| {
+        let (dx, dy) = (at_x - x, at_y - y);
+        *z < low && dx * dx + dy * dy < radius * radius
+    })
+}
+
+impl Apply for Wells {
+    /// Gives a surface other wells. Paint stirred in those that go stays there, wet.
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.set_wells(self.surface, &self.wells)?;
+        Ok(Applied::Done)
+    }
+}
+
+impl Painting {
+    fn set_wells(&mut self, surface: u32, wells: &[Well]) -> Result<(), EditError> {
+        let on = self.surfaces.at(surface)?;
+        let mut changed = self.scene.surfaces[on].clone();
+        let size = changed.cells.map(|cells| f64::from(cells) * changed.cell_m);
+        changed.wells = wells.to_vec();
+        for (place, well) in changed.wells.iter_mut().enumerate() {
+            let lies = |i: usize| {
+                let [low, high] = [-well.radius_m, well.radius_m].map(|r| well.center_m[i] + r);
+                low >= -EDGE_M && high <= size[i] + EDGE_M
+            };
+            if well.radius_m <= 0.0 || !(lies(0) && lies(1)) {
+                return Err(EditError::WellBeside {
+                    place: place + 1,
+                    surface_mm: size.map(|m| m * 1e3),
+                });
+            }
+            if let WellKind::Paint { mixture } = &mut well.kind {
+                *mixture = self.optics.library.check(mixture).map_err(paint_error)?;
+            }
+        }
+        self.close_windows();
+        let relief = Some(Arc::clone(&self.surfaces[on].bare.relief));
+        self.surfaces[on].bare = Arc::new(self.optics.blank(&changed, relief)?);
+        self.scene.surfaces[on] = changed;
+        self.scene.version += 1;
+        self.optics.renew(&self.scene);
+        Ok(())
+    }
+
+    /// Tends the wells in the cells `from`..`to` of a surface before a brush steps there.
+    pub(crate) fn tend_wells(
+        &mut self,
+        (brush, on): (usize, usize),
+        (from, to): ([i64; 2], [i64; 2]),
+        head: (&HeadPose, &BrushTraits),
+    ) {
+        let surface = &self.scene.surfaces[on];
+        let cell_m = surface.cell_m;
+        let near = |well: &&Well| {
+            (0..2).all(|i| {
+                let low = (well.center_m[i] - well.radius_m) / cell_m;
+                let high = (well.center_m[i] + well.radius_m) / cell_m;
+                low < to[i] as f64 && high > from[i] as f64
+            })
+        };
+        let wells: Vec<Well> = surface.wells.iter().filter(near).cloned().collect();
+        let ledger = &mut self.accounts.ledger;
+        for well in wells {
+            let brush = &mut self.brushes[brush];
+            let Some((_, window)) = &mut brush.window else {
+                return;
+            };
+            match &well.kind {
+                WellKind::Paint { mixture } => {
+                    // A paint without a slot: its well stays dry, and a command says why.
+                    let Ok(slots) = self.optics.slots(&mut self.scene, mixture) else {
+                        continue;
+                    };
+                    let mut fresh = [0u32; SLOTS];
+                    for (slot, share) in slots {
+                        fresh[slot] += (share * WELL_M / QUANTUM_M) as u32;
+                    }
+                    let cells = cells_within(window, &well, cell_m, (from, to));
+                    renew(window, &cells, &fresh, ledger);
+                    window.note_top(fresh.iter().sum::<u32>() as f32);
+                }
+                // Whatever else of the head is low, the jar cleans a brush that is in it.
+                WellKind::Cleaner if is_in(head, &well, cell_m) => {
+                    let cells = cells_within(window, &well, cell_m, (from, to));
+                    if !cells.is_empty() {
+                        renew(window, &cells, &[0; SLOTS], ledger);
+                        let left = Arc::make_mut(&mut brush.load).take_all();
+                        ledger.to_cleaner(&left);
+                    }
+                }
+                WellKind::Cleaner => {}
+            }
+        }
+    }
+}
+
+/// Makes cells hold just `fresh`: the cleaner takes what is too much, the tubes give what is missing.
+fn renew(window: &mut Window, cells: &[usize], fresh: &[u32; SLOTS], ledger: &mut Ledger) {
+    let (mut given, mut taken) = ([0; SLOTS], [0; SLOTS]);
+    for slot in 0..SLOTS {
+        if fresh[slot] == 0 && !window.has(slot) {
+            continue;
+        }
+        let plane = window.plane_mut(slot);
+        for cell in cells {
+            let held = plane[*cell] as u64;
+            let wanted = u64::from(fresh[slot]);
+            given[slot] += wanted.saturating_sub(held);
+            taken[slot] += held.saturating_sub(wanted);
+            plane[*cell] = wanted as f32;
+        }
+    }
+    ledger.from_tube(&given);
+    ledger.to_cleaner(&taken);
+    window.touch_cells(cells);
+}

@@ -1,0 +1,244 @@
+//! Undo and redo.
+
+mod steps;
+pub(crate) mod versions;
+
+use maulstick_canvas::EditError;
+use maulstick_types::edits::{Redo, Undo};
+use maulstick_types::scene::{Layer, Scene};
+
+use super::Painting;
+use crate::apply::{Applied, Apply};
+use crate::history::{History, OpenStep, Step, SurfaceMaterial, same};
+
+/// Direction of a step: undo or redo.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    Back,
+    Forth,
+}
+
+impl Way {
+    /// The end that a step is taken from, and the one that it is taken to.
+    fn ends(self) -> [usize; 2] {
+        match self {
+            Self::Back => [1, 0],
+            Self::Forth => [0, 1],
+        }
+    }
+
+    /// Factor on its bookings.
+    fn times(self) -> i64 {
+        match self {
+            Self::Back => -1,
+            Self::Forth => 1,
+        }
+    }
+}
+
+/// Materials of the surfaces of a scene.
+pub(crate) fn makes(scene: &Scene) -> Vec<SurfaceMaterial> {
+    let surfaces = scene.surfaces.iter();
+    surfaces
+        .map(|surface| SurfaceMaterial {
+            surface: surface.id,
+            ground: surface.ground.clone(),
+            tooth: surface.tooth.clone(),
+            tooth_seed: surface.tooth_seed,
+        })
+        .collect()
+}
+
+impl Apply for Undo {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.undo(self.brush.as_deref()).map(Applied::Step)
+    }
+}
+
+impl Apply for Redo {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.redo(self.brush.as_deref()).map(Applied::Step)
+    }
+}
+
+impl Painting {
+    /// Undoes the newest step, of a brush or of all, and returns its description.
+    ///
+    /// # Errors
+    /// [`EditError`] if there is no step, or something was painted over it since: then nothing has changed.
+    pub fn undo(&mut self, brush: Option<&str>) -> Result<String, EditError> {
+        if let Some(brush) = brush {
+            self.brushes.at(brush)?;
+        }
+        self.commit();
+        let own = |step: &OpenStep| brush.is_none() || step.brush.as_deref() == brush;
+        // Nothing lies over a step that is not finished.
+        if !self.history.open().any(own) {
+            let step = self
+                .history
+                .last_done(brush)
+                .ok_or_else(|| EditError::NothingToUndo(brush.map(str::to_owned)))?;
+            self.check(step, Way::Back)?;
+        }
+        self.end_step(|_| true);
+        match self.history.last_done(brush).cloned() {
+            Some(step) => Ok(self.walk(&step, Way::Back)),
+            None => Ok(String::new()),
+        }
+    }
+
+    /// The newest step that is done; steps that end later have higher numbers.
+    pub fn newest_step(&mut self) -> u64 {
+        self.end_step(|_| true);
+        self.history.last_done(None).map_or(0, |step| step.id)
+    }
+
+    /// Takes back all steps of a brush that came after the one with this number.
+    ///
+    /// # Errors
+    /// As [`undo`](Self::undo).
+    pub fn undo_to(&mut self, brush: &str, step: u64) -> Result<(), EditError> {
+        self.end_step(|_| true);
+        let later = |own: &Step| own.id > step;
+        while self.history.last_done(Some(brush)).is_some_and(later) {
+            self.undo(Some(brush))?;
+        }
+        Ok(())
+    }
+
+    /// Steps up to this one and later ones are never merged with each other.
+    pub fn part_history(&mut self, step: u64) {
+        self.history.part_at(step);
+    }
+
+    /// Does the newest undone step again, of a brush or of all, and says what it was.
+    ///
+    /// # Errors
+    /// As [`undo`](Self::undo).
+    pub fn redo(&mut self, brush: Option<&str>) -> Result<String, EditError> {
+        if let Some(brush) = brush {
+            self.brushes.at(brush)?;
+        }
+        self.commit();
+        let step = self.history.last_undone(brush).cloned();
+        let step = step.ok_or(EditError::NothingToRedo)?;
+        self.check(&step, Way::Forth)?;
+        self.end_step(|_| true);
+        Ok(self.walk(&step, Way::Forth))
+    }
+
+    /// Sees that all is as the step left it, or found it.
+    fn check(&self, step: &Step, way: Way) -> Result<(), EditError> {
+        let from = way.ends()[0];
+        let effects = &step.effects;
+        let mut tiles = step.tiles.iter();
+        let over =
+            tiles.any(|(place, change)| !same(&self.surfaces.held(*place), change.end(from)));
+        let mut loads = effects.loads.iter();
+        // A brush that is gone is no hindrance.
+        let other_load = loads.any(|(name, pages)| {
+            let brush = self.brushes.find(name);
+            brush.is_some_and(|brush| !brush.carries(&pages[from]))
+        });
+        let (layers, made) = (effects.layers.as_ref(), effects.makes.as_ref());
+        let other_rest = layers.is_some_and(|ends| ends[from] != self.scene.layers)
+            || made.is_some_and(|ends| ends[from] != makes(&self.scene));
+        let other_books = !self.accounts.ledger.can_book(&effects.booked, way.times());
+        // A later step may have led back to what this one left, as a return to a version does.
+        let later = match way {
+            Way::Back => self.history.later_on(step),
+            Way::Forth => None,
+        };
+        if later.is_none() && !over && !other_load && !other_rest && !other_books {
+            return Ok(());
+        }
+        let other = later.or_else(|| self.history.last_done(None));
+        Err(EditError::Covered {
+            what: step.what.clone(),
+            over: other.map(|step| step.what.clone()),
+        })
+    }
+
+    /// Takes a step back, or forth; it was checked.
+    fn walk(&mut self, step: &Step, way: Way) -> String {
+        let to = way.ends()[1];
+        let effects = &step.effects;
+        // Time would do again what is taken back.
+        self.clock.stop(None);
+        for (place, change) in &*step.tiles {
+            self.surfaces.put(*place, change.end(to).clone());
+        }
+        for (name, pages) in &effects.loads {
+            if let Some(brush) = self.brushes.find_mut(name) {
+                brush.carry(&pages[to]);
+            }
+        }
+        self.accounts.turn(&effects.booked, way.times());
+        let (layers, made) = (effects.layers.as_ref(), effects.makes.as_ref());
+        self.turn_rest(layers.map(|ends| &ends[to]), made.map(|ends| &ends[to]));
+        self.turn_tops(step, way);
+        match way {
+            Way::Back => self.history.undone(step.id),
+            Way::Forth => self.history.redone(step.id),
+        }
+        step.what.clone()
+    }
+
+    /// Restores the height of the paint where nothing else was painted meanwhile: then the same motion paints the same
+    /// again.
+    fn turn_tops(&mut self, step: &Step, way: Way) {
+        let newest = self.history.last_done(None).map_or(0, |newest| newest.id);
+        let [before, after] = &step.effects.tops;
+        let (from, to) = match way {
+            Way::Back if step.id == newest => (after, before),
+            Way::Forth if step.id > newest => (before, after),
+            _ => return,
+        };
+        for surface in self.surfaces.iter_mut() {
+            if from.get(&surface.id) == Some(&surface.top)
+                && let Some(top) = to.get(&surface.id)
+            {
+                surface.top = *top;
+            }
+        }
+    }
+
+    /// Makes layers and surfaces what they are to be.
+    pub(crate) fn turn_rest(
+        &mut self,
+        layers: Option<&Vec<Layer>>,
+        makes: Option<&Vec<SurfaceMaterial>>,
+    ) {
+        if let Some(layers) = layers {
+            self.scene.layers.clone_from(layers);
+            self.layers_changed();
+        }
+        if let Some(makes) = makes {
+            self.remake(makes);
+        }
+    }
+
+    /// Numbers of steps that can be undone and redone.
+    #[must_use]
+    pub fn history_depth(&self) -> (usize, usize) {
+        self.history.depth()
+    }
+
+    /// The steps of the past.
+    #[must_use]
+    pub fn history(&self) -> &History {
+        &self.history
+    }
+
+    /// Forgets all steps: nothing of before can be undone.
+    pub fn forget_history(&mut self) {
+        self.end_step(|_| true);
+        self.history.forget();
+    }
+
+    /// Limit of the history, bytes; beyond that its oldest steps are merged.
+    pub fn set_quota(&mut self, bytes: u64) {
+        self.history.quota = bytes;
+        self.keep_to_quota();
+    }
+}

@@ -1,0 +1,110 @@
+//! Steps of the history: their beginning, their end, and what is booked for them.
+
+use std::sync::Arc;
+
+use super::makes;
+use crate::history::{Change, NonTileState, OpenStep, Step, StepEffects, TilePlace, TileRef};
+use crate::painting::Painting;
+
+impl Painting {
+    /// State besides the tiles.
+    pub(crate) fn rest(&mut self) -> NonTileState {
+        NonTileState {
+            loads: self.brushes.load_pages(&self.surfaces.pager),
+            ledger: self.accounts.ledger.clone(),
+            layers: self.scene.layers.clone(),
+            makes: makes(&self.scene),
+            tops: self.surfaces.tops(),
+        }
+    }
+
+    /// Begins a step of a brush, or of none: one for all who paint, then.
+    pub(crate) fn begin_step(&mut self, what: &str, brush: Option<usize>) {
+        self.book(brush);
+        let own = self.brushes.name(brush).map(str::to_owned);
+        // A step of nobody's that is open here is a drying's: it is parted by what comes between.
+        self.end_step(|step| own.is_none() || step.brush.is_none() || step.brush == own);
+        let before = self.rest();
+        self.history.begin(what, own.as_deref(), before);
+    }
+
+    /// Ends the open steps of which `which` says so.
+    pub(crate) fn end_step(&mut self, which: impl Fn(&OpenStep) -> bool) {
+        self.close_windows();
+        let after = self.rest();
+        let ended = self.history.take_open(which);
+        let ends = !ended.is_empty();
+        for open in ended {
+            let step = self.finished(&open, &after);
+            self.history.push(step);
+        }
+        if ends {
+            self.keep_to_quota();
+        }
+    }
+
+    /// Ends the open step that belongs to no brush.
+    pub(crate) fn end_own_step(&mut self) {
+        self.end_step(|step| step.brush.is_none());
+    }
+
+    /// Books and ends the open step of a brush.
+    pub(crate) fn end_step_of(&mut self, brush: usize) {
+        self.book(Some(brush));
+        let own = self.brushes[brush].name.clone();
+        self.end_step(|step| step.brush.as_ref() == Some(&own));
+    }
+
+    /// Books what was booked since the last call for the step of a brush, or of none.
+    pub(crate) fn book(&mut self, brush: Option<usize>) {
+        let booked = self.accounts.take_booked();
+        if let Some(open) = self.history.open_of(self.brushes.name(brush)) {
+            open.booked.add(&booked);
+        }
+    }
+
+    /// Puts a tile in the place of another, within the open step of no brush.
+    pub(crate) fn replace(&mut self, place: TilePlace, tile: TileRef) {
+        let before = self.surfaces.put(place, tile);
+        self.history.replaced(None, place, before);
+    }
+
+    /// A step as it is if it ends now. A brush's step leaves what other brushes carry alone.
+    fn finished(&self, open: &OpenStep, after: &NonTileState) -> Step {
+        let tiles = open.tiles.iter().map(|(place, before)| {
+            let change = Change {
+                before: before.clone(),
+                after: self.surfaces.held(*place),
+            };
+            (*place, change)
+        });
+        let mut effects = StepEffects::between(&open.before, after, open.booked.clone());
+        if let Some(brush) = &open.brush {
+            effects.loads.retain(|name, _| name == brush);
+            (effects.layers, effects.makes) = (None, None);
+        }
+        Step {
+            id: open.id,
+            what: open.what.clone(),
+            brush: open.brush.clone(),
+            operations: 1,
+            done: true,
+            tiles: Arc::new(tiles.collect()),
+            effects: Arc::new(effects),
+        }
+    }
+
+    /// The steps that are not finished, as they are if they end now.
+    pub(crate) fn open_steps(&mut self) -> Vec<Step> {
+        let after = self.rest();
+        let open = self.history.open();
+        open.map(|open| self.finished(open, &after)).collect()
+    }
+
+    /// Merges the oldest steps until the history keeps to its quota, or only the newest are apart.
+    pub(super) fn keep_to_quota(&mut self) {
+        let (surfaces, versions) = (&self.surfaces, &self.versions);
+        let besides = || surfaces.held_bytes(versions.tiles());
+        self.history.keep_to_quota(&surfaces.pager, besides);
+    }
+}

@@ -1,0 +1,261 @@
+//! Named versions: snapshots of the whole painting.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use maulstick_canvas::EditError;
+use maulstick_canvas::tile::Tile;
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_types::edits::{Branch, Forget, Keep, ReturnTo};
+use maulstick_types::scene::NamedVersion;
+
+use crate::apply::{Applied, Apply};
+use crate::history::{NonTileState, TilePlace, TileRef, same};
+use crate::painting::Painting;
+
+/// A painting as it was.
+#[derive(Clone, Debug)]
+pub struct Named {
+    /// Its name.
+    pub name: String,
+    /// The version that it was painted from.
+    pub parent: Option<String>,
+    /// Its tiles, where something was painted.
+    pub tiles: Arc<BTreeMap<TilePlace, TileRef>>,
+    /// Its state besides tiles.
+    pub rest: NonTileState,
+}
+
+/// Name of the current painting among its versions.
+pub const NOW: &str = "now";
+
+impl Apply for Keep {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.keep(&self.name).map(|()| Applied::Done)
+    }
+}
+
+impl Apply for ReturnTo {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.return_to(&self.name).map(|()| Applied::Done)
+    }
+}
+
+impl Apply for Branch {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting
+            .branch(&self.from, &self.name)
+            .map(|()| Applied::Done)
+    }
+}
+
+impl Apply for Forget {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.forget(&self.name).map(|()| Applied::Done)
+    }
+}
+
+/// The versions of a painting.
+#[derive(Clone, Default)]
+pub(crate) struct Versions {
+    named: BTreeMap<String, Named>,
+    /// Versions that came, changed or went since the last checkpoint.
+    touched: BTreeSet<String>,
+    /// The version from which the painter goes on.
+    pub(crate) line: Option<String>,
+}
+
+impl Versions {
+    /// The versions of a document.
+    pub(crate) fn restored(named: Vec<Named>, line: Option<String>) -> Self {
+        let named = named.into_iter().map(|own| (own.name.clone(), own));
+        Self {
+            named: named.collect(),
+            touched: BTreeSet::new(),
+            line,
+        }
+    }
+
+    /// All, by name.
+    pub(crate) fn iter(&self) -> impl ExactSizeIterator<Item = &Named> {
+        self.named.values()
+    }
+
+    /// Their tiles.
+    pub(crate) fn tiles(&self) -> impl Iterator<Item = &Arc<Tile>> {
+        let tiles = self.iter().flat_map(|version| version.tiles.values());
+        tiles.flatten()
+    }
+
+    /// A version by its name.
+    pub(crate) fn find(&self, name: &str) -> Result<&Named, EditError> {
+        self.named.get(name).ok_or_else(|| EditError::NoVersion {
+            name: name.to_owned(),
+            known: self.named.keys().cloned().collect(),
+        })
+    }
+
+    /// Sees that a name is free.
+    fn check_new(&self, name: &str) -> Result<(), EditError> {
+        match self.named.contains_key(name) {
+            _ if name == NOW => Err(EditError::VersionNow(NOW)),
+            true => Err(EditError::VersionTaken(name.to_owned())),
+            false => Ok(()),
+        }
+    }
+
+    /// Adds a version, from which the painter goes on.
+    fn add(&mut self, version: Named) {
+        self.line = Some(version.name.clone());
+        self.touched.insert(version.name.clone());
+        self.named.insert(version.name.clone(), version);
+    }
+
+    /// Removes a version; those painted from it count as painted from what it was painted from.
+    fn remove(&mut self, name: &str) -> Result<(), EditError> {
+        let parent = self.find(name)?.parent.clone();
+        self.named.remove(name);
+        self.touched.insert(name.to_owned());
+        for other in self.named.values_mut() {
+            if other.parent.as_deref() == Some(name) {
+                other.parent.clone_from(&parent);
+                self.touched.insert(other.name.clone());
+            }
+        }
+        if self.line.as_deref() == Some(name) {
+            self.line = parent;
+        }
+        Ok(())
+    }
+
+    /// The versions as the scene has them.
+    fn entries(&self) -> Vec<NamedVersion> {
+        let entries = self.iter().map(|version| NamedVersion {
+            name: version.name.clone(),
+            parent: version.parent.clone().unwrap_or_default(),
+            here: self.line.as_ref() == Some(&version.name),
+        });
+        entries.collect()
+    }
+
+    /// Counts all as changed.
+    pub(crate) fn touch_all(&mut self) {
+        self.touched.extend(self.named.keys().cloned());
+    }
+
+    /// The versions that came or changed since the last call, and the names of those that went.
+    pub(crate) fn take_touched(&mut self) -> (Vec<Named>, Vec<String>) {
+        let (mut there, mut gone) = (Vec::new(), Vec::new());
+        for name in std::mem::take(&mut self.touched) {
+            match self.named.get(&name) {
+                Some(version) => there.push(version.clone()),
+                None => gone.push(name),
+            }
+        }
+        (there, gone)
+    }
+}
+
+impl Painting {
+    /// The versions, by name.
+    pub fn named(&self) -> impl Iterator<Item = &Named> {
+        self.versions.iter()
+    }
+
+    /// The version from which the painter goes on.
+    #[must_use]
+    pub fn line(&self) -> Option<&str> {
+        self.versions.line.as_deref()
+    }
+
+    /// Tells all who follow the scene.
+    fn versions_changed(&mut self) {
+        self.scene.versions = self.versions.entries();
+        self.scene.version += 1;
+    }
+
+    /// Keeps the painting as it is.
+    ///
+    /// # Errors
+    /// [`EditError`] where there is a version of that name.
+    pub fn keep(&mut self, name: &str) -> Result<(), EditError> {
+        self.versions.check_new(name)?;
+        self.end_step(|_| true);
+        let named = Named {
+            name: name.to_owned(),
+            parent: self.versions.line.clone(),
+            tiles: Arc::new(self.surfaces.painted()),
+            rest: self.rest(),
+        };
+        self.versions.add(named);
+        self.versions_changed();
+        Ok(())
+    }
+
+    /// Makes the painting as it was in a version: a step that can be undone.
+    ///
+    /// # Errors
+    /// [`EditError`] for an unknown version.
+    pub fn return_to(&mut self, name: &str) -> Result<(), EditError> {
+        let to = self.versions.find(name)?.clone();
+        self.clock.stop(None);
+        self.begin_step(&format!("return to '{name}'"), None);
+        let before = self.rest();
+        let now = self.surfaces.painted();
+        let nowhere = now.keys().filter(|place| !to.tiles.contains_key(place));
+        let cleared: Vec<TilePlace> = nowhere.copied().collect();
+        let kept = to.tiles.iter().map(|(place, held)| (*place, held.clone()));
+        for (place, held) in kept.chain(cleared.into_iter().map(|place| (place, None))) {
+            if !same(&self.surfaces.held(place), &held) {
+                self.replace(place, held);
+            }
+        }
+        // Its books know nothing of brushes that came later.
+        for brush in self.brushes.iter_mut() {
+            match to.rest.loads.get(&brush.name) {
+                Some(page) => brush.carry(page),
+                None => brush.load = Arc::new(BrushLoad::clean(brush.head.strips())),
+            }
+        }
+        for surface in self.surfaces.iter_mut() {
+            let top = to.rest.tops.get(&surface.id).copied().unwrap_or(0.0);
+            surface.top = surface.top.max(top);
+        }
+        self.accounts.ledger.clone_from(&to.rest.ledger);
+        self.book(None);
+        let layers = (before.layers != to.rest.layers).then_some(&to.rest.layers);
+        let makes = (before.makes != to.rest.makes).then_some(&to.rest.makes);
+        self.turn_rest(layers, makes);
+        self.end_own_step();
+        self.versions.line = Some(name.to_owned());
+        self.versions_changed();
+        Ok(())
+    }
+
+    /// Begins a version from another one: the painting becomes as it was there.
+    ///
+    /// # Errors
+    /// [`EditError`] where there is no such version, or one of the new name.
+    pub fn branch(&mut self, from: &str, name: &str) -> Result<(), EditError> {
+        self.versions.check_new(name)?;
+        let begun = Named {
+            name: name.to_owned(),
+            parent: Some(from.to_owned()),
+            ..self.versions.find(from)?.clone()
+        };
+        self.return_to(from)?;
+        self.versions.add(begun);
+        self.versions_changed();
+        Ok(())
+    }
+
+    /// Forgets a version; those painted from it count as painted from what it was painted from.
+    ///
+    /// # Errors
+    /// [`EditError`] for an unknown version.
+    pub fn forget(&mut self, name: &str) -> Result<(), EditError> {
+        self.versions.remove(name)?;
+        self.versions_changed();
+        Ok(())
+    }
+}

@@ -1,0 +1,13 @@
+//! Tests of whole paintings, by subject.
+
+mod books;
+mod drying;
+mod extremes;
+mod hairline;
+mod light;
+mod models;
+mod modes;
+mod pauses;
+mod sequencer;
+mod studio;
+mod threads;
