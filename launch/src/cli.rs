@@ -251,7 +251,7 @@ mod tests {
             ("wet|--layers|0", "1.."),
             ("size|-2", "0 to 1000 µm"),
             ("tune|--stiffness|99", "0.05 to 20"),
-            ("load|Bone Black=2", "not a number above 0"),
+            ("load|Bone Black=0", "not a number above 0"),
             ("load|Bone Black|--brush|a/b", "letters, digits"),
             ("piles|stay", "deplete"),
             ("brush|mode|spunge", "'sponge'"),

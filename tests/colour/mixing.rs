@@ -167,8 +167,8 @@ fn bad_mixes_are_refused() {
     };
     refused(&[], &["MIX"]);
     refused(
-        &["Cobalt Blue=0.5,Bone Black=0.4"],
-        &["sum to 0.9", "help:"],
+        &["Cobalt Blue=0,Bone Black=0.4"],
+        &["'Cobalt Blue' is '0'", "help:"],
     );
     refused(
         &["Colbat Blue"],

@@ -304,8 +304,8 @@ fn bad_options_are_refused_with_the_nearest_name() {
         &["'Colbat Blue'", "'Cobalt Blue'", "--load"],
     );
     has(
-        &render(&["--load", "Cobalt Blue=0.5,Bone Black=0.4"]),
-        &["sum to 0.9"],
+        &render(&["--load", "Cobalt Blue=0,Bone Black=0.4"]),
+        &["'Cobalt Blue' is '0'"],
     );
     has(&render(&["--brush", "ruond"]), &["'ruond'", "'round'"]);
     has(&render(&["--size", "0x4"]), &["0x4"]);

@@ -365,7 +365,7 @@ fn paint_dries_in_parts_and_over_time_and_becomes_wet_again() {
         &fault(&place, &late, 2),
         &[
             "late.toml:3",
-            "opacity of layer 1 (slow)",
+            "layer 1 (slow) has an opacity",
             "{ opacity = 1.0, layer = 1 }",
         ],
     );

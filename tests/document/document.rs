@@ -137,7 +137,7 @@ fn a_drying_goes_on_after_a_crash_and_layers_become_wet_again() {
     wait_for(PATIENCE, is_dry).expect("it goes on to its end");
     assert_eq!(account(&place, "dry"), all);
     place.done(&["opacity", "slow", "0.5"]);
-    refused(&["wet"], &["opacity of layer 2 (slow)", "opacity 2 1"]);
+    refused(&["wet"], &["layer 2 (slow) has an opacity", "opacity 2 1"]);
     refused(&["opacity", "sky", "0.5"], &["'sky'", "2 (slow)"]);
     place.done(&["undo"]);
     place.done(&["wet", "--all"]);

@@ -139,7 +139,7 @@ fn what_is_wrong_has_its_line_the_nearest_name_and_help() {
             "{ light = { intensty = 2 } }",
             &["day.toml:3", "'intensity'"],
         ),
-        ("{ load = \"Bone Black=2\" }", &["day.toml:3", "'2'"]),
+        ("{ load = \"Bone Black=0\" }", &["day.toml:3", "'0'"]),
         ("{ wait = \"5 minutes\" }", &["day.toml:3", "90s"]),
         ("{ dry = 1, region = \"1,2\" }", &["day.toml:3", "X,Y,WxH"]),
     ] {

@@ -23,7 +23,7 @@ pub fn bands() -> Vec<(&'static str, Gesture)> {
 
 /// Light sweeps across the edge, up and down in turn, anywhere over the right half.
 pub fn sweeps() -> Vec<Gesture> {
-    // Multiples of the golden ratio are even and never in step (Steinhaus's theorem of three gaps).
+    // Multiples of 1/φ (golden ratio) and of 1/ρ, 1/ρ² (plastic number, ρ³ = ρ + 1) are even and never in step.
     let share = |i: u32, ratio: f64| (f64::from(i) * ratio).fract();
     (0..120)
         .map(|i| {

@@ -1,10 +1,13 @@
-//! A mixture of paints by volume, written `"Cobalt Blue=0.7,Titanium White=0.3"`.
+//! A mixture of paints by volume, written `"Cobalt Blue=0.7,Titanium White=0.3"` or `"7 Cobalt Blue, 3 Titanium White"`.
 
 use std::fmt;
 use std::str::FromStr;
 
 use crate::command::{PAINT_NAME_MAX, PARTS_MAX};
 use crate::wire::define::wire_struct;
+
+/// Shares that sum to 1 within this are whole.
+const ROUNDED: f64 = 1e-3;
 
 wire_struct! {
     /// One paint of a mixture.
@@ -47,12 +50,12 @@ pub enum MixtureError {
     /// Nothing between the commas, or nothing at all.
     #[error("a mixture names at least one paint, as in \"Cobalt Blue=0.7,Titanium White=0.3\"")]
     Empty,
-    /// The share is not a number between 0 and 1.
-    #[error("the share of '{paint}' is '{share}', not a number above 0 and at most 1")]
+    /// The share is not a number above 0.
+    #[error("the share of '{paint}' is '{share}', not a number above 0")]
     Share {
         /// The paint.
         paint: String,
-        /// Text after its `=`.
+        /// Text of the share.
         share: String,
     },
     /// The shares do not sum to 1.
@@ -105,7 +108,7 @@ impl Mixture {
             return Err(MixtureError::Name(length));
         }
         for (place, part) in self.parts.iter().enumerate() {
-            if !(part.share > 0.0 && part.share <= 1.0 + 1e-3) {
+            if !(part.share.is_finite() && part.share > 0.0) {
                 return Err(MixtureError::Share {
                     paint: part.paint.clone(),
                     share: part.share.to_string(),
@@ -121,7 +124,7 @@ impl Mixture {
             }
         }
         let sum: f64 = self.parts.iter().map(|part| part.share).sum();
-        if (sum - 1.0).abs() > 1e-3 {
+        if (sum - 1.0).abs() > ROUNDED {
             return Err(MixtureError::Sum {
                 mixture: self.to_string(),
                 sum,
@@ -134,30 +137,48 @@ impl Mixture {
 impl FromStr for Mixture {
     type Err = MixtureError;
 
+    /// Shares are numbers above 0; those that do not sum to 1 are parts by volume, and divided by their sum. A paint
+    /// whose name begins with a number is written with its share: `400 White=1`.
     fn from_str(text: &str) -> Result<Self, MixtureError> {
         let mut parts = Vec::new();
         for part in text.split(',') {
-            let (paint, share) = match part.split_once('=') {
-                Some((paint, share)) => (paint.trim(), Some(share.trim())),
-                None => (part.trim(), None),
-            };
+            let (paint, share) = named(part.trim());
             let share = match share {
                 None if !text.contains(',') => 1.0,
-                _ => share.and_then(|share| share.parse().ok()).ok_or_else(|| {
-                    MixtureError::Share {
+                _ => {
+                    let number = share.and_then(|share| share.parse().ok());
+                    let counts = |share: &f64| share.is_finite() && *share > 0.0;
+                    number.filter(counts).ok_or_else(|| MixtureError::Share {
                         paint: paint.to_owned(),
                         share: share.unwrap_or_default().to_owned(),
-                    }
-                })?,
+                    })?
+                }
             };
             parts.push(Part {
                 paint: paint.to_owned(),
                 share,
             });
         }
+        let sum: f64 = parts.iter().map(|part| part.share).sum();
+        if (sum - 1.0).abs() > ROUNDED {
+            parts.iter_mut().for_each(|part| part.share /= sum);
+        }
         let mixture = Self { parts };
         mixture.check()?;
         Ok(mixture)
+    }
+}
+
+/// The paint of a part and its share: `Cobalt Blue=2`, `2 Cobalt Blue`, or the paint alone.
+fn named(part: &str) -> (&str, Option<&str>) {
+    if let Some((paint, share)) = part.split_once('=') {
+        return (paint.trim(), Some(share.trim()));
+    }
+    match part.split_once(char::is_whitespace) {
+        Some((share, paint)) if share.parse().is_ok_and(f64::is_finite) => {
+            (paint.trim(), Some(share))
+        }
+        _ => (part, None),
     }
 }
 
@@ -186,13 +207,37 @@ mod tests {
     }
 
     #[test]
+    fn parts_are_divided_by_their_sum() {
+        let shares = |text: &str| {
+            let mixture: Mixture = text.parse().expect(text);
+            let share = |part: &Part| (part.paint.clone(), part.share);
+            mixture.parts.iter().map(share).collect::<Vec<_>>()
+        };
+        let third = [
+            ("Cobalt Blue".to_owned(), 2.0 / 3.0),
+            ("White".to_owned(), 1.0 / 3.0),
+        ];
+        assert_eq!(shares("2 Cobalt Blue, 1 White"), third);
+        assert_eq!(shares("Cobalt Blue=20,White=10"), third);
+        assert_eq!(
+            shares("A=0.3333,B=0.6666"),
+            [("A".into(), 0.3333), ("B".into(), 0.6666)]
+        );
+        assert_eq!(shares("3 A"), [("A".into(), 1.0)]);
+    }
+
+    #[test]
     fn refuses_what_is_no_mixture() {
         let error = |text: &str| text.parse::<Mixture>().expect_err(text);
         assert_eq!(error(""), MixtureError::Empty);
-        assert!(matches!(error("A=0.5,B=0.4"), MixtureError::Sum { sum, .. } if sum == 0.9));
         assert!(matches!(error("A=x,B=0.4"), MixtureError::Share { .. }));
         assert!(matches!(error("A=NaN"), MixtureError::Share { .. }));
         assert!(matches!(error("A=1.5,B=-0.5"), MixtureError::Share { .. }));
+        assert!(matches!(error("A=0,B=1"), MixtureError::Share { .. }));
+        assert!(matches!(
+            error("A=1e308,B=1e308"),
+            MixtureError::Share { .. }
+        ));
         assert!(matches!(error("A,B=0.5"), MixtureError::Share { .. }));
         assert!(matches!(error("A=0.5,A=0.5"), MixtureError::Twice { .. }));
     }

@@ -1,7 +1,7 @@
 //! The film of a marker: each covered cell is filled up towards [`FILM_M`], in proportion to its cover, with the mixture
-//! of the whole tip; in the brush mode `marker` by its flow along the way at most.
+//! of the whole tip. In the brush mode `marker` a step lays at most flow · travel.
 
-use maulstick_canvas::quantum::{CELL_MAX, Counts, QUANTUM_M, SLOTS};
+use maulstick_canvas::quantum::{Counts, QUANTA_PER_UNIT, QUANTUM_M, SLOTS};
 use maulstick_model::brush::load::BrushLoad;
 use maulstick_model::footprint::Footprint;
 use maulstick_model::interface::{Step, Transfer};
@@ -36,7 +36,9 @@ impl Film {
         let wants = contacts.map(|(contact, lying)| {
             let lacks = (most - lying).max(0.0);
             let flows = match step.handling.transfer {
-                Transfer::Marker { flow } => flow * CELL_MAX as f32 * contact.travel(&step.traits),
+                Transfer::Marker { flow } => {
+                    flow * QUANTA_PER_UNIT as f32 * contact.travel(&step.traits)
+                }
                 _ => f32::INFINITY,
             };
             f64::from((lacks.min(flows) * contact.cover).floor())

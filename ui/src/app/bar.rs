@@ -1,4 +1,4 @@
-//! The bar in a lower corner: a menu of everything, undo, redo and help.
+//! Command bar in a lower corner: menu of all commands, undo, redo, help.
 
 use eframe::egui::containers::menu::MenuButton;
 use eframe::egui::{
@@ -80,7 +80,7 @@ pub(super) fn show(context: &Context, preferences: &Preferences) -> Option<Actio
                         ("?", Action::Keys),
                     ] {
                         let button = ui.add(Button::new(sign).min_size([26.0, 24.0].into()));
-                        if named(button, action).clicked() {
+                        if described(button, action).clicked() {
                             chosen = Some(action);
                         }
                     }
@@ -115,8 +115,8 @@ fn menu(ui: &mut Ui) -> Option<Action> {
     chosen
 }
 
-/// A button with a sign, named for screen readers by its action.
-fn named(button: Response, action: Action) -> Response {
+/// Describes a glyph button by its action, for screen readers and on hover.
+fn described(button: Response, action: Action) -> Response {
     let Some(binding) = binding(action) else {
         return button;
     };

@@ -8,7 +8,7 @@
 //! | [`rack`] | the brush rack at the edge |
 //! | `first_run` | the line of help for a new painter |
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -27,6 +27,7 @@ use maulstick_types::{Origin, name_hash};
 
 use self::actions::side;
 use crate::app::overlay::Overlay;
+use crate::dialogs::paths;
 use crate::input::brush_turn::BrushTurn;
 use crate::input::clean_key::CleanKey;
 use crate::input::keys;
@@ -98,6 +99,8 @@ pub struct App {
     fetcher: ThumbnailFetcher,
     notifications: Notifications,
     preferences: Preferences,
+    /// The title of the window.
+    title: String,
     /// Preferences as they were last saved, and their file.
     kept: (Preferences, Option<PathBuf>),
     member: Option<NodeHandle>,
@@ -166,6 +169,7 @@ impl App {
             requests: Requests::default(),
             barrier: StrokeBarrier::new(&**bus, topics, &member.wake)?,
             notifications,
+            title: String::new(),
             kept: (preferences.clone(), place),
             preferences,
             member: None,
@@ -246,6 +250,19 @@ impl App {
         }
         if self.barrier.is_waiting() {
             context.request_repaint_after(BARRIER_LOOK);
+        }
+    }
+
+    /// Titles the window with the painting's name.
+    fn name_window(&mut self, context: &Context) {
+        let path = self.rig.paint.as_ref().map(|node| &*node.status.path);
+        let title = match path.filter(|path| !path.is_empty()) {
+            Some(path) => format!("{} · Maulstick", paths::name(Path::new(path))),
+            None => "Maulstick".to_owned(),
+        };
+        if self.title != title {
+            self.title.clone_from(&title);
+            context.send_viewport_cmd(egui::ViewportCommand::Title(title));
         }
     }
 
@@ -378,6 +395,7 @@ impl eframe::App for App {
         }
         self.change_hands();
         self.remember_size(ui.ctx());
+        self.name_window(ui.ctx());
         self.send(ui.ctx());
         self.keep();
     }

@@ -18,12 +18,12 @@ use crate::widgets::context::PanelContext;
 
 /// Width of the column of panels, points.
 const COLUMN: f32 = 300.0;
-/// A key turns the mouse's brush by this, degrees.
-const TURN_DEG: f64 = 15.0;
-/// A key changes the mouse's pressure by this.
-const PRESS: f64 = 0.05;
-/// Its distance from the window's edges, points.
+/// Distance of the column from the window's edges, points.
 const MARGIN: f32 = 8.0;
+/// Turn of the mouse's brush by one press of a key, degrees.
+const TURN_DEG: f64 = 15.0;
+/// Change of the mouse's pressure by one press of a key.
+const PRESS: f64 = 0.05;
 
 /// Rack, panels, dialogs and notifications over the desk.
 pub(crate) struct Overlay {
@@ -61,7 +61,7 @@ impl Overlay {
             false => keys::pressed(&context),
         };
         acts.append(&mut work.requests.take_acts());
-        if self.keys && context.input_mut(keys::leaves) {
+        if self.keys && !self.files.is_open() && context.input_mut(keys::closes_table) {
             self.keys = false;
             acts.retain(|act| *act != Action::Keys);
         }

@@ -19,7 +19,7 @@ use crate::widgets::context::PanelContext;
 const STEP: f64 = 0.15;
 /// Widths are whole numbers of these, mm.
 const GRAIN_MM: f64 = 0.5;
-/// Widths that a painter is offered of a brush file without sizes of its own, mm.
+/// Widths offered for a brush file that lists no sizes, mm.
 const OFFERED_MM: RangeInclusive<f64> = 0.5..=60.0;
 
 /// The brushes of the library, in their order.
@@ -70,8 +70,8 @@ pub(crate) fn millimetres(width_mm: f64) -> String {
     format!("{} mm", (width_mm * 100.0).round() / 100.0)
 }
 
-/// The widths that a brush can have, mm: those of its file's sizes, as far as what scales with them stays in its
-/// bounds.
+/// Widths that a brush can have, mm: from its file's smallest to its largest size, where all that scales with them stays
+/// in range.
 #[must_use]
 pub(crate) fn widths_mm(file: &BrushFile) -> RangeInclusive<f64> {
     let now = file.head.width_mm;

@@ -1,6 +1,6 @@
 //! Turn of the brush that the mouse moves, over a stroke.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::DVec2;
 use maulstick_num::atan2;
@@ -8,7 +8,7 @@ use maulstick_num::atan2;
 use crate::input::mouse_stylus::Pointer;
 use crate::settings::grip::Grip;
 
-/// Way of the pointer after which the direction of a stroke is known, m.
+/// Travel of the pointer after which the direction of a stroke is known, m.
 const KNOWN_M: f64 = 1.5e-3;
 /// Longest time for which a stroke waits for its direction, ns: a dab has none.
 const WAIT_NS: u64 = 80_000_000;
@@ -18,9 +18,11 @@ const STRING_M: f64 = 4e-3;
 /// The turn of the brush over a stroke.
 #[derive(Debug, Default)]
 pub(crate) struct BrushTurn {
+    /// Turn of the broad side across the stroke, rad, without the painter's own turn.
     across_rad: f64,
+    /// End of the string that the pointer draws, desk, m; `None` between strokes.
     turning_point: Option<DVec2>,
-    /// The first places of a stroke whose direction is not known, and its begin.
+    /// Time at which a stroke began, ns, and its places, while its direction is unknown.
     waiting: Option<(u64, Vec<Pointer>)>,
 }
 
@@ -29,6 +31,7 @@ impl BrushTurn {
     /// the brush is set down across it; meanwhile it hovers where the stroke begins.
     pub(crate) fn turned(&mut self, now_ns: u64, places: &[Pointer], grip: &Grip) -> Vec<Pointer> {
         let mut turned = Vec::new();
+        // Fingers or navigation took over: what waits was no stroke.
         if places.is_empty() {
             (self.waiting, self.turning_point) = (None, None);
         }
@@ -47,7 +50,7 @@ impl BrushTurn {
             }
             match &mut self.waiting {
                 Some((_, waiting)) => waiting.push(*place),
-                None => turned.push(self.held(place, grip)),
+                None => turned.push(self.with_turn(place, grip)),
             }
         }
         if let Some((since_ns, waiting)) = &self.waiting {
@@ -65,13 +68,13 @@ impl BrushTurn {
                     pressed: false,
                     ..*first
                 };
-                turned.push(self.held(&hovers, grip));
+                turned.push(self.with_turn(&hovers, grip));
             }
         }
         turned
     }
 
-    /// True while the begin of a stroke waits for its direction.
+    /// True while the start of a stroke waits for its direction.
     #[must_use]
     pub(crate) fn is_waiting(&self) -> bool {
         self.waiting.is_some()
@@ -83,14 +86,16 @@ impl BrushTurn {
         let length = string.length();
         if length >= KNOWN_M {
             let across = atan2(string.y, string.x) + FRAC_PI_2;
-            // A brush turned by half is the same: it takes the shorter way.
-            let halves = ((self.across_rad - across) / PI).round();
-            self.across_rad = across + halves * PI;
+            // A stroke begins by its direction alone, so that the colours of a double load keep their sides; within it
+            // the brush turns the shorter way, and is not flipped where the stroke goes back.
+            let period = if self.waiting.is_some() { TAU } else { PI };
+            let turns = ((self.across_rad - across) / period).round();
+            self.across_rad = across + turns * period;
         }
         self.turning_point = Some(at - string * (STRING_M / length.max(STRING_M)));
     }
 
-    fn held(&self, place: &Pointer, grip: &Grip) -> Pointer {
+    fn with_turn(&self, place: &Pointer, grip: &Grip) -> Pointer {
         let across = if grip.follows { self.across_rad } else { 0.0 };
         Pointer {
             twist_rad: across + grip.turn_rad,
@@ -100,7 +105,7 @@ impl BrushTurn {
 
     fn release(&mut self, into: &mut Vec<Pointer>, grip: &Grip) {
         if let Some((_, waiting)) = self.waiting.take() {
-            into.extend(waiting.iter().map(|place| self.held(place, grip)));
+            into.extend(waiting.iter().map(|place| self.with_turn(place, grip)));
         }
     }
 }

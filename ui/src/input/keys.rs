@@ -259,8 +259,8 @@ impl Plugin for TabKey {
     }
 }
 
-/// True if a key closes the table of keys, also while a control has the keyboard; it is taken from the input.
-pub(crate) fn leaves(input: &mut InputState) -> bool {
+/// Consumes the keys that close the table of keys, also while a control has the focus; true if one was pressed.
+pub(crate) fn closes_table(input: &mut InputState) -> bool {
     input.consume_key(Modifiers::NONE, Key::Escape)
         || input.consume_key(Modifiers::SHIFT, Key::Questionmark)
         || input.consume_key(Modifiers::NONE, Key::F1)
@@ -291,7 +291,7 @@ pub(crate) fn pressed(context: &Context) -> Vec<Action> {
     let mut acts: Vec<Action> = tab.then_some(Action::Panels).into_iter().collect();
     context.input_mut(|input| {
         for binding in &BINDINGS {
-            // A held key acts once, except undo and redo.
+            // A key that is kept down acts once, except those whose effect adds up.
             let repeats = matches!(
                 binding.act,
                 Action::Undo

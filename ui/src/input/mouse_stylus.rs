@@ -14,8 +14,9 @@ use maulstick_types::{Flags, Origin};
 
 /// Another stylus in range silences the mouse for this long, ns.
 const SILENCE_NS: u64 = 1_000_000_000;
-/// A frame takes no longer, ns; a longer time is a pause.
+/// Longest frame while no button is pressed, ns; a longer time is a pause.
 const FRAME_NS: u64 = 90_000_000;
+
 /// Position of the pointer on the desk, its button, and the turn of the brush there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pointer {

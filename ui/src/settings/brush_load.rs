@@ -55,7 +55,7 @@ impl BrushLoad {
 /// # Errors
 /// A [`UserError`] that says what is wrong with it.
 pub(crate) fn read(text: &str, library: &PaintLibrary) -> Result<Mixture, UserError> {
-    let help = "a paint's name, or a mixture such as \"Cobalt Blue=0.7,Titanium White=0.3\"";
+    let help = "a paint's name, or a mixture by volume such as \"2 Cobalt Blue, 1 Titanium White\"";
     let mixture = text.trim().parse::<Mixture>();
     let mixture = mixture.map_err(|error| UserError::usage(error.to_string()).help(help))?;
     library
@@ -124,8 +124,13 @@ pub(crate) fn completed(text: &str, name: &str) -> String {
     format!("{}{space}{name}", &text[..text.len() - typed.len()])
 }
 
+/// The name after the last comma, without its parts.
 fn last_name(text: &str) -> &str {
-    text.rsplit(',').next().unwrap_or(text)
+    let part = text.rsplit(',').next().unwrap_or(text);
+    match part.trim_start().split_once(char::is_whitespace) {
+        Some((parts, name)) if parts.parse().is_ok_and(f64::is_finite) => name,
+        _ => part,
+    }
 }
 
 #[cfg(test)]
@@ -182,7 +187,7 @@ mod tests {
             fault.expect_err(paint).to_string()
         };
         assert!(error("Colbat Blue").contains("'Cobalt Blue'"));
-        assert!(error("Cobalt Blue=2").contains("not a number above 0"));
+        assert!(error("Cobalt Blue=0").contains("not a number above 0"));
         assert!(error("").contains("at least one paint"));
         let beside = loading("Cobalt Blue", Some("x=1"), f64::NAN);
         assert!(beside.edit("main", &library()).is_err());
@@ -202,5 +207,8 @@ mod tests {
         let text = completed("Cobalt Blue=0.5, tit", "Titanium White");
         assert_eq!(text, "Cobalt Blue=0.5, Titanium White");
         assert_eq!(completed("ul", "Ultramarine Blue"), "Ultramarine Blue");
+        assert!(names("2 Cobalt Blue, 1 tit").contains(&"Titanium White"));
+        let text = completed("2 Cobalt Blue, 1 tit", "Titanium White");
+        assert_eq!(text, "2 Cobalt Blue, 1 Titanium White");
     }
 }

@@ -141,10 +141,10 @@ impl Preferences {
         }
     }
 
-    /// Turns the brush of the mouse further, within half a turn of where it began.
+    /// Turns the mouse's brush by an angle, degrees; the turn stays within -180° to 180°.
     pub(crate) fn turn_brush(&mut self, by_deg: f64) {
-        let turned = self.brush_turn_deg + by_deg + 90.0;
-        self.brush_turn_deg = turned.rem_euclid(180.0) - 90.0;
+        let turned = self.brush_turn_deg + by_deg + 180.0;
+        self.brush_turn_deg = turned.rem_euclid(360.0) - 180.0;
     }
 
     /// Presses the mouse harder by this share, or lighter.

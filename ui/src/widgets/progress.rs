@@ -154,14 +154,23 @@ impl Progress {
 
 /// Warnings about the painting that the painter cannot act on here.
 fn lines(status: &PaintStatus) -> impl Iterator<Item = String> {
-    let PaintStatus { fault, longer, .. } = status;
+    let PaintStatus {
+        fault,
+        longer,
+        lag_ns,
+        ..
+    } = status;
     let unsaved = (!fault.is_empty()).then(|| format!("A fault of the painting's file: {fault}"));
     let late = (*longer > 1).then(|| {
         format!(
             "Painting falls behind: until the brush lifts, its steps are {longer} times as long"
         )
     });
-    unsaved.into_iter().chain(late)
+    let behind = (*lag_ns >= SHORT_NS).then(|| {
+        let seconds = *lag_ns as f64 * 1e-9;
+        format!("The paint is {seconds:.1} s behind the hand")
+    });
+    unsaved.into_iter().chain(behind).chain(late)
 }
 
 fn drying(rig: &RigState) -> Option<Job> {
@@ -181,7 +190,7 @@ fn drying(rig: &RigState) -> Option<Job> {
 
 fn waiting(name: &str) -> Job {
     let who = match name.split_once(' ') {
-        Some(("node", "paint")) => "the paint node".to_owned(),
+        Some(("node", "paint")) => "the painting engine".to_owned(),
         Some(("node", "rig")) => "the rig, which opens the painting".to_owned(),
         Some(("node", brush)) => format!("the brush '{brush}'"),
         Some((_, device)) => format!("the device '{device}'"),
@@ -333,7 +342,7 @@ mod tests {
     #[test]
     fn who_is_waited_for_is_named_and_the_wait_can_be_given_up() {
         for (name, words) in [
-            ("node paint", "Waiting for the paint node …"),
+            ("node paint", "Waiting for the painting engine …"),
             ("node main", "Waiting for the brush 'main' …"),
             ("force arm", "Waiting for the device 'arm' …"),
         ] {
@@ -357,6 +366,16 @@ mod tests {
             paint.expect("paint").status.longer = longer;
             harness.run_steps(2);
             assert_eq!(harness.query_by_label(words).is_some(), longer > 1);
+        }
+        let words = "The paint is 2.3 s behind the hand";
+        for lag_ns in [400_000_000, 2_340_000_000, 0] {
+            let paint = harness.state_mut().rig.paint.as_mut();
+            paint.expect("paint").status.lag_ns = lag_ns;
+            harness.run_steps(2);
+            assert_eq!(
+                harness.query_by_label(words).is_some(),
+                lag_ns > 1_000_000_000
+            );
         }
     }
 

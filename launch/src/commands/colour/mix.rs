@@ -21,7 +21,7 @@ use crate::viewing::ViewingOptions;
 /// Options of `maulstick mix`.
 #[derive(Args, Clone, Debug)]
 pub struct MixOptions {
-    /// Mixture, shares by volume, such as "Cobalt Blue=0.7,Titanium White=0.3"; with --compare the two
+    /// Mixture, shares by volume, such as "2 Cobalt Blue, 1 Titanium White"; with --compare the two
     /// ends of a graded mixture, or one mixture of two paints
     #[arg(value_name = "MIX", required_unless_present_any = ["chart", "compare"])]
     mixtures: Vec<String>,

@@ -33,6 +33,8 @@ const MOST_SOLVES_NS: f64 = 1e8;
 /// Trial landings of a pen that find its mark: an upright head may bend to another side once its handle stands beside
 /// the point.
 const LANDINGS: usize = 2;
+/// Surfaces steeper to each other than this cosine are no ground to hover over.
+const LEAST_COSINE: f64 = 0.1;
 /// Largest number of times that a piece of the path is halved.
 const SPLITS: u32 = 2;
 
@@ -238,14 +240,14 @@ impl BrushModel {
     /// head that leans reaches lower than its middle, and to the palette beside the canvas.
     fn hover(&self, brush: &mut Rigid, plane: &Plane) {
         let Some(desk) = &self.desk else { return };
-        let gap = |joint: DVec3| {
+        let up = plane.normal();
+        let lacking = |joint: DVec3| {
             let in_desk = plane.to_desk.point(joint);
-            let under = desk.under(in_desk).unwrap_or(plane);
-            under.half_space().gap(in_desk)
+            let below = desk.under(in_desk).unwrap_or(plane).half_space();
+            (HOVER_M - below.gap(in_desk)) / below.normal.dot(up).max(LEAST_COSINE)
         };
         let joints = self.tuft.joints_at_rest(brush).into_iter();
-        let lowest = joints.map(gap).fold(f64::INFINITY, f64::min);
-        brush.translation.z += (HOVER_M - lowest).max(0.0);
+        brush.translation.z += joints.map(lacking).fold(0.0, f64::max);
     }
 
     /// Begins another stroke with a head that is bent as it was before a pause in contact: one that

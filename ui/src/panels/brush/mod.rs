@@ -115,8 +115,9 @@ fn mouse(ui: &mut Ui, preferences: &mut Preferences) {
     let check = ui.checkbox(&mut preferences.brush_follows, "Brush follows the stroke");
     check.on_hover_text("Its broad side stays across the stroke.  T");
     let slider =
-        labelled::slider(&mut preferences.brush_turn_deg, -90.0..=90.0, "°").max_decimals(0);
-    let hover = "Turn of the brush, from there or from left to right.  , and .";
+        labelled::slider(&mut preferences.brush_turn_deg, -180.0..=180.0, "°").max_decimals(0);
+    let hover =
+        "Angle from across the stroke, or from the horizontal if it does not follow.  , and .";
     labelled::named(ui, "Turn", hover, slider);
     let mut percent = (100.0 * preferences.mouse_pressure).round();
     let [least, most] = [MOUSE_PRESSURE.start(), MOUSE_PRESSURE.end()].map(|share| 100.0 * share);

@@ -32,7 +32,7 @@ const WAYS: [(BrushMode, &str, &str); 7] = [
     (
         BrushMode::SpongeNoPush,
         "Never runs out, without pushing",
-        "As a sponge, and it pushes nothing aside.",
+        "It stays as it is, full or empty, and pushes nothing aside.",
     ),
     (
         BrushMode::Marker,

@@ -22,7 +22,7 @@ impl PaintRows {
     pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let before = work.preferences.loading.clone();
         let hover =
-            "A paint's name, or a mixture by volume such as Cobalt Blue=0.7,Titanium White=0.3";
+            "A paint's name, or a mixture by volume such as 2 Cobalt Blue, 1 Titanium White";
         let mut enter = field(ui, work, "Paint", hover, |loading| Some(&mut loading.paint));
         let mut two = work.preferences.loading.beside.is_some();
         let check = ui.checkbox(&mut two, "Second colour on the right half");
@@ -97,7 +97,7 @@ fn field(
         return false;
     };
     let edit = TextEdit::singleline(text)
-        .hint_text("Cobalt Blue=0.7,…")
+        .hint_text("2 Cobalt Blue, 1 …")
         .char_limit(4096)
         .desired_width(190.0);
     let shown = labelled::named(ui, name, hover, edit);

@@ -30,7 +30,7 @@ use placement::Posture;
 
 const SIZING: Number<'_> = Number {
     word: "Absorbency",
-    hover: "How thick a film stays however hard it is wiped: little on a heavily sized canvas, µm",
+    hover: "Stain: thickness of the film that soaks in and cannot be wiped off, µm; thin on a heavily sized canvas",
     range: 0.0..=50.0,
     unit: " µm",
     decimals: 1,

@@ -102,7 +102,7 @@ impl WellRows {
     /// A mixture of one's own for a well.
     fn field(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, count: usize) {
         let edit = TextEdit::singleline(&mut self.text)
-            .hint_text("Cobalt Blue=0.7,…")
+            .hint_text("2 Cobalt Blue, 1 …")
             .char_limit(4096)
             .desired_width(190.0);
         let hover = "A paint's name, or a mixture such as Cobalt Blue=0.7,Titanium White=0.3";

@@ -328,6 +328,18 @@ fn scene_with_palette() -> Scene {
 }
 
 #[test]
+fn a_pen_let_go_far_from_its_stroke_touches_nothing() {
+    let mut model = brush();
+    for i in 0..20_u32 {
+        model.follow(DEVICE, (1000 + 8 * u64::from(i)) * MS, &pen(0.0, 0.0, 0.4));
+    }
+    // The pointer comes back far away.
+    let mut solves = model.follow(DEVICE, 1168 * MS, &pen(0.07, 0.03, 0.0));
+    solves.extend(model.follow(DEVICE, 1176 * MS, &pen(0.07, 0.03, 0.0)));
+    assert!(solves.iter().all(|solve| solve.contacts.is_empty()));
+}
+
+#[test]
 fn no_brush_of_any_size_touches_in_the_air() {
     let postures = [
         (0.0, DEFAULT_TILT_RAD),

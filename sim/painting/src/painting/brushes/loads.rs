@@ -83,7 +83,7 @@ impl PaintingBrush {
         ledger.from_tube(&load.counts());
     }
 
-    /// The mean colour of the paint on it.
+    /// Mixture of all paint on it, shares by volume.
     fn mixture(&self, scene: &Scene) -> Result<Mixture, EditError> {
         let counts = self.load.counts();
         let total: u64 = counts.iter().sum();
@@ -111,7 +111,7 @@ impl Painting {
         self.brushes[brush].fill(parts, from, seed, &mut self.accounts.ledger);
     }
 
-    /// The mean colour of the paint on a brush.
+    /// Mixture of all paint on a brush, shares by volume.
     ///
     /// # Errors
     /// [`EditError`] for an unknown brush, or one that carries nothing.
