@@ -87,13 +87,13 @@ impl Display {
         }
     }
 
-    /// The window whose title begins with `title`, once it is there; it has the keyboard.
+    /// The window whose title has `title` in it, once it is there; it has the keyboard.
     pub fn window(&self, title: &str) -> Window {
         let window = wait_for(PATIENCE, || {
             let tree = self.connection.query_tree(self.root).ok()?.reply().ok()?;
             tree.children
                 .into_iter()
-                .find(|window| self.visible(*window) && self.title(*window).starts_with(title))
+                .find(|window| self.visible(*window) && self.title(*window).contains(title))
         })
         .unwrap_or_else(|| panic!("no window '{title}'"));
         // No window manager does it here.

@@ -49,7 +49,7 @@ pub fn run(
     let mut app = app::App::new(&member, mouse, library)?;
     let export = export.clone();
     let viewport = eframe::egui::ViewportBuilder::default()
-        .with_title(format!("Maulstick · {}", member.config.rig.name))
+        .with_title("Maulstick")
         .with_app_id("maulstick")
         .with_inner_size(app.size());
     let options = eframe::NativeOptions {

@@ -74,12 +74,12 @@ pub(super) fn show(context: &Context, preferences: &Preferences) -> Option<Actio
                 ui.horizontal(|ui| {
                     ui.spacing_mut().item_spacing.x = 2.0;
                     chosen = menu(ui);
-                    for (sign, action) in [
-                        ("⮪", Action::Undo),
-                        ("⮫", Action::Redo),
+                    for (word, action) in [
+                        ("Undo", Action::Undo),
+                        ("Redo", Action::Redo),
                         ("?", Action::Keys),
                     ] {
-                        let button = ui.add(Button::new(sign).min_size([26.0, 24.0].into()));
+                        let button = ui.add(Button::new(word).min_size([26.0, 24.0].into()));
                         if described(button, action).clicked() {
                             chosen = Some(action);
                         }
@@ -93,7 +93,7 @@ pub(super) fn show(context: &Context, preferences: &Preferences) -> Option<Actio
 /// The button of the menu; the action that was chosen in it.
 fn menu(ui: &mut Ui) -> Option<Action> {
     let mut chosen = None;
-    let button = Button::new("☰").min_size([26.0, 24.0].into());
+    let button = Button::new("Menu").min_size([26.0, 24.0].into());
     let (shown, _) = MenuButton::from_button(button).ui(ui, |ui| {
         for (title, actions) in GROUPS {
             ui.menu_button(title, |ui| {
@@ -115,7 +115,7 @@ fn menu(ui: &mut Ui) -> Option<Action> {
     chosen
 }
 
-/// Describes a glyph button by its action, for screen readers and on hover.
+/// Describes a button by its action, for screen readers and on hover.
 fn described(button: Response, action: Action) -> Response {
     let Some(binding) = binding(action) else {
         return button;

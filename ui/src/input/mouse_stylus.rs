@@ -40,6 +40,8 @@ pub(crate) struct Mouse {
     was_in_range: bool,
     /// The last place that was sent, if it was pressed; `None` in the air.
     pressed: Option<Pointer>,
+    /// The last place that was sent in the air.
+    hovers: Option<Pointer>,
 }
 
 impl Mouse {
@@ -81,6 +83,7 @@ impl Mouse {
             sent_ns: 0,
             was_in_range: false,
             pressed: None,
+            hovers: None,
         })
     }
 
@@ -128,7 +131,7 @@ impl Mouse {
             places
         };
         if places.is_empty() {
-            self.pressed = None;
+            (self.pressed, self.hovers) = (None, None);
             if self.was_in_range {
                 self.was_in_range = false;
                 let stamp = Stamp {
@@ -141,6 +144,12 @@ impl Mouse {
             self.sent_ns = now_ns;
             return Ok(());
         }
+        // A brush that rests in the air is not sent again: each sample would draw another frame of the window, which
+        // would send the next.
+        if self.hovers.is_some() && places.iter().all(|place| Some(*place) == self.hovers) {
+            return Ok(());
+        }
+        self.hovers = places.last().copied().filter(|last| !last.pressed);
         self.was_in_range = true;
         // After a pause the pointer has not crept here. In a stroke a frame may be as long as it likes: what was moved
         // in it took all of it, or the brush would leap and rest by turns.
@@ -178,7 +187,7 @@ impl Mouse {
     /// that the brush would not cross: it is known that the button was not let go.
     fn finer(&self, places: &[Pointer], took_ns: u64) -> Vec<Pointer> {
         let each_ns = took_ns / places.len().max(1) as u64;
-        let parts = each_ns.div_ceil(BRIDGED_NS).max(1);
+        let parts = each_ns / BRIDGED_NS + 1;
         let mut before = self.pressed;
         let mut all = Vec::new();
         for place in places {
@@ -327,19 +336,36 @@ mod tests {
             assert!(pressure == PRESSURE && twist_rad == point_m[0]);
             heard.push((sample.header.event_ns, point_m[0]));
         }
-        assert_eq!((heard.len(), heard[heard.len() - 1]), (11, (slow, 0.06)));
+        assert_eq!((heard.len(), heard[heard.len() - 1]), (13, (slow, 0.06)));
         for pair in heard.windows(2) {
             let [(from_ns, from), (to_ns, to)] = [pair[0], pair[1]];
             assert!(to_ns - from_ns <= BRIDGED_NS && to > from, "{heard:?}");
         }
         // In the air it leaps.
-        let lifted = Pointer {
+        for (now_ns, x) in [(slow + 1, 0.0), (slow + SECOND, 0.02)] {
+            let lifted = Pointer {
+                pressed: false,
+                ..at(x)
+            };
+            desk.mouse.send(now_ns, &[lifted], PRESSURE).expect("sent");
+        }
+        desk.net.advance(SECOND / 10);
+        assert_eq!(std::iter::from_fn(|| desk.samples.try_recv()).count(), 2);
+    }
+
+    #[test]
+    fn a_pointer_that_rests_in_the_air_is_sent_once() {
+        let mut desk = Desk::new();
+        let hovers = |x: f64| Pointer {
+            at: [x, 0.0, 0.0],
             pressed: false,
-            ..at(0.0)
+            ..PRESSED
         };
-        let mut send = |now_ns: u64| desk.mouse.send(now_ns, &[lifted], PRESSURE).expect("sent");
-        send(slow + 1);
-        send(slow + SECOND);
+        let frames = [0.0, 0.0, 0.0, 0.01, 0.01].map(hovers);
+        for (number, place) in frames.iter().enumerate() {
+            let now_ns = SECOND + 16_000_000 * number as u64;
+            desk.mouse.send(now_ns, &[*place], PRESSURE).expect("sent");
+        }
         desk.net.advance(SECOND / 10);
         assert_eq!(std::iter::from_fn(|| desk.samples.try_recv()).count(), 2);
     }

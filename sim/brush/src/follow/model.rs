@@ -33,6 +33,8 @@ const MOST_SOLVES_NS: f64 = 1e8;
 /// Trial landings of a pen that find its mark: an upright head may bend to another side once its handle stands beside
 /// the point.
 const LANDINGS: usize = 2;
+/// Rises of a hovering brush at most: from over a tilted canvas a joint may come over the palette.
+const RISES: usize = 4;
 /// Surfaces steeper to each other than this cosine are no ground to hover over.
 const LEAST_COSINE: f64 = 0.1;
 /// Largest number of times that a piece of the path is halved.
@@ -246,8 +248,14 @@ impl BrushModel {
             let below = desk.under(in_desk).unwrap_or(plane).half_space();
             (HOVER_M - below.gap(in_desk)) / below.normal.dot(up).max(LEAST_COSINE)
         };
-        let joints = self.tuft.joints_at_rest(brush).into_iter();
-        brush.translation.z += joints.map(lacking).fold(0.0, f64::max);
+        for _ in 0..RISES {
+            let joints = self.tuft.joints_at_rest(brush).into_iter();
+            let rise = joints.map(lacking).fold(0.0, f64::max);
+            if rise <= 0.0 {
+                break;
+            }
+            brush.translation.z += rise;
+        }
     }
 
     /// Begins another stroke with a head that is bent as it was before a pause in contact: one that

@@ -327,6 +327,14 @@ fn scene_with_palette() -> Scene {
     scene
 }
 
+/// That desk with the canvas tilted about its lower edge by 20°.
+fn tilted() -> Scene {
+    let mut scene = scene_with_palette();
+    let half = 10_f64.to_radians();
+    scene.surfaces[0].pose.orientation = [half.sin(), 0.0, 0.0, half.cos()];
+    scene
+}
+
 #[test]
 fn a_pen_let_go_far_from_its_stroke_touches_nothing() {
     let mut model = brush();
@@ -354,11 +362,16 @@ fn no_brush_of_any_size_touches_in_the_air() {
             .flat_map(|width_mm| postures.map(|posture| (*width_mm, posture)))
         {
             let mut model = BrushModel::new(file.scaled_to(width_mm).expect("a size"), 0.5);
-            model.set_scene(&scene_with_palette());
-            // Over the canvas, its left edge, the gap, and the palette.
-            for step in 0..12_u32 {
+            // Over the canvas, its left edge, the gap, and the palette; then with a tilted canvas.
+            for step in 0..24_u32 {
+                let scene = if step < 12 {
+                    scene_with_palette()
+                } else {
+                    tilted()
+                };
+                model.set_scene(&scene);
                 let pose = StylusPose::Contact {
-                    point_m: [-0.06 - 0.012 * f64::from(step), 0.01, 0.0],
+                    point_m: [-0.06 - 0.012 * f64::from(step % 12), 0.01, 0.0],
                     tilt_rad,
                     twist_rad,
                     pressure: 0.0,
