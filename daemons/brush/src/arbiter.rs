@@ -1,5 +1,5 @@
 //! Choice among several devices that move one brush: of those in range the one of highest priority, and another one
-//! only between strokes.
+//! only between strokes. A brush at rest in the air stays with its device, which may say nothing.
 
 use std::collections::BTreeMap;
 
@@ -59,7 +59,7 @@ impl Arbiter {
         let held = self
             .active
             .take()
-            .filter(|active| self.devices.contains_key(active));
+            .filter(|active| stroke == Stroke::None || self.devices.contains_key(active));
         let keeps = stroke == Stroke::GoesOn
             && held
                 .as_ref()
@@ -118,6 +118,15 @@ mod tests {
         assert!(hear(&mut arbiter, MOUSE, Near, GoesOn, 2));
         let after = hear(&mut arbiter, MOUSE, Near, None, 3);
         assert!(!after, "the stroke is over");
+    }
+
+    #[test]
+    fn a_mouse_at_rest_keeps_the_brush_until_another_device_is_in_range() {
+        let mut arbiter = Arbiter::default();
+        let later = 2 * SILENCE_NS / 1_000_000;
+        assert!(hear(&mut arbiter, MOUSE, Near, None, 0));
+        assert!(!hear(&mut arbiter, PEN, Away, None, later));
+        assert!(hear(&mut arbiter, PEN, Near, None, later + 1));
     }
 
     #[test]

@@ -65,6 +65,12 @@ const FETCH: Duration = Duration::from_secs(1);
 /// Interval at which a pressed pointer that stands still is sent: a longer silence would lift the brush.
 const STILL: Duration = Duration::from_millis(30);
 
+/// Interval at which statuses are looked at while they show work.
+const STATUS_LOOK: Duration = Duration::from_millis(100);
+/// Time after which a silent device is away.
+const SILENCE: Duration = Duration::from_nanos(SILENCE_NS);
+/// Interval at which an idle window is drawn.
+const IDLE_LOOK: Duration = Duration::from_secs(3);
 /// Interval at which a request that waits for its stroke is checked again.
 const BARRIER_LOOK: Duration = Duration::from_millis(50);
 
@@ -167,7 +173,7 @@ impl App {
             pressed: false,
             overlay: Overlay::default(),
             requests: Requests::default(),
-            barrier: StrokeBarrier::new(&**bus, topics, &member.wake)?,
+            barrier: StrokeBarrier::new(&**bus, topics)?,
             notifications,
             title: String::new(),
             kept: (preferences.clone(), place),
@@ -250,6 +256,24 @@ impl App {
         }
         if self.barrier.is_waiting() {
             context.request_repaint_after(BARRIER_LOOK);
+        }
+    }
+
+    /// Time until statuses, and devices that fall silent, are looked at again: nothing signals them.
+    fn next_look(&self) -> Duration {
+        let status = self.rig.paint.as_ref().map(|node| &node.status);
+        let works = status.is_some_and(|status| {
+            status.baked < status.baking
+                || status.drying.is_some()
+                || status.export.is_some()
+                || status.lag_ns > 0
+                || !status.all_committed
+        });
+        let device = self.preferences.panels && self.preferences.is_open("Device");
+        match works || device || !self.dispatcher.waits().is_empty() {
+            true => STATUS_LOOK,
+            false if self.preferences.panels || self.tracker.hears_another() => SILENCE,
+            false => IDLE_LOOK,
         }
     }
 
@@ -367,9 +391,7 @@ impl eframe::App for App {
                 ui.painter()
                     .add(presenter.shape(view.area, begun_ns, holding));
             }
-            // Nothing tells when a device falls silent.
-            let silence = Duration::from_nanos(SILENCE_NS);
-            ui.ctx().request_repaint_after(silence);
+            ui.ctx().request_repaint_after(self.next_look());
         });
         let waits = self.dispatcher.waits();
         let work = &mut PanelContext {

@@ -121,7 +121,8 @@ impl BrushTracker {
             topics.brush_look("*"),
         );
         Ok(Self {
-            samples: Receiver::new(bus, &samples, Qos::RealTime, Queue::Ring(256), wake)?,
+            // A sample of the device that moves a brush becomes a state of it; others change nothing that is seen.
+            samples: Receiver::new(bus, &samples, Qos::RealTime, Queue::Ring(256), &Wake::new())?,
             states: Receiver::new(bus, &states, Qos::RealTime, Queue::Ring(64), wake)?,
             defs: Receiver::new(bus, &defs, Qos::Cached, Queue::Ring(16), wake)?,
             looks: Receiver::new(bus, &looks, Qos::Cached, Queue::Ring(16), wake)?,
@@ -131,7 +132,7 @@ impl BrushTracker {
                 &topics.paint_consumed(),
                 Qos::Control,
                 Queue::Ring(16),
-                wake,
+                &Wake::new(),
             )?,
             topics: topics.clone(),
             depth_shares,
@@ -237,6 +238,16 @@ impl BrushTracker {
         let length = known.file.length_m();
         let touches = known.touches.is_some() && !sample.in_air();
         sample.in_range.then(|| (aim(sample, length), !touches))
+    }
+
+    /// True while a device other than the window's own mouse is in range.
+    #[must_use]
+    pub fn hears_another(&self) -> bool {
+        let others = self
+            .newest
+            .iter()
+            .filter(|(source, _)| **source != self.quiet);
+        others.into_iter().any(|(_, heard)| heard.sample.in_range)
     }
 
     /// The newest sample of each device received within the last second.

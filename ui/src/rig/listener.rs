@@ -37,7 +37,14 @@ impl RigListener {
         Ok(Self {
             scenes: Receiver::new(bus, &topics.scene(), Qos::Cached, Queue::Latest, wake)?
                 .checking(Scene::fault),
-            paint: Receiver::new(bus, &topics.paint_status(), quiet, Queue::Latest, wake)?,
+            // Statuses come for ever: the window looks at them as often as it shows them.
+            paint: Receiver::new(
+                bus,
+                &topics.paint_status(),
+                quiet,
+                Queue::Latest,
+                &Wake::new(),
+            )?,
             defs: Receiver::new(
                 bus,
                 &topics.brush_def("*"),
@@ -57,9 +64,8 @@ impl RigListener {
                 &topics.stylus_status("*"),
                 quiet,
                 Queue::Ring(32),
-                wake,
+                &Wake::new(),
             )?,
-            // The tracker of the brushes signals samples.
             samples: Receiver::new(
                 bus,
                 &topics.sample("*"),

@@ -56,16 +56,17 @@ pub(crate) struct StrokeBarrier {
 }
 
 impl StrokeBarrier {
-    /// Listens to how far brushes and painting are.
+    /// Listens to how far brushes and painting are; nothing is signalled, for they say it with every sample.
     ///
     /// # Errors
     /// [`BusError::Topic`].
-    pub(crate) fn new(bus: &dyn Bus, topics: &Topics, wake: &Wake) -> Result<Self, BusError> {
+    pub(crate) fn new(bus: &dyn Bus, topics: &Topics) -> Result<Self, BusError> {
         let (from_brush, from_paint) = (topics.brush_consumed("*"), topics.paint_consumed());
+        let silent = Wake::new();
         Ok(Self {
             topics: topics.clone(),
-            consumed: Receiver::new(bus, &from_brush, Qos::Control, Queue::Ring(1024), wake)?,
-            painted: Receiver::new(bus, &from_paint, Qos::Control, Queue::Ring(16), wake)?,
+            consumed: Receiver::new(bus, &from_brush, Qos::Control, Queue::Ring(1024), &silent)?,
+            painted: Receiver::new(bus, &from_paint, Qos::Control, Queue::Ring(16), &silent)?,
             brushes: BTreeMap::new(),
             credits: BTreeMap::new(),
             waiting: VecDeque::new(),
@@ -248,7 +249,7 @@ mod tests {
                 source: name_hash(name),
                 epoch: 1,
             };
-            let barrier = StrokeBarrier::new(&bus, &topics, &Wake::new()).expect("listens");
+            let barrier = StrokeBarrier::new(&bus, &topics).expect("listens");
             let topic = topics.brush_consumed(BRUSH);
             let brush = Sender::new(&bus, &topic, Qos::Control, me(BRUSH)).expect("sends");
             let topic = topics.paint_consumed();

@@ -245,8 +245,11 @@ impl BrushModel {
         let up = plane.normal();
         let lacking = |joint: DVec3| {
             let in_desk = plane.to_desk.point(joint);
-            let below = desk.under(in_desk).unwrap_or(plane).half_space();
-            (HOVER_M - below.gap(in_desk)) / below.normal.dot(up).max(LEAST_COSINE)
+            let lacks = |below: &Plane| {
+                let below = below.half_space();
+                (HOVER_M - below.gap(in_desk)) / below.normal.dot(up).max(LEAST_COSINE)
+            };
+            desk.below(in_desk).map(lacks).fold(0.0, f64::max)
         };
         for _ in 0..RISES {
             let joints = self.tuft.joints_at_rest(brush).into_iter();

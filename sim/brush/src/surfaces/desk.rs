@@ -165,6 +165,12 @@ impl Desk {
         self.planes.iter().find(|plane| plane.id == id)
     }
 
+    /// The surfaces that stop what comes down at a point: those that hold it, and the canvas, whose plane continues.
+    pub fn below(&self, in_desk: DVec3) -> impl Iterator<Item = &Plane> {
+        let planes = self.planes.iter();
+        planes.filter(move |plane| plane.id == CANVAS || plane.holds(in_desk))
+    }
+
     /// The surface under a point: the palette before the canvas, and elsewhere the canvas, whose plane continues.
     #[must_use]
     pub fn under(&self, in_desk: DVec3) -> Option<&Plane> {
