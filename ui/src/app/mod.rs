@@ -343,7 +343,7 @@ impl eframe::App for App {
         let now_ns = self.bus.now_ns();
         let brush = self.rig.brush_name();
         let taken = self.mouse.take(now_ns, brush);
-        let grip = self.preferences.grip();
+        let grip = self.preferences.mouse;
         let places = self.brush_turn.turned(now_ns, &places, &grip);
         if let Err(error) = taken.and_then(|()| self.mouse.send(now_ns, &places, grip.pressure)) {
             tracing::warn!("the mouse: {error}");

@@ -115,13 +115,13 @@ impl Overlay {
                 } else {
                     -TURN_DEG
                 };
-                work.preferences.turn_brush(by_deg);
-                let turn = work.preferences.brush_turn_deg;
+                work.preferences.mouse.turn(by_deg);
+                let turn = work.preferences.mouse.turn_deg;
                 work.notifications
                     .note(format!("Brush turned by {turn:.0}°"));
             }
             Action::Follow => {
-                let follows = &mut work.preferences.brush_follows;
+                let follows = &mut work.preferences.mouse.follows;
                 *follows = !*follows;
                 let words = match *follows {
                     true => "The mouse's brush follows the stroke",
@@ -131,8 +131,8 @@ impl Overlay {
             }
             Action::Lighter | Action::Harder => {
                 let by = if act == Action::Harder { PRESS } else { -PRESS };
-                work.preferences.press(by);
-                let percent = 100.0 * work.preferences.mouse_pressure;
+                work.preferences.mouse.press(by);
+                let percent = 100.0 * work.preferences.mouse.pressure;
                 work.notifications
                     .note(format!("Mouse presses with {percent:.0} %"));
             }

@@ -98,7 +98,7 @@ impl BrushTurn {
     fn with_turn(&self, place: &Pointer, grip: &Grip) -> Pointer {
         let across = if grip.follows { self.across_rad } else { 0.0 };
         Pointer {
-            twist_rad: across + grip.turn_rad,
+            twist_rad: across + grip.turn_deg.to_radians(),
             ..*place
         }
     }
@@ -116,7 +116,7 @@ mod tests {
 
     const FOLLOWS: Grip = Grip {
         follows: true,
-        turn_rad: 0.0,
+        turn_deg: 0.0,
         pressure: 0.5,
     };
     const FRAME_NS: u64 = 16_000_000;
@@ -199,11 +199,14 @@ mod tests {
     fn without_following_the_painter_sets_the_turn() {
         let grip = Grip {
             follows: false,
-            turn_rad: 0.3,
+            turn_deg: 30.0,
             ..FOLLOWS
         };
         let all = stroke(&grip, |way| [0.0, way]);
         assert_eq!(pressed(&all).len(), 40);
-        assert!(all.iter().all(|place| place.twist_rad == 0.3));
+        assert!(
+            all.iter()
+                .all(|place| place.twist_rad == 30_f64.to_radians())
+        );
     }
 }

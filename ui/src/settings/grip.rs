@@ -1,12 +1,62 @@
 //! How the mouse holds the brush.
 
+use std::ops::RangeInclusive;
+
+use serde::{Deserialize, Serialize};
+
+/// Pressures that a mouse can have.
+pub(crate) const MOUSE_PRESSURE: RangeInclusive<f64> = 0.05..=1.0;
+
 /// Turn and pressure of the mouse's brush; a mouse senses neither.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Grip {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Grip {
     /// True if the broad side of the brush stays across the stroke.
     pub follows: bool,
-    /// Turn of the broad side, rad, counter-clockwise: from across the stroke if it follows, else from the desk's x axis.
-    pub turn_rad: f64,
+    /// Turn of the broad side, degrees counter-clockwise: from across the stroke if it follows, else from the desk's x
+    /// axis.
+    pub turn_deg: f64,
     /// Pressure of a pressed button, 0 to 1.
     pub pressure: f64,
+}
+
+impl Default for Grip {
+    fn default() -> Self {
+        Self {
+            follows: true,
+            turn_deg: 0.0,
+            pressure: 0.5,
+        }
+    }
+}
+
+impl Grip {
+    /// The grip with defaults for what is out of range.
+    #[must_use]
+    pub(crate) fn sane(self) -> Self {
+        let default = Self::default();
+        Self {
+            turn_deg: match self.turn_deg.is_finite() {
+                true => self.turn_deg,
+                false => default.turn_deg,
+            },
+            pressure: match MOUSE_PRESSURE.contains(&self.pressure) {
+                true => self.pressure,
+                false => default.pressure,
+            },
+            ..self
+        }
+    }
+
+    /// Turns the brush by an angle, degrees; the turn stays within -180° to 180°.
+    pub(crate) fn turn(&mut self, by_deg: f64) {
+        let turned = self.turn_deg + by_deg + 180.0;
+        self.turn_deg = turned.rem_euclid(360.0) - 180.0;
+    }
+
+    /// Presses harder by this, or lighter.
+    pub(crate) fn press(&mut self, by: f64) {
+        let pressed = ((self.pressure + by) * 100.0).round() / 100.0;
+        self.pressure = pressed.clamp(*MOUSE_PRESSURE.start(), *MOUSE_PRESSURE.end());
+    }
 }

@@ -9,7 +9,7 @@
 //! | `brush_load` | the mixtures that a brush takes up |
 
 pub(crate) mod brush_load;
-pub(crate) mod grip;
+pub mod grip;
 pub(crate) mod paint_sets;
 pub mod preferences;
 pub(crate) mod presets;

@@ -18,9 +18,6 @@ use crate::settings::presets::Preset;
 /// Recent paintings that are remembered.
 const RECENT: usize = 12;
 
-/// Pressures that a mouse can have.
-pub(crate) const MOUSE_PRESSURE: std::ops::RangeInclusive<f64> = 0.05..=1.0;
-
 /// Settings of the window.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -43,12 +40,8 @@ pub struct Preferences {
     pub own_brushes: Vec<PathBuf>,
     /// Load for the next dip of the brush.
     pub loading: BrushLoad,
-    /// True if a brush that is moved by the mouse stays across its stroke.
-    pub brush_follows: bool,
-    /// Turn of that brush, degrees counter-clockwise.
-    pub brush_turn_deg: f64,
-    /// Pressure of the mouse's button, 0 to 1.
-    pub mouse_pressure: f64,
+    /// How the mouse holds the brush.
+    pub mouse: Grip,
     /// Widths at which brushes were last used, by their kind, mm.
     pub widths_mm: BTreeMap<String, f64>,
     /// Brushes that are ready with their paint.
@@ -69,9 +62,7 @@ impl Default for Preferences {
             reference: ReferencePreferences::default(),
             own_brushes: Vec::new(),
             loading: BrushLoad::default(),
-            brush_follows: true,
-            brush_turn_deg: 0.0,
-            mouse_pressure: 0.5,
+            mouse: Grip::default(),
             widths_mm: BTreeMap::new(),
             presets: Vec::new(),
             paint_sets: Vec::new(),
@@ -108,12 +99,7 @@ impl Preferences {
         if !preferences.size.iter().all(|side| sane(*side)) {
             preferences.size = Self::default().size;
         }
-        if !preferences.brush_turn_deg.is_finite() {
-            preferences.brush_turn_deg = 0.0;
-        }
-        if !MOUSE_PRESSURE.contains(&preferences.mouse_pressure) {
-            preferences.mouse_pressure = Self::default().mouse_pressure;
-        }
+        preferences.mouse = preferences.mouse.sane();
         Ok(preferences)
     }
 
@@ -129,28 +115,6 @@ impl Preferences {
             std::fs::create_dir_all(folder).map_err(failed)?;
         }
         write_whole(path, Kind::Own, |file| file.write_all(text.as_bytes())).map_err(failed)
-    }
-
-    /// How the mouse holds the brush.
-    #[must_use]
-    pub(crate) fn grip(&self) -> Grip {
-        Grip {
-            follows: self.brush_follows,
-            turn_rad: self.brush_turn_deg.to_radians(),
-            pressure: self.mouse_pressure,
-        }
-    }
-
-    /// Turns the mouse's brush by an angle, degrees; the turn stays within -180° to 180°.
-    pub(crate) fn turn_brush(&mut self, by_deg: f64) {
-        let turned = self.brush_turn_deg + by_deg + 180.0;
-        self.brush_turn_deg = turned.rem_euclid(360.0) - 180.0;
-    }
-
-    /// Presses the mouse harder by this share, or lighter.
-    pub(crate) fn press(&mut self, by: f64) {
-        let pressed = ((self.mouse_pressure + by) * 100.0).round() / 100.0;
-        self.mouse_pressure = pressed.clamp(*MOUSE_PRESSURE.start(), *MOUSE_PRESSURE.end());
     }
 
     /// Remembers that a painting was open.
@@ -210,7 +174,7 @@ mod tests {
         assert!(fault.to_string().contains("window.toml"), "{fault}");
         std::fs::write(
             &path,
-            "size = [nan, 1e9]\nunknown = 1\nmouse_pressure = 7.0\nbrush_turn_deg = nan",
+            "size = [nan, 1e9]\nunknown = 1\n[mouse]\npressure = 7.0\nturn_deg = nan",
         )
         .expect("written");
         let preferences = Preferences::read(&path).expect("of a newer window");

@@ -25,7 +25,7 @@ use maulstick_types::scene::{BrushHandling, Tuning};
 use crate::input::brush_choice::{called, library, resized, widths_mm};
 use crate::panels::Panel;
 use crate::render::brush::icon_cache;
-use crate::settings::preferences::{MOUSE_PRESSURE, Preferences};
+use crate::settings::grip::{Grip, MOUSE_PRESSURE};
 use crate::widgets::context::PanelContext;
 use crate::widgets::labelled::{self, PendingValue};
 
@@ -63,7 +63,7 @@ impl Panel for BrushPanel {
         let mut is_held = self.width(ui, work, &file);
         self.tuning(ui, work);
         modes::show(ui, work, &mut self.handling);
-        ui.collapsing("Mouse", |ui| mouse(ui, work.preferences));
+        ui.collapsing("Mouse", |ui| mouse(ui, &mut work.preferences.mouse));
         ui.separator();
         self.paint.show(ui, work);
         ui.separator();
@@ -111,20 +111,19 @@ fn shape(ui: &mut Ui, work: &mut PanelContext<'_>, file: &BrushFile) {
 }
 
 /// Turn and pressure of a brush that the mouse moves.
-fn mouse(ui: &mut Ui, preferences: &mut Preferences) {
-    let check = ui.checkbox(&mut preferences.brush_follows, "Brush follows the stroke");
+fn mouse(ui: &mut Ui, grip: &mut Grip) {
+    let check = ui.checkbox(&mut grip.follows, "Brush follows the stroke");
     check.on_hover_text("Its broad side stays across the stroke.  T");
-    let slider =
-        labelled::slider(&mut preferences.brush_turn_deg, -180.0..=180.0, "°").max_decimals(0);
+    let slider = labelled::slider(&mut grip.turn_deg, -180.0..=180.0, "°").max_decimals(0);
     let hover =
         "Angle from across the stroke, or from the horizontal if it does not follow.  , and .";
     labelled::named(ui, "Turn", hover, slider);
-    let mut percent = (100.0 * preferences.mouse_pressure).round();
+    let mut percent = (100.0 * grip.pressure).round();
     let [least, most] = [MOUSE_PRESSURE.start(), MOUSE_PRESSURE.end()].map(|share| 100.0 * share);
     let slider = labelled::slider(&mut percent, least..=most, " %").max_decimals(0);
     let hover = "Pressure while the button is down.  - and =";
     if labelled::named(ui, "Pressure", hover, slider).changed() {
-        preferences.mouse_pressure = 0.01 * percent;
+        grip.pressure = 0.01 * percent;
     }
 }
 
