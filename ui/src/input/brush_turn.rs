@@ -112,6 +112,8 @@ impl BrushTurn {
 
 #[cfg(test)]
 mod tests {
+    use maulstick_num::sin_cos;
+
     use super::*;
 
     const FOLLOWS: Grip = Grip {
@@ -156,7 +158,8 @@ mod tests {
     fn a_brush_is_set_down_and_stays_across_its_stroke() {
         for degrees in [0.0_f64, 37.0, 90.0, 180.0, -120.0] {
             let along = degrees.to_radians();
-            let all = stroke(&FOLLOWS, |way| [way * along.cos(), way * along.sin()]);
+            let (sine, cosine) = sin_cos(along);
+            let all = stroke(&FOLLOWS, |way| [way * cosine, way * sine]);
             let places = pressed(&all);
             assert_eq!(places.len(), 40, "no place is lost");
             for place in places {
@@ -170,8 +173,8 @@ mod tests {
     fn in_a_curve_it_turns_evenly_and_by_the_shorter_way() {
         let radius = 0.01;
         let all = stroke(&FOLLOWS, |way| {
-            let angle = way / radius;
-            [radius * angle.sin(), radius * (1.0 - angle.cos())]
+            let (sine, cosine) = sin_cos(way / radius);
+            [radius * sine, radius * (1.0 - cosine)]
         });
         let places = pressed(&all);
         for pair in places.windows(2) {

@@ -330,8 +330,8 @@ fn scene_with_palette() -> Scene {
 /// That desk with the canvas tilted about its lower edge by 20°.
 fn tilted() -> Scene {
     let mut scene = scene_with_palette();
-    let half = 10_f64.to_radians();
-    scene.surfaces[0].pose.orientation = [half.sin(), 0.0, 0.0, half.cos()];
+    let (sine, cosine) = maulstick_num::sin_cos(10_f64.to_radians());
+    scene.surfaces[0].pose.orientation = [sine, 0.0, 0.0, cosine];
     scene
 }
 
