@@ -56,14 +56,14 @@ impl Arbiter {
             heard_ns: now_ns,
         };
         self.devices.insert(name.to_owned(), device);
+        // In the air silence is rest. In a stroke it is loss: whoever is heard next lifts the brush.
         let held = self
             .active
             .take()
             .filter(|active| stroke == Stroke::None || self.devices.contains_key(active));
-        let keeps = stroke == Stroke::GoesOn
-            && held
-                .as_ref()
-                .is_some_and(|active| self.devices[active].range == Range::Near);
+        let heard = held.as_ref().and_then(|active| self.devices.get(active));
+        let keeps =
+            stroke == Stroke::GoesOn && heard.is_some_and(|device| device.range == Range::Near);
         self.active = if keeps {
             held
         } else {
@@ -140,5 +140,9 @@ mod tests {
             GoesOn,
             SILENCE_NS / 1_000_000
         ));
+        let mut arbiter = Arbiter::default();
+        assert!(hear(&mut arbiter, PEN, Near, None, 0));
+        let lifts = hear(&mut arbiter, MOUSE, Away, GoesOn, SILENCE_NS / 1_000_000);
+        assert!(lifts, "it lifts the brush");
     }
 }

@@ -13,7 +13,7 @@ pub struct Mark {
 }
 
 /// Size of the panel of a brush's marks, mm.
-pub const PANEL_MM: [f64; 2] = [290.0, 52.0];
+pub const PANEL_MM: [f64; 2] = [super::MARKS_MM, 52.0];
 
 /// A stroke along points, whose brush leads with its broad side across the way; `edge` turns it on
 /// its edge.

@@ -45,6 +45,8 @@ const MOST_PIXELS: usize = 100_000_000;
 const BRUSH: &str = "main";
 /// The share of its head's length by which full pressure presses a brush in.
 const DEPTH_SHARE: f64 = 0.5;
+/// Width of a panel of marks, mm.
+const MARKS_MM: f64 = 290.0;
 /// Width of that brush, mm.
 const ONE_STROKE_MM: f64 = 13.5;
 /// The two colours of a double-loaded brush.
@@ -213,8 +215,7 @@ pub fn one_stroke_panel(
         file.clone(),
         library,
     )?;
-    let round = file.length_share([1.0, 0.0]) < 0.9;
-    for gesture in one_stroke::marks(file.head.width_mm, round) {
+    for gesture in one_stroke::marks(file) {
         let load = Load {
             mixture: mixture_of(DOUBLE[0])?,
             beside: Some(mixture_of(DOUBLE[1])?),

@@ -8,20 +8,27 @@ use std::f64::consts::PI;
 
 use maulstick_num::{cos, sin};
 
+use maulstick_brush::BrushFile;
+
 use super::gesture::{Gesture, Moment, ease, swell};
 
 /// Size of the panel of the six marks, mm.
-pub const PANEL_MM: [f64; 2] = [290.0, 52.0];
+pub const PANEL_MM: [f64; 2] = [super::MARKS_MM, 52.0];
 
-/// The marks in order, for a brush of this width: each in a sixth of the panel. A brush that is `round` at its corners
-/// cannot turn on one: its petal is pressed and pulled to a point, and five of these are its shell.
-pub fn marks(width_mm: f64, round: bool) -> [Gesture; 6] {
+/// Length of the corner bristles, by the longest, below which a brush cannot turn on a corner.
+const ROUND_CORNERS: f64 = 0.9;
+
+/// The marks of a brush in order, each in a sixth of the panel. One with round corners cannot turn on them: its petal is
+/// pressed and pulled to a point, and five of these are its shell.
+pub fn marks(file: &BrushFile) -> [Gesture; 6] {
+    let width_mm = file.head.width_mm;
+    let is_round = file.length_share([1.0, 0.0]) < ROUND_CORNERS;
     let place = |i: usize| {
         let across = PANEL_MM[0] / 6.0;
         [across * (i as f64 + 0.5), 0.5 * PANEL_MM[1]]
     };
-    let (first, third) = if round {
-        (pulled(place(0), 1), pulled(place(2), 5))
+    let (first, third) = if is_round {
+        (pulled_petals(place(0), 1), pulled_petals(place(2), 5))
     } else {
         (petal(place(0), width_mm), shell(place(2), width_mm))
     };
@@ -36,7 +43,7 @@ pub fn marks(width_mm: f64, round: bool) -> [Gesture; 6] {
 }
 
 /// Petals around a point, each pressed outside, pulled inward and lifted to its point.
-fn pulled(middle: [f64; 2], petals: u32) -> Gesture {
+fn pulled_petals(middle: [f64; 2], petals: u32) -> Gesture {
     let base = [middle[0], middle[1] - 12.0];
     Gesture {
         seconds: 1.2 * f64::from(petals),

@@ -4,9 +4,9 @@ use super::gesture::{Gesture, Moment, ease, swell};
 use super::marks::stroke;
 
 /// Size of the panel, mm.
-pub const PANEL_MM: [f64; 2] = [290.0, 40.0];
+pub const PANEL_MM: [f64; 2] = [super::MARKS_MM, 40.0];
 
-/// Two bands of colour that meet in the middle of the panel, with their mixtures.
+/// Two bands of colour that meet in the middle of the panel, each painted there and back, with their mixtures.
 pub fn bands() -> Vec<(&'static str, Gesture)> {
     let band = |y: f64, [from, to]: [f64; 2]| {
         let way = vec![[from, y], [0.5 * (from + to), y], [to, y]];
@@ -17,7 +17,7 @@ pub fn bands() -> Vec<(&'static str, Gesture)> {
     let way = |x: f64| [x, PANEL_MM[0] - x];
     [(blue, 29.0), (yellow, 11.0)]
         .into_iter()
-        .flat_map(|(mixture, y)| [12.0, 278.0].map(|x| (mixture, band(y, way(x)))))
+        .flat_map(|(mixture, y)| [12.0, PANEL_MM[0] - 12.0].map(|x| (mixture, band(y, way(x)))))
         .collect()
 }
 

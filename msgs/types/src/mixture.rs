@@ -6,8 +6,8 @@ use std::str::FromStr;
 use crate::command::{PAINT_NAME_MAX, PARTS_MAX};
 use crate::wire::define::wire_struct;
 
-/// Shares that sum to 1 within this are whole.
-const ROUNDED: f64 = 1e-3;
+/// Largest difference from 1 of the sum of shares that counts as rounding.
+const SUM_TOLERANCE: f64 = 1e-3;
 
 wire_struct! {
     /// One paint of a mixture.
@@ -20,7 +20,7 @@ wire_struct! {
 }
 
 wire_struct! {
-    /// Paints and their shares by volume; the shares sum to 1 within 1e-3.
+    /// Paints and their shares by volume; the shares sum to 1 up to rounding.
     #[serde(try_from = "Parts")]
     pub struct Mixture {
         /// At least one part, no paint twice.
@@ -108,7 +108,7 @@ impl Mixture {
             return Err(MixtureError::Name(length));
         }
         for (place, part) in self.parts.iter().enumerate() {
-            if !(part.share.is_finite() && part.share > 0.0) {
+            if !is_share(part.share) {
                 return Err(MixtureError::Share {
                     paint: part.paint.clone(),
                     share: part.share.to_string(),
@@ -124,7 +124,7 @@ impl Mixture {
             }
         }
         let sum: f64 = self.parts.iter().map(|part| part.share).sum();
-        if (sum - 1.0).abs() > ROUNDED {
+        if (sum - 1.0).abs() > SUM_TOLERANCE {
             return Err(MixtureError::Sum {
                 mixture: self.to_string(),
                 sum,
@@ -142,16 +142,17 @@ impl FromStr for Mixture {
     fn from_str(text: &str) -> Result<Self, MixtureError> {
         let mut parts = Vec::new();
         for part in text.split(',') {
-            let (paint, share) = named(part.trim());
+            let (paint, share) = paint_and_share(part.trim());
             let share = match share {
                 None if !text.contains(',') => 1.0,
                 _ => {
                     let number = share.and_then(|share| share.parse().ok());
-                    let counts = |share: &f64| share.is_finite() && *share > 0.0;
-                    number.filter(counts).ok_or_else(|| MixtureError::Share {
-                        paint: paint.to_owned(),
-                        share: share.unwrap_or_default().to_owned(),
-                    })?
+                    number
+                        .filter(|share| is_share(*share))
+                        .ok_or_else(|| MixtureError::Share {
+                            paint: paint.to_owned(),
+                            share: share.unwrap_or_default().to_owned(),
+                        })?
                 }
             };
             parts.push(Part {
@@ -160,7 +161,7 @@ impl FromStr for Mixture {
             });
         }
         let sum: f64 = parts.iter().map(|part| part.share).sum();
-        if (sum - 1.0).abs() > ROUNDED {
+        if (sum - 1.0).abs() > SUM_TOLERANCE {
             parts.iter_mut().for_each(|part| part.share /= sum);
         }
         let mixture = Self { parts };
@@ -169,8 +170,13 @@ impl FromStr for Mixture {
     }
 }
 
+/// True for a share that a part can have.
+fn is_share(share: f64) -> bool {
+    share.is_finite() && share > 0.0
+}
+
 /// The paint of a part and its share: `Cobalt Blue=2`, `2 Cobalt Blue`, or the paint alone.
-fn named(part: &str) -> (&str, Option<&str>) {
+fn paint_and_share(part: &str) -> (&str, Option<&str>) {
     if let Some((paint, share)) = part.split_once('=') {
         return (paint.trim(), Some(share.trim()));
     }

@@ -1,8 +1,8 @@
 //! Errors of edits. They become words where a person reads them: a reply has the sentence and the advice, and each front
 //! end has its own words for that.
 
-use maulstick_types::command::Outcome;
 use maulstick_types::command::advice::{Advice, choice};
+use maulstick_types::command::{CELLS_M, Outcome};
 use maulstick_types::scene::LightError;
 use maulstick_types::values::ValueError;
 use maulstick_types::{MixtureError, Region};
@@ -305,7 +305,10 @@ impl EditError {
             Self::Heights => say("import it as a ground, which keeps its colours"),
             Self::Colours => say("import it as a tooth, which keeps it as 16-bit heights"),
             Self::Cells(_) => say("choose 1 to 65536 cells across and up"),
-            Self::CellSize(_) => say("choose cells of 0.01 to 10 mm"),
+            Self::CellSize(_) => {
+                let [least, most] = [CELLS_M.start(), CELLS_M.end()].map(|m| 1e3 * m);
+                Advice::say(format!("choose cells of {least} to {most} mm"))
+            }
             Self::Damaged(_) => Advice::Recover,
         }
     }

@@ -254,7 +254,9 @@ impl Document {
     #[must_use]
     pub fn fault(&self) -> Option<(String, Advice)> {
         let queues = self.shared.lock();
-        queues.fault.as_ref().or(queues.notice.as_ref()).cloned()
+        let notice = queues.notice.clone();
+        let notice = notice.map(|(_, what, advice)| (what, advice));
+        queues.fault.clone().or(notice)
     }
 
     /// Updates the path after the file was removed and the painting continued in another one.

@@ -67,7 +67,7 @@ impl DocumentError {
     /// What to do about it.
     #[must_use]
     pub fn advice(&self) -> Advice {
-        Advice::say(match self {
+        let words = match self {
             Self::NoPainting => return Advice::NamePainting,
             Self::Missing => return Advice::BeginPainting,
             Self::Damaged(_) => return Advice::Recover,
@@ -83,7 +83,8 @@ impl DocumentError {
             Self::Taken => "give another name: nothing is written over",
             Self::Vanished(_) => "save it under another name now: until then it is in memory alone",
             Self::Other(_) => "check the path and the disk",
-        })
+        };
+        Advice::say(words)
     }
 }
 

@@ -9,6 +9,7 @@ use maulstick_canvas::relief::Relief;
 use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_canvas::relief::tooth_picture::PictureTooth;
 use maulstick_optics::PaintLibrary;
+use maulstick_types::command::CELLS_M;
 use maulstick_types::scene::{
     CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind, default_model,
 };
@@ -197,7 +198,7 @@ pub(crate) fn check_size(cells: [u32; 2], cell_m: f64) -> Result<(), EditError> 
     if cells.iter().any(|cells| !(1..=65_536).contains(cells)) {
         return Err(EditError::Cells(cells));
     }
-    match (1e-5..=1e-2).contains(&cell_m) {
+    match CELLS_M.contains(&cell_m) {
         true => Ok(()),
         false => Err(EditError::CellSize(cell_m * 1e3)),
     }

@@ -8,6 +8,7 @@ mod studio;
 use std::path::Path;
 
 use easel::Easel;
+use maulstick_document::tables::schema::VERSION;
 use maulstick_document::{Access, DocumentSettings};
 use maulstick_salvage::{SalvageReport, recover};
 use rusqlite::Connection;
@@ -44,8 +45,11 @@ fn a_wrong_bit_in_one_copy_of_the_state_costs_nothing() {
 #[test]
 fn a_newer_programs_painting_is_not_called_whole() {
     let folder = tempfile::tempdir().expect("a folder");
-    let newer = "PRAGMA journal_mode = DELETE; PRAGMA user_version = 3";
-    let report = recovered(folder.path(), newer);
-    assert_eq!(report.format, Some(3));
+    let newer = format!(
+        "PRAGMA journal_mode = DELETE; PRAGMA user_version = {}",
+        VERSION + 1
+    );
+    let report = recovered(folder.path(), &newer);
+    assert_eq!(report.format, Some(VERSION + 1));
     assert!(!report.is_whole());
 }

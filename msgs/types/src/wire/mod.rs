@@ -6,6 +6,8 @@
 //! | [`schema`] | field tables and their hash |
 //! | [`topics`] | the key expressions of a rig |
 //! | `define` | the macro that makes struct, codec and field table of one definition |
+//! | `codec` | bincode, always with a limit |
+//! | `plain` | text of others made safe for a line |
 //! | `catalogue` | all messages |
 
 pub(crate) mod catalogue;

@@ -1,13 +1,13 @@
 //! The brush that follows a stylus: samples in, solved states out.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use maulstick_num::geometry::Rigid;
 use maulstick_types::Origin;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
 use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::stylus::{StylusPose, StylusSample};
 
-use crate::desk::{Desk, HOVER_M, Obstacle, Plane, aim, ferrule};
+use crate::desk::{Desk, Obstacle, Plane, aim, ferrule};
 use crate::file::BrushFile;
 use crate::handle_path::{HandlePath, PathSegment, Sampled};
 use crate::head_solver::{HeadSolver, SolvedHead, settings_of};
@@ -33,10 +33,6 @@ const MOST_SOLVES_NS: f64 = 1e8;
 /// Trial landings of a pen that find its mark: an upright head may bend to another side once its handle stands beside
 /// the point.
 const LANDINGS: usize = 2;
-/// Rises of a hovering brush at most: from over a tilted canvas a joint may come over the palette.
-const RISES: usize = 4;
-/// Surfaces steeper to each other than this cosine are no ground to hover over.
-const LEAST_COSINE: f64 = 0.1;
 /// Largest number of times that a piece of the path is halved.
 const SPLITS: u32 = 2;
 
@@ -236,29 +232,6 @@ impl BrushModel {
         tracked.newest = here;
         self.tracked = Some(tracked);
         solves
-    }
-
-    /// Lifts the brush of a pen in the air until each joint of its head is [`HOVER_M`] above what lies under it: a wide
-    /// head that leans reaches lower than its middle, and to the palette beside the canvas.
-    fn hover(&self, brush: &mut Rigid, plane: &Plane) {
-        let Some(desk) = &self.desk else { return };
-        let up = plane.normal();
-        let lacking = |joint: DVec3| {
-            let in_desk = plane.to_desk.point(joint);
-            let lacks = |below: &Plane| {
-                let below = below.half_space();
-                (HOVER_M - below.gap(in_desk)) / below.normal.dot(up).max(LEAST_COSINE)
-            };
-            desk.below(in_desk).map(lacks).fold(0.0, f64::max)
-        };
-        for _ in 0..RISES {
-            let joints = self.tuft.joints_at_rest(brush).into_iter();
-            let rise = joints.map(lacking).fold(0.0, f64::max);
-            if rise <= 0.0 {
-                break;
-            }
-            brush.translation.z += rise;
-        }
     }
 
     /// Begins another stroke with a head that is bent as it was before a pause in contact: one that
@@ -510,5 +483,6 @@ impl BrushModel {
 }
 
 mod force;
+mod hover;
 #[cfg(test)]
 mod tests;

@@ -3,9 +3,10 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::{DocumentThread, Part, Retry};
 use maulstick_types::command::advice::Advice;
 
+use super::queues::NoticeKind;
+use super::{DocumentThread, Part, Retry};
 use crate::error::DocumentError;
 use crate::file::database::{Access, Database};
 use crate::file::relocate;
@@ -39,7 +40,7 @@ impl DocumentThread {
                 tracing::error!("{what}; {help}");
                 let mut queues = self.shared.lock();
                 queues.moved_to = Some(to);
-                queues.notice = Some((what, Advice::say(help)));
+                queues.notice = Some((NoticeKind::Moved, what, Advice::say(help)));
             }
             Err(error) => {
                 let error = DocumentError::Vanished(format!(
@@ -82,12 +83,11 @@ impl DocumentThread {
     /// Sets or clears the notice about a hard link to the file.
     fn note_links(&self, is_linked: bool) {
         let mut queues = self.shared.lock();
-        let notice = queues.notice.as_ref();
-        let is_noted = notice.is_some_and(|(_, help)| *help == Advice::say(LINK_ADVICE));
-        if is_linked && notice.is_none() {
+        let is_noted = matches!(queues.notice, Some((NoticeKind::Linked, ..)));
+        if is_linked && queues.notice.is_none() {
             let what = format!("{} has a second name, a hard link", self.path.display());
             tracing::warn!("{what}; {LINK_ADVICE}");
-            queues.notice = Some((what, Advice::say(LINK_ADVICE)));
+            queues.notice = Some((NoticeKind::Linked, what, Advice::say(LINK_ADVICE)));
         } else if !is_linked && is_noted {
             queues.notice = None;
         }

@@ -56,9 +56,18 @@ pub(crate) struct Queues {
     /// Why nothing is written at present, with advice.
     pub(crate) fault: Option<(String, Advice)>,
     /// Notice about the file, with advice, although everything is written.
-    pub(crate) notice: Option<(String, Advice)>,
+    pub(crate) notice: Option<(NoticeKind, String, Advice)>,
     /// File in which the painting continues after its own was removed.
     pub(crate) moved_to: Option<PathBuf>,
+}
+
+/// Subject of a notice about the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum NoticeKind {
+    /// The painting goes on in another file.
+    Moved,
+    /// The file has a second name, a hard link.
+    Linked,
 }
 
 impl Queues {

@@ -49,7 +49,7 @@ impl Table {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut notes = Vec::new();
         let mut found: Option<Self> = None;
-        let mut separator = b',';
+        let mut separator = ',';
         for (line, row) in text.lines().enumerate().map(|(i, row)| (i + 1, row.trim())) {
             if let Some(comment) = row.trim_start_matches('"').strip_prefix('#') {
                 notes.extend(note(line, comment));
@@ -70,7 +70,7 @@ impl Table {
                     heading_line: line,
                     rows: Vec::new(),
                     notes: Vec::new(),
-                    decimal_comma: separator != b',',
+                    decimal_comma: separator != ',',
                 });
                 continue;
             };
@@ -137,25 +137,36 @@ fn note(line: usize, comment: &str) -> Option<Note> {
 }
 
 /// Whichever of the separators stands most often in the headings.
-fn separator_of(headings: &str) -> u8 {
-    let count = |separator: u8| headings.bytes().filter(|byte| *byte == separator).count();
-    [b',', b';', b'\t']
+fn separator_of(headings: &str) -> char {
+    let count = |separator: char| headings.chars().filter(|c| *c == separator).count();
+    [',', ';', '\t']
         .into_iter()
         .rev()
         .max_by_key(|separator| count(*separator))
-        .unwrap_or(b',')
+        .unwrap_or(',')
 }
 
-/// Cells of a line, without surrounding blanks and quotes.
-fn cells(row: &str, separator: u8) -> Vec<String> {
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .delimiter(separator)
-        .trim(csv::Trim::All)
-        .from_reader(row.as_bytes());
-    let row = reader.records().next().and_then(Result::ok);
-    let cells = row.iter().flatten();
-    cells.map(str::to_owned).collect()
+/// Cells of a line; within quotes a separator is text and two quotes are one.
+fn cells(row: &str, separator: char) -> Vec<String> {
+    let mut cells = vec![String::new()];
+    let mut quoted = false;
+    let mut letters = row.chars().peekable();
+    while let Some(letter) = letters.next() {
+        let last = cells.len() - 1;
+        match letter {
+            '"' if quoted && letters.peek() == Some(&'"') => {
+                letters.next();
+                cells[last].push('"');
+            }
+            '"' => quoted = !quoted,
+            _ if letter == separator && !quoted => cells.push(String::new()),
+            _ => cells[last].push(letter),
+        }
+    }
+    for cell in &mut cells {
+        *cell = cell.trim().to_owned();
+    }
+    cells
 }
 
 #[cfg(test)]
@@ -175,6 +186,14 @@ mod tests {
             assert_eq!(table.notes[0].key, "surface");
             assert_eq!(table.notes[0].value, "0.03, 0.65");
         }
+    }
+
+    #[test]
+    fn quotes_count_after_blanks_too() {
+        let text = "sample, White, 380\n \"a, b\", 1, 0.5\nx, \"d, \"\"e\"\"\", 1\n";
+        let table = Table::parse(text).expect("a table");
+        assert_eq!(table.rows[0].cells, ["a, b", "1", "0.5"]);
+        assert_eq!(table.rows[1].cells, ["x", "d, \"e\"", "1"]);
     }
 
     #[test]

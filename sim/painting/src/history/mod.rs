@@ -22,6 +22,7 @@ pub use crate::ledger::Booked;
 pub const QUOTA: u64 = 2 << 30;
 /// The newest steps, which are never merged.
 const APART: usize = 16;
+
 /// Steps that can be undone and redone.
 #[derive(Debug)]
 pub struct History {

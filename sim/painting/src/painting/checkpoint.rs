@@ -35,7 +35,7 @@ impl Painting {
     /// Changes since the last call, where the newest tile version was `since`.
     pub fn checkpoint(&mut self, since: u64) -> Checkpoint {
         self.commit();
-        let loads = self.rest().loads;
+        let loads = self.brushes.load_pages(&self.surfaces.pager);
         let (mut steps, gone_steps) = self.history.take_touched();
         let open = self.open_steps();
         let open_steps = self.history.open().map(|step| OpenStepSnapshot {

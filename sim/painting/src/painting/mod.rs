@@ -88,7 +88,6 @@ impl Painting {
             versions: Versions::default(),
             clock: Clock::default(),
         };
-        painting.optics.note(&painting.scene);
         if setup.exposure.is_none() {
             painting.expose();
         }

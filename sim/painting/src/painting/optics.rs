@@ -50,17 +50,18 @@ impl Optics {
         let mut look = Appearance::new(Studio::new(&settings, library.paints()));
         for (place, slot) in scene.paints.iter().enumerate() {
             let paint = library.find(&slot.name).map_err(paint_error)?;
-            paint_slot(&mut look.studio, paint, slot.file_hash);
+            look.studio.add(paint);
             if paint.is_thinner() {
                 look.thinner = Some(place);
             }
         }
-        look.set_layers(&scene.layers);
-        Ok(Self {
+        let mut optics = Self {
             library,
             look: Arc::new(look),
             assets,
-        })
+        };
+        optics.set_layers(scene);
+        Ok(optics)
     }
 
     /// A surface before anything is painted on it; `relief` is that of before, if it is known.
@@ -129,8 +130,8 @@ impl Optics {
     ) -> Result<Vec<SlotShares>, EditError> {
         let known = (scene.paints.clone(), Arc::clone(&self.look));
         let slots = mixtures.iter().map(|mixture| self.slots(scene, mixture));
-        let slots: Result<_, _> = slots.collect();
-        if Result::is_err(&slots) {
+        let slots: Result<Vec<SlotShares>, EditError> = slots.collect();
+        if slots.is_err() {
             (scene.paints, self.look) = known;
         }
         slots

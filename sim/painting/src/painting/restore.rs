@@ -76,7 +76,7 @@ impl Painting {
             }
         }
         let brushes = Brushes::restored(kept.brushes, &restored.loads, &surfaces)?;
-        let (open, steps) = (restored.steps.into_iter())
+        let (open, steps): (Vec<Step>, Vec<Step>) = (restored.steps.into_iter())
             .partition(|step| kept.open_steps.iter().any(|open| open.step == step.id));
         let rest = NonTileState {
             loads: restored.loads,
@@ -85,7 +85,6 @@ impl Painting {
             makes: makes(&scene),
             tops: kept.tops.clone(),
         };
-        let open: Vec<Step> = open;
         let reopened = |step: Step| {
             let mut known = kept.open_steps.iter();
             let known = known.find(|open| open.step == step.id);
@@ -101,7 +100,7 @@ impl Painting {
         let open = open.into_iter().map(reopened).collect();
         let position = (kept.step, kept.undone);
         let history = History::restored(position, steps, open, kept.quota);
-        let mut painting = Self {
+        Ok(Self {
             scene,
             optics,
             surfaces,
@@ -115,8 +114,6 @@ impl Painting {
             history,
             versions: Versions::restored(restored.named, kept.line),
             clock: kept.clock,
-        };
-        painting.optics.note(&painting.scene);
-        Ok(painting)
+        })
     }
 }

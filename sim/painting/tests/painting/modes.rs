@@ -9,7 +9,7 @@ use maulstick_types::name_hash;
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE};
 use maulstick_types::values::{BrushName, FilmThickness, StainThickness};
 
-use crate::studio::{BRUSH, fill, load, mixture, painting, solve, state};
+use crate::studio::{BRUSH, fill, load, painting, solve, state};
 
 const BLUE: &str = "Ultramarine Blue";
 const WHITE: &str = "Titanium White";
@@ -309,15 +309,11 @@ fn a_sized_canvas_is_brushed_bare_and_another_keeps_a_stain() {
 fn piles_deplete_or_last_as_the_painter_says() {
     let taken = |last: bool| {
         let mut easel = Easel::new();
-        let white = mixture(WHITE);
         easel
             .painting
             .apply(Fill {
-                paint: FillPaint::Mixture {
-                    mixture: white.clone(),
-                },
-                thickness: FilmThickness::new(3e-4).expect("in range"),
                 surface: PALETTE,
+                ..fill(WHITE, 300.0)
             })
             .expect("laid");
         easel
@@ -361,15 +357,11 @@ fn the_palette_fills_the_reservoir() {
     let films = films / f64::from(easel.carried());
     let inside = |surface: u32, at: [f64; 2]| {
         let mut easel = Easel::new();
-        let white = mixture(WHITE);
         easel
             .painting
             .apply(Fill {
-                paint: FillPaint::Mixture {
-                    mixture: white.clone(),
-                },
-                thickness: FilmThickness::new(5e-4).expect("in range"),
                 surface,
+                ..fill(WHITE, 500.0)
             })
             .expect("laid");
         easel.stroke(surface, at);
@@ -429,17 +421,7 @@ fn narrow_surfaces_are_painted_on() {
 fn what_lies_under_the_brush_is_told() {
     let under = |text: &str| {
         let mut easel = Easel::new();
-        let film = mixture(text);
-        easel
-            .painting
-            .apply(Fill {
-                paint: FillPaint::Mixture {
-                    mixture: film.clone(),
-                },
-                thickness: FilmThickness::new(1e-4).expect("in range"),
-                surface: CANVAS,
-            })
-            .expect("laid");
+        easel.painting.apply(fill(text, 100.0)).expect("laid");
         easel.middle();
         easel.painting.under_brush(name_hash(BRUSH))
     };

@@ -24,6 +24,8 @@ const EDGE: f32 = 0.7;
 pub(crate) struct Board {
     /// The corners.
     pub corners: [Vec2; 3],
+    /// Radii of its corners, pixels: lower left, lower right, upper left, upper right.
+    pub radii: [f32; 4],
 }
 
 /// Part of the desk on which a shadow falls.
@@ -45,6 +47,7 @@ pub(crate) struct Chain {
     corner_of_board: [f32; 2],
     board: [f32; 4],
     shaded: [f32; 4],
+    radii: [f32; 4],
     corner: [f32; 4],
     sides: [f32; 4],
     nodes: [[f32; 4]; NODES],
@@ -129,6 +132,7 @@ impl Chain {
         self.corner_of_board = corner.into();
         self.board = [up.y / area, -up.x / area, -right.y / area, right.x / area];
         self.shaded[0] = shaded;
+        self.radii = board.radii;
         self
     }
 

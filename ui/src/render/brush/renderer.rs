@@ -215,8 +215,10 @@ fn board(plane: &Plane, below: &Below<'_>) -> Board {
         let off = (at - below.view.area.min) * below.pixels_per_point;
         Vec2::new(off.x, off.y)
     };
+    let per_m = plane.zoom * below.view.scale * f64::from(below.pixels_per_point);
     Board {
         corners: [corner(0.0, 0.0), corner(width, 0.0), corner(0.0, height)],
+        radii: plane.radii_m.map(|radius_m| (radius_m * per_m) as f32),
     }
 }
 

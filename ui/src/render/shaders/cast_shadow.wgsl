@@ -18,6 +18,8 @@ struct Chain {
     board: vec4<f32>,
     // x is 1 where only the board is shaded, -1 where all but the board is, 0 where there is none.
     shaded: vec4<f32>,
+    // Radii of the board's corners, pixels: lower left, lower right, upper left, upper right.
+    radii: vec4<f32>,
     // The box that the chain covers: a corner and its two sides, pixels.
     corner: vec4<f32>,
     sides: vec4<f32>,
@@ -81,9 +83,14 @@ fn darkness(at: vec2<f32>) -> f32 {
 fn on_board(at: vec2<f32>) -> f32 {
     let off = at - chain.corner_of_board;
     let place = vec2<f32>(dot(off, chain.board.xy), dot(off, chain.board.zw));
-    let pixels = inverseSqrt(vec2<f32>(dot(chain.board.xy, chain.board.xy), dot(chain.board.zw, chain.board.zw)));
-    let inner = clamp(min(place, 1.0 - place) * pixels + 0.5, vec2<f32>(0.0), vec2<f32>(1.0));
-    return inner.x * inner.y;
+    let sides = inverseSqrt(vec2<f32>(dot(chain.board.xy, chain.board.xy), dot(chain.board.zw, chain.board.zw)));
+    let p = (place - 0.5) * sides;
+    let lower = select(chain.radii.x, chain.radii.y, p.x > 0.0);
+    let upper = select(chain.radii.z, chain.radii.w, p.x > 0.0);
+    let radius = select(lower, upper, p.y > 0.0);
+    let q = abs(p) - 0.5 * sides + radius;
+    let beyond = min(max(q.x, q.y), 0.0) + length(max(q, vec2<f32>(0.0))) - radius;
+    return clamp(0.5 - beyond, 0.0, 1.0);
 }
 
 // Luminance of what lies at a pixel.

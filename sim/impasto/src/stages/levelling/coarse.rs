@@ -18,7 +18,8 @@ impl Round {
             tension: 0.5 * self.tension,
             weight: 2.0 * self.weight,
             most: 2.0 * self.most,
-            // Heights in cells halve on the coarser grid; mobility goes with their cube, so the finer grid's bound is 1/8 there.
+            // Heights in cells halve on the coarser grid, and mobility goes with their cube: the finer grid's bound is
+            // 1/8.
             finer: 0.125 * self.most,
             coarser: self.coarser - 1,
             to_cells: 0.5 * self.to_cells,
