@@ -316,30 +316,19 @@ fn bad_options_are_refused_with_the_nearest_name() {
         &fault(&place, &["render", "d.mcap", "-o", "."], 1),
         &["cannot write"],
     );
-    let seventeen = [
-        "Titanium White",
-        "Hansa Yellow Opaque",
-        "Bismuth Vanadate Yellow",
-        "Diarylide Yellow",
-        "Cadmium Orange",
-        "Pyrrole Orange",
-        "Cadmium Red Light",
-        "Pyrrole Red",
-        "Quinacridone Red",
-        "Quinacridone Magenta",
-        "Dioxazine Purple",
-        "Ultramarine Blue",
-        "Cobalt Blue",
-        "Cerulean Blue",
-        "Phthalo Blue Red Shade",
-        "Phthalo Green Blue Shade",
-        "Bone Black",
-    ];
-    let loads: Vec<&str> = seventeen
+    let row = |name: &str, quantity: &str| {
+        let values = ",0.5".repeat(101);
+        format!("{name},PX,me,{quantity}{values}\n")
+    };
+    let names: Vec<String> = (0..65).map(|number| format!("Own {number}")).collect();
+    let table: String = names
         .iter()
-        .flat_map(|paint| ["--load", paint])
+        .map(|name| row(name, "K") + &row(name, "S"))
         .collect();
-    has(&render(&loads), &["paint 17", "at most 16"]);
+    std::fs::write(place.path("own.csv"), table).expect("written");
+    let loads = names.iter().flat_map(|name| ["--load", name]);
+    let many: Vec<&str> = ["--paints", "own.csv"].into_iter().chain(loads).collect();
+    has(&render(&many), &["paint 65", "at most 64"]);
 }
 
 #[test]

@@ -28,9 +28,11 @@ pub mod stroke;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use maulstick_brush::BrushFile;
+use maulstick_canvas::quantum::SLOTS;
 use maulstick_device::Take;
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::UserError;
@@ -66,6 +68,17 @@ pub enum Act {
     Light(LightChange),
     /// Takes so many steps back.
     Undo(u32),
+}
+
+impl Act {
+    /// The mixtures of paints that it names.
+    fn mixtures_mut(&mut self) -> Vec<&mut Mixture> {
+        match self {
+            Self::Edit(edit) => edit.mixtures_mut(),
+            Self::Take(_, loads) => loads.iter_mut().collect(),
+            _ => Vec::new(),
+        }
+    }
 }
 
 /// A script that is read.
@@ -121,8 +134,16 @@ impl Script {
             canvas_mm: source.canvas_mm(file.get_ref())?,
             ..Self::default()
         };
+        let mut paints = BTreeSet::new();
         for step in steps::listed(source, file.get_ref())? {
-            let act = steps::act(&step, library)?;
+            let mut act = steps::act(&step, library)?;
+            let parts = act.mixtures_mut().into_iter().flat_map(|own| &own.parts);
+            paints.extend(parts.map(|part| part.paint.clone()));
+            if paints.len() > SLOTS {
+                let what = format!("with this step the script has {} paints", paints.len());
+                let help = format!("a painting has at most {SLOTS}: mix it from those before");
+                return Err(UserError::usage(what).help(help).at(step.place()));
+            }
             script.files.extend(acts::file_of(&step)?);
             script.steps.push((step.place(), act));
         }

@@ -14,6 +14,28 @@ fn read_text(text: &str) -> Result<Script, UserError> {
     Script::read(&path, &PaintLibrary::measured().expect("whole"))
 }
 
+#[test]
+fn paints_are_counted_before_any_is_used() {
+    let row = |number: usize, quantity: &str| {
+        format!("P{number},PX,me,{quantity}{}\n", ",0.5".repeat(101))
+    };
+    let table: String = (0..=SLOTS)
+        .map(|number| row(number, "K") + &row(number, "S"))
+        .collect();
+    let library = PaintLibrary::parse(&table).expect("paints");
+    let text = |paints: usize| {
+        let loads: String = (0..paints)
+            .map(|number| format!("{{ load = \"P{number}\" }},\n"))
+            .collect();
+        format!("step = [\n{loads}{{ load = \"P0\" }},\n]\n")
+    };
+    let read = |paints| Script::parse(&text(paints), "day.toml", Path::new(""), &library);
+    read(SLOTS).expect("as many as there is room for");
+    let fault = read(SLOTS + 1).expect_err("one too many");
+    assert!(fault.to_string().contains("65 paints"), "{fault}");
+    assert!(fault.to_string().contains("day.toml:66"), "{fault}");
+}
+
 fn read(steps: &str) -> Result<Script, UserError> {
     read_text(&format!("# a day\nstep = [\n{steps}\n]\n"))
 }

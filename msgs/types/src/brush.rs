@@ -161,7 +161,7 @@ message! {
 message! {
     /// Appearance of the paint on a brush, at most fifteen times a second and only after a change; cached for late
     /// joiners.
-    pub struct BrushLook [version 1, at most 263168 bytes] {
+    pub struct BrushLook [version 2, at most 263172 bytes] {
         /// Strips of the head: all of its file, or the first of them, each of which stands for those nearest to it.
         pub strips: u32,
         /// Samples along a strip, each the mean of its part, from the ferrule.
@@ -170,6 +170,8 @@ message! {
         /// primaries, unclamped) of the film over the hair under the painting's light, unexposed;
         /// then the film's thickness by that of a full one.
         pub samples: serde_bytes::ByteBuf,
+        /// The paint on and inside the head by that of a fully loaded one, 0 to 1.
+        pub full: f32,
     }
 }
 

@@ -198,6 +198,7 @@ fn all() -> String {
             strips: 1,
             along: 1,
             samples: vec![0, 60, 0, 56, 0, 52, 0, 60].into(),
+            full: 0.5,
         }),
         line(&PaintConsumed {
             brushes: vec![BrushCredit {

@@ -48,6 +48,12 @@ pub enum EditError {
     /// A brush without paint.
     #[error("brush '{0}' carries no paint")]
     EmptyBrush(String),
+    /// A place without paint.
+    #[error("no paint lies {:.1} mm from the left edge and {:.1} mm from the lower edge", at_m[0] * 1e3, at_m[1] * 1e3)]
+    NoPaintThere {
+        /// The place, m.
+        at_m: [f64; 2],
+    },
     /// A state with numbers that no brush has.
     #[error("brush '{brush}' sent an invalid state: {fault}")]
     State {
@@ -235,6 +241,7 @@ impl EditError {
             )),
             Self::NoSlot(_) => say("load a brush with it first"),
             Self::EmptyBrush(_) => say("load it first"),
+            Self::NoPaintThere { .. } => say("choose a place with paint, wet or dry"),
             Self::NoBrush { known, .. } => {
                 Advice::say(format!("choose one of: {}", known.join(", ")))
             }

@@ -4,6 +4,11 @@
 //! up to one unit, the most that a cell holds, are exact in f32; sums are exact in integers, so the
 //! ledger balances to zero in whatever order cells are visited.
 
+use std::ops::{Deref, DerefMut};
+
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 /// One thickness unit of the dissertation, m.
 pub const UNIT_M: f64 = 0.025;
 /// Quanta of one unit: the most that a cell holds.
@@ -15,12 +20,61 @@ pub const QUANTUM_M: f64 = UNIT_M / QUANTA_PER_UNIT;
 /// Side of the cell by which travel is measured, m, whatever the painting's own.
 pub const REFERENCE_CELL_M: f64 = 2.5e-4;
 /// Most paints of a painting.
-pub const SLOTS: usize = 16;
+pub const SLOTS: usize = 64;
 
 /// Volume of a quantum on cells of side `cell_m`, m³.
 #[must_use]
 pub fn quantum_m3(cell_m: f64) -> f64 {
     QUANTUM_M * cell_m * cell_m
+}
+
+/// A number for each paint slot that is 0 by default; in a file without the zeros of the last slots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BySlot<T>([T; SLOTS]);
+
+impl<T> From<[T; SLOTS]> for BySlot<T> {
+    fn from(numbers: [T; SLOTS]) -> Self {
+        Self(numbers)
+    }
+}
+
+impl<T: Copy + Default> Default for BySlot<T> {
+    fn default() -> Self {
+        Self([T::default(); SLOTS])
+    }
+}
+
+impl<T> Deref for BySlot<T> {
+    type Target = [T; SLOTS];
+
+    fn deref(&self) -> &[T; SLOTS] {
+        &self.0
+    }
+}
+
+impl<T> DerefMut for BySlot<T> {
+    fn deref_mut(&mut self) -> &mut [T; SLOTS] {
+        &mut self.0
+    }
+}
+
+impl<T: Default + PartialEq + Serialize> Serialize for BySlot<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let last = self.0.iter().rposition(|number| *number != T::default());
+        self.0[..last.map_or(0, |last| last + 1)].serialize(serializer)
+    }
+}
+
+impl<'a, T: Copy + Default + Deserialize<'a>> Deserialize<'a> for BySlot<T> {
+    fn deserialize<D: Deserializer<'a>>(deserializer: D) -> Result<Self, D::Error> {
+        let first = Vec::<T>::deserialize(deserializer)?;
+        let mut all = Self::default();
+        let room = all.0.get_mut(..first.len()).ok_or_else(|| {
+            D::Error::custom(format!("{} paints: there are {SLOTS} at most", first.len()))
+        })?;
+        room.copy_from_slice(&first);
+        Ok(all)
+    }
 }
 
 /// Counts by paint slot.

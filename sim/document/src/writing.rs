@@ -214,7 +214,7 @@ impl<'a, 'b> Writer<'a, 'b> {
             level,
         )?;
         let (base, depth) = base.map_or((0, 0), |(id, depth, _)| (id, depth + 1));
-        let slots = i64::from(planes::mask(&content));
+        let slots = planes::mask(&content) as i64;
         let sum = page_checksum(page.id(), [base, depth, slots], &data);
         self.database
             .connection
@@ -469,7 +469,7 @@ impl<'a, 'b> Writer<'a, 'b> {
     /// Writes a page that was a difference without a base.
     fn rebase(&self, id: u64, content: &Planes) -> Result<(), DocumentError> {
         let data = planes::encode(content, None, self.database.level)?;
-        let slots = i64::from(planes::mask(content));
+        let slots = planes::mask(content) as i64;
         let sum = page_checksum(id, [0, 0, slots], &data);
         let query =
             "UPDATE page SET base = 0, depth = 0, slots = ?2, data = ?3, sum = ?4 WHERE id = ?1";

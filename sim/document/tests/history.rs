@@ -4,6 +4,7 @@ mod studio;
 
 use std::sync::Arc;
 
+use maulstick_canvas::quantum::SLOTS;
 use maulstick_document::{Access, Checkpoint, Document, DocumentSettings};
 use maulstick_painting::Sequencer;
 use maulstick_types::command::Outcome;
@@ -42,7 +43,7 @@ proptest! {
             prints.push(seen(&mut sequencer));
         }
         let store = sequencer.painting().store(0).expect("a canvas");
-        prop_assert_eq!(store.counts(), [0; 16], "all is undone");
+        prop_assert_eq!(store.counts(), [0; SLOTS], "all is undone");
         while let Some(expected) = prints.pop() {
             prop_assert_eq!(seen(&mut sequencer), expected);
             let redone = painter.command(&mut sequencer, Redo { brush: None });
@@ -67,7 +68,7 @@ proptest! {
             seen(&mut sequencer);
         }
         let store = sequencer.painting().store(0).expect("a canvas");
-        prop_assert_eq!(store.counts(), [0; 16], "all is undone");
+        prop_assert_eq!(store.counts(), [0; SLOTS], "all is undone");
         let steps = sequencer.painting().history().steps();
         let apart = steps.skip(1).all(|step| step.operations == 1);
         prop_assert!(apart, "only the oldest are merged");

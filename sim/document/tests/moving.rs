@@ -4,6 +4,7 @@ mod crash_vfs;
 mod easel;
 mod studio;
 
+use maulstick_canvas::quantum::SLOTS;
 use maulstick_types::edits::Undo;
 use std::path::Path;
 use std::sync::Arc;
@@ -110,7 +111,7 @@ fn what_was_in_memory_is_in_the_file_with_its_history() {
     let steps = undo(&mut again.sequencer);
     assert!(steps > 0, "its history is there");
     let store = again.sequencer.painting().store(0).expect("a canvas");
-    assert_eq!(store.counts(), [0; 16], "all is undone");
+    assert_eq!(store.counts(), [0; SLOTS], "all is undone");
     assert!(!unfinished(&path).exists());
 }
 

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 use crash_vfs::{Log, watch};
 use easel::Easel;
+use maulstick_canvas::quantum::SLOTS;
 use maulstick_document::{Access, Document, DocumentSettings};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng as _;
@@ -127,7 +128,7 @@ impl Session {
             .painting()
             .store(0)
             .map(|store| store.counts());
-        if left != Some([0; 16]) {
+        if left != Some([0; SLOTS]) {
             return Err("not all could be undone".to_owned());
         }
         print(&mut easel.sequencer);

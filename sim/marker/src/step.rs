@@ -27,17 +27,17 @@ impl PaintModel for Marker {
         let mut report = footprint.report(step);
         match step.handling.transfer {
             Transfer::Sampler => {
-                report.from_nowhere = sample(footprint, step);
+                report.from_nowhere = sample(footprint, step).into();
                 return report;
             }
-            Transfer::Vacuum => report.lifted = vacuum(footprint, step),
+            Transfer::Vacuum => report.lifted = vacuum(footprint, step).into(),
             Transfer::Paint | Transfer::Marker { .. } => {
                 let given = self.film.lay(footprint, step);
                 self.film.draw(&given, step.load);
             }
             Transfer::Sponge => {
                 let given = self.film.lay(footprint, step);
-                report.from_nowhere = given.map(|count| count as i64);
+                report.from_nowhere = given.map(|count| count as i64).into();
             }
         }
         step.load.count_step();

@@ -2,7 +2,7 @@
 
 use maulstick_brush::head::{Head, HeadPose};
 use maulstick_canvas::own_plane::OwnPlane;
-use maulstick_canvas::quantum::{CELL_MAX, Counts, SLOTS};
+use maulstick_canvas::quantum::{BySlot, CELL_MAX, Counts};
 use maulstick_canvas::window::{Area, Window};
 
 use crate::brush::load::BrushLoad;
@@ -92,9 +92,9 @@ pub struct StepReport {
     /// Those of them that are thinner.
     pub thinner: u64,
     /// By slot, quanta on canvas and brush that came from nowhere, as the brush's mode has it.
-    pub from_nowhere: [i64; SLOTS],
+    pub from_nowhere: BySlot<i64>,
     /// By slot, quanta that were lifted off for good.
-    pub lifted: Counts,
+    pub lifted: BySlot<u64>,
 }
 
 impl StepReport {
@@ -104,7 +104,7 @@ impl StepReport {
         self.wet += other.wet;
         self.thinner += other.thinner;
         maulstick_canvas::quantum::add(&mut self.lifted, &other.lifted);
-        let came = self.from_nowhere.iter_mut().zip(other.from_nowhere);
+        let came = self.from_nowhere.iter_mut().zip(*other.from_nowhere);
         came.for_each(|(sum, came)| *sum += came);
     }
 }

@@ -1,9 +1,9 @@
 //! Loops over planes, compiled for the processor's wide registers where it has them.
 //!
-//! AVX2 adds, multiplies and rounds each number as SSE2 does, and nothing here enables fused
-//! multiply-add, so both ways give the same bytes.
+//! AVX2 and AVX-512 add, multiply and round each number as SSE2 does, and nothing here enables fused
+//! multiply-add, so all ways give the same bytes.
 
-/// Compiles a function twice, for AVX2 and without, and calls what the processor has. What it calls
+/// Compiles a function for AVX-512, for AVX2 and without, and calls what the processor has. What it calls
 /// must be `#[inline(always)]` to gain from it.
 #[macro_export]
 macro_rules! wide {
@@ -19,6 +19,22 @@ macro_rules! wide {
                 #[target_feature(enable = "avx2")]
                 fn wide($($argument: $type),*) {
                     narrow::<$crate::lanes::Avx>($($argument),*);
+                }
+                #[target_feature(enable = "avx512f,avx512vl,avx512bw,avx512dq")]
+                fn widest($($argument: $type),*) {
+                    narrow::<$crate::lanes::Avx>($($argument),*);
+                }
+                if std::arch::is_x86_feature_detected!("avx512f")
+                    && std::arch::is_x86_feature_detected!("avx512vl")
+                    && std::arch::is_x86_feature_detected!("avx512bw")
+                    && std::arch::is_x86_feature_detected!("avx512dq")
+                {
+                    #[allow(unsafe_code, reason = "the processor has what `widest` is compiled for")]
+                    // SAFETY: its sets of AVX-512 were detected on the lines above.
+                    unsafe {
+                        widest($($argument),*);
+                    }
+                    return;
                 }
                 if std::arch::is_x86_feature_detected!("avx2") {
                     #[allow(unsafe_code, reason = "the processor has what `wide` is compiled for")]
@@ -43,6 +59,22 @@ macro_rules! wide {
                 #[target_feature(enable = "avx2")]
                 fn wide($($argument: $type),*) {
                     narrow($($argument),*);
+                }
+                #[target_feature(enable = "avx512f,avx512vl,avx512bw,avx512dq")]
+                fn widest($($argument: $type),*) {
+                    narrow($($argument),*);
+                }
+                if std::arch::is_x86_feature_detected!("avx512f")
+                    && std::arch::is_x86_feature_detected!("avx512vl")
+                    && std::arch::is_x86_feature_detected!("avx512bw")
+                    && std::arch::is_x86_feature_detected!("avx512dq")
+                {
+                    #[allow(unsafe_code, reason = "the processor has what `widest` is compiled for")]
+                    // SAFETY: its sets of AVX-512 were detected on the lines above.
+                    unsafe {
+                        widest($($argument),*);
+                    }
+                    return;
                 }
                 if std::arch::is_x86_feature_detected!("avx2") {
                     #[allow(unsafe_code, reason = "the processor has what `wide` is compiled for")]

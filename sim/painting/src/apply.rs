@@ -3,9 +3,10 @@
 use std::fmt;
 
 use maulstick_canvas::EditError;
+use maulstick_types::Mixture;
 use maulstick_types::edits::{
-    Branch, Clean, Dry, Edit, Fill, Forget, Ground, Handle, Keep, Load, NameLayer, Opacity, Piles,
-    Place, Redo, Relight, ReturnTo, Size, StopDrying, Tooth, Tune, Undo, Wells, Wet,
+    Branch, Clean, Dry, Edit, Fill, Forget, Ground, Handle, Keep, Load, NameLayer, Opacity, Pick,
+    Piles, Place, Redo, Relight, ReturnTo, Size, StopDrying, Tooth, Tune, Undo, Wells, Wet,
 };
 
 use crate::painting::Painting;
@@ -37,6 +38,8 @@ pub enum Applied {
     },
     /// A step was undone or redone.
     Step(String),
+    /// A brush has taken up a mixture.
+    Loaded(Mixture),
     /// A file is written.
     Written(String),
 }
@@ -54,6 +57,7 @@ impl fmt::Display for Applied {
                     cells => write!(f, "; {cells} cells could not hold all of it"),
                 }
             }
+            Self::Loaded(mixture) => write!(f, "{mixture}"),
             Self::Step(what) | Self::Written(what) => f.write_str(what),
         }
     }

@@ -6,17 +6,17 @@
 
 use std::collections::BTreeMap;
 
-use maulstick_canvas::quantum::{Counts, SLOTS, add};
+use maulstick_canvas::quantum::{BySlot, Counts, SLOTS, add};
 use serde::Serialize;
 
 /// Booked paint.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, serde::Deserialize)]
 pub struct Ledger {
-    tube: Counts,
-    cleaner: Counts,
+    tube: BySlot<u64>,
+    cleaner: BySlot<u64>,
     /// Paint given by modes less paint taken by them.
     #[serde(default)]
-    mode: [i64; SLOTS],
+    mode: BySlot<i64>,
 }
 
 impl Ledger {
@@ -40,12 +40,14 @@ impl Ledger {
     #[must_use]
     pub fn since(&self, before: &Self) -> Booked {
         let less = |own: &Counts, before: &Counts| {
-            std::array::from_fn(|slot| own[slot] as i64 - before[slot] as i64)
+            let less: [i64; SLOTS] =
+                std::array::from_fn(|slot| own[slot] as i64 - before[slot] as i64);
+            less.into()
         };
         Booked {
             tube: less(&self.tube, &before.tube),
             cleaner: less(&self.cleaner, &before.cleaner),
-            mode: std::array::from_fn(|slot| self.mode[slot] - before.mode[slot]),
+            mode: std::array::from_fn(|slot| self.mode[slot] - before.mode[slot]).into(),
         }
     }
 
@@ -89,10 +91,10 @@ impl Ledger {
 /// Paint booked over a period, by slot.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, serde::Deserialize)]
 pub struct Booked {
-    tube: [i64; SLOTS],
-    cleaner: [i64; SLOTS],
+    tube: BySlot<i64>,
+    cleaner: BySlot<i64>,
     #[serde(default)]
-    mode: [i64; SLOTS],
+    mode: BySlot<i64>,
 }
 
 impl Booked {
@@ -123,13 +125,13 @@ impl Booked {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Stocks {
     /// On all brushes.
-    pub brush: Counts,
+    pub brush: BySlot<u64>,
     /// On the canvas.
-    pub canvas: Counts,
+    pub canvas: BySlot<u64>,
     /// On the palette.
-    pub palette: Counts,
+    pub palette: BySlot<u64>,
     /// Dried, on canvas and palette.
-    pub dry: Counts,
+    pub dry: BySlot<u64>,
 }
 
 /// The ledger as a file; volumes in m³, what tubes and modes gave is negative, so that all accounts sum

@@ -10,6 +10,7 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use easel::Easel;
+use maulstick_canvas::quantum::SLOTS;
 use maulstick_document::rows::place_number;
 use maulstick_document::tables::checksum::Checksum;
 use maulstick_document::tables::schema::Table;
@@ -273,7 +274,7 @@ proptest! {
         prop_assert_eq!(found.len(), painted.print.len());
         easel.undo_all();
         let store = easel.sequencer.painting().store(0).expect("a canvas");
-        prop_assert_eq!(store.counts(), [0; 16], "all is undone");
+        prop_assert_eq!(store.counts(), [0; SLOTS], "all is undone");
     }
 
     /// A file that was not closed, with its log and what is to be done again.

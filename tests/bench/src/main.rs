@@ -22,6 +22,7 @@
 //! | [`window_latency`] | `latency`: the same in a window |
 
 mod advection;
+mod broad;
 mod brush;
 mod bus;
 mod document;

@@ -1,4 +1,4 @@
-//! Command bar in a lower corner: menu of all commands, undo, redo, help.
+//! Command bar in a lower corner: menu of all commands, undo, redo, help, and what the brush carries.
 
 use eframe::egui::containers::menu::MenuButton;
 use eframe::egui::{
@@ -6,8 +6,9 @@ use eframe::egui::{
     WidgetInfo,
 };
 
+use crate::app::brush_gauge;
 use crate::input::keys::{self, Action, BINDINGS};
-use crate::settings::preferences::Preferences;
+use crate::widgets::context::PanelContext;
 
 /// Entries of the menu, by what they concern.
 const GROUPS: [(&str, &[Action]); 4] = [
@@ -28,6 +29,7 @@ const GROUPS: [(&str, &[Action]); 4] = [
         "Brush",
         &[
             Action::NextBrush,
+            Action::Pick,
             Action::Larger,
             Action::Smaller,
             Action::Follow,
@@ -56,8 +58,8 @@ const GROUPS: [(&str, &[Action]); 4] = [
 const MARGIN: f32 = 6.0;
 
 /// Shows the bar; the action that was chosen.
-pub(super) fn show(context: &Context, preferences: &Preferences) -> Option<Action> {
-    let (corner, inward) = match preferences.left_handed {
+pub(super) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action> {
+    let (corner, inward) = match work.preferences.left_handed {
         false => (Align2::LEFT_BOTTOM, 1.0),
         true => (Align2::RIGHT_BOTTOM, -1.0),
     };
@@ -84,6 +86,7 @@ pub(super) fn show(context: &Context, preferences: &Preferences) -> Option<Actio
                             chosen = Some(action);
                         }
                     }
+                    brush_gauge::show(ui, work);
                 });
             });
         });

@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | `actions` | actions of the painter: keys, clicks and gestures |
 //! | `bar` | menu, undo, redo and help in a corner |
+//! | `brush_gauge` | colours of the brush in the hand, and how full it is |
 //! | `overlay` | what lies over the desk: panels, dialogs, help |
 //! | [`rack`] | the brush rack at the edge |
 //! | `first_run` | the line of help for a new painter |
@@ -39,6 +40,7 @@ use crate::render::display_transform::DisplayTransform;
 use crate::render::frame_reports::Presenter;
 use crate::render::scene::{SceneRenderer, Source};
 use crate::rig::brushes::{BrushTracker, SILENCE_NS};
+use crate::rig::carried_paint::CarriedPaint;
 use crate::rig::dispatcher::CommandDispatcher;
 use crate::rig::health::HealthMonitor;
 use crate::rig::listener::RigListener;
@@ -55,6 +57,7 @@ use crate::widgets::progress::Progress;
 
 mod actions;
 mod bar;
+mod brush_gauge;
 mod first_run;
 pub(crate) mod overlay;
 pub mod rack;
@@ -227,6 +230,10 @@ impl App {
     fn take_in(&mut self, now_ns: u64) {
         self.listener.take_in(now_ns, &mut self.rig);
         self.tracker.take_in(now_ns);
+        for brush in &mut self.rig.brushes {
+            let carries = self.tracker.carries(&brush.name);
+            brush.carries = carries.map(|(coat, head)| CarriedPaint::of(coat, head));
+        }
         let (rig, notifications) = (&mut self.rig, &mut self.notifications);
         self.watch.look(rig, &self.topics, notifications);
         self.scene_renderer.take_in(&mut self.rig);

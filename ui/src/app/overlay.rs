@@ -65,7 +65,7 @@ impl Overlay {
             self.keys = false;
             acts.retain(|act| *act != Action::Keys);
         }
-        acts.extend(bar::show(&context, work.preferences));
+        acts.extend(bar::show(&context, work));
         for act in acts {
             if !self.follow(&context, act, work) {
                 rest.push(act);

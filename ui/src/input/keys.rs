@@ -29,6 +29,8 @@ pub enum Action {
     Larger,
     /// The next brush of the rack.
     NextBrush,
+    /// The brush is loaded with the mixture under it.
+    Pick,
     /// The mouse's brush turned to the left.
     TurnLeft,
     /// The mouse's brush turned to the right.
@@ -79,7 +81,7 @@ const fn key(act: Action, modifiers: Modifiers, key: Key, words: &'static str) -
 }
 
 /// Bindings of keys that act once per press. One with more modifiers comes before the same with fewer.
-pub(crate) const BINDINGS: [Binding; 26] = [
+pub(crate) const BINDINGS: [Binding; 27] = [
     key(
         Action::Palette,
         Modifiers::NONE,
@@ -105,6 +107,12 @@ pub(crate) const BINDINGS: [Binding; 26] = [
         "Larger brush",
     ),
     key(Action::NextBrush, Modifiers::NONE, Key::B, "Next brush"),
+    key(
+        Action::Pick,
+        Modifiers::NONE,
+        Key::I,
+        "Load the brush with the mixture under it",
+    ),
     key(
         Action::TurnLeft,
         Modifiers::NONE,

@@ -261,6 +261,13 @@ impl BrushTracker {
         })
     }
 
+    /// The paint on a brush, if that is known, and the head for which it is.
+    #[must_use]
+    pub fn carries(&self, name: &str) -> Option<(&PaintColour, &Head)> {
+        let known = self.known.get(name)?;
+        Some((known.coat.as_deref()?, &known.head))
+    }
+
     /// The head of a brush.
     #[must_use]
     pub fn head(&self, name: &str) -> Option<&Head> {

@@ -10,9 +10,11 @@
 //! | `thumbnails` | pictures of versions |
 //! | `requests` | commands that wait to be sent |
 //! | `stroke_barrier` | delays a command until the strokes before it are painted |
+//! | `carried_paint` | what a brush carries, for its gauge |
 //! | `dispatcher` | a queue and a thread for each node |
 
 pub mod brushes;
+pub(crate) mod carried_paint;
 pub(crate) mod dispatcher;
 pub(crate) mod force_history;
 pub(crate) mod health;

@@ -13,6 +13,7 @@ use maulstick_types::scene::{BrushHandling, CANVAS, PALETTE, Scene, Surface, Tun
 use maulstick_types::stylus::{StylusInfo, StylusStatus};
 
 use crate::render::display_transform::DisplayTransform;
+use crate::rig::carried_paint::CarriedPaint;
 use crate::rig::force_history::ForceHistory;
 use crate::rig::health::RigEvent;
 use crate::rig::thumbnails::Thumbnails;
@@ -28,6 +29,8 @@ pub struct RigBrush {
     pub asked: Option<BrushFile>,
     /// Command for the paint node once the brush has that file.
     pub then: Option<Command>,
+    /// The paint on it; `None` until that is known.
+    pub carries: Option<CarriedPaint>,
 }
 
 /// An input device of the rig.

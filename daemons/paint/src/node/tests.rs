@@ -6,6 +6,7 @@ use maulstick_appearance::display::WetFilms;
 use maulstick_brush::BrushModel;
 use maulstick_bus::bus::Answer;
 use maulstick_bus::{Faults, MemoryNet};
+use maulstick_canvas::quantum::SLOTS;
 use maulstick_optics::{PaintLibrary, Under};
 use maulstick_painting::PaintingSetup;
 use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
@@ -194,7 +195,7 @@ fn paint_dries_by_the_clock_of_the_node_and_each_tick_is_in_the_journal() {
     let painting = node.sequencer.painting();
     assert!(!painting.is_drying());
     let store = painting.store(CANVAS).expect("a canvas");
-    assert_eq!(store.counts(), [0; 16]);
+    assert_eq!(store.counts(), [0; SLOTS]);
     // A node that stood still catches up bit by bit.
     let before = painting.clock().ticks;
     ask(&mut node, 3, fill);

@@ -11,7 +11,8 @@ mod texts;
 mod ticks;
 
 pub use numbers::{
-    FilmThickness, MarkerFlow, OpacityFactor, Share, StainThickness, Stiffness, Wetness, Zoom,
+    Distance, FilmThickness, MarkerFlow, OpacityFactor, Share, StainThickness, Stiffness, Wetness,
+    Zoom,
 };
 pub use texts::{
     BrushName, BrushToml, LayerName, MaterialName, SpectrumText, VersionName, WholePath,

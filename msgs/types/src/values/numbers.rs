@@ -126,6 +126,10 @@ number! {
     StainThickness(f64) "stain", 1e-6 " µm", "0 to 1000" if |m| STAINS_M.contains(m)
 }
 number! {
+    /// Distance from an edge of a surface, m; mm in texts.
+    Distance(f64) "distance", 1e-3 " mm", "0 to 5000" if |m| (0.0..=5.0).contains(m)
+}
+number! {
     /// Flow of a marker, m of paint per m of its path; µm per mm in texts.
     MarkerFlow(f64) "flow", 1e-3 " µm/mm", ".001 to 100" if |flow| FLOWS.contains(flow)
 }

@@ -344,7 +344,7 @@ impl Database {
             0 => None,
             base => Some(self.planes_at(base as u64, left - 1)?),
         };
-        planes::decode(slots as u32, &data, base.as_ref()).map_err(|what| damaged(&what))
+        planes::decode(slots as u64, &data, base.as_ref()).map_err(|what| damaged(&what))
     }
 
     /// Load of a brush.

@@ -1,10 +1,10 @@
 //! Count planes as bytes: differences, shuffled by significance, compressed.
 //!
-//! A plane is 64×64 counts, row after row from the bottom. What is compressed is, for each slot of the
-//! mask from the lowest, the plane's difference to the same plane of an older page, or without one to
+//! A plane is 64×64 counts, row after row from the bottom. What is compressed is a byte, 1 with planes that the paint
+//! model keeps of its own and 0 without; then, for each slot of the mask from the lowest, the plane's difference to the same plane of an older page, or without one to
 //! the count at its left (the first of a row to the one below it), each as a zigzag number of 32 bits;
-//! of a plane first the low bytes of all differences, then the next ones. Most of these bytes are 0. Planes that the paint
-//! model keeps of its own follow, where the mask has their bit ([`own`]).
+//! of a plane first the low bytes of all differences, then the next ones. Most of these bytes are 0. The model's own
+//! planes follow ([`own`]).
 
 mod own;
 
@@ -13,6 +13,9 @@ use std::sync::Arc;
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::quantum::{CELL_MAX, SLOTS};
 use maulstick_types::paint::TILE;
+
+// A mask has a bit for each slot.
+const _: () = assert!(SLOTS == u64::BITS as usize);
 
 /// zstd's level while the painter paints: a tile in a fraction of a millisecond.
 pub const LEVEL: i32 = 1;
@@ -45,26 +48,24 @@ fn left_or_below(counts: &[i32], cell: usize) -> i32 {
     }
 }
 
-/// Bit of a mask for planes that the model keeps of its own.
-const OWN: u32 = 1 << SLOTS;
-/// Most bytes of such planes.
+/// Most bytes of planes that the model keeps of its own.
 const OWN_MOST: usize = 1 << 28;
 
-/// Bit mask of the slots that planes hold, and the bit for the model's own planes.
+/// Bit mask of the slots that planes hold.
 #[must_use]
-pub fn mask(planes: &Planes) -> u32 {
-    let own = if planes.own().is_empty() { 0 } else { OWN };
-    planes.iter().fold(own, |mask, (slot, _)| mask | 1 << slot)
+pub fn mask(planes: &Planes) -> u64 {
+    planes.iter().fold(0, |mask, (slot, _)| mask | 1 << slot)
 }
 
-/// What is compressed: the counts of the slots of `mask`, and the bytes of the model's own planes.
-fn unpacked(mask: u32, bytes: &[u8]) -> Result<(Vec<u8>, usize), String> {
-    let length = (mask & (OWN - 1)).count_ones() as usize * TILE_CELLS * 4;
-    let most = length + if mask & OWN == 0 { 0 } else { OWN_MOST };
-    let all = zstd::bulk::decompress(bytes, most).map_err(|error| error.to_string())?;
-    let fits = match mask & OWN {
-        0 => all.len() == length,
-        _ => all.len() > length,
+/// What is compressed, and where in it the bytes of the model's own planes begin.
+fn unpacked(mask: u64, bytes: &[u8]) -> Result<(Vec<u8>, usize), String> {
+    let length = 1 + mask.count_ones() as usize * TILE_CELLS * 4;
+    let all =
+        zstd::bulk::decompress(bytes, length + OWN_MOST).map_err(|error| error.to_string())?;
+    let fits = match all.first() {
+        Some(0) => all.len() == length,
+        Some(1) => all.len() > length,
+        _ => false,
     };
     match fits {
         true => Ok((all, length)),
@@ -77,8 +78,10 @@ fn unpacked(mask: u32, bytes: &[u8]) -> Result<(Vec<u8>, usize), String> {
 /// # Errors
 /// The error of the compressor.
 pub fn encode(planes: &Planes, base: Option<&Planes>, level: i32) -> std::io::Result<Vec<u8>> {
-    let mut shuffled = vec![0u8; planes.len() * TILE_CELLS * 4];
-    for ((slot, plane), bytes) in planes.iter().zip(shuffled.chunks_exact_mut(TILE_CELLS * 4)) {
+    let mut shuffled = vec![0u8; 1 + planes.len() * TILE_CELLS * 4];
+    shuffled[0] = u8::from(!planes.own().is_empty());
+    let parts = shuffled[1..].chunks_exact_mut(TILE_CELLS * 4);
+    for ((slot, plane), bytes) in planes.iter().zip(parts) {
         let now = counts(plane);
         let old = base.map(|base| find(base, *slot).map(counts).unwrap_or_default());
         for cell in 0..TILE_CELLS {
@@ -100,7 +103,7 @@ pub fn encode(planes: &Planes, base: Option<&Planes>, level: i32) -> std::io::Re
 ///
 /// # Errors
 /// The defect of the bytes, in words.
-pub fn repack(mask: u32, bytes: &[u8], level: i32) -> Result<Vec<u8>, String> {
+pub fn repack(mask: u64, bytes: &[u8], level: i32) -> Result<Vec<u8>, String> {
     let (shuffled, _) = unpacked(mask, bytes)?;
     zstd::bulk::compress(&shuffled, level).map_err(|error| error.to_string())
 }
@@ -109,13 +112,11 @@ pub fn repack(mask: u32, bytes: &[u8], level: i32) -> Result<Vec<u8>, String> {
 ///
 /// # Errors
 /// The defect of the bytes, in words.
-pub fn decode(mask: u32, bytes: &[u8], base: Option<&Planes>) -> Result<Planes, String> {
-    if mask >> SLOTS > 1 {
-        return Err("it names slots beyond the last one".to_owned());
-    }
+pub fn decode(mask: u64, bytes: &[u8], base: Option<&Planes>) -> Result<Planes, String> {
     let slots: Vec<usize> = (0..SLOTS).filter(|slot| mask >> slot & 1 == 1).collect();
     let (all, length) = unpacked(mask, bytes)?;
     let (shuffled, rest) = all.split_at(length);
+    let shuffled = &shuffled[1..];
     let mut planes = Planes::new();
     for (slot, bytes) in slots.iter().zip(shuffled.chunks_exact(TILE_CELLS * 4)) {
         let old = base.map(|base| find(base, *slot).map(counts).unwrap_or_default());
@@ -202,7 +203,7 @@ mod tests {
             prop_assert_eq!(decode(mask(&now), &bytes, base), Ok(now.clone()));
             if let Some(last) = now.len().checked_sub(1) {
                 let fewer = Planes::from_iter(now[..last].iter().cloned());
-                let other = decode(mask(&fewer) | mask(&now) & OWN, &bytes, base);
+                let other = decode(mask(&fewer), &bytes, base);
                 prop_assert!(other.is_err(), "a wrong mask is seen");
             }
             let packed = repack(mask(&now), &bytes, PACKED_LEVEL).expect("whole");
@@ -210,8 +211,8 @@ mod tests {
         }
 
         #[test]
-        fn no_bytes_make_it_panic(mask in any::<u32>(), bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-            decode(mask & 0x1_ffff, &bytes, None).ok();
+        fn no_bytes_make_it_panic(mask in any::<u64>(), bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+            decode(mask, &bytes, None).ok();
             own::read(&bytes, None).ok();
         }
     }

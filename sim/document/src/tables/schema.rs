@@ -9,9 +9,9 @@ use crate::error::DocumentError;
 /// `application_id` of a painting: "Maul".
 pub const APPLICATION_ID: i32 = 0x4D61_756C;
 /// The schema that this program writes.
-pub const VERSION: i32 = 2;
+pub const VERSION: i32 = 3;
 /// The oldest schema that it reads.
-const OLDEST: i32 = 2;
+const OLDEST: i32 = 3;
 
 /// Every row begins with its table's number, so that rows can be sorted even if the schema is lost, and ends with a
 /// checksum of its other columns.
@@ -143,7 +143,7 @@ pub fn is_foreign(path: &Path) -> Result<bool, DocumentError> {
     Ok(application != APPLICATION_ID && !is_blank(&connection)?)
 }
 
-/// Steps from each older schema to the next; the first, to 2, will be the first here.
+/// Steps from each older schema to the next; the first, to 4, will be the first here.
 const MIGRATIONS: [&str; (VERSION - OLDEST) as usize] = [];
 
 /// Migrates an older painting to the schema of this program; rejects one of a newer program or of before the oldest

@@ -1,18 +1,15 @@
 //! Mixtures from which the search for a colour begins: each paint alone, pairs and triples on a grid of
 //! the logarithms of their ratios.
 
-use maulstick_canvas::quantum::SLOTS;
 use maulstick_num::exp;
 
-use super::films::{Films, Shares};
+use super::films::{Films, MOST_PAINTS, Shares};
 
 /// Bound on ln of a ratio of shares: one part in 1100.
 const FARTHEST: f64 = 7.0;
 /// Places of a pair, and each way of three paints.
 const PAIR_GRID: i32 = 14;
 const TRIPLE_GRID: i32 = 8;
-/// Paints among which triples are sought: their number grows with its cube.
-const MOST_IN_TRIPLES: usize = 16;
 
 /// A mixture and its colour.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +31,7 @@ impl Candidates {
         let mut add = |paints: [usize; 3], logs: [f64; 3]| {
             let parts = logs.map(exp);
             let whole: f64 = parts.iter().sum();
-            let mut shares: Shares = [0.0; SLOTS];
+            let mut shares: Shares = [0.0; MOST_PAINTS];
             for (paint, part) in paints.iter().zip(parts) {
                 shares[*paint] += part / whole;
             }
@@ -51,7 +48,7 @@ impl Candidates {
                 for i in 0..=PAIR_GRID {
                     add([a, b, b], [0.0, on(PAIR_GRID, i), f64::NEG_INFINITY]);
                 }
-                for c in b + 1..count.min(MOST_IN_TRIPLES) {
+                for c in b + 1..count {
                     for i in 0..=TRIPLE_GRID {
                         for j in 0..=TRIPLE_GRID {
                             add([a, b, c], [0.0, on(TRIPLE_GRID, i), on(TRIPLE_GRID, j)]);
@@ -84,7 +81,7 @@ impl Candidates {
         }
         best.iter()
             .map(|(_, candidate)| {
-                let mut shares = [0.0; SLOTS];
+                let mut shares = [0.0; MOST_PAINTS];
                 for (paint, share) in candidate.paints.iter().zip(candidate.shares) {
                     shares[usize::from(*paint)] += f64::from(share);
                 }

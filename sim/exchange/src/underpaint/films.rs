@@ -1,20 +1,22 @@
 //! The colour of a film of mixed paints over a ground, and how it changes with the shares.
 
-use maulstick_canvas::quantum::SLOTS;
 use maulstick_optics::colour::lab;
 use maulstick_optics::km::over_with_slopes;
 use maulstick_optics::upsampling::lab_with_slopes;
 use maulstick_optics::{Paint, Studio};
 
+/// Most paints that are mixed to a picture.
+pub(crate) const MOST_PAINTS: usize = 16;
+
 /// Shares of paints by volume, of the sum 1.
-pub(crate) type Shares = [f64; SLOTS];
+pub(crate) type Shares = [f64; MOST_PAINTS];
 
 /// Films of one thickness, of a few paints.
 #[derive(Clone, Debug)]
 pub(crate) struct Films {
     paints: usize,
     /// K·d and S·d of each paint, a row a wavelength.
-    depths: Vec<[[f64; 2]; SLOTS]>,
+    depths: Vec<[[f64; 2]; MOST_PAINTS]>,
     weights: Vec<[f64; 3]>,
     white: [f64; 3],
     k1: f64,
@@ -22,18 +24,18 @@ pub(crate) struct Films {
 }
 
 impl Films {
-    /// Films of the first [`SLOTS`] of `paints`, at the wavelengths of a studio.
+    /// Films of the first [`MOST_PAINTS`] of `paints`, at the wavelengths of a studio.
     pub(crate) fn new(studio: &Studio, paints: &[Paint], thickness_m: f64) -> Self {
         let rule = studio.rule();
         let depth = |nm: &f64| {
-            let mut row = [[0.0; 2]; SLOTS];
+            let mut row = [[0.0; 2]; MOST_PAINTS];
             for (depth, paint) in row.iter_mut().zip(paints) {
                 *depth = [paint.k.at(*nm), paint.s.at(*nm)].map(|per_m| per_m * thickness_m);
             }
             row
         };
         Self {
-            paints: paints.len().min(SLOTS),
+            paints: paints.len().min(MOST_PAINTS),
             depths: rule.wavelengths_nm.iter().map(depth).collect(),
             weights: rule.weights.clone(),
             white: studio.white(),
@@ -47,7 +49,7 @@ impl Films {
         self.paints
     }
 
-    fn depth(&self, row: &[[f64; 2]; SLOTS], shares: &Shares) -> [f64; 2] {
+    fn depth(&self, row: &[[f64; 2]; MOST_PAINTS], shares: &Shares) -> [f64; 2] {
         let mut sum = [0.0; 2];
         for (depth, share) in row.iter().zip(shares).take(self.paints) {
             sum[0] += share * depth[0];
@@ -80,9 +82,9 @@ impl Films {
         &self,
         shares: &Shares,
         ground: &[f64],
-    ) -> ([f64; 3], [[f64; 3]; SLOTS]) {
+    ) -> ([f64; 3], [[f64; 3]; MOST_PAINTS]) {
         let mut xyz = [0.0; 3];
-        let mut slopes = [[0.0; 3]; SLOTS];
+        let mut slopes = [[0.0; 3]; MOST_PAINTS];
         for ((row, weight), under) in self.depths.iter().zip(&self.weights).zip(ground) {
             let [kd, sd] = self.depth(row, shares);
             let [r, by_k, by_s] = over_with_slopes(kd, sd, *under);
@@ -124,7 +126,7 @@ pub(crate) mod tests {
         let films = Films::new(&studio, &paints, 40e-6);
         let ground = vec![0.9f32; studio.wavelengths()];
         let under: Vec<f64> = ground.iter().map(|r| f64::from(*r)).collect();
-        let mut shares = [0.0; SLOTS];
+        let mut shares = [0.0; MOST_PAINTS];
         (shares[0], shares[1], shares[5]) = (0.7, 0.25, 0.05);
         let (lab, slopes) = films.lab_with_slopes(&shares, &under);
         let there = [(0, 0.7), (1, 0.25), (5, 0.05)].map(|(slot, share)| (slot, share * 40e-6));

@@ -16,13 +16,13 @@ use maulstick_appearance::Appearance;
 use maulstick_appearance::blank_surface::BlankSurface;
 use maulstick_appearance::ground::Ground;
 use maulstick_canvas::planes::TILE_CELLS;
-use maulstick_canvas::quantum::{QUANTUM_M, SLOTS};
+use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::tile::TileId;
 use maulstick_optics::Paint;
 use maulstick_painting::{LaidTile, Painting};
 use maulstick_types::paint::TILE;
 
-use self::films::{Films, Shares};
+use self::films::{Films, MOST_PAINTS, Shares};
 use self::search::{Search, Sought, shared};
 use crate::fit_to::{Raster, colours};
 use crate::import_error::ImportError;
@@ -51,7 +51,7 @@ impl Support {
         let (Some(bare), Some(store)) = (painting.bare(surface), painting.store(surface)) else {
             return Err(maulstick_canvas::EditError::NoSurface(surface).into());
         };
-        if !(1..=SLOTS).contains(&paints.len()) {
+        if !(1..=MOST_PAINTS).contains(&paints.len()) {
             return Err(ImportError::Paints(paints.len()));
         }
         let mut found: Vec<Paint> = Vec::new();
@@ -217,7 +217,7 @@ pub fn underpaint(
         .collect();
     let laid: Vec<_> = sought.iter().zip(&quanta).collect();
     let reached = shared(&laid, |(sought, quanta)| {
-        let mut shares = [0.0; SLOTS];
+        let mut shares = [0.0; MOST_PAINTS];
         for (share, count) in shares.iter_mut().zip(*quanta) {
             *share = f64::from(*count) / f64::from(whole);
         }

@@ -8,10 +8,9 @@
 //! mixtures change as little, and as smoothly, as colours do. Paints that would go below 0 are left out
 //! and the step is taken anew without them.
 
-use maulstick_canvas::quantum::SLOTS;
 use maulstick_optics::colour::{Matrix, apply, delta_e_2000_near, solve3};
 
-use super::films::{Films, Shares};
+use super::films::{Films, MOST_PAINTS, Shares};
 
 /// As near as this a colour is reached, ΔE₀₀.
 const REACHED: f64 = 0.02;
@@ -64,7 +63,7 @@ struct Place {
     far: f64,
     /// How far the colour is, and its slopes by the amount of each paint.
     off: [f64; 3],
-    slopes: [[f64; 3]; SLOTS],
+    slopes: [[f64; 3]; MOST_PAINTS],
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -87,14 +86,14 @@ impl Place {
     }
 
     /// The step of the paints of `used` under this damping: new amounts, none below 0, of the sum 1.
-    fn step(&self, used: &[bool; SLOTS], damping: f64) -> Shares {
+    fn step(&self, used: &[bool; MOST_PAINTS], damping: f64) -> Shares {
         let mut free = *used;
         let mut next = self.shares;
         // Each round fixes a paint at least.
-        for _ in 0..SLOTS {
+        for _ in 0..MOST_PAINTS {
             let mut off = self.off;
             let mut normal: Matrix = [[0.0; 3]; 3];
-            for i in 0..SLOTS {
+            for i in 0..MOST_PAINTS {
                 let slope = self.slopes[i];
                 if !used[i] {
                     continue;
@@ -111,7 +110,7 @@ impl Place {
             (0..3).for_each(|p| normal[p][p] += damping);
             let pull = solve3(&normal, off);
             let mut fixed = false;
-            for i in 0..SLOTS {
+            for i in 0..MOST_PAINTS {
                 if !used[i] {
                     continue;
                 }
@@ -135,7 +134,7 @@ impl Place {
     }
 
     /// The paint, not yet used, of which a little brings the colour nearest.
-    fn worth_adding(&self, used: &[bool; SLOTS], paints: usize) -> Option<usize> {
+    fn worth_adding(&self, used: &[bool; MOST_PAINTS], paints: usize) -> Option<usize> {
         let gain = |i: &usize| {
             let slope = self.slopes[*i];
             -dot(slope, self.off) / (dot(slope, slope).sqrt() + 1e-12)
@@ -170,7 +169,7 @@ pub(crate) fn refine(films: &Films, start: Shares, ground: &[f64], target: &Targ
 fn descend(
     films: &Films,
     place: &mut Place,
-    used: &[bool; SLOTS],
+    used: &[bool; MOST_PAINTS],
     ground: &[f64],
     target: &Target,
 ) {
@@ -231,7 +230,7 @@ mod tests {
             let candidates = Candidates::new(&films, &ground);
             let (mut worst, mut fault) = (0.0f64, 0.0f64);
             for _ in 0..300 {
-                let mut shares = [0.0; SLOTS];
+                let mut shares = [0.0; MOST_PAINTS];
                 for _ in 0..4 {
                     let paint = (uniform() * paints.len() as f64) as usize;
                     shares[paint] += maulstick_num::exp(-6.0 * uniform());
@@ -301,7 +300,7 @@ mod tests {
             let near = found.map(|recipe| recipe.off).fold(f64::MAX, f64::min);
             let mut best = f64::MAX;
             for _ in 0..20_000 {
-                let mut shares = [0.0; SLOTS];
+                let mut shares = [0.0; MOST_PAINTS];
                 for _ in 0..3 {
                     let paint = (uniform() * paints.len() as f64) as usize;
                     shares[paint] += maulstick_num::exp(-7.0 * uniform());

@@ -13,13 +13,12 @@
 
 use std::thread::scope;
 
-use maulstick_canvas::quantum::SLOTS;
 use maulstick_optics::Studio;
 use maulstick_optics::colour::{Matrix, RgbSpace, apply, delta_e_2000, inverse, lab, srgb_decode};
 use maulstick_optics::gamut::{FOR_COLOUR, Gamut, GamutMapping};
 
 use super::candidates::Candidates;
-use super::films::{Films, Shares};
+use super::films::{Films, MOST_PAINTS, Shares};
 use super::recipes::{Recipe, Target, refine};
 
 /// Threads that search: painting itself needs the others.
@@ -151,7 +150,7 @@ impl<'a> Search<'a> {
             .map(|start| refine(self.films, start, &self.mean, target));
         let best = found.min_by(|a, b| a.off.total_cmp(&b.off));
         best.unwrap_or(Recipe {
-            shares: [0.0; SLOTS],
+            shares: [0.0; MOST_PAINTS],
             off: f64::INFINITY,
         })
     }
@@ -288,7 +287,7 @@ impl<'a> Search<'a> {
 
     /// The recipe of a colour over a ground, from those of the corners around it.
     fn between(&self, rgb: [u8; 3], under: &[f64], lattice: &[Corner]) -> Shares {
-        let (mut start, mut moved) = ([0.0; SLOTS], [0.0; 3]);
+        let (mut start, mut moved) = ([0.0; MOST_PAINTS], [0.0; 3]);
         for (number, weight) in around(rgb) {
             let corner = &lattice[number];
             let shares = start.iter_mut().zip(corner.shares);

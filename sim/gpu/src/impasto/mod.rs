@@ -201,7 +201,7 @@ impl PaintModel for GpuImpasto {
         match read {
             Ok((settled, mut report)) => {
                 if session.uncounted {
-                    report.from_nowhere = session.on.gained(&settled, window, load);
+                    report.from_nowhere = session.on.gained(&settled, window, load).into();
                 }
                 session.on.write(&settled, window, load);
                 self.session = None;

@@ -15,6 +15,8 @@
 
 mod coarse;
 
+use std::ops::Range;
+
 use maulstick_canvas::window::{Area, Window};
 use maulstick_num::select::{larger, smaller};
 use maulstick_num::{exp_f32, wide};
@@ -138,27 +140,43 @@ const BLOCK: usize = 16;
 /// Blocks of an area, row after row.
 #[derive(Clone, Debug, Default)]
 struct Blocks {
-    /// The most that flowed in each in the last round; empty before the first.
-    flowed: Vec<f32>,
-    /// Cells that may flow.
-    active: Vec<bool>,
+    /// The most that flowed in each in the last round, by the column in it; empty before the first.
+    peaks: Vec<[f32; BLOCK]>,
+    /// Columns of cells that may flow, of each row of blocks.
+    active: Vec<Vec<Range<usize>>>,
 }
 
 impl Blocks {
     /// Begins a round: those may flow where at least `rests` did, and those beside them.
     fn begin(&mut self, area: &Area, rests: f32) {
         let [across, up] = area.size.map(|cells| cells.div_ceil(BLOCK));
-        self.active.clear();
-        if self.flowed.len() == across * up {
-            let around = |i: usize, most: usize| i.saturating_sub(1)..(i + 2).min(most);
-            let flows = |x: usize, y: usize| self.flowed[y * across + x] >= rests;
-            let may = |x, y| around(y, up).any(|j| around(x, across).any(|i| flows(i, j)));
-            let blocks = (0..up).flat_map(|y| (0..across).map(move |x| (x, y)));
-            self.active.extend(blocks.map(|(x, y)| may(x, y)));
-        }
-        self.active.resize(across * up, true);
-        self.flowed.clear();
-        self.flowed.resize(across * up, 0.0);
+        let is_first = self.peaks.len() != across * up;
+        let flowed: Vec<bool> = (self.peaks.iter())
+            .map(|peak| peak.iter().any(|flow| *flow >= rests))
+            .collect();
+        let around = |i: usize, most: usize| i.saturating_sub(1)..(i + 2).min(most);
+        let may_flow = |x: usize, y: usize| {
+            is_first || around(y, up).any(|j| around(x, across).any(|i| flowed[j * across + i]))
+        };
+        let columns = |y: usize| {
+            let mut runs: Vec<Range<usize>> = Vec::new();
+            for x in (0..across).filter(|x| may_flow(*x, y)) {
+                let (from, to) = (x * BLOCK, area.size[0].min((x + 1) * BLOCK));
+                match runs.last_mut() {
+                    Some(run) if run.end == from => run.end = to,
+                    _ => runs.push(from..to),
+                }
+            }
+            runs
+        };
+        self.active = (0..up).map(columns).collect();
+        self.peaks.clear();
+        self.peaks.resize(across * up, [0.0; BLOCK]);
+    }
+
+    /// The most that flowed in the last round.
+    fn most(&self) -> f32 {
+        self.peaks.iter().flatten().copied().fold(0.0, larger)
     }
 }
 
@@ -206,8 +224,7 @@ impl Levelling {
         for _ in 0..rounds {
             blocks.begin(area, rests);
             flow_once(self, area, round, &mut blocks);
-            let flowed = blocks.flowed.iter();
-            let flowed = flowed.fold(0.0, |most: f32, flowed| most.max(*flowed));
+            let flowed = blocks.most();
             most = most.max(flowed);
             if flowed < rests {
                 break;
@@ -334,47 +351,26 @@ fn flow(round: &Round, bare: f32, own: &Run<'_>, next: &Run<'_>, i: usize) -> [f
 }
 
 wide! {
-    /// A round in the active blocks.
+    /// A round in the active blocks, row after row while they are in the cache. A row is carried over once those that
+    /// look at it have flowed.
     fn flow_once(levelling: &mut Levelling, area: &Area, round: &Round, blocks: &mut Blocks) {
-        let width = levelling.width;
-        let bare = round.bare * round.to_cells;
-        let of_row = area.size[0].div_ceil(BLOCK);
-        for place in 0..blocks.active.len() {
-            if blocks.active[place] {
-                levelling.bend(area, [place % of_row, place / of_row]);
-            }
-        }
-        for place in 0..blocks.active.len() {
-            if !blocks.active[place] {
-                continue;
-            }
-            let (from, size) = block_of(area, [place % of_row, place / of_row]);
-            let mut most = [0.0f32; BLOCK];
-            for y in from[1]..from[1] + size[1] {
-                let at = (y + HALO) * width + from[0] + HALO;
-                // Nothing goes through the border of the area: it would be lost there.
-                let inner = [
-                    size[0].min(area.size[0] - 1 - from[0]),
-                    if y + 1 < area.size[1] { size[0] } else { 0 },
-                ];
-                for (axis, next) in [1, width].into_iter().enumerate() {
-                    let (own, beside) = (Run::of(levelling, at), Run::of(levelling, at + next));
-                    let mut flows = [0.0f32; BLOCK];
-                    for i in 0..BLOCK {
-                        let [share, loose] = flow(round, bare, &own, &beside, i);
-                        let share = if i < inner[axis] { share } else { 0.0 };
-                        flows[i] = share * loose;
-                        most[i] = larger(share.abs(), most[i]);
+        let [across, rows] = area.size;
+        let Blocks { peaks, active } = blocks;
+        for row in 0..rows + LAG {
+            if row < rows {
+                let peaks = &mut peaks[row / BLOCK * across.div_ceil(BLOCK)..];
+                for columns in &active[row / BLOCK] {
+                    if row % BLOCK == 0 {
+                        levelling.bend(row, columns);
                     }
-                    let cells = inner[axis];
-                    levelling.flows[axis][at..at + cells].copy_from_slice(&flows[..cells]);
+                    levelling.bend(row + 1, columns);
+                    levelling.flow(area, round, row, columns, peaks);
                 }
             }
-            blocks.flowed[place] = most.into_iter().fold(0.0, larger);
-        }
-        for place in 0..blocks.active.len() {
-            if blocks.active[place] {
-                levelling.carry(area, [place % of_row, place / of_row]);
+            if let Some(row) = row.checked_sub(LAG) {
+                for columns in &active[row / BLOCK] {
+                    levelling.carry(row, columns);
+                }
             }
         }
     }
@@ -398,54 +394,89 @@ wide! {
     }
 }
 
-/// The first cell of a block of an area, and its columns and rows.
-fn block_of(area: &Area, block: [usize; 2]) -> ([usize; 2], [usize; 2]) {
-    let from = block.map(|place| place * BLOCK);
-    (from, [0, 1].map(|i| BLOCK.min(area.size[i] - from[i])))
-}
+/// Rows beyond the one that is carried over that look at its height.
+const LAG: usize = 2;
 
 impl Levelling {
-    /// The five-point Laplacian of a block and the cells beside it.
+    /// The place of a cell of the area.
+    fn at(&self, row: usize, column: usize) -> usize {
+        (row + HALO) * self.width + HALO + column
+    }
+
+    /// The five-point Laplacian of a row's columns and those beside them.
     #[inline(always)]
-    fn bend(&mut self, area: &Area, block: [usize; 2]) {
-        let (from, size) = block_of(area, block);
-        let (width, surface) = (self.width, &self.surface);
-        for y in from[1] + HALO - 1..from[1] + HALO + size[1] + 1 {
-            let at = y * width + from[0] + HALO - 1;
-            let cells = size[0] + 2;
-            let out = &mut self.curve[at..at + cells];
-            let (low, high) = (
-                &surface[at - width..][..cells],
-                &surface[at + width..][..cells],
-            );
-            let (own, left, right) = (
-                &surface[at..][..cells],
-                &surface[at - 1..][..cells],
-                &surface[at + 1..][..cells],
-            );
-            for x in 0..cells {
-                out[x] = low[x] + high[x] + left[x] + right[x] - 4.0 * own[x];
+    fn bend(&mut self, row: usize, columns: &Range<usize>) {
+        let (width, cells) = (self.width, columns.len() + 2);
+        let at = self.at(row, columns.start) - 1;
+        let surface = |at: usize| &self.surface[at..at + cells];
+        let (low, high) = (surface(at - width), surface(at + width));
+        let (left, own, right) = (surface(at - 1), surface(at), surface(at + 1));
+        for (x, out) in self.curve[at..at + cells].iter_mut().enumerate() {
+            *out = low[x] + high[x] + left[x] + right[x] - 4.0 * own[x];
+        }
+    }
+
+    /// The flow through the right and upper faces of a row's columns, and its peaks in each block.
+    #[inline(always)]
+    fn flow(
+        &mut self,
+        area: &Area,
+        round: &Round,
+        row: usize,
+        columns: &Range<usize>,
+        peaks: &mut [[f32; BLOCK]],
+    ) {
+        let bare = round.bare * round.to_cells;
+        // Nothing goes through the border of the area: it would be lost there.
+        let last = [
+            area.size[0] - 1,
+            if row + 1 < area.size[1] {
+                area.size[0]
+            } else {
+                0
+            },
+        ];
+        for from in columns.clone().step_by(BLOCK) {
+            let at = self.at(row, from);
+            let cells = BLOCK.min(columns.end - from);
+            let peak = &mut peaks[from / BLOCK];
+            for (axis, next) in [1, self.width].into_iter().enumerate() {
+                let (own, beside) = (Run::of(self, at), Run::of(self, at + next));
+                let inner = last[axis].saturating_sub(from);
+                let mut flows = [0.0f32; BLOCK];
+                for i in 0..BLOCK {
+                    let [share, loose] = flow(round, bare, &own, &beside, i);
+                    let share = if i < inner { share } else { 0.0 };
+                    flows[i] = share * loose;
+                    peak[i] = larger(share.abs(), peak[i]);
+                }
+                self.flows[axis][at..at + cells].copy_from_slice(&flows[..cells]);
             }
         }
     }
 
-    /// Carries over what flowed in a block.
+    /// Carries over what flowed through the faces of a row's columns.
     #[inline(always)]
-    fn carry(&mut self, area: &Area, block: [usize; 2]) {
-        let (from, size) = block_of(area, block);
-        for (axis, next) in [1, self.width].into_iter().enumerate() {
-            for y in from[1]..from[1] + size[1] {
-                let at = (y + HALO) * self.width + from[0] + HALO;
-                let flows = &self.flows[axis][at..at + size[0]];
-                let sums = self.sums[axis][at..at + size[0]].iter_mut();
-                sums.zip(flows).for_each(|(sum, flow)| *sum += flow);
-                for plane in [&mut self.wet, &mut self.surface] {
-                    let own = plane[at..at + size[0]].iter_mut();
-                    own.zip(flows).for_each(|(height, flow)| *height -= flow);
-                    let beside = plane[at + next..at + next + size[0]].iter_mut();
-                    beside.zip(flows).for_each(|(height, flow)| *height += flow);
-                }
+    fn carry(&mut self, row: usize, columns: &Range<usize>) {
+        let (at, cells, width) = (self.at(row, columns.start), columns.len(), self.width);
+        for (sums, flows) in self.sums.iter_mut().zip(&self.flows) {
+            let sums = sums[at..at + cells].iter_mut();
+            sums.zip(&flows[at..at + cells])
+                .for_each(|(sum, flow)| *sum += flow);
+        }
+        // What comes from the left is carried with its own columns.
+        self.flows[0][at - 1] = 0.0;
+        let right = &self.flows[0][at..at + cells];
+        let left = &self.flows[0][at - 1..at - 1 + cells];
+        let above = &self.flows[1][at..at + cells];
+        for plane in [&mut self.wet, &mut self.surface] {
+            let (own, beyond) = plane[at..].split_at_mut(width);
+            for (x, height) in own[..cells].iter_mut().enumerate() {
+                *height -= right[x] - left[x] + above[x];
             }
+            own[cells] += right[cells - 1];
+            let up = beyond[..cells].iter_mut();
+            up.zip(above).for_each(|(height, flow)| *height += flow);
         }
     }
 }

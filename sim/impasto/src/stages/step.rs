@@ -34,10 +34,10 @@ impl PaintModel for Impasto {
         let mut report = footprint.report(step);
         match step.handling.transfer {
             Transfer::Sampler => {
-                report.from_nowhere = sample(footprint, step);
+                report.from_nowhere = sample(footprint, step).into();
                 return report;
             }
-            Transfer::Vacuum => report.lifted = vacuum(footprint, step),
+            Transfer::Vacuum => report.lifted = vacuum(footprint, step).into(),
             _ => {
                 if step.handling.push {
                     self.faces.find(footprint, step);
@@ -56,7 +56,7 @@ impl PaintModel for Impasto {
                         );
                     }
                 }
-                report.from_nowhere = self.exchange.run(footprint, step);
+                report.from_nowhere = self.exchange.run(footprint, step).into();
                 flow(step);
                 seep(step);
             }

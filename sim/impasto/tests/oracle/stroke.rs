@@ -1,7 +1,7 @@
 //! Whole strokes of whole steps, without a painting around them.
 
 use maulstick_brush::{BrushFile, Head, HeadPose};
-use maulstick_canvas::quantum::{Counts, add};
+use maulstick_canvas::quantum::{Counts, SLOTS, add};
 use maulstick_canvas::relief::Relief;
 use maulstick_canvas::relief::ride::reach;
 use maulstick_canvas::relief::tooth::Tooth;
@@ -375,5 +375,5 @@ fn an_empty_brush_leaves_nothing() {
             .footprint_cells;
     }
     assert!(touched > 0);
-    assert_eq!(bench.counts(), [0; 16]);
+    assert_eq!(bench.counts(), [0; SLOTS]);
 }

@@ -138,6 +138,12 @@ impl BrushTraits {
 }
 
 impl BrushTraits {
+    /// Quanta on and inside a fully loaded head of so many strips.
+    #[must_use]
+    pub fn full(&self, strips: usize) -> f64 {
+        (strips * TEXELS_PER_STRIP) as f64 * (self.film_full + self.inside_full)
+    }
+
     /// Those of a step that is doubled so many times.
     #[must_use]
     pub fn doubled(mut self, doublings: u32) -> Self {

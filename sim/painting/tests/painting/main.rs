@@ -8,6 +8,7 @@ mod light;
 mod models;
 mod modes;
 mod pauses;
+mod picking;
 mod sequencer;
 mod studio;
 mod threads;

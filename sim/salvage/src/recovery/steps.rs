@@ -238,7 +238,7 @@ impl UndoState {
         self.tiles.extend(before);
         for (name, [before, _]) in step.effects.loads {
             self.loads
-                .insert(name, inventory.load(before).unwrap_or_default());
+                .insert(name, inventory.load(before).unwrap_or([0; SLOTS]));
         }
         if let Some([before, _]) = step.effects.layers {
             self.layers = before;

@@ -4,6 +4,7 @@ use eframe::egui::{
     Align, Button, Color32, Key, Layout, Rect, Response, Role, Sense, TextEdit, Ui, WidgetInfo,
     vec2,
 };
+use maulstick_canvas::quantum::SLOTS;
 use maulstick_rig::UserError;
 use maulstick_types::Mixture;
 
@@ -52,8 +53,14 @@ impl WellRows {
         work: &mut PanelContext<'_>,
         swatches: &mut Swatches,
     ) {
-        ui.strong("On the palette");
         let mut wells = work.wells();
+        ui.horizontal(|ui| {
+            ui.strong("On the palette");
+            let paints = work.rig.scene.as_ref().map_or(0, |scene| scene.paints.len());
+            ui.weak(format!("{paints} of {SLOTS} paints used")).on_hover_text(format!(
+                "Tubes that this painting has used. It has room for {SLOTS}, its palette for {MOST} mixtures."
+            ));
+        });
         self.chosen.take_if(|place| *place >= wells.len());
         let mut asked = None;
         ui.scope(|ui| {
@@ -129,7 +136,13 @@ impl WellRows {
         };
         let is_room = self.chosen.is_some() || count < MOST;
         let button = ui.add_enabled(is_room && !self.text.trim().is_empty(), Button::new(words));
-        if button.clicked() || enter {
+        let button = match is_room {
+            true => button,
+            false => button.on_disabled_hover_text(format!(
+                "The palette holds {MOST} mixtures: choose one to replace, or remove one."
+            )),
+        };
+        if button.clicked() || (enter && is_room) {
             match brush_load::read(&self.text, &work.rig.library) {
                 Ok(mixture) => {
                     self.put(work, &mixture);

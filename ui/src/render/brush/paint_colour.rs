@@ -13,6 +13,7 @@ pub struct PaintColour {
     along: usize,
     /// Strip after strip, from the ferrule: linear light, then the film's share of a full one.
     samples: Vec<(Vec3, f32)>,
+    full: f32,
 }
 
 impl PaintColour {
@@ -28,11 +29,13 @@ impl PaintColour {
             (Vec3::new(value(0), value(1), value(2)), value(3))
         };
         let samples: Vec<_> = look.samples.chunks_exact(8).map(sample).collect();
+        let full = look.full;
         let numbers = |(colour, film): &(Vec3, f32)| colour.is_finite() && film.is_finite();
-        samples
-            .iter()
-            .all(numbers)
-            .then_some(Self { along, samples })
+        (samples.iter().all(numbers) && (0.0..=1.0).contains(&full)).then_some(Self {
+            along,
+            samples,
+            full,
+        })
     }
 
     /// As a display takes it.
@@ -44,6 +47,7 @@ impl PaintColour {
         Self {
             along: self.along,
             samples: self.samples.iter().map(tinted).collect(),
+            full: self.full,
         }
     }
 
@@ -59,6 +63,7 @@ impl PaintColour {
         Self {
             along: self.along,
             samples: nearest.flat_map(own).copied().collect(),
+            full: self.full,
         }
     }
 
@@ -75,6 +80,39 @@ impl PaintColour {
         let share = place - below as f32;
         let (a, b) = (own[below], own[above]);
         Some((a.0.lerp(b.0, share), a.1 + (b.1 - a.1) * share))
+    }
+
+    /// The paint on and inside the head by that of a fully loaded one, 0 to 1.
+    #[must_use]
+    pub fn full(&self) -> f32 {
+        self.full
+    }
+
+    /// Colours of the tip of a head in so many columns from left to right; a column without bristles has those of the one
+    /// before.
+    #[must_use]
+    pub fn across(&self, head: &Head, columns: usize) -> Vec<Vec3> {
+        let mut sums = vec![(Vec3::ZERO, 0.0); columns];
+        for (root, own) in head
+            .roots()
+            .iter()
+            .zip(self.samples.chunks(self.along.max(1)))
+        {
+            let place = 0.5 * (root[0] + 1.0) * columns as f32;
+            let (sum, count) = &mut sums[(place as usize).min(columns - 1)];
+            for (colour, _) in &own[own.len() / 2..] {
+                *sum += *colour;
+                *count += 1.0;
+            }
+        }
+        let mut last = Vec3::ZERO;
+        let column = |(sum, count): (Vec3, f32)| {
+            if count > 0.0 {
+                last = sum / count;
+            }
+            last
+        };
+        sums.into_iter().map(column).collect()
     }
 
     /// Number of strips.
@@ -99,6 +137,7 @@ pub(crate) mod tests {
             strips,
             along,
             samples: bytes.into(),
+            full: 0.5,
         }
     }
 
@@ -116,6 +155,19 @@ pub(crate) mod tests {
         );
         assert_eq!(coat.at(1, 0.5), None);
         assert_eq!(coat.strips(), 1);
+    }
+
+    #[test]
+    fn the_tip_is_seen_from_left_to_right() {
+        let head = Head::of(&BrushFile::library("flat").expect("flat"));
+        let strip = |root: &[f32; 2]| match root[0] < 0.0 {
+            true => [[0.0; 4], [1.0, 0.0, 0.0, 1.0]],
+            false => [[0.0; 4], [0.0, 0.0, 1.0, 1.0]],
+        };
+        let samples: Vec<_> = head.roots().iter().flat_map(strip).collect();
+        let coat = coat_of(head.strips() as u32, 2, &samples);
+        assert_eq!(coat.full(), 0.5);
+        assert_eq!(coat.across(&head, 4), [Vec3::X, Vec3::X, Vec3::Z, Vec3::Z]);
     }
 
     /// A head that is thinned for the canvas shows its paint on all of its bristles.

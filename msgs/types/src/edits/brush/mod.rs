@@ -3,9 +3,11 @@
 mod clean;
 mod handle;
 mod load;
+mod pick;
 mod tune;
 
 pub use clean::Clean;
 pub use handle::Handle;
 pub use load::Load;
+pub use pick::Pick;
 pub use tune::Tune;

@@ -46,9 +46,9 @@ impl Levelling {
         let mut coarse = self.halved(area, &twice);
         let most = coarse.run(&twice, &round.twice(), rounds);
         self.take_flows(area, &coarse, round.bare * round.to_cells);
-        let [across, up] = area.size.map(|cells| cells.div_ceil(BLOCK));
-        let blocks = (0..up).flat_map(|y| (0..across).map(move |x| [x, y]));
-        blocks.for_each(|block| self.carry(area, block));
+        for row in 0..area.size[1] {
+            self.carry(row, &(0..area.size[0]));
+        }
         most
     }
 

@@ -3,9 +3,11 @@
 use std::sync::Arc;
 
 use maulstick_canvas::EditError;
+use maulstick_canvas::quantum::Counts;
 use maulstick_model::brush::load::Half;
-use maulstick_types::edits::{Clean, Load};
-use maulstick_types::scene::Scene;
+use maulstick_types::edits::{Clean, Load, Pick};
+use maulstick_types::scene::{Scene, Surface, WellKind};
+use maulstick_types::values::Distance;
 use maulstick_types::{Mixture, mixture::Part};
 
 use super::PaintingBrush;
@@ -39,6 +41,26 @@ impl Apply for Load {
         painting.fill(brush, &parts, seed);
         painting.end_step_of(brush);
         Ok(Applied::Done)
+    }
+}
+
+impl Apply for Pick {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.brushes.at(&self.brush)?;
+        let on = painting.surfaces.at(self.surface)?;
+        painting.commit();
+        let at_m = [self.x, self.y].map(Distance::get);
+        let counts = painting.surfaces[on].counts_at(at_m);
+        let mixture = mixture_of(&counts, &painting.scene)
+            .or_else(|| well_at(&painting.scene.surfaces[on], at_m))
+            .ok_or(EditError::NoPaintThere { at_m })?;
+        Load {
+            mixture: mixture.clone(),
+            beside: None,
+            brush: self.brush.clone(),
+        }
+        .apply(painting)?;
+        Ok(Applied::Loaded(mixture))
     }
 }
 
@@ -85,22 +107,35 @@ impl PaintingBrush {
 
     /// Mixture of all paint on it, shares by volume.
     fn mixture(&self, scene: &Scene) -> Result<Mixture, EditError> {
-        let counts = self.load.counts();
-        let total: u64 = counts.iter().sum();
-        if total == 0 {
-            return Err(EditError::EmptyBrush(self.name.clone()));
-        }
-        let carried = scene.paints.iter().zip(counts);
-        let parts = carried
-            .filter(|(_, count)| *count > 0)
-            .map(|(slot, count)| Part {
-                paint: slot.name.clone(),
-                share: count as f64 / total as f64,
-            });
-        Ok(Mixture {
-            parts: parts.collect(),
-        })
+        mixture_of(&self.load.counts(), scene).ok_or(EditError::EmptyBrush(self.name.clone()))
     }
+}
+
+/// Mixture of the well at a place, m, which nobody has stirred there.
+fn well_at(surface: &Surface, at_m: [f64; 2]) -> Option<Mixture> {
+    let mut wells = surface.wells.iter();
+    wells.find_map(|well| match &well.kind {
+        WellKind::Paint { mixture } => {
+            let [x, y] = [0, 1].map(|i| at_m[i] - well.center_m[i]);
+            (x * x + y * y < well.radius_m * well.radius_m).then(|| mixture.clone())
+        }
+        WellKind::Cleaner => None,
+    })
+}
+
+/// Mixture of counted paint, shares by volume; `None` if there is none.
+fn mixture_of(counts: &Counts, scene: &Scene) -> Option<Mixture> {
+    let total: u64 = counts.iter().sum();
+    let counted = scene.paints.iter().zip(counts);
+    let parts = counted
+        .filter(|(_, count)| **count > 0)
+        .map(|(slot, count)| Part {
+            paint: slot.name.clone(),
+            share: *count as f64 / total as f64,
+        });
+    (total > 0).then(|| Mixture {
+        parts: parts.collect(),
+    })
 }
 
 impl Painting {

@@ -3,6 +3,7 @@
 mod film;
 mod materials;
 mod part;
+mod picking;
 pub(crate) mod underpainting;
 pub(crate) mod wells;
 

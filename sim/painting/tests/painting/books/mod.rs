@@ -3,7 +3,7 @@
 mod acts;
 
 use maulstick_brush::BrushFile;
-use maulstick_canvas::quantum::CELL_MAX;
+use maulstick_canvas::quantum::{CELL_MAX, SLOTS};
 use maulstick_num::fork_join::with_threads;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::Mixture;
@@ -136,8 +136,8 @@ proptest! {
         };
         prop_assert_eq!(refusal.to_string(), "there is nothing to undo");
         let store = painting.store(CANVAS).expect("a canvas");
-        prop_assert_eq!(store.counts(), [0; 16], "all that was done is undone");
-        prop_assert_eq!(store.dry_counts(), [0; 16]);
+        prop_assert_eq!(store.counts(), [0; SLOTS], "all that was done is undone");
+        prop_assert_eq!(store.dry_counts(), [0; SLOTS]);
         prop_assert!(painting.scene().layers.is_empty());
     }
 
@@ -245,7 +245,10 @@ fn what_is_painted_after_a_command_within_a_stroke_is_undone_too() {
             painting.undo(None).expect("a step");
             assert_eq!(painting.report().quanta_missing, 0);
         }
-        assert_eq!(painting.store(CANVAS).expect("a canvas").counts(), [0; 16]);
+        assert_eq!(
+            painting.store(CANVAS).expect("a canvas").counts(),
+            [0; SLOTS]
+        );
         while painting.redo(None).is_ok() {
             assert_eq!(painting.report().quanta_missing, 0);
         }
@@ -287,7 +290,10 @@ fn a_head_in_the_air_and_a_clean_one_leave_nothing() {
     let hover: Vec<Place> = across(4.0, 12.0).into_iter().map(high).collect();
     paint(&mut painting, "main", 10.0, 2, &hover);
     assert_eq!(painting.report().quanta_missing, 0);
-    assert_eq!(painting.store(CANVAS).expect("a canvas").counts(), [0; 16]);
+    assert_eq!(
+        painting.store(CANVAS).expect("a canvas").counts(),
+        [0; SLOTS]
+    );
 }
 
 /// Nothing is painted between two poses where the solver began anew.
@@ -308,7 +314,10 @@ fn a_restart_paints_nothing_on_its_way() {
         painting.state("main", 1, &state).expect("it fits");
     }
     painting.commit();
-    assert_eq!(painting.store(CANVAS).expect("a canvas").counts(), [0; 16]);
+    assert_eq!(
+        painting.store(CANVAS).expect("a canvas").counts(),
+        [0; SLOTS]
+    );
 }
 
 /// A dry stroke stays as high as it was, is in the books as dry, and catches the next one.
@@ -329,7 +338,7 @@ fn what_has_dried_stays_and_catches_paint() {
         Ok("underpainting")
     );
     let store = painting.store(CANVAS).expect("a canvas");
-    assert_eq!((store.counts(), store.dry_counts()), ([0; 16], wet));
+    assert_eq!((store.counts(), store.dry_counts()), ([0; SLOTS], wet));
     let report = painting.report();
     assert_eq!(report.quanta_missing, 0);
     assert!(report.accounts_m3["dry"] > 0.0 && report.accounts_m3["canvas"] == 0.0);

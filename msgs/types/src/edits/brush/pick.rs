@@ -1,0 +1,71 @@
+//! Loads a brush with the mixture that lies at a place.
+
+use serde::{Deserialize as _, Deserializer};
+
+use crate::edits::{Form, StepForm, read};
+use crate::scene::CANVAS;
+use crate::values::{BrushName, Distance, ValueError};
+use crate::wire::define::wire_struct;
+
+wire_struct! {
+    /// Load a brush with the mixture that lies at a place
+    ///
+    /// What it carried goes to the cleaner. Of wet paint it is the mixture of all of it there, of dry paint that of the
+    /// newest layer.
+    #[cfg_attr(feature = "cli", derive(clap::Args))]
+    pub struct Pick {
+        /// Distance of the place from the left edge, mm
+        #[cfg_attr(feature = "cli", arg(value_name = "X_MM", allow_negative_numbers = true))]
+        pub x: Distance,
+        /// Distance of the place from the lower edge, mm
+        #[cfg_attr(feature = "cli", arg(value_name = "Y_MM", allow_negative_numbers = true))]
+        pub y: Distance,
+        /// Surface: 0 for the canvas, 1 for the palette
+        #[cfg_attr(feature = "cli", arg(long, value_name = "NUMBER", default_value_t = CANVAS))]
+        pub surface: u32,
+        /// Brush of the rig
+        #[cfg_attr(feature = "cli", arg(long, default_value = "main"))]
+        pub brush: BrushName,
+    }
+}
+
+/// A step of a script.
+#[derive(serde::Deserialize)]
+struct PickStep {
+    pick: [Distance; 2],
+    #[serde(default = "read::canvas")]
+    surface: u32,
+}
+
+impl Form for Pick {
+    const STEPS: &'static [StepForm] =
+        &[StepForm::new("pick", &["surface"], "{ pick = [120, 45] }")];
+    const ARGUMENTS: Option<&'static str> = Some("pick|120|45");
+    #[cfg(feature = "cli")]
+    const COMMAND: Option<crate::edits::CommandForm> =
+        Some(crate::edits::CommandForm::of::<Self>("pick", "Brush"));
+
+    fn example() -> Result<Self, ValueError> {
+        Ok(Self {
+            x: Distance::in_unit(120.0)?,
+            y: Distance::in_unit(45.0)?,
+            surface: CANVAS,
+            brush: BrushName::main(),
+        })
+    }
+
+    fn read_step<'de, D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let PickStep { pick, surface } = PickStep::deserialize(from)?;
+        let [x, y] = pick;
+        Ok(Self {
+            x,
+            y,
+            surface,
+            brush: BrushName::main(),
+        })
+    }
+
+    fn brush_mut(&mut self) -> Option<&mut BrushName> {
+        Some(&mut self.brush)
+    }
+}
