@@ -57,7 +57,7 @@ impl WellRows {
         ui.horizontal(|ui| {
             ui.strong("On the palette");
             let paints = work.rig.scene.as_ref().map_or(0, |scene| scene.paints.len());
-            ui.weak(format!("{paints} of {SLOTS} paints used")).on_hover_text(format!(
+            ui.weak(format!("{paints} of {SLOTS} paints")).on_hover_text(format!(
                 "Tubes that this painting has used. It has room for {SLOTS}, its palette for {MOST} mixtures."
             ));
         });
