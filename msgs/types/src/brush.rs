@@ -171,7 +171,7 @@ message! {
         /// then the film's thickness by that of a full one.
         pub samples: serde_bytes::ByteBuf,
         /// The paint on and inside the head by that of a fully loaded one, 0 to 1.
-        pub full: f32,
+        pub load_share: f32,
     }
 }
 

@@ -198,7 +198,7 @@ fn all() -> String {
             strips: 1,
             along: 1,
             samples: vec![0, 60, 0, 56, 0, 52, 0, 60].into(),
-            full: 0.5,
+            load_share: 0.5,
         }),
         line(&PaintConsumed {
             brushes: vec![BrushCredit {
@@ -280,6 +280,12 @@ fn all() -> String {
             command: Undo { brush: None }.into(),
         })),
         line(&entry(Entry::Tick { count: 4 })),
+        line(&entry(Entry::Cut {
+            brush: "main".into(),
+            epoch: 1,
+            from: 4,
+            to: 6,
+        })),
         line(&entry(Entry::Decision {
             what: "backend cpu".into(),
         })),

@@ -1,4 +1,4 @@
-//! Eight numbers at a time: in one register where the processor has AVX2, otherwise as the `wide`
+//! Eight numbers at a time: in one register where the processor has AVX2 or AVX-512, otherwise as the `wide`
 //! crate does it. Both round alike.
 
 use std::ops::{Add, Mul, Sub};
@@ -74,8 +74,8 @@ mod avx {
 
     use super::Lanes;
 
-    /// Eight numbers in one register; [`wide!`](crate::wide) alone names it, in what it runs where the
-    /// processor has AVX2.
+    /// Eight numbers in a register of AVX2, which all processors with AVX-512 have too; [`wide!`](crate::wide!)
+    /// alone names it, in what it runs where the processor has them.
     #[doc(hidden)]
     #[derive(Clone, Copy, Debug)]
     pub struct Avx(__m256);
@@ -169,6 +169,7 @@ pub type Plain = f32x8;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::wide::Registers;
 
     fn all<L: Lanes>(a: &[f32; 8], b: &[f32; 8]) -> [[u32; 8]; 7] {
         let (x, y) = (L::of(a), L::of(b));
@@ -196,7 +197,7 @@ mod tests {
             };
             let a: [f32; 8] = std::array::from_fn(|i| number(i, 3));
             let b: [f32; 8] = std::array::from_fn(|i| if i == 3 { a[3] } else { number(i, 17) });
-            if std::arch::is_x86_feature_detected!("avx2") {
+            if Registers::of_processor() >= Registers::Avx2 {
                 assert_eq!(all::<Avx>(&a, &b), all::<Plain>(&a, &b));
             }
         }

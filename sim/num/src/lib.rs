@@ -6,7 +6,7 @@
 //! `libm` crate, plain Rust without such dispatch; those of f32 are written so that a loop over a
 //! plane vectorises and so that a shader can hold the same polynomial.
 //!
-//! Neither the registers ([`lanes`], [`wide!`]) nor how many cores there are ([`fork_join`]) change a byte of what comes out.
+//! Neither the registers ([`lanes`], [`wide`]) nor how many cores there are ([`fork_join`]) change a byte of what comes out.
 //!
 //! ```
 //! use maulstick_num::{cos, sin_cos};
@@ -21,6 +21,6 @@ pub mod fork_join;
 pub mod geometry;
 pub mod lanes;
 pub mod select;
-mod wide;
+pub mod wide;
 
 pub use elementary::{Decay, acos, atan2, cos, decay_f32, exp, exp_f32, ln, powf, sin, sin_cos};

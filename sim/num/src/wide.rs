@@ -1,116 +1,135 @@
 //! Loops over planes, compiled for the processor's wide registers where it has them.
 //!
-//! AVX2 and AVX-512 add, multiply and round each number as SSE2 does, and nothing here enables fused
-//! multiply-add, so all ways give the same bytes.
+//! The compiler fuses no multiplication with an addition that is written beside it, even where the processor could, so
+//! each number is added, multiplied and rounded alike in all registers, and all give the same bytes.
 
-/// Compiles a function for AVX-512, for AVX2 and without, and calls what the processor has. What it calls
-/// must be `#[inline(always)]` to gain from it.
+use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
+
+/// Registers that loops are compiled for, the narrowest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum Registers {
+    /// Those that each processor of its kind has.
+    Least,
+    /// AVX2.
+    Avx2,
+    /// AVX-512: F, VL, BW and DQ.
+    Avx512,
+}
+
+/// The widest registers in use, as a number.
+static WIDEST: AtomicU8 = AtomicU8::new(Registers::Avx512 as u8);
+
+impl Registers {
+    /// All of them, the narrowest first.
+    pub const ALL: [Self; 3] = [Self::Least, Self::Avx2, Self::Avx512];
+
+    /// The widest that the processor has.
+    #[must_use]
+    #[inline]
+    pub fn of_processor() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            use std::arch::is_x86_feature_detected as has;
+            if has!("avx512f") && has!("avx512vl") && has!("avx512bw") && has!("avx512dq") {
+                return Self::Avx512;
+            }
+            if has!("avx2") {
+                return Self::Avx2;
+            }
+        }
+        Self::Least
+    }
+
+    /// The widest that loops run in: the processor's, or those that [`limit_to`](Self::limit_to) has set.
+    #[must_use]
+    #[inline]
+    pub fn in_use() -> Self {
+        let widest = match WIDEST.load(Relaxed) {
+            0 => Self::Least,
+            1 => Self::Avx2,
+            _ => Self::Avx512,
+        };
+        widest.min(Self::of_processor())
+    }
+
+    /// Lets all loops of the program run in no wider registers from now on, to compare them.
+    pub fn limit_to(self) {
+        WIDEST.store(self as u8, Relaxed);
+    }
+}
+
+/// Compiles a function for each of the [`Registers`], and calls it for those in use. What it calls must be
+/// `#[inline(always)]` to gain from it.
 #[macro_export]
 macro_rules! wide {
     // With a parameter for the [lanes](crate::lanes) of what it is compiled for.
     ($(#[$meta:meta])* $visible:vis fn $name:ident<$lanes:ident>($($argument:ident: $type:ty),* $(,)?) $body:block) => {
-        $(#[$meta])*
-        $visible fn $name($($argument: $type),*) {
-            #[inline(always)]
-            fn narrow<$lanes: $crate::lanes::Lanes>($($argument: $type),*) $body
-
-            #[cfg(target_arch = "x86_64")]
-            {
-                #[target_feature(enable = "avx2")]
-                fn wide($($argument: $type),*) {
-                    narrow::<$crate::lanes::Avx>($($argument),*);
-                }
-                #[target_feature(enable = "avx512f,avx512vl,avx512bw,avx512dq")]
-                fn widest($($argument: $type),*) {
-                    narrow::<$crate::lanes::Avx>($($argument),*);
-                }
-                if std::arch::is_x86_feature_detected!("avx512f")
-                    && std::arch::is_x86_feature_detected!("avx512vl")
-                    && std::arch::is_x86_feature_detected!("avx512bw")
-                    && std::arch::is_x86_feature_detected!("avx512dq")
-                {
-                    #[allow(unsafe_code, reason = "the processor has what `widest` is compiled for")]
-                    // SAFETY: its sets of AVX-512 were detected on the lines above.
-                    unsafe {
-                        widest($($argument),*);
-                    }
-                    return;
-                }
-                if std::arch::is_x86_feature_detected!("avx2") {
-                    #[allow(unsafe_code, reason = "the processor has what `wide` is compiled for")]
-                    // SAFETY: AVX2 was detected on the line above.
-                    unsafe {
-                        wide($($argument),*);
-                    }
-                    return;
-                }
-            }
-            narrow::<$crate::lanes::Plain>($($argument),*);
+        $crate::wide! {
+            @ [$(#[$meta])* $visible] $name [$lanes: $crate::lanes::Lanes]
+            [::<$crate::lanes::Plain>] [::<$crate::lanes::Avx>] ($($argument: $type),*) $body
         }
     };
     ($(#[$meta:meta])* $visible:vis fn $name:ident($($argument:ident: $type:ty),* $(,)?) $body:block) => {
-        $(#[$meta])*
-        $visible fn $name($($argument: $type),*) {
+        $crate::wide! { @ [$(#[$meta])* $visible] $name [] [] [] ($($argument: $type),*) $body }
+    };
+    (@ [$($head:tt)*] $name:ident [$($lanes:tt)*] [$($plain:tt)*] [$($avx:tt)*]
+        ($($argument:ident: $type:ty),*) $body:block) => {
+        $($head)* fn $name($($argument: $type),*) {
             #[inline(always)]
-            fn narrow($($argument: $type),*) $body
+            fn each<$($lanes)*>($($argument: $type),*) $body
 
             #[cfg(target_arch = "x86_64")]
             {
                 #[target_feature(enable = "avx2")]
-                fn wide($($argument: $type),*) {
-                    narrow($($argument),*);
+                fn avx2($($argument: $type),*) {
+                    each$($avx)*($($argument),*);
                 }
                 #[target_feature(enable = "avx512f,avx512vl,avx512bw,avx512dq")]
-                fn widest($($argument: $type),*) {
-                    narrow($($argument),*);
+                fn avx512($($argument: $type),*) {
+                    each$($avx)*($($argument),*);
                 }
-                if std::arch::is_x86_feature_detected!("avx512f")
-                    && std::arch::is_x86_feature_detected!("avx512vl")
-                    && std::arch::is_x86_feature_detected!("avx512bw")
-                    && std::arch::is_x86_feature_detected!("avx512dq")
-                {
-                    #[allow(unsafe_code, reason = "the processor has what `widest` is compiled for")]
-                    // SAFETY: its sets of AVX-512 were detected on the lines above.
-                    unsafe {
-                        widest($($argument),*);
-                    }
-                    return;
-                }
-                if std::arch::is_x86_feature_detected!("avx2") {
-                    #[allow(unsafe_code, reason = "the processor has what `wide` is compiled for")]
-                    // SAFETY: AVX2 was detected on the line above.
-                    unsafe {
-                        wide($($argument),*);
-                    }
-                    return;
+                #[allow(unsafe_code, reason = "the processor has what they are compiled for")]
+                match $crate::wide::Registers::in_use() {
+                    // SAFETY: registers in use are at most the processor's.
+                    $crate::wide::Registers::Avx512 => return unsafe { avx512($($argument),*) },
+                    // SAFETY: as above.
+                    $crate::wide::Registers::Avx2 => return unsafe { avx2($($argument),*) },
+                    $crate::wide::Registers::Least => {}
                 }
             }
-            narrow($($argument),*);
+            each$($plain)*($($argument),*);
         }
     };
 }
 
 #[cfg(test)]
 mod tests {
-    #[inline(always)]
-    fn polynomial(plane: &mut [f32]) {
-        for x in plane {
-            *x = (*x * 1.000_123 + 0.1) * *x - 0.7 / (*x + 2.0);
-        }
-    }
+    use super::Registers;
 
     wide! {
-        fn wide_polynomial(plane: &mut [f32]) {
-            polynomial(plane);
+        fn polynomial(plane: &mut [f32]) {
+            for x in plane {
+                *x = (*x * 1.000_123 + 0.1) * *x - 0.7 / (*x + 2.0);
+            }
         }
     }
 
+    /// The limit is the whole program's, so all of it is in one test.
     #[test]
-    fn both_ways_give_the_same_bytes() {
+    fn all_registers_give_the_same_bytes() {
         let before: Vec<f32> = (0..1003).map(|i| i as f32 * 0.37).collect();
-        let (mut one, mut two) = (before.clone(), before);
-        polynomial(&mut one);
-        wide_polynomial(&mut two);
-        assert_eq!(one, two);
+        let after = Registers::ALL.map(|registers| {
+            registers.limit_to();
+            assert_eq!(
+                Registers::in_use(),
+                registers.min(Registers::of_processor())
+            );
+            let mut plane = before.clone();
+            polynomial(&mut plane);
+            plane
+        });
+        assert!(after.iter().all(|plane| *plane == after[0]));
+        assert_ne!(after[0], before);
     }
 }

@@ -5,8 +5,9 @@ use std::fmt;
 use maulstick_canvas::EditError;
 use maulstick_types::Mixture;
 use maulstick_types::edits::{
-    Branch, Clean, Dry, Edit, Fill, Forget, Ground, Handle, Keep, Load, NameLayer, Opacity, Pick,
-    Piles, Place, Redo, Relight, ReturnTo, Size, StopDrying, Tooth, Tune, Undo, Wells, Wet,
+    Branch, Clean, Dry, Edit, Fill, Forget, Ground, Handle, Keep, Load, LoadFrom, NameLayer,
+    Opacity, Piles, Place, Redo, Relight, ReturnTo, Size, StopDrying, Tooth, Tune, Undo, Wells,
+    Wet,
 };
 
 use crate::painting::Painting;
@@ -57,7 +58,14 @@ impl fmt::Display for Applied {
                     cells => write!(f, "; {cells} cells could not hold all of it"),
                 }
             }
-            Self::Loaded(mixture) => write!(f, "{mixture}"),
+            Self::Loaded(mixture) => {
+                let seen = mixture.parts.iter().filter(|part| part.share >= 5e-4);
+                for (place, part) in seen.enumerate() {
+                    let comma = if place == 0 { "" } else { "," };
+                    write!(f, "{comma}{}={:.3}", part.paint, part.share)?;
+                }
+                Ok(())
+            }
             Self::Step(what) | Self::Written(what) => f.write_str(what),
         }
     }

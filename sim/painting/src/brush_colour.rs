@@ -28,7 +28,7 @@ pub struct Carried {
     /// Quanta of a texel's full film.
     pub film_full: f64,
     /// Quanta on and inside a fully loaded brush.
-    pub full: f64,
+    pub full_load: f64,
 }
 
 impl Carried {
@@ -79,7 +79,7 @@ impl Carried {
             strips: (self.load.texels() / TEXELS_PER_STRIP) as u32,
             along: SAMPLES as u32,
             samples: samples.collect::<Vec<u8>>().into(),
-            full: (self.load.total() as f64 / self.full.max(1.0)).min(1.0) as f32,
+            load_share: (self.load.total() as f64 / self.full_load.max(1.0)).min(1.0) as f32,
         }
     }
 }
@@ -124,7 +124,7 @@ mod tests {
             hair: file.head.hair,
             film_m: f64::from(traits.film_cells_per_quantum) * 2.5e-4,
             film_full: traits.film_full,
-            full: traits.full(head.strips()),
+            full_load: traits.full_load(head.strips()),
         };
         Bench {
             studio,
@@ -154,7 +154,7 @@ mod tests {
             .map(|v| srgb_decode(f64::from(v) / 255.0) as f32);
         let clean = bench.carried.look(&bench.studio, &under);
         assert_eq!(clean.strips as usize, bench.head.strips());
-        assert_eq!(clean.full, 0.0);
+        assert_eq!(clean.load_share, 0.0);
         for strip in 0..bench.head.strips() {
             let [red, green, blue, film] = sample(&clean, strip);
             assert_eq!(film, 0.0);
@@ -181,7 +181,11 @@ mod tests {
             (Half::Right, 0),
         );
         let loaded = bench.carried.look(&bench.studio, &under);
-        assert!((0.8..=1.0).contains(&loaded.full), "{}", loaded.full);
+        assert!(
+            (0.8..=1.0).contains(&loaded.load_share),
+            "{}",
+            loaded.load_share
+        );
         let side = |right: bool| {
             let roots = bench.head.roots().iter().enumerate();
             let far = roots.filter(|(_, root)| if right { root[0] > 0.5 } else { root[0] < -0.5 });

@@ -1,5 +1,6 @@
 //! The sequencer: it decides what enters the journal and in which order; nothing else does.
 
+mod cut;
 mod records;
 
 pub use records::{Accepted, Record};
@@ -15,7 +16,7 @@ use maulstick_types::{Flags, Header, Mixture, Origin};
 
 use crate::apply::{Applied, Apply as _};
 use crate::painting::Painting;
-use crate::snapshot::TakeSnapshot;
+use crate::snapshot::{CutStates, TakeSnapshot};
 
 /// Effect of a command on the outside world; carried out at once by the caller of the sequencer.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -53,6 +54,8 @@ pub struct Sequencer {
     /// Players that are gone: their takes hold no brush any more.
     gone: BTreeSet<u32>,
     consumed: BTreeMap<Origin, u64>,
+    /// States that an undo dropped, which are still to come.
+    cut: Vec<CutStates>,
     waiting: Vec<CommandRequest>,
     replies: ReplyCache,
     ignored: u64,
@@ -72,6 +75,7 @@ impl Sequencer {
             announced: BTreeMap::new(),
             gone: BTreeSet::new(),
             consumed: BTreeMap::new(),
+            cut: Vec::new(),
             waiting: Vec::new(),
             replies: ReplyCache::default(),
             ignored: 0,
@@ -103,7 +107,7 @@ impl Sequencer {
         self.next
     }
 
-    /// States that were dropped: of unannounced takes, or live ones during a take.
+    /// States that were dropped: of unannounced takes, live ones during a take, or by an undo.
     #[must_use]
     pub fn ignored(&self) -> u64 {
         self.ignored
@@ -133,7 +137,8 @@ impl Sequencer {
     /// these and of it. A state that does not fit is refused, and consumed all the same.
     ///
     /// A state of an unannounced replayed take paints nothing, nor does a live one from the announcement of a take to
-    /// its last state: a take paints the same whatever else moves.
+    /// its last state: a take paints the same whatever else moves. Nor does one that an [undo](Self::command_behind)
+    /// has dropped.
     #[must_use = "effects of the commands are still to be done"]
     pub fn state(
         &mut self,
@@ -181,6 +186,10 @@ impl Sequencer {
         self.consumed
             .retain(|origin, _| origin.source != header.source || origin.epoch == header.epoch);
         self.consumed.insert(header.origin(), header.seq + 1);
+        let is_past = |cut: &CutStates| {
+            cut.source == header.source && (cut.epoch != header.epoch || cut.to <= header.seq)
+        };
+        self.cut.retain(|cut| !is_past(cut));
     }
 
     /// Notes that a state that may paint is consumed; the last one of a take ends it.
@@ -193,8 +202,11 @@ impl Sequencer {
         self.pass(header);
     }
 
-    /// True if a state is of the announced take, or live while no take has its brush.
+    /// True if a state is of the announced take, or live while no take has its brush, and no undo has dropped it.
     fn may_paint(&self, brush: &str, header: &Header, state: &BrushState) -> bool {
+        if self.is_cut(header.origin(), header.seq) {
+            return false;
+        }
         let take = self.announced.get(brush);
         if header.flags.has(Flags::REPLAY) {
             take.is_some_and(|t| (t.device, t.epoch) == (state.device, state.device_epoch))

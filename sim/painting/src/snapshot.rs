@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use maulstick_model::brush::head::WaypointSnapshot;
 use maulstick_model::brush::scale::Scale;
-use maulstick_types::Mixture;
 use maulstick_types::command::reply_cache::ReplyCache;
 use maulstick_types::scene::Scene;
+use maulstick_types::{Mixture, Origin};
 use serde::{Deserialize, Serialize};
 
 use crate::clock::Clock;
@@ -105,6 +105,28 @@ pub struct TakeSnapshot {
     pub step: u64,
 }
 
+/// States of a brush that an undo dropped before they were painted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CutStates {
+    /// The brush, by the hash of its name.
+    pub source: u32,
+    /// Its epoch.
+    pub epoch: u32,
+    /// First state.
+    pub from: u64,
+    /// Last state.
+    pub to: u64,
+}
+
+impl CutStates {
+    /// True if a state of this number is one of them.
+    #[must_use]
+    pub fn has(&self, brush: Origin, sequence: u64) -> bool {
+        (self.source, self.epoch) == (brush.source, brush.epoch)
+            && (self.from..=self.to).contains(&sequence)
+    }
+}
+
 /// The sequencer at a place of its journal.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SequencerSnapshot {
@@ -116,6 +138,9 @@ pub struct SequencerSnapshot {
     pub takes: BTreeMap<String, TakeSnapshot>,
     /// Players that are gone.
     pub gone: Vec<u32>,
+    /// States that an undo dropped, which are still to come: source and epoch, first and last.
+    #[serde(default)]
+    pub cut: Vec<CutStates>,
     /// Consumed states of brushes: source, epoch, next.
     pub consumed: Vec<(u32, u32, u64)>,
     /// The newest reply to each client.

@@ -14,7 +14,7 @@ use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin};
 
-use crate::latency::{frame, joined_as, pull, rig_with};
+use crate::latency::{GRACE, Puller, frame, joined_as, rig_with};
 use crate::report::{Report, quantile, sorted};
 use crate::running::{Running, fault};
 
@@ -22,19 +22,21 @@ use crate::running::{Running, fault};
 const BRUSH_MM: f64 = 30.0;
 /// Cells, mm.
 const CELL_MM: &str = "0.125";
-/// Largest 95th percentile of the latencies by their median.
+/// Target: the 95th percentile of the latencies is at most so many medians.
 const MOST_BY_P50: f64 = 2.0;
 
 /// Samples a second of the pen.
 const RATE_HZ: u64 = 250;
-/// Speed of the hand, m/s; ways of so many metres, and so many of them.
-const SPEED: f64 = 0.5;
-const WAY_M: f64 = 0.2;
-const WAYS: u64 = 24;
-/// The pen is up for so many samples between two of them.
-const UP: u64 = 50;
-/// What is not in a frame this long after the last sample is lost.
-const GRACE: Duration = Duration::from_secs(60);
+/// Speed of the hand, m/s.
+const SPEED_M_PER_S: f64 = 0.5;
+/// Length of a stroke, m.
+const STROKE_M: f64 = 0.2;
+/// Number of strokes.
+const STROKES: u64 = 24;
+/// Samples between two strokes, of a pen that hovers.
+const LIFT_SAMPLES: u64 = 50;
+/// The hand begins so long after it is made, ns: by then its first sample is ready to be sent.
+const LEAD_NS: u64 = 100_000_000;
 
 /// Measures, and reports beside the median of the usual brush.
 pub(crate) fn run(report: &mut Report, place: &Path, usual: f64) -> Result<(), UserError> {
@@ -44,13 +46,19 @@ pub(crate) fn run(report: &mut Report, place: &Path, usual: f64) -> Result<(), U
     std::fs::write(&file, flat.to_toml().map_err(fault)?).map_err(fault)?;
     let file = file.display().to_string();
     let options = ["--headless", "--cell-mm", CELL_MM, "--brush", &file];
-    let _rig = Running::start(&mut rig_with(place, &options)?)?;
+    let mut rig = Running::start(&mut rig_with(place, &options)?)?;
     let bus = Arc::new(joined_as(place, "hand")?);
-    while frame(&bus, (0, 0, 0))?.is_none() {}
-    let hand = hand(Arc::clone(&bus));
-    let count = WAYS * (down() + UP);
-    let give_up = Instant::now() + Duration::from_nanos(at_ns(count)) + GRACE;
-    let latencies = pull(&bus, give_up, |all| Ok(all && hand.is_finished()))?;
+    while frame(&bus, (0, 0, 0))?.is_none() {
+        if rig.has_ended()? {
+            return Err(fault("the rig has ended"));
+        }
+    }
+    let puller = Puller::new(&bus)?;
+    let begin_ns = bus.now_ns() + LEAD_NS;
+    let hand = hand(Arc::clone(&bus), begin_ns);
+    let last_ns = begin_ns + at_ns(SAMPLES - LIFT_SAMPLES - 1);
+    let give_up = Instant::now() + Duration::from_nanos(LEAD_NS + at_ns(SAMPLES)) + GRACE;
+    let latencies = puller.pull(give_up, |held_ns| Ok(held_ns >= last_ns))?;
     hand.join().map_err(|_| fault("the hand has stopped"))??;
     bus.close();
 
@@ -69,10 +77,10 @@ pub(crate) fn run(report: &mut Report, place: &Path, usual: f64) -> Result<(), U
     Ok(())
 }
 
-/// Samples of a way.
-fn down() -> u64 {
-    (WAY_M / SPEED * RATE_HZ as f64) as u64
-}
+/// Samples of a stroke.
+const STROKE_SAMPLES: u64 = (STROKE_M / SPEED_M_PER_S * RATE_HZ as f64) as u64;
+/// All samples.
+const SAMPLES: u64 = STROKES * (STROKE_SAMPLES + LIFT_SAMPLES);
 
 /// Time of a sample after the first, ns.
 fn at_ns(number: u64) -> u64 {
@@ -81,16 +89,17 @@ fn at_ns(number: u64) -> u64 {
 
 /// Strokes to and fro across the canvas, each a little above the last.
 fn sample(number: u64) -> StylusSample {
-    let (way, at) = (number / (down() + UP), number % (down() + UP));
-    let along = (at as f64 / down() as f64).min(1.0) - 0.5;
-    let x = WAY_M * if way % 2 == 0 { along } else { -along };
+    let period = STROKE_SAMPLES + LIFT_SAMPLES;
+    let (stroke, at) = (number / period, number % period);
+    let along = (at as f64 / STROKE_SAMPLES as f64).min(1.0) - 0.5;
+    let x = STROKE_M * if stroke % 2 == 0 { along } else { -along };
     StylusSample {
         senses: axes::POSITION | axes::PRESSURE | axes::TILT,
         pose: StylusPose::Contact {
-            point_m: [x, 0.006 * (way as f64 - 0.5 * WAYS as f64), 0.0],
+            point_m: [x, 0.006 * (stroke as f64 - 0.5 * STROKES as f64), 0.0],
             tilt_rad: DEFAULT_TILT_RAD,
             twist_rad: FRAC_PI_2,
-            pressure: if at < down() { 0.5 } else { 0.0 },
+            pressure: if at < STROKE_SAMPLES { 0.5 } else { 0.0 },
         },
         in_range: true,
         ..StylusSample::away()
@@ -98,7 +107,7 @@ fn sample(number: u64) -> StylusSample {
 }
 
 /// A pen that sends its samples when they are due, whoever listens.
-fn hand(bus: Arc<ZenohBus>) -> JoinHandle<Result<(), BusError>> {
+fn hand(bus: Arc<ZenohBus>, begin_ns: u64) -> JoinHandle<Result<(), BusError>> {
     thread::spawn(move || {
         let (topics, wake) = (Topics::new("latency"), Wake::new());
         let me = Origin {
@@ -107,8 +116,7 @@ fn hand(bus: Arc<ZenohBus>) -> JoinHandle<Result<(), BusError>> {
         };
         let topic = topics.sample("hand");
         let mut samples = CreditSender::new(&*bus, &topics, &topic, me, &wake)?;
-        let begin_ns = bus.now_ns();
-        for number in 0..WAYS * (down() + UP) {
+        for number in 0..SAMPLES {
             let event_ns = begin_ns + at_ns(number);
             thread::sleep(Duration::from_nanos(event_ns.saturating_sub(bus.now_ns())));
             let now_ns = bus.now_ns();

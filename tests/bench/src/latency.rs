@@ -23,7 +23,7 @@ use crate::window_latency;
 /// Options of the usual brush on the usual cells.
 pub(crate) const USUAL: [&str; 2] = ["--cell-mm", "0.25"];
 /// What is not in a frame this long after the hand has ended is lost.
-const GRACE: Duration = Duration::from_secs(60);
+pub(crate) const GRACE: Duration = Duration::from_secs(60);
 
 /// A rig called `latency` in the folder `place` with black on its brush, with these options.
 pub(crate) fn rig_with(place: &Path, options: &[&str]) -> Result<Command, UserError> {
@@ -88,7 +88,7 @@ fn pulled(
     let mut rig = Running::start(&mut command)?;
     let bus = joined_as(place, "puller")?;
     let give_up = Instant::now() + Duration::from_secs_f64(seconds) + GRACE;
-    let latencies = pull(&bus, give_up, |_| rig.has_ended());
+    let latencies = Puller::new(&bus)?.pull(give_up, |_| rig.has_ended());
     bus.close();
     latencies
 }
@@ -129,52 +129,73 @@ pub(crate) fn frame(
     }
 }
 
-/// Asks for frames until it is told to end: whether frames hold all solves is given.
-pub(crate) fn pull(
-    bus: &ZenohBus,
-    give_up: Instant,
-    mut ends: impl FnMut(bool) -> Result<bool, UserError>,
-) -> Result<Latencies, UserError> {
-    let topics = Topics::new("latency");
-    let wake = Wake::new();
-    let topic = topics.brush_state("main");
-    let class = Qos::RealTime;
-    let mut states = Receiver::<BrushState>::new(bus, &topic, class, Queue::Ring(65_536), &wake)?;
-    let mut waiting: BTreeMap<u64, Vec<u64>> = BTreeMap::new();
-    let mut latencies = Latencies {
-        milliseconds: Vec::new(),
-        frames: 0,
-        lost: 0,
-        solves: [0; 3],
-    };
-    let mut newest = (0, 0, 0);
-    while Instant::now() < give_up && !ends(waiting.is_empty())? {
-        let Some(reply) = frame(bus, newest)? else {
-            continue;
-        };
-        let now_ns = bus.now_ns();
-        newest = (reply.version, reply.epoch, reply.look);
-        latencies.frames += usize::from(!reply.tiles.is_empty());
-        while let Some(state) = states.try_recv() {
+/// A puller without a window, which follows the main brush from when it is made.
+pub(crate) struct Puller<'a> {
+    bus: &'a ZenohBus,
+    states: Receiver<BrushState>,
+    /// Times of the samples of solves that no frame holds yet, by the state that told of them, ns.
+    waiting: BTreeMap<u64, Vec<u64>>,
+    latencies: Latencies,
+}
+
+impl<'a> Puller<'a> {
+    pub(crate) fn new(bus: &'a ZenohBus) -> Result<Self, UserError> {
+        let topic = Topics::new("latency").brush_state("main");
+        let queue = Queue::Ring(65_536);
+        Ok(Self {
+            bus,
+            states: Receiver::new(bus, &topic, Qos::RealTime, queue, &Wake::new())?,
+            waiting: BTreeMap::new(),
+            latencies: Latencies {
+                milliseconds: Vec::new(),
+                frames: 0,
+                lost: 0,
+                solves: [0; 3],
+            },
+        })
+    }
+
+    /// Asks for frames until `ends` says so, which is given the time of the newest sample that a frame holds, ns.
+    pub(crate) fn pull(
+        mut self,
+        give_up: Instant,
+        mut ends: impl FnMut(u64) -> Result<bool, UserError>,
+    ) -> Result<Latencies, UserError> {
+        let (mut newest, mut held_ns) = ((0, 0, 0), 0);
+        while Instant::now() < give_up && !ends(held_ns)? {
+            let Some(reply) = frame(self.bus, newest)? else {
+                continue;
+            };
+            let now_ns = self.bus.now_ns();
+            newest = (reply.version, reply.epoch, reply.look);
+            self.latencies.frames += usize::from(!reply.tiles.is_empty());
+            self.take_in();
+            let Some(held) = reply.holds.first() else {
+                continue;
+            };
+            let rest = self.waiting.split_off(&held.next);
+            let held = std::mem::replace(&mut self.waiting, rest).into_values();
+            for event_ns in held.flatten() {
+                let wait_ns = now_ns.saturating_sub(event_ns);
+                self.latencies.milliseconds.push(wait_ns as f64 * 1e-6);
+                held_ns = held_ns.max(event_ns);
+            }
+        }
+        self.latencies.lost = self.waiting.values().map(Vec::len).sum();
+        Ok(self.latencies)
+    }
+
+    /// Takes in the states that have come.
+    fn take_in(&mut self) {
+        while let Some(state) = self.states.try_recv() {
             let solves = state.message.solves.iter().filter(|solve| solve.stroke > 0);
             for solve in solves {
-                let times = waiting.entry(state.header.seq).or_default();
+                let times = self.waiting.entry(state.header.seq).or_default();
                 times.push(solve.event_ns);
                 let longer = [solve_flags::TWICE, solve_flags::FOUR_TIMES];
                 let length = longer.iter().rposition(|flag| solve.flags & flag != 0);
-                latencies.solves[length.map_or(0, |length| length + 1)] += 1;
+                self.latencies.solves[length.map_or(0, |length| length + 1)] += 1;
             }
         }
-        let Some(held) = reply.holds.first() else {
-            continue;
-        };
-        let rest = waiting.split_off(&held.next);
-        let held = std::mem::replace(&mut waiting, rest)
-            .into_values()
-            .flatten();
-        let waits = held.map(|event_ns| now_ns.saturating_sub(event_ns) as f64 * 1e-6);
-        latencies.milliseconds.extend(waits);
     }
-    latencies.lost = waiting.values().map(Vec::len).sum();
-    Ok(latencies)
 }

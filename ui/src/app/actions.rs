@@ -3,7 +3,7 @@
 use eframe::egui::{self, Color32, Context, Event, PointerButton, Stroke};
 use glam::{DVec2, DVec3};
 use maulstick_brush::palette_place::{Side, beside, is_out, is_same, mirrored, over, size_m};
-use maulstick_types::edits::{Pick, Place, Wells};
+use maulstick_types::edits::{LoadFrom, Place, Wells};
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 use maulstick_types::values::{BrushName, Distance};
 
@@ -82,28 +82,29 @@ impl App {
                 place(&mut self.requests, &lie, CANVAS);
             }
             Action::Palette => self.slide(),
-            Action::Pick => self.pick(),
+            Action::LoadFrom => self.load_from(),
             _ => {}
         }
     }
 
     /// Loads the brush in the hand with the mixture under it.
-    fn pick(&mut self) {
+    fn load_from(&mut self) {
         let name = self.rig.brush_name();
         let under = self.tracker.aim(name).and_then(|(at, _)| {
             let plane = self.rig.desk.as_ref()?.under(at)?;
+            let plane = plane.holds(at).then_some(plane)?;
             let at = plane.to_desk.inverse().point(at) / plane.zoom;
             Some((plane.id, [at.x, at.y].map(Distance::new)))
         });
         match (under, BrushName::new(name)) {
-            (Some((surface, [Ok(x), Ok(y)])), Ok(brush)) => self.requests.send(Pick {
+            (Some((surface, [Ok(x), Ok(y)])), Ok(brush)) => self.requests.send(LoadFrom {
                 x,
                 y,
                 surface,
                 brush,
             }),
             _ => self.notifications.fault(
-                "The brush is over no paint.",
+                "The brush is over neither the canvas nor the palette.",
                 "Move it over the mixture that it is to take up.",
             ),
         }

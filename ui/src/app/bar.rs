@@ -29,7 +29,7 @@ const GROUPS: [(&str, &[Action]); 4] = [
         "Brush",
         &[
             Action::NextBrush,
-            Action::Pick,
+            Action::LoadFrom,
             Action::Larger,
             Action::Smaller,
             Action::Follow,

@@ -1,6 +1,6 @@
 //! Gauge of the brush in the hand: colours of its tip from left to right, and how full it is.
 
-use eframe::egui::{Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo};
+use eframe::egui::{Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo};
 
 use crate::widgets::context::PanelContext;
 
@@ -8,15 +8,17 @@ use crate::widgets::context::PanelContext;
 const SIZE: [f32; 2] = [72.0, 24.0];
 /// Height of the level, points.
 const LEVEL: f32 = 5.0;
-/// A brush of which less is full needs paint.
+/// Below this load share the level is drawn in the colour of warnings.
 const LOW: f32 = 0.15;
 
-/// Shows the gauge, once it is known what the brush carries.
-pub(super) fn show(ui: &mut Ui, work: &PanelContext<'_>) -> Option<Response> {
-    let brush = work.rig.brushes.get(work.rig.in_hand)?;
-    let carries = brush.carries.as_ref()?;
+/// Shows the gauge, once it is known what the brush carried.
+pub(super) fn show(ui: &mut Ui, work: &PanelContext<'_>) {
+    let brush = work.rig.brushes.get(work.rig.in_hand);
+    let Some(carried) = brush.and_then(|brush| brush.carried.as_ref()) else {
+        return;
+    };
     let (area, response) = ui.allocate_exact_size(SIZE.into(), Sense::hover());
-    let words = match carries.full {
+    let words = match carried.load_share {
         0.0 => "The brush is clean".to_owned(),
         full => format!("The brush is {} % full", (100.0 * full).ceil()),
     };
@@ -25,8 +27,8 @@ pub(super) fn show(ui: &mut Ui, work: &PanelContext<'_>) -> Option<Response> {
         let painter = ui.painter();
         let mut tip = area.shrink(2.0);
         tip.max.y -= LEVEL + 2.0;
-        let width = tip.width() / carries.colours.len().max(1) as f32;
-        for (column, colour) in carries.colours.iter().enumerate() {
+        let width = tip.width() / carried.colours.len().max(1) as f32;
+        for (column, colour) in carried.colours.iter().enumerate() {
             let mut part = tip;
             part.min.x += column as f32 * width;
             part.max.x = part.min.x + width;
@@ -37,15 +39,15 @@ pub(super) fn show(ui: &mut Ui, work: &PanelContext<'_>) -> Option<Response> {
         let mut level = area.shrink(2.0);
         level.min.y = level.max.y - LEVEL;
         painter.rect_stroke(level, 0.0, line, StrokeKind::Outside);
-        level.max.x = level.min.x + carries.full * level.width();
-        let colour = match carries.full < LOW {
+        level.max.x = level.min.x + carried.load_share * level.width();
+        let colour = match carried.load_share < LOW {
             true => ui.visuals().warn_fg_color,
             false => ui.visuals().selection.stroke.color,
         };
         painter.rect_filled(level, 0.0, colour);
     }
     let hover = "Above, the colours of its tip from left to right; below, how full it is.";
-    Some(response.on_hover_text(format!("{words}.\n{hover}")))
+    response.on_hover_text(format!("{words}.\n{hover}"));
 }
 
 #[cfg(test)]
@@ -61,9 +63,9 @@ mod tests {
 
     #[test]
     fn a_brush_says_how_full_it_is_once_that_is_known() {
-        let show = |carries: Option<CarriedPaint>| {
+        let show = |carried: Option<CarriedPaint>| {
             let mut bench = Bench::new();
-            bench.rig.brushes[0].carries = carries;
+            bench.rig.brushes[0].carried = carried;
             let mut harness = window(vec2(120.0, 60.0), bench, |ui, work| {
                 show(ui, work);
             });
@@ -71,10 +73,10 @@ mod tests {
             ["The brush is clean", "The brush is 41 % full"]
                 .map(|words| harness.query_by_label(words).is_some())
         };
-        let with = |full| {
+        let with = |load_share| {
             Some(CarriedPaint {
                 colours: vec![Vec3::X, Vec3::Z],
-                full,
+                load_share,
             })
         };
         assert_eq!(show(None), [false, false]);

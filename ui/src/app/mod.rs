@@ -40,7 +40,6 @@ use crate::render::display_transform::DisplayTransform;
 use crate::render::frame_reports::Presenter;
 use crate::render::scene::{SceneRenderer, Source};
 use crate::rig::brushes::{BrushTracker, SILENCE_NS};
-use crate::rig::carried_paint::CarriedPaint;
 use crate::rig::dispatcher::CommandDispatcher;
 use crate::rig::health::HealthMonitor;
 use crate::rig::listener::RigListener;
@@ -231,8 +230,7 @@ impl App {
         self.listener.take_in(now_ns, &mut self.rig);
         self.tracker.take_in(now_ns);
         for brush in &mut self.rig.brushes {
-            let carries = self.tracker.carries(&brush.name);
-            brush.carries = carries.map(|(coat, head)| CarriedPaint::of(coat, head));
+            brush.carried = self.tracker.carried(&brush.name).cloned();
         }
         let (rig, notifications) = (&mut self.rig, &mut self.notifications);
         self.watch.look(rig, &self.topics, notifications);

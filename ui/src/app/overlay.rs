@@ -3,7 +3,8 @@
 use eframe::egui::{
     self, Align2, Area, CollapsingHeader, Context, Frame, Id, Order, RichText, ScrollArea, Ui,
 };
-use maulstick_types::edits::{Dry, Redo, Undo};
+use maulstick_types::command::Command;
+use maulstick_types::edits::{Dry, Edit, Redo, Undo};
 use maulstick_types::scene::CANVAS;
 
 use crate::app::bar;
@@ -14,6 +15,7 @@ use crate::input::keys::{self, Action};
 use crate::panels::{self, Panel};
 use crate::reference::Reference;
 use crate::rig::dispatcher::Outcome;
+use crate::rig::requests::Request;
 use crate::widgets::context::PanelContext;
 
 /// Width of the column of panels, points.
@@ -89,14 +91,19 @@ impl Overlay {
         rest
     }
 
-    /// Takes in the outcome of a request; a failure becomes a notification.
+    /// Takes in the outcome of a request; a failure becomes a notification, and so does what a key has changed unseen.
     pub(crate) fn hear(&mut self, outcome: &Outcome, work: &mut PanelContext<'_>) {
         if self.files.hear(outcome, work) {
             return;
         }
         work.brush_answered(outcome);
-        if let Err(fault) = &outcome.result {
-            work.notifications.of(fault);
+        match &outcome.result {
+            Err(fault) => work.notifications.of(fault),
+            Ok(detail) => {
+                if let Some(done) = past_tense(&outcome.request) {
+                    work.notifications.note(format!("{done}: {detail}"));
+                }
+            }
         }
     }
 
@@ -225,5 +232,23 @@ impl Overlay {
                     });
             });
         self.keys = open;
+    }
+}
+
+/// What an edit by a key has done, which may be beside the view.
+fn past_tense(request: &Request) -> Option<&'static str> {
+    let Request::Command {
+        command: Command::Edit(edit),
+        ..
+    } = request
+    else {
+        return None;
+    };
+    match edit {
+        Edit::Undo(_) => Some("Undone"),
+        Edit::Redo(_) => Some("Redone"),
+        Edit::Dry(_) => Some("Dried"),
+        Edit::LoadFrom(_) => Some("Loaded"),
+        _ => None,
     }
 }

@@ -30,7 +30,7 @@ pub enum Action {
     /// The next brush of the rack.
     NextBrush,
     /// The brush is loaded with the mixture under it.
-    Pick,
+    LoadFrom,
     /// The mouse's brush turned to the left.
     TurnLeft,
     /// The mouse's brush turned to the right.
@@ -108,7 +108,7 @@ pub(crate) const BINDINGS: [Binding; 27] = [
     ),
     key(Action::NextBrush, Modifiers::NONE, Key::B, "Next brush"),
     key(
-        Action::Pick,
+        Action::LoadFrom,
         Modifiers::NONE,
         Key::I,
         "Load the brush with the mixture under it",

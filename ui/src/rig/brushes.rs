@@ -19,6 +19,7 @@ use maulstick_types::stylus::StylusSample;
 use maulstick_types::wire::topics::Topics;
 
 use crate::render::brush::paint_colour::PaintColour;
+use crate::rig::carried_paint::CarriedPaint;
 
 /// A device that is silent for this long holds no brush, ns.
 pub const SILENCE_NS: u64 = 1_000_000_000;
@@ -62,6 +63,8 @@ struct TrackedBrush {
     wetness: f32,
     /// The paint on it, if that is known.
     coat: Option<Arc<PaintColour>>,
+    /// The same as its gauge shows it.
+    carried: Option<CarriedPaint>,
 }
 
 /// A brush in the hand.
@@ -157,6 +160,7 @@ impl BrushTracker {
                         touches: None,
                         wetness: 0.0,
                         coat: None,
+                        carried: None,
                     };
                     self.known.insert(def.message.brush, known);
                 }
@@ -172,7 +176,11 @@ impl BrushTracker {
             );
         }
         for (name, known) in &mut self.known {
-            known.coat = self.coats.get(name).cloned().flatten();
+            let coat = self.coats.get(name).and_then(Option::as_ref);
+            if coat.map(Arc::as_ptr) != known.coat.as_ref().map(Arc::as_ptr) {
+                known.carried = coat.map(|coat| CarriedPaint::of(coat, &known.head));
+                known.coat = coat.cloned();
+            }
         }
         while let Some(credit) = self.credit.try_recv() {
             for (name, known) in &mut self.known {
@@ -261,11 +269,10 @@ impl BrushTracker {
         })
     }
 
-    /// The paint on a brush, if that is known, and the head for which it is.
+    /// The paint on a brush as its gauge shows it, if that is known.
     #[must_use]
-    pub fn carries(&self, name: &str) -> Option<(&PaintColour, &Head)> {
-        let known = self.known.get(name)?;
-        Some((known.coat.as_deref()?, &known.head))
+    pub fn carried(&self, name: &str) -> Option<&CarriedPaint> {
+        self.known.get(name)?.carried.as_ref()
     }
 
     /// The head of a brush.

@@ -14,7 +14,7 @@ pub struct CarriedPaint {
     /// Colours of its tip from left to right, linear.
     pub colours: Vec<Vec3>,
     /// Its paint by that of a fully loaded brush, 0 to 1.
-    pub full: f32,
+    pub load_share: f32,
 }
 
 impl CarriedPaint {
@@ -23,7 +23,7 @@ impl CarriedPaint {
     pub fn of(coat: &PaintColour, head: &Head) -> Self {
         Self {
             colours: coat.across(head, COLUMNS),
-            full: coat.full(),
+            load_share: coat.load_share(),
         }
     }
 }

@@ -30,7 +30,7 @@ pub struct RigBrush {
     /// Command for the paint node once the brush has that file.
     pub then: Option<Command>,
     /// The paint on it; `None` until that is known.
-    pub carries: Option<CarriedPaint>,
+    pub carried: Option<CarriedPaint>,
 }
 
 /// An input device of the rig.

@@ -367,7 +367,7 @@ fn a_look_of_a_brush_is_told_once_for_each_load_and_light() {
         hair: Hair::Sable,
         film_m: 1e-9,
         film_full: 1e4,
-        full: 1e6,
+        full_load: 1e6,
     };
     rig.feed.lock().carried.insert("main".into(), carried);
     assert_eq!(told(&mut rig), 1);

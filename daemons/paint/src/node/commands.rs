@@ -8,7 +8,7 @@ use maulstick_painting::sequencer::Replied;
 use maulstick_types::command::{
     Command, CommandReply, CommandRequest, FileCommand, Outcome, SaveAs,
 };
-use maulstick_types::{Flags, encode};
+use maulstick_types::{Flags, Origin, encode};
 
 use super::PaintNode;
 use crate::refusal::Refusal;
@@ -31,7 +31,15 @@ impl PaintNode {
                 Some(outcome) => outcome,
                 None if self.snapshots.has((asked.client, number)) => Outcome::Waiting,
                 None => {
-                    let replied = self.sequencer.command(asked);
+                    let after = asked.after.as_ref().map(|after| Origin {
+                        source: after.brush,
+                        epoch: after.epoch,
+                    });
+                    let waiting = after
+                        .into_iter()
+                        .flat_map(|brush| self.states.waiting(brush));
+                    let queued = waiting.map(|state| (&state.header, &state.message));
+                    let replied = self.sequencer.command_behind(asked, queued);
                     self.complete(replied)
                 }
             };

@@ -40,6 +40,8 @@ use save_as::Saving;
 const STATUS_PERIOD_NS: u64 = 100_000_000;
 /// States consumed in one turn before commands and frames have theirs.
 const STATES_A_TURN: usize = 16;
+/// Time after which a turn consumes no more states, ns: of a large brush each takes long.
+const TURN_NS: u64 = 20_000_000;
 
 /// The paint node.
 pub struct PaintNode {
@@ -257,11 +259,12 @@ impl PaintNode {
         while let Some(token) = self.tokens.try_recv() {
             self.note_player(&token);
         }
+        self.states.poll(&*bus)?;
         self.serve_commands(now_ns);
         self.let_time_pass(now_ns);
-        self.states.poll(&*bus)?;
-        let mut left = STATES_A_TURN;
-        while left > 0 && self.next_state(now_ns)? {
+        let (mut left, mut is_more) = (STATES_A_TURN, true);
+        while is_more && left > 0 && bus.now_ns() < now_ns + TURN_NS {
+            is_more = self.next_state(now_ns)?;
             left -= 1;
         }
         self.tell_again |= !self.states.unheard().is_empty();
@@ -278,7 +281,7 @@ impl PaintNode {
         self.hand_over(now_ns);
         self.hand_over_brushes(now_ns);
         self.publish_status(now_ns)?;
-        Ok(if left == 0 {
+        Ok(if is_more {
             Duration::ZERO
         } else {
             Duration::from_millis(10)

@@ -143,6 +143,15 @@ impl<M: Message> CreditReceiver<M> {
             .filter_map(|stream| stream.ready.front().map(|(_, head)| head))
     }
 
+    /// The messages of a sender that wait in order, the oldest first.
+    pub fn waiting(&self, sender: Origin) -> impl Iterator<Item = &Received<M>> {
+        let own = self.streams.iter();
+        own.filter(move |((_, source), stream)| {
+            (*source, stream.epoch) == (sender.source, sender.epoch)
+        })
+        .flat_map(|(_, stream)| stream.ready.iter().map(|(_, message)| message))
+    }
+
     /// Topics whose newest message came once more: their senders have no report of its consumption.
     pub fn unheard(&mut self) -> Vec<String> {
         std::mem::take(&mut self.again)

@@ -14,7 +14,7 @@ pub mod history;
 pub mod layer;
 pub mod surface;
 
-pub use brush::{Clean, Handle, Load, Pick, Tune};
+pub use brush::{Clean, Handle, Load, LoadFrom, Tune};
 #[cfg(feature = "cli")]
 pub use form::CommandForm;
 pub use form::{Form, StepForm};
@@ -30,7 +30,7 @@ pub use surface::{
 macro_rules! for_each_edit {
     ($with:ident) => {
         $with! {
-            Load, Pick, Clean, Tune, Handle,
+            Load, LoadFrom, Clean, Tune, Handle,
             Dry, StopDrying, Wet, Opacity, NameLayer,
             Place, Relight, Ground, Tooth, Size, Piles, Fill, Wells,
             Undo, Redo, Keep, ReturnTo, Branch, Forget

@@ -66,6 +66,17 @@ wire_enum! {
             /// Number of ticks since the painting began.
             count: u64,
         },
+        /// Brush states that an undo dropped before they were painted, from the first to the last of a range.
+        Cut {
+            /// Name of the brush.
+            brush: String,
+            /// Its epoch.
+            epoch: u32,
+            /// First state.
+            from: u64,
+            /// Last state.
+            to: u64,
+        },
         /// A decision of the paint node itself.
         Decision {
             /// In words: the backend, a degradation.

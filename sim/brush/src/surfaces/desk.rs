@@ -61,7 +61,8 @@ impl Plane {
     }
 
     /// True if a point is over the surface.
-    fn holds(&self, in_desk: DVec3) -> bool {
+    #[must_use]
+    pub fn holds(&self, in_desk: DVec3) -> bool {
         let p = self.to_desk.inverse().point(in_desk) / self.zoom;
         is_on(DVec2::from_array(self.size_m), self.radii_m, p.truncate())
     }

@@ -140,14 +140,16 @@ const BLOCK: usize = 16;
 /// Blocks of an area, row after row.
 #[derive(Clone, Debug, Default)]
 struct Blocks {
-    /// The most that flowed in each in the last round, by the column in it; empty before the first.
+    /// The largest flow through a face in each block in the last round, apart for each of its columns; empty before
+    /// the first round.
     peaks: Vec<[f32; BLOCK]>,
-    /// Columns of cells that may flow, of each row of blocks.
+    /// Runs of columns whose blocks may flow in this round, of each row of blocks.
     active: Vec<Vec<Range<usize>>>,
 }
 
 impl Blocks {
-    /// Begins a round: those may flow where at least `rests` did, and those beside them.
+    /// Begins a round: blocks may flow in which at least `rests` did in the last, and those beside them; in the first
+    /// all may.
     fn begin(&mut self, area: &Area, rests: f32) {
         let [across, up] = area.size.map(|cells| cells.div_ceil(BLOCK));
         let is_first = self.peaks.len() != across * up;
@@ -394,7 +396,8 @@ wide! {
     }
 }
 
-/// Rows beyond the one that is carried over that look at its height.
+/// A row is carried over once the flow of so many rows above it is known: carrying row k changes the heights of rows k
+/// and k + 1, and the curvature of row k + 2 reads that of k + 1.
 const LAG: usize = 2;
 
 impl Levelling {
@@ -403,11 +406,11 @@ impl Levelling {
         (row + HALO) * self.width + HALO + column
     }
 
-    /// The five-point Laplacian of a row's columns and those beside them.
+    /// The five-point Laplacian of a row's columns and the one to the right of them.
     #[inline(always)]
     fn bend(&mut self, row: usize, columns: &Range<usize>) {
-        let (width, cells) = (self.width, columns.len() + 2);
-        let at = self.at(row, columns.start) - 1;
+        let (width, cells) = (self.width, columns.len() + 1);
+        let at = self.at(row, columns.start);
         let surface = |at: usize| &self.surface[at..at + cells];
         let (low, high) = (surface(at - width), surface(at + width));
         let (left, own, right) = (surface(at - 1), surface(at), surface(at + 1));

@@ -140,7 +140,7 @@ impl BrushTraits {
 impl BrushTraits {
     /// Quanta on and inside a fully loaded head of so many strips.
     #[must_use]
-    pub fn full(&self, strips: usize) -> f64 {
+    pub fn full_load(&self, strips: usize) -> f64 {
         (strips * TEXELS_PER_STRIP) as f64 * (self.film_full + self.inside_full)
     }
 

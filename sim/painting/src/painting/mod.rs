@@ -210,6 +210,12 @@ impl Painting {
         self.brushes.find(name).is_some()
     }
 
+    /// The newest stroke of the brush with this hash of its name: epoch and number.
+    #[must_use]
+    pub fn newest_stroke(&self, source: u32) -> Option<(u32, u64)> {
+        self.brushes.of(source).and_then(|brush| brush.stroke)
+    }
+
     /// Fullness of the brush with this hash of its name, 0 to 1.
     #[must_use]
     pub fn fullness(&self, source: u32) -> f32 {

@@ -202,6 +202,12 @@ impl Sequencer {
                 self.decide(&what);
             }
             Accepted::Entry(Entry::Tick { .. }) => self.painting.tick(),
+            Accepted::Entry(Entry::Cut {
+                brush,
+                epoch,
+                from,
+                to,
+            }) => self.drop_states(&brush, epoch, [from, to]),
             Accepted::Entry(Entry::States { .. }) => {}
             Accepted::Brush { brush, toml } => {
                 if let Ok(file) = BrushFile::parse(&toml) {
@@ -240,6 +246,7 @@ impl Sequencer {
             serial: self.serial,
             takes: self.announced.clone(),
             gone: self.gone.iter().copied().collect(),
+            cut: self.cut.clone(),
             consumed: consumed
                 .map(|(origin, next)| (origin.source, origin.epoch, *next))
                 .collect(),
@@ -261,6 +268,7 @@ impl Sequencer {
             serial: kept.serial,
             announced: kept.takes,
             gone: kept.gone.into_iter().collect(),
+            cut: kept.cut,
             consumed: consumed.collect(),
             replies: kept.replies,
             ..Self::new(painting)

@@ -1,14 +1,15 @@
 //! Tests of whole paintings, by subject.
 
 mod books;
+mod cut;
 mod drying;
 mod extremes;
 mod hairline;
 mod light;
+mod loading_from;
 mod models;
 mod modes;
 mod pauses;
-mod picking;
 mod sequencer;
 mod studio;
 mod threads;

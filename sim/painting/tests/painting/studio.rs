@@ -38,6 +38,29 @@ pub(crate) fn load(text: &str) -> Load {
     }
 }
 
+/// Wet paint of a tile: slot, place of the tile, counts.
+pub(crate) type WetPlane = (usize, u32, u32, Vec<f32>);
+
+/// All wet paint of the canvas.
+pub(crate) fn wet_paint(painting: &Painting) -> Vec<WetPlane> {
+    let store = painting.store(CANVAS).expect("a canvas");
+    let tiles = store
+        .iter()
+        .filter_map(|(id, version)| Some((id, version.tile.as_ref()?)));
+    tiles
+        .flat_map(|(id, tile)| {
+            let planes: Vec<_> = tile
+                .wet()
+                .iter()
+                .map(|(slot, plane)| (*slot, plane.to_vec()))
+                .collect();
+            planes
+                .into_iter()
+                .map(move |(slot, plane)| (slot, id.x, id.y, plane))
+        })
+        .collect()
+}
+
 /// A film of a mixture over the canvas.
 pub(crate) fn fill(text: &str, um: f64) -> Fill {
     Fill {

@@ -4,9 +4,8 @@ use maulstick_impasto::Impasto;
 use maulstick_model::interface::{PaintModel, Step, StepReport};
 use maulstick_num::fork_join::{threads, with_threads};
 use maulstick_painting::PaintingSetup;
-use maulstick_types::scene::CANVAS;
 
-use crate::studio::{BRUSH, fill, load, painting, round, solve, state};
+use crate::studio::{BRUSH, WetPlane, fill, load, painting, round, solve, state, wet_paint};
 
 const FILM: &str = "Ultramarine Blue=0.25,Titanium White=0.25,Yellow Ochre=0.25,Pyrrole Red=0.25";
 /// More than one, up to more than any machine gives.
@@ -34,7 +33,7 @@ const LARGE: Size = Size {
 };
 
 /// All wet paint of the canvas after a stroke over a wet film, levelled once it has ended: slot, tile and counts.
-fn painted(size: Size, model: Option<Box<dyn PaintModel>>) -> Vec<(usize, u32, u32, Vec<f32>)> {
+fn painted(size: Size, model: Option<Box<dyn PaintModel>>) -> Vec<WetPlane> {
     let file = round(size.mm, size.strips);
     let side = if size.mm > 20.0 { 512 } else { 128 };
     let setup = PaintingSetup {
@@ -62,22 +61,7 @@ fn painted(size: Size, model: Option<Box<dyn PaintModel>>) -> Vec<(usize, u32, u
     painting.commit();
     assert_eq!(painting.report().quanta_missing, 0);
     assert!(painting.work().0 > 20, "{:?}", painting.work());
-    let store = painting.store(CANVAS).expect("a canvas");
-    let tiles = store
-        .iter()
-        .filter_map(|(id, version)| Some((id, version.tile.as_ref()?)));
-    tiles
-        .flat_map(|(id, tile)| {
-            let planes: Vec<_> = tile
-                .wet()
-                .iter()
-                .map(|(slot, plane)| (*slot, plane.to_vec()))
-                .collect();
-            planes
-                .into_iter()
-                .map(move |(slot, plane)| (slot, id.x, id.y, plane))
-        })
-        .collect()
+    wet_paint(&painting)
 }
 
 #[test]

@@ -13,7 +13,7 @@ pub struct PaintColour {
     along: usize,
     /// Strip after strip, from the ferrule: linear light, then the film's share of a full one.
     samples: Vec<(Vec3, f32)>,
-    full: f32,
+    load_share: f32,
 }
 
 impl PaintColour {
@@ -29,12 +29,12 @@ impl PaintColour {
             (Vec3::new(value(0), value(1), value(2)), value(3))
         };
         let samples: Vec<_> = look.samples.chunks_exact(8).map(sample).collect();
-        let full = look.full;
+        let load_share = look.load_share;
         let numbers = |(colour, film): &(Vec3, f32)| colour.is_finite() && film.is_finite();
-        (samples.iter().all(numbers) && (0.0..=1.0).contains(&full)).then_some(Self {
+        (samples.iter().all(numbers) && (0.0..=1.0).contains(&load_share)).then_some(Self {
             along,
             samples,
-            full,
+            load_share,
         })
     }
 
@@ -47,7 +47,7 @@ impl PaintColour {
         Self {
             along: self.along,
             samples: self.samples.iter().map(tinted).collect(),
-            full: self.full,
+            load_share: self.load_share,
         }
     }
 
@@ -63,7 +63,7 @@ impl PaintColour {
         Self {
             along: self.along,
             samples: nearest.flat_map(own).copied().collect(),
-            full: self.full,
+            load_share: self.load_share,
         }
     }
 
@@ -84,12 +84,12 @@ impl PaintColour {
 
     /// The paint on and inside the head by that of a fully loaded one, 0 to 1.
     #[must_use]
-    pub fn full(&self) -> f32 {
-        self.full
+    pub fn load_share(&self) -> f32 {
+        self.load_share
     }
 
-    /// Colours of the tip of a head in so many columns from left to right; a column without bristles has those of the one
-    /// before.
+    /// Colours of the tip of a head in so many columns from left to right; a column without bristles has the colour of
+    /// the one before it, or of the first that has any.
     #[must_use]
     pub fn across(&self, head: &Head, columns: usize) -> Vec<Vec3> {
         let mut sums = vec![(Vec3::ZERO, 0.0); columns];
@@ -105,14 +105,15 @@ impl PaintColour {
                 *count += 1.0;
             }
         }
-        let mut last = Vec3::ZERO;
-        let column = |(sum, count): (Vec3, f32)| {
-            if count > 0.0 {
-                last = sum / count;
-            }
-            last
-        };
-        sums.into_iter().map(column).collect()
+        let means = sums.iter();
+        let means = means.map(|(sum, count)| (*count > 0.0).then(|| *sum / *count));
+        let mut last = means.clone().flatten().next().unwrap_or(Vec3::ZERO);
+        means
+            .map(|mean| {
+                last = mean.unwrap_or(last);
+                last
+            })
+            .collect()
     }
 
     /// Number of strips.
@@ -137,7 +138,7 @@ pub(crate) mod tests {
             strips,
             along,
             samples: bytes.into(),
-            full: 0.5,
+            load_share: 0.5,
         }
     }
 
@@ -166,8 +167,13 @@ pub(crate) mod tests {
         };
         let samples: Vec<_> = head.roots().iter().flat_map(strip).collect();
         let coat = coat_of(head.strips() as u32, 2, &samples);
-        assert_eq!(coat.full(), 0.5);
+        assert_eq!(coat.load_share(), 0.5);
         assert_eq!(coat.across(&head, 4), [Vec3::X, Vec3::X, Vec3::Z, Vec3::Z]);
+        let columns = 4096;
+        let bare = head.roots().iter();
+        let left = bare.map(|root| 0.5 * (root[0] + 1.0) * columns as f32);
+        assert!(left.fold(f32::MAX, f32::min) > 1.0, "none is in the first");
+        assert_eq!(coat.across(&head, columns)[0], Vec3::X);
     }
 
     /// A head that is thinned for the canvas shows its paint on all of its bristles.

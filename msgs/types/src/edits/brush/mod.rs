@@ -3,11 +3,11 @@
 mod clean;
 mod handle;
 mod load;
-mod pick;
+mod load_from;
 mod tune;
 
 pub use clean::Clean;
 pub use handle::Handle;
 pub use load::Load;
-pub use pick::Pick;
+pub use load_from::LoadFrom;
 pub use tune::Tune;

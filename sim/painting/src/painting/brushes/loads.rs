@@ -5,7 +5,7 @@ use std::sync::Arc;
 use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::Counts;
 use maulstick_model::brush::load::Half;
-use maulstick_types::edits::{Clean, Load, Pick};
+use maulstick_types::edits::{Clean, Load, LoadFrom};
 use maulstick_types::scene::{Scene, Surface, WellKind};
 use maulstick_types::values::Distance;
 use maulstick_types::{Mixture, mixture::Part};
@@ -44,7 +44,7 @@ impl Apply for Load {
     }
 }
 
-impl Apply for Pick {
+impl Apply for LoadFrom {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         painting.brushes.at(&self.brush)?;
         let on = painting.surfaces.at(self.surface)?;

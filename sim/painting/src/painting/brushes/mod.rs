@@ -104,7 +104,7 @@ impl PaintingBrush {
             hair: self.file.head.hair,
             film_m: f64::from(traits.film_cells_per_quantum) * cell_m,
             film_full: traits.film_full,
-            full: traits.full(self.head.strips()),
+            full_load: traits.full_load(self.head.strips()),
         }
     }
 

@@ -1,9 +1,9 @@
 //! Surfaces: their tiles, the models of their paint, the grounds under them.
 
+mod counts_at;
 mod film;
 mod materials;
 mod part;
-mod picking;
 pub(crate) mod underpainting;
 pub(crate) mod wells;
 

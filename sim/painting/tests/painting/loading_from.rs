@@ -1,17 +1,21 @@
-//! Picking: a brush takes up the mixture at a place, wet, dry or in a well.
+//! Loading from a place: a brush takes up the mixture there, wet, dry or in a well.
 
 use maulstick_brush::BrushFile;
 use maulstick_canvas::EditError;
 use maulstick_painting::{Applied, Apply as _, Painting, PaintingSetup};
 use maulstick_types::Mixture;
-use maulstick_types::edits::{Dry, Pick, Undo};
+use maulstick_types::edits::{Dry, LoadFrom, Undo};
 use maulstick_types::scene::{CANVAS, PALETTE, WellKind};
 use maulstick_types::values::{BrushName, Distance};
 
 use super::studio::{BRUSH, fill, load, mixture, painting};
 
-fn pick(painting: &mut Painting, surface: u32, [x, y]: [f64; 2]) -> Result<Mixture, EditError> {
-    let edit = Pick {
+fn load_from(
+    painting: &mut Painting,
+    surface: u32,
+    [x, y]: [f64; 2],
+) -> Result<Mixture, EditError> {
+    let edit = LoadFrom {
         x: Distance::new(x).expect("in range"),
         y: Distance::new(y).expect("in range"),
         surface,
@@ -19,7 +23,7 @@ fn pick(painting: &mut Painting, surface: u32, [x, y]: [f64; 2]) -> Result<Mixtu
     };
     match edit.apply(painting)? {
         Applied::Loaded(mixture) => Ok(mixture),
-        other => panic!("{other:?}"),
+        other => unreachable!("{other:?}"),
     }
 }
 
@@ -43,26 +47,26 @@ fn with_brush() -> Painting {
 fn what_lies_at_a_place_is_loaded_wet_or_dry() {
     let mut painting = with_brush();
     let at = [8e-3, 6e-3];
-    let bare = pick(&mut painting, CANVAS, at);
+    let bare = load_from(&mut painting, CANVAS, at);
     assert_eq!(bare, Err(EditError::NoPaintThere { at_m: at }));
     let green = "Cobalt Blue=0.75,Hansa Yellow Opaque=0.25";
     fill(green, 60.0).apply(&mut painting).expect("a film");
     let before = painting.report().quanta_missing;
-    let wet = pick(&mut painting, CANVAS, at).expect("paint");
+    let wet = load_from(&mut painting, CANVAS, at).expect("paint");
     assert!((share(&wet, "Cobalt Blue") - 0.75).abs() < 1e-4, "{wet}");
     Dry::whole(CANVAS).apply(&mut painting).expect("dry");
     load("Bone Black").apply(&mut painting).expect("loaded");
-    let dry = pick(&mut painting, CANVAS, at).expect("paint");
+    let dry = load_from(&mut painting, CANVAS, at).expect("paint");
     assert!((share(&dry, "Cobalt Blue") - 0.75).abs() < 1e-4, "{dry}");
     fill("Bone Black", 20.0)
         .apply(&mut painting)
         .expect("a film");
-    let above = pick(&mut painting, CANVAS, at).expect("paint");
+    let above = load_from(&mut painting, CANVAS, at).expect("paint");
     assert_eq!(above, mixture("Bone Black"), "wet paint hides dry");
     assert_eq!(painting.report().quanta_missing, before);
     assert_eq!(painting.report().quanta_missing, 0);
     Undo { brush: None }.apply(&mut painting).expect("a step");
-    let beside = pick(&mut painting, CANVAS, [1.0, 1.0]);
+    let beside = load_from(&mut painting, CANVAS, [1.0, 1.0]);
     assert!(beside.is_err(), "beside the canvas lies nothing");
 }
 
@@ -73,7 +77,7 @@ fn a_well_gives_its_mixture() {
     let palette = scene.surfaces.iter().find(|own| own.id == PALETTE);
     let wells = &palette.expect("a palette").wells;
     for well in wells {
-        let picked = pick(&mut painting, PALETTE, well.center_m);
+        let picked = load_from(&mut painting, PALETTE, well.center_m);
         match &well.kind {
             WellKind::Paint { mixture } => assert_eq!(picked.as_ref(), Ok(mixture)),
             WellKind::Cleaner => assert!(picked.is_err(), "{picked:?}"),

@@ -11,9 +11,9 @@ wire_struct! {
     /// Load a brush with the mixture that lies at a place
     ///
     /// What it carried goes to the cleaner. Of wet paint it is the mixture of all of it there, of dry paint that of the
-    /// newest layer.
+    /// newest layer, of a well where nothing was painted the well's.
     #[cfg_attr(feature = "cli", derive(clap::Args))]
-    pub struct Pick {
+    pub struct LoadFrom {
         /// Distance of the place from the left edge, mm
         #[cfg_attr(feature = "cli", arg(value_name = "X_MM", allow_negative_numbers = true))]
         pub x: Distance,
@@ -31,19 +31,22 @@ wire_struct! {
 
 /// A step of a script.
 #[derive(serde::Deserialize)]
-struct PickStep {
-    pick: [Distance; 2],
+struct LoadFromStep {
+    load_from: [Distance; 2],
     #[serde(default = "read::canvas")]
     surface: u32,
 }
 
-impl Form for Pick {
-    const STEPS: &'static [StepForm] =
-        &[StepForm::new("pick", &["surface"], "{ pick = [120, 45] }")];
-    const ARGUMENTS: Option<&'static str> = Some("pick|120|45");
+impl Form for LoadFrom {
+    const STEPS: &'static [StepForm] = &[StepForm::new(
+        "load_from",
+        &["surface"],
+        "{ load_from = [120, 45] }",
+    )];
+    const ARGUMENTS: Option<&'static str> = Some("load-from|120|45");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("pick", "Brush"));
+        Some(crate::edits::CommandForm::of::<Self>("load-from", "Brush"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {
@@ -55,8 +58,8 @@ impl Form for Pick {
     }
 
     fn read_step<'de, D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        let PickStep { pick, surface } = PickStep::deserialize(from)?;
-        let [x, y] = pick;
+        let LoadFromStep { load_from, surface } = LoadFromStep::deserialize(from)?;
+        let [x, y] = load_from;
         Ok(Self {
             x,
             y,
