@@ -93,6 +93,7 @@ fn word(edit: &Edit) -> Option<&'static str> {
         Edit::Wet(_) => Some("wet again: "),
         Edit::Undo(_) => Some("undone: "),
         Edit::Redo(_) => Some("redone: "),
+        Edit::LoadFrom(_) => Some("loaded: "),
         _ => None,
     }
 }

@@ -362,6 +362,11 @@ fn all() -> String {
 #[test]
 fn bytes_are_golden() {
     let got = all();
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden.txt");
+        std::fs::write(path, &got).expect("written");
+        return;
+    }
     let golden = include_str!("golden.txt");
     for (got, golden) in got.lines().zip(golden.lines()) {
         assert_eq!(got, golden);
@@ -369,7 +374,7 @@ fn bytes_are_golden() {
     assert_eq!(
         got.lines().count(),
         golden.lines().count(),
-        "print `all()` into golden.txt"
+        "UPDATE_GOLDEN=1 writes golden.txt anew"
     );
     for entry in CATALOGUE {
         let name = format!("{}/{} ", entry.name, entry.version);

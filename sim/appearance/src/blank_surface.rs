@@ -54,22 +54,9 @@ impl BlankSurface {
 
     /// The cells of a tile that lie in a well, by their place in the tile, with the well.
     pub fn in_wells(&self, id: TileId) -> impl Iterator<Item = (usize, &WellLook)> {
-        let corner = [f64::from(id.x), f64::from(id.y)].map(|tile| tile * TILE as f64);
-        self.wells.iter().flat_map(move |well| {
-            let span = |i: usize| {
-                let inside = |cell: f64| (cell - corner[i]).clamp(0.0, TILE as f64) as usize;
-                inside((well.center[i] - well.radius).floor())
-                    ..inside((well.center[i] + well.radius).ceil())
-            };
-            let across = span(0);
-            span(1)
-                .flat_map(move |y| across.clone().map(move |x| (x, y)))
-                .filter(move |(x, y)| {
-                    let dx = corner[0] + *x as f64 + 0.5 - well.center[0];
-                    let dy = corner[1] + *y as f64 + 0.5 - well.center[1];
-                    dx * dx + dy * dy < well.radius * well.radius
-                })
-                .map(move |(x, y)| (y * TILE + x, well))
+        let wells = self.wells.iter();
+        wells.flat_map(move |well| {
+            cells_in_circle(well.center, well.radius, id).map(move |cell| (cell, well))
         })
     }
 }
@@ -91,4 +78,21 @@ pub fn well_colour(studio: &Studio, shares: &[(usize, f64)], ground: &[f32]) -> 
     };
     studio.shade(&planes, [red, green, blue]);
     rgb.map(|channel| channel[0])
+}
+
+/// Cells of a tile whose middle is within a circle, whose center and radius are in cells.
+pub fn cells_in_circle(center: [f64; 2], radius: f64, id: TileId) -> impl Iterator<Item = usize> {
+    let corner = [f64::from(id.x), f64::from(id.y)].map(|tile| tile * TILE as f64);
+    let span = move |i: usize| {
+        let inside = |cell: f64| (cell - corner[i]).clamp(0.0, TILE as f64) as usize;
+        inside((center[i] - radius).floor())..inside((center[i] + radius).ceil())
+    };
+    span(1)
+        .flat_map(move |y| span(0).map(move |x| (x, y)))
+        .filter(move |(x, y)| {
+            let dx = corner[0] + *x as f64 + 0.5 - center[0];
+            let dy = corner[1] + *y as f64 + 0.5 - center[1];
+            dx * dx + dy * dy < radius * radius
+        })
+        .map(|(x, y)| y * TILE + x)
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::dry::{DryLayer, DryStack};
+use crate::own_plane::OwnPlane;
 use crate::page::{Page, Pager};
 use crate::planes::{Planes, painted, plane_counts};
 use crate::quantum::{CELL_MAX, Counts};
@@ -177,6 +178,44 @@ impl Tile {
     }
 }
 
+impl Tile {
+    /// The tile without its wet paint, but for the cells of `stays`, and what is gone; `None` if nothing goes.
+    #[must_use]
+    pub fn scraped(&self, stays: &[usize]) -> Option<(Self, Counts)> {
+        let page = self.wet.as_ref()?;
+        let wet = page.get();
+        let kept = |plane: &Arc<[f32]>| -> Arc<[f32]> {
+            let mut left = vec![0.0; plane.len()];
+            stays.iter().for_each(|cell| left[*cell] = plane[*cell]);
+            left.into()
+        };
+        let own = wet.own().iter().map(|plane| {
+            let width = plane.shape.cell_bytes();
+            let mut bytes = vec![0; plane.bytes.len()];
+            for cell in stays {
+                let at = cell * width..(cell + 1) * width;
+                bytes[at.clone()].copy_from_slice(&plane.bytes[at]);
+            }
+            OwnPlane {
+                shape: plane.shape,
+                bytes: bytes.into(),
+            }
+        });
+        let left = painted(wet.iter().map(|(slot, plane)| (*slot, kept(plane)))).with_own(own);
+        if left == *wet {
+            return None;
+        }
+        let mut gone = plane_counts(&wet);
+        let stay = plane_counts(&left);
+        gone.iter_mut()
+            .zip(&stay)
+            .for_each(|(gone, stay)| *gone -= stay);
+        let wet = (!left.is_empty()).then(|| Page::new(page.pager(), Arc::new(left), Some(page)));
+        let dry = self.dry.clone();
+        Some((Self { wet, dry }, gone))
+    }
+}
+
 /// Counts of both; `None` if a cell would have more of a paint than is exact.
 fn sum(one: &Planes, other: &Planes) -> Option<Planes> {
     let mut planes = one.clone();
@@ -209,7 +248,7 @@ pub struct Version {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::own_plane::{OwnPlane, OwnShape, ValueType};
+    use crate::own_plane::{OwnShape, ValueType};
     use crate::planes::TILE_CELLS;
 
     #[test]

@@ -12,27 +12,18 @@ use maulstick_painting::Sequencer;
 use rusqlite::{Connection, params};
 use studio::{Painter, equip, print, sequencer};
 
-fn checkpoint(kept: &mut Sequencer, since: u64) -> Checkpoint {
-    let sequencer = kept.kept();
-    Checkpoint {
-        painting: kept.painting_mut().checkpoint(since),
-        sequencer,
-        pictures: Vec::new(),
-    }
-}
-
 /// A painting with some paint, closed; how it is.
 fn painted(path: &Path) -> Vec<String> {
     let settings = DocumentSettings::new(path, Access::Paint);
     let (document, _) = Document::open(&settings).expect("begun");
     let mut kept = sequencer(Arc::clone(document.pager()));
     equip(&mut kept);
-    let mut painter = Painter::new(5);
+    let mut painter = Painter::new(6);
     for _ in 0..12 {
         let act = painter.next();
         painter.act(&mut kept, &act);
     }
-    document.write_checkpoint(checkpoint(&mut kept, 0));
+    document.write_checkpoint(Checkpoint::of(&mut kept, 0));
     let print = print(&mut kept);
     document.close().expect("closed");
     print
@@ -83,7 +74,7 @@ fn a_painting_that_turns_out_to_be_damaged_leaves_no_journal() {
     let since = opened.snapshot().versions;
     let mut kept = opened.sequencer().expect("nothing was read");
     kept.painting_mut().keep("before").expect("kept");
-    document.write_checkpoint(checkpoint(&mut kept, since));
+    document.write_checkpoint(Checkpoint::of(&mut kept, since));
     document.flush();
     assert!(
         path.with_extension("maul-wal").exists(),

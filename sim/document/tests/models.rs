@@ -39,6 +39,7 @@ fn each_goes_on_in_its_document_as_in_memory() {
         document.close().expect("closed");
         let Easel {
             sequencer: mut kept,
+            document: _open,
             ..
         } = Easel::open(&settings).expect("whole");
         // What is opened goes on with lifted brushes.

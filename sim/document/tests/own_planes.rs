@@ -13,7 +13,7 @@ use maulstick_model::interface::{CountOwn, PaintModel, Step, StepReport};
 use maulstick_painting::Sequencer;
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::edits::Load;
+use maulstick_types::edits::{Load, Scrape};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::BrushName;
 
@@ -185,6 +185,16 @@ fn they_are_undone_redone_saved_and_reopened_byte_for_byte() {
         sequencer.painting_mut().undo(None).expect("done");
         assert!(own(&mut sequencer) == *before, "undone from the document");
     }
+    let scrape = Scrape {
+        region: None,
+        surface: CANVAS,
+    };
+    sequencer.painting_mut().apply(scrape).expect("wet");
+    assert!(own(&mut sequencer).is_empty(), "scraped off");
+    assert_eq!(sequencer.painting_mut().report().quanta_missing, 0);
+    sequencer.painting_mut().undo(None).expect("done");
+    assert!(own(&mut sequencer) == once, "undone");
+    assert_eq!(sequencer.painting_mut().report().quanta_missing, 0);
     let mut faulty = once.clone();
     let plane = &mut faulty[0].1[0];
     let mut bytes = plane.bytes.to_vec();

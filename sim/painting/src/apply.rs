@@ -6,8 +6,8 @@ use maulstick_canvas::EditError;
 use maulstick_types::Mixture;
 use maulstick_types::edits::{
     Branch, Clean, Dry, Edit, Fill, Forget, Ground, Handle, Keep, Load, LoadFrom, NameLayer,
-    Opacity, Piles, Place, Redo, Relight, ReturnTo, Size, StopDrying, Tooth, Tune, Undo, Wells,
-    Wet,
+    Opacity, Piles, Place, Redo, Relight, ReturnTo, Scrape, Size, StopDrying, Tooth, Tune, Undo,
+    Wells, Wet,
 };
 
 use crate::painting::Painting;

@@ -30,6 +30,7 @@ const GROUPS: [(&str, &[Action]); 4] = [
         &[
             Action::NextBrush,
             Action::LoadFrom,
+            Action::Scrape,
             Action::Larger,
             Action::Smaller,
             Action::Follow,

@@ -4,8 +4,8 @@ use eframe::egui::{
     self, Align2, Area, CollapsingHeader, Context, Frame, Id, Order, RichText, ScrollArea, Ui,
 };
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Dry, Edit, Redo, Undo};
-use maulstick_types::scene::CANVAS;
+use maulstick_types::edits::{Dry, Edit, Redo, Scrape, Undo};
+use maulstick_types::scene::{CANVAS, PALETTE};
 
 use crate::app::bar;
 use crate::app::first_run::FirstRun;
@@ -101,7 +101,11 @@ impl Overlay {
             Err(fault) => work.notifications.of(fault),
             Ok(detail) => {
                 if let Some(done) = past_tense(&outcome.request) {
-                    work.notifications.note(format!("{done}: {detail}"));
+                    let what = match detail.is_empty() {
+                        true => done.to_owned(),
+                        false => format!("{done}: {detail}"),
+                    };
+                    work.notifications.note(what);
                 }
             }
         }
@@ -113,6 +117,10 @@ impl Overlay {
             Action::Undo => work.requests.send(Undo { brush: None }),
             Action::Redo => work.requests.send(Redo { brush: None }),
             Action::Dry => work.requests.send(Dry::whole(CANVAS)),
+            Action::Scrape => work.requests.send(Scrape {
+                region: None,
+                surface: PALETTE,
+            }),
             Action::Smaller => work.step_width(false),
             Action::Larger => work.step_width(true),
             Action::NextBrush => work.next_brush(),
@@ -249,6 +257,7 @@ fn past_tense(request: &Request) -> Option<&'static str> {
         Edit::Redo(_) => Some("Redone"),
         Edit::Dry(_) => Some("Dried"),
         Edit::LoadFrom(_) => Some("Loaded"),
+        Edit::Scrape(_) => Some("Scraped"),
         _ => None,
     }
 }

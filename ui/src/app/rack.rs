@@ -5,7 +5,7 @@ use std::path::Path;
 
 use eframe::egui::{
     Align2, Area, Context, FontId, Frame, Id, Layout, Margin, Order, Rect, Response, Role,
-    ScrollArea, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2,
+    ScrollArea, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 use maulstick_brush::BrushFile;
 
@@ -21,6 +21,8 @@ const MARGIN: f32 = 6.0;
 const CELL: f32 = 88.0;
 /// Height of its name, points.
 const NAME: f32 = 15.0;
+/// Height of the mark at an edge beyond which the list goes on, points.
+const MORE: f32 = 7.0;
 
 /// A place of the rack.
 struct Place<'a> {
@@ -57,14 +59,38 @@ pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) -> Rect {
                     switch(ui, work);
                     let scroll = ScrollArea::vertical().id_salt("rack");
                     let hidden = eframe::egui::scroll_area::ScrollBarVisibility::AlwaysHidden;
-                    scroll
+                    let shown = scroll
                         .scroll_bar_visibility(hidden)
                         .auto_shrink(false)
                         .show(ui, |ui| brushes(ui, work));
+                    let below = shown.content_size.y - shown.state.clamped_offset().y;
+                    more(
+                        ui,
+                        shown.inner_rect,
+                        [
+                            shown.state.clamped_offset().y > 1.0,
+                            below > shown.inner_rect.height() + 1.0,
+                        ],
+                    );
                 });
             });
         });
     shown.response.rect
+}
+
+/// Marks the edges of a list beyond which it goes on: above, below.
+fn more(ui: &Ui, list: Rect, [above, below]: [bool; 2]) {
+    let colour = ui.visuals().strong_text_color();
+    let middle = list.center().x;
+    for (is_more, edge, inward) in [(above, list.top(), 1.0), (below, list.bottom(), -1.0)] {
+        if is_more {
+            let tip = pos2(middle, edge);
+            let base = [-MORE, MORE].map(|aside| tip + vec2(aside, inward * MORE));
+            let corners = vec![tip, base[0], base[1]];
+            ui.painter()
+                .add(Shape::convex_polygon(corners, colour, Stroke::NONE));
+        }
+    }
 }
 
 /// Choice of the brush in the hand, where the rig has several.

@@ -31,6 +31,8 @@ pub enum Action {
     NextBrush,
     /// The brush is loaded with the mixture under it.
     LoadFrom,
+    /// Wet paint is scraped off the palette.
+    Scrape,
     /// The mouse's brush turned to the left.
     TurnLeft,
     /// The mouse's brush turned to the right.
@@ -81,7 +83,7 @@ const fn key(act: Action, modifiers: Modifiers, key: Key, words: &'static str) -
 }
 
 /// Bindings of keys that act once per press. One with more modifiers comes before the same with fewer.
-pub(crate) const BINDINGS: [Binding; 27] = [
+pub(crate) const BINDINGS: [Binding; 28] = [
     key(
         Action::Palette,
         Modifiers::NONE,
@@ -112,6 +114,12 @@ pub(crate) const BINDINGS: [Binding; 27] = [
         Modifiers::NONE,
         Key::I,
         "Load the brush with the mixture under it",
+    ),
+    key(
+        Action::Scrape,
+        Modifiers::NONE,
+        Key::Backspace,
+        "Scrape the palette clean",
     ),
     key(
         Action::TurnLeft,

@@ -21,8 +21,8 @@ pub use form::{Form, StepForm};
 pub use history::{Branch, Forget, Keep, Redo, ReturnTo, Undo};
 pub use layer::{Dry, LayerRef, NameLayer, Opacity, StopDrying, Wet};
 pub use surface::{
-    Exposure, Fill, FillPaint, Ground, GroundSource, LightChange, Piles, Place, Relight, Size,
-    Tooth, Wells,
+    Exposure, Fill, FillPaint, Ground, GroundSource, LightChange, Piles, Place, Relight, Scrape,
+    Size, Tooth, Wells,
 };
 
 /// Hands the list of all edits to a macro.
@@ -32,7 +32,7 @@ macro_rules! for_each_edit {
         $with! {
             Load, LoadFrom, Clean, Tune, Handle,
             Dry, StopDrying, Wet, Opacity, NameLayer,
-            Place, Relight, Ground, Tooth, Size, Piles, Fill, Wells,
+            Place, Relight, Ground, Tooth, Size, Piles, Fill, Scrape, Wells,
             Undo, Redo, Keep, ReturnTo, Branch, Forget
         }
     };

@@ -11,7 +11,7 @@ use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::command::{Command, CommandRequest, Outcome};
 use maulstick_types::edits::{
     Branch, Clean, Dry, Fill, FillPaint, Forget, Ground, Keep, LayerRef, Load, NameLayer, Opacity,
-    Redo, ReturnTo, StopDrying, Tooth, Undo, Wet,
+    Redo, ReturnTo, Scrape, StopDrying, Tooth, Undo, Wet,
 };
 use maulstick_types::scene::{CANVAS, PALETTE};
 use maulstick_types::values::{
@@ -190,7 +190,7 @@ impl Painter {
         let mixture = mixture(MIXTURES[self.dice.below(3) as usize]);
         let named = |dice: &mut Dice| ["one", "two", "three"][dice.below(3) as usize].to_owned();
         let maybe = |dice: &mut Dice, brush: &str| (dice.below(3) == 0).then(|| brush.to_owned());
-        let command = match self.dice.below(56) {
+        let command = match self.dice.below(57) {
             0..15 => {
                 let new = self.dice.below(2) == 0;
                 self.strokes[b] += u64::from(new);
@@ -273,6 +273,10 @@ impl Painter {
                 layers: Some(self.dice.below(3) as u32).filter(|count| *count > 0),
                 region: self.region(),
                 surface: CANVAS,
+            }),
+            55 => Command::from(Scrape {
+                region: self.region(),
+                surface: [CANVAS, PALETTE][self.dice.below(2) as usize],
             }),
             54 => match self.dice.below(2) {
                 0 => Command::from(Opacity {

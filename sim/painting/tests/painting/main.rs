@@ -10,6 +10,7 @@ mod loading_from;
 mod models;
 mod modes;
 mod pauses;
+mod scraping;
 mod sequencer;
 mod studio;
 mod threads;

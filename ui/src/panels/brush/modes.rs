@@ -16,7 +16,7 @@ const PROPOSED_M: f64 = 60e-6;
 const WAYS: [(BrushMode, &str, &str); 7] = [
     (
         BrushMode::Normal,
-        "Paints",
+        "Paint",
         "It pushes paint, leaves some and takes some up.",
     ),
     (

@@ -77,10 +77,11 @@ impl Painting {
     }
 
     /// Puts tiles of a surface in their places, within the step that is open.
-    fn put_changed(&mut self, on: usize, tiles: Changed) {
+    pub(crate) fn put_changed(&mut self, on: usize, tiles: Changed) {
         let surface = self.surfaces[on].id;
         for (id, tile) in tiles {
-            self.replace((surface, id), Some(tile));
+            let tile = (!tile.is_bare()).then_some(tile);
+            self.replace((surface, id), tile);
         }
     }
 

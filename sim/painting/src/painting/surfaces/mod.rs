@@ -4,6 +4,7 @@ mod counts_at;
 mod film;
 mod materials;
 mod part;
+mod scraping;
 pub(crate) mod underpainting;
 pub(crate) mod wells;
 

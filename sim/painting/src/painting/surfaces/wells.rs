@@ -5,9 +5,10 @@
 
 use std::sync::Arc;
 
-use maulstick_appearance::blank_surface::WELL_M;
+use maulstick_appearance::blank_surface::{WELL_M, cells_in_circle};
 use maulstick_brush::HeadPose;
 use maulstick_canvas::EditError;
+use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::quantum::{QUANTUM_M, SLOTS};
 use maulstick_canvas::window::Window;
 use maulstick_model::brush::traits::BrushTraits;
@@ -66,7 +67,7 @@ fn is_in((pose, traits): (&HeadPose, &BrushTraits), well: &Well, cell_m: f64) ->
 }
 
 impl Apply for Wells {
-    /// Gives a surface other wells. Paint stirred in those that go stays there, wet.
+    /// Gives a surface other wells. Paint in those that move or go, and where they come, is scraped off.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         painting.set_wells(self.surface, &self.wells)?;
         Ok(Applied::Done)
@@ -97,10 +98,40 @@ impl Painting {
         self.close_windows();
         let relief = Some(Arc::clone(&self.surfaces[on].bare.relief));
         self.surfaces[on].bare = Arc::new(self.optics.blank(&changed, relief)?);
-        self.scene.surfaces[on] = changed;
+        let before = std::mem::replace(&mut self.scene.surfaces[on], changed);
         self.scene.version += 1;
         self.optics.renew(&self.scene);
+        self.scrape_moved_wells(on, &before.wells);
         Ok(())
+    }
+
+    /// Scrapes the places of wells that are not where one of the same paint was before, and of those before that are
+    /// no more.
+    fn scrape_moved_wells(&mut self, on: usize, before: &[Well]) {
+        let now = &self.scene.surfaces[on];
+        let gone = before.iter().filter(|well| !now.wells.contains(well));
+        let come = now.wells.iter().filter(|well| !before.contains(well));
+        let moved: Vec<&Well> = gone.chain(come).collect();
+        let scraped = self.surfaces[on].scraped(|id| {
+            let mut stays = vec![true; TILE_CELLS];
+            for well in &moved {
+                let center = well.center_m.map(|m| m / now.cell_m);
+                for cell in cells_in_circle(center, well.radius_m / now.cell_m, id) {
+                    stays[cell] = false;
+                }
+            }
+            let stays = stays.iter().enumerate();
+            Some(
+                stays
+                    .filter_map(|(cell, stays)| stays.then_some(cell))
+                    .collect(),
+            )
+        });
+        if !scraped.0.is_empty() {
+            self.begin_step("wells", None);
+            self.put_scraped(on, scraped);
+            self.end_own_step();
+        }
     }
 
     /// Tends the wells in the cells `from`..`to` of a surface before a brush steps there.

@@ -37,6 +37,7 @@ pub(super) enum Act {
     Opacity(u32, f32),
     Handle(usize, usize),
     FillWith(usize),
+    Scrape(u32),
     Prepare(u32, bool),
     Undo,
     Redo,
@@ -68,6 +69,7 @@ pub(super) fn act() -> impl Strategy<Value = Act> {
         2 => (0..BRUSHES.len(), 0..BrushMode::NAMES.len()).prop_map(|(b, m)| Act::Handle(b, m)),
         1 => (0..BRUSHES.len()).prop_map(Act::FillWith),
         1 => (CANVAS..=PALETTE, any::<bool>()).prop_map(|(s, last)| Act::Prepare(s, last)),
+        1 => (CANVAS..=PALETTE).prop_map(Act::Scrape),
         3 => Just(Act::Undo),
         2 => Just(Act::Redo),
     ]
@@ -109,6 +111,10 @@ pub(super) fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act
                 .expect("known");
         }
         // It may carry nothing.
+        Act::Scrape(surface) => drop(painting.apply(Scrape {
+            region: None,
+            surface: *surface,
+        })),
         Act::FillWith(b) => drop(painting.apply(Fill {
             paint: FillPaint::Carried {
                 brush: BrushName::new(BRUSHES[*b]).expect("valid"),

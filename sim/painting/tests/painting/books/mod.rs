@@ -9,7 +9,7 @@ use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::Mixture;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
 use maulstick_types::edits::{
-    Clean, Dry, Fill, FillPaint, Handle, LayerRef, Load, Opacity, Piles, Size,
+    Clean, Dry, Fill, FillPaint, Handle, LayerRef, Load, Opacity, Piles, Scrape, Size,
 };
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE};
 use maulstick_types::values::{
