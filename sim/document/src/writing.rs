@@ -287,7 +287,7 @@ impl<'a, 'b> Writer<'a, 'b> {
                 .collect(),
             booked: step.effects.booked.clone(),
             layers: step.effects.layers.clone(),
-            makes: step.effects.makes.clone(),
+            materials: step.effects.materials.clone(),
             tops: step.effects.tops.clone(),
         };
         let effects = serde_json::to_string(&effects)?;
@@ -331,7 +331,7 @@ impl<'a, 'b> Writer<'a, 'b> {
                 .collect(),
             ledger: version.rest.ledger.clone(),
             layers: version.rest.layers.clone(),
-            makes: version.rest.makes.clone(),
+            materials: version.rest.materials.clone(),
             tops: version.rest.tops.clone(),
         };
         let rest = serde_json::to_string(&rest)?;

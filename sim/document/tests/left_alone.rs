@@ -8,7 +8,6 @@ use std::sync::Arc;
 use maulstick_document::{
     Access, Checkpoint, Document, DocumentError, DocumentSettings, DocumentStats, glance,
 };
-use maulstick_painting::Sequencer;
 use rusqlite::{Connection, params};
 use studio::{Painter, equip, print, sequencer};
 

@@ -342,7 +342,7 @@ fn steps(database: &Database, stored: &StoredPages) -> Result<Vec<Step>, Documen
                 loads,
                 booked: effects.booked,
                 layers: effects.layers,
-                makes: effects.makes,
+                materials: effects.materials,
                 tops: effects.tops,
             }),
         });
@@ -390,7 +390,7 @@ fn versions(database: &Database, stored: &StoredPages) -> Result<Vec<Named>, Doc
                 loads,
                 ledger: state.ledger,
                 layers: state.layers,
-                makes: state.makes,
+                materials: state.materials,
                 tops: state.tops,
             },
         });

@@ -74,7 +74,7 @@ pub struct StoredStepEffects {
     /// Dry layers.
     pub layers: Option<[Vec<Layer>; 2]>,
     /// Materials of the surfaces.
-    pub makes: Option<[Vec<SurfaceMaterial>; 2]>,
+    pub materials: Option<[Vec<SurfaceMaterial>; 2]>,
     /// Most quanta that a cell of a surface ever had.
     pub tops: [BTreeMap<u32, f32>; 2],
 }
@@ -89,7 +89,7 @@ pub struct StoredNonTileState {
     /// Dry layers.
     pub layers: Vec<Layer>,
     /// Materials of the surfaces.
-    pub makes: Vec<SurfaceMaterial>,
+    pub materials: Vec<SurfaceMaterial>,
     /// Most quanta that a cell of a surface ever had.
     pub tops: BTreeMap<u32, f32>,
 }

@@ -73,7 +73,7 @@ pub struct NonTileState {
     /// The dry layers.
     pub layers: Vec<Layer>,
     /// The surfaces.
-    pub makes: Vec<SurfaceMaterial>,
+    pub materials: Vec<SurfaceMaterial>,
     /// Most quanta that a cell of a surface ever had.
     pub tops: BTreeMap<u32, f32>,
 }
@@ -88,7 +88,7 @@ pub struct StepEffects {
     /// The dry layers before and after it, if it changed them.
     pub layers: Option<[Vec<Layer>; 2]>,
     /// The surfaces before and after it, if it changed them.
-    pub makes: Option<[Vec<SurfaceMaterial>; 2]>,
+    pub materials: Option<[Vec<SurfaceMaterial>; 2]>,
     /// Most quanta that a cell of a surface ever had, before and after it.
     pub tops: [BTreeMap<u32, f32>; 2],
 }
@@ -106,8 +106,8 @@ impl StepEffects {
             booked,
             layers: (before.layers != after.layers)
                 .then(|| [before.layers.clone(), after.layers.clone()]),
-            makes: (before.makes != after.makes)
-                .then(|| [before.makes.clone(), after.makes.clone()]),
+            materials: (before.materials != after.materials)
+                .then(|| [before.materials.clone(), after.materials.clone()]),
             tops: [before.tops.clone(), after.tops.clone()],
         }
     }
@@ -122,7 +122,7 @@ impl StepEffects {
         }
         self.booked.add(&later.booked);
         self.layers = joined(self.layers, later.layers.as_ref());
-        self.makes = joined(self.makes, later.makes.as_ref());
+        self.materials = joined(self.materials, later.materials.as_ref());
         self.tops[1].clone_from(&later.tops[1]);
         self
     }
@@ -167,7 +167,7 @@ impl Step {
         tiles.any(|(place, change)| changes(change) && many.get(place).is_some_and(changes))
             || loads.any(|name| other.effects.loads.contains_key(name))
             || self.effects.layers.is_some() && other.effects.layers.is_some()
-            || self.effects.makes.is_some() && other.effects.makes.is_some()
+            || self.effects.materials.is_some() && other.effects.materials.is_some()
     }
 
     /// The step before it was finished, in a painting that is besides as it is in `rest`.

@@ -66,7 +66,7 @@ impl Painting {
             tops: self.surfaces.tops(),
             brushes: self.brushes.snapshot(&self.surfaces, &loads),
             ledger: self.accounts.ledger.clone(),
-            versions: self.surfaces.versions,
+            versions: self.surfaces.newest_version,
             next_page: self.surfaces.pager.next_number(),
             step,
             open_steps,

@@ -155,12 +155,12 @@ impl Painting {
     /// Number of the newest tile version.
     #[must_use]
     pub fn versions(&self) -> u64 {
-        self.surfaces.versions
+        self.surfaces.newest_version
     }
 
     /// Numbers tile versions from `least` on.
     pub fn skip_versions(&mut self, least: u64) {
-        self.surfaces.versions = self.surfaces.versions.max(least);
+        self.surfaces.newest_version = self.surfaces.newest_version.max(least);
     }
 
     /// The pages of the painting.
@@ -201,7 +201,9 @@ impl Painting {
     /// The brush with this hash of its name.
     #[must_use]
     pub fn brush_of(&self, source: u32) -> Option<&str> {
-        self.brushes.of(source).map(|brush| brush.name.as_str())
+        self.brushes
+            .by_source(source)
+            .map(|brush| brush.name.as_str())
     }
 
     /// True if a brush is known.
@@ -213,13 +215,15 @@ impl Painting {
     /// The newest stroke of the brush with this hash of its name: epoch and number.
     #[must_use]
     pub fn newest_stroke(&self, source: u32) -> Option<(u32, u64)> {
-        self.brushes.of(source).and_then(|brush| brush.stroke)
+        self.brushes
+            .by_source(source)
+            .and_then(|brush| brush.stroke)
     }
 
     /// Fullness of the brush with this hash of its name, 0 to 1.
     #[must_use]
     pub fn fullness(&self, source: u32) -> f32 {
-        let brush = self.brushes.of(source);
+        let brush = self.brushes.by_source(source);
         brush.map_or(0.0, |brush| {
             brush.load.fullness(&brush.traits(self.surfaces.cell_m()))
         })
@@ -228,7 +232,7 @@ impl Painting {
     /// Paint under the brush with this hash of its name, at its newest step.
     #[must_use]
     pub fn under_brush(&self, source: u32) -> UnderBrush {
-        let brush = self.brushes.of(source);
+        let brush = self.brushes.by_source(source);
         brush.map_or_else(UnderBrush::default, |brush| brush.under)
     }
 

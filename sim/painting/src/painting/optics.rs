@@ -19,7 +19,7 @@ use maulstick_types::edits::Relight;
 use maulstick_types::scene::{Light, PaintSlot, Scene, Surface, WellKind};
 
 use super::Painting;
-use super::undo::makes;
+use super::undo::materials;
 use crate::apply::{Applied, Apply};
 use crate::error::paint_error;
 use crate::models::model_called;
@@ -183,7 +183,7 @@ impl Optics {
 
     /// Notes in the look what it is made of: light, layers, grounds, wells, paints.
     pub(crate) fn note(&mut self, scene: &Scene) {
-        let makes = makes(scene);
+        let materials = materials(scene);
         let light = Light {
             exposure: 1.0,
             intensity: 1.0,
@@ -198,7 +198,7 @@ impl Optics {
         let veiled: Vec<(u32, f32)> = veiled.map(|layer| (layer.number, layer.opacity)).collect();
         let wells: Vec<_> = scene.surfaces.iter().map(|own| &own.wells).collect();
         let hash = self.library.hash();
-        let made_of = format!("4 {light:?} {veiled:?} {makes:?} {wells:?} {hash}");
+        let made_of = format!("4 {light:?} {veiled:?} {materials:?} {wells:?} {hash}");
         Arc::make_mut(&mut self.look).note(&made_of);
     }
 }

@@ -16,7 +16,7 @@ use super::brushes::Brushes;
 use super::optics::Optics;
 use super::strokes::backend::Backend;
 use super::surfaces::Surfaces;
-use super::undo::makes;
+use super::undo::materials;
 use super::undo::versions::Versions;
 use super::{Named, Painting};
 use crate::history::{History, NonTileState, Step, TilePlace};
@@ -63,7 +63,7 @@ impl Painting {
         }
         let optics = Optics::of(&scene, library, restored.embedded)?;
         let mut surfaces = Surfaces::new(&scene, &optics, pager)?;
-        surfaces.versions = kept.versions;
+        surfaces.newest_version = kept.versions;
         for surface in surfaces.iter_mut() {
             surface.top = kept.tops.get(&surface.id).copied().unwrap_or(0.0);
         }
@@ -82,7 +82,7 @@ impl Painting {
             loads: restored.loads,
             ledger: kept.ledger.clone(),
             layers: scene.layers.clone(),
-            makes: makes(&scene),
+            materials: materials(&scene),
             tops: kept.tops.clone(),
         };
         let reopened = |step: Step| {

@@ -41,7 +41,7 @@ impl Painting {
                 surface.store.replace(id, Version { number, tile });
             }
         }
-        self.turn_rest(Some(&version.rest.layers), Some(&version.rest.makes));
+        self.turn_non_tile_state(Some(&version.rest.layers), Some(&version.rest.materials));
         Ok(())
     }
 

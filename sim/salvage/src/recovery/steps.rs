@@ -188,7 +188,7 @@ impl StepRow {
     }
 
     fn has_sources(&self, sources: &MaterialSources) -> bool {
-        let mut materials = self.effects.makes.iter().flatten();
+        let mut materials = self.effects.materials.iter().flatten();
         materials.all(|materials| sources.has_all(materials))
     }
 
@@ -217,7 +217,7 @@ impl StepRow {
         let mut tiles = self.tiles.iter();
         let mut loads = self.effects.loads.iter();
         let layers = self.effects.layers.as_ref();
-        let materials = self.effects.makes.as_ref();
+        let materials = self.effects.materials.as_ref();
         self.balances(inventory)
             && tiles.all(|(place, [_, after])| content(place) == *after)
             && loads.all(|(name, [_, after])| {
@@ -243,7 +243,7 @@ impl UndoState {
         if let Some([before, _]) = step.effects.layers {
             self.layers = before;
         }
-        if let Some([before, _]) = step.effects.makes {
+        if let Some([before, _]) = step.effects.materials {
             self.materials = before;
         }
     }

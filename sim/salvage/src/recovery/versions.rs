@@ -100,7 +100,7 @@ fn state(
     if ids.any(|ids| inventory.tile(ids).is_none()) {
         return Ok(None);
     }
-    let mut changed = sources.replace_lost_in_version(&mut state.makes);
+    let mut changed = sources.replace_lost_in_version(&mut state.materials);
     for id in state.loads.values_mut() {
         if inventory.load(*id).is_none() {
             *id = write_clean_load(inventory, database)? as u64;

@@ -1,21 +1,14 @@
-//! Handling of brushes and preparation of surfaces: modes, size, piles (Baxter 2004, § 6.4.1, 6.7, 6.8).
+//! Handling of brushes: modes, tuning, and what lies under them (Baxter 2004, § 6.7).
 
 use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::{CELL_MAX, QUANTUM_M, REFERENCE_CELL_M, UNIT_M};
-use maulstick_model::brush::traits::BrushTraits;
 use maulstick_model::interface::{Handling, StepReport, Transfer};
 use maulstick_types::edits::{Handle, Tune};
-use maulstick_types::scene::{BrushHandling, BrushMode, PALETTE, Scene, Surface};
+use maulstick_types::scene::{BrushHandling, BrushMode, Scene};
 
 use crate::apply::{Applied, Apply};
 use crate::painting::Painting;
 
-/// Share of what a film lacks that comes from inside, and of its surplus that goes there, each time
-/// that paint flows in a brush on the palette, on reference cells: there it is filled through and
-/// through.
-const DIP: f64 = 0.6;
-/// Factor on the path length where a brush is filled: it is stirred and turned.
-const STIRRED: f32 = 4.0;
 /// Kinematic viscosity of oil paint as it comes from the tube, m²/s (Baxter 2004, § 5.2).
 const VISCOSITY_M2_S: f64 = 1e-2;
 /// ln of the factor on the viscosity of paint that is thinner alone.
@@ -44,40 +37,6 @@ impl UnderBrush {
             film_m: wet / cells * QUANTUM_M,
             viscosity_m2_s: VISCOSITY_M2_S * maulstick_num::exp(THINNING * (thinner / wet)),
             contact_m: cell_m * cells.sqrt(),
-        }
-    }
-}
-
-/// Preparation of a surface for a step.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Prepared {
-    /// Quanta that stay on a cell.
-    pub(crate) stain: f32,
-    /// True if paint that is taken up stays there all the same.
-    pub(crate) lasting: bool,
-    /// True if brushes are filled on it.
-    fills: bool,
-}
-
-impl Prepared {
-    pub(crate) fn of(surface: &Surface) -> Self {
-        Self {
-            stain: (surface.stain_m / QUANTUM_M) as f32,
-            lasting: surface.piles_last,
-            fills: surface.id == PALETTE,
-        }
-    }
-
-    /// Traits of a brush on it; one that is stirred is used to take paint up.
-    pub(crate) fn traits(&self, traits: BrushTraits, transfer: Transfer) -> BrushTraits {
-        let stirred = matches!(transfer, Transfer::Paint | Transfer::Sponge);
-        match self.fills && stirred {
-            true => BrushTraits {
-                refill: 1.0 - maulstick_num::powf(1.0 - DIP, f64::from(traits.cell_per_reference)),
-                cell_per_reference: STIRRED * traits.cell_per_reference,
-                ..traits
-            },
-            false => traits,
         }
     }
 }

@@ -80,7 +80,7 @@ impl PaintingBrush {
     }
 
     /// Gives it another file; what it carries is spread anew where that has another number of strips.
-    fn become_another(&mut self, file: BrushFile, cell_m: f64) {
+    fn set_file(&mut self, file: BrushFile, cell_m: f64) {
         let thinned = file.thinned(cell_m);
         let head = Arc::new(Head::of(&thinned));
         if head.strips() != self.head.strips() {
@@ -210,7 +210,7 @@ impl Brushes {
     }
 
     /// The brush with this hash of its name.
-    pub(crate) fn of(&self, source: u32) -> Option<&PaintingBrush> {
+    pub(crate) fn by_source(&self, source: u32) -> Option<&PaintingBrush> {
         self.iter().find(|brush| name_hash(&brush.name) == source)
     }
 
@@ -222,7 +222,7 @@ impl Brushes {
     /// Introduces a brush, or gives a known one another file.
     pub(crate) fn define(&mut self, name: &str, file: BrushFile, cell_m: f64) {
         match self.place(name) {
-            Ok(place) => self.0[place].become_another(file, cell_m),
+            Ok(place) => self.0[place].set_file(file, cell_m),
             Err(place) => self.0.insert(place, PaintingBrush::new(name, file, cell_m)),
         }
     }

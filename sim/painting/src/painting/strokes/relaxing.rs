@@ -7,8 +7,8 @@ use maulstick_model::interface::Rest;
 use maulstick_types::paint::TILE;
 
 use crate::painting::Painting;
-use crate::painting::brushes::handling::Prepared;
 use crate::painting::optics::thinner_slot;
+use crate::painting::surfaces::preparation::Preparation;
 
 impl Painting {
     /// Has the model move the paint that a brush's stroke has reached on a surface.
@@ -50,7 +50,7 @@ impl Painting {
             window,
             area,
             cell_m: self.surfaces[on].cell_m,
-            stain: Prepared::of(&self.scene.surfaces[on]).stain,
+            stain: Preparation::of(&self.scene.surfaces[on]).stain,
             thinner: thinner_slot(&self.scene),
         });
     }

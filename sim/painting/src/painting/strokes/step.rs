@@ -10,8 +10,9 @@ use maulstick_model::interface::{Step, Sweep};
 
 use crate::history::OpenStep;
 use crate::painting::Painting;
-use crate::painting::brushes::handling::{Prepared, handling_of};
+use crate::painting::brushes::handling::handling_of;
 use crate::painting::optics::thinner_slot;
+use crate::painting::surfaces::preparation::Preparation;
 
 impl Painting {
     /// One step of a brush on a surface, doubled so many times.
@@ -64,7 +65,7 @@ impl Painting {
             return;
         };
         let handling = handling_of(&self.scene, &own.name);
-        let prepared = Prepared::of(&self.scene.surfaces[on]);
+        let preparation = Preparation::of(&self.scene.surfaces[on]);
         let surface = &mut self.surfaces[on];
         // Below this the head may touch.
         window.note_top(surface.top);
@@ -74,10 +75,10 @@ impl Painting {
             sweep,
             bounds: (from, to),
             load: Arc::make_mut(&mut own.load),
-            traits: prepared.traits(traits, handling.transfer),
+            traits: preparation.traits(traits, handling.transfer),
             handling,
-            stain: prepared.stain,
-            lasting: prepared.lasting,
+            stain: preparation.stain,
+            lasting: preparation.lasting,
             thinner: thinner_slot(&self.scene),
         };
         let model = self.backend.models.of(surface.model);

@@ -11,7 +11,7 @@ use maulstick_types::scene::Surface;
 use crate::apply::{Applied, Apply};
 use crate::history::SurfaceMaterial;
 use crate::painting::Painting;
-use crate::painting::undo::makes;
+use crate::painting::undo::materials;
 use crate::setup::relief_called;
 
 impl Apply for Ground {
@@ -25,7 +25,7 @@ impl Apply for Ground {
             }
         };
         check_ground(&ground, assets)?;
-        painting.make("ground", on, |make| make.ground = ground);
+        painting.change_material("ground", on, |material| material.ground = ground);
         Ok(Applied::Done)
     }
 }
@@ -35,9 +35,9 @@ impl Apply for Tooth {
         let on = painting.surfaces.at(self.surface)?;
         let cell_m = painting.surfaces[on].cell_m;
         relief_called(&self.tooth, self.seed, cell_m, &painting.optics.assets)?;
-        painting.make("tooth", on, |make| {
-            make.tooth = self.tooth.to_string();
-            make.tooth_seed = self.seed;
+        painting.change_material("tooth", on, |material| {
+            material.tooth = self.tooth.to_string();
+            material.tooth_seed = self.seed;
         });
         Ok(Applied::Done)
     }
@@ -77,29 +77,35 @@ impl Painting {
         Ok(Applied::Done)
     }
 
-    fn make(&mut self, what: &str, on: usize, change: impl FnOnce(&mut SurfaceMaterial)) {
+    fn change_material(
+        &mut self,
+        what: &str,
+        on: usize,
+        change: impl FnOnce(&mut SurfaceMaterial),
+    ) {
         self.begin_step(what, None);
-        let mut makes = makes(&self.scene);
-        change(&mut makes[on]);
-        self.remake(&makes);
+        let mut materials = materials(&self.scene);
+        change(&mut materials[on]);
+        self.set_materials(&materials);
         self.end_own_step();
     }
 
     /// Makes the surfaces of what they are to be made of.
-    pub(crate) fn remake(&mut self, makes: &[SurfaceMaterial]) {
+    pub(crate) fn set_materials(&mut self, materials: &[SurfaceMaterial]) {
         self.close_windows();
-        for make in makes {
-            let Ok(on) = self.surfaces.at(make.surface) else {
+        for material in materials {
+            let Ok(on) = self.surfaces.at(material.surface) else {
                 continue;
             };
             let (surface, own) = (&mut self.scene.surfaces[on], &mut self.surfaces[on]);
-            let tooth = (&surface.tooth, surface.tooth_seed) != (&make.tooth, make.tooth_seed);
-            if !tooth && surface.ground == make.ground {
+            let tooth =
+                (&surface.tooth, surface.tooth_seed) != (&material.tooth, material.tooth_seed);
+            if !tooth && surface.ground == material.ground {
                 continue;
             }
-            surface.ground.clone_from(&make.ground);
-            surface.tooth.clone_from(&make.tooth);
-            surface.tooth_seed = make.tooth_seed;
+            surface.ground.clone_from(&material.ground);
+            surface.tooth.clone_from(&material.tooth);
+            surface.tooth_seed = material.tooth_seed;
             let relief = (!tooth).then(|| Arc::clone(&own.bare.relief));
             // A material that a step brings back was checked when it was made.
             if let Ok(bare) = self.optics.blank(surface, relief) {

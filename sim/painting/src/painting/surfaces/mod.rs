@@ -4,6 +4,7 @@ mod counts_at;
 mod film;
 mod materials;
 mod part;
+pub(crate) mod preparation;
 mod scraping;
 pub(crate) mod underpainting;
 pub(crate) mod wells;
@@ -64,7 +65,7 @@ pub(crate) struct Surfaces {
     states: Vec<SurfaceState>,
     pub(crate) pager: Arc<Pager>,
     /// Number of the newest tile version.
-    pub(crate) versions: u64,
+    pub(crate) newest_version: u64,
 }
 
 impl Surfaces {
@@ -87,7 +88,7 @@ impl Surfaces {
         Ok(Self {
             states: states.collect::<Result<_, EditError>>()?,
             pager,
-            versions: 1,
+            newest_version: 1,
         })
     }
 
@@ -113,14 +114,14 @@ impl Surfaces {
     }
 
     /// Current content of a tile.
-    pub(crate) fn held(&self, (surface, id): TilePlace) -> TileRef {
+    pub(crate) fn tile(&self, (surface, id): TilePlace) -> TileRef {
         self.find(surface)?.store.version(id).tile.clone()
     }
 
     /// Puts a tile in the place of another, which is returned.
     pub(crate) fn put(&mut self, (surface, id): TilePlace, tile: TileRef) -> TileRef {
-        self.versions += 1;
-        let number = self.versions;
+        self.newest_version += 1;
+        let number = self.newest_version;
         let found = self.find_mut(surface)?;
         found.store.replace(id, Version { number, tile }).tile
     }
@@ -134,9 +135,13 @@ impl Surfaces {
     ) {
         let surface = &mut self.states[on];
         let id = surface.id;
-        window.commit(&mut surface.store, &mut self.versions, |tile, version| {
-            replaced((id, tile), version.tile);
-        });
+        window.commit(
+            &mut surface.store,
+            &mut self.newest_version,
+            |tile, version| {
+                replaced((id, tile), version.tile);
+            },
+        );
     }
 
     /// Most quanta that a cell of each surface ever had.

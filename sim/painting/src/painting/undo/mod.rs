@@ -37,7 +37,7 @@ impl Way {
 }
 
 /// Materials of the surfaces of a scene.
-pub(crate) fn makes(scene: &Scene) -> Vec<SurfaceMaterial> {
+pub(crate) fn materials(scene: &Scene) -> Vec<SurfaceMaterial> {
     let surfaces = scene.surfaces.iter();
     surfaces
         .map(|surface| SurfaceMaterial {
@@ -133,16 +133,16 @@ impl Painting {
         let effects = &step.effects;
         let mut tiles = step.tiles.iter();
         let over =
-            tiles.any(|(place, change)| !same(&self.surfaces.held(*place), change.end(from)));
+            tiles.any(|(place, change)| !same(&self.surfaces.tile(*place), change.end(from)));
         let mut loads = effects.loads.iter();
         // A brush that is gone is no hindrance.
         let other_load = loads.any(|(name, pages)| {
             let brush = self.brushes.find(name);
             brush.is_some_and(|brush| !brush.carries(&pages[from]))
         });
-        let (layers, made) = (effects.layers.as_ref(), effects.makes.as_ref());
+        let (layers, made) = (effects.layers.as_ref(), effects.materials.as_ref());
         let other_rest = layers.is_some_and(|ends| ends[from] != self.scene.layers)
-            || made.is_some_and(|ends| ends[from] != makes(&self.scene));
+            || made.is_some_and(|ends| ends[from] != materials(&self.scene));
         let other_books = !self.accounts.ledger.can_book(&effects.booked, way.times());
         // A later step may have led back to what this one left, as a return to a version does.
         let later = match way {
@@ -174,8 +174,8 @@ impl Painting {
             }
         }
         self.accounts.turn(&effects.booked, way.times());
-        let (layers, made) = (effects.layers.as_ref(), effects.makes.as_ref());
-        self.turn_rest(layers.map(|ends| &ends[to]), made.map(|ends| &ends[to]));
+        let (layers, made) = (effects.layers.as_ref(), effects.materials.as_ref());
+        self.turn_non_tile_state(layers.map(|ends| &ends[to]), made.map(|ends| &ends[to]));
         self.turn_tops(step, way);
         match way {
             Way::Back => self.history.undone(step.id),
@@ -204,17 +204,17 @@ impl Painting {
     }
 
     /// Makes layers and surfaces what they are to be.
-    pub(crate) fn turn_rest(
+    pub(crate) fn turn_non_tile_state(
         &mut self,
         layers: Option<&Vec<Layer>>,
-        makes: Option<&Vec<SurfaceMaterial>>,
+        materials: Option<&Vec<SurfaceMaterial>>,
     ) {
         if let Some(layers) = layers {
             self.scene.layers.clone_from(layers);
             self.layers_changed();
         }
-        if let Some(makes) = makes {
-            self.remake(makes);
+        if let Some(materials) = materials {
+            self.set_materials(materials);
         }
     }
 

@@ -2,18 +2,18 @@
 
 use std::sync::Arc;
 
-use super::makes;
+use super::materials;
 use crate::history::{Change, NonTileState, OpenStep, Step, StepEffects, TilePlace, TileRef};
 use crate::painting::Painting;
 
 impl Painting {
     /// State besides the tiles.
-    pub(crate) fn rest(&mut self) -> NonTileState {
+    pub(crate) fn non_tile_state(&mut self) -> NonTileState {
         NonTileState {
             loads: self.brushes.load_pages(&self.surfaces.pager),
             ledger: self.accounts.ledger.clone(),
             layers: self.scene.layers.clone(),
-            makes: makes(&self.scene),
+            materials: materials(&self.scene),
             tops: self.surfaces.tops(),
         }
     }
@@ -24,14 +24,14 @@ impl Painting {
         let own = self.brushes.name(brush).map(str::to_owned);
         // A step of nobody's that is open here is a drying's: it is parted by what comes between.
         self.end_step(|step| own.is_none() || step.brush.is_none() || step.brush == own);
-        let before = self.rest();
+        let before = self.non_tile_state();
         self.history.begin(what, own.as_deref(), before);
     }
 
     /// Ends the open steps of which `which` says so.
     pub(crate) fn end_step(&mut self, which: impl Fn(&OpenStep) -> bool) {
         self.close_windows();
-        let after = self.rest();
+        let after = self.non_tile_state();
         let ended = self.history.take_open(which);
         let ends = !ended.is_empty();
         for open in ended {
@@ -74,14 +74,14 @@ impl Painting {
         let tiles = open.tiles.iter().map(|(place, before)| {
             let change = Change {
                 before: before.clone(),
-                after: self.surfaces.held(*place),
+                after: self.surfaces.tile(*place),
             };
             (*place, change)
         });
         let mut effects = StepEffects::between(&open.before, after, open.booked.clone());
         if let Some(brush) = &open.brush {
             effects.loads.retain(|name, _| name == brush);
-            (effects.layers, effects.makes) = (None, None);
+            (effects.layers, effects.materials) = (None, None);
         }
         Step {
             id: open.id,
@@ -96,7 +96,7 @@ impl Painting {
 
     /// The steps that are not finished, as they are if they end now.
     pub(crate) fn open_steps(&mut self) -> Vec<Step> {
-        let after = self.rest();
+        let after = self.non_tile_state();
         let open = self.history.open();
         open.map(|open| self.finished(open, &after)).collect()
     }

@@ -185,7 +185,7 @@ impl Painting {
             name: name.to_owned(),
             parent: self.versions.line.clone(),
             tiles: Arc::new(self.surfaces.painted()),
-            rest: self.rest(),
+            rest: self.non_tile_state(),
         };
         self.versions.add(named);
         self.versions_changed();
@@ -200,13 +200,13 @@ impl Painting {
         let to = self.versions.find(name)?.clone();
         self.clock.stop(None);
         self.begin_step(&format!("return to '{name}'"), None);
-        let before = self.rest();
+        let before = self.non_tile_state();
         let now = self.surfaces.painted();
         let nowhere = now.keys().filter(|place| !to.tiles.contains_key(place));
         let cleared: Vec<TilePlace> = nowhere.copied().collect();
         let kept = to.tiles.iter().map(|(place, held)| (*place, held.clone()));
         for (place, held) in kept.chain(cleared.into_iter().map(|place| (place, None))) {
-            if !same(&self.surfaces.held(place), &held) {
+            if !same(&self.surfaces.tile(place), &held) {
                 self.replace(place, held);
             }
         }
@@ -224,8 +224,8 @@ impl Painting {
         self.accounts.ledger.clone_from(&to.rest.ledger);
         self.book(None);
         let layers = (before.layers != to.rest.layers).then_some(&to.rest.layers);
-        let makes = (before.makes != to.rest.makes).then_some(&to.rest.makes);
-        self.turn_rest(layers, makes);
+        let materials = (before.materials != to.rest.materials).then_some(&to.rest.materials);
+        self.turn_non_tile_state(layers, materials);
         self.end_own_step();
         self.versions.line = Some(name.to_owned());
         self.versions_changed();
