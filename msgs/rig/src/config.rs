@@ -1,6 +1,7 @@
 //! The settings of a rig: `rig.toml`, with the defaults of `default.toml`.
 
 mod check;
+mod check_driver;
 mod device;
 mod light;
 mod palette;

@@ -3,6 +3,7 @@
 use maulstick_types::command::advice::choice;
 use maulstick_types::wire::topics::check_name;
 
+use super::check_driver::check_driver;
 use super::{
     ACTIONS, BACKENDS, BRUSH_NODE, BrushSection, DRIVERS, DeviceSection, FORCES, GAMUTS, RESERVED,
     RigConfig,
@@ -177,50 +178,6 @@ impl RigConfig {
     }
 }
 
-/// Refuses what the driver of a device would pass over.
-fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
-    let driver = device.driver.as_str();
-    let wrong = |key: &'static str, help: &str| {
-        Err(Wrong {
-            what: format!(
-                "{key} of '{}' does nothing: its driver is {driver}",
-                device.name
-            ),
-            key,
-            value: String::new(),
-            help: help.into(),
-        })
-    };
-    if device.hand.is_some() && driver != "simulated" {
-        return wrong(
-            "hand",
-            "take it out: only a simulated device follows a take",
-        );
-    }
-    if device.library.is_some() && driver != "openhaptics" {
-        return wrong("library", "take it out: it is the library of openhaptics");
-    }
-    if device.replay.is_some() && !device.is_hid() {
-        let help = "take it out: it is played in the place of a pen or a spacemouse; \
-                    a take is the `hand` of a simulated device";
-        return wrong("replay", help);
-    }
-    let mut actions = device.switches.iter().flatten();
-    if device.is_hid() && actions.any(|action| action == "clutch") {
-        let help = "choose another action: who lifts a pen, or lets go of a 6-DOF mouse, has let go of the desk";
-        return Err(Wrong {
-            what: format!(
-                "the switch 'clutch' of '{}' does nothing: its driver is {driver}",
-                device.name
-            ),
-            key: "switches",
-            value: "clutch".into(),
-            help: help.into(),
-        });
-    }
-    Ok(())
-}
-
 /// Desk lengths per device length.
 const SCALES: [f64; 2] = [0.05, 20.0];
 
@@ -246,11 +203,11 @@ fn is_curve(points: &[[f64; 2]]) -> bool {
 }
 
 /// A wrong value: what is wrong, the key and value by which its line is found, what to do.
-struct Wrong {
-    what: String,
-    key: &'static str,
-    value: String,
-    help: String,
+pub(super) struct Wrong {
+    pub(super) what: String,
+    pub(super) key: &'static str,
+    pub(super) value: String,
+    pub(super) help: String,
 }
 
 impl Wrong {
@@ -408,39 +365,6 @@ mod tests {
                 text.contains("position_m") && text.contains("rig.toml:35"),
                 "{text}"
             );
-        }
-    }
-
-    #[test]
-    fn what_the_driver_would_pass_over_is_refused_with_what_to_do() {
-        let section = |driver: &str, line: &str| {
-            let text = DEFAULT.replace("driver = \"simulated\"", &format!("driver = \"{driver}\""));
-            text.replace("max_force_n = 3.0", &format!("{line}\nmax_force_n = 3.0"))
-        };
-        for (line, fits, others) in [
-            ("hand = \"a.mcap\"", "simulated", ["pen", "polhem"]),
-            (
-                "library = \"libHD.so\"",
-                "openhaptics",
-                ["simulated", "inverse3"],
-            ),
-            ("replay = \"a.hid\"", "spacemouse", ["simulated", "polhem"]),
-            (
-                "switches = [\"undo\", \"clutch\"]",
-                "polhem",
-                ["pen", "spacemouse"],
-            ),
-        ] {
-            RigConfig::parse(&section(fits, line), "rig.toml").expect("it has an effect");
-            for driver in others {
-                let refused = RigConfig::parse(&section(driver, line), "rig.toml").expect_err(line);
-                let text = refused.to_string();
-                assert!(
-                    text.contains(driver) && text.contains("rig.toml:37"),
-                    "{text}"
-                );
-                assert!(refused.help.is_some(), "{text}");
-            }
         }
     }
 

@@ -1,0 +1,122 @@
+//! Keys of a `[[device]]` that its driver would pass over.
+
+use super::check::Wrong;
+use super::device::DeviceSection;
+
+/// Refuses what the driver of a device would pass over.
+pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
+    let driver = device.driver.as_str();
+    let wrong = |key: &'static str, help: &str| {
+        Err(Wrong {
+            what: format!(
+                "{key} of '{}' does nothing: its driver is {driver}",
+                device.name
+            ),
+            key,
+            value: String::new(),
+            help: help.into(),
+        })
+    };
+    let usual = DeviceSection::new(&device.name, driver, &device.brush);
+    let passed_over = [
+        (
+            "hand",
+            device.hand.is_some() && driver != "simulated",
+            "take it out: only a simulated device follows a take",
+        ),
+        (
+            "library",
+            device.library.is_some() && driver != "openhaptics",
+            "take it out: it is the library of openhaptics",
+        ),
+        (
+            "replay",
+            device.replay.is_some() && !device.is_hid(),
+            "take it out: it is played in the place of a pen or a spacemouse; \
+             a take is the `hand` of a simulated device",
+        ),
+        (
+            "address",
+            device.address.is_some() && driver == "simulated",
+            "take it out: a simulated device is attached to nothing",
+        ),
+        (
+            "pressure_curve",
+            device.pressure_curve != usual.pressure_curve && driver != "pen",
+            "take it out: only a pen senses pressure",
+        ),
+        (
+            "force",
+            device.force != usual.force && device.is_hid(),
+            "take it out: this device gives no force",
+        ),
+        (
+            "max_force_n",
+            device.max_force_n != usual.max_force_n && device.is_hid(),
+            "take it out: this device gives no force",
+        ),
+    ];
+    for (key, is_passed_over, help) in passed_over {
+        if is_passed_over {
+            return wrong(key, help);
+        }
+    }
+    let mut actions = device.switches.iter().flatten();
+    if device.is_hid() && actions.any(|action| action == "clutch") {
+        let help = "choose another action: who lifts a pen, or lets go of a 6-DOF mouse, has let go of the desk";
+        return Err(Wrong {
+            what: format!(
+                "the switch 'clutch' of '{}' does nothing: its driver is {driver}",
+                device.name
+            ),
+            key: "switches",
+            value: "clutch".into(),
+            help: help.into(),
+        });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::config::{DEFAULT, RigConfig};
+
+    #[test]
+    fn what_the_driver_would_pass_over_is_refused_with_what_to_do() {
+        let section = |driver: &str, line: &str| {
+            let text = DEFAULT.replace("driver = \"simulated\"", &format!("driver = \"{driver}\""));
+            text.replace("max_force_n = 3.0", &format!("{line}\nmax_force_n = 3.0"))
+        };
+        for (line, fits, others) in [
+            ("hand = \"a.mcap\"", "simulated", ["pen", "polhem"]),
+            (
+                "library = \"libHD.so\"",
+                "openhaptics",
+                ["simulated", "inverse3"],
+            ),
+            ("replay = \"a.hid\"", "spacemouse", ["simulated", "polhem"]),
+            ("address = \"1:2\"", "pen", ["simulated", "simulated"]),
+            (
+                "pressure_curve = [[0, 0], [0.5, 0.3], [1, 1]]",
+                "pen",
+                ["polhem", "spacemouse"],
+            ),
+            (
+                "switches = [\"undo\", \"clutch\"]",
+                "polhem",
+                ["pen", "spacemouse"],
+            ),
+        ] {
+            RigConfig::parse(&section(fits, line), "rig.toml").expect("it has an effect");
+            for driver in others {
+                let refused = RigConfig::parse(&section(driver, line), "rig.toml").expect_err(line);
+                let text = refused.to_string();
+                assert!(
+                    text.contains(driver) && text.contains("rig.toml:37"),
+                    "{text}"
+                );
+                assert!(refused.help.is_some(), "{text}");
+            }
+        }
+    }
+}
