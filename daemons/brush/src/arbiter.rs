@@ -1,10 +1,13 @@
 //! Choice among several devices that move one brush: of those in range the one of highest priority, and another one
-//! only between strokes. A brush at rest in the air stays with its device, which may say nothing.
+//! only between strokes. A brush at rest in the air stays with its device, which may say nothing; one in a stroke stays
+//! with a device that says nothing for a while, as a window does whose frame is late.
 
 use std::collections::BTreeMap;
 
-/// A device that is silent for this long is out of range, ns.
+/// A device that is silent for this long leaves its stroke to another that is in range, ns.
 const SILENCE_NS: u64 = 500_000_000;
+/// A device that is silent for this long is lost: whoever is heard lifts the brush out of its stroke, ns.
+const LOST_NS: u64 = 5_000_000_000;
 
 /// Distance of a stylus: in range or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +41,13 @@ struct Device {
     heard_ns: u64,
 }
 
+impl Device {
+    /// True if it is in range and was heard lately.
+    fn is_near(&self, now_ns: u64) -> bool {
+        self.range == Range::Near && now_ns < self.heard_ns.saturating_add(SILENCE_NS)
+    }
+}
+
 impl Arbiter {
     /// A sample came; whether its device moves the brush.
     pub fn hear(
@@ -49,28 +59,35 @@ impl Arbiter {
         now_ns: u64,
     ) -> bool {
         self.devices
-            .retain(|_, device| now_ns < device.heard_ns.saturating_add(SILENCE_NS));
+            .retain(|_, device| now_ns < device.heard_ns.saturating_add(LOST_NS));
         let device = Device {
             priority,
             range,
             heard_ns: now_ns,
         };
         self.devices.insert(name.to_owned(), device);
-        // In the air silence is rest. In a stroke it is loss: whoever is heard next lifts the brush.
+        // In the air silence is rest.
         let held = self
             .active
             .take()
             .filter(|active| stroke == Stroke::None || self.devices.contains_key(active));
-        let heard = held.as_ref().and_then(|active| self.devices.get(active));
-        let keeps =
-            stroke == Stroke::GoesOn && heard.is_some_and(|device| device.range == Range::Near);
+        let keeps = stroke == Stroke::GoesOn
+            && held.as_ref().is_some_and(|active| {
+                let own = &self.devices[active];
+                let mut near = self
+                    .devices
+                    .iter()
+                    .filter(|(_, device)| device.is_near(now_ns));
+                // Silent, it has no other beside it.
+                own.range == Range::Near && (own.is_near(now_ns) || near.next().is_none())
+            });
         self.active = if keeps {
             held
         } else {
             let best = self
                 .devices
                 .iter()
-                .filter(|(_, device)| device.range == Range::Near)
+                .filter(|(_, device)| device.is_near(now_ns))
                 .max_by_key(|(other, device)| (device.priority, Some(*other) == held.as_ref()))
                 .map(|(other, _)| other.clone());
             // The last device stays until another one comes: it may still have to lift the brush.
@@ -142,7 +159,18 @@ mod tests {
         ));
         let mut arbiter = Arbiter::default();
         assert!(hear(&mut arbiter, PEN, Near, None, 0));
-        let lifts = hear(&mut arbiter, MOUSE, Away, GoesOn, SILENCE_NS / 1_000_000);
+        let lifts = hear(&mut arbiter, MOUSE, Away, GoesOn, LOST_NS / 1_000_000);
         assert!(lifts, "it lifts the brush");
+    }
+
+    /// A window may be late by seconds on a busy machine.
+    #[test]
+    fn a_stroke_outlasts_a_late_frame_whatever_rests_out_of_range() {
+        let mut arbiter = Arbiter::default();
+        assert!(hear(&mut arbiter, MOUSE, Near, None, 0));
+        for ms in (100..4900).step_by(100) {
+            assert!(!hear(&mut arbiter, PEN, Away, GoesOn, ms), "{ms} ms");
+        }
+        assert!(hear(&mut arbiter, MOUSE, Near, GoesOn, 4900));
     }
 }

@@ -281,10 +281,13 @@ fn all() -> String {
         })),
         line(&entry(Entry::Tick { count: 4 })),
         line(&entry(Entry::Cut {
+            client: 1,
+            number: 2,
             brush: "main".into(),
             epoch: 1,
             from: 4,
             to: 6,
+            whole: true,
         })),
         line(&entry(Entry::Decision {
             what: "backend cpu".into(),

@@ -3,27 +3,24 @@
 //! The compiler fuses no multiplication with an addition that is written beside it, even where the processor could, so
 //! each number is added, multiplied and rounded alike in all registers, and all give the same bytes.
 
-use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
-
 /// Registers that loops are compiled for, the narrowest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Registers {
-    /// Those that each processor of its kind has.
-    Least,
+    /// The target's baseline: SSE2 on x86-64.
+    Baseline,
     /// AVX2.
     Avx2,
     /// AVX-512: F, VL, BW and DQ.
     Avx512,
 }
 
-/// The widest registers in use, as a number.
-static WIDEST: AtomicU8 = AtomicU8::new(Registers::Avx512 as u8);
+/// The widest registers that a test lets loops use, as a number.
+#[cfg(test)]
+static WIDEST: std::sync::atomic::AtomicU8 =
+    std::sync::atomic::AtomicU8::new(Registers::Avx512 as u8);
 
 impl Registers {
-    /// All of them, the narrowest first.
-    pub const ALL: [Self; 3] = [Self::Least, Self::Avx2, Self::Avx512];
-
     /// The widest that the processor has.
     #[must_use]
     #[inline]
@@ -38,24 +35,20 @@ impl Registers {
                 return Self::Avx2;
             }
         }
-        Self::Least
+        Self::Baseline
     }
 
-    /// The widest that loops run in: the processor's, or those that [`limit_to`](Self::limit_to) has set.
+    /// The widest that loops run in.
     #[must_use]
     #[inline]
     pub fn in_use() -> Self {
-        let widest = match WIDEST.load(Relaxed) {
-            0 => Self::Least,
-            1 => Self::Avx2,
-            _ => Self::Avx512,
-        };
-        widest.min(Self::of_processor())
-    }
-
-    /// Lets all loops of the program run in no wider registers from now on, to compare them.
-    pub fn limit_to(self) {
-        WIDEST.store(self as u8, Relaxed);
+        #[cfg(test)]
+        match WIDEST.load(std::sync::atomic::Ordering::Relaxed) {
+            0 => return Self::Baseline,
+            1 => return Self::Avx2.min(Self::of_processor()),
+            _ => {}
+        }
+        Self::of_processor()
     }
 }
 
@@ -95,7 +88,7 @@ macro_rules! wide {
                     $crate::wide::Registers::Avx512 => return unsafe { avx512($($argument),*) },
                     // SAFETY: as above.
                     $crate::wide::Registers::Avx2 => return unsafe { avx2($($argument),*) },
-                    $crate::wide::Registers::Least => {}
+                    $crate::wide::Registers::Baseline => {}
                 }
             }
             each$($plain)*($($argument),*);
@@ -105,7 +98,9 @@ macro_rules! wide {
 
 #[cfg(test)]
 mod tests {
-    use super::Registers;
+    use std::sync::atomic::Ordering::Relaxed;
+
+    use super::{Registers, WIDEST};
 
     wide! {
         fn polynomial(plane: &mut [f32]) {
@@ -115,21 +110,30 @@ mod tests {
         }
     }
 
+    /// The same with the first sum rounded once, as a fused multiply-add would.
+    fn fused(plane: &mut [f32]) {
+        for x in plane {
+            let sum = (f64::from(*x) * f64::from(1.000_123_f32) + f64::from(0.1_f32)) as f32;
+            *x = sum * *x - 0.7 / (*x + 2.0);
+        }
+    }
+
     /// The limit is the whole program's, so all of it is in one test.
     #[test]
     fn all_registers_give_the_same_bytes() {
-        let before: Vec<f32> = (0..1003).map(|i| i as f32 * 0.37).collect();
-        let after = Registers::ALL.map(|registers| {
-            registers.limit_to();
-            assert_eq!(
-                Registers::in_use(),
-                registers.min(Registers::of_processor())
-            );
-            let mut plane = before.clone();
+        let plane: Vec<f32> = (0..1003).map(|i| i as f32 * 0.37).collect();
+        let all = [Registers::Baseline, Registers::Avx2, Registers::Avx512];
+        let after = all.map(|registers| {
+            WIDEST.store(registers as u8, Relaxed);
+            let used = registers.min(Registers::of_processor());
+            assert_eq!(Registers::in_use(), used);
+            let mut plane = plane.clone();
             polynomial(&mut plane);
             plane
         });
         assert!(after.iter().all(|plane| *plane == after[0]));
-        assert_ne!(after[0], before);
+        let mut faulty = plane;
+        fused(&mut faulty);
+        assert_ne!(faulty, after[0], "a fused sum would be seen");
     }
 }

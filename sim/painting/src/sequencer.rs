@@ -204,7 +204,7 @@ impl Sequencer {
 
     /// True if a state is of the announced take, or live while no take has its brush, and no undo has dropped it.
     fn may_paint(&self, brush: &str, header: &Header, state: &BrushState) -> bool {
-        if self.is_cut(header.origin(), header.seq) {
+        if !header.flags.has(Flags::REPLAY) && self.is_cut(header.origin(), header.seq) {
             return false;
         }
         let take = self.announced.get(brush);

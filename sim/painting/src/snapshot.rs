@@ -138,8 +138,7 @@ pub struct SequencerSnapshot {
     pub takes: BTreeMap<String, TakeSnapshot>,
     /// Players that are gone.
     pub gone: Vec<u32>,
-    /// States that an undo dropped, which are still to come: source and epoch, first and last.
-    #[serde(default)]
+    /// States that an undo dropped and that are still to come.
     pub cut: Vec<CutStates>,
     /// Consumed states of brushes: source, epoch, next.
     pub consumed: Vec<(u32, u32, u64)>,

@@ -58,7 +58,10 @@ pub(crate) fn run(report: &mut Report, place: &Path, usual: f64) -> Result<(), U
     let hand = hand(Arc::clone(&bus), begin_ns);
     let last_ns = begin_ns + at_ns(SAMPLES - LIFT_SAMPLES - 1);
     let give_up = Instant::now() + Duration::from_nanos(LEAD_NS + at_ns(SAMPLES)) + GRACE;
-    let latencies = puller.pull(give_up, |held_ns| Ok(held_ns >= last_ns))?;
+    let latencies = puller.pull(
+        give_up,
+        |held_ns| Ok(held_ns >= last_ns || rig.has_ended()?),
+    )?;
     hand.join().map_err(|_| fault("the hand has stopped"))??;
     bus.close();
 

@@ -185,7 +185,7 @@ impl<'a> Puller<'a> {
         Ok(self.latencies)
     }
 
-    /// Takes in the states that have come.
+    /// Notes the solves of the states.
     fn take_in(&mut self) {
         while let Some(state) = self.states.try_recv() {
             let solves = state.message.solves.iter().filter(|solve| solve.stroke > 0);

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use eframe::egui::{Align2, Area, Color32, Context, Frame, Id, Margin, Order, RichText, Stroke};
 
+use crate::app::rack;
 use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 
@@ -13,6 +14,9 @@ pub(super) const HELP: &str = "Drag the brush through a paint of the palette, th
                         Space: palette   Tab: panels   ?: keys";
 /// Duration of the line over another painting, s.
 const AGAIN_S: f64 = 10.0;
+
+/// Space between the line and the rack, points.
+const BESIDE: f32 = 24.0;
 
 /// State of the line of help.
 #[derive(Debug, Default)]
@@ -53,15 +57,20 @@ impl FirstRun {
             }
             context.request_repaint_after(Duration::from_secs_f64(left));
         }
-        line(context);
+        line(context, preferences.left_handed);
     }
 }
 
-/// Light on dark, with an edge: it is read over any canvas and in either theme.
-fn line(context: &Context) {
+/// Light on dark, with an edge: it is read over any canvas and in either theme. It stands beside the rack, so that it
+/// covers no paint of the palette.
+fn line(context: &Context, left_handed: bool) {
+    let (corner, inward) = match left_handed {
+        false => (Align2::RIGHT_BOTTOM, -1.0),
+        true => (Align2::LEFT_BOTTOM, 1.0),
+    };
     Area::new(Id::unique("help"))
         .order(Order::Foreground)
-        .anchor(Align2::CENTER_BOTTOM, [0.0, -32.0])
+        .anchor(corner, [inward * (rack::WIDTH + BESIDE), -32.0])
         .interactable(false)
         .show(context, |ui| {
             Frame::NONE

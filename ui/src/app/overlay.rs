@@ -91,7 +91,8 @@ impl Overlay {
         rest
     }
 
-    /// Takes in the outcome of a request; a failure becomes a notification, and so does what a key has changed unseen.
+    /// Takes in the outcome of a request; a failure becomes a notification, and so does an edit
+    /// whose effect may be out of view.
     pub(crate) fn hear(&mut self, outcome: &Outcome, work: &mut PanelContext<'_>) {
         if self.files.hear(outcome, work) {
             return;
@@ -243,7 +244,7 @@ impl Overlay {
     }
 }
 
-/// What an edit by a key has done, which may be beside the view.
+/// The deed of an edit whose effect may be out of view.
 fn past_tense(request: &Request) -> Option<&'static str> {
     let Request::Command {
         command: Command::Edit(edit),

@@ -3,12 +3,14 @@
 use std::path::Path;
 
 use maulstick_bus::Request;
+use maulstick_bus::typed::Received;
 use maulstick_painting::Effect;
 use maulstick_painting::sequencer::Replied;
+use maulstick_types::brush::BrushState;
 use maulstick_types::command::{
     Command, CommandReply, CommandRequest, FileCommand, Outcome, SaveAs,
 };
-use maulstick_types::{Flags, Origin, encode};
+use maulstick_types::{Flags, Origin, encode, name_hash};
 
 use super::PaintNode;
 use crate::refusal::Refusal;
@@ -31,20 +33,31 @@ impl PaintNode {
                 Some(outcome) => outcome,
                 None if self.snapshots.has((asked.client, number)) => Outcome::Waiting,
                 None => {
-                    let after = asked.after.as_ref().map(|after| Origin {
-                        source: after.brush,
-                        epoch: after.epoch,
-                    });
-                    let waiting = after
-                        .into_iter()
-                        .flat_map(|brush| self.states.waiting(brush));
-                    let queued = waiting.map(|state| (&state.header, &state.message));
-                    let replied = self.sequencer.command_behind(asked, queued);
+                    let replied = self.sequence(asked);
                     self.complete(replied)
                 }
             };
             self.answer(request, now_ns, CommandReply { number, outcome });
         }
+    }
+
+    /// Hands a command to the sequencer, with the states that wait of the brush behind which it goes.
+    fn sequence(&mut self, asked: CommandRequest) -> Replied {
+        let brush = asked.after.as_ref().map(|after| Origin {
+            source: after.brush,
+            epoch: after.epoch,
+        });
+        let waiting = brush
+            .into_iter()
+            .flat_map(|brush| self.states.waiting(brush));
+        // A stranger may use a brush's number on a topic of its own.
+        let is_own = |state: &&Received<BrushState>| {
+            let brush = self.topics.middle(&state.key).unwrap_or_default();
+            name_hash(brush) == state.header.source
+        };
+        let queued = waiting.filter(is_own);
+        let queued = queued.map(|state| (&state.header, &state.message));
+        self.sequencer.command_behind(asked, queued)
     }
 
     /// Answers a command. Nothing that a client sends may end the node: what cannot be told in

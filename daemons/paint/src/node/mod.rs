@@ -262,10 +262,13 @@ impl PaintNode {
         self.states.poll(&*bus)?;
         self.serve_commands(now_ns);
         self.let_time_pass(now_ns);
-        let (mut left, mut is_more) = (STATES_A_TURN, true);
-        while is_more && left > 0 && bus.now_ns() < now_ns + TURN_NS {
+        let until_ns = bus.now_ns() + TURN_NS;
+        let mut is_more = self.next_state(now_ns)?;
+        for _ in 1..STATES_A_TURN {
+            if !is_more || bus.now_ns() >= until_ns {
+                break;
+            }
             is_more = self.next_state(now_ns)?;
-            left -= 1;
         }
         self.tell_again |= !self.states.unheard().is_empty();
         self.tell(now_ns)?;

@@ -1,24 +1,24 @@
-//! Keys of a `[[device]]` that its driver would pass over.
+//! Keys of a `[[device]]` that its driver would ignore.
 
 use super::check::Wrong;
 use super::device::DeviceSection;
 
-/// Refuses what the driver of a device would pass over.
+/// Refuses what the driver of a device would ignore.
 pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
     let driver = device.driver.as_str();
-    let wrong = |key: &'static str, help: &str| {
+    let wrong = |key: &'static str, value: &str, help: &str| {
         Err(Wrong {
             what: format!(
                 "{key} of '{}' does nothing: its driver is {driver}",
                 device.name
             ),
             key,
-            value: String::new(),
+            value: value.into(),
             help: help.into(),
         })
     };
     let usual = DeviceSection::new(&device.name, driver, &device.brush);
-    let passed_over = [
+    let ignored = [
         (
             "hand",
             device.hand.is_some() && driver != "simulated",
@@ -56,9 +56,11 @@ pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
             "take it out: this device gives no force",
         ),
     ];
-    for (key, is_passed_over, help) in passed_over {
-        if is_passed_over {
-            return wrong(key, help);
+    for (key, is_ignored, help) in ignored {
+        if is_ignored {
+            // The line of `max_force_n` has the word too.
+            let value = if key == "force" { &device.force } else { "" };
+            return wrong(key, value, help);
         }
     }
     let mut actions = device.switches.iter().flatten();
@@ -95,7 +97,6 @@ mod tests {
                 ["simulated", "inverse3"],
             ),
             ("replay = \"a.hid\"", "spacemouse", ["simulated", "polhem"]),
-            ("address = \"1:2\"", "pen", ["simulated", "simulated"]),
             (
                 "pressure_curve = [[0, 0], [0.5, 0.3], [1, 1]]",
                 "pen",
@@ -117,6 +118,27 @@ mod tests {
                 );
                 assert!(refused.help.is_some(), "{text}");
             }
+        }
+    }
+
+    #[test]
+    fn an_address_and_forces_are_refused_where_there_are_none() {
+        for (driver, from, to, line) in [
+            (
+                "simulated",
+                "max_force_n = 3.0",
+                "max_force_n = 3.0\naddress = \"1:2\"",
+                38,
+            ),
+            ("pen", "max_force_n = 3.0", "max_force_n = 2.0", 37),
+            ("spacemouse", "force = \"linear\"", "force = \"local\"", 38),
+        ] {
+            let text = DEFAULT.replace("driver = \"simulated\"", &format!("driver = \"{driver}\""));
+            let wrong = text.replace(from, to);
+            let refused = RigConfig::parse(&wrong, "rig.toml")
+                .expect_err(to)
+                .to_string();
+            assert!(refused.contains(&format!("rig.toml:{line}")), "{refused}");
         }
     }
 }

@@ -68,6 +68,10 @@ wire_enum! {
         },
         /// Brush states that an undo dropped before they were painted, from the first to the last of a range.
         Cut {
+            /// The sender of the undo.
+            client: u64,
+            /// The undo's number.
+            number: u64,
             /// Name of the brush.
             brush: String,
             /// Its epoch.
@@ -76,6 +80,8 @@ wire_enum! {
             from: u64,
             /// Last state.
             to: u64,
+            /// True if nothing of the stroke was painted: then the undo is done.
+            whole: bool,
         },
         /// A decision of the paint node itself.
         Decision {

@@ -220,6 +220,17 @@ impl Painting {
             .and_then(|brush| brush.stroke)
     }
 
+    /// True if the newest step of the brush with this hash of its name has not ended: nothing lies over it.
+    #[must_use]
+    pub fn has_open_step(&self, source: u32) -> bool {
+        let brush = self.brush_of(source);
+        brush.is_some()
+            && self
+                .history
+                .open()
+                .any(|step| step.brush.as_deref() == brush)
+    }
+
     /// Fullness of the brush with this hash of its name, 0 to 1.
     #[must_use]
     pub fn fullness(&self, source: u32) -> f32 {

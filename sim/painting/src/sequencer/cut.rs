@@ -1,58 +1,69 @@
 //! Undo ahead of the paint: a stroke that still waits to be painted is dropped, for it would be undone.
 
 use maulstick_types::brush::{BrushState, solve_flags};
-use maulstick_types::command::{Command, CommandRequest, Outcome};
+use maulstick_types::command::{After, Command, CommandRequest, Outcome};
 use maulstick_types::edits::{Edit, Undo};
 use maulstick_types::paint::Entry;
+use maulstick_types::values::BrushName;
 use maulstick_types::{Flags, Header, Origin, name_hash};
 
 use super::{Replied, Sequencer};
 use crate::snapshot::CutStates;
 
-/// An undo drops a stroke whose oldest waiting sample is so much older than its newest, ns; below it waits.
+/// Sampling time that the waiting states must span for an undo to drop a stroke, ns; below it the undo waits.
 const CUT_NS: u64 = 500_000_000;
+/// What an undo reports of a stroke of which nothing was painted.
+pub(super) const NOT_PAINTED: &str = "a stroke that was not painted yet";
 
 /// The stroke that ends a queue of states.
-struct Last {
+struct LastStroke {
     number: u64,
+    /// The first state that has some of it.
+    first: u64,
     /// First and last state that have nothing of another stroke.
     states: [u64; 2],
-    /// True if a state before these has some of it.
-    is_begun: bool,
+}
+
+impl LastStroke {
+    /// True if its first state has some of another stroke too, and will be painted.
+    fn is_mixed(&self) -> bool {
+        self.first < self.states[0]
+    }
 }
 
 impl Sequencer {
     /// Accepts a command, as [`command`](Self::command) does; `queued` are the states that wait of the brush behind
     /// which it goes, in order.
     ///
-    /// An undo that is more than [`CUT_NS`] ahead of the paint drops the newest stroke from the queue: what is painted
-    /// of it is undone, the rest is never painted, and no redo brings it back.
+    /// An undo that is more than half a second ahead of the paint drops the newest stroke from the queue: what is
+    /// painted of it is undone, the rest is never painted, and no redo brings it back.
     pub fn command_behind<'a>(
         &mut self,
-        request: CommandRequest,
+        mut request: CommandRequest,
         queued: impl Iterator<Item = (&'a Header, &'a BrushState)>,
     ) -> Replied {
-        let (client, number) = (request.client, request.number);
         match self.cut_by(&request, queued) {
             None => self.command(request),
-            Some(outcome) => {
-                self.remember(client, number, outcome.clone());
-                Replied {
-                    client,
-                    number,
-                    outcome,
-                    effect: None,
-                }
+            Some(Cut::Begun { brush }) => {
+                // What another brush did meanwhile is newer, and not meant.
+                request.command = Undo { brush: Some(brush) }.into();
+                self.command(request)
             }
+            Some(Cut::Whole(outcome)) => Replied {
+                client: request.client,
+                number: request.number,
+                outcome,
+                effect: None,
+            },
         }
     }
 
-    /// Drops the stroke that an undo would undo, as far as it waits. The outcome, if nothing of it was painted.
+    /// Drops the stroke that an undo would undo, as far as it waits.
     fn cut_by<'a>(
         &mut self,
         request: &CommandRequest,
         queued: impl Iterator<Item = (&'a Header, &'a BrushState)>,
-    ) -> Option<Outcome> {
+    ) -> Option<Cut> {
         let Command::Edit(Edit::Undo(Undo { brush: of })) = &request.command else {
             return None;
         };
@@ -61,41 +72,59 @@ impl Sequencer {
             source: after.brush,
             epoch: after.epoch,
         };
-        let brush = self.painting.brush_of(origin.source)?.to_owned();
-        let is_another = of.as_ref().is_some_and(|of| name_hash(of) != origin.source);
-        if is_another || self.is_known(request) {
+        let brush = BrushName::new(self.painting.brush_of(origin.source)?).ok()?;
+        if of.as_ref().is_some_and(|of| *of != brush) || self.is_known(request) {
             return None;
         }
         let before: Vec<_> = queued
-            .filter(|(header, _)| {
+            .filter(|(header, state)| {
                 header.seq <= after.sequence
                     && !header.flags.has(Flags::REPLAY)
-                    && !self.is_cut(origin, header.seq)
+                    && self.may_paint(&brush, header, state)
             })
             .collect();
-        let times = [before.first()?, before.last()?].map(|(header, _)| header.event_ns);
-        let last = last_stroke(&before).filter(|_| times[1] >= times[0] + CUT_NS)?;
-        if self.waits_within(origin, last.states[0]) {
+        let (oldest, newest) = (before.first()?.0, before.last()?.0);
+        let spans = newest.event_ns >= oldest.event_ns + CUT_NS;
+        // Where states are still on their way, so may be the end of the stroke.
+        let last = last_stroke(&before).filter(|_| spans && newest.seq == after.sequence)?;
+        if self.waits_within(origin, last.first) {
             return None;
         }
-        let begun = self.painting.newest_stroke(origin.source);
-        let is_begun = last.is_begun || begun == Some((origin.epoch, last.number));
+        let newest_stroke = self.painting.newest_stroke(origin.source);
+        let is_painted = newest_stroke == Some((origin.epoch, last.number));
+        // Where something was done since, that is undone, and the stroke stays whole.
+        if is_painted && !self.painting.has_open_step(origin.source) {
+            return None;
+        }
+        let is_begun = last.is_mixed() || is_painted;
         let journal = self.next;
-        self.drop_states(&brush, origin.epoch, last.states);
-        (!is_begun).then(|| Outcome::Done {
+        let [from, to] = last.states;
+        self.drop_states(Entry::Cut {
+            client: request.client,
+            number: request.number,
+            brush: brush.to_string(),
+            epoch: origin.epoch,
+            from,
+            to,
+            whole: !is_begun,
+        });
+        if is_begun {
+            return Some(Cut::Begun { brush });
+        }
+        let outcome = Outcome::Done {
             journal,
-            detail: "a stroke that was not painted yet".to_owned(),
-        })
+            detail: NOT_PAINTED.to_owned(),
+        };
+        self.remember(request.client, request.number, outcome.clone());
+        Some(Cut::Whole(outcome))
     }
 
-    /// True if a command waits that is not undone with a stroke that begins with this state.
+    /// True if a command other than an undo waits behind this state or a later one.
     fn waits_within(&self, origin: Origin, state: u64) -> bool {
         self.waiting.iter().any(|request| {
             let after = request.after.as_ref();
             let is_undo = matches!(request.command, Command::Edit(Edit::Undo(_)));
-            let own = |after: &&maulstick_types::command::After| {
-                (after.brush, after.epoch) == (origin.source, origin.epoch)
-            };
+            let own = |after: &&After| (after.brush, after.epoch) == (origin.source, origin.epoch);
             !is_undo
                 && after
                     .filter(own)
@@ -110,20 +139,23 @@ impl Sequencer {
         self.replies.find(request).is_some() || self.waiting.iter().any(same)
     }
 
-    /// Drops states that are still to come.
-    pub(super) fn drop_states(&mut self, brush: &str, epoch: u32, [from, to]: [u64; 2]) {
-        self.cut.push(CutStates {
-            source: name_hash(brush),
+    /// Drops the states of an entry, which are still to come.
+    pub(super) fn drop_states(&mut self, entry: Entry) {
+        if let Entry::Cut {
+            brush,
             epoch,
             from,
             to,
-        });
-        let entry = Entry::Cut {
-            brush: brush.to_owned(),
-            epoch,
-            from,
-            to,
-        };
+            ..
+        } = &entry
+        {
+            self.cut.push(CutStates {
+                source: name_hash(brush),
+                epoch: *epoch,
+                from: *from,
+                to: *to,
+            });
+        }
         let index = self.enter(entry.clone());
         self.note(index, || super::Accepted::Entry(entry));
     }
@@ -134,35 +166,42 @@ impl Sequencer {
     }
 }
 
+/// What an undo has dropped.
+enum Cut {
+    /// All of a stroke; the undo is answered.
+    Whole(Outcome),
+    /// The rest of a stroke that is painted in part.
+    Begun {
+        /// Its brush.
+        brush: BrushName,
+    },
+}
+
 /// The newest stroke of states in order.
-fn last_stroke(states: &[(&Header, &BrushState)]) -> Option<Last> {
+fn last_stroke(states: &[(&Header, &BrushState)]) -> Option<LastStroke> {
     let strokes = |state: &BrushState| -> Vec<u64> {
-        let painting = state.solves.iter();
-        let painting = painting.filter(|solve| solve.flags & solve_flags::PREVIEW == 0);
+        let solves = state.solves.iter();
+        let painting = solves.filter(|solve| solve.flags & solve_flags::PREVIEW == 0);
         painting
             .map(|solve| solve.stroke)
             .filter(|stroke| *stroke > 0)
             .collect()
     };
-    let mut strokes = states
+    let strokes: Vec<(u64, Vec<u64>)> = states
         .iter()
-        .map(|(header, state)| (header.seq, strokes(state)));
-    let number = *strokes
-        .clone()
-        .rev()
-        .find_map(|(_, own)| own.last().copied())
-        .as_ref()?;
-    let alone = |(_, own): &(u64, Vec<u64>)| {
-        own.contains(&number) && own.iter().all(|stroke| *stroke == number)
-    };
-    let is_begun = strokes
-        .clone()
-        .any(|own| own.1.contains(&number) && !alone(&own));
-    let first = strokes.clone().find(alone)?.0;
-    let last = strokes.rfind(alone)?.0;
-    Some(Last {
+        .map(|(header, state)| (header.seq, strokes(state)))
+        .collect();
+    let mut newest = strokes.iter().rev();
+    let number = *newest.find_map(|(_, own)| own.last())?;
+    let has = |(_, own): &&(u64, Vec<u64>)| own.contains(&number);
+    let alone = |(_, own): &&(u64, Vec<u64>)| own.iter().all(|stroke| *stroke == number);
+    let mut own = strokes.iter().filter(has);
+    let first = own.clone().next()?.0;
+    let start = own.clone().find(alone)?.0;
+    let end = own.rfind(alone)?.0;
+    Some(LastStroke {
         number,
-        states: [first, last],
-        is_begun,
+        first,
+        states: [start, end],
     })
 }

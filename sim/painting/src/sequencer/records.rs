@@ -10,6 +10,7 @@ use maulstick_types::values::BrushName;
 use maulstick_types::{Header, Mixture, Origin};
 
 use super::Sequencer;
+use super::cut::NOT_PAINTED;
 use crate::apply::{Applied, Apply as _};
 use crate::painting::Painting;
 use crate::snapshot::SequencerSnapshot;
@@ -202,12 +203,22 @@ impl Sequencer {
                 self.decide(&what);
             }
             Accepted::Entry(Entry::Tick { .. }) => self.painting.tick(),
-            Accepted::Entry(Entry::Cut {
-                brush,
-                epoch,
-                from,
-                to,
-            }) => self.drop_states(&brush, epoch, [from, to]),
+            Accepted::Entry(cut @ Entry::Cut { .. }) => {
+                if let Entry::Cut {
+                    client,
+                    number,
+                    whole: true,
+                    ..
+                } = &cut
+                {
+                    let outcome = Outcome::Done {
+                        journal: self.next,
+                        detail: NOT_PAINTED.to_owned(),
+                    };
+                    self.remember(*client, *number, outcome);
+                }
+                self.drop_states(cut);
+            }
             Accepted::Entry(Entry::States { .. }) => {}
             Accepted::Brush { brush, toml } => {
                 if let Ok(file) = BrushFile::parse(&toml) {

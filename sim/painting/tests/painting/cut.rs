@@ -5,7 +5,7 @@ use maulstick_painting::{PaintingSetup, Sequencer};
 use maulstick_types::brush::BrushState;
 use maulstick_types::command::{After, CommandRequest, Outcome};
 use maulstick_types::edits::{Clean, Redo, Undo};
-use maulstick_types::paint::Entry;
+use maulstick_types::paint::{Entry, JournalEntry};
 use maulstick_types::values::BrushName;
 use maulstick_types::{Header, name_hash};
 
@@ -51,16 +51,22 @@ fn paint(sequencer: &mut Sequencer, states: &[(Header, BrushState)]) -> Vec<Outc
     outcomes
 }
 
+/// The place behind all of a queue.
+fn behind(queue: &[(Header, BrushState)]) -> After {
+    let (header, _) = queue.last().expect("a queue");
+    After {
+        brush: name_hash(BRUSH),
+        epoch: header.epoch,
+        sequence: header.seq,
+    }
+}
+
 /// An undo behind all of a queue, of which these states wait.
 fn undo(sequencer: &mut Sequencer, number: u64, waiting: &[(Header, BrushState)]) -> Outcome {
     let request = CommandRequest {
         client: 7,
         number,
-        after: waiting.last().map(|(header, _)| After {
-            brush: name_hash(BRUSH),
-            epoch: header.epoch,
-            sequence: header.seq,
-        }),
+        after: Some(behind(waiting)),
         command: Undo { brush: None }.into(),
     };
     let queued = waiting.iter().map(|(header, state)| (header, state));
@@ -143,6 +149,43 @@ fn an_undo_a_little_ahead_waits_and_can_be_redone() {
     assert!(!result(&mut sequencer).is_empty(), "and redone whole");
 }
 
+/// The rest of the stroke would be painted after all.
+#[test]
+fn a_stroke_whose_end_is_still_on_its_way_is_not_cut() {
+    let file = round(5.0, 48);
+    let queue = strokes(&file, 1, 50);
+    let mut sequencer = studio(&file);
+    let (arrived, late) = queue.split_at(15);
+    let request = CommandRequest {
+        client: 7,
+        number: 1,
+        after: Some(behind(&queue)),
+        command: Undo { brush: None }.into(),
+    };
+    let queued = arrived.iter().map(|(header, state)| (header, state));
+    let outcome = sequencer.command_behind(request, queued).outcome;
+    assert_eq!(outcome, Outcome::Waiting);
+    paint(&mut sequencer, arrived);
+    paint(&mut sequencer, late);
+    assert!(result(&mut sequencer).is_empty());
+}
+
+/// An undo takes back what was done last, so a stroke that is begun may not lose its end.
+#[test]
+fn a_begun_stroke_that_something_was_done_after_stays_whole() {
+    let file = round(5.0, 48);
+    let queue = strokes(&file, 1, 50);
+    let mut sequencer = studio(&file);
+    paint(&mut sequencer, &queue[..8]);
+    sequencer.edit(load("Bone Black")).expect("loaded");
+    assert_eq!(undo(&mut sequencer, 1, &queue[8..]), Outcome::Waiting);
+    paint(&mut sequencer, &queue[8..]);
+    let journal = sequencer.drain_journal();
+    let is_cut = |entry: &JournalEntry| matches!(entry.entry, Entry::Cut { .. });
+    assert!(!journal.iter().any(is_cut), "{journal:?}");
+    assert!(!result(&mut sequencer).is_empty());
+}
+
 #[test]
 fn what_waits_behind_the_stroke_is_undone_before_it() {
     let file = round(5.0, 48);
@@ -151,11 +194,7 @@ fn what_waits_behind_the_stroke_is_undone_before_it() {
     let clean = CommandRequest {
         client: 7,
         number: 1,
-        after: queue.last().map(|(header, _)| After {
-            brush: name_hash(BRUSH),
-            epoch: header.epoch,
-            sequence: header.seq,
-        }),
+        after: Some(behind(&queue)),
         command: Clean {
             brush: BrushName::main(),
         }
@@ -172,7 +211,8 @@ fn saved_records_and_snapshots_know_what_was_dropped() {
     let file = round(5.0, 48);
     let queue = strokes(&file, 2, 50);
     let mut sequencer = studio(&file);
-    assert!(is_done(&undo(&mut sequencer, 1, &queue)));
+    let done = undo(&mut sequencer, 1, &queue);
+    assert!(is_done(&done));
     let kept = sequencer.kept();
     let records = sequencer.take_records();
     paint(&mut sequencer, &queue);
@@ -187,6 +227,12 @@ fn saved_records_and_snapshots_know_what_was_dropped() {
         .into_iter()
         .for_each(|record| replayed.replay(record));
     assert_eq!(replayed.kept().cut, kept.cut);
+    let again = undo(&mut replayed, 1, &queue);
+    assert!(is_done(&again), "asked again it undoes no other: {again:?}");
     paint(&mut replayed, &queue);
     assert!(result(&mut replayed) == expected);
+
+    let mut restored = Sequencer::restored(studio(&file).into_painting(), kept);
+    paint(&mut restored, &queue);
+    assert!(result(&mut restored) == expected);
 }

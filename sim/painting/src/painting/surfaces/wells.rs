@@ -3,6 +3,7 @@
 //! Under the brush a well's cells hold its mixture, fresh: paint that was pushed into them goes to the cleaner, paint
 //! that was taken comes from the tubes. A brush that touches the cleaner is clean.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use maulstick_appearance::blank_surface::{WELL_M, cells_in_circle};
@@ -113,22 +114,17 @@ impl Painting {
         let come = now.wells.iter().filter(|well| !before.contains(well));
         let moved: Vec<&Well> = gone.chain(come).collect();
         let scraped = self.surfaces[on].scraped(|id| {
-            let mut stays = vec![true; TILE_CELLS];
-            for well in &moved {
+            let cells = moved.iter().flat_map(|well| {
                 let center = well.center_m.map(|m| m / now.cell_m);
-                for cell in cells_in_circle(center, well.radius_m / now.cell_m, id) {
-                    stays[cell] = false;
-                }
-            }
-            let stays = stays.iter().enumerate();
-            Some(
-                stays
-                    .filter_map(|(cell, stays)| stays.then_some(cell))
-                    .collect(),
-            )
+                cells_in_circle(center, well.radius_m / now.cell_m, id)
+            });
+            let cells: BTreeSet<usize> = cells.collect();
+            let stays = (0..TILE_CELLS).filter(|cell| !cells.contains(cell));
+            (!cells.is_empty()).then(|| stays.collect())
         });
         if !scraped.0.is_empty() {
-            self.begin_step("wells", None);
+            self.clock.stop(Some(now.id));
+            self.begin_step("scrape", None);
             self.put_scraped(on, scraped);
             self.end_own_step();
         }

@@ -110,11 +110,12 @@ pub(super) fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act
                 .apply(Handle::try_from(&handling).expect("in range"))
                 .expect("known");
         }
-        // It may carry nothing.
+        // There may be nothing wet.
         Act::Scrape(surface) => drop(painting.apply(Scrape {
             region: None,
             surface: *surface,
         })),
+        // It may carry nothing.
         Act::FillWith(b) => drop(painting.apply(Fill {
             paint: FillPaint::Carried {
                 brush: BrushName::new(BRUSHES[*b]).expect("valid"),
