@@ -177,12 +177,12 @@ impl Hand {
 }
 
 #[test]
-fn other_wells_give_other_paint_and_what_was_stirred_stays() {
+fn other_wells_give_other_paint_and_what_was_stirred_in_them_is_scraped_off() {
     let mut hand = Hand::new();
     let blue = hand.well(Some("Ultramarine Blue"));
     hand.drag_through(blue);
-    let before = hand.report().paints_m3["Ultramarine Blue"]["palette"];
-    let steps = hand.offline.painting_mut().history_depth();
+    let before = hand.report().paints_m3["Ultramarine Blue"].clone();
+    let (steps, _) = hand.offline.painting_mut().history_depth();
     let palette = hand.palette();
     let teal: Mixture = "phthalo green blue shade=0.5,Titanium White=0.5"
         .parse()
@@ -195,13 +195,16 @@ fn other_wells_give_other_paint_and_what_was_stirred_stays() {
         panic!("a paint")
     };
     assert_eq!(mixture.parts[0].paint, "Phthalo Green Blue Shade");
-    assert_eq!(
-        hand.offline.painting_mut().history_depth(),
-        steps,
-        "wells are no step"
+    let (after_steps, _) = hand.offline.painting_mut().history_depth();
+    assert_eq!(after_steps, steps + 1, "scraping is a step");
+    let after = &hand.report().paints_m3["Ultramarine Blue"];
+    let off = before["palette"] - after["palette"];
+    assert!(
+        off > 0.0 && off <= before["palette"],
+        "{before:?} {after:?}"
     );
-    let after = hand.report().paints_m3["Ultramarine Blue"]["palette"];
-    assert!(before > 0.0 && after == before, "{before} {after}");
+    let cleaned = after["cleaner"] - before["cleaner"];
+    assert!((cleaned / off - 1.0).abs() < 1e-9, "{before:?} {after:?}");
     let cleaner = hand.well(None);
     hand.drag_through(cleaner);
     let teal = hand.well(Some("Phthalo Green Blue Shade"));

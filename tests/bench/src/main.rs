@@ -8,7 +8,7 @@
 //! | [`frames`] | `frames`: a reply to a view through shared memory, beside the socket |
 //! | [`haptics`] | `haptics`: how late the servo wakes beside cyclictest, what a tick takes, how stable it is |
 //! | [`header`] | headers of a brush's states |
-//! | [`latency`] | `latency`: from a stylus sample to the first frame that holds it |
+//! | [`latency`] | `latency`: from a stylus sample to the first frame that holds it, without a window, in one, and of a broad brush |
 //! | [`looks`] | `looks`: films, relief and streaks of strokes |
 //! | [`optics`] | `optics`: colours of few wavelengths beside all; films on both backends beside a copy |
 //! | [`advection`] | `paint`: the advection by itself, beside a copy |
@@ -19,10 +19,8 @@
 //! | [`thread_cpu`] | time of the processor |
 //! | [`view`] | `view`: frames of the whole desk without a window |
 //! | [`window`] | `window`: memory of the window |
-//! | [`window_latency`] | `latency`: the same in a window |
 
 mod advection;
-mod broad;
 mod brush;
 mod bus;
 mod document;
@@ -41,7 +39,6 @@ mod tails;
 mod thread_cpu;
 mod view;
 mod window;
-mod window_latency;
 
 use clap::Parser;
 use clap::builder::PossibleValuesParser;

@@ -14,7 +14,7 @@ use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin};
 
-use crate::latency::{GRACE, Puller, frame, joined_as, rig_with};
+use super::{GRACE, Puller, frame, joined_as, rig_with};
 use crate::report::{Report, quantile, sorted};
 use crate::running::{Running, fault};
 

@@ -14,7 +14,7 @@ use maulstick_types::stylus::TakeStatus;
 use maulstick_types::window::Presented;
 use maulstick_types::wire::topics::Topics;
 
-use crate::latency::{USUAL, joined_as, playing};
+use super::{USUAL, joined_as, playing};
 use crate::report::{Report, quantile, sorted};
 use crate::running::{Running, display, fault};
 

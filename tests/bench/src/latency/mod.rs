@@ -1,6 +1,9 @@
 //! From a stylus sample to the first frame that holds it, for a puller without a window that asks
 //! again at once, and in a window; a take is played at rate 1.
 
+mod broad;
+mod window;
+
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
@@ -14,11 +17,9 @@ use maulstick_types::brush::{BrushState, solve_flags};
 use maulstick_types::paint::{FrameReply, FrameRequest};
 use maulstick_types::wire::topics::Topics;
 
-use crate::broad;
 use crate::render::performance;
 use crate::report::{Report, quantile, sorted};
 use crate::running::{Running, fault, joined, maulstick};
-use crate::window_latency;
 
 /// Options of the usual brush on the usual cells.
 pub(crate) const USUAL: [&str; 2] = ["--cell-mm", "0.25"];
@@ -60,7 +61,7 @@ pub(crate) fn joined_as(place: &Path, name: &str) -> Result<ZenohBus, UserError>
 pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     let place = tempfile::tempdir().map_err(fault)?;
     let (take, seconds) = performance(place.path())?;
-    window_latency::run(report, place.path(), &take, seconds)?;
+    window::run(report, place.path(), &take, seconds)?;
     let latencies = pulled(place.path(), &take, &USUAL, seconds)?;
     let all = sorted(latencies.milliseconds);
     let usual = quantile(&all, 0.5);
