@@ -11,7 +11,7 @@ use maulstick_rig::UserError;
 /// Options of `maulstick bench`.
 #[derive(Args, Clone, Debug)]
 pub struct BenchOptions {
-    /// What to measure: brush, bus, document, frames, haptics, latency, looks, optics, paint, render,
+    /// What to measure: brush, bus, document, frames, haptics, idle, latency, looks, optics, paint, render,
     /// view, window [default: everything]
     area: Option<String>,
     /// Paint model to measure in `paint` [default: impasto]

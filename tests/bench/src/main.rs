@@ -8,6 +8,7 @@
 //! | [`frames`] | `frames`: a reply to a view through shared memory, beside the socket |
 //! | [`haptics`] | `haptics`: how late the servo wakes beside cyclictest, what a tick takes, how stable it is |
 //! | [`header`] | headers of a brush's states |
+//! | [`idle`] | `idle`: what a rig takes while nobody paints |
 //! | [`latency`] | `latency`: from a stylus sample to the first frame that holds it, without a window, in one, and of a broad brush |
 //! | [`looks`] | `looks`: films, relief and streaks of strokes |
 //! | [`optics`] | `optics`: colours of few wavelengths beside all; films on both backends beside a copy |
@@ -27,6 +28,7 @@ mod document;
 mod frames;
 mod haptics;
 mod header;
+mod idle;
 mod latency;
 mod looks;
 mod optics;
@@ -51,7 +53,7 @@ use crate::report::Report;
 #[derive(Parser)]
 #[command(name = "maulstick-bench", version)]
 struct Options {
-    /// What to measure: brush, bus, document, frames, haptics, latency, looks, optics, paint, render,
+    /// What to measure: brush, bus, document, frames, haptics, idle, latency, looks, optics, paint, render,
     /// view, window [default: everything]
     area: Option<String>,
     /// Paint model to measure
@@ -74,12 +76,13 @@ type Area = (
     fn(&mut Report, &Options) -> Result<(), UserError>,
 );
 
-const AREAS: [Area; 12] = [
+const AREAS: [Area; 13] = [
     ("brush", |report, _| brush::run(report)),
     ("bus", |report, _| bus::run(report)),
     ("document", |report, _| document::run(report)),
     ("frames", |report, _| frames::run(report)),
     ("haptics", |report, _| haptics::run(report)),
+    ("idle", |report, _| idle::run(report)),
     ("latency", |report, _| latency::run(report)),
     ("looks", |report, _| looks::run(report)),
     ("optics", |report, _| optics::run(report)),

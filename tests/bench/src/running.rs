@@ -23,6 +23,11 @@ impl Running {
         quiet.spawn().map(Self).map_err(fault)
     }
 
+    /// Its number.
+    pub(crate) fn id(&self) -> u32 {
+        self.0.id()
+    }
+
     /// Whether it has ended by itself.
     pub(crate) fn has_ended(&mut self) -> Result<bool, UserError> {
         Ok(self.0.try_wait().map_err(fault)?.is_some())

@@ -72,7 +72,7 @@ const STATUS_LOOK: Duration = Duration::from_millis(100);
 /// Time after which a silent device is away.
 const SILENCE: Duration = Duration::from_nanos(SILENCE_NS);
 /// Interval at which an idle window is drawn.
-const IDLE_LOOK: Duration = Duration::from_secs(3);
+const IDLE_LOOK: Duration = Duration::from_secs(10);
 /// Interval at which a request that waits for its stroke is checked again.
 const BARRIER_LOOK: Duration = Duration::from_millis(50);
 
@@ -272,7 +272,8 @@ impl App {
                 || status.drying.is_some()
                 || status.export.is_some()
                 || status.lag_ns > 0
-                || !status.all_committed
+                // A sketch without a file is never saved.
+                || !status.path.is_empty() && !status.all_committed
         });
         let device = self.preferences.panels && self.preferences.is_open("Device");
         match works || device || !self.dispatcher.waits().is_empty() {
