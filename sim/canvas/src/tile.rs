@@ -176,9 +176,7 @@ impl Tile {
         };
         Some(Self { wet, dry })
     }
-}
 
-impl Tile {
     /// The tile without its wet paint, but for the cells of `stays`, and what is gone; `None` if nothing goes.
     #[must_use]
     pub fn scraped(&self, stays: &[usize]) -> Option<(Self, Counts)> {

@@ -130,8 +130,9 @@ pub type CountOwn = fn(&[OwnPlane]) -> Counts;
 /// A paint model: how paint moves in one step.
 ///
 /// Wells, fills, underpaintings, drying, rewetting and scraping know no model: they work on counts of paint by cell and
-/// slot. Planes of a model's own dry with a whole film, and are scraped off cell by cell. What the model reports is booked: paint from nowhere
-/// and paint lifted off have accounts of their own, and the rest must be found on brushes and surfaces.
+/// slot. Planes of a model's own dry with a whole film, and are scraped off cell by cell. What the model reports is
+/// booked: paint from nowhere and paint lifted off have accounts of their own, and the rest must be found on brushes and
+/// surfaces.
 pub trait PaintModel: Send {
     /// Its name in `rig.toml`.
     fn name(&self) -> &'static str;

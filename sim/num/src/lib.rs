@@ -6,7 +6,8 @@
 //! `libm` crate, plain Rust without such dispatch; those of f32 are written so that a loop over a
 //! plane vectorises and so that a shader can hold the same polynomial.
 //!
-//! Neither the registers ([`lanes`], [`wide`]) nor how many cores there are ([`fork_join`]) change a byte of what comes out.
+//! Neither the registers ([`lanes`], [`wide`]) nor how many cores there are ([`fork_join`]) change a byte of what comes
+//! out.
 //!
 //! ```
 //! use maulstick_num::{cos, sin_cos};

@@ -15,14 +15,15 @@ use crate::running::{Running, display, fault, joined, maulstick};
 
 /// Width and height of the window, pixels.
 const SIZE: [u32; 2] = [1280, 800];
-/// Time after the start until all is drawn and settled.
+/// Time after the start until all is drawn and settled: nothing signals that a window has no more to draw, and a shorter
+/// time would show in the figures.
 const SETTLES: Duration = Duration::from_secs(8);
 /// Time over which is measured: several of the looks that a window at rest takes.
 const MEASURED: Duration = Duration::from_secs(20);
 /// Targets, shares of a core: of the window, and of all processes beside it.
 const WINDOW_SHARE: f64 = 0.01;
 const OTHERS_SHARE: f64 = 0.03;
-/// Program of the window, as the system shows it.
+/// Program of the window, as the system shows it, which keeps fifteen letters of a name.
 const WINDOW: &str = "maulstick-ui";
 
 /// Measures and reports.

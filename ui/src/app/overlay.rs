@@ -262,3 +262,32 @@ fn past_tense(request: &Request) -> Option<&'static str> {
         _ => None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use eframe::egui::{Key, Modifiers};
+
+    use crate::test_support::overlay_bench::{ctrl, press, window};
+
+    #[test]
+    fn what_a_key_has_done_is_told_once_it_is_done() {
+        let mut harness = window(None);
+        for (key, detail, told) in [
+            (Key::Z, "stroke", "Undone: stroke"),
+            (Key::D, "layer 1", "Dried: layer 1"),
+            (Key::Backspace, "", "Scraped"),
+        ] {
+            match key {
+                Key::Z => ctrl(&mut harness, key, Modifiers::NONE),
+                _ => press(&mut harness, key),
+            }
+            let bench = harness.state_mut();
+            let asked = bench.asked();
+            assert_eq!(asked.len(), 1, "{asked:?}");
+            assert!(!bench.told().contains(told), "it is not done yet");
+            bench.answer(&asked[0], Ok(detail));
+            let lines = bench.told();
+            assert!(lines.lines().any(|line| line.trim_end() == told), "{lines}");
+        }
+    }
+}

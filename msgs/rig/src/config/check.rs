@@ -285,10 +285,20 @@ pub(super) fn choose(
     }
 }
 
-/// The line, from 1, on which `key` and `value` first stand together.
+/// The line, from 1, on which `key` and `value` first stand together: one that begins with the key, or else any.
 fn line_of(text: &str, key: &str, value: &str) -> usize {
+    let is_key = |line: &str| {
+        let rest = line.trim_start().strip_prefix(key);
+        rest.is_some_and(|rest| {
+            !rest.starts_with(|next: char| next.is_alphanumeric() || next == '_')
+        })
+    };
+    let begins = text
+        .lines()
+        .position(|line| is_key(line) && line.contains(value));
     let holds = |line: &str| line.contains(key) && line.contains(value);
-    text.lines().position(holds).map_or(1, |place| place + 1)
+    let place = begins.or_else(|| text.lines().position(holds));
+    place.map_or(1, |place| place + 1)
 }
 
 #[cfg(test)]

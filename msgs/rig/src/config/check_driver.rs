@@ -6,14 +6,14 @@ use super::device::DeviceSection;
 /// Refuses what the driver of a device would ignore.
 pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
     let driver = device.driver.as_str();
-    let wrong = |key: &'static str, value: &str, help: &str| {
+    let wrong = |key: &'static str, help: &str| {
         Err(Wrong {
             what: format!(
                 "{key} of '{}' does nothing: its driver is {driver}",
                 device.name
             ),
             key,
-            value: value.into(),
+            value: String::new(),
             help: help.into(),
         })
     };
@@ -58,9 +58,7 @@ pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
     ];
     for (key, is_ignored, help) in ignored {
         if is_ignored {
-            // The line of `max_force_n` has the word too.
-            let value = if key == "force" { &device.force } else { "" };
-            return wrong(key, value, help);
+            return wrong(key, help);
         }
     }
     let mut actions = device.switches.iter().flatten();
@@ -84,7 +82,7 @@ mod tests {
     use crate::config::{DEFAULT, RigConfig};
 
     #[test]
-    fn what_the_driver_would_pass_over_is_refused_with_what_to_do() {
+    fn what_the_driver_would_ignore_is_refused_with_what_to_do() {
         let section = |driver: &str, line: &str| {
             let text = DEFAULT.replace("driver = \"simulated\"", &format!("driver = \"{driver}\""));
             text.replace("max_force_n = 3.0", &format!("{line}\nmax_force_n = 3.0"))

@@ -4,7 +4,7 @@ use maulstick_brush::BrushFile;
 use maulstick_canvas::EditError;
 use maulstick_painting::{Applied, Apply as _, Painting, PaintingSetup};
 use maulstick_types::Mixture;
-use maulstick_types::edits::{Dry, LoadFrom, Undo};
+use maulstick_types::edits::{Dry, LoadFrom, Scrape, Undo};
 use maulstick_types::scene::{CANVAS, PALETTE, WellKind};
 use maulstick_types::values::{BrushName, Distance};
 
@@ -68,6 +68,37 @@ fn what_lies_at_a_place_is_loaded_wet_or_dry() {
     Undo { brush: None }.apply(&mut painting).expect("a step");
     let beside = load_from(&mut painting, CANVAS, [1.0, 1.0]);
     assert!(beside.is_err(), "beside the canvas lies nothing");
+}
+
+/// Within the reach of one place two layers end beside each other: the newest counts alone.
+#[test]
+fn at_the_edge_of_a_layer_the_newest_is_loaded_unmixed() {
+    let mut painting = with_brush();
+    fill("Cobalt Blue", 60.0)
+        .apply(&mut painting)
+        .expect("a film");
+    Dry::whole(CANVAS).apply(&mut painting).expect("dry");
+    fill("Bone Black", 20.0)
+        .apply(&mut painting)
+        .expect("a film");
+    let left = Dry {
+        region: Some("0,0,8x12".parse().expect("a region")),
+        ..Dry::whole(CANVAS)
+    };
+    left.apply(&mut painting).expect("dry");
+    let scrape = Scrape {
+        region: None,
+        surface: CANVAS,
+    };
+    scrape.apply(&mut painting).expect("wet");
+    for (x, paint) in [
+        (7.8e-3, "Bone Black"),
+        (8.2e-3, "Bone Black"),
+        (9e-3, "Cobalt Blue"),
+    ] {
+        let found = load_from(&mut painting, CANVAS, [x, 6e-3]);
+        assert_eq!(found, Ok(mixture(paint)), "{x} m");
+    }
 }
 
 #[test]
