@@ -49,6 +49,7 @@ const GROUPS: [(&str, &[Action]); 4] = [
             Action::Fit,
             Action::Hundred,
             Action::FullScreen,
+            Action::Alone,
             Action::Focus,
         ],
     ),

@@ -35,6 +35,7 @@ use crate::input::keys;
 use crate::input::mouse_stylus::Mouse;
 use crate::input::navigation::Navigation;
 use crate::input::palette_gesture::PaletteGesture;
+use crate::input::ruler::Ruler;
 use crate::render::device_loss::DeviceLoss;
 use crate::render::display_transform::DisplayTransform;
 use crate::render::frame_reports::Presenter;
@@ -94,6 +95,7 @@ pub struct App {
     brush_turn: BrushTurn,
     view: Option<View>,
     pressed: bool,
+    ruler: Ruler,
     navigation: Navigation,
     palette_slide: PaletteSlide,
     clean_key: CleanKey,
@@ -173,6 +175,7 @@ impl App {
             lost,
             view: None,
             pressed: false,
+            ruler: Ruler::default(),
             overlay: Overlay::default(),
             requests: Requests::default(),
             barrier: StrokeBarrier::new(&**bus, topics)?,
@@ -356,7 +359,7 @@ impl eframe::App for App {
         }
         // After the mouse has sent its position: its brush is drawn there.
         self.take_in(now_ns);
-        self.barrier.take_in();
+        self.barrier.take_in(now_ns);
         self.send(context);
         self.follow(context, now_ns);
         if self.pressed || self.brush_turn.is_waiting() {
@@ -368,8 +371,9 @@ impl eframe::App for App {
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
             let side = side(&self.preferences);
             let (canvas, palette) = (self.rig.canvas(), self.rig.palette());
-            self.view = canvas
-                .and_then(|canvas| View::of(ui.max_rect(), canvas, palette, side, rack::WIDTH));
+            let taken = self.overlay.width(&self.preferences);
+            self.view =
+                canvas.and_then(|canvas| View::of(ui.max_rect(), canvas, palette, side, taken));
             let Some(view) = self.view else {
                 ui.centered_and_justified(|ui| ui.label("waiting for the paint …"));
                 return;

@@ -12,10 +12,12 @@ use crate::app::first_run::FirstRun;
 use crate::app::rack;
 use crate::dialogs::Files;
 use crate::input::keys::{self, Action};
+use crate::input::size_drag::SizeDrag;
 use crate::panels::{self, Panel};
 use crate::reference::Reference;
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
+use crate::settings::preferences::Preferences;
 use crate::widgets::context::PanelContext;
 
 /// Width of the column of panels, points.
@@ -36,6 +38,9 @@ pub(crate) struct Overlay {
     files: Files,
     reference: Reference,
     first_run: FirstRun,
+    size_drag: SizeDrag,
+    /// True while the canvas is shown without tools, and whether the window was full screen before.
+    alone: Option<bool>,
 }
 
 impl Default for Overlay {
@@ -47,6 +52,8 @@ impl Default for Overlay {
             files: Files::default(),
             reference: Reference::default(),
             first_run: FirstRun::default(),
+            size_drag: SizeDrag::default(),
+            alone: None,
         }
     }
 }
@@ -67,20 +74,27 @@ impl Overlay {
             self.keys = false;
             acts.retain(|act| *act != Action::Keys);
         }
-        acts.extend(bar::show(&context, work));
+        if self.alone.is_none() {
+            acts.extend(bar::show(&context, work));
+        }
         for act in acts {
             if !self.follow(&context, act, work) {
                 rest.push(act);
             }
         }
-        rack::show(&context, work);
-        if work.preferences.panels {
-            self.column(&context, work);
+        if self.alone.is_none() {
+            rack::show(&context, work);
+            if work.preferences.panels {
+                self.column(&context, work);
+            }
+        }
+        if !self.files.is_open() {
+            self.size_drag.follow(&context, work);
         }
         if self.keys {
             self.table_of_keys(&context);
         }
-        if !self.files.is_open() {
+        if !self.files.is_open() && self.alone.is_none() {
             self.first_run.show(&context, work.rig, work.preferences);
         }
         if let Some(act) = self.reference.show(&context, work) {
@@ -89,6 +103,16 @@ impl Overlay {
         self.files.show(&context, &mut self.reference, work);
         work.notifications.show(&context);
         rest
+    }
+
+    /// Width at the side of the rack that the tools take from the canvas, points.
+    #[must_use]
+    pub(crate) fn width(&self, preferences: &Preferences) -> f32 {
+        match (self.alone, preferences.panels) {
+            (Some(_), _) => 0.0,
+            (None, false) => rack::WIDTH,
+            (None, true) => rack::WIDTH + COLUMN + 6.0 * MARGIN,
+        }
     }
 
     /// Takes in the outcome of a request; a failure becomes a notification, and so does an edit
@@ -168,10 +192,16 @@ impl Overlay {
             }
             Action::Keys => self.keys = !self.keys,
             Action::ForceOff => panels::device::force_off(work),
-            Action::FullScreen => {
-                let now = context.input(|input| input.viewport().fullscreen.unwrap_or(false));
-                context.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!now));
-            }
+            Action::FullScreen => fill_screen(context, !fills_screen(context)),
+            Action::Alone => match self.alone.take() {
+                Some(filled) => fill_screen(context, filled),
+                None => {
+                    self.alone = Some(fills_screen(context));
+                    fill_screen(context, true);
+                    work.notifications
+                        .note("F10 shows the tools again".to_owned());
+                }
+            },
             _ => return false,
         }
         true
@@ -242,6 +272,14 @@ impl Overlay {
             });
         self.keys = open;
     }
+}
+
+fn fills_screen(context: &Context) -> bool {
+    context.input(|input| input.viewport().fullscreen.unwrap_or(false))
+}
+
+fn fill_screen(context: &Context, fills: bool) {
+    context.send_viewport_cmd(egui::ViewportCommand::Fullscreen(fills));
 }
 
 /// The deed of an edit whose effect may be out of view.

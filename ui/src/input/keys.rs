@@ -1,7 +1,8 @@
 //! Key bindings, one table for input and for help.
 
 use eframe::egui::{
-    Context, Event, InputState, Key, KeyboardShortcut, Modifiers, Plugin, RawInput, TextEdit,
+    Context, Event, InputState, Key, KeyboardShortcut, Modifiers, Order, Plugin, Pos2, RawInput,
+    TextEdit,
 };
 
 /// Action of a key.
@@ -57,6 +58,8 @@ pub enum Action {
     Focus,
     /// The whole screen.
     FullScreen,
+    /// The whole screen with neither panels, rack nor bar, and back.
+    Alone,
     /// Show the keys.
     Keys,
     /// No device gives force any more.
@@ -83,7 +86,7 @@ const fn key(act: Action, modifiers: Modifiers, key: Key, words: &'static str) -
 }
 
 /// Bindings of keys that act once per press. One with more modifiers comes before the same with fewer.
-pub(crate) const BINDINGS: [Binding; 28] = [
+pub(crate) const BINDINGS: [Binding; 29] = [
     key(
         Action::Palette,
         Modifiers::NONE,
@@ -172,6 +175,12 @@ pub(crate) const BINDINGS: [Binding; 28] = [
     ),
     key(Action::FullScreen, Modifiers::NONE, Key::F11, "Full screen"),
     key(
+        Action::Alone,
+        Modifiers::NONE,
+        Key::F10,
+        "Full screen, the canvas alone",
+    ),
+    key(
         Action::Redo,
         Modifiers::COMMAND.plus(Modifiers::SHIFT),
         Key::Z,
@@ -217,10 +226,33 @@ pub(crate) const BINDINGS: [Binding; 28] = [
 /// The key that lifts paint while it is held, and cleans the brush at a tap.
 pub(crate) const CLEAN: Key = Key::C;
 
+/// The key with which a drag sets the width of the brush.
+pub(crate) const SIZE: Key = Key::S;
+
+/// The key with which a drag zooms.
+pub(crate) const ZOOM: Key = Key::Z;
+
+/// The key that is held by itself and makes something else of a drag than a stroke.
+#[must_use]
+pub(crate) fn holds(input: &InputState) -> Option<Key> {
+    let mut keys = [SIZE, ZOOM].into_iter();
+    keys.find(|key| input.modifiers.is_none() && input.key_down(*key))
+}
+
+/// True where a panel lies over the desk.
+#[must_use]
+pub(crate) fn is_panel(context: &Context, at: Pos2) -> bool {
+    context
+        .layer_id_at(at)
+        .is_some_and(|layer| layer.order != Order::Background)
+}
+
 /// Actions that last while something is held, and their descriptions.
-pub(crate) const HELD: [(&str, &str); 6] = [
+pub(crate) const HELD: [(&str, &str); 8] = [
     ("C", "Clean the brush; held, it lifts paint"),
-    ("Wheel", "Zoom; with a pen: Shift and drag"),
+    ("Shift and drag", "Paint a straight stroke"),
+    ("S and drag", "Width of the brush: right is wider"),
+    ("Wheel, or Z and drag", "Zoom"),
     (
         "Middle, or Ctrl and drag",
         "Move the canvas, or the palette",
@@ -332,7 +364,7 @@ pub(crate) fn pressed(context: &Context) -> Vec<Action> {
             let is_plain = !binding.shortcut.modifiers.command
                 && !matches!(
                     binding.shortcut.logical_key,
-                    Key::F1 | Key::F6 | Key::F9 | Key::F11
+                    Key::F1 | Key::F6 | Key::F9 | Key::F10 | Key::F11
                 );
             if !(typing && is_plain) && input.consume_shortcut(&binding.shortcut) {
                 acts.push(binding.act);

@@ -3,6 +3,8 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`keys`] | key bindings |
+//! | [`ruler`] | straight strokes |
+//! | [`size_drag`] | width of the brush by dragging |
 //! | [`mouse_stylus`] | the mouse as a stylus |
 //! | [`brush_turn`] | turn of the brush that the mouse moves |
 //! | [`navigation`] | wheel, drag and touch: moves the surfaces |
@@ -19,3 +21,5 @@ pub(crate) mod mouse_stylus;
 pub(crate) mod navigation;
 pub(crate) mod palette_gesture;
 pub(crate) mod palette_wells;
+pub(crate) mod ruler;
+pub(crate) mod size_drag;

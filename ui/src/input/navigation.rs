@@ -1,11 +1,12 @@
 //! Navigation by wheel, middle button, modifiers and touch. It sends commands, so a replay repeats it.
 
-use eframe::egui::{Event, InputState, Modifiers, MouseWheelUnit, PointerButton, Pos2};
+use eframe::egui::{Event, InputState, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2};
 use glam::DVec3;
 use maulstick_brush::placement::SurfacePlacement;
 use maulstick_num::exp;
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 
+use crate::input::keys;
 use crate::rig::requests::Requests;
 use crate::view::camera::View;
 
@@ -91,9 +92,10 @@ impl Navigation {
                     pressed: true,
                     modifiers,
                 } if self.drag.is_none() && !around.over_panel => {
-                    self.drag = drag_mode(*button, *modifiers, around.free).and_then(|drag_mode| {
-                        self.grasp(input.time, drag_mode, *button, *pos, around)
-                    });
+                    self.drag = drag_mode(*button, *modifiers, keys::holds(input), around.free)
+                        .and_then(|drag_mode| {
+                            self.grasp(input.time, drag_mode, *button, *pos, around)
+                        });
                 }
                 Event::PointerButton {
                     button,
@@ -235,15 +237,21 @@ impl Navigation {
     }
 }
 
-/// Drag mode of a button with the modifiers that are down; `None` if it belongs to the brush.
-fn drag_mode(button: PointerButton, modifiers: Modifiers, free: bool) -> Option<DragMode> {
+/// Drag mode of a button with the modifiers and the key that are down; `None` if it belongs to the brush.
+fn drag_mode(
+    button: PointerButton,
+    modifiers: Modifiers,
+    holds: Option<Key>,
+    free: bool,
+) -> Option<DragMode> {
     let grasps = match button {
         PointerButton::Middle => true,
         PointerButton::Primary => free || modifiers.command,
         _ => false,
     };
     match grasps {
-        false if button == PointerButton::Primary && modifiers.shift_only() => Some(DragMode::Zoom),
+        _ if button == PointerButton::Primary && holds == Some(keys::ZOOM) => Some(DragMode::Zoom),
+        _ if button == PointerButton::Primary && holds.is_some() => None,
         false => None,
         true if modifiers.shift => Some(DragMode::Turn),
         true if modifiers.alt => Some(DragMode::Tilt),

@@ -14,7 +14,7 @@ use maulstick_types::wire::topics::Topics;
 use crate::rig::brushes::SampleNumber;
 use crate::rig::requests::{PAINT, Request};
 
-/// Longest wait, ns: a brush node may have ended in its stroke.
+/// Longest wait without progress, ns: a brush node may have ended in its stroke.
 const LONGEST_NS: u64 = 1_000_000_000;
 
 /// Progress of a sample toward the painting.
@@ -24,6 +24,32 @@ enum SampleStage {
     Sample(SampleNumber),
     /// It is in this state, which is to be painted: source, epoch and number.
     State(u32, u32, u64),
+}
+
+/// The process that is to work on a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Worker {
+    /// A brush node, on the samples of a device.
+    Brush {
+        /// Source of the samples.
+        device: u32,
+    },
+    /// The paint node, on the states of a brush.
+    Paint {
+        /// Source of the states.
+        brush: u32,
+    },
+}
+
+impl SampleStage {
+    fn worker(&self) -> Worker {
+        match self {
+            Self::Sample(sample) => Worker::Brush {
+                device: sample.device,
+            },
+            Self::State(brush, ..) => Worker::Paint { brush: *brush },
+        }
+    }
 }
 
 /// A request, and the samples it waits for.
@@ -73,21 +99,39 @@ impl StrokeBarrier {
         })
     }
 
-    /// Takes in what has come.
-    pub(crate) fn take_in(&mut self) {
+    /// Takes in what has come; what a process works on is waited for longer.
+    pub(crate) fn take_in(&mut self, now_ns: u64) {
+        let mut moved = Vec::new();
         while let Some(consumed) = self.consumed.try_recv() {
             let brush = self.topics.middle(&consumed.key).unwrap_or_default();
-            let key = (name_hash(brush), consumed.message.device);
-            self.brushes.insert(key, consumed.message);
+            let (key, next) = (
+                (name_hash(brush), consumed.message.device),
+                consumed.message.next,
+            );
+            let before = self.brushes.insert(key, consumed.message);
+            if before.is_none_or(|before| before.next != next) {
+                moved.push(Worker::Brush { device: key.1 });
+            }
         }
         while let Some(painted) = self.painted.try_recv() {
-            let brushes = painted.message.brushes.into_iter();
-            self.credits
-                .extend(brushes.map(|credit| (credit.brush, credit)));
+            for credit in painted.message.brushes {
+                let (brush, next) = (credit.brush, credit.next);
+                let before = self.credits.insert(brush, credit);
+                if before.is_none_or(|before| before.next != next) {
+                    moved.push(Worker::Paint { brush });
+                }
+            }
+        }
+        for waiting in &mut self.waiting {
+            let mut stages = waiting.samples.iter();
+            if stages.any(|stage| moved.contains(&stage.worker())) {
+                waiting.until_ns = now_ns.saturating_add(LONGEST_NS);
+            }
         }
     }
 
-    /// Takes a request made when these samples were the newest.
+    /// Takes a request made when these samples were the newest that came lately. Of a hand that rests no sample is
+    /// new, and its stroke may wait to be painted all the same.
     pub(crate) fn push(
         &mut self,
         now_ns: u64,
@@ -99,12 +143,39 @@ impl StrokeBarrier {
             let mut followed = self.brushes.keys();
             follows && followed.any(|(_, device)| *device == sample.device)
         });
-        let samples = newest.map(SampleStage::Sample).collect();
+        let mut samples: Vec<SampleStage> = newest.map(SampleStage::Sample).collect();
+        if follows {
+            samples.extend(self.unpainted(&samples));
+        }
         self.waiting.push_back(Waiting {
             request,
             samples,
             until_ns: now_ns.saturating_add(LONGEST_NS),
         });
+    }
+
+    /// The newest state of each brush, where it is not painted yet; none of a brush that these samples move.
+    fn unpainted(&self, samples: &[SampleStage]) -> Vec<SampleStage> {
+        let is_moved = |brush: u32, device: u32| {
+            let moves = |stage: &SampleStage| stage.worker() == Worker::Brush { device };
+            self.brushes.contains_key(&(brush, device)) && samples.iter().any(moves)
+        };
+        let mut states = Vec::new();
+        for credit in self.credits.values() {
+            let own = self.brushes.iter().filter(|((brush, _), consumed)| {
+                *brush == credit.brush && consumed.brush_epoch == credit.epoch
+            });
+            if own
+                .clone()
+                .any(|((brush, device), _)| is_moved(*brush, *device))
+            {
+                continue;
+            }
+            let newest = own.map(|(_, consumed)| consumed.state).max();
+            let waits = newest.filter(|state| *state >= credit.next);
+            states.extend(waits.map(|state| SampleStage::State(credit.brush, credit.epoch, state)));
+        }
+        states
     }
 
     /// The next request that need not wait; call it until there is none.
@@ -219,195 +290,4 @@ fn is_painted(
 }
 
 #[cfg(test)]
-mod tests {
-    use maulstick_bus::typed::Sender;
-    use maulstick_bus::{Faults, MemoryNet};
-    use maulstick_types::edits::Edit;
-    use maulstick_types::edits::{Place, Undo};
-    use maulstick_types::{Origin, Pose};
-
-    use super::*;
-
-    const MILLISECOND: u64 = 1_000_000;
-    const START_NS: u64 = MILLISECOND;
-    const MOUSE: u32 = 77;
-    const BRUSH: &str = "main";
-
-    /// A brush, a painting, and orders between them.
-    struct Desk {
-        net: MemoryNet,
-        barrier: StrokeBarrier,
-        brush: Sender<BrushConsumed>,
-        paint: Sender<PaintConsumed>,
-    }
-
-    impl Desk {
-        fn new() -> Self {
-            let net = MemoryNet::new(1, START_NS, Faults::default());
-            let (bus, topics) = (net.bus(), Topics::new("t"));
-            let me = |name: &str| Origin {
-                source: name_hash(name),
-                epoch: 1,
-            };
-            let barrier = StrokeBarrier::new(&bus, &topics).expect("listens");
-            let topic = topics.brush_consumed(BRUSH);
-            let brush = Sender::new(&bus, &topic, Qos::Control, me(BRUSH)).expect("sends");
-            let topic = topics.paint_consumed();
-            let paint = Sender::new(&bus, &topic, Qos::Control, me(PAINT)).expect("sends");
-            let mut desk = Self {
-                barrier,
-                brush,
-                paint,
-                net,
-            };
-            desk.consumed(1, 1);
-            desk
-        }
-
-        fn pass(&mut self) {
-            self.net.advance(10 * MILLISECOND);
-            self.barrier.take_in();
-        }
-
-        /// The brush has consumed the mouse's samples below `next`, the newest of them in `state`.
-        fn consumed(&mut self, next: u64, state: u64) {
-            let consumed = BrushConsumed {
-                device: MOUSE,
-                device_epoch: 3,
-                next,
-                brush_epoch: 5,
-                state,
-            };
-            self.brush.send(0, 0, &consumed).expect("sent");
-            self.pass();
-        }
-
-        /// The states below `next` are painted.
-        fn painted(&mut self, next: u64) {
-            let credit = BrushCredit {
-                brush: name_hash(BRUSH),
-                epoch: 5,
-                next,
-                wetness: 0.0,
-                film_m: 0.0,
-                viscosity_m2_s: 0.0,
-                contact_m: 0.0,
-            };
-            let painted = PaintConsumed {
-                brushes: vec![credit],
-            };
-            self.paint.send(0, 0, &painted).expect("sent");
-            self.pass();
-        }
-
-        fn push(&mut self, command: Command, seq: u64) {
-            let request = Request::Command {
-                node: PAINT.into(),
-                command,
-            };
-            let sample = SampleNumber {
-                device: MOUSE,
-                epoch: 3,
-                seq,
-            };
-            let now_ns = self.net.bus().now_ns();
-            self.barrier.push(now_ns, request, [sample]);
-        }
-
-        /// The next command, and the state that it goes behind.
-        fn next_ready(&mut self) -> Option<(Command, Option<u64>)> {
-            let now_ns = self.net.bus().now_ns();
-            let next_ready = self.barrier.next_ready(now_ns)?;
-            let after = next_ready.after.map(|after| {
-                assert_eq!((after.brush, after.epoch), (name_hash(BRUSH), 5));
-                after.sequence
-            });
-            match next_ready.request {
-                Request::Command { command, .. } => Some((command, after)),
-                other @ Request::Force { .. } => panic!("{other:?}"),
-            }
-        }
-    }
-
-    const UNDO: Command = Command::Edit(Edit::Undo(Undo { brush: None }));
-
-    fn place() -> Command {
-        Command::from(Place::new(0, Pose::IDENTITY, 1.0).expect("in reach"))
-    }
-
-    #[test]
-    fn an_undo_goes_right_behind_the_stroke_before_it() {
-        let mut desk = Desk::new();
-        desk.painted(2);
-        desk.push(UNDO, 9);
-        assert_eq!(desk.next_ready(), None, "the brush has not consumed it");
-        desk.consumed(9, 20);
-        desk.painted(30);
-        assert_eq!(desk.next_ready(), None, "nor the last of its samples");
-        desk.consumed(10, 40);
-        assert_eq!(desk.next_ready(), Some((UNDO, Some(40))));
-        assert!(!desk.barrier.is_waiting());
-        desk.push(UNDO, 9);
-        desk.painted(41);
-        assert_eq!(desk.next_ready(), Some((UNDO, None)), "it is painted");
-    }
-
-    #[test]
-    fn another_node_is_asked_when_the_stroke_is_painted() {
-        let mut desk = Desk::new();
-        let request = Request::Command {
-            node: "rig".into(),
-            command: UNDO,
-        };
-        let sample = SampleNumber {
-            device: MOUSE,
-            epoch: 3,
-            seq: 9,
-        };
-        desk.barrier.push(START_NS, request.clone(), [sample]);
-        desk.consumed(10, 40);
-        // What is painted later does not hold it up.
-        assert_eq!(desk.barrier.next_ready(START_NS), None);
-        desk.consumed(30, 90);
-        desk.painted(40);
-        assert_eq!(desk.barrier.next_ready(START_NS), None);
-        desk.painted(41);
-        assert_eq!(desk.barrier.next_ready(START_NS), Some(request.into()));
-    }
-
-    #[test]
-    fn a_canvas_moves_at_once_but_overtakes_nothing() {
-        let mut desk = Desk::new();
-        desk.push(place(), 9);
-        assert_eq!(desk.next_ready(), Some((place(), None)));
-        desk.push(UNDO, 9);
-        desk.push(place(), 20);
-        assert_eq!(desk.next_ready(), None);
-        desk.consumed(10, 4);
-        let next_ready = [desk.next_ready(), desk.next_ready()];
-        assert_eq!(next_ready, [Some((UNDO, Some(4))), Some((place(), None))]);
-    }
-
-    #[test]
-    fn nobody_waits_for_a_brush_that_ended_nor_for_a_stylus_that_moves_none() {
-        let mut desk = Desk::new();
-        desk.push(UNDO, 9);
-        desk.net.advance(990 * MILLISECOND);
-        assert_eq!(desk.next_ready(), None);
-        desk.net.advance(20 * MILLISECOND);
-        assert_eq!(desk.next_ready(), Some((UNDO, None)));
-        desk.push(UNDO, 10);
-        assert_eq!(desk.next_ready(), Some((UNDO, None)), "once is enough");
-        let stranger = SampleNumber {
-            device: MOUSE + 1,
-            epoch: 3,
-            seq: 9,
-        };
-        let request = Request::Command {
-            node: PAINT.into(),
-            command: UNDO,
-        };
-        desk.barrier.push(START_NS, request.clone(), [stranger]);
-        assert_eq!(desk.barrier.next_ready(START_NS), Some(request.into()));
-    }
-}
+mod tests;

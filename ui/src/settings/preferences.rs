@@ -13,7 +13,7 @@ use crate::reference::ReferencePreferences;
 use crate::settings::brush_load::BrushLoad;
 use crate::settings::grip::Grip;
 use crate::settings::paint_sets::PaintSet;
-use crate::settings::presets::Preset;
+use crate::settings::presets::{Preset, classic};
 
 /// Recent paintings that are remembered.
 const RECENT: usize = 12;
@@ -64,7 +64,7 @@ impl Default for Preferences {
             loading: BrushLoad::default(),
             mouse: Grip::default(),
             widths_mm: BTreeMap::new(),
-            presets: Vec::new(),
+            presets: classic(),
             paint_sets: Vec::new(),
         }
     }

@@ -2,8 +2,9 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_rig::UserError;
-use maulstick_types::edits::{Handle, Tune};
+use maulstick_types::edits::{Clean, Edit, Handle, Tune};
 use maulstick_types::scene::{BrushHandling, BrushMode, MARKER_FLOW, Tuning};
+use maulstick_types::values::BrushName;
 use serde::{Deserialize, Serialize};
 
 use crate::input::brush_choice::{is_of_library, of_library};
@@ -36,8 +37,14 @@ pub struct Preset {
     pub flow: f64,
     /// It adds no paint where as much is wet, m; 0 for no such bound.
     pub most_m: f64,
-    /// Its load; nothing if no paint is named.
+    /// Its load. Where no paint is named but thinner, the paint that was loaded last is thinned; else the brush keeps
+    /// what it carries.
     pub loading: BrushLoad,
+    /// True for a brush that is cleaned first.
+    pub clean: bool,
+    /// Pressure of the mouse, 0 to 1; as it is if absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pressure: Option<f64>,
 }
 
 impl Default for Preset {
@@ -53,8 +60,48 @@ impl Default for Preset {
             flow: MARKER_FLOW,
             most_m: 0.0,
             loading: BrushLoad::default(),
+            clean: false,
+            pressure: None,
         }
     }
+}
+
+/// The presets of a new painter: four classic ways to lay oil over oil.
+#[must_use]
+pub(crate) fn classic() -> Vec<Preset> {
+    let of = |name: &str, kind: &str, width_mm: f64, pressure: f64| Preset {
+        name: name.to_owned(),
+        kind: kind.to_owned(),
+        width_mm,
+        pressure: Some(pressure),
+        ..Preset::default()
+    };
+    vec![
+        // Thin and transparent over what is dry.
+        Preset {
+            most_m: 15e-6,
+            loading: BrushLoad {
+                thinner: 0.7,
+                ..BrushLoad::default()
+            },
+            ..of("Glaze", "flat", 20.0, 0.3)
+        },
+        // Little paint, dragged lightly over the ridges.
+        Preset {
+            most_m: 60e-6,
+            ..of("Scumble", "bright", 20.0, 0.15)
+        },
+        // Nothing but what lies there, softened.
+        Preset {
+            clean: true,
+            ..of("Blend", "badger", 25.0, 0.15)
+        },
+        Preset {
+            stiffness: 2.0,
+            most_m: 120e-6,
+            ..of("Dry brush", "flat", 20.0, 0.08)
+        },
+    ]
 }
 
 impl Preset {
@@ -80,6 +127,8 @@ impl Preset {
             flow: handling.flow,
             most_m: handling.most_m,
             loading: work.preferences.loading.clone(),
+            clean: false,
+            pressure: Some(work.preferences.mouse.pressure),
         })
     }
 
@@ -120,15 +169,37 @@ impl Preset {
             ..BrushHandling::normal(&brush)
         };
         let (tune, handle) = (Tune::try_from(&tuning)?, Handle::try_from(&handling)?);
-        let load = match self.loading.paint.is_empty() {
+        let mut loading = self.loading.clone();
+        if loading.paint.is_empty() && loading.thinner > 0.0 {
+            loading.paint.clone_from(&work.preferences.loading.paint);
+        }
+        let load: Option<Edit> = match loading.paint.is_empty() {
+            true if self.clean => Some(
+                Clean {
+                    brush: BrushName::new(&brush)?,
+                }
+                .into(),
+            ),
             true => None,
-            false => Some(self.loading.edit(&brush, &work.rig.library)?),
+            false => Some(loading.edit(&brush, &work.rig.library)?.into()),
         };
         work.take_up(file);
         work.requests.send(tune);
         work.requests.send(handle);
+        if let Some(pressure) = self.pressure {
+            work.preferences.mouse.pressure = pressure;
+            work.preferences.mouse = work.preferences.mouse.sane();
+        }
+        if loading.paint.is_empty() && loading.thinner > 0.0 {
+            let percent = 100.0 * loading.thinner;
+            let words = format!("The next paint that you load is thinned by {percent:.0} %");
+            work.notifications.note(words);
+            work.preferences.loading.thinner = loading.thinner;
+        }
+        if !loading.paint.is_empty() {
+            work.preferences.loading = loading;
+        }
         if let Some(load) = load {
-            work.preferences.loading = self.loading.clone();
             work.then(load.into());
         }
         Ok(())
@@ -171,5 +242,24 @@ pub(crate) fn check_name<'a>(
     match others.any(|other| other == name) {
         true => Err(format!("There is a '{name}' already; choose another name.")),
         false => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_classic_ones_are_brushes_that_can_be_taken_up() {
+        let classic = classic();
+        assert_eq!(classic.len(), 4);
+        for preset in &classic {
+            let file = preset.brush().expect(&preset.name);
+            assert_eq!(file.head.width_mm, preset.width_mm, "{}", preset.name);
+            preset.mode.parse::<BrushMode>().expect("a mode");
+            let others = classic.iter().filter(|other| *other != preset);
+            let names = others.map(|other| other.name.as_str());
+            assert_eq!(check_name(&preset.name, names), Ok(()));
+        }
     }
 }

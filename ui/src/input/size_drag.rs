@@ -1,0 +1,154 @@
+//! Width of the brush by dragging: while S is held, the pressed pointer makes it wider to the right, narrower to the left.
+
+use eframe::egui::{Align2, Color32, Context, FontId, Id, LayerId, Order, Pos2, Rect, vec2};
+
+use maulstick_num::exp;
+
+use crate::input::brush_choice::{called, millimetres, widths_mm};
+use crate::input::keys;
+use crate::widgets::context::PanelContext;
+
+/// The pointer goes so far for a brush that is e times as wide, points.
+const FAR: f32 = 160.0;
+
+/// A drag in progress.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Drag {
+    from: Pos2,
+    from_mm: f64,
+    width_mm: f64,
+}
+
+/// The drag.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SizeDrag {
+    drag: Option<Drag>,
+}
+
+impl SizeDrag {
+    /// Follows the pointer, and shows the width beside it; the brush is changed where the pointer is let go.
+    pub(crate) fn follow(&mut self, context: &Context, work: &mut PanelContext<'_>) {
+        let (at, presses, is_down, is_held) = context.input(|input| {
+            let pointer = &input.pointer;
+            let is_held = keys::holds(input) == Some(keys::SIZE);
+            (
+                pointer.latest_pos(),
+                pointer.primary_pressed(),
+                pointer.primary_down(),
+                is_held,
+            )
+        });
+        let (Some(at), Some(file)) = (at, work.in_hand()) else {
+            self.drag = None;
+            return;
+        };
+        if presses && is_held && !keys::is_panel(context, at) {
+            let from_mm = file.head.width_mm;
+            self.drag = Some(Drag {
+                from: at,
+                from_mm,
+                width_mm: from_mm,
+            });
+        }
+        let Some(drag) = &mut self.drag else {
+            return;
+        };
+        let range = widths_mm(file);
+        let times = exp(f64::from((at.x - drag.from.x) / FAR));
+        // To a tenth of a millimetre, as the panel has it.
+        let width_mm = (10.0 * drag.from_mm * times).round() / 10.0;
+        drag.width_mm = width_mm.clamp(*range.start(), *range.end());
+        let (width_mm, from) = (drag.width_mm, drag.from);
+        if is_down {
+            let words = format!("{} {}", called(&file.kind), millimetres(width_mm));
+            tell(context, from, &words);
+        } else {
+            self.drag = None;
+            work.widen(width_mm);
+        }
+    }
+}
+
+/// Words over the desk, above a point of it.
+fn tell(context: &Context, at: Pos2, words: &str) {
+    let painter = context.layer_painter(LayerId::new(Order::Tooltip, Id::unique("size")));
+    let galley =
+        painter.layout_no_wrap(words.to_owned(), FontId::proportional(15.0), Color32::WHITE);
+    let size = galley.size() + vec2(16.0, 8.0);
+    let room = context.content_rect();
+    let centre = at - vec2(0.0, 28.0);
+    let low = room.min + 0.5 * size;
+    let high = room.max - 0.5 * size;
+    let place = Rect::from_center_size(centre.clamp(low, high.max(low)), size);
+    painter.rect_filled(place, 6.0, Color32::from_black_alpha(200));
+    painter.text(
+        place.center(),
+        Align2::CENTER_CENTER,
+        words,
+        FontId::proportional(15.0),
+        Color32::WHITE,
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use eframe::egui::{Event, Key, Modifiers, PointerButton, pos2};
+    use maulstick_types::command::{BrushCommand, Command};
+
+    use crate::test_support::overlay_bench::window;
+
+    /// Widths asked for by a drag so far to the right, points, with S held or not.
+    fn dragged(by: f32, held: bool) -> Vec<f64> {
+        let mut harness = window(None);
+        let key = |pressed: bool| Event::Key {
+            key: Key::S,
+            physical_key: None,
+            pressed,
+            repeat: false,
+            modifiers: Modifiers::NONE,
+        };
+        if held {
+            harness.event(key(true));
+        }
+        let from = pos2(300.0, 350.0);
+        let button = |pos, pressed| Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
+        harness.event(Event::PointerMoved(from));
+        harness.event(button(from, true));
+        harness.run_steps(2);
+        let to = pos2(from.x + by, from.y + 30.0);
+        harness.event(Event::PointerMoved(to));
+        harness.run_steps(2);
+        harness.event(button(to, false));
+        harness.run_steps(2);
+        let asked = harness.state_mut().asked().into_iter();
+        let width = |(_, command)| match command {
+            Command::Brush(BrushCommand::Define { toml, .. }) => {
+                let file = maulstick_brush::BrushFile::parse(toml.as_str()).expect("a brush");
+                Some(file.head.width_mm)
+            }
+            _ => None,
+        };
+        asked.filter_map(width).collect()
+    }
+
+    #[test]
+    fn to_the_right_it_gets_wider_to_the_left_narrower_and_not_without_end() {
+        let widths = [-80.0, 80.0, 5000.0].map(|by| dragged(by, true));
+        let [narrow, wide, widest] = widths.map(|own| match own[..] {
+            [width] => width,
+            _ => panic!("asked once: {own:?}"),
+        });
+        assert!(narrow < wide && wide < widest, "{narrow} {wide} {widest}");
+        assert!(
+            (2.6..2.85).contains(&(wide / narrow)),
+            "e times: {narrow} {wide}"
+        );
+        assert!(widest < 150.0, "{widest}");
+        assert_eq!(dragged(80.0, false), [0.0; 0], "a fault would pass");
+    }
+}
