@@ -400,12 +400,28 @@ mod tests {
         assert!(primary(false, Modifiers::NONE).is_empty());
         assert_eq!(primary(true, Modifiers::NONE).len(), 2);
         assert_eq!(primary(false, Modifiers::COMMAND).len(), 2);
-        let [turn, tilt, zoom] = [
-            Modifiers::COMMAND | Modifiers::SHIFT,
-            Modifiers::COMMAND | Modifiers::ALT,
-            Modifiers::SHIFT,
-        ]
-        .map(|modifiers| primary(false, modifiers).pop().expect("a place").1);
+        let [turn, tilt] = [Modifiers::SHIFT, Modifiers::ALT].map(|modifiers| {
+            let moves = primary(false, Modifiers::COMMAND | modifiers);
+            moves[moves.len() - 1].1
+        });
+        assert!(
+            primary(false, Modifiers::SHIFT).is_empty(),
+            "it paints a straight stroke"
+        );
+        let held = |free, key| {
+            let mut events = drag(PointerButton::Primary, Modifiers::NONE, from, to);
+            let down = Event::Key {
+                key,
+                physical_key: None,
+                pressed: true,
+                repeat: false,
+                modifiers: Modifiers::NONE,
+            };
+            events.insert(0, down);
+            placed(free, events)
+        };
+        assert!(held(true, keys::SIZE).is_empty(), "it sets a width");
+        let zoom = held(false, keys::ZOOM).pop().expect("a place").1;
         assert!(turn.pose.vector(DVec3::X).y.abs() > 0.01 && turn.zoom == 1.0);
         assert!(tilt.pose.vector(DVec3::Z).y.abs() > 0.01 && tilt.zoom == 1.0);
         assert!(zoom.zoom > 1.02 && zoom.pose.rotation == Rigid::IDENTITY.rotation);

@@ -3,8 +3,8 @@
 
 use eframe::egui::{Pos2, Vec2};
 
-/// Way after which the direction is known, points: shorter ones are mostly rounding.
-const KNOWN: f32 = 8.0;
+/// Way after which the direction is known, points: of a shorter one the direction is mostly the shaking of the hand.
+const KNOWN: f32 = 20.0;
 
 /// The ruler under a stroke.
 #[derive(Clone, Copy, Debug, Default)]
@@ -58,7 +58,7 @@ mod tests {
         assert_eq!(ruler.nearest(shaken(2)), shaken(2), "no ruler lies");
         ruler.lay(shaken(0));
         let places: Vec<Pos2> = (0..90).map(|i| ruler.nearest(shaken(i))).collect();
-        assert_eq!(places[..8], [shaken(0); 8], "its direction is not known");
+        assert_eq!(places[..20], [shaken(0); 20], "its direction is not known");
         let along = (places[89] - places[0]).normalized();
         for place in &places {
             let off = (*place - places[0]).rot90().dot(along);

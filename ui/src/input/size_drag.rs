@@ -95,11 +95,15 @@ mod tests {
     use eframe::egui::{Event, Key, Modifiers, PointerButton, pos2};
     use maulstick_types::command::{BrushCommand, Command};
 
+    use crate::input::brush_choice::of_library;
     use crate::test_support::overlay_bench::window;
 
     /// Widths asked for by a drag so far to the right, points, with S held or not.
     fn dragged(by: f32, held: bool) -> Vec<f64> {
         let mut harness = window(None);
+        let file = of_library("round").expect("round").clone();
+        let text = file.to_toml().expect("written");
+        harness.state_mut().rig.brushes[0].file = Some((file, text));
         let key = |pressed: bool| Event::Key {
             key: Key::S,
             physical_key: None,

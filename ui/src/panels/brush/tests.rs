@@ -247,6 +247,7 @@ fn bristles_are_changed_and_come_back() {
 #[test]
 fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
     let mut bench = Bench::new();
+    bench.preferences.presets.clear();
     bench.preferences.loading.paint = "Bone Black".into();
     let mut harness = panel(bench);
     harness.get_by_label("Save this brush").click();
