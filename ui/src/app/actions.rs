@@ -1,6 +1,6 @@
 //! Actions of pointer and keys on the desk.
 
-use eframe::egui::{self, Color32, Context, Event, PointerButton, Stroke};
+use eframe::egui::{self, Color32, Context, Event, Stroke};
 use glam::{DVec2, DVec3};
 use maulstick_brush::palette_place::{Side, beside, is_out, is_same, mirrored, over, size_m};
 use maulstick_types::edits::{LoadFrom, Place, Wells};
@@ -10,7 +10,7 @@ use maulstick_types::values::{BrushName, Distance};
 use super::{App, STILL};
 use crate::input::keys::{self, Action};
 use crate::input::mouse_stylus::Pointer;
-use crate::input::navigation::{Around, place};
+use crate::input::navigation::{Around, is_panel, place};
 use crate::rig::force_history;
 use crate::settings::preferences::Preferences;
 use crate::view::camera::View;
@@ -29,64 +29,18 @@ impl App {
         // Two fingers move the canvas.
         let fingers = context.input(|input| input.multi_touch().is_some());
         if fingers || self.navigation.holds() {
-            self.pressed = false;
-            self.ruler.lift();
+            self.pointer_path.lift();
             return Vec::new();
         }
-        let mut pressed = self.pressed;
-        let holds = context.input(keys::holds).is_some();
-        // A frame may hold a press on the canvas and a way that ends over a panel.
-        let place = |at: egui::Pos2, pressed: bool| {
-            let counts = pressed || view.area.contains(at) && !keys::is_panel(context, at);
-            counts.then(|| Pointer {
-                at: view.to_desk(at, &scene.surfaces).to_array(),
-                pressed,
-                twist_rad: 0.0,
-            })
+        let on_desk = |at: egui::Pos2| view.area.contains(at) && !is_panel(context, at);
+        let input = context.input(Clone::clone);
+        let places = self.pointer_path.follow(&input, on_desk).into_iter();
+        let pointer = |(at, pressed): (egui::Pos2, bool)| Pointer {
+            at: view.to_desk(at, &scene.surfaces).to_array(),
+            pressed,
+            twist_rad: 0.0,
         };
-        let (events, latest) = context.input(|input| {
-            let is_pointer = |event: &&Event| {
-                matches!(event, Event::PointerMoved(_) | Event::PointerButton { .. })
-            };
-            let events: Vec<Event> = input.events.iter().filter(is_pointer).cloned().collect();
-            (events, input.pointer.latest_pos())
-        });
-        let mut places = Vec::new();
-        for event in &events {
-            match event {
-                Event::PointerMoved(at) => places.extend(place(self.ruler.nearest(*at), pressed)),
-                Event::PointerButton {
-                    pos,
-                    button: PointerButton::Primary,
-                    pressed: is_press,
-                    modifiers,
-                } => {
-                    let on_desk = view.area.contains(*pos) && !keys::is_panel(context, *pos);
-                    let straight = modifiers.shift_only();
-                    // With another modifier or key it moves the canvas or sets a width.
-                    let is_brush = (modifiers.is_none() || straight) && !holds;
-                    let presses = *is_press && on_desk && is_brush;
-                    if presses && straight {
-                        self.ruler.lay(*pos);
-                    }
-                    // Where it is let go it lifts, be that over a panel.
-                    let at = place(self.ruler.nearest(*pos), pressed || presses);
-                    pressed = presses;
-                    if !pressed {
-                        self.ruler.lift();
-                    }
-                    places.extend(at.map(|place| Pointer { pressed, ..place }));
-                }
-                _ => {}
-            }
-        }
-        // A still pointer is still there.
-        if places.is_empty() {
-            let at = latest.map(|at| self.ruler.nearest(at));
-            places.extend(at.and_then(|at| place(at, pressed)));
-        }
-        self.pressed = pressed;
-        places
+        places.map(pointer).collect()
     }
 
     /// Does what concerns the desk.
@@ -255,7 +209,7 @@ impl App {
 /// True while the pointer is over a panel or another control.
 fn over_panel(context: &Context) -> bool {
     let at = context.input(|input| input.pointer.latest_pos());
-    at.is_some_and(|at| keys::is_panel(context, at))
+    at.is_some_and(|at| is_panel(context, at))
 }
 
 /// The side of the palette for the hand that paints.

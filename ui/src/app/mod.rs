@@ -35,7 +35,7 @@ use crate::input::keys;
 use crate::input::mouse_stylus::Mouse;
 use crate::input::navigation::Navigation;
 use crate::input::palette_gesture::PaletteGesture;
-use crate::input::ruler::Ruler;
+use crate::input::pointer_path::PointerPath;
 use crate::render::device_loss::DeviceLoss;
 use crate::render::display_transform::DisplayTransform;
 use crate::render::frame_reports::Presenter;
@@ -94,8 +94,7 @@ pub struct App {
     mouse: Mouse,
     brush_turn: BrushTurn,
     view: Option<View>,
-    pressed: bool,
-    ruler: Ruler,
+    pointer_path: PointerPath,
     navigation: Navigation,
     palette_slide: PaletteSlide,
     clean_key: CleanKey,
@@ -174,8 +173,7 @@ impl App {
             presenter: None,
             lost,
             view: None,
-            pressed: false,
-            ruler: Ruler::default(),
+            pointer_path: PointerPath::default(),
             overlay: Overlay::default(),
             requests: Requests::default(),
             barrier: StrokeBarrier::new(&**bus, topics)?,
@@ -362,7 +360,7 @@ impl eframe::App for App {
         self.barrier.take_in(now_ns);
         self.send(context);
         self.follow(context, now_ns);
-        if self.pressed || self.brush_turn.is_waiting() {
+        if self.pointer_path.is_pressed() || self.brush_turn.is_waiting() {
             context.request_repaint_after(STILL);
         }
     }

@@ -1,8 +1,7 @@
 //! Key bindings, one table for input and for help.
 
 use eframe::egui::{
-    Context, Event, InputState, Key, KeyboardShortcut, Modifiers, Order, Plugin, Pos2, RawInput,
-    TextEdit,
+    Context, Event, InputState, Key, KeyboardShortcut, Modifiers, Plugin, RawInput, TextEdit,
 };
 
 /// Action of a key.
@@ -237,14 +236,6 @@ pub(crate) const ZOOM: Key = Key::Z;
 pub(crate) fn holds(input: &InputState) -> Option<Key> {
     let mut keys = [SIZE, ZOOM].into_iter();
     keys.find(|key| input.modifiers.is_none() && input.key_down(*key))
-}
-
-/// True where a panel lies over the desk.
-#[must_use]
-pub(crate) fn is_panel(context: &Context, at: Pos2) -> bool {
-    context
-        .layer_id_at(at)
-        .is_some_and(|layer| layer.order != Order::Background)
 }
 
 /// Actions that last while something is held, and their descriptions.

@@ -3,6 +3,7 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`keys`] | key bindings |
+//! | [`pointer_path`] | path of the pointer, and where its button presses the brush |
 //! | [`ruler`] | straight strokes |
 //! | [`size_drag`] | width of the brush by dragging |
 //! | [`mouse_stylus`] | the mouse as a stylus |
@@ -21,5 +22,6 @@ pub(crate) mod mouse_stylus;
 pub(crate) mod navigation;
 pub(crate) mod palette_gesture;
 pub(crate) mod palette_wells;
+pub(crate) mod pointer_path;
 pub(crate) mod ruler;
 pub(crate) mod size_drag;

@@ -1,6 +1,8 @@
 //! Navigation by wheel, middle button, modifiers and touch. It sends commands, so a replay repeats it.
 
-use eframe::egui::{Event, InputState, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2};
+use eframe::egui::{
+    Context, Event, InputState, Key, Modifiers, MouseWheelUnit, Order, PointerButton, Pos2,
+};
 use glam::DVec3;
 use maulstick_brush::placement::SurfacePlacement;
 use maulstick_num::exp;
@@ -235,6 +237,14 @@ impl Navigation {
             self.sent = Some((surface, to, now));
         }
     }
+}
+
+/// True where a panel lies over the desk.
+#[must_use]
+pub(crate) fn is_panel(context: &Context, at: Pos2) -> bool {
+    context
+        .layer_id_at(at)
+        .is_some_and(|layer| layer.order != Order::Background)
 }
 
 /// Drag mode of a button with the modifiers and the key that are down; `None` if it belongs to the brush.

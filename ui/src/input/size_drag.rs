@@ -1,11 +1,12 @@
 //! Width of the brush by dragging: while S is held, the pressed pointer makes it wider to the right, narrower to the left.
 
-use eframe::egui::{Align2, Color32, Context, FontId, Id, LayerId, Order, Pos2, Rect, vec2};
+use eframe::egui::{Color32, Context, FontId, Id, LayerId, Order, Pos2, Rect, vec2};
 
 use maulstick_num::exp;
 
 use crate::input::brush_choice::{called, millimetres, widths_mm};
 use crate::input::keys;
+use crate::input::navigation::is_panel;
 use crate::widgets::context::PanelContext;
 
 /// The pointer goes so far for a brush that is e times as wide, points.
@@ -16,7 +17,6 @@ const FAR: f32 = 160.0;
 struct Drag {
     from: Pos2,
     from_mm: f64,
-    width_mm: f64,
 }
 
 /// The drag.
@@ -42,23 +42,20 @@ impl SizeDrag {
             self.drag = None;
             return;
         };
-        if presses && is_held && !keys::is_panel(context, at) {
-            let from_mm = file.head.width_mm;
+        if presses && is_held && !is_panel(context, at) {
             self.drag = Some(Drag {
                 from: at,
-                from_mm,
-                width_mm: from_mm,
+                from_mm: file.head.width_mm,
             });
         }
-        let Some(drag) = &mut self.drag else {
+        let Some(Drag { from, from_mm }) = self.drag else {
             return;
         };
         let range = widths_mm(file);
-        let times = exp(f64::from((at.x - drag.from.x) / FAR));
+        let times = exp(f64::from((at.x - from.x) / FAR));
         // To a tenth of a millimetre, as the panel has it.
-        let width_mm = (10.0 * drag.from_mm * times).round() / 10.0;
-        drag.width_mm = width_mm.clamp(*range.start(), *range.end());
-        let (width_mm, from) = (drag.width_mm, drag.from);
+        let width_mm = (10.0 * from_mm * times).round() / 10.0;
+        let width_mm = width_mm.clamp(*range.start(), *range.end());
         if is_down {
             let words = format!("{} {}", called(&file.kind), millimetres(width_mm));
             tell(context, from, &words);
@@ -81,13 +78,7 @@ fn tell(context: &Context, at: Pos2, words: &str) {
     let high = room.max - 0.5 * size;
     let place = Rect::from_center_size(centre.clamp(low, high.max(low)), size);
     painter.rect_filled(place, 6.0, Color32::from_black_alpha(200));
-    painter.text(
-        place.center(),
-        Align2::CENTER_CENTER,
-        words,
-        FontId::proportional(15.0),
-        Color32::WHITE,
-    );
+    painter.galley(place.center() - 0.5 * galley.size(), galley, Color32::WHITE);
 }
 
 #[cfg(test)]
@@ -104,15 +95,8 @@ mod tests {
         let file = of_library("round").expect("round").clone();
         let text = file.to_toml().expect("written");
         harness.state_mut().rig.brushes[0].file = Some((file, text));
-        let key = |pressed: bool| Event::Key {
-            key: Key::S,
-            physical_key: None,
-            pressed,
-            repeat: false,
-            modifiers: Modifiers::NONE,
-        };
         if held {
-            harness.event(key(true));
+            harness.key_down(Key::S);
         }
         let from = pos2(300.0, 350.0);
         let button = |pos, pressed| Event::PointerButton {
