@@ -48,6 +48,7 @@ const GROUPS: [(&str, &[Action]); 4] = [
             Action::Reference,
             Action::Fit,
             Action::Hundred,
+            Action::Mirror,
             Action::FullScreen,
             Action::Alone,
             Action::Focus,
@@ -61,7 +62,7 @@ const MARGIN: f32 = 6.0;
 
 /// Shows the bar; the action that was chosen.
 pub(super) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action> {
-    let (corner, inward) = match work.preferences.left_handed {
+    let (corner, inward) = match work.preferences.rack_is_left() {
         false => (Align2::LEFT_BOTTOM, 1.0),
         true => (Align2::RIGHT_BOTTOM, -1.0),
     };

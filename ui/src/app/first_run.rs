@@ -57,14 +57,14 @@ impl FirstRun {
             }
             context.request_repaint_after(Duration::from_secs_f64(left));
         }
-        line(context, preferences.left_handed);
+        line(context, preferences.rack_is_left());
     }
 }
 
 /// Light on dark, with an edge: it is read over any canvas and in either theme. It stands beside the rack, so that it
 /// covers no paint of the palette.
-fn line(context: &Context, left_handed: bool) {
-    let (corner, inward) = match left_handed {
+fn line(context: &Context, rack_is_left: bool) {
+    let (corner, inward) = match rack_is_left {
         false => (Align2::RIGHT_BOTTOM, -1.0),
         true => (Align2::LEFT_BOTTOM, 1.0),
     };

@@ -26,7 +26,6 @@ use maulstick_types::scene::Surface;
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
-use self::actions::side;
 use crate::app::overlay::Overlay;
 use crate::dialogs::paths;
 use crate::input::brush_turn::BrushTurn;
@@ -367,11 +366,17 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
-            let side = side(&self.preferences);
+            let side = match self.preferences.rack_is_left() {
+                false => Side::Left,
+                true => Side::Right,
+            };
             let (canvas, palette) = (self.rig.canvas(), self.rig.palette());
             let taken = self.overlay.width(&self.preferences);
             self.view =
                 canvas.and_then(|canvas| View::of(ui.max_rect(), canvas, palette, side, taken));
+            if self.preferences.mirrored {
+                self.view = self.view.map(View::mirrored);
+            }
             let Some(view) = self.view else {
                 ui.centered_and_justified(|ui| ui.label("waiting for the paint …"));
                 return;

@@ -176,6 +176,15 @@ impl Overlay {
                 work.notifications
                     .note(format!("Mouse presses with {percent:.0} %"));
             }
+            Action::Mirror => {
+                let mirrored = &mut work.preferences.mirrored;
+                *mirrored = !*mirrored;
+                let words = match *mirrored {
+                    true => "The view is mirrored; the painting is not",
+                    false => "The view is no longer mirrored",
+                };
+                work.notifications.note(words.to_owned());
+            }
             Action::Panels => work.preferences.panels = !work.preferences.panels,
             Action::Focus => {
                 work.preferences.panels = true;
@@ -208,7 +217,7 @@ impl Overlay {
     }
 
     fn column(&mut self, context: &Context, work: &mut PanelContext<'_>) {
-        let (side, inward) = match work.preferences.left_handed {
+        let (side, inward) = match work.preferences.rack_is_left() {
             false => (Align2::RIGHT_TOP, -1.0),
             true => (Align2::LEFT_TOP, 1.0),
         };

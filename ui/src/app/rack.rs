@@ -38,7 +38,7 @@ struct Place<'a> {
 /// Shows the rack over the whole height of the window, at the hand's side; returns what it covers.
 pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) -> Rect {
     let window = context.content_rect();
-    let side = match work.preferences.left_handed {
+    let side = match work.preferences.rack_is_left() {
         false => Align2::RIGHT_TOP,
         true => Align2::LEFT_TOP,
     };

@@ -52,7 +52,7 @@ pub(crate) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action>
     if words.is_empty() {
         return None;
     }
-    let (corner, inward) = match work.preferences.left_handed {
+    let (corner, inward) = match work.preferences.rack_is_left() {
         false => (Align2::RIGHT_BOTTOM, -1.0),
         true => (Align2::LEFT_BOTTOM, 1.0),
     };

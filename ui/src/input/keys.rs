@@ -53,6 +53,8 @@ pub enum Action {
     Fit,
     /// A cell of the canvas a pixel.
     Hundred,
+    /// The desk in a mirror, and back.
+    Mirror,
     /// The keyboard goes to the panels.
     Focus,
     /// The whole screen.
@@ -85,7 +87,7 @@ const fn key(act: Action, modifiers: Modifiers, key: Key, words: &'static str) -
 }
 
 /// Bindings of keys that act once per press. One with more modifiers comes before the same with fewer.
-pub(crate) const BINDINGS: [Binding; 29] = [
+pub(crate) const BINDINGS: [Binding; 30] = [
     key(
         Action::Palette,
         Modifiers::NONE,
@@ -165,6 +167,12 @@ pub(crate) const BINDINGS: [Binding; 29] = [
         Modifiers::NONE,
         Key::Num1,
         "Actual pixels (1:1)",
+    ),
+    key(
+        Action::Mirror,
+        Modifiers::NONE,
+        Key::M,
+        "Mirror the view",
     ),
     key(
         Action::Focus,

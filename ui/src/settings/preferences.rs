@@ -28,6 +28,9 @@ pub struct Preferences {
     pub open: Vec<String>,
     /// True for a left-handed painter: palette at the right, rack at the left.
     pub left_handed: bool,
+    /// True while the desk is seen in a mirror; not kept.
+    #[serde(skip)]
+    pub mirrored: bool,
     /// True once the painter has painted here: the first line of help is no longer needed.
     pub has_painted: bool,
     /// Width and height of the window, points.
@@ -56,6 +59,7 @@ impl Default for Preferences {
             panels: false,
             open: vec!["Brush".to_owned(), "Tubes".to_owned()],
             left_handed: false,
+            mirrored: false,
             has_painted: false,
             size: [1280.0, 800.0],
             recent: Vec::new(),
@@ -122,6 +126,12 @@ impl Preferences {
         self.recent.retain(|known| known != painting);
         self.recent.insert(0, painting.to_owned());
         self.recent.truncate(RECENT);
+    }
+
+    /// True if the palette is seen at the right and the rack at the left.
+    #[must_use]
+    pub fn rack_is_left(&self) -> bool {
+        self.left_handed != self.mirrored
     }
 
     /// True if a panel is unfolded.

@@ -23,6 +23,8 @@ pub struct View {
     pub middle: DVec2,
     /// Points a metre.
     pub scale: f64,
+    /// True if right and left are exchanged, as in a mirror.
+    pub mirrored: bool,
     /// Width and height that a canvas may fill about the desk's origin, m.
     pub room: DVec2,
 }
@@ -76,8 +78,26 @@ impl View {
             area,
             middle,
             scale,
+            mirrored: false,
             room: DVec2::new(size.x + left - more, room[1] / scale),
         })
+    }
+
+    /// The view in a mirror that stands upright in the middle of its area; the desk's origin, about which the canvas
+    /// lies, is then where the view of the other side's palette has it.
+    #[must_use]
+    pub fn mirrored(self) -> Self {
+        Self {
+            mirrored: !self.mirrored,
+            middle: DVec2::new(-self.middle.x, self.middle.y),
+            ..self
+        }
+    }
+
+    /// A point of the desk or a way along it as the window has them, and back: right is left in a mirror.
+    #[must_use]
+    pub fn seen_x(&self, x: f64) -> f64 {
+        if self.mirrored { -x } else { x }
     }
 
     /// The largest view of a single surface in the middle of `area`.
@@ -91,6 +111,7 @@ impl View {
             area,
             middle: 0.5 * (low + high),
             scale,
+            mirrored: false,
             room: size,
         })
     }
@@ -120,7 +141,7 @@ impl View {
     /// A vector of the window as one along the desk, m.
     #[must_use]
     pub fn along(&self, way: Vec2) -> DVec3 {
-        DVec3::new(f64::from(way.x), -f64::from(way.y), 0.0) / self.scale
+        DVec3::new(self.seen_x(way.x.into()), -f64::from(way.y), 0.0) / self.scale
     }
 
     /// The point of the plane z = 0 under a point of the window, m.
@@ -141,7 +162,7 @@ impl View {
     #[must_use]
     pub fn to_window(&self, desk: DVec3) -> Pos2 {
         let off = (desk.truncate() - self.middle) * self.scale;
-        self.area.center() + vec2(off.x as f32, -off.y as f32)
+        self.area.center() + vec2(self.seen_x(off.x) as f32, -off.y as f32)
     }
 
     /// True if a surface is under a point of the window.
@@ -254,6 +275,30 @@ mod tests {
         for (a, b) in right.iter().zip(&left) {
             let off = a.left() - middle + b.right() - middle;
             assert!(off.abs() < 1e-2, "{a:?} {b:?}");
+        }
+    }
+
+    #[test]
+    fn in_a_mirror_right_is_left_and_all_else_is_as_it_was() {
+        let surfaces = surfaces();
+        let right = View::of(area(), &surfaces[0], Some(&surfaces[1]), Side::Right, 72.0);
+        let seen = right.expect("a view").mirrored();
+        let board = bounds(&seen, &surfaces[1]);
+        let canvas = bounds(&seen, &surfaces[0]);
+        assert!(
+            board.left() > canvas.right() && canvas.left() > area().left() + 72.0,
+            "the palette is at the right, the rack free at the left: {board:?} {canvas:?}"
+        );
+        let plain = view(&surfaces);
+        for at in [DVec3::new(0.03, -0.05, 0.0), DVec3::new(-0.2, 0.1, 0.0)] {
+            let off = |view: &View| view.to_window(at) - area().center();
+            assert!((off(&plain).x + off(&seen).x).abs() < 1e-3);
+            assert!((off(&plain).y - off(&seen).y).abs() < 1e-3);
+            assert!((seen.on_desk(seen.to_window(at)) - at).length() < 1e-6);
+            assert!(
+                (plain.on_desk(seen.to_window(at)) - at).length() > 1e-2,
+                "a fault would pass"
+            );
         }
     }
 
