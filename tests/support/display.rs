@@ -29,6 +29,7 @@ pub const CONTROL: u32 = 0xffe3;
 pub const RETURN: u32 = 0xff0d;
 pub const TAB: u32 = 0xff09;
 pub const ESCAPE: u32 = 0xff1b;
+pub const BACKSPACE: u32 = 0xff08;
 
 /// Where a new painting of the default size lies in a window of the default size.
 pub fn desk_view() -> View {
@@ -207,6 +208,25 @@ impl Display {
 
     /// Presses keys together, named by their X keysyms, and lets them go.
     pub fn keys(&self, keysyms: &[u32]) {
+        self.hold(keysyms);
+        self.let_go(keysyms);
+    }
+
+    /// Presses keys, the first one first.
+    pub fn hold(&self, keysyms: &[u32]) {
+        for code in self.codes(keysyms) {
+            self.fake(KEY_PRESS_EVENT, code, [0, 0]);
+        }
+    }
+
+    /// Lets keys go, the last one first.
+    pub fn let_go(&self, keysyms: &[u32]) {
+        for code in self.codes(keysyms).into_iter().rev() {
+            self.fake(KEY_RELEASE_EVENT, code, [0, 0]);
+        }
+    }
+
+    fn codes(&self, keysyms: &[u32]) -> Vec<u8> {
         let setup = self.connection.setup();
         let (least, most) = (setup.min_keycode, setup.max_keycode);
         let mapping = self
@@ -223,13 +243,7 @@ impl Display {
                 .position(|row| row.contains(keysym));
             least + place.unwrap_or_else(|| panic!("no key {keysym:#x}")) as u8
         };
-        let codes: Vec<u8> = keysyms.iter().map(code).collect();
-        for code in &codes {
-            self.fake(KEY_PRESS_EVENT, *code, [0, 0]);
-        }
-        for code in codes.iter().rev() {
-            self.fake(KEY_RELEASE_EVENT, *code, [0, 0]);
-        }
+        keysyms.iter().map(code).collect()
     }
 
     /// A picture of a window, rows from the top.

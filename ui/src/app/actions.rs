@@ -230,5 +230,6 @@ fn gone(context: &Context, view: &View) -> Option<DVec2> {
     let sideways = speed.x.abs() > speed.y.abs();
     // Its position a twentieth of a second ahead.
     let share = (at + 0.05 * speed - view.area.center()) / view.area.width();
-    (sideways && share.x.abs() > 0.5).then(|| DVec2::new(view.seen_x(share.x.into()), (-share.y).into()))
+    (sideways && share.x.abs() > 0.5)
+        .then(|| DVec2::new(view.seen_x(share.x.into()), (-share.y).into()))
 }

@@ -168,12 +168,7 @@ pub(crate) const BINDINGS: [Binding; 30] = [
         Key::Num1,
         "Actual pixels (1:1)",
     ),
-    key(
-        Action::Mirror,
-        Modifiers::NONE,
-        Key::M,
-        "Mirror the view",
-    ),
+    key(Action::Mirror, Modifiers::NONE, Key::M, "Mirror the view"),
     key(
         Action::Focus,
         Modifiers::NONE,

@@ -219,7 +219,11 @@ impl Navigation {
         let from = self.newest(now, canvas);
         let to = from
             .zoomed(about, f64::from(touch.zoom_delta))
-            .turned(about, DVec3::Z, -around.view.seen_x(touch.rotation_delta.into()))
+            .turned(
+                about,
+                DVec3::Z,
+                -around.view.seen_x(touch.rotation_delta.into()),
+            )
             .moved(around.view.along(touch.translation_delta));
         self.send(now, canvas.id, from, to, requests);
     }

@@ -282,6 +282,7 @@ pub(crate) mod tests {
             area: Rect::from_min_size(pos2(0.0, 0.0), vec2(size[0], size[1])),
             middle: 0.5 * (low + high),
             scale: f64::from(scale) / surface.cell_m,
+            mirrored: false,
             room: DVec2::ONE,
         }
     }

@@ -129,6 +129,7 @@ impl RigState {
                 middle: DVec2::ZERO,
                 room: DVec2::ONE,
                 scale,
+                mirrored: false,
             },
             picture,
         }
