@@ -10,6 +10,7 @@
 //! | `panels` | the panels, a folder each |
 //! | `dialogs` | files in the window: new, open, save, export, dropped files |
 //! | `reference` | a picture to paint after, and the mixtures of its colours |
+//! | `settings_page` | the dialog of settings: text size, theme, units, keys |
 //! | `widgets` | parts that panels and dialogs are made of |
 //! | [`settings`] | settings that outlive the window |
 //! | `background_task` | work on a thread beside the window |
@@ -25,6 +26,7 @@ mod reference;
 pub mod render;
 pub mod rig;
 pub mod settings;
+mod settings_page;
 mod spectrum_file;
 #[cfg(test)]
 mod test_support;

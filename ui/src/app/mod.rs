@@ -31,11 +31,11 @@ use crate::app::overlay::Overlay;
 use crate::dialogs::paths;
 use crate::input::brush_turn::BrushTurn;
 use crate::input::clean_key::CleanKey;
-use crate::input::keys;
 use crate::input::mouse_stylus::Mouse;
 use crate::input::navigation::Navigation;
 use crate::input::palette_gesture::PaletteGesture;
 use crate::input::pointer_path::PointerPath;
+use crate::input::presses;
 use crate::render::device_loss::DeviceLoss;
 use crate::render::display_transform::DisplayTransform;
 use crate::render::frame_reports::Presenter;
@@ -48,6 +48,7 @@ use crate::rig::requests::Requests;
 use crate::rig::state::RigState;
 use crate::rig::stroke_barrier::StrokeBarrier;
 use crate::rig::thumbnails::{Picture, ThumbnailFetcher};
+use crate::settings::look::Look;
 use crate::settings::preferences::Preferences;
 use crate::view::camera::{DESK_COLOUR, View};
 use crate::view::palette_slide::PaletteSlide;
@@ -108,6 +109,7 @@ pub struct App {
     fetcher: ThumbnailFetcher,
     notifications: Notifications,
     preferences: Preferences,
+    look: Look,
     /// The title of the window.
     title: String,
     /// Preferences as they were last saved, and their file.
@@ -137,6 +139,9 @@ impl App {
             notifications.of(&fault);
             Preferences::default()
         });
+        if let Some(what) = preferences.keys.fault() {
+            notifications.fault(what, "All else is as you left it; Settings has the keys.");
+        }
         let lost = DeviceLoss::new(&member.folder);
         if let Some(why) = lost.word() {
             notifications.fault(
@@ -179,6 +184,7 @@ impl App {
             barrier: StrokeBarrier::new(&**bus, topics)?,
             notifications,
             title: String::new(),
+            look: Look::default(),
             kept: (preferences.clone(), place),
             preferences,
             member: None,
@@ -304,7 +310,8 @@ impl App {
             let rests = !whole && !input.pointer.any_down() && input.stable_dt < 0.5;
             rests.then(|| input.content_rect().size())
         });
-        if let Some(size) = size {
+        // The window system does not know of the text size.
+        if let Some(size) = size.map(|size| size * context.zoom_factor()) {
             self.preferences.size = size.round().into();
         }
     }
@@ -345,7 +352,7 @@ impl eframe::App for App {
         if self.stop.requested() || self.lost.is_lost() {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
         }
-        keys::return_keyboard(context);
+        presses::return_keyboard(context);
         let places = self.pointer(context);
         let now_ns = self.bus.now_ns();
         let brush = self.rig.brush_name();
@@ -366,6 +373,7 @@ impl eframe::App for App {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        self.look.follow(ui.ctx(), &mut self.preferences);
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
             let side = side(&self.preferences);
             let (canvas, palette) = (self.rig.canvas(), self.rig.palette());

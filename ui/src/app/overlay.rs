@@ -4,21 +4,26 @@ use eframe::egui::{
     self, Align2, Area, CollapsingHeader, Context, Frame, Id, Order, RichText, ScrollArea, Ui,
 };
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Dry, Edit, Redo, Scrape, Undo};
+use maulstick_types::edits::{Clean, Dry, Edit, Redo, Scrape, Undo};
 use maulstick_types::scene::{CANVAS, PALETTE};
+use maulstick_types::values::BrushName;
 
 use crate::app::bar;
 use crate::app::first_run::FirstRun;
 use crate::app::rack;
 use crate::dialogs::Files;
+use crate::input::keymap::Keymap;
 use crate::input::keys::{self, Action};
+use crate::input::presses;
 use crate::input::size_drag::SizeDrag;
 use crate::panels::{self, Panel};
 use crate::reference::Reference;
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
 use crate::settings::preferences::Preferences;
+use crate::settings_page::SettingsPage;
 use crate::widgets::context::PanelContext;
+use crate::widgets::rows::ask;
 
 /// Width of the column of panels, points.
 const COLUMN: f32 = 300.0;
@@ -36,6 +41,7 @@ pub(crate) struct Overlay {
     /// True if the panels are to get the keyboard.
     to_panels: bool,
     files: Files,
+    settings: SettingsPage,
     reference: Reference,
     first_run: FirstRun,
     size_drag: SizeDrag,
@@ -50,6 +56,7 @@ impl Default for Overlay {
             keys: false,
             to_panels: false,
             files: Files::default(),
+            settings: SettingsPage::default(),
             reference: Reference::default(),
             first_run: FirstRun::default(),
             size_drag: SizeDrag::default(),
@@ -65,12 +72,17 @@ impl Overlay {
         let context = ui.ctx().clone();
         let mut rest = Vec::new();
         // Keys are a dialog's while one is open.
-        let mut acts = match self.files.is_open() {
-            true => keys::force_off(&context),
-            false => keys::pressed(&context),
+        let in_dialog = self.files.is_open() || self.settings.is_open();
+        let mut acts = match in_dialog {
+            true => presses::force_off(&context, &work.preferences.keys),
+            false => presses::pressed(&context, &work.preferences.keys),
         };
         acts.append(&mut work.requests.take_acts());
-        if self.keys && !self.files.is_open() && context.input_mut(keys::closes_table) {
+        let keymap = &work.preferences.keys;
+        if self.keys
+            && !in_dialog
+            && context.input_mut(|input| presses::closes_table(input, keymap))
+        {
             self.keys = false;
             acts.retain(|act| *act != Action::Keys);
         }
@@ -88,19 +100,20 @@ impl Overlay {
                 self.column(&context, work);
             }
         }
-        if !self.files.is_open() {
+        if !in_dialog {
             self.size_drag.follow(&context, work);
         }
         if self.keys {
-            self.table_of_keys(&context);
+            self.table_of_keys(&context, &work.preferences.keys);
         }
-        if !self.files.is_open() && self.alone.is_none() {
+        if !in_dialog && self.alone.is_none() {
             self.first_run.show(&context, work.rig, work.preferences);
         }
         if let Some(act) = self.reference.show(&context, work) {
             self.files.follow(&context, act, work);
         }
         self.files.show(&context, &mut self.reference, work);
+        self.settings.show(&context, work);
         work.notifications.show(&context);
         rest
     }
@@ -191,6 +204,11 @@ impl Overlay {
                 self.files.follow(context, act, work);
             }
             Action::Keys => self.keys = !self.keys,
+            Action::Settings => self.settings.open(),
+            Action::Clean => {
+                let brush = BrushName::new(work.rig.brush_name());
+                ask(work, brush.map(|brush| Clean { brush }));
+            }
             Action::ForceOff => panels::device::force_off(work),
             Action::FullScreen => fill_screen(context, !fills_screen(context)),
             Action::Alone => match self.alone.take() {
@@ -198,8 +216,11 @@ impl Overlay {
                 None => {
                     self.alone = Some(fills_screen(context));
                     fill_screen(context, true);
-                    work.notifications
-                        .note("F10 shows the tools again".to_owned());
+                    let key = work.preferences.keys.written(context, Action::Alone);
+                    if !key.is_empty() {
+                        work.notifications
+                            .note(format!("{key} shows the tools again"));
+                    }
                 }
             },
             _ => return false,
@@ -246,7 +267,7 @@ impl Overlay {
             });
     }
 
-    fn table_of_keys(&mut self, context: &Context) {
+    fn table_of_keys(&mut self, context: &Context, keymap: &Keymap) {
         let mut open = self.keys;
         egui::Window::new("Keys")
             .open(&mut open)
@@ -258,10 +279,13 @@ impl Overlay {
                     .num_columns(2)
                     .striped(true)
                     .show(ui, |ui| {
-                        for binding in &keys::BINDINGS {
-                            ui.monospace(keys::written(context, &binding.shortcut));
-                            ui.label(binding.words);
-                            ui.end_row();
+                        for (binding, key) in keymap.bindings() {
+                            // What has no key is in the menu, and in the settings.
+                            if let Some(key) = key {
+                                ui.monospace(keys::written(context, &key));
+                                ui.label(binding.words);
+                                ui.end_row();
+                            }
                         }
                         for (keys, words) in keys::HELD {
                             ui.monospace(keys);

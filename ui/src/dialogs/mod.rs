@@ -35,6 +35,7 @@ use crate::reference::Reference;
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
 use crate::widgets::context::PanelContext;
+pub(crate) use dialog::wrong;
 use dialog::{Answer, in_words};
 use discard_prompt::Unkept;
 use dropped::Dropped;
@@ -88,7 +89,7 @@ impl Files {
         match act {
             Action::New => {
                 let unkept = Unkept::of(work.rig);
-                let new = NewPainting::new(&folder(work), unkept);
+                let new = NewPainting::new(&folder(work), work.preferences.units, unkept);
                 self.begin(Dialog::New(new));
             }
             Action::Open => {

@@ -61,7 +61,7 @@ impl OpenPainting {
         }
         if !path.exists() {
             return Err(format!(
-                "There is no file {}. Choose one of the list, or begin a new one (Ctrl+N).",
+                "There is no file {}. Choose one of the list, or begin a new one.",
                 paths::shown(path)
             ));
         }

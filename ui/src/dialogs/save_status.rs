@@ -25,7 +25,7 @@ const OFFERS: [Action; 6] = [
 ];
 
 /// The line; empty where nothing is known of the painting.
-fn words(work: &PanelContext<'_>) -> String {
+fn words(context: &Context, work: &PanelContext<'_>) -> String {
     let Some(node) = &work.rig.paint else {
         return String::new();
     };
@@ -33,7 +33,10 @@ fn words(work: &PanelContext<'_>) -> String {
     if status.path.is_empty() {
         return match status.blank {
             true => "New painting".to_owned(),
-            false => "In no file · Ctrl+S keeps it".to_owned(),
+            false => match work.preferences.keys.written(context, Action::Save) {
+                key if key.is_empty() => "In no file".to_owned(),
+                key => format!("In no file · {key} keeps it"),
+            },
         };
     }
     let name = paths::name(Path::new(&status.path));
@@ -48,7 +51,7 @@ fn words(work: &PanelContext<'_>) -> String {
 
 /// Shows the line; what was chosen under it.
 pub(crate) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action> {
-    let words = words(work);
+    let words = words(context, work);
     if words.is_empty() {
         return None;
     }
@@ -74,7 +77,7 @@ pub(crate) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action>
                         let Some(binding) = BINDINGS.iter().find(|known| known.act == act) else {
                             continue;
                         };
-                        let keys = ui.ctx().format_shortcut(&binding.shortcut);
+                        let keys = work.preferences.keys.written(ui.ctx(), act);
                         let offer = Button::new(binding.words).shortcut_text(keys);
                         if ui.add(offer).clicked() {
                             chosen = Some(act);

@@ -64,12 +64,6 @@ pub(crate) fn called(kind: &str) -> String {
     })
 }
 
-/// A width in words, mm.
-#[must_use]
-pub(crate) fn millimetres(width_mm: f64) -> String {
-    format!("{} mm", (width_mm * 100.0).round() / 100.0)
-}
-
 /// Widths that a brush can have, mm: from its file's smallest to its largest size, where all that scales with them stays
 /// in range.
 #[must_use]
@@ -243,6 +237,7 @@ impl PanelContext<'_> {
             return;
         };
         let (now_mm, range) = (file.head.width_mm, widths_mm(file));
+        let units = self.preferences.units;
         let next_mm = next_width_mm(now_mm, up);
         let file = match range.contains(&next_mm) {
             true => resized(file, next_mm).ok(),
@@ -251,14 +246,14 @@ impl PanelContext<'_> {
         match file {
             Some(file) => {
                 self.notifications
-                    .note(format!("{} {}", called(&file.kind), millimetres(next_mm)));
+                    .note(format!("{} {}", called(&file.kind), units.width(next_mm)));
                 self.take_up(file);
             }
             None => {
                 let end = if up { "widest" } else { "narrowest" };
                 let kind = called(&file_kind(self));
                 self.notifications
-                    .note(format!("{kind} {} is the {end}", millimetres(now_mm)));
+                    .note(format!("{kind} {} is the {end}", units.width(now_mm)));
             }
         }
     }

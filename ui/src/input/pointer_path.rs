@@ -2,7 +2,8 @@
 
 use eframe::egui::{Event, InputState, PointerButton, Pos2};
 
-use crate::input::keys;
+use crate::input::keymap::Keymap;
+use crate::input::presses;
 use crate::input::ruler::Ruler;
 
 /// A place of the pointer, and whether its button presses the brush there.
@@ -33,6 +34,7 @@ impl PointerPath {
     pub(crate) fn follow(
         &mut self,
         input: &InputState,
+        keymap: &Keymap,
         on_desk: impl Fn(Pos2) -> bool,
     ) -> Vec<Place> {
         let mut places = Vec::new();
@@ -47,8 +49,8 @@ impl PointerPath {
                 } => {
                     let straight = modifiers.shift_only();
                     // With another modifier or key it moves the canvas or sets a width.
-                    let is_brush =
-                        (modifiers.is_none() || straight) && keys::holds(input).is_none();
+                    let is_brush = (modifiers.is_none() || straight)
+                        && presses::holds(input, keymap).is_none();
                     let presses = *pressed && is_brush && on_desk(*pos);
                     if presses && straight {
                         self.ruler.lay(*pos);
@@ -116,7 +118,7 @@ mod tests {
         let mut path = PointerPath::default();
         let mut places = Vec::new();
         for events in frames {
-            places.extend(path.follow(&input(events), on_desk));
+            places.extend(path.follow(&input(events), &Keymap::default(), on_desk));
         }
         places
             .into_iter()
@@ -169,7 +171,7 @@ mod tests {
         let mut path = PointerPath::default();
         let bent = Event::PointerMoved(pos2(200.0, 140.0));
         let events = [button(100.0, true, Modifiers::SHIFT), moved(150.0), bent];
-        let places = path.follow(&input(&events), on_desk);
+        let places = path.follow(&input(&events), &Keymap::default(), on_desk);
         assert_eq!(places[2], (pos2(200.0, 100.0), true), "along the ruler");
     }
 }

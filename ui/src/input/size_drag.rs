@@ -1,12 +1,13 @@
-//! Width of the brush by dragging: while S is held, the pressed pointer makes it wider to the right, narrower to the left.
+//! Width of the brush by dragging: while its key is held, the pressed pointer makes it wider to the right, narrower to the left.
 
 use eframe::egui::{Color32, Context, FontId, Id, LayerId, Order, Pos2, Rect, vec2};
 
 use maulstick_num::exp;
 
-use crate::input::brush_choice::{called, millimetres, widths_mm};
-use crate::input::keys;
+use crate::input::brush_choice::{called, widths_mm};
+use crate::input::keys::Action;
 use crate::input::navigation::is_panel;
+use crate::input::presses;
 use crate::widgets::context::PanelContext;
 
 /// The pointer goes so far for a brush that is e times as wide, points.
@@ -30,7 +31,7 @@ impl SizeDrag {
     pub(crate) fn follow(&mut self, context: &Context, work: &mut PanelContext<'_>) {
         let (at, presses, is_down, is_held) = context.input(|input| {
             let pointer = &input.pointer;
-            let is_held = keys::holds(input) == Some(keys::SIZE);
+            let is_held = presses::holds(input, &work.preferences.keys) == Some(Action::Size);
             (
                 pointer.latest_pos(),
                 pointer.primary_pressed(),
@@ -57,7 +58,11 @@ impl SizeDrag {
         let width_mm = (10.0 * from_mm * times).round() / 10.0;
         let width_mm = width_mm.clamp(*range.start(), *range.end());
         if is_down {
-            let words = format!("{} {}", called(&file.kind), millimetres(width_mm));
+            let words = format!(
+                "{} {}",
+                called(&file.kind),
+                work.preferences.units.width(width_mm)
+            );
             tell(context, from, &words);
         } else {
             self.drag = None;

@@ -3,6 +3,7 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`preferences`] | the file of them |
+//! | `look`, `units` | text size and theme; units of lengths |
 //! | `presets` | brushes with their paint, by name |
 //! | `paint_sets` | sets of paints for the palette |
 //! | `grip` | how the mouse holds the brush |
@@ -10,6 +11,8 @@
 
 pub(crate) mod brush_load;
 pub mod grip;
+pub mod look;
 pub(crate) mod paint_sets;
 pub mod preferences;
 pub(crate) mod presets;
+pub mod units;

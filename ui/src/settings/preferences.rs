@@ -9,11 +9,14 @@ use serde::{Deserialize, Serialize};
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, write_whole};
 
+use crate::input::keymap::Keymap;
 use crate::reference::ReferencePreferences;
 use crate::settings::brush_load::BrushLoad;
 use crate::settings::grip::Grip;
+use crate::settings::look::{TEXT_SIZES, Theme};
 use crate::settings::paint_sets::PaintSet;
 use crate::settings::presets::{Preset, classic};
+use crate::settings::units::Units;
 
 /// Recent paintings that are remembered.
 const RECENT: usize = 12;
@@ -32,6 +35,14 @@ pub struct Preferences {
     pub has_painted: bool,
     /// Width and height of the window, points.
     pub size: [f32; 2],
+    /// Factor on the size of texts and controls.
+    pub text_size: f32,
+    /// Theme of panels and dialogs.
+    pub theme: Theme,
+    /// Units of lengths.
+    pub units: Units,
+    /// The keys.
+    pub keys: Keymap,
     /// Paintings that were open, the newest first.
     pub recent: Vec<PathBuf>,
     /// The reference picture.
@@ -58,6 +69,10 @@ impl Default for Preferences {
             left_handed: false,
             has_painted: false,
             size: [1280.0, 800.0],
+            text_size: 1.0,
+            theme: Theme::default(),
+            units: Units::default(),
+            keys: Keymap::default(),
             recent: Vec::new(),
             reference: ReferencePreferences::default(),
             own_brushes: Vec::new(),
@@ -98,6 +113,9 @@ impl Preferences {
         let sane = |side: f32| side.is_finite() && (200.0..=20_000.0).contains(&side);
         if !preferences.size.iter().all(|side| sane(*side)) {
             preferences.size = Self::default().size;
+        }
+        if !TEXT_SIZES.contains(&preferences.text_size) {
+            preferences.text_size = 1.0;
         }
         preferences.mouse = preferences.mouse.sane();
         Ok(preferences)
@@ -174,7 +192,7 @@ mod tests {
         assert!(fault.to_string().contains("window.toml"), "{fault}");
         std::fs::write(
             &path,
-            "size = [nan, 1e9]\nunknown = 1\n[mouse]\npressure = 7.0\nturn_deg = nan",
+            "size = [nan, 1e9]\ntext_size = 0.0\nunknown = 1\n[mouse]\npressure = 7.0\nturn_deg = nan",
         )
         .expect("written");
         let preferences = Preferences::read(&path).expect("of a newer window");

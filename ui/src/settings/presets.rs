@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::input::brush_choice::{is_of_library, of_library};
 use crate::settings::brush_load::BrushLoad;
+use crate::settings::units::Units;
 use crate::widgets::context::PanelContext;
 
 /// The name of a preset, or of a set of paints, has at most so many letters.
@@ -207,9 +208,9 @@ impl Preset {
 
     /// Short description.
     #[must_use]
-    pub fn words(&self) -> String {
+    pub fn words(&self, units: Units) -> String {
         let kind = crate::input::brush_choice::called(&self.kind);
-        let width = crate::input::brush_choice::millimetres(self.width_mm);
+        let width = units.width(self.width_mm);
         let mut words = format!("{kind}, {width}");
         if !self.loading.paint.is_empty() {
             words += &format!("\n{}", self.loading.paint);

@@ -5,6 +5,7 @@ use maulstick_rig::UserError;
 use maulstick_types::edits::Clean;
 use maulstick_types::values::BrushName;
 
+use crate::input::keys::Action;
 use crate::settings::brush_load::{MOST_THINNER, completed, completions};
 use crate::widgets::context::PanelContext;
 use crate::widgets::labelled;
@@ -53,9 +54,12 @@ impl PaintRows {
             if load.clicked() || enter {
                 self.load(work);
             }
-            let clean = ui
-                .button("Clean")
-                .on_hover_text("Takes all paint off the brush.  C");
+            let words = "Takes all paint off the brush.";
+            let hover = work
+                .preferences
+                .keys
+                .hint(ui.ctx(), words, &[Action::Clean]);
+            let clean = ui.button("Clean").on_hover_text(hover);
             if clean.clicked() {
                 let brush = BrushName::new(work.rig.brush_name());
                 crate::widgets::rows::ask(work, brush.map(|brush| Clean { brush }));
