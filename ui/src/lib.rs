@@ -7,6 +7,7 @@
 //! | [`rig`] | state of the rig, and requests to it |
 //! | [`view`] | the desk seen from above |
 //! | [`render`] | drawing of desk, surfaces and brushes |
+//! | `matching` | from a colour to mixtures of paints |
 //! | `panels` | the panels, a folder each |
 //! | `dialogs` | files in the window: new, open, save, export, dropped files |
 //! | `reference` | a picture to paint after, and the mixtures of its colours |
@@ -21,6 +22,7 @@ pub mod app;
 mod background_task;
 mod dialogs;
 mod input;
+mod matching;
 mod panels;
 mod reference;
 pub mod render;

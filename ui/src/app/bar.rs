@@ -2,13 +2,13 @@
 
 use eframe::egui::containers::menu::MenuButton;
 use eframe::egui::{
-    Align2, Area, Button, Context, Frame, Id, Margin, Order, Response, Role, TextWrapMode, Ui,
-    WidgetInfo,
+    Area, Button, Context, Frame, Id, Margin, Order, Response, Role, TextWrapMode, Ui, WidgetInfo,
 };
 
-use crate::app::brush_gauge;
+use crate::app::sides;
 use crate::input::keymap::Keymap;
 use crate::input::keys::{Action, BINDINGS, Binding};
+use crate::widgets::brush_gauge;
 use crate::widgets::context::PanelContext;
 
 /// Entries of the menu, by what they concern.
@@ -64,14 +64,13 @@ const MARGIN: f32 = 6.0;
 
 /// Shows the bar; the action that was chosen.
 pub(super) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action> {
-    let (corner, inward) = match work.preferences.left_handed {
-        false => (Align2::LEFT_BOTTOM, 1.0),
-        true => (Align2::RIGHT_BOTTOM, -1.0),
-    };
+    let side = sides::rack_side(work.preferences).other();
+    let (_, corner, inward) = side.anchors();
+    let aside = MARGIN + sides::column_at(work.preferences, side);
     let mut chosen = None;
     Area::new(Id::unique("bar"))
         .order(Order::Middle)
-        .anchor(corner, [inward * MARGIN, -MARGIN])
+        .anchor(corner, [inward * aside, -MARGIN])
         .accessible_name("Commands")
         .show(context, |ui| {
             ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);

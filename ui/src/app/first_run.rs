@@ -3,9 +3,9 @@
 
 use std::time::Duration;
 
-use eframe::egui::{Align2, Area, Color32, Context, Frame, Id, Margin, Order, RichText, Stroke};
+use eframe::egui::{Area, Color32, Context, Frame, Id, Margin, Order, RichText, Stroke};
 
-use crate::app::rack;
+use crate::app::{rack, sides};
 use crate::input::keymap::Keymap;
 use crate::input::keys::Action;
 use crate::rig::state::RigState;
@@ -84,13 +84,12 @@ impl FirstRun {
 /// Light on dark, with an edge: it is read over any canvas and in either theme. It stands beside the rack, so that it
 /// covers no paint of the palette.
 fn line(context: &Context, preferences: &Preferences) {
-    let (corner, inward) = match preferences.left_handed {
-        false => (Align2::RIGHT_BOTTOM, -1.0),
-        true => (Align2::LEFT_BOTTOM, 1.0),
-    };
+    let side = sides::rack_side(preferences);
+    let (_, corner, inward) = side.anchors();
+    let aside = rack::WIDTH + BESIDE + sides::column_at(preferences, side);
     Area::new(Id::unique("help"))
         .order(Order::Foreground)
-        .anchor(corner, [inward * (rack::WIDTH + BESIDE), -32.0])
+        .anchor(corner, [inward * aside, -32.0])
         .interactable(false)
         .show(context, |ui| {
             Frame::NONE

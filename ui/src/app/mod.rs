@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | `actions` | actions of the painter: keys, clicks and gestures |
 //! | `bar` | menu, undo, redo and help in a corner |
-//! | `brush_gauge` | colours of the brush in the hand, and how full it is |
+//! | `sides`, `column` | what stands at the sides of the window; the column of panels |
 //! | `overlay` | what lies over the desk: panels, dialogs, help |
 //! | [`rack`] | the brush rack at the edge |
 //! | `first_run` | the line of help for a new painter |
@@ -22,7 +22,7 @@ use maulstick_bus::{Bus, Qos, Wake};
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::{NodeHandle, Stop, UserError};
 use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
-use maulstick_types::scene::Surface;
+use maulstick_types::scene::{PALETTE, Surface};
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
@@ -58,10 +58,11 @@ use crate::widgets::progress::Progress;
 
 mod actions;
 mod bar;
-mod brush_gauge;
+mod column;
 mod first_run;
 pub(crate) mod overlay;
 pub mod rack;
+pub(crate) mod sides;
 
 /// Longer side of a version's small picture, pixels, and how long one may take.
 const THUMBNAIL: u32 = 128;
@@ -377,9 +378,20 @@ impl eframe::App for App {
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
             let side = side(&self.preferences);
             let (canvas, palette) = (self.rig.canvas(), self.rig.palette());
-            let taken = self.overlay.width(&self.preferences);
-            self.view =
-                canvas.and_then(|canvas| View::of(ui.max_rect(), canvas, palette, side, taken));
+            let [left, right] = self.overlay.taken(&self.preferences);
+            // Beside the palette the desk itself is narrower.
+            let mut area = ui.max_rect();
+            let taken = match side {
+                Side::Left => {
+                    area.min.x += left;
+                    right
+                }
+                Side::Right => {
+                    area.max.x -= right;
+                    left
+                }
+            };
+            self.view = canvas.and_then(|canvas| View::of(area, canvas, palette, side, taken));
             let Some(view) = self.view else {
                 ui.centered_and_justified(|ui| ui.label("waiting for the paint …"));
                 return;
@@ -401,6 +413,8 @@ impl eframe::App for App {
             );
             ui.painter().extend(shapes);
             self.name_wells(ui.painter(), &view, &surfaces);
+            let palette = surfaces.iter().find(|surface| surface.id == PALETTE);
+            self.overlay.palette = palette.map(|palette| view.covered(palette));
             self.draw_force(ui.painter(), &view);
             if let Some(presenter) = &mut self.presenter {
                 let (begun_ns, holding) = (self.rig.now_ns, self.scene_renderer.holding());

@@ -4,10 +4,9 @@
 use std::path::Path;
 
 use eframe::egui::containers::menu::MenuButton;
-use eframe::egui::{
-    Align2, Area, Button, Context, Frame, Id, Margin, Order, RichText, TextWrapMode,
-};
+use eframe::egui::{Area, Button, Context, Frame, Id, Margin, Order, RichText, TextWrapMode};
 
+use crate::app::{rack, sides};
 use crate::dialogs::paths;
 use crate::input::keys::{Action, BINDINGS};
 use crate::widgets::context::PanelContext;
@@ -55,14 +54,13 @@ pub(crate) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action>
     if words.is_empty() {
         return None;
     }
-    let (corner, inward) = match work.preferences.left_handed {
-        false => (Align2::RIGHT_BOTTOM, -1.0),
-        true => (Align2::LEFT_BOTTOM, 1.0),
-    };
+    let side = sides::rack_side(work.preferences);
+    let (_, corner, inward) = side.anchors();
+    let aside = rack::WIDTH + 8.0 + sides::column_at(work.preferences, side);
     let mut chosen = None;
     Area::new(Id::unique("saved"))
         .order(Order::Middle)
-        .anchor(corner, [inward * (crate::app::rack::WIDTH + 8.0), -4.0])
+        .anchor(corner, [inward * aside, -4.0])
         .accessible_name("Painting")
         .show(context, |ui| {
             ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);

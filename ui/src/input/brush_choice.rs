@@ -8,11 +8,13 @@ use maulstick_brush::file::library::LIBRARY;
 use maulstick_brush::{BrushError, BrushFile};
 use maulstick_rig::UserError;
 use maulstick_types::command::{BrushCommand, Command};
+use maulstick_types::edits::{Edit, Load};
 use maulstick_types::values::{BrushName, BrushToml};
 
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
 use crate::rig::state::RigBrush;
+use crate::settings::brush_load::{BrushLoad, written};
 use crate::widgets::context::PanelContext;
 
 /// A painter's step from one width to the next: this factor, but at least half a millimetre.
@@ -177,9 +179,30 @@ impl PanelContext<'_> {
         self.requests.send(define);
     }
 
+    /// Writes what the brush in the hand was loaded with into the field of its paint, wherever that was asked for.
+    fn loaded(&mut self, load: &Load) {
+        let name = self.rig.brush_name();
+        let known = self.preferences.loading.edit(name, &self.rig.library);
+        if load.brush.as_str() == name && known.ok().as_ref() != Some(load) {
+            self.preferences.loading = BrushLoad {
+                paint: written(&load.mixture),
+                beside: load.beside.as_ref().map(written),
+                thinner: 0.0,
+            };
+        }
+    }
+
     /// Takes in the outcome of a request: a brush that refused keeps its file; one that has the requested file runs the
     /// command that waited for it.
     pub fn brush_answered(&mut self, outcome: &Outcome) {
+        if let Request::Command {
+            command: Command::Edit(Edit::Load(load)),
+            ..
+        } = &outcome.request
+            && outcome.result.is_ok()
+        {
+            return self.loaded(load);
+        }
         let Request::Command {
             command: Command::Brush(BrushCommand::Define { brush, toml }),
             ..

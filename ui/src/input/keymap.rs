@@ -257,13 +257,12 @@ fn parsed(text: &str) -> Option<Option<KeyboardShortcut>> {
     let logical_key = Key::from_name(parts.pop()?)?;
     let mut modifiers = Modifiers::NONE;
     for part in parts {
-        modifiers = modifiers
-            | match part {
-                "Ctrl" => Modifiers::COMMAND,
-                "Shift" => Modifiers::SHIFT,
-                "Alt" => Modifiers::ALT,
-                _ => return None,
-            };
+        modifiers |= match part {
+            "Ctrl" => Modifiers::COMMAND,
+            "Shift" => Modifiers::SHIFT,
+            "Alt" => Modifiers::ALT,
+            _ => return None,
+        };
     }
     Some(Some(KeyboardShortcut {
         modifiers,

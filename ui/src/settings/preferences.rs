@@ -17,6 +17,7 @@ use crate::settings::look::{TEXT_SIZES, Theme};
 use crate::settings::paint_sets::PaintSet;
 use crate::settings::presets::{Preset, classic};
 use crate::settings::units::Units;
+use crate::settings::window_side::WindowSide;
 
 /// Recent paintings that are remembered.
 const RECENT: usize = 12;
@@ -27,6 +28,9 @@ const RECENT: usize = 12;
 pub struct Preferences {
     /// True while the panels are shown.
     pub panels: bool,
+    /// Side at which the panels stand; absent for that of the rack.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub panel_side: Option<WindowSide>,
     /// Titles of the panels that are unfolded.
     pub open: Vec<String>,
     /// True for a left-handed painter: palette at the right, rack at the left.
@@ -49,8 +53,11 @@ pub struct Preferences {
     pub reference: ReferencePreferences,
     /// The painter's own brush files, in the order of the rack.
     pub own_brushes: Vec<PathBuf>,
-    /// Load for the next dip of the brush.
+    /// What the brush was loaded with, or is to be; not kept, for a brush begins clean.
+    #[serde(skip)]
     pub loading: BrushLoad,
+    /// The brushes as they were last in the hand, by their names in the rig; without paint.
+    pub in_hand: BTreeMap<String, Preset>,
     /// How the mouse holds the brush.
     pub mouse: Grip,
     /// Widths at which brushes were last used, by their kind, mm.
@@ -65,6 +72,7 @@ impl Default for Preferences {
     fn default() -> Self {
         Self {
             panels: false,
+            panel_side: None,
             open: vec!["Brush".to_owned(), "Tubes".to_owned()],
             left_handed: false,
             has_painted: false,
@@ -77,6 +85,7 @@ impl Default for Preferences {
             reference: ReferencePreferences::default(),
             own_brushes: Vec::new(),
             loading: BrushLoad::default(),
+            in_hand: BTreeMap::new(),
             mouse: Grip::default(),
             widths_mm: BTreeMap::new(),
             presets: classic(),

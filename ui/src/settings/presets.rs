@@ -139,7 +139,14 @@ impl Preset {
     /// A [`UserError`] if the file is invalid, as after an edit by hand.
     pub fn brush(&self) -> Result<BrushFile, UserError> {
         let wrong = |what: String| {
-            UserError::failure(format!("the preset '{}': {what}", self.name)).help("save it anew")
+            let (whose, help) = match self.name.as_str() {
+                "" => (
+                    "the brush of the last session".to_owned(),
+                    "choose one from the rack",
+                ),
+                name => (format!("the preset '{name}'"), "save it anew"),
+            };
+            UserError::failure(format!("{whose}: {what}")).help(help)
         };
         if !self.file.is_empty() {
             return BrushFile::parse(&self.file).map_err(|error| wrong(error.to_string()));
@@ -150,16 +157,14 @@ impl Preset {
             .map_err(|error| wrong(error.to_string()))
     }
 
-    /// Takes it up: the brush, how it is used, and then its paint.
+    /// The edits that use a brush of the rig so.
     ///
     /// # Errors
-    /// A [`UserError`] where something of it is wrong; then nothing is changed.
-    pub fn apply(&self, work: &mut PanelContext<'_>) -> Result<(), UserError> {
-        let file = self.brush()?;
-        let brush = work.rig.brush_name().to_owned();
+    /// A [`UserError`] where a number is out of range, or there is no such mode.
+    pub(crate) fn edits(&self, brush: &str) -> Result<(Tune, Handle), UserError> {
         let mode = self.mode.parse()?;
         let tuning = Tuning {
-            brush: brush.clone(),
+            brush: brush.to_owned(),
             stiffness: self.stiffness,
             wetness: self.wetness,
         };
@@ -167,9 +172,19 @@ impl Preset {
             mode,
             flow: self.flow,
             most_m: self.most_m,
-            ..BrushHandling::normal(&brush)
+            ..BrushHandling::normal(brush)
         };
-        let (tune, handle) = (Tune::try_from(&tuning)?, Handle::try_from(&handling)?);
+        Ok((Tune::try_from(&tuning)?, Handle::try_from(&handling)?))
+    }
+
+    /// Takes it up: the brush, how it is used, and then its paint.
+    ///
+    /// # Errors
+    /// A [`UserError`] where something of it is wrong; then nothing is changed.
+    pub fn apply(&self, work: &mut PanelContext<'_>) -> Result<(), UserError> {
+        let file = self.brush()?;
+        let brush = work.rig.brush_name().to_owned();
+        let (tune, handle) = self.edits(&brush)?;
         let mut loading = self.loading.clone();
         if loading.paint.is_empty() && loading.thinner > 0.0 {
             loading.paint.clone_from(&work.preferences.loading.paint);

@@ -146,7 +146,11 @@ impl KeyRows {
         let now = key.map_or_else(|| "none".to_owned(), |key| written(ui.ctx(), &key));
         let is_waiting = self.waits == Waits::Key(place);
         let text = if is_waiting { "…" } else { &now };
-        let button = ui.add(Button::selectable(is_waiting, text).min_size([96.0, 0.0].into()));
+        let button = ui.add(
+            Button::new(text)
+                .selected(is_waiting)
+                .min_size([96.0, 0.0].into()),
+        );
         button.widget_info(|| {
             let name = format!("Key of “{}”: {now}", binding.words);
             WidgetInfo::selected(Role::Button, true, is_waiting, name)

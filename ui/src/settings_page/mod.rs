@@ -76,7 +76,7 @@ fn look(ui: &mut Ui, work: &mut PanelContext<'_>) {
     let grid = Grid::new("look").num_columns(2).spacing([12.0, 8.0]);
     grid.show(ui, |ui| {
         ui.label("Text size");
-        ui.horizontal(|ui| text_size(ui));
+        ui.horizontal(text_size);
         ui.end_row();
         ui.label("Theme");
         ui.horizontal(|ui| {

@@ -11,7 +11,7 @@ use crate::test_support::overlay_bench::{Bench, ctrl, picture, press, window};
 fn opened() -> Harness<'static, Bench> {
     let mut harness = window(None);
     ctrl(&mut harness, Key::Comma, Modifiers::NONE);
-    harness.get_by_label("Settings");
+    harness.get_by_label("Text size");
     harness
 }
 
@@ -88,7 +88,7 @@ fn keys_that_cannot_be_given_are_told_and_escape_leaves_the_key() {
     click(&mut harness, clean);
     press(&mut harness, Key::Escape);
     harness.get_by_label(clean);
-    harness.get_by_label("Settings");
+    harness.get_by_label("Text size");
     assert_eq!(harness.state().preferences.keys, Keymap::default());
 }
 

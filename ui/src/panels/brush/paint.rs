@@ -7,6 +7,7 @@ use maulstick_types::values::BrushName;
 
 use crate::input::keys::Action;
 use crate::settings::brush_load::{MOST_THINNER, completed, completions};
+use crate::widgets::brush_gauge;
 use crate::widgets::context::PanelContext;
 use crate::widgets::labelled;
 
@@ -22,6 +23,16 @@ pub(super) struct PaintRows {
 impl PaintRows {
     pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let before = work.preferences.loading.clone();
+        if work
+            .rig
+            .brush()
+            .is_some_and(|brush| brush.carried.is_some())
+        {
+            ui.horizontal(|ui| {
+                labelled::label(ui, "Carries", "The paint that is on the brush now.");
+                brush_gauge::show(ui, work);
+            });
+        }
         let hover =
             "A paint's name, or a mixture by volume such as 2 Cobalt Blue, 1 Titanium White";
         let mut enter = field(ui, work, "Paint", hover, |loading| Some(&mut loading.paint));
