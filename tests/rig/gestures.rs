@@ -242,9 +242,6 @@ impl Hand {
         let key = |letter: char| u32::from(letter);
         self.hurried = self.below(2) == 0;
         let kind = self.below(24);
-        if kind == 16 {
-            return ("skip".into(), Effect::Nothing);
-        }
         let (name, effect) = match kind {
             0..=5 => {
                 let way = self.on_canvas();

@@ -15,7 +15,7 @@ pub(crate) fn words(advice: &Advice) -> Option<String> {
             ));
         }
         Advice::ListPaints => "choose one of the panel Tubes",
-        Advice::UndoNewest => "undo that first: Ctrl+Z takes the newest step of all",
+        Advice::UndoNewest => "undo that first: Undo takes the newest step of all",
         Advice::StopExport => "wait for its end, or press Stop",
         Advice::Replace => "write another name, or tick that the one that is there may go",
         Advice::SaveOrForget => "save it under another name first, or tick that it may go",

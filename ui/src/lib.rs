@@ -7,9 +7,11 @@
 //! | [`rig`] | state of the rig, and requests to it |
 //! | [`view`] | the desk seen from above |
 //! | [`render`] | drawing of desk, surfaces and brushes |
+//! | `matching` | from a colour to mixtures of paints |
 //! | `panels` | the panels, a folder each |
 //! | `dialogs` | files in the window: new, open, save, export, dropped files |
 //! | `reference` | a picture to paint after, and the mixtures of its colours |
+//! | `settings_page` | the dialog of settings: text size, theme, units, keys |
 //! | `widgets` | parts that panels and dialogs are made of |
 //! | [`settings`] | settings that outlive the window |
 //! | `background_task` | work on a thread beside the window |
@@ -20,11 +22,13 @@ pub mod app;
 mod background_task;
 mod dialogs;
 mod input;
+mod matching;
 mod panels;
 mod reference;
 pub mod render;
 pub mod rig;
 pub mod settings;
+mod settings_page;
 mod spectrum_file;
 #[cfg(test)]
 mod test_support;

@@ -55,7 +55,7 @@ pub use document::{Document, DocumentSettings};
 pub use error::DocumentError;
 pub use file::database::Access;
 pub use file::relocate::{Relocate, Relocation, make_room, unfinished};
-pub use opening::{Opened, glance, scene};
+pub use opening::{Opened, glance, scene, shown_tiles};
 pub use stats::DocumentStats;
 pub use tables::rows;
 pub use thread::queues::TileCache;

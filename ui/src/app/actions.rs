@@ -8,7 +8,7 @@ use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 use maulstick_types::values::{BrushName, Distance};
 
 use super::{App, STILL};
-use crate::input::keys::{self, Action};
+use crate::input::keys::Action;
 use crate::input::mouse_stylus::Pointer;
 use crate::input::navigation::{Around, is_panel, place};
 use crate::rig::force_history;
@@ -34,7 +34,8 @@ impl App {
         }
         let on_desk = |at: egui::Pos2| view.area.contains(at) && !is_panel(context, at);
         let input = context.input(Clone::clone);
-        let places = self.pointer_path.follow(&input, on_desk).into_iter();
+        let keys = &self.preferences.keys;
+        let places = self.pointer_path.follow(&input, keys, on_desk).into_iter();
         let pointer = |(at, pressed): (egui::Pos2, bool)| Pointer {
             at: view.to_desk(at, &scene.surfaces).to_array(),
             pressed,
@@ -110,6 +111,7 @@ impl App {
             surfaces: surfaces.unwrap_or_default(),
             free: self.mouse.is_free(now_ns),
             over_panel: over_panel(context),
+            keys: &self.preferences.keys,
         };
         let (navigation, requests) = (&mut self.navigation, &mut self.requests);
         context.input(|input| navigation.follow(input, &around, requests));
@@ -118,8 +120,11 @@ impl App {
         let now_s = context.input(|input| input.time);
         let typing = context.memory(|memory| memory.focused().is_some());
         // A tap may be shorter than a frame.
-        let is_down = !typing
-            && context.input(|input| input.key_down(keys::CLEAN) || input.key_pressed(keys::CLEAN));
+        let clean = self.preferences.keys.key_of(Action::Clean);
+        let is_down = clean.is_some_and(|key| {
+            let key = key.logical_key;
+            !typing && context.input(|input| input.key_down(key) || input.key_pressed(key))
+        });
         let painting = aim.is_some_and(|(_, in_air)| !in_air);
         if painting && typing {
             // A stylus that is no pointer takes the keyboard from no field.

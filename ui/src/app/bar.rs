@@ -2,12 +2,13 @@
 
 use eframe::egui::containers::menu::MenuButton;
 use eframe::egui::{
-    Align2, Area, Button, Context, Frame, Id, Margin, Order, Response, Role, TextWrapMode, Ui,
-    WidgetInfo,
+    Area, Button, Context, Frame, Id, Margin, Order, Response, Role, TextWrapMode, Ui, WidgetInfo,
 };
 
-use crate::app::brush_gauge;
-use crate::input::keys::{self, Action, BINDINGS};
+use crate::app::sides;
+use crate::input::keymap::Keymap;
+use crate::input::keys::{Action, BINDINGS, Binding};
+use crate::widgets::brush_gauge;
 use crate::widgets::context::PanelContext;
 
 /// Entries of the menu, by what they concern.
@@ -30,7 +31,9 @@ const GROUPS: [(&str, &[Action]); 4] = [
         &[
             Action::NextBrush,
             Action::LoadFrom,
+            Action::Clean,
             Action::Scrape,
+            Action::Colour,
             Action::Larger,
             Action::Smaller,
             Action::Follow,
@@ -54,7 +57,7 @@ const GROUPS: [(&str, &[Action]); 4] = [
             Action::Focus,
         ],
     ),
-    ("Help", &[Action::Keys, Action::ForceOff]),
+    ("Help", &[Action::Keys, Action::Settings, Action::ForceOff]),
 ];
 
 /// Distance from the window's edges, points.
@@ -62,14 +65,13 @@ const MARGIN: f32 = 6.0;
 
 /// Shows the bar; the action that was chosen.
 pub(super) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action> {
-    let (corner, inward) = match work.preferences.rack_is_left() {
-        false => (Align2::LEFT_BOTTOM, 1.0),
-        true => (Align2::RIGHT_BOTTOM, -1.0),
-    };
+    let side = sides::rack_side(work.preferences).other();
+    let (_, corner, inward) = side.anchors();
+    let aside = MARGIN + sides::column_at(work.preferences, side);
     let mut chosen = None;
     Area::new(Id::unique("bar"))
         .order(Order::Middle)
-        .anchor(corner, [inward * MARGIN, -MARGIN])
+        .anchor(corner, [inward * aside, -MARGIN])
         .accessible_name("Commands")
         .show(context, |ui| {
             ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);
@@ -78,14 +80,14 @@ pub(super) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action>
             frame.inner_margin(Margin::same(3)).show(ui, |ui| {
                 ui.horizontal(|ui| {
                     ui.spacing_mut().item_spacing.x = 2.0;
-                    chosen = menu(ui);
+                    chosen = menu(ui, &work.preferences.keys);
                     for (word, action) in [
                         ("Undo", Action::Undo),
                         ("Redo", Action::Redo),
                         ("?", Action::Keys),
                     ] {
                         let button = ui.add(Button::new(word).min_size([26.0, 24.0].into()));
-                        if described(button, action).clicked() {
+                        if described(button, action, &work.preferences.keys).clicked() {
                             chosen = Some(action);
                         }
                     }
@@ -97,7 +99,7 @@ pub(super) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action>
 }
 
 /// The button of the menu; the action that was chosen in it.
-fn menu(ui: &mut Ui) -> Option<Action> {
+fn menu(ui: &mut Ui, keymap: &Keymap) -> Option<Action> {
     let mut chosen = None;
     let button = Button::new("Menu").min_size([26.0, 24.0].into());
     let (shown, _) = MenuButton::from_button(button).ui(ui, |ui| {
@@ -105,7 +107,7 @@ fn menu(ui: &mut Ui) -> Option<Action> {
             ui.menu_button(title, |ui| {
                 for action in actions {
                     if let Some(binding) = binding(*action) {
-                        let keys = keys::written(ui.ctx(), &binding.shortcut);
+                        let keys = keymap.written(ui.ctx(), *action);
                         let entry = Button::new(binding.words).shortcut_text(keys);
                         if ui.add(entry).clicked() {
                             chosen = Some(*action);
@@ -122,16 +124,16 @@ fn menu(ui: &mut Ui) -> Option<Action> {
 }
 
 /// Describes a button by its action, for screen readers and on hover.
-fn described(button: Response, action: Action) -> Response {
+fn described(button: Response, action: Action, keymap: &Keymap) -> Response {
     let Some(binding) = binding(action) else {
         return button;
     };
     button.widget_info(|| WidgetInfo::labeled(Role::Button, true, binding.words));
-    let keys = keys::written(&button.ctx, &binding.shortcut);
-    button.on_hover_text(format!("{}  {keys}", binding.words))
+    let hint = keymap.hint(&button.ctx, binding.words, &[action]);
+    button.on_hover_text(hint)
 }
 
-fn binding(action: Action) -> Option<&'static keys::Binding> {
+fn binding(action: Action) -> Option<&'static Binding> {
     BINDINGS.iter().find(|known| known.act == action)
 }
 
@@ -142,7 +144,9 @@ mod tests {
     #[test]
     fn the_menu_has_every_command_once() {
         let offered: Vec<Action> = GROUPS.iter().flat_map(|(_, acts)| acts.to_vec()).collect();
-        for binding in &BINDINGS {
+        // Size and zoom are drags.
+        let is_drag = |act: Action| matches!(act, Action::Size | Action::Zoom);
+        for binding in BINDINGS.iter().filter(|binding| !is_drag(binding.act)) {
             let times = offered.iter().filter(|act| **act == binding.act).count();
             assert_eq!(times, 1, "{}", binding.words);
         }

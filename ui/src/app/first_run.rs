@@ -3,15 +3,35 @@
 
 use std::time::Duration;
 
-use eframe::egui::{Align2, Area, Color32, Context, Frame, Id, Margin, Order, RichText, Stroke};
+use eframe::egui::{Area, Color32, Context, Frame, Id, Margin, Order, RichText, Stroke};
 
-use crate::app::rack;
+use crate::app::{rack, sides};
+use crate::input::keymap::Keymap;
+use crate::input::keys::Action;
 use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 
-/// The line of help.
-pub(super) const HELP: &str = "Drag the brush through a paint of the palette, then over the canvas.  \
-                        Space: palette   Tab: panels   ?: keys";
+/// The line of help, before its keys.
+pub(super) const HELP: &str =
+    "Drag the brush through a paint of the palette, then over the canvas.";
+/// Its keys.
+const KEYS: [(Action, &str); 3] = [
+    (Action::Palette, "palette"),
+    (Action::Panels, "panels"),
+    (Action::Keys, "keys"),
+];
+
+/// The line of help with its keys.
+fn words(context: &Context, keymap: &Keymap) -> String {
+    let mut words = HELP.to_owned();
+    for (act, what) in KEYS {
+        let key = keymap.written(context, act);
+        if !key.is_empty() {
+            words += &format!("   {key}: {what}");
+        }
+    }
+    words
+}
 /// Duration of the line over another painting, s.
 const AGAIN_S: f64 = 10.0;
 
@@ -57,20 +77,19 @@ impl FirstRun {
             }
             context.request_repaint_after(Duration::from_secs_f64(left));
         }
-        line(context, preferences.rack_is_left());
+        line(context, preferences);
     }
 }
 
 /// Light on dark, with an edge: it is read over any canvas and in either theme. It stands beside the rack, so that it
 /// covers no paint of the palette.
-fn line(context: &Context, rack_is_left: bool) {
-    let (corner, inward) = match rack_is_left {
-        false => (Align2::RIGHT_BOTTOM, -1.0),
-        true => (Align2::LEFT_BOTTOM, 1.0),
-    };
+fn line(context: &Context, preferences: &Preferences) {
+    let side = sides::rack_side(preferences);
+    let (_, corner, inward) = side.anchors();
+    let aside = rack::WIDTH + BESIDE + sides::column_at(preferences, side);
     Area::new(Id::unique("help"))
         .order(Order::Foreground)
-        .anchor(corner, [inward * (rack::WIDTH + BESIDE), -32.0])
+        .anchor(corner, [inward * aside, -32.0])
         .interactable(false)
         .show(context, |ui| {
             Frame::NONE
@@ -80,7 +99,7 @@ fn line(context: &Context, rack_is_left: bool) {
                 .inner_margin(Margin::symmetric(14, 8))
                 .show(ui, |ui| {
                     ui.label(
-                        RichText::new(HELP)
+                        RichText::new(words(context, &preferences.keys))
                             .color(Color32::from_gray(240))
                             .size(15.0),
                     );
@@ -128,7 +147,7 @@ mod tests {
         let node = harness.state_mut().rig.paint.as_mut();
         change(&mut node.expect("a node").status);
         harness.run_steps(2);
-        harness.query_by_label(HELP).is_some()
+        harness.query_by_label_contains(HELP).is_some()
     }
 
     #[test]
@@ -148,7 +167,7 @@ mod tests {
         };
         assert!(says(&mut harness, |status| *status = another));
         harness.run_steps(10);
-        assert!(harness.query_by_label(HELP).is_none());
+        assert!(harness.query_by_label_contains(HELP).is_none());
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | `actions` | actions of the painter: keys, clicks and gestures |
 //! | `bar` | menu, undo, redo and help in a corner |
-//! | `brush_gauge` | colours of the brush in the hand, and how full it is |
+//! | `sides`, `column` | what stands at the sides of the window; the column of panels |
 //! | `overlay` | what lies over the desk: panels, dialogs, help |
 //! | [`rack`] | the brush rack at the edge |
 //! | `first_run` | the line of help for a new painter |
@@ -22,7 +22,7 @@ use maulstick_bus::{Bus, Qos, Wake};
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::{NodeHandle, Stop, UserError};
 use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
-use maulstick_types::scene::Surface;
+use maulstick_types::scene::{PALETTE, Surface};
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
@@ -30,11 +30,11 @@ use crate::app::overlay::Overlay;
 use crate::dialogs::paths;
 use crate::input::brush_turn::BrushTurn;
 use crate::input::clean_key::CleanKey;
-use crate::input::keys;
 use crate::input::mouse_stylus::Mouse;
 use crate::input::navigation::Navigation;
 use crate::input::palette_gesture::PaletteGesture;
 use crate::input::pointer_path::PointerPath;
+use crate::input::presses;
 use crate::render::device_loss::DeviceLoss;
 use crate::render::display_transform::DisplayTransform;
 use crate::render::frame_reports::Presenter;
@@ -47,6 +47,7 @@ use crate::rig::requests::Requests;
 use crate::rig::state::RigState;
 use crate::rig::stroke_barrier::StrokeBarrier;
 use crate::rig::thumbnails::{Picture, ThumbnailFetcher};
+use crate::settings::look::Look;
 use crate::settings::preferences::Preferences;
 use crate::view::camera::{DESK_COLOUR, View};
 use crate::view::palette_slide::PaletteSlide;
@@ -56,10 +57,11 @@ use crate::widgets::progress::Progress;
 
 mod actions;
 mod bar;
-mod brush_gauge;
+mod column;
 mod first_run;
 pub(crate) mod overlay;
 pub mod rack;
+pub(crate) mod sides;
 
 /// Longer side of a version's small picture, pixels, and how long one may take.
 const THUMBNAIL: u32 = 128;
@@ -107,6 +109,7 @@ pub struct App {
     fetcher: ThumbnailFetcher,
     notifications: Notifications,
     preferences: Preferences,
+    look: Look,
     /// The title of the window.
     title: String,
     /// Preferences as they were last saved, and their file.
@@ -136,6 +139,9 @@ impl App {
             notifications.of(&fault);
             Preferences::default()
         });
+        if let Some(what) = preferences.keys.fault() {
+            notifications.fault(what, "All else is as you left it; Settings has the keys.");
+        }
         let lost = DeviceLoss::new(&member.folder);
         if let Some(why) = lost.word() {
             notifications.fault(
@@ -178,6 +184,7 @@ impl App {
             barrier: StrokeBarrier::new(&**bus, topics)?,
             notifications,
             title: String::new(),
+            look: Look::default(),
             kept: (preferences.clone(), place),
             preferences,
             member: None,
@@ -303,7 +310,8 @@ impl App {
             let rests = !whole && !input.pointer.any_down() && input.stable_dt < 0.5;
             rests.then(|| input.content_rect().size())
         });
-        if let Some(size) = size {
+        // The window system does not know of the text size.
+        if let Some(size) = size.map(|size| size * context.zoom_factor()) {
             self.preferences.size = size.round().into();
         }
     }
@@ -344,7 +352,7 @@ impl eframe::App for App {
         if self.stop.requested() || self.lost.is_lost() {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
         }
-        keys::return_keyboard(context);
+        presses::return_keyboard(context);
         let places = self.pointer(context);
         let now_ns = self.bus.now_ns();
         let brush = self.rig.brush_name();
@@ -365,15 +373,27 @@ impl eframe::App for App {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        self.look.follow(ui.ctx(), &mut self.preferences);
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
             let side = match self.preferences.rack_is_left() {
                 false => Side::Left,
                 true => Side::Right,
             };
             let (canvas, palette) = (self.rig.canvas(), self.rig.palette());
-            let taken = self.overlay.width(&self.preferences);
-            self.view =
-                canvas.and_then(|canvas| View::of(ui.max_rect(), canvas, palette, side, taken));
+            let [left, right] = self.overlay.taken(&self.preferences);
+            // Beside the palette the desk itself is narrower.
+            let mut area = ui.max_rect();
+            let taken = match side {
+                Side::Left => {
+                    area.min.x += left;
+                    right
+                }
+                Side::Right => {
+                    area.max.x -= right;
+                    left
+                }
+            };
+            self.view = canvas.and_then(|canvas| View::of(area, canvas, palette, side, taken));
             if self.preferences.mirrored {
                 self.view = self.view.map(View::mirrored);
             }
@@ -398,6 +418,8 @@ impl eframe::App for App {
             );
             ui.painter().extend(shapes);
             self.name_wells(ui.painter(), &view, &surfaces);
+            let palette = surfaces.iter().find(|surface| surface.id == PALETTE);
+            self.overlay.palette = palette.map(|palette| view.covered(palette));
             self.draw_force(ui.painter(), &view);
             if let Some(presenter) = &mut self.presenter {
                 let (begun_ns, holding) = (self.rig.now_ns, self.scene_renderer.holding());

@@ -1,61 +1,57 @@
 //! Everything over the desk: rack, panels, dialogs, notifications, the line of help; and the keys for them.
 
-use eframe::egui::{
-    self, Align2, Area, CollapsingHeader, Context, Frame, Id, Order, RichText, ScrollArea, Ui,
-};
+use eframe::egui::{self, Align2, Context, Rect, Ui};
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Dry, Edit, Redo, Scrape, Undo};
+use maulstick_types::edits::{Clean, Dry, Edit, Redo, Scrape, Undo};
 use maulstick_types::scene::{CANVAS, PALETTE};
+use maulstick_types::values::BrushName;
 
 use crate::app::bar;
+use crate::app::column::Column;
 use crate::app::first_run::FirstRun;
 use crate::app::rack;
+use crate::app::sides;
 use crate::dialogs::Files;
+use crate::input::keymap::Keymap;
 use crate::input::keys::{self, Action};
+use crate::input::presses;
 use crate::input::size_drag::SizeDrag;
-use crate::panels::{self, Panel};
+use crate::matching::colour_window::ColourWindow;
+use crate::panels;
 use crate::reference::Reference;
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
+use crate::settings::brush_memory::BrushMemory;
 use crate::settings::preferences::Preferences;
+use crate::settings_page::SettingsPage;
 use crate::widgets::context::PanelContext;
+use crate::widgets::rows::ask;
 
-/// Width of the column of panels, points.
-const COLUMN: f32 = 300.0;
-/// Distance of the column from the window's edges, points.
-const MARGIN: f32 = 8.0;
 /// Turn of the mouse's brush by one press of a key, degrees.
 const TURN_DEG: f64 = 15.0;
 /// Change of the mouse's pressure by one press of a key.
 const PRESS: f64 = 0.05;
 
 /// Rack, panels, dialogs and notifications over the desk.
+#[derive(Default)]
 pub(crate) struct Overlay {
-    panels: Vec<Box<dyn Panel>>,
+    column: Column,
     keys: bool,
-    /// True if the panels are to get the keyboard.
-    to_panels: bool,
+    /// What hides panels, while one of their controls is dragged: it waits until that is let go.
+    later: Vec<Action>,
+    /// True if a control was dragged in the last frame.
+    was_dragged: bool,
     files: Files,
+    settings: SettingsPage,
+    brush_memory: BrushMemory,
     reference: Reference,
+    colour: ColourWindow,
     first_run: FirstRun,
     size_drag: SizeDrag,
+    /// The part of the window that the palette covers; nothing opens over it.
+    pub(crate) palette: Option<Rect>,
     /// True while the canvas is shown without tools, and whether the window was full screen before.
     alone: Option<bool>,
-}
-
-impl Default for Overlay {
-    fn default() -> Self {
-        Self {
-            panels: panels::all(),
-            keys: false,
-            to_panels: false,
-            files: Files::default(),
-            reference: Reference::default(),
-            first_run: FirstRun::default(),
-            size_drag: SizeDrag::default(),
-            alone: None,
-        }
-    }
 }
 
 impl Overlay {
@@ -65,12 +61,18 @@ impl Overlay {
         let context = ui.ctx().clone();
         let mut rest = Vec::new();
         // Keys are a dialog's while one is open.
-        let mut acts = match self.files.is_open() {
-            true => keys::force_off(&context),
-            false => keys::pressed(&context),
+        let in_dialog = self.files.is_open() || self.settings.is_open();
+        let mut acts = match in_dialog {
+            true => presses::force_off(&context, &work.preferences.keys),
+            false => presses::pressed(&context, &work.preferences.keys),
         };
         acts.append(&mut work.requests.take_acts());
-        if self.keys && !self.files.is_open() && context.input_mut(keys::closes_table) {
+        self.wait_for_drag(&context, &mut acts);
+        let keymap = &work.preferences.keys;
+        if self.keys
+            && !in_dialog
+            && context.input_mut(|input| presses::closes_table(input, keymap))
+        {
             self.keys = false;
             acts.retain(|act| *act != Action::Keys);
         }
@@ -85,34 +87,50 @@ impl Overlay {
         if self.alone.is_none() {
             rack::show(&context, work);
             if work.preferences.panels {
-                self.column(&context, work);
+                self.column.show(&context, work);
             }
         }
-        if !self.files.is_open() {
+        if !in_dialog {
             self.size_drag.follow(&context, work);
         }
         if self.keys {
-            self.table_of_keys(&context);
+            self.table_of_keys(&context, &work.preferences.keys);
         }
-        if !self.files.is_open() && self.alone.is_none() {
+        if !in_dialog && self.alone.is_none() {
             self.first_run.show(&context, work.rig, work.preferences);
         }
-        if let Some(act) = self.reference.show(&context, work) {
+        if let Some(act) = self.reference.show(&context, self.palette, work) {
             self.files.follow(&context, act, work);
         }
+        self.colour.show(&context, work);
         self.files.show(&context, &mut self.reference, work);
+        self.settings.show(&context, work);
+        self.brush_memory.follow(&context, work);
         work.notifications.show(&context);
         rest
     }
 
-    /// Width at the side of the rack that the tools take from the canvas, points.
+    /// Widths that the tools take from the canvas at the left and right side of the window, points.
     #[must_use]
-    pub(crate) fn width(&self, preferences: &Preferences) -> f32 {
-        match (self.alone, preferences.panels) {
-            (Some(_), _) => 0.0,
-            (None, false) => rack::WIDTH,
-            (None, true) => rack::WIDTH + COLUMN + 6.0 * MARGIN,
+    pub(crate) fn taken(&self, preferences: &Preferences) -> [f32; 2] {
+        match self.alone {
+            Some(_) => [0.0; 2],
+            None => sides::taken(preferences),
         }
+    }
+
+    /// Keeps back what hides the panels until no control of theirs is dragged, so that its end is not missed.
+    fn wait_for_drag(&mut self, context: &Context, acts: &mut Vec<Action>) {
+        let is_dragged = context.egui_is_using_pointer();
+        let hides = |act: &mut Action| matches!(act, Action::Panels | Action::Alone);
+        match is_dragged || self.was_dragged {
+            true => self.later.extend(acts.extract_if(.., hides)),
+            false => acts.append(&mut self.later),
+        }
+        if !self.later.is_empty() {
+            context.request_repaint();
+        }
+        self.was_dragged = is_dragged;
     }
 
     /// Takes in the outcome of a request; a failure becomes a notification, and so does an edit
@@ -188,7 +206,7 @@ impl Overlay {
             Action::Panels => work.preferences.panels = !work.preferences.panels,
             Action::Focus => {
                 work.preferences.panels = true;
-                self.to_panels = true;
+                self.column.focus();
             }
             Action::Reference if self.reference.toggle(work.preferences) => {}
             Action::New
@@ -200,6 +218,12 @@ impl Overlay {
                 self.files.follow(context, act, work);
             }
             Action::Keys => self.keys = !self.keys,
+            Action::Colour => self.colour.toggle(),
+            Action::Settings => self.settings.open(),
+            Action::Clean => {
+                let brush = BrushName::new(work.rig.brush_name());
+                ask(work, brush.map(|brush| Clean { brush }));
+            }
             Action::ForceOff => panels::device::force_off(work),
             Action::FullScreen => fill_screen(context, !fills_screen(context)),
             Action::Alone => match self.alone.take() {
@@ -207,8 +231,11 @@ impl Overlay {
                 None => {
                     self.alone = Some(fills_screen(context));
                     fill_screen(context, true);
-                    work.notifications
-                        .note("F10 shows the tools again".to_owned());
+                    let key = work.preferences.keys.written(context, Action::Alone);
+                    if !key.is_empty() {
+                        work.notifications
+                            .note(format!("{key} shows the tools again"));
+                    }
                 }
             },
             _ => return false,
@@ -216,46 +243,7 @@ impl Overlay {
         true
     }
 
-    fn column(&mut self, context: &Context, work: &mut PanelContext<'_>) {
-        let (side, inward) = match work.preferences.rack_is_left() {
-            false => (Align2::RIGHT_TOP, -1.0),
-            true => (Align2::LEFT_TOP, 1.0),
-        };
-        let height = context.content_rect().height() - 4.0 * MARGIN;
-        Area::new(Id::unique("panels"))
-            .order(Order::Middle)
-            .anchor(side, [inward * (rack::WIDTH + 2.0 * MARGIN), MARGIN])
-            .accessible_name("Panels")
-            .show(context, |ui| {
-                Frame::popup(ui.style()).show(ui, |ui| {
-                    ui.set_width(COLUMN);
-                    ScrollArea::vertical()
-                        .max_height(height)
-                        .min_scrolled_height(height)
-                        .show(ui, |ui| {
-                            for panel in &mut self.panels {
-                                let title = panel.title();
-                                let open = work.preferences.is_open(title);
-                                let header = CollapsingHeader::new(RichText::new(title).strong())
-                                    .id_salt(title)
-                                    .default_open(open);
-                                let shown = header.show(ui, |ui| {
-                                    ui.spacing_mut().slider_width = 120.0;
-                                    panel.show(ui, work);
-                                });
-                                if std::mem::take(&mut self.to_panels) {
-                                    shown.header_response.request_focus();
-                                }
-                                if shown.header_response.clicked() {
-                                    work.preferences.unfold(title, !open);
-                                }
-                            }
-                        });
-                });
-            });
-    }
-
-    fn table_of_keys(&mut self, context: &Context) {
+    fn table_of_keys(&mut self, context: &Context, keymap: &Keymap) {
         let mut open = self.keys;
         egui::Window::new("Keys")
             .open(&mut open)
@@ -267,10 +255,13 @@ impl Overlay {
                     .num_columns(2)
                     .striped(true)
                     .show(ui, |ui| {
-                        for binding in &keys::BINDINGS {
-                            ui.monospace(keys::written(context, &binding.shortcut));
-                            ui.label(binding.words);
-                            ui.end_row();
+                        for (binding, key) in keymap.bindings() {
+                            // What has no key is in the menu, and in the settings.
+                            if let Some(key) = key {
+                                ui.monospace(keys::written(context, &key));
+                                ui.label(binding.words);
+                                ui.end_row();
+                            }
                         }
                         for (keys, words) in keys::HELD {
                             ui.monospace(keys);

@@ -9,7 +9,7 @@ use eframe::egui::{
 };
 use maulstick_brush::BrushFile;
 
-use crate::input::brush_choice::{called, is_of_library, library, millimetres};
+use crate::input::brush_choice::{called, is_of_library, library};
 use crate::render::brush::icon_cache;
 use crate::widgets::context::PanelContext;
 
@@ -191,7 +191,11 @@ fn stem(path: &Path) -> String {
 fn cell(ui: &mut Ui, work: &PanelContext<'_>, place: &Place<'_>) -> Response {
     let size = vec2(ui.available_width(), CELL);
     let (area, response) = ui.allocate_exact_size(size, Sense::click());
-    let words = format!("{}, {}", place.name, millimetres(place.width_mm));
+    let words = format!(
+        "{}, {}",
+        place.name,
+        work.preferences.units.width(place.width_mm)
+    );
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, place.in_hand, &words));
     if ui.is_rect_visible(area) {
         let visuals = ui.visuals();

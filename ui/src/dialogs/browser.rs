@@ -2,6 +2,7 @@
 //! → completes, Enter opens a folder or takes the file.
 
 pub(super) mod folder;
+pub(super) mod pictures;
 
 use std::path::{Path, PathBuf};
 
@@ -9,15 +10,18 @@ use eframe::egui::text::{CCursor, CCursorRange};
 use eframe::egui::text_edit::TextEditState;
 use eframe::egui::{
     Align, Align2, Context, Id, Key, Modifiers, Response, Role, ScrollArea, Sense, TextEdit,
-    TextStyle, Ui, WidgetInfo, vec2,
+    TextStyle, Ui, Vec2, WidgetInfo, vec2,
 };
 
 use crate::dialogs::dialog;
 use crate::dialogs::paths;
 use folder::{Entry, Folder};
+use pictures::Pictures;
 
 /// Height of the list, points.
 const HEIGHT: f32 = 176.0;
+/// Room for the small picture of a painting, points.
+pub(super) const PICTURE: Vec2 = vec2(40.0, 30.0);
 
 /// Purpose of the path: an existing file to read, or a file to write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +42,8 @@ pub(crate) struct Browser {
     marked: Option<usize>,
     /// The one that was marked when the list was last drawn: a newly marked one is brought into sight.
     seen: Option<usize>,
+    /// Pictures of the files, where the list shows them.
+    pictures: Option<Pictures>,
 }
 
 impl Browser {
@@ -50,7 +56,20 @@ impl Browser {
             folder: Folder::new(split(path).0, kinds),
             marked: None,
             seen: None,
+            pictures: None,
         }
+    }
+
+    /// The same with a small picture of each file.
+    #[must_use]
+    pub(crate) fn with_pictures(mut self) -> Self {
+        self.pictures = Some(Pictures::default());
+        self
+    }
+
+    /// The pictures of the files, where the list shows them.
+    pub(crate) fn pictures(&mut self) -> Option<&mut Pictures> {
+        self.pictures.as_mut()
     }
 
     /// The same in a folder whose entries are known.
@@ -167,6 +186,9 @@ impl Browser {
     }
 
     fn list(&mut self, ui: &mut Ui, fitting: &[Entry]) -> Option<PathBuf> {
+        if let Some(pictures) = &mut self.pictures {
+            pictures.take_in(ui.ctx());
+        }
         let told = match self.folder.entries(ui.ctx()) {
             None => Some("Looking …".to_owned()),
             Some(Err(what)) => Some(dialog::in_words(what, "")),
@@ -194,13 +216,16 @@ impl Browser {
                 .show(ui, |ui| {
                     ui.spacing_mut().item_spacing.y = 0.0;
                     if let Some(above) = &above
-                        && row(ui, above, false).clicked()
+                        && row(ui, above, false, None).clicked()
                     {
                         self.up(ui);
                     }
                     for (place, entry) in fitting.iter().enumerate() {
                         let is_marked = self.marked == Some(place);
-                        let response = row(ui, entry, is_marked);
+                        let path = self.folder.path.join(&entry.name);
+                        let pictures = self.pictures.as_mut();
+                        let picture = pictures.map(|pictures| (pictures, path.as_path()));
+                        let response = row(ui, entry, is_marked, picture);
                         if is_marked && self.seen != self.marked {
                             response.scroll_to_me(Some(Align::Center));
                         }
@@ -295,8 +320,17 @@ fn common_start(entries: &[Entry]) -> String {
 }
 
 /// A row of the list. It takes clicks but not the keyboard, which stays in the field.
-fn row(ui: &mut Ui, entry: &Entry, is_marked: bool) -> Response {
-    let height = ui.text_style_height(&TextStyle::Body) + 6.0;
+fn row(
+    ui: &mut Ui,
+    entry: &Entry,
+    is_marked: bool,
+    picture: Option<(&mut Pictures, &Path)>,
+) -> Response {
+    let mut height = ui.text_style_height(&TextStyle::Body) + 6.0;
+    let picture = picture.filter(|_| !entry.is_folder);
+    if picture.is_some() {
+        height = height.max(PICTURE.y + 4.0);
+    }
     let (area, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::CLICK);
     let label = as_typed(entry);
     response
@@ -305,7 +339,12 @@ fn row(ui: &mut Ui, entry: &Entry, is_marked: bool) -> Response {
     if is_marked || response.hovered() {
         ui.painter().rect_filled(area, 3.0, visuals.weak_bg_fill);
     }
-    let inner = area.shrink2(vec2(6.0, 0.0));
+    let mut inner = area.shrink2(vec2(6.0, 0.0));
+    if let Some((pictures, path)) = picture {
+        let place = Align2::LEFT_CENTER.align_size_within_rect(PICTURE, inner);
+        pictures.draw(ui, place, path);
+        inner.min.x += PICTURE.x + 8.0;
+    }
     let font = TextStyle::Body.resolve(ui.style());
     let small = TextStyle::Small.resolve(ui.style());
     let weak = ui.visuals().weak_text_color();

@@ -35,6 +35,7 @@ use crate::reference::Reference;
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
 use crate::widgets::context::PanelContext;
+pub(crate) use dialog::wrong;
 use dialog::{Answer, in_words};
 use discard_prompt::Unkept;
 use dropped::Dropped;
@@ -88,7 +89,7 @@ impl Files {
         match act {
             Action::New => {
                 let unkept = Unkept::of(work.rig);
-                let new = NewPainting::new(&folder(work), unkept);
+                let new = NewPainting::new(&folder(work), work.preferences.units, unkept);
                 self.begin(Dialog::New(new));
             }
             Action::Open => {
@@ -118,7 +119,7 @@ impl Files {
         OpenPainting::new(&folder(work), recent, Unkept::of(work.rig))
     }
 
-    /// Opens the dialog that picks a reference picture.
+    /// Opens the dialog that picks a reference picture: beside the one that is pinned, else beside the painting.
     fn choose_picture(&mut self, work: &PanelContext<'_>) {
         let known = work
             .preferences
@@ -126,7 +127,8 @@ impl Files {
             .path
             .as_deref()
             .and_then(Path::parent);
-        let folder = known.map_or_else(paths::pictures, Path::to_owned);
+        let known = known.filter(|folder| folder.is_dir());
+        let folder = known.map_or_else(|| folder(work), Path::to_owned);
         self.begin(Dialog::Picture(ChoosePicture::new(&folder)));
     }
 

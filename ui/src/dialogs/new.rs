@@ -11,15 +11,17 @@ use maulstick_types::values::{MaterialName, ValueError, WholePath};
 use crate::dialogs::dialog::{self, Answer, Foot, in_words, line, number};
 use crate::dialogs::discard_prompt::Unkept;
 use crate::dialogs::paths;
+use crate::settings::units::Units;
 
 /// Sizes that are chosen with a click: name, width and height, cm.
-const SIZES: [(&str, &str, &str); 5] = [
-    ("A5", "21", "14.8"),
-    ("A4", "29.7", "21"),
-    ("A3", "42", "29.7"),
-    ("20 × 20", "20", "20"),
-    ("30 × 40", "30", "40"),
-];
+const SIZES: [(&str, f64, f64); 3] = [("A5", 21.0, 14.8), ("A4", 29.7, 21.0), ("A3", 42.0, 29.7)];
+/// Sizes that are usual in a unit, in that unit.
+const fn usual(units: Units) -> [(&'static str, &'static str, &'static str); 2] {
+    match units {
+        Units::Metric => [("20 × 20", "20", "20"), ("30 × 40", "30", "40")],
+        Units::Inches => [("8 × 10", "8", "10"), ("12 × 16", "12", "16")],
+    }
+}
 /// Grounds by name; the last is a file.
 const GROUNDS: [(&str, &str); 4] = [
     ("gesso", "Gesso, white"),
@@ -35,6 +37,8 @@ const CELL_BYTES: f64 = 3.0 * 4.0 + 14.0 + 16.0;
 /// Form for a new painting.
 #[derive(Debug)]
 pub(crate) struct NewPainting {
+    /// Units of width and height.
+    units: Units,
     width: String,
     height: String,
     fine: String,
@@ -50,15 +54,16 @@ pub(crate) struct NewPainting {
 impl NewPainting {
     /// A form for a painting in `folder`.
     #[must_use]
-    pub(crate) fn new(folder: &Path, unkept: Unkept) -> Self {
+    pub(crate) fn new(folder: &Path, units: Units, unkept: Unkept) -> Self {
         let free = paths::free(folder, "Painting", paths::PAINTING);
-        Self::kept_in(paths::shown(&free), unkept)
+        Self::kept_in(paths::shown(&free), units, unkept)
     }
 
-    fn kept_in(path: String, unkept: Unkept) -> Self {
+    fn kept_in(path: String, units: Units, unkept: Unkept) -> Self {
         Self {
-            width: "29.7".to_owned(),
-            height: "21".to_owned(),
+            units,
+            width: units.typed(29.7),
+            height: units.typed(21.0),
             fine: "4".to_owned(),
             ground: GROUNDS[0].0,
             ground_file: String::new(),
@@ -97,9 +102,10 @@ impl NewPainting {
             name => name.to_owned(),
         };
         let wrong = |error: ValueError| in_words(&error.to_string(), "");
+        let (unit_m, _) = self.units.large();
         let canvas = NewCanvas {
-            width_m: width * 1e-2,
-            height_m: height * 1e-2,
+            width_m: width * unit_m,
+            height_m: height * unit_m,
             cell_m: 1e-3 / fine,
             ground: MaterialName::new(ground).map_err(wrong)?,
             tooth: MaterialName::new(&*self.tooth).map_err(wrong)?,
@@ -137,7 +143,7 @@ impl NewPainting {
         let path = paths::ending_in(&paths::whole(&self.path), paths::PAINTING);
         if path.exists() {
             return Err(format!(
-                "There is a file {} already. Write another name, or open that one (Ctrl+O).",
+                "There is a file {} already. Write another name, or open that one.",
                 paths::shown(&path)
             ));
         }
@@ -178,14 +184,17 @@ impl NewPainting {
     fn fields(&mut self, ui: &mut Ui) -> bool {
         let mut entered = false;
         let mut changed = false;
+        let (_, unit) = self.units.large();
         ui.horizontal(|ui| {
-            for (name, width, height) in SIZES {
-                if ui
-                    .button(name)
-                    .on_hover_text(format!("{width} × {height} cm"))
-                    .clicked()
-                {
-                    (self.width, self.height) = (width.to_owned(), height.to_owned());
+            let paper = SIZES.map(|(name, width, height)| {
+                (name, [width, height].map(|cm| self.units.typed(cm)))
+            });
+            let usual = usual(self.units)
+                .map(|(name, width, height)| (name, [width, height].map(str::to_owned)));
+            for (name, size) in paper.into_iter().chain(usual) {
+                let hover = format!("{} × {} {unit}", size[0], size[1]);
+                if ui.button(name).on_hover_text(hover).clicked() {
+                    [self.width, self.height] = size;
                     changed = true;
                 }
             }
@@ -202,10 +211,10 @@ impl NewPainting {
             ui.label("Size");
             ui.horizontal(|ui| {
                 entered |= line(ui, "Width", &mut self.width, true, 56.0);
-                ui.label("cm");
+                ui.label(unit);
                 ui.add_space(8.0);
                 entered |= line(ui, "Height", &mut self.height, false, 56.0);
-                ui.label("cm");
+                ui.label(unit);
             });
             ui.end_row();
             ui.label("Detail");

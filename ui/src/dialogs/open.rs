@@ -31,7 +31,7 @@ impl OpenPainting {
         let begin = format!("{}/", shown.trim_end_matches('/'));
         Self {
             recent,
-            browser: Browser::at(&begin, Purpose::Read, PAINTINGS),
+            browser: Browser::at(&begin, Purpose::Read, PAINTINGS).with_pictures(),
             unkept,
             wrong: None,
         }
@@ -50,7 +50,7 @@ impl OpenPainting {
     /// The same with a folder whose entries are known.
     #[cfg(test)]
     pub(crate) fn with(mut self, browser: Browser) -> Self {
-        self.browser = browser;
+        self.browser = browser.with_pictures();
         self
     }
 
@@ -61,7 +61,7 @@ impl OpenPainting {
         }
         if !path.exists() {
             return Err(format!(
-                "There is no file {}. Choose one of the list, or begin a new one (Ctrl+N).",
+                "There is no file {}. Choose one of the list, or begin a new one.",
                 paths::shown(path)
             ));
         }
@@ -76,7 +76,7 @@ impl OpenPainting {
     pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
         let mut taken: Option<PathBuf> = None;
         let answer = dialog::show(context, "Open a painting", |ui| {
-            taken = self.recent.show(ui);
+            taken = self.recent.show(ui, self.browser.pictures());
             if taken.is_some() {
                 taken
                     .iter()

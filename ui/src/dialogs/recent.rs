@@ -4,13 +4,15 @@ use std::path::{Path, PathBuf};
 use std::task::Poll;
 use std::time::SystemTime;
 
-use eframe::egui::{Button, Context, RichText, Ui};
+use eframe::egui::{Button, Context, RichText, Sense, Ui};
 
 use crate::background_task::BackgroundTask;
+use crate::dialogs::browser::PICTURE;
+use crate::dialogs::browser::pictures::Pictures;
 use crate::dialogs::paths;
 
 /// So many are shown.
-const MOST: usize = 5;
+const MOST: usize = 4;
 
 /// A painting that was open before.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -58,7 +60,11 @@ impl RecentList {
     }
 
     /// Shows them; the one that was chosen.
-    pub(crate) fn show(&mut self, ui: &mut Ui) -> Option<PathBuf> {
+    pub(crate) fn show(
+        &mut self,
+        ui: &mut Ui,
+        mut pictures: Option<&mut Pictures>,
+    ) -> Option<PathBuf> {
         if let Some(task) = &self.coming
             && let Poll::Ready(found) = task.poll()
         {
@@ -74,12 +80,19 @@ impl RecentList {
             let folder = recent.path.parent().map_or_else(String::new, paths::shown);
             let age = recent.age.as_deref().unwrap_or("no longer there");
             let beside = RichText::new(age).weak().small();
-            let button = Button::new(paths::name(&recent.path))
-                .right_text(beside)
-                .truncate()
-                .frame_when_inactive(false)
-                .min_size([ui.available_width(), 24.0].into());
-            let response = ui.add_enabled(recent.age.is_some(), button);
+            let response = ui.horizontal(|ui| {
+                if let Some(pictures) = &mut pictures {
+                    let (place, _) = ui.allocate_exact_size(PICTURE, Sense::hover());
+                    pictures.draw(ui, place, &recent.path);
+                }
+                let button = Button::new(paths::name(&recent.path))
+                    .right_text(beside)
+                    .truncate()
+                    .frame_when_inactive(false)
+                    .min_size([ui.available_width(), 24.0].into());
+                ui.add_enabled(recent.age.is_some(), button)
+            });
+            let response = response.inner;
             if response.on_hover_text(folder).clicked() {
                 chosen = Some(recent.path.clone());
             }

@@ -4,10 +4,9 @@
 use std::path::Path;
 
 use eframe::egui::containers::menu::MenuButton;
-use eframe::egui::{
-    Align2, Area, Button, Context, Frame, Id, Margin, Order, RichText, TextWrapMode,
-};
+use eframe::egui::{Area, Button, Context, Frame, Id, Margin, Order, RichText, TextWrapMode};
 
+use crate::app::{rack, sides};
 use crate::dialogs::paths;
 use crate::input::keys::{Action, BINDINGS};
 use crate::widgets::context::PanelContext;
@@ -25,7 +24,7 @@ const OFFERS: [Action; 6] = [
 ];
 
 /// The line; empty where nothing is known of the painting.
-fn words(work: &PanelContext<'_>) -> String {
+fn words(context: &Context, work: &PanelContext<'_>) -> String {
     let Some(node) = &work.rig.paint else {
         return String::new();
     };
@@ -33,7 +32,10 @@ fn words(work: &PanelContext<'_>) -> String {
     if status.path.is_empty() {
         return match status.blank {
             true => "New painting".to_owned(),
-            false => "In no file · Ctrl+S keeps it".to_owned(),
+            false => match work.preferences.keys.written(context, Action::Save) {
+                key if key.is_empty() => "In no file".to_owned(),
+                key => format!("In no file · {key} keeps it"),
+            },
         };
     }
     let name = paths::name(Path::new(&status.path));
@@ -48,18 +50,17 @@ fn words(work: &PanelContext<'_>) -> String {
 
 /// Shows the line; what was chosen under it.
 pub(crate) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action> {
-    let words = words(work);
+    let words = words(context, work);
     if words.is_empty() {
         return None;
     }
-    let (corner, inward) = match work.preferences.rack_is_left() {
-        false => (Align2::RIGHT_BOTTOM, -1.0),
-        true => (Align2::LEFT_BOTTOM, 1.0),
-    };
+    let side = sides::rack_side(work.preferences);
+    let (_, corner, inward) = side.anchors();
+    let aside = rack::WIDTH + 8.0 + sides::column_at(work.preferences, side);
     let mut chosen = None;
     Area::new(Id::unique("saved"))
         .order(Order::Middle)
-        .anchor(corner, [inward * (crate::app::rack::WIDTH + 8.0), -4.0])
+        .anchor(corner, [inward * aside, -4.0])
         .accessible_name("Painting")
         .show(context, |ui| {
             ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);
@@ -74,7 +75,7 @@ pub(crate) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action>
                         let Some(binding) = BINDINGS.iter().find(|known| known.act == act) else {
                             continue;
                         };
-                        let keys = ui.ctx().format_shortcut(&binding.shortcut);
+                        let keys = work.preferences.keys.written(ui.ctx(), act);
                         let offer = Button::new(binding.words).shortcut_text(keys);
                         if ui.add(offer).clicked() {
                             chosen = Some(act);

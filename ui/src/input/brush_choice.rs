@@ -8,11 +8,13 @@ use maulstick_brush::file::library::LIBRARY;
 use maulstick_brush::{BrushError, BrushFile};
 use maulstick_rig::UserError;
 use maulstick_types::command::{BrushCommand, Command};
+use maulstick_types::edits::{Edit, Load};
 use maulstick_types::values::{BrushName, BrushToml};
 
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
 use crate::rig::state::RigBrush;
+use crate::settings::brush_load::{BrushLoad, written};
 use crate::widgets::context::PanelContext;
 
 /// A painter's step from one width to the next: this factor, but at least half a millimetre.
@@ -62,12 +64,6 @@ pub(crate) fn called(kind: &str) -> String {
     letters.next().map_or(String::new(), |first| {
         first.to_uppercase().chain(letters).collect()
     })
-}
-
-/// A width in words, mm.
-#[must_use]
-pub(crate) fn millimetres(width_mm: f64) -> String {
-    format!("{} mm", (width_mm * 100.0).round() / 100.0)
 }
 
 /// Widths that a brush can have, mm: from its file's smallest to its largest size, where all that scales with them stays
@@ -183,9 +179,30 @@ impl PanelContext<'_> {
         self.requests.send(define);
     }
 
+    /// Writes what the brush in the hand was loaded with into the field of its paint, wherever that was asked for.
+    fn loaded(&mut self, load: &Load) {
+        let name = self.rig.brush_name();
+        let known = self.preferences.loading.edit(name, &self.rig.library);
+        if load.brush.as_str() == name && known.ok().as_ref() != Some(load) {
+            self.preferences.loading = BrushLoad {
+                paint: written(&load.mixture),
+                beside: load.beside.as_ref().map(written),
+                thinner: 0.0,
+            };
+        }
+    }
+
     /// Takes in the outcome of a request: a brush that refused keeps its file; one that has the requested file runs the
     /// command that waited for it.
     pub fn brush_answered(&mut self, outcome: &Outcome) {
+        if let Request::Command {
+            command: Command::Edit(Edit::Load(load)),
+            ..
+        } = &outcome.request
+            && outcome.result.is_ok()
+        {
+            return self.loaded(load);
+        }
         let Request::Command {
             command: Command::Brush(BrushCommand::Define { brush, toml }),
             ..
@@ -243,6 +260,7 @@ impl PanelContext<'_> {
             return;
         };
         let (now_mm, range) = (file.head.width_mm, widths_mm(file));
+        let units = self.preferences.units;
         let next_mm = next_width_mm(now_mm, up);
         let file = match range.contains(&next_mm) {
             true => resized(file, next_mm).ok(),
@@ -251,14 +269,14 @@ impl PanelContext<'_> {
         match file {
             Some(file) => {
                 self.notifications
-                    .note(format!("{} {}", called(&file.kind), millimetres(next_mm)));
+                    .note(format!("{} {}", called(&file.kind), units.width(next_mm)));
                 self.take_up(file);
             }
             None => {
                 let end = if up { "widest" } else { "narrowest" };
                 let kind = called(&file_kind(self));
                 self.notifications
-                    .note(format!("{kind} {} is the {end}", millimetres(now_mm)));
+                    .note(format!("{kind} {} is the {end}", units.width(now_mm)));
             }
         }
     }

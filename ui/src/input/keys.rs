@@ -1,11 +1,11 @@
-//! Key bindings, one table for input and for help.
+//! Actions of keys, and the keys that they have unless the painter chose others.
 
-use eframe::egui::{
-    Context, Event, InputState, Key, KeyboardShortcut, Modifiers, Plugin, RawInput, TextEdit,
-};
+use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
+use serde::{Deserialize, Serialize};
 
 /// Action of a key.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Action {
     /// A new painting.
     New,
@@ -65,6 +65,40 @@ pub enum Action {
     Keys,
     /// No device gives force any more.
     ForceOff,
+    /// Text size, theme, units and keys.
+    Settings,
+    /// Mixtures of a colour in mind.
+    Colour,
+    /// A clean brush; held, it lifts paint.
+    Clean,
+    /// Held: a drag sets the width of the brush.
+    Size,
+    /// Held: a drag zooms.
+    Zoom,
+}
+
+impl Action {
+    /// True for an action that lasts while its key is held; such a key has no Ctrl, Shift or Alt.
+    #[must_use]
+    pub(crate) fn is_held(self) -> bool {
+        matches!(self, Self::Clean | Self::Size | Self::Zoom)
+    }
+
+    /// True for an action whose effect adds up: it acts again while its key is kept down.
+    #[must_use]
+    pub(crate) fn repeats(self) -> bool {
+        matches!(
+            self,
+            Self::Undo
+                | Self::Redo
+                | Self::Smaller
+                | Self::Larger
+                | Self::TurnLeft
+                | Self::TurnRight
+                | Self::Lighter
+                | Self::Harder
+        )
+    }
 }
 
 /// A key and what it does.
@@ -86,8 +120,8 @@ const fn key(act: Action, modifiers: Modifiers, key: Key, words: &'static str) -
     }
 }
 
-/// Bindings of keys that act once per press. One with more modifiers comes before the same with fewer.
-pub(crate) const BINDINGS: [Binding; 30] = [
+/// The keys of a new painter.
+pub(crate) const BINDINGS: [Binding; 35] = [
     key(
         Action::Palette,
         Modifiers::NONE,
@@ -223,30 +257,37 @@ pub(crate) const BINDINGS: [Binding; 30] = [
         Key::F9,
         "Switch off force on all devices",
     ),
+    key(Action::Settings, Modifiers::COMMAND, Key::Comma, "Settings"),
+    key(
+        Action::Colour,
+        Modifiers::COMMAND,
+        Key::M,
+        "Mix a colour that you have in mind",
+    ),
+    key(
+        Action::Clean,
+        Modifiers::NONE,
+        Key::C,
+        "Clean the brush; held, it lifts paint",
+    ),
+    key(
+        Action::Size,
+        Modifiers::NONE,
+        Key::S,
+        "Held, and drag: width of the brush, right is wider",
+    ),
+    key(
+        Action::Zoom,
+        Modifiers::NONE,
+        Key::Z,
+        "Held, and drag: zoom",
+    ),
 ];
 
-/// The key that lifts paint while it is held, and cleans the brush at a tap.
-pub(crate) const CLEAN: Key = Key::C;
-
-/// The key with which a drag sets the width of the brush.
-pub(crate) const SIZE: Key = Key::S;
-
-/// The key with which a drag zooms.
-pub(crate) const ZOOM: Key = Key::Z;
-
-/// The key that is held by itself and makes something else of a drag than a stroke.
-#[must_use]
-pub(crate) fn holds(input: &InputState) -> Option<Key> {
-    let mut keys = [SIZE, ZOOM].into_iter();
-    keys.find(|key| input.modifiers.is_none() && input.key_down(*key))
-}
-
-/// Actions that last while something is held, and their descriptions.
-pub(crate) const HELD: [(&str, &str); 8] = [
-    ("C", "Clean the brush; held, it lifts paint"),
+/// What the pointer does with something held, and its description.
+pub(crate) const HELD: [(&str, &str); 6] = [
     ("Shift and drag", "Paint a straight stroke"),
-    ("S and drag", "Width of the brush: right is wider"),
-    ("Wheel, or Z and drag", "Zoom"),
+    ("Wheel", "Zoom"),
     (
         "Middle, or Ctrl and drag",
         "Move the canvas, or the palette",
@@ -262,162 +303,19 @@ pub(crate) const HELD: [(&str, &str); 8] = [
 /// A key as it is written: signs as themselves.
 #[must_use]
 pub(crate) fn written(context: &Context, shortcut: &KeyboardShortcut) -> String {
-    match shortcut.logical_key {
-        key @ (Key::OpenBracket
+    let text = context.format_shortcut(shortcut);
+    let key = shortcut.logical_key;
+    match key {
+        // Shift is what makes it this sign.
+        Key::Questionmark => text
+            .replace(key.name(), key.symbol_or_name())
+            .replace("Shift+", ""),
+        Key::OpenBracket
         | Key::CloseBracket
-        | Key::Questionmark
         | Key::Comma
         | Key::Period
         | Key::Minus
-        | Key::Equals) => key.symbol_or_name().to_owned(),
-        _ => context.format_shortcut(shortcut),
-    }
-}
-
-/// Keeps Tab from the first control where no control has the keyboard: there it is a key of the desk.
-#[derive(Debug, Default)]
-pub(crate) struct TabKey {
-    pressed: bool,
-    /// True while it is down: key repeats are not flagged by every system.
-    down: bool,
-}
-
-impl Plugin for TabKey {
-    fn debug_name(&self) -> &'static str {
-        "tab key"
-    }
-
-    fn input_hook(&mut self, context: &Context, input: &mut RawInput) {
-        if context.memory(|memory| memory.focused().is_some()) {
-            return;
-        }
-        let is_tab = |event: &Event| matches!(event, Event::Key { key: Key::Tab, modifiers, .. } if modifiers.is_none());
-        for event in input.events.iter().filter(|event| is_tab(event)) {
-            let down = matches!(event, Event::Key { pressed: true, .. });
-            self.pressed |= down && !self.down;
-            self.down = down;
-        }
-        input.events.retain(|event| !is_tab(event));
-    }
-}
-
-/// Consumes the keys that close the table of keys, also while a control has the focus; true if one was pressed.
-pub(crate) fn closes_table(input: &mut InputState) -> bool {
-    input.consume_key(Modifiers::NONE, Key::Escape)
-        || input.consume_key(Modifiers::SHIFT, Key::Questionmark)
-        || input.consume_key(Modifiers::NONE, Key::F1)
-}
-
-/// Gives the keyboard back to the desk after a click on a control in which nothing is typed.
-pub(crate) fn return_keyboard(context: &Context) {
-    let clicked = context.input(|input| input.pointer.any_released());
-    let focused = context.memory(|memory| memory.focused());
-    if let Some(id) = focused.filter(|id| clicked && TextEdit::load_state(context, *id).is_none()) {
-        context.memory_mut(|memory| memory.surrender_focus(id));
-    }
-}
-
-/// The one key that acts whatever else is open.
-#[must_use]
-pub(crate) fn force_off(context: &Context) -> Vec<Action> {
-    let pressed = context.input_mut(|input| input.consume_key(Modifiers::NONE, Key::F9));
-    pressed.then_some(Action::ForceOff).into_iter().collect()
-}
-
-/// Actions of the keys that were pressed, in order. While a control has the keyboard, keys without Ctrl are its own.
-#[must_use]
-pub(crate) fn pressed(context: &Context) -> Vec<Action> {
-    let typing = context.memory(|memory| memory.focused().is_some());
-    let tab = context.plugin_or_default::<TabKey>();
-    let tab = std::mem::take(&mut tab.lock().pressed);
-    let mut acts: Vec<Action> = tab.then_some(Action::Panels).into_iter().collect();
-    context.input_mut(|input| {
-        for binding in &BINDINGS {
-            // A key that is kept down acts once, except those whose effect adds up.
-            let repeats = matches!(
-                binding.act,
-                Action::Undo
-                    | Action::Redo
-                    | Action::Smaller
-                    | Action::Larger
-                    | Action::TurnLeft
-                    | Action::TurnRight
-                    | Action::Lighter
-                    | Action::Harder
-            );
-            let KeyboardShortcut {
-                modifiers: own,
-                logical_key,
-            } = binding.shortcut;
-            if !typing && !repeats {
-                input.events.retain(|event| {
-                    !matches!(event, Event::Key { key, repeat: true, modifiers, .. }
-                        if *key == logical_key && modifiers.matches_logically(own))
-                });
-            }
-            let is_plain = !binding.shortcut.modifiers.command
-                && !matches!(
-                    binding.shortcut.logical_key,
-                    Key::F1 | Key::F6 | Key::F9 | Key::F10 | Key::F11
-                );
-            if !(typing && is_plain) && input.consume_shortcut(&binding.shortcut) {
-                acts.push(binding.act);
-            }
-        }
-    });
-    acts
-}
-
-#[cfg(test)]
-mod tests {
-    use std::cell::RefCell;
-
-    use egui_kittest::Harness;
-
-    use super::*;
-
-    #[test]
-    fn each_key_does_what_the_table_says() {
-        for binding in &BINDINGS {
-            let acts = RefCell::new(Vec::new());
-            let mut harness = Harness::new_ui(|ui| acts.borrow_mut().extend(pressed(ui.ctx())));
-            harness.run();
-            let KeyboardShortcut {
-                modifiers,
-                logical_key,
-            } = binding.shortcut;
-            harness.key_press_modifiers(modifiers, logical_key);
-            harness.run();
-            drop(harness);
-            assert_eq!(acts.into_inner(), [binding.act], "{}", binding.words);
-        }
-    }
-
-    #[test]
-    fn signs_are_written_as_themselves() {
-        let context = Context::default();
-        let words = BINDINGS.map(|binding| written(&context, &binding.shortcut));
-        for word in ["[", "]", "?", "Ctrl+Shift+Z", "Space"] {
-            assert!(words.iter().any(|own| own == word), "{word}: {words:?}");
-        }
-    }
-
-    #[test]
-    fn while_a_name_is_typed_no_key_acts() {
-        let acts = RefCell::new(Vec::new());
-        let mut text = String::new();
-        let mut harness = Harness::new_ui(|ui| {
-            let label = ui.label("Name");
-            let edit = ui.text_edit_singleline(&mut text).labelled_by(label.id);
-            if !edit.has_focus() {
-                edit.request_focus();
-            }
-            acts.borrow_mut().extend(pressed(ui.ctx()));
-        });
-        harness.run();
-        harness.key_press(Key::D);
-        harness.run();
-        drop(harness);
-        assert!(acts.into_inner().is_empty());
+        | Key::Equals => text.replace(key.name(), key.symbol_or_name()),
+        _ => text,
     }
 }

@@ -2,7 +2,9 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`keys`] | key bindings |
+//! | [`keys`] | actions and their usual keys |
+//! | [`keymap`] | the keys that the painter has chosen |
+//! | [`presses`] | presses of keys |
 //! | [`pointer_path`] | path of the pointer, and where its button presses the brush |
 //! | [`ruler`] | straight strokes |
 //! | [`size_drag`] | width of the brush by dragging |
@@ -17,11 +19,13 @@
 pub(crate) mod brush_choice;
 pub(crate) mod brush_turn;
 pub(crate) mod clean_key;
+pub(crate) mod keymap;
 pub(crate) mod keys;
 pub(crate) mod mouse_stylus;
 pub(crate) mod navigation;
 pub(crate) mod palette_gesture;
 pub(crate) mod palette_wells;
 pub(crate) mod pointer_path;
+pub(crate) mod presses;
 pub(crate) mod ruler;
 pub(crate) mod size_drag;

@@ -1,14 +1,16 @@
 //! Navigation by wheel, middle button, modifiers and touch. It sends commands, so a replay repeats it.
 
 use eframe::egui::{
-    Context, Event, InputState, Key, Modifiers, MouseWheelUnit, Order, PointerButton, Pos2,
+    Context, Event, InputState, Modifiers, MouseWheelUnit, Order, PointerButton, Pos2,
 };
 use glam::DVec3;
 use maulstick_brush::placement::SurfacePlacement;
 use maulstick_num::exp;
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 
-use crate::input::keys;
+use crate::input::keymap::Keymap;
+use crate::input::keys::Action;
+use crate::input::presses;
 use crate::rig::requests::Requests;
 use crate::view::camera::View;
 
@@ -52,6 +54,8 @@ pub(crate) struct Around<'a> {
     pub free: bool,
     /// True while the pointer is over a panel.
     pub over_panel: bool,
+    /// The keys.
+    pub keys: &'a Keymap,
 }
 
 /// The free hand.
@@ -86,7 +90,7 @@ impl Navigation {
             }
             return;
         }
-        for event in &input.events {
+        for (place, event) in input.events.iter().enumerate() {
             match event {
                 Event::PointerButton {
                     pos,
@@ -94,8 +98,9 @@ impl Navigation {
                     pressed: true,
                     modifiers,
                 } if self.drag.is_none() && !around.over_panel => {
-                    self.drag = drag_mode(*button, *modifiers, keys::holds(input), around.free)
-                        .and_then(|drag_mode| {
+                    let holds = presses::holds(input, around.keys, place);
+                    self.drag =
+                        drag_mode(*button, *modifiers, holds, around.free).and_then(|drag_mode| {
                             self.grasp(input.time, drag_mode, *button, *pos, around)
                         });
                 }
@@ -251,11 +256,11 @@ pub(crate) fn is_panel(context: &Context, at: Pos2) -> bool {
         .is_some_and(|layer| layer.order != Order::Background)
 }
 
-/// Drag mode of a button with the modifiers and the key that are down; `None` if it belongs to the brush.
+/// Drag mode of a button with the modifiers and the action whose key are down; `None` if it belongs to the brush.
 fn drag_mode(
     button: PointerButton,
     modifiers: Modifiers,
-    holds: Option<Key>,
+    holds: Option<Action>,
     free: bool,
 ) -> Option<DragMode> {
     let grasps = match button {
@@ -264,7 +269,9 @@ fn drag_mode(
         _ => false,
     };
     match grasps {
-        _ if button == PointerButton::Primary && holds == Some(keys::ZOOM) => Some(DragMode::Zoom),
+        _ if button == PointerButton::Primary && holds == Some(Action::Zoom) => {
+            Some(DragMode::Zoom)
+        }
         _ if button == PointerButton::Primary && holds.is_some() => None,
         false => None,
         true if modifiers.shift => Some(DragMode::Turn),
@@ -288,7 +295,7 @@ fn find(surfaces: &[Surface], id: u32) -> Option<&Surface> {
 mod tests {
     use std::cell::RefCell;
 
-    use eframe::egui::{Rect, pos2, vec2};
+    use eframe::egui::{Key, Rect, pos2, vec2};
     use egui_kittest::Harness;
     use maulstick_brush::palette_place::Side;
     use maulstick_num::geometry::Rigid;
@@ -306,7 +313,7 @@ mod tests {
             RefCell::new(Navigation::default()),
             RefCell::new(Requests::default()),
         );
-        let view = view(&surfaces);
+        let (view, keys) = (view(&surfaces), Keymap::default());
         let mut harness = Harness::builder()
             .with_size(vec2(1000.0, 600.0))
             .build_ui(|ui| {
@@ -315,6 +322,7 @@ mod tests {
                     surfaces: &surfaces,
                     free,
                     over_panel: false,
+                    keys: &keys,
                 };
                 ui.input(|input| {
                     hand.borrow_mut()
@@ -434,8 +442,8 @@ mod tests {
             events.insert(0, down);
             placed(free, events)
         };
-        assert!(held(true, keys::SIZE).is_empty(), "it sets a width");
-        let zoom = held(false, keys::ZOOM).pop().expect("a place").1;
+        assert!(held(true, Key::S).is_empty(), "it sets a width");
+        let zoom = held(false, Key::Z).pop().expect("a place").1;
         assert!(turn.pose.vector(DVec3::X).y.abs() > 0.01 && turn.zoom == 1.0);
         assert!(tilt.pose.vector(DVec3::Z).y.abs() > 0.01 && tilt.zoom == 1.0);
         assert!(zoom.zoom > 1.02 && zoom.pose.rotation == Rigid::IDENTITY.rotation);

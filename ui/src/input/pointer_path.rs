@@ -2,7 +2,8 @@
 
 use eframe::egui::{Event, InputState, PointerButton, Pos2};
 
-use crate::input::keys;
+use crate::input::keymap::Keymap;
+use crate::input::presses;
 use crate::input::ruler::Ruler;
 
 /// A place of the pointer, and whether its button presses the brush there.
@@ -33,10 +34,11 @@ impl PointerPath {
     pub(crate) fn follow(
         &mut self,
         input: &InputState,
+        keymap: &Keymap,
         on_desk: impl Fn(Pos2) -> bool,
     ) -> Vec<Place> {
         let mut places = Vec::new();
-        for event in &input.events {
+        for (number, event) in input.events.iter().enumerate() {
             match event {
                 Event::PointerMoved(at) => places.extend(self.place(*at, &on_desk)),
                 Event::PointerButton {
@@ -47,8 +49,8 @@ impl PointerPath {
                 } => {
                     let straight = modifiers.shift_only();
                     // With another modifier or key it moves the canvas or sets a width.
-                    let is_brush =
-                        (modifiers.is_none() || straight) && keys::holds(input).is_none();
+                    let is_brush = (modifiers.is_none() || straight)
+                        && presses::holds(input, keymap, number).is_none();
                     let presses = *pressed && is_brush && on_desk(*pos);
                     if presses && straight {
                         self.ruler.lay(*pos);
@@ -81,7 +83,7 @@ impl PointerPath {
 
 #[cfg(test)]
 mod tests {
-    use eframe::egui::{Modifiers, pos2};
+    use eframe::egui::{Key, Modifiers, pos2};
 
     use super::*;
 
@@ -116,7 +118,7 @@ mod tests {
         let mut path = PointerPath::default();
         let mut places = Vec::new();
         for events in frames {
-            places.extend(path.follow(&input(events), on_desk));
+            places.extend(path.follow(&input(events), &Keymap::default(), on_desk));
         }
         places
             .into_iter()
@@ -149,6 +151,29 @@ mod tests {
     }
 
     #[test]
+    fn a_key_counts_for_the_press_before_which_it_was_held_however_much_a_frame_holds() {
+        let key = |pressed| Event::Key {
+            key: Key::S,
+            physical_key: None,
+            pressed,
+            repeat: false,
+            modifiers: NONE,
+        };
+        let stroke = [
+            button(400.0, true, NONE),
+            moved(420.0),
+            button(420.0, false, NONE),
+        ];
+        let around = [&[key(true)][..], &stroke, &[key(false)]].concat();
+        let before = [&[key(true), key(false)][..], &stroke].concat();
+        let presses = |events: &[Event]| {
+            let places = followed(&[events]);
+            places.iter().filter(|(_, pressed)| *pressed).count()
+        };
+        assert_eq!((presses(&around), presses(&before)), (0, 2));
+    }
+
+    #[test]
     fn frames_cut_no_stroke() {
         let events = [
             button(400.0, true, NONE),
@@ -169,7 +194,7 @@ mod tests {
         let mut path = PointerPath::default();
         let bent = Event::PointerMoved(pos2(200.0, 140.0));
         let events = [button(100.0, true, Modifiers::SHIFT), moved(150.0), bent];
-        let places = path.follow(&input(&events), on_desk);
+        let places = path.follow(&input(&events), &Keymap::default(), on_desk);
         assert_eq!(places[2], (pos2(200.0, 100.0), true), "along the ruler");
     }
 }

@@ -1,12 +1,15 @@
-//! Width of the brush by dragging: while S is held, the pressed pointer makes it wider to the right, narrower to the left.
+//! Width of the brush by dragging: while its key is held, the pressed pointer makes it wider to the right, narrower to the left.
 
-use eframe::egui::{Color32, Context, FontId, Id, LayerId, Order, Pos2, Rect, vec2};
+use eframe::egui::{
+    Color32, Context, Event, FontId, Id, LayerId, Order, PointerButton, Pos2, Rect, vec2,
+};
 
 use maulstick_num::exp;
 
-use crate::input::brush_choice::{called, millimetres, widths_mm};
-use crate::input::keys;
+use crate::input::brush_choice::{called, widths_mm};
+use crate::input::keys::Action;
 use crate::input::navigation::is_panel;
+use crate::input::presses;
 use crate::widgets::context::PanelContext;
 
 /// The pointer goes so far for a brush that is e times as wide, points.
@@ -28,23 +31,30 @@ pub(crate) struct SizeDrag {
 impl SizeDrag {
     /// Follows the pointer, and shows the width beside it; the brush is changed where the pointer is let go.
     pub(crate) fn follow(&mut self, context: &Context, work: &mut PanelContext<'_>) {
-        let (at, presses, is_down, is_held) = context.input(|input| {
+        let (at, pressed, is_down) = context.input(|input| {
+            let pressed = input.events.iter().enumerate().find_map(|(place, event)| {
+                let Event::PointerButton {
+                    pos,
+                    button: PointerButton::Primary,
+                    pressed: true,
+                    ..
+                } = event
+                else {
+                    return None;
+                };
+                let holds = presses::holds(input, &work.preferences.keys, place);
+                (holds == Some(Action::Size)).then_some(*pos)
+            });
             let pointer = &input.pointer;
-            let is_held = keys::holds(input) == Some(keys::SIZE);
-            (
-                pointer.latest_pos(),
-                pointer.primary_pressed(),
-                pointer.primary_down(),
-                is_held,
-            )
+            (pointer.latest_pos(), pressed, pointer.primary_down())
         });
         let (Some(at), Some(file)) = (at, work.in_hand()) else {
             self.drag = None;
             return;
         };
-        if presses && is_held && !is_panel(context, at) {
+        if let Some(from) = pressed.filter(|from| !is_panel(context, *from)) {
             self.drag = Some(Drag {
-                from: at,
+                from,
                 from_mm: file.head.width_mm,
             });
         }
@@ -57,7 +67,11 @@ impl SizeDrag {
         let width_mm = (10.0 * from_mm * times).round() / 10.0;
         let width_mm = width_mm.clamp(*range.start(), *range.end());
         if is_down {
-            let words = format!("{} {}", called(&file.kind), millimetres(width_mm));
+            let words = format!(
+                "{} {}",
+                called(&file.kind),
+                work.preferences.units.width(width_mm)
+            );
             tell(context, from, &words);
         } else {
             self.drag = None;

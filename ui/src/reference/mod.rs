@@ -3,35 +3,37 @@
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | `frame` | where the frame stands, and how large it is |
 //! | `picture` | pictures, read and made small |
-//! | `picker` | the mixtures that come near a colour |
 
-mod picker;
+mod frame;
 mod picture;
 
 use std::path::{Path, PathBuf};
 
 use eframe::egui::{
     self, Color32, Context, CornerRadius, EventFilter, Frame, Id, Key, Modifiers, Pos2, Rect,
-    Response, RichText, Role, Sense, Slider, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, Window,
-    pos2, vec2,
+    Response, RichText, Role, ScrollArea, Sense, Slider, Stroke, StrokeKind, Ui, Vec2, WidgetInfo,
+    Window, pos2, vec2,
 };
 use maulstick_optics::colour::srgb_encode;
-use maulstick_types::edits::Load;
-use maulstick_types::values::BrushName;
 use serde::{Deserialize, Serialize};
 
 use crate::dialogs::paths;
 use crate::input::keys::Action;
+use crate::matching::picker::{Ask, Picker, of_palette};
+use crate::matching::proposals::{hex, matches, swatch};
 use crate::settings::preferences::Preferences;
 use crate::widgets::context::PanelContext;
-use picker::{Ask, Match, Matches, Picker, of_palette};
+use frame::PictureFrame;
 use picture::{Picture, Pinned};
 
 /// The least size of the frame, points.
 const LEAST: [f32; 2] = [220.0, 180.0];
 /// The picture is magnified at most so far beyond a pixel a point.
 const CLOSEST: f32 = 16.0;
+/// The least height of the picture while mixtures are below it, points.
+const LEAST_PICTURE: f32 = 60.0;
 /// Step of the cross per press of an arrow key, points.
 const STEP: f32 = 8.0;
 
@@ -110,6 +112,9 @@ pub(crate) struct Reference {
     pinned: Pinned,
     look: Look,
     picker: Picker,
+    frame: PictureFrame,
+    /// Height of the proposals as they were last drawn, points.
+    below: f32,
     /// The colour that was picked, linear sRGB.
     picked: Option<[f64; 3]>,
 }
@@ -119,6 +124,7 @@ impl Reference {
     pub(crate) fn pin(&mut self, context: &Context, path: &Path, preferences: &mut Preferences) {
         *self = Self {
             pinned: Pinned::read(context, path),
+            frame: self.frame,
             ..Self::default()
         };
         preferences.reference.path = Some(path.to_owned());
@@ -129,14 +135,16 @@ impl Reference {
     pub(crate) fn toggle(&mut self, preferences: &mut Preferences) -> bool {
         let known = preferences.reference.path.is_some();
         preferences.reference.shown = known && !preferences.reference.shown;
+        self.frame = PictureFrame::default();
         known
     }
 
-    /// Shows it; what its buttons ask for.
+    /// Shows it, at first beside the palette, which covers this part of the window; what its buttons ask for.
     #[must_use]
     pub(crate) fn show(
         &mut self,
         context: &Context,
+        palette: Option<Rect>,
         work: &mut PanelContext<'_>,
     ) -> Option<Action> {
         let preferences = work.preferences.reference.sound();
@@ -150,36 +158,36 @@ impl Reference {
         let (mut open, mut asked) = (true, None);
         let fill = context.global_style().visuals.window_fill;
         let frame = Frame::window(&context.global_style());
-        let shown = Window::new(paths::name(path))
+        let window = Window::new(paths::name(path))
             .id(Id::unique("reference"))
             .open(&mut open)
             .collapsible(false)
             .frame(frame.fill(fill.gamma_multiply(preferences.opacity)))
-            .default_pos(preferences.place)
             .default_size(preferences.size)
             .min_size(LEAST)
-            .resizable(true)
-            .show(context, |ui| {
-                asked = self.header(ui, work);
-                let below = match self.picked {
-                    Some(_) => 142.0,
-                    None => 22.0,
-                };
-                let room = ui.available_size() - vec2(0.0, below);
-                self.picture(ui, room.max(vec2(80.0, 60.0)), preferences.opacity, work);
-                self.proposals(ui, work);
-                ui.min_size()
-            });
-        // While it is dragged nothing is written to the disk.
-        if let Some(shown) = shown
-            && !context.input(|input| input.pointer.any_down())
-        {
-            let whole = |v: f32| v.round();
-            let kept = &mut work.preferences.reference;
-            kept.place = [shown.response.rect.left(), shown.response.rect.top()].map(whole);
-            if let Some(size) = shown.inner {
-                kept.size = [size.x, size.y].map(whole);
+            .resizable(true);
+        let window = self.frame.placed(window, context, palette, &preferences);
+        let shown = window.show(context, |ui| {
+            asked = self.header(ui, work);
+            // The picture gives room to the proposals: the frame keeps its size.
+            let gap = ui.spacing().item_spacing.y;
+            let room = ui.available_size() - vec2(0.0, gap);
+            let below = self.below.min(room.y - LEAST_PICTURE).max(0.0);
+            let size = vec2(room.x, room.y - below).max(vec2(80.0, LEAST_PICTURE));
+            self.picture(ui, size, preferences.opacity, work);
+            let list = ScrollArea::vertical()
+                .max_height(below)
+                .min_scrolled_height(below)
+                .auto_shrink([false, true]);
+            let list = list.show(ui, |ui| self.proposals(ui, work));
+            if list.content_size.y != self.below {
+                self.below = list.content_size.y;
+                ui.ctx().request_repaint();
             }
+        });
+        if let Some(shown) = shown {
+            self.frame
+                .keep(context, shown.response.rect, work.preferences);
         }
         if !open {
             work.preferences.reference.shown = false;
@@ -376,92 +384,6 @@ impl Reference {
         let found = self.picker.found(ui.ctx(), &library).cloned();
         matches(ui, found.as_ref(), work);
     }
-}
-
-fn matches(ui: &mut Ui, found: Option<&Matches>, work: &mut PanelContext<'_>) {
-    match found {
-        None => {
-            ui.horizontal(|ui| {
-                ui.spinner();
-                ui.weak("Mixing …");
-            });
-        }
-        Some(Err(words)) => {
-            ui.label(words);
-        }
-        Some(Ok(all)) => {
-            for found in all {
-                proposal(ui, found, work);
-            }
-        }
-    }
-}
-
-/// A mixture, its colour difference, and its actions.
-fn proposal(ui: &mut Ui, found: &Match, work: &mut PanelContext<'_>) {
-    let words = in_parts(found);
-    ui.horizontal(|ui| {
-        let near = format!("off by ΔE {:.1}", found.delta_e);
-        swatch(ui, found.rgb, &near);
-        ui.label(RichText::new(format!("ΔE {:.1}", found.delta_e)).small())
-            .on_hover_text("How far it is from the colour, ΔE₀₀: 1 is hardly seen");
-        let load = ui.button("Load").on_hover_text("Load the brush with it");
-        load.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Load {words}")));
-        if load.clicked() {
-            let load = BrushName::new(work.rig.brush_name()).map(|brush| Load {
-                mixture: found.mixture.clone(),
-                beside: None,
-                brush,
-            });
-            crate::widgets::rows::ask(work, load);
-        }
-        let put = ui.button("+").on_hover_text("Put it on the palette");
-        put.widget_info(|| {
-            WidgetInfo::labeled(Role::Button, true, format!("To the palette: {words}"))
-        });
-        if put.clicked() {
-            let mut wells = work.wells();
-            wells.push(found.mixture.clone());
-            work.lay_wells(&wells);
-        }
-        let copy = ui.button("Copy").on_hover_text("Copy it as text");
-        copy.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Copy {words}")));
-        if copy.clicked() {
-            ui.ctx().copy_text(found.mixture.to_string());
-        }
-    });
-    ui.add(egui::Label::new(RichText::new(&words).small()).wrap());
-}
-
-/// A mixture in a painter's words.
-fn in_parts(found: &Match) -> String {
-    let part = |part: &maulstick_types::mixture::Part| {
-        let percent = 100.0 * part.share;
-        match percent {
-            percent if percent < 1.0 => format!("{} {percent:.2} %", part.paint),
-            percent => format!("{} {percent:.0} %", part.paint),
-        }
-    };
-    let parts: Vec<String> = found.mixture.parts.iter().map(part).collect();
-    parts.join(", ")
-}
-
-fn hex([r, g, b]: [u8; 3]) -> String {
-    format!("#{r:02x}{g:02x}{b:02x}")
-}
-
-fn swatch(ui: &mut Ui, [r, g, b]: [u8; 3], label: &str) {
-    let (area, response) = ui.allocate_exact_size(vec2(28.0, 18.0), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, label));
-    let edge = ui.visuals().widgets.noninteractive.bg_stroke;
-    let painter = ui.painter();
-    painter.rect(
-        area,
-        3.0,
-        Color32::from_rgb(r, g, b),
-        edge,
-        StrokeKind::Inside,
-    );
 }
 
 /// The mark where colours are picked, visible over light and dark.

@@ -38,9 +38,9 @@ impl Picture {
             ImportError::File(error) => {
                 format!("It cannot be read: {error}. See that it is still there.")
             }
-            ImportError::TooLarge(..) | ImportError::Memory(..) => {
-                "It is too large to look at. Make a smaller copy of it.".to_owned()
-            }
+            ImportError::TooLarge(width, height) | ImportError::Memory(width, height) => format!(
+                "Its {width} × {height} pixels are too many to look at. Make a smaller copy of it."
+            ),
             _ => "It is damaged, or no PNG, JPEG or TIFF. Take another copy.".to_owned(),
         })?;
         let own_size = image.size();
@@ -208,6 +208,19 @@ mod tests {
             [picture.rgb[0], picture.rgb[5 * 2048]],
             [[200, 0, 0], [0; 3]]
         );
+        // Refused by what its first bytes say, before any memory is taken for its pixels.
+        let mut huge = Vec::new();
+        let mut encoder = png::Encoder::new(&mut huge, 30_000, 30_000);
+        encoder.set_color(png::ColorType::Rgb);
+        let mut writer = encoder.write_header().expect("a header");
+        writer
+            .write_chunk(png::chunk::IDAT, &[0x78, 0x9c])
+            .expect("written");
+        drop(writer);
+        std::fs::write(&path, &huge).expect("written");
+        let words = Picture::read(&path).expect_err("too large");
+        assert!(words.contains("30000 × 30000 pixels"), "{words}");
+        assert!(!words.contains('\n'));
         std::fs::write(&path, &bytes[..bytes.len() / 2]).expect("written");
         let words = Picture::read(&path).expect_err("damaged");
         assert!(words.contains("damaged"), "{words}");

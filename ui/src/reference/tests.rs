@@ -172,6 +172,7 @@ struct Wall {
     rig: RigState,
     preferences: Preferences,
     opacity: f32,
+    palette: Option<Rect>,
 }
 
 fn wall() -> Wall {
@@ -189,6 +190,7 @@ fn wall() -> Wall {
         rig: rig(),
         preferences,
         opacity: 1.0,
+        palette: None,
     }
 }
 
@@ -206,7 +208,7 @@ fn show(ui: &mut Ui, wall: &mut Wall) {
         preferences: &mut wall.preferences,
         notifications: &mut notifications,
     };
-    assert_eq!(wall.reference.show(ui.ctx(), &mut work), None);
+    assert_eq!(wall.reference.show(ui.ctx(), wall.palette, &mut work), None);
 }
 
 #[test]
@@ -250,6 +252,55 @@ fn the_wheel_goes_closer_to_what_is_under_the_pointer_and_dragging_moves_it() {
     harness.get_by_label("Fit").click();
     harness.run_steps(3);
     assert_eq!(look(&harness).zoom, 1.0);
+}
+
+#[test]
+fn a_pick_neither_makes_the_frame_larger_nor_hides_a_mixture_and_dragging_moves_it_for_good() {
+    let palette = Rect::from_min_max(pos2(0.0, 0.0), pos2(120.0, 600.0));
+    let mut state = wall();
+    state.palette = Some(palette);
+    let mut harness = Harness::builder()
+        .with_size([900.0, 700.0])
+        .build_ui_state(show, state);
+    harness.run_steps(4);
+    let frame = |harness: &Harness<'_, Wall>| {
+        let close = harness.get_by_label("Another …").rect();
+        let picture = harness.get_by_label(PICTURE).rect();
+        (close.min, picture)
+    };
+    let (corner, before) = frame(&harness);
+    assert!(corner.x > palette.right(), "beside the palette: {corner:?}");
+    assert_eq!(harness.state().preferences.reference.place, [16.0, 16.0]);
+    harness.get_by_label(PICTURE).click();
+    until(&mut harness, |harness| {
+        harness.query_all_by_label_contains("Load ").count() == 3
+    });
+    harness.run_steps(4);
+    let (_, during) = frame(&harness);
+    let copies = harness.query_all_by_label_contains("Copy ");
+    let lowest = copies.map(|copy| copy.rect().bottom()).fold(0.0, f32::max);
+    assert!(during.height() < before.height());
+    assert!(lowest < before.bottom() + 24.0, "{lowest} {before:?}");
+    harness.get_by_label("Done").click();
+    harness.run_steps(6);
+    assert_eq!(frame(&harness), (corner, before), "as large as before");
+    let kept = harness.state().preferences.reference.clone();
+    assert_eq!((kept.place, kept.size), ([16.0, 16.0], [320.0, 320.0]));
+    // By its title.
+    let title = pos2(corner.x + 100.0, corner.y - 14.0);
+    harness.drag_at(title);
+    harness.step();
+    harness.hover_at(title + vec2(40.0, 30.0));
+    harness.run_steps(2);
+    harness.drop_at(title + vec2(200.0, 90.0));
+    harness.run_steps(3);
+    let moved = frame(&harness).0 - corner;
+    assert!(moved.x > 100.0, "{moved:?}");
+    let kept = harness.state().preferences.reference.place;
+    assert!(
+        (kept[0] + 8.0 - frame(&harness).0.x).abs() < 12.0,
+        "{kept:?}"
+    );
 }
 
 #[test]

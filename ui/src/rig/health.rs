@@ -116,7 +116,7 @@ impl HealthMonitor {
             } else {
                 notifications.fault(
                     format!("The device '{name}' gives no force: {trouble}"),
-                    "Lift the brush, then press Re-arm in the panel Device (Tab).",
+                    "Lift the brush, then press Re-arm in the panel Device.",
                 );
             }
             *told = trouble;

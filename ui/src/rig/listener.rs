@@ -102,6 +102,7 @@ impl RigListener {
             }
         }
         while let Some(def) = self.defs.try_recv() {
+            let epoch = def.header.epoch;
             let BrushDef { brush, toml, .. } = def.message;
             // The renderer of the brush reports a file that cannot be read.
             let Ok(file) = BrushFile::parse(&toml) else {
@@ -110,7 +111,7 @@ impl RigListener {
             let known = rig.brushes.iter_mut().find(|known| known.name == brush);
             if let Some(known) = known {
                 known.asked.take_if(|asked| *asked == file);
-                known.file = Some((file, toml));
+                (known.file, known.epoch) = (Some((file, toml)), epoch);
             }
         }
         while let Some(info) = self.infos.try_recv() {

@@ -25,6 +25,8 @@ pub struct RigBrush {
     pub name: String,
     /// Its brush file, parsed and as text; `None` until its node has sent it.
     pub file: Option<(BrushFile, String)>,
+    /// Start of its node: a brush that is started anew has the file of `rig.toml`.
+    pub epoch: u32,
     /// The brush file requested for it; `None` once its node has answered.
     pub asked: Option<BrushFile>,
     /// Command for the paint node once the brush has that file.

@@ -88,6 +88,15 @@ pub(crate) fn thinned(mixture: &Mixture, share: f64) -> Mixture {
     Mixture { parts }
 }
 
+/// A mixture as a painter writes it; [`read`] reads it.
+#[must_use]
+pub(crate) fn written(mixture: &Mixture) -> String {
+    match &mixture.parts[..] {
+        [part] => part.paint.clone(),
+        _ => mixture.to_string(),
+    }
+}
+
 /// A mixture as a painter reads it: its paints, with per cent where they are several.
 #[must_use]
 pub(crate) fn words(mixture: &Mixture) -> String {

@@ -3,13 +3,20 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`preferences`] | the file of them |
+//! | `look`, `units` | text size and theme; units of lengths |
+//! | `window_side` | sides of the window |
 //! | `presets` | brushes with their paint, by name |
+//! | `brush_memory` | the brush in the hand, from session to session |
 //! | `paint_sets` | sets of paints for the palette |
 //! | `grip` | how the mouse holds the brush |
 //! | `brush_load` | the mixtures that a brush takes up |
 
 pub(crate) mod brush_load;
+pub(crate) mod brush_memory;
 pub mod grip;
+pub mod look;
 pub(crate) mod paint_sets;
 pub mod preferences;
 pub(crate) mod presets;
+pub mod units;
+pub mod window_side;

@@ -9,11 +9,15 @@ use serde::{Deserialize, Serialize};
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, write_whole};
 
+use crate::input::keymap::Keymap;
 use crate::reference::ReferencePreferences;
 use crate::settings::brush_load::BrushLoad;
 use crate::settings::grip::Grip;
+use crate::settings::look::{TEXT_SIZES, Theme};
 use crate::settings::paint_sets::PaintSet;
 use crate::settings::presets::{Preset, classic};
+use crate::settings::units::Units;
+use crate::settings::window_side::WindowSide;
 
 /// Recent paintings that are remembered.
 const RECENT: usize = 12;
@@ -24,6 +28,9 @@ const RECENT: usize = 12;
 pub struct Preferences {
     /// True while the panels are shown.
     pub panels: bool,
+    /// Side at which the panels stand; absent for that of the rack.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub panel_side: Option<WindowSide>,
     /// Titles of the panels that are unfolded.
     pub open: Vec<String>,
     /// True for a left-handed painter: palette at the right, rack at the left.
@@ -35,14 +42,25 @@ pub struct Preferences {
     pub has_painted: bool,
     /// Width and height of the window, points.
     pub size: [f32; 2],
+    /// Factor on the size of texts and controls.
+    pub text_size: f32,
+    /// Theme of panels and dialogs.
+    pub theme: Theme,
+    /// Units of lengths.
+    pub units: Units,
+    /// The keys.
+    pub keys: Keymap,
     /// Paintings that were open, the newest first.
     pub recent: Vec<PathBuf>,
     /// The reference picture.
     pub reference: ReferencePreferences,
     /// The painter's own brush files, in the order of the rack.
     pub own_brushes: Vec<PathBuf>,
-    /// Load for the next dip of the brush.
+    /// What the brush was loaded with, or is to be; not kept, for a brush begins clean.
+    #[serde(skip)]
     pub loading: BrushLoad,
+    /// The brushes as they were last in the hand, by their names in the rig; without paint.
+    pub in_hand: BTreeMap<String, Preset>,
     /// How the mouse holds the brush.
     pub mouse: Grip,
     /// Widths at which brushes were last used, by their kind, mm.
@@ -57,15 +75,21 @@ impl Default for Preferences {
     fn default() -> Self {
         Self {
             panels: false,
+            panel_side: None,
             open: vec!["Brush".to_owned(), "Tubes".to_owned()],
             left_handed: false,
             mirrored: false,
             has_painted: false,
             size: [1280.0, 800.0],
+            text_size: 1.0,
+            theme: Theme::default(),
+            units: Units::default(),
+            keys: Keymap::default(),
             recent: Vec::new(),
             reference: ReferencePreferences::default(),
             own_brushes: Vec::new(),
             loading: BrushLoad::default(),
+            in_hand: BTreeMap::new(),
             mouse: Grip::default(),
             widths_mm: BTreeMap::new(),
             presets: classic(),
@@ -102,6 +126,9 @@ impl Preferences {
         let sane = |side: f32| side.is_finite() && (200.0..=20_000.0).contains(&side);
         if !preferences.size.iter().all(|side| sane(*side)) {
             preferences.size = Self::default().size;
+        }
+        if !TEXT_SIZES.contains(&preferences.text_size) {
+            preferences.text_size = 1.0;
         }
         preferences.mouse = preferences.mouse.sane();
         Ok(preferences)
@@ -184,7 +211,7 @@ mod tests {
         assert!(fault.to_string().contains("window.toml"), "{fault}");
         std::fs::write(
             &path,
-            "size = [nan, 1e9]\nunknown = 1\n[mouse]\npressure = 7.0\nturn_deg = nan",
+            "size = [nan, 1e9]\ntext_size = 0.0\nunknown = 1\n[mouse]\npressure = 7.0\nturn_deg = nan",
         )
         .expect("written");
         let preferences = Preferences::read(&path).expect("of a newer window");

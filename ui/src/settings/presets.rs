@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::input::brush_choice::{is_of_library, of_library};
 use crate::settings::brush_load::BrushLoad;
+use crate::settings::units::Units;
 use crate::widgets::context::PanelContext;
 
 /// The name of a preset, or of a set of paints, has at most so many letters.
@@ -138,7 +139,14 @@ impl Preset {
     /// A [`UserError`] if the file is invalid, as after an edit by hand.
     pub fn brush(&self) -> Result<BrushFile, UserError> {
         let wrong = |what: String| {
-            UserError::failure(format!("the preset '{}': {what}", self.name)).help("save it anew")
+            let (whose, help) = match self.name.as_str() {
+                "" => (
+                    "the brush of the last session".to_owned(),
+                    "choose one from the rack",
+                ),
+                name => (format!("the preset '{name}'"), "save it anew"),
+            };
+            UserError::failure(format!("{whose}: {what}")).help(help)
         };
         if !self.file.is_empty() {
             return BrushFile::parse(&self.file).map_err(|error| wrong(error.to_string()));
@@ -149,16 +157,14 @@ impl Preset {
             .map_err(|error| wrong(error.to_string()))
     }
 
-    /// Takes it up: the brush, how it is used, and then its paint.
+    /// The edits that use a brush of the rig so.
     ///
     /// # Errors
-    /// A [`UserError`] where something of it is wrong; then nothing is changed.
-    pub fn apply(&self, work: &mut PanelContext<'_>) -> Result<(), UserError> {
-        let file = self.brush()?;
-        let brush = work.rig.brush_name().to_owned();
+    /// A [`UserError`] where a number is out of range, or there is no such mode.
+    pub(crate) fn edits(&self, brush: &str) -> Result<(Tune, Handle), UserError> {
         let mode = self.mode.parse()?;
         let tuning = Tuning {
-            brush: brush.clone(),
+            brush: brush.to_owned(),
             stiffness: self.stiffness,
             wetness: self.wetness,
         };
@@ -166,9 +172,19 @@ impl Preset {
             mode,
             flow: self.flow,
             most_m: self.most_m,
-            ..BrushHandling::normal(&brush)
+            ..BrushHandling::normal(brush)
         };
-        let (tune, handle) = (Tune::try_from(&tuning)?, Handle::try_from(&handling)?);
+        Ok((Tune::try_from(&tuning)?, Handle::try_from(&handling)?))
+    }
+
+    /// Takes it up: the brush, how it is used, and then its paint.
+    ///
+    /// # Errors
+    /// A [`UserError`] where something of it is wrong; then nothing is changed.
+    pub fn apply(&self, work: &mut PanelContext<'_>) -> Result<(), UserError> {
+        let file = self.brush()?;
+        let brush = work.rig.brush_name().to_owned();
+        let (tune, handle) = self.edits(&brush)?;
         let mut loading = self.loading.clone();
         if loading.paint.is_empty() && loading.thinner > 0.0 {
             loading.paint.clone_from(&work.preferences.loading.paint);
@@ -207,9 +223,9 @@ impl Preset {
 
     /// Short description.
     #[must_use]
-    pub fn words(&self) -> String {
+    pub fn words(&self, units: Units) -> String {
         let kind = crate::input::brush_choice::called(&self.kind);
-        let width = crate::input::brush_choice::millimetres(self.width_mm);
+        let width = units.width(self.width_mm);
         let mut words = format!("{kind}, {width}");
         if !self.loading.paint.is_empty() {
             words += &format!("\n{}", self.loading.paint);

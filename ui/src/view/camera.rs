@@ -165,6 +165,13 @@ impl View {
         self.area.center() + vec2(self.seen_x(off.x) as f32, -off.y as f32)
     }
 
+    /// The part of the window that holds a surface, points.
+    #[must_use]
+    pub fn covered(&self, surface: &Surface) -> Rect {
+        let corners = corners(surface).map(|corner| self.to_window(corner));
+        Rect::from_points(&corners)
+    }
+
     /// True if a surface is under a point of the window.
     #[must_use]
     pub fn is_over(&self, at: Pos2, surface: &Surface) -> bool {

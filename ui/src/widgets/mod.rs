@@ -2,6 +2,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | [`brush_gauge`] | colours of the brush in the hand, and how full it is |
 //! | [`context`] | state that a panel reads and changes |
 //! | [`rows`], [`labelled`] | rows of a panel: a word and a control |
 //! | [`pending`] | a value that the rig has not confirmed yet |
@@ -9,6 +10,7 @@
 //! | [`progress`] | progress of long work |
 //! | [`swatches`] | colour patches of paints |
 
+pub(crate) mod brush_gauge;
 pub(crate) mod context;
 pub(crate) mod labelled;
 pub(crate) mod notifications;

@@ -228,7 +228,7 @@ impl Database {
     }
 
     /// Opens a read-only painting without a journal.
-    fn open_immutable(path: &Path) -> Result<Self, DocumentError> {
+    pub(crate) fn open_immutable(path: &Path) -> Result<Self, DocumentError> {
         if length(&companion(path, "-wal")).is_some_and(|length| length > 0) {
             return Err(DocumentError::ReadOnly(
                 "it was not closed, and its journal has to be merged first".to_owned(),
@@ -364,6 +364,33 @@ impl Database {
             return Err(damaged("does not match its checksum"));
         }
         loads::decode(&data).map_err(|what| damaged(&what))
+    }
+
+    /// Checks that it has the tables of this version: what was not locked is not migrated.
+    ///
+    /// # Errors
+    /// [`DocumentError::NoPainting`] if not, or the error of SQLite.
+    pub(crate) fn is_of_this_version(&self) -> Result<(), DocumentError> {
+        let number = |query| {
+            self.connection
+                .query_row(query, params![], |row| row.get(0))
+        };
+        let own: [i32; 2] = [
+            number("PRAGMA application_id")?,
+            number("PRAGMA user_version")?,
+        ];
+        match own == [schema::APPLICATION_ID, schema::VERSION] {
+            true => Ok(()),
+            false => Err(DocumentError::NoPainting),
+        }
+    }
+
+    /// A tile of a version as it was shown, whatever the light then; `None` if it is absent or damaged.
+    pub(crate) fn shown_under_any_look(&self, place: i64, version: i64) -> Option<Vec<u8>> {
+        let query = "SELECT look FROM shown WHERE place = ?1 AND version = ?2";
+        let mut statement = self.connection.prepare_cached(query).ok()?;
+        let look = statement.query_row(params![place, version], |row| row.get(0));
+        self.shown(place, version, look.ok()?)
     }
 
     /// A tile as it was shown; `None` if it is absent or damaged.

@@ -1,5 +1,6 @@
 //! Opening of a painting: its state, tiles, history and versions read from its file.
 
+mod shown;
 mod stored_pages;
 
 use std::collections::{BTreeMap, HashMap};
@@ -25,6 +26,7 @@ use crate::journal;
 use crate::tables::checksum::{Checksum, journal_checksum};
 use crate::tables::rows::{COPY, StoredNonTileState, StoredStepEffects, place_of, unpacked};
 use crate::tables::schema::Table;
+pub use shown::shown_tiles;
 use stored_pages::StoredPages;
 
 /// Step of the tile version numbers at each opening: the newest versions before a crash are in no file, and a number

@@ -2,7 +2,8 @@ use super::*;
 use crate::test_support::overlay_bench::picture;
 
 fn asked(change: impl FnOnce(&mut NewPainting)) -> Result<Command, String> {
-    let mut new = NewPainting::kept_in("/nowhere/Painting".into(), Unkept::default());
+    let mut new =
+        NewPainting::kept_in("/nowhere/Painting".into(), Units::Metric, Unkept::default());
     new.in_memory = true;
     change(&mut new);
     new.command()
@@ -81,7 +82,10 @@ fn how_large_it_is_is_told_in_words() {
 
 #[test]
 fn it_looks_as_in_its_picture() {
-    let new = || NewPainting::kept_in("/home/ada/Paintings/Birches.maul".into(), Unkept::default());
+    let new = || {
+        let path = "/home/ada/Paintings/Birches.maul".into();
+        NewPainting::kept_in(path, Units::Metric, Unkept::default())
+    };
     picture(
         "files_new",
         [500.0, 400.0],

@@ -136,6 +136,35 @@ fn a_brush_that_refuses_keeps_what_it_has_and_one_that_does_takes_up_its_paint()
 }
 
 #[test]
+fn the_field_of_the_paint_says_what_was_loaded_last_wherever_that_was_asked_for() {
+    let mut bench = Bench::new();
+    let load = |mixture: &str, brush: &str| Outcome {
+        request: Request::of(Command::from(Load {
+            mixture: mixture.parse().expect("a mixture"),
+            beside: None,
+            brush: BrushName::new(brush).expect("a name"),
+        })),
+        result: Ok(String::new()),
+    };
+    bench.work().brush_answered(&load("Bone Black", "other"));
+    assert_eq!(bench.preferences.loading.paint, "", "another brush");
+    bench.work().brush_answered(&load("Bone Black", "main"));
+    assert_eq!(bench.preferences.loading.paint, "Bone Black");
+    // What was typed in parts and thinned there stays as it was typed.
+    bench.preferences.loading.paint = "2 Bone Black, 2 Titanium White".into();
+    bench.preferences.loading.thinner = 0.5;
+    let thinned = "Bone Black=0.25,Titanium White=0.25,Thinner=0.5";
+    bench.work().brush_answered(&load(thinned, "main"));
+    assert_eq!(bench.preferences.loading.thinner, 0.5);
+    bench.work().brush_answered(&load("Yellow Ochre", "main"));
+    let loading = &bench.preferences.loading;
+    assert_eq!(
+        (loading.paint.as_str(), loading.thinner),
+        ("Yellow Ochre", 0.0)
+    );
+}
+
+#[test]
 fn files_of_ones_own_are_read_or_told() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("rake.toml");

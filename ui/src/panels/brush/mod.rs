@@ -23,6 +23,8 @@ use maulstick_types::edits::Tune;
 use maulstick_types::scene::{BrushHandling, Tuning};
 
 use crate::input::brush_choice::{called, library, resized, widths_mm};
+use crate::input::keymap::Keymap;
+use crate::input::keys::Action;
 use crate::panels::Panel;
 use crate::render::brush::icon_cache;
 use crate::settings::grip::{Grip, MOUSE_PRESSURE};
@@ -63,7 +65,9 @@ impl Panel for BrushPanel {
         let mut is_held = self.width(ui, work, &file);
         self.tuning(ui, work);
         modes::show(ui, work, &mut self.handling);
-        ui.collapsing("Mouse", |ui| mouse(ui, &mut work.preferences.mouse));
+        ui.collapsing("Mouse", |ui| {
+            mouse(ui, &work.preferences.keys, &mut work.preferences.mouse);
+        });
         ui.separator();
         self.paint.show(ui, work);
         ui.separator();
@@ -111,18 +115,21 @@ fn shape(ui: &mut Ui, work: &mut PanelContext<'_>, file: &BrushFile) {
 }
 
 /// Turn and pressure of a brush that the mouse moves.
-fn mouse(ui: &mut Ui, grip: &mut Grip) {
+fn mouse(ui: &mut Ui, keys: &Keymap, grip: &mut Grip) {
+    let hint = |ui: &Ui, words: &str, acts: &[Action]| keys.hint(ui.ctx(), words, acts);
     let check = ui.checkbox(&mut grip.follows, "Brush follows the stroke");
-    check.on_hover_text("Its broad side stays across the stroke.  T");
+    let words = "Its broad side stays across the stroke.";
+    check.on_hover_text(hint(ui, words, &[Action::Follow]));
     let slider = labelled::slider(&mut grip.turn_deg, -180.0..=180.0, "°").max_decimals(0);
-    let hover =
-        "Angle from across the stroke, or from the horizontal if it does not follow.  , and .";
-    labelled::named(ui, "Turn", hover, slider);
+    let words = "Angle from across the stroke, or from the horizontal if it does not follow.";
+    let hover = hint(ui, words, &[Action::TurnLeft, Action::TurnRight]);
+    labelled::named(ui, "Turn", &hover, slider);
     let mut percent = (100.0 * grip.pressure).round();
     let [least, most] = [MOUSE_PRESSURE.start(), MOUSE_PRESSURE.end()].map(|share| 100.0 * share);
     let slider = labelled::slider(&mut percent, least..=most, " %").max_decimals(0);
-    let hover = "Pressure while the button is down.  - and =";
-    if labelled::named(ui, "Pressure", hover, slider).changed() {
+    let words = "Pressure while the button is down.";
+    let hover = hint(ui, words, &[Action::Lighter, Action::Harder]);
+    if labelled::named(ui, "Pressure", &hover, slider).changed() {
         grip.pressure = 0.01 * percent;
     }
 }
@@ -154,13 +161,19 @@ impl BrushPanel {
 
     /// Width slider; true while it is dragged.
     fn width(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, file: &BrushFile) -> bool {
-        let mut width_mm = file.head.width_mm;
-        let hover =
-            "Width of the head. A wider brush is longer and stiffer in proportion.  [ and ]";
-        let slider = labelled::slider(&mut width_mm, self.widths(file), " mm");
-        let shown = labelled::named(ui, "Width", hover, slider);
+        let (unit_mm, decimals, sign) = work.preferences.units.small();
+        let mut width = file.head.width_mm / unit_mm;
+        let hover = work.preferences.keys.hint(
+            ui.ctx(),
+            "Width of the head. A wider brush is longer and stiffer in proportion.",
+            &[Action::Smaller, Action::Larger],
+        );
+        let range = self.widths(file);
+        let range = range.start() / unit_mm..=range.end() / unit_mm;
+        let slider = labelled::slider(&mut width, range, sign).max_decimals(decimals);
+        let shown = labelled::named(ui, "Width", &hover, slider);
         if shown.changed() {
-            match resized(file, width_mm) {
+            match resized(file, width * unit_mm) {
                 Ok(scaled) => self.dragged = Some(scaled),
                 Err(error) => {
                     let help = "choose another width";

@@ -5,7 +5,9 @@ use maulstick_rig::UserError;
 use maulstick_types::edits::Clean;
 use maulstick_types::values::BrushName;
 
+use crate::input::keys::Action;
 use crate::settings::brush_load::{MOST_THINNER, completed, completions};
+use crate::widgets::brush_gauge;
 use crate::widgets::context::PanelContext;
 use crate::widgets::labelled;
 
@@ -21,6 +23,16 @@ pub(super) struct PaintRows {
 impl PaintRows {
     pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let before = work.preferences.loading.clone();
+        if work
+            .rig
+            .brush()
+            .is_some_and(|brush| brush.carried.is_some())
+        {
+            ui.horizontal(|ui| {
+                labelled::label(ui, "Carries", "The paint that is on the brush now.");
+                brush_gauge::show(ui, work);
+            });
+        }
         let hover =
             "A paint's name, or a mixture by volume such as 2 Cobalt Blue, 1 Titanium White";
         let mut enter = field(ui, work, "Paint", hover, |loading| Some(&mut loading.paint));
@@ -53,9 +65,12 @@ impl PaintRows {
             if load.clicked() || enter {
                 self.load(work);
             }
-            let clean = ui
-                .button("Clean")
-                .on_hover_text("Takes all paint off the brush.  C");
+            let words = "Takes all paint off the brush.";
+            let hover = work
+                .preferences
+                .keys
+                .hint(ui.ctx(), words, &[Action::Clean]);
+            let clean = ui.button("Clean").on_hover_text(hover);
             if clean.clicked() {
                 let brush = BrushName::new(work.rig.brush_name());
                 crate::widgets::rows::ask(work, brush.map(|brush| Clean { brush }));

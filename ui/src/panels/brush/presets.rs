@@ -37,7 +37,7 @@ impl PresetRows {
             }
             let preset = &work.preferences.presets[place];
             let name = preset.name.clone();
-            let words = preset.words();
+            let words = preset.words(work.preferences.units);
             let mut take = false;
             let mut deed = None;
             entry(

@@ -101,12 +101,13 @@ impl Panel for CanvasPanel {
 
 /// Size of the canvas; another size means another painting.
 fn size(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
+    let (unit_m, unit) = work.preferences.units.large();
     let [width, height] = canvas
         .cells
-        .map(|cells| f64::from(cells) * canvas.cell_m * 100.0);
+        .map(|cells| f64::from(cells) * canvas.cell_m / unit_m);
     let per_mm = 1e-3 / canvas.cell_m;
     ui.horizontal(|ui| {
-        ui.label(format!("{width:.1} × {height:.1} cm"))
+        ui.label(format!("{width:.1} × {height:.1} {unit}"))
             .on_hover_text(format!("{} × {} cells", canvas.cells[0], canvas.cells[1]));
         let tidy = (per_mm * 100.0).round() / 100.0;
         ui.label(format!("{tidy} cells a mm"));
@@ -217,13 +218,15 @@ impl CanvasPanel {
             *value = change.moved.unwrap_or(*value);
         }
         below(ui, |ui| {
-            let fit = ui.button("Fit").on_hover_text("See the whole canvas: 0");
+            let keys = &work.preferences.keys;
+            let hover = keys.hint(ui.ctx(), "See the whole canvas", &[Action::Fit]);
+            let fit = ui.button("Fit").on_hover_text(hover);
             if fit.clicked() {
                 work.requests.act(Action::Fit);
             }
-            let cells = ui
-                .button("Actual pixels (1:1)")
-                .on_hover_text("A point of the canvas a pixel of the display.  1");
+            let words = "A point of the canvas a pixel of the display.";
+            let hover = keys.hint(ui.ctx(), words, &[Action::Hundred]);
+            let cells = ui.button("Actual pixels (1:1)").on_hover_text(hover);
             if cells.clicked() {
                 work.requests.act(Action::Hundred);
             }

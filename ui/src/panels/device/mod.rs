@@ -18,6 +18,7 @@ use maulstick_types::command::advice::parted;
 use maulstick_types::haptics::ForceOrder;
 use maulstick_types::stylus::{StylusInfo, StylusStatus, axes};
 
+use crate::input::keys::Action;
 use crate::panels::Panel;
 use crate::rig::force_history::{self, KEPT_S, size};
 use crate::rig::state::Device;
@@ -102,7 +103,13 @@ impl DevicePanel {
         if status.is_on {
             let words = RichText::new("Force off").strong().color(Color32::WHITE);
             let button = Button::new(words).fill(RED).min_size(vec2(0.0, 32.0));
-            let hint = "The device gives no force any more, at once (F9, for all devices)";
+            let key = work.preferences.keys.written(ui.ctx(), Action::ForceOff);
+            let hint = match key.is_empty() {
+                true => "The device gives no force any more, at once".to_owned(),
+                false => {
+                    format!("The device gives no force any more, at once ({key}, for all devices)")
+                }
+            };
             if wide(ui, button).on_hover_text(hint).clicked() {
                 work.requests.force(name, ForceOrder::Off);
             }

@@ -16,6 +16,7 @@ use maulstick_types::edits::{Branch, Forget, Keep, Redo, ReturnTo, Undo};
 use maulstick_types::scene::NamedVersion;
 use maulstick_types::values::VersionName;
 
+use crate::input::keys::Action;
 use crate::panels::Panel;
 use crate::rig::thumbnails::Picture;
 use crate::widgets::context::PanelContext;
@@ -75,10 +76,13 @@ fn steps(ui: &mut Ui, work: &mut PanelContext<'_>) {
             let button = ui.add_enabled(count > 0, Button::new(format!("{word} ({count})")));
             button.on_hover_text(hover).clicked()
         };
-        if step(ui, "Undo", undo, "The newest step back: Ctrl+Z") {
+        let keys = &work.preferences.keys;
+        let back = keys.hint(ui.ctx(), "The newest step back", &[Action::Undo]);
+        let again = keys.hint(ui.ctx(), "What was undone, again", &[Action::Redo]);
+        if step(ui, "Undo", undo, &back) {
             ask(work, Ok(Undo { brush: None }));
         }
-        if step(ui, "Redo", redo, "What was undone, again: Shift+Ctrl+Z") {
+        if step(ui, "Redo", redo, &again) {
             ask(work, Ok(Redo { brush: None }));
         }
     });

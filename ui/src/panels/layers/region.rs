@@ -1,10 +1,12 @@
-//! A region of the canvas, drawn on a small map or given in cm.
+//! A region of the canvas, drawn on a small map or given in numbers.
 
 use eframe::egui::accesskit::Role;
 use eframe::egui::{
     Color32, CornerRadius, DragValue, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2,
 };
 use maulstick_types::Region;
+
+use crate::settings::units::Units;
 
 /// The longer side of the map, points.
 const MAP: f32 = 120.0;
@@ -26,28 +28,29 @@ fn tidy(m: f64) -> f64 {
 }
 
 /// Shows a part of a surface of this size, m, and how it was changed.
-pub(super) fn show(ui: &mut Ui, region: &mut Region, size_m: [f64; 2]) {
+pub(super) fn show(ui: &mut Ui, region: &mut Region, size_m: [f64; 2], units: Units) {
+    let (unit_m, sign) = units.large();
     ui.horizontal(|ui| {
         map(ui, region, size_m);
         ui.vertical(|ui| {
             let [x, y] = &mut region.corner_m;
             let [width, height] = &mut region.size_m;
             for (word, hover, m) in [
-                ("Left", "From the left edge of the canvas, cm", x),
-                ("Bottom", "From the lower edge of the canvas, cm", y),
-                ("Width", "Width of the part, cm", width),
-                ("Height", "Height of the part, cm", height),
+                ("Left", "From the left edge of the canvas", x),
+                ("Bottom", "From the lower edge of the canvas", y),
+                ("Width", "Width of the part", width),
+                ("Height", "Height of the part", height),
             ] {
                 ui.horizontal(|ui| {
-                    let mut cm = *m * 100.0;
-                    let number = DragValue::new(&mut cm)
-                        .suffix(" cm")
+                    let mut shown = *m / unit_m;
+                    let number = DragValue::new(&mut shown)
+                        .suffix(format!(" {sign}"))
                         .speed(0.1)
                         .max_decimals(2)
                         .update_while_editing(false);
                     let number = ui.add_sized([74.0, ui.spacing().interact_size.y], number);
                     if number.changed() {
-                        *m = tidy(cm * 1e-2);
+                        *m = tidy(shown * unit_m);
                     }
                     let label = ui.label(word);
                     number.labelled_by(label.id).on_hover_text(hover);

@@ -1,6 +1,6 @@
 //! Gauge of the brush in the hand: colours of its tip from left to right, and how full it is.
 
-use eframe::egui::{Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo};
+use eframe::egui::{Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo};
 
 use crate::widgets::context::PanelContext;
 
@@ -11,12 +11,10 @@ const LEVEL: f32 = 5.0;
 /// Below this load share the level is drawn in the colour of warnings.
 const LOW: f32 = 0.15;
 
-/// Shows the gauge, once it is known what the brush carried.
-pub(super) fn show(ui: &mut Ui, work: &PanelContext<'_>) {
+/// Shows the gauge; `None` until it is known what the brush carries.
+pub(crate) fn show(ui: &mut Ui, work: &PanelContext<'_>) -> Option<Response> {
     let brush = work.rig.brushes.get(work.rig.in_hand);
-    let Some(carried) = brush.and_then(|brush| brush.carried.as_ref()) else {
-        return;
-    };
+    let carried = brush.and_then(|brush| brush.carried.as_ref())?;
     let (area, response) = ui.allocate_exact_size(SIZE.into(), Sense::hover());
     let words = match carried.load_share {
         0.0 => "The brush is clean".to_owned(),
@@ -47,7 +45,7 @@ pub(super) fn show(ui: &mut Ui, work: &PanelContext<'_>) {
         painter.rect_filled(level, 0.0, colour);
     }
     let hover = "Above, the colours of its tip from left to right; below, how full it is.";
-    response.on_hover_text(format!("{words}.\n{hover}"));
+    Some(response.on_hover_text(format!("{words}.\n{hover}")))
 }
 
 #[cfg(test)]

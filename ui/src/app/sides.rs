@@ -1,0 +1,76 @@
+//! What stands at the sides of the window: the rack at that of the hand, the column of panels where the painter puts it.
+
+use crate::app::rack;
+use crate::settings::preferences::Preferences;
+use crate::settings::window_side::WindowSide;
+
+/// Width of the column's inside, points.
+pub(crate) const COLUMN: f32 = 300.0;
+/// Distance of the column from what is beside it, points.
+pub(crate) const MARGIN: f32 = 8.0;
+
+/// The side of the rack, as it is seen.
+#[must_use]
+pub(crate) fn rack_side(preferences: &Preferences) -> WindowSide {
+    match preferences.rack_is_left() {
+        false => WindowSide::Right,
+        true => WindowSide::Left,
+    }
+}
+
+/// The side of the column: beside the rack, unless the painter has put it elsewhere.
+#[must_use]
+pub(crate) fn column_side(preferences: &Preferences) -> WindowSide {
+    preferences
+        .panel_side
+        .unwrap_or_else(|| rack_side(preferences))
+}
+
+/// Width of the column at a side with what surrounds it, points; 0 if it is not there.
+#[must_use]
+pub(crate) fn column_at(preferences: &Preferences, side: WindowSide) -> f32 {
+    match preferences.panels && column_side(preferences) == side {
+        true => COLUMN + 6.0 * MARGIN,
+        false => 0.0,
+    }
+}
+
+/// Width of the rack at a side, points; 0 if it is not there.
+#[must_use]
+pub(crate) fn rack_at(preferences: &Preferences, side: WindowSide) -> f32 {
+    match rack_side(preferences) == side {
+        true => rack::WIDTH,
+        false => 0.0,
+    }
+}
+
+/// Widths of both at the left and at the right, points.
+#[must_use]
+pub(crate) fn taken(preferences: &Preferences) -> [f32; 2] {
+    [WindowSide::Left, WindowSide::Right]
+        .map(|side| rack_at(preferences, side) + column_at(preferences, side))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rack_and_column_take_room_where_they_stand() {
+        let wide = COLUMN + 6.0 * MARGIN;
+        let of = |panels, left_handed, panel_side| {
+            taken(&Preferences {
+                panels,
+                left_handed,
+                panel_side,
+                ..Preferences::default()
+            })
+        };
+        assert_eq!(of(false, false, Some(WindowSide::Left)), [0.0, rack::WIDTH]);
+        assert_eq!(of(true, false, None), [0.0, rack::WIDTH + wide]);
+        assert_eq!(of(true, true, None), [rack::WIDTH + wide, 0.0]);
+        let left = Some(WindowSide::Left);
+        assert_eq!(of(true, false, left), [wide, rack::WIDTH]);
+        assert_eq!(of(true, true, left), [rack::WIDTH + wide, 0.0]);
+    }
+}

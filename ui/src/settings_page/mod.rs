@@ -1,0 +1,117 @@
+//! Dialog of settings: text size, theme, units, keys. What is changed holds at once.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | `key_rows` | the keys, and how they are changed |
+
+mod key_rows;
+
+use eframe::egui::{
+    Align, Button, Context, Frame, Grid, Id, Layout, Margin, Modal, RichText, Role, Ui, WidgetInfo,
+    gui_zoom,
+};
+
+use crate::settings::look::{TEXT_SIZES, Theme};
+use crate::settings::units::Units;
+use crate::widgets::context::PanelContext;
+use key_rows::KeyRows;
+
+/// Width of the dialog, points.
+const WIDTH: f32 = 460.0;
+
+/// The dialog; closed at first.
+#[derive(Debug, Default)]
+pub(crate) struct SettingsPage {
+    shown: Option<KeyRows>,
+}
+
+impl SettingsPage {
+    /// Opens it.
+    pub(crate) fn open(&mut self) {
+        self.shown = Some(KeyRows::default());
+    }
+
+    /// True while it has the keyboard.
+    #[must_use]
+    pub(crate) fn is_open(&self) -> bool {
+        self.shown.is_some()
+    }
+
+    /// Shows it, if it is open.
+    pub(crate) fn show(&mut self, context: &Context, work: &mut PanelContext<'_>) {
+        let Some(rows) = &mut self.shown else {
+            return;
+        };
+        rows.take_key(context, &mut work.preferences.keys);
+        let frame = Frame::window(&context.global_style()).inner_margin(Margin::same(16));
+        let modal = Modal::new(Id::unique("settings"))
+            .frame(frame)
+            .show(context, |ui| {
+                ui.set_width(WIDTH);
+                ui.heading(RichText::new("Settings").strong());
+                ui.add_space(8.0);
+                look(ui, work);
+                ui.add_space(6.0);
+                ui.separator();
+                rows.show(ui, &mut work.preferences.keys);
+                ui.add_space(8.0);
+                let layout = Layout::right_to_left(Align::Center);
+                let close = Button::new("Close").min_size([80.0, 28.0].into());
+                ui.with_layout(layout, |ui| ui.add(close)).inner
+            });
+        if modal.inner.clicked() || modal.should_close() {
+            self.shown = None;
+            return;
+        }
+        // A dialog without the keyboard could not be left by it.
+        if context.memory(|memory| memory.focused().is_none()) {
+            modal.inner.request_focus();
+        }
+    }
+}
+
+/// Text size, theme and units.
+fn look(ui: &mut Ui, work: &mut PanelContext<'_>) {
+    let preferences = &mut *work.preferences;
+    let grid = Grid::new("look").num_columns(2).spacing([12.0, 8.0]);
+    grid.show(ui, |ui| {
+        ui.label("Text size");
+        ui.horizontal(text_size);
+        ui.end_row();
+        ui.label("Theme");
+        ui.horizontal(|ui| {
+            for (theme, words) in Theme::WORDS {
+                ui.selectable_value(&mut preferences.theme, theme, words);
+            }
+        });
+        ui.end_row();
+        ui.label("Lengths");
+        ui.horizontal(|ui| {
+            for (units, words) in Units::WORDS {
+                ui.selectable_value(&mut preferences.units, units, words);
+            }
+        });
+        ui.end_row();
+    });
+}
+
+fn text_size(ui: &mut Ui) {
+    let now = ui.ctx().zoom_factor();
+    let button = |ui: &mut Ui, sign: &str, name: &str, can: bool| {
+        let button = Button::new(sign).min_size([26.0, 0.0].into());
+        let shown = ui.add_enabled(can, button).on_hover_text(name);
+        shown.widget_info(|| WidgetInfo::labeled(Role::Button, can, name));
+        shown.clicked()
+    };
+    if button(ui, "−", "Smaller text", now > *TEXT_SIZES.start()) {
+        gui_zoom::zoom_out(ui.ctx());
+    }
+    ui.label(format!("{:.0} %", 100.0 * now));
+    if button(ui, "+", "Larger text", now < *TEXT_SIZES.end()) {
+        gui_zoom::zoom_in(ui.ctx());
+    }
+    ui.weak("also by Ctrl + and −");
+}
+
+#[cfg(test)]
+mod tests;
