@@ -216,7 +216,13 @@ impl Browser {
                 .show(ui, |ui| {
                     ui.spacing_mut().item_spacing.y = 0.0;
                     if let Some(above) = &above
-                        && row(ui, above, false, None).clicked()
+                        && row(
+                            ui,
+                            above,
+                            false,
+                            self.pictures.as_mut().map(|own| (own, Path::new(""))),
+                        )
+                        .clicked()
                     {
                         self.up(ui);
                     }
@@ -327,8 +333,7 @@ fn row(
     picture: Option<(&mut Pictures, &Path)>,
 ) -> Response {
     let mut height = ui.text_style_height(&TextStyle::Body) + 6.0;
-    let picture = picture.filter(|_| !entry.is_folder);
-    if picture.is_some() {
+    if picture.is_some() && !entry.is_folder {
         height = height.max(PICTURE.y + 4.0);
     }
     let (area, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::CLICK);
@@ -342,7 +347,9 @@ fn row(
     let mut inner = area.shrink2(vec2(6.0, 0.0));
     if let Some((pictures, path)) = picture {
         let place = Align2::LEFT_CENTER.align_size_within_rect(PICTURE, inner);
-        pictures.draw(ui, place, path);
+        if !entry.is_folder {
+            pictures.draw(ui, place, path);
+        }
         inner.min.x += PICTURE.x + 8.0;
     }
     let font = TextStyle::Body.resolve(ui.style());

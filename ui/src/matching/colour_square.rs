@@ -8,7 +8,7 @@ use eframe::egui::{
 };
 
 /// Size of the square, points.
-const SQUARE: Vec2 = vec2(256.0, 160.0);
+const SQUARE: Vec2 = vec2(240.0, 110.0);
 /// Height of the strip, points.
 const STRIP: f32 = 18.0;
 /// Fields of either that are drawn across and down; colours between their corners are interpolated.

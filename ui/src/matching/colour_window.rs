@@ -6,7 +6,7 @@ use eframe::egui::ecolor::Hsva;
 use eframe::egui::{Align2, Context, Id, TextEdit, Ui, Window};
 use maulstick_optics::colour::srgb_decode;
 
-use crate::app::rack;
+use crate::app::{rack, sides};
 use crate::dialogs::wrong;
 use crate::matching::colour_square;
 use crate::matching::picker::{Ask, Picker, of_palette};
@@ -14,7 +14,7 @@ use crate::matching::proposals::{hex, matches, swatch};
 use crate::widgets::context::PanelContext;
 
 /// Width of the window's inside, points.
-const WIDTH: f32 = 264.0;
+const WIDTH: f32 = 240.0;
 /// Distance from the rack and from the upper edge when it opens, points.
 const ASIDE: f32 = 40.0;
 
@@ -75,14 +75,17 @@ impl ColourWindow {
             true => (Align2::LEFT_TOP, 1.0),
         };
         let at = corner.pos_in_rect(&context.content_rect());
+        let side = sides::rack_side(work.preferences);
+        let aside = rack::WIDTH + sides::column_at(work.preferences, side) + ASIDE;
         let mut open = true;
         Window::new("A colour in mind")
             .id(Id::unique("colour"))
             .open(&mut open)
             .collapsible(false)
             .resizable(false)
+            .default_width(WIDTH)
             .pivot(corner)
-            .default_pos([at.x + inward * (rack::WIDTH + ASIDE), at.y + ASIDE])
+            .default_pos([at.x + inward * aside, at.y + ASIDE])
             .show(context, |ui| {
                 ui.set_width(WIDTH);
                 self.choice(ui);
@@ -221,7 +224,7 @@ mod tests {
         };
         picture(
             "colour",
-            [420.0, 560.0],
+            [360.0, 440.0],
             wall,
             |ui, wall| wall.window.show(ui.ctx(), &mut wall.bench.work()),
             |harness| {

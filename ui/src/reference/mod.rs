@@ -178,7 +178,7 @@ impl Reference {
             let list = ScrollArea::vertical()
                 .max_height(below)
                 .min_scrolled_height(below)
-                .auto_shrink([false, true]);
+                .auto_shrink(false);
             let list = list.show(ui, |ui| self.proposals(ui, work));
             if list.content_size.y != self.below {
                 self.below = list.content_size.y;

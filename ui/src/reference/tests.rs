@@ -290,9 +290,12 @@ fn a_pick_neither_makes_the_frame_larger_nor_hides_a_mixture_and_dragging_moves_
     let title = pos2(corner.x + 100.0, corner.y - 14.0);
     harness.drag_at(title);
     harness.step();
+    let to = title + vec2(200.0, 90.0);
     harness.hover_at(title + vec2(40.0, 30.0));
+    harness.step();
+    harness.hover_at(to);
     harness.run_steps(2);
-    harness.drop_at(title + vec2(200.0, 90.0));
+    harness.drop_at(to);
     harness.run_steps(3);
     let moved = frame(&harness).0 - corner;
     assert!(moved.x > 100.0, "{moved:?}");

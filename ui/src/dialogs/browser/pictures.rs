@@ -5,7 +5,9 @@ use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 use std::task::Poll;
 
-use eframe::egui::{Color32, ColorImage, Context, Rect, TextureHandle, TextureOptions, Ui, vec2};
+use eframe::egui::{
+    Color32, ColorImage, Context, Pos2, Rect, StrokeKind, TextureHandle, TextureOptions, Ui, pos2,
+};
 use maulstick_appearance::display::DisplayTile;
 use maulstick_document::shown_tiles;
 use maulstick_optics::colour::srgb_encode;
@@ -95,13 +97,17 @@ impl Pictures {
         if !ui.is_rect_visible(place) {
             return;
         }
-        if let Some(texture) = self.of(path) {
-            let size = texture.size_vec2();
-            let fitting = size * (place.size() / size).min_elem();
-            let at = Rect::from_center_size(place.center(), fitting);
-            let whole = Rect::from_min_size(Default::default(), vec2(1.0, 1.0));
-            ui.painter().image(texture.id(), at, whole, Color32::WHITE);
-        }
+        let line = ui.visuals().widgets.noninteractive.bg_stroke;
+        let Some(texture) = self.of(path) else {
+            ui.painter()
+                .rect_stroke(place, 2.0, line, StrokeKind::Inside);
+            return;
+        };
+        let size = texture.size_vec2();
+        let fitting = size * (place.size() / size).min_elem();
+        let at = Rect::from_center_size(place.center(), fitting);
+        let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+        ui.painter().image(texture.id(), at, whole, Color32::WHITE);
     }
 }
 
@@ -303,8 +309,8 @@ mod tests {
         painted(&path, 1, 0);
         let settings = DocumentSettings::new(&path, Access::Paint);
         let (document, _) = Document::open(&settings).expect("opened");
-        read(&path);
-        document.close().expect("what reads it does not touch it");
+        assert_eq!(read(&path), None, "it is open");
+        document.close().expect("closed");
         assert!(read(&path).is_some());
         let bytes = std::fs::read(&path).expect("there");
         std::fs::write(&path, &bytes[..bytes.len() / 3]).expect("cut short");
@@ -324,7 +330,7 @@ mod tests {
         let mut harness = Harness::new_ui_state(
             move |ui, pictures: &mut Pictures| {
                 pictures.take_in(ui.ctx());
-                let place = Rect::from_min_size(ui.min_rect().min, vec2(40.0, 30.0));
+                let place = Rect::from_min_size(ui.min_rect().min, [40.0, 30.0].into());
                 pictures.draw(ui, place, &own);
             },
             Pictures::default(),

@@ -7,6 +7,9 @@ use crate::input::brush_choice::{is_of_library, of_library};
 use crate::widgets::context::PanelContext;
 use crate::widgets::labelled;
 
+/// Unit that is shown as the painter has chosen.
+const MILLIMETRES: &str = " mm";
+
 /// A number of a brush file.
 struct Number {
     name: &'static str,
@@ -42,7 +45,7 @@ const NUMBERS: [Number; 6] = [
     Number {
         name: "Unruly",
         hover: "How far the most unruly bristle keeps off the surface while the brush is hardly pressed.",
-        unit: " mm",
+        unit: MILLIMETRES,
         range: 0.0..=3.0,
         of: |file| &mut file.strips.lift_mm,
     },
@@ -73,16 +76,21 @@ pub(super) fn show(
     let mut is_held = false;
     for number in &NUMBERS {
         let value = (number.of)(&mut wanted);
-        let mut shown = *value;
-        let slider = Slider::new(&mut shown, number.range.clone())
-            .max_decimals(2)
+        let (unit, decimals, sign) = match number.unit {
+            MILLIMETRES => work.preferences.units.small(),
+            other => (1.0, 2, other),
+        };
+        let mut shown = *value / unit;
+        let range = number.range.start() / unit..=number.range.end() / unit;
+        let slider = Slider::new(&mut shown, range)
+            .max_decimals(decimals)
             .clamping(SliderClamping::Edits)
-            .suffix(number.unit);
+            .suffix(sign);
         let slider = labelled::named(ui, number.name, number.hover, slider);
         is_held |= slider.dragged();
         // A slider rounds what it shows.
-        if labelled::is_moved(*value, shown) {
-            *value = shown;
+        if labelled::is_moved(*value, shown * unit) {
+            *value = shown * unit;
         }
     }
     // Static friction is at least kinetic friction.
