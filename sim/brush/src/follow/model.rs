@@ -228,6 +228,10 @@ impl BrushModel {
             }
             Some(mut tracked) if !paused(&tracked) => {
                 (tracked.before, tracked.left_over_m) = (None, 0.0);
+                if is_pen && sample.in_air() {
+                    // Let go, and far away perhaps: nothing holds it bent.
+                    tracked.head = SolvedHead::at_rest(&self.tuft, &here.pose);
+                }
                 let solve = self.land(&mut tracked, here, sample.in_air(), &plane);
                 (tracked, vec![solve])
             }
