@@ -234,7 +234,8 @@ impl Hand {
             }
             None
         });
-        status.unwrap_or_else(|| panic!("no such status, but {last:?}"))
+        assert!(status.is_some(), "no such status, but {last:?}");
+        status.expect("asserted")
     }
 
     /// Does a gesture; its name and what it may do.
@@ -360,7 +361,7 @@ impl Hand {
             if let Some(last) = last.filter(touched) {
                 let [a, b] = [&last, &solve].map(|solve| solve.pose.position_m);
                 let way = [0, 1].map(|i| a[i] - b[i]);
-                let gap_m = way[0].hypot(way[1]);
+                let gap_m = (way[0] * way[0] + way[1] * way[1]).sqrt();
                 let anew = solve.flags & solve_flags::RESTARTED != 0;
                 assert!(
                     gap_m < GAP_M && !anew,

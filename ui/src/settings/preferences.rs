@@ -23,6 +23,10 @@ use crate::settings::window_side::WindowSide;
 const RECENT: usize = 12;
 
 /// Settings of the window.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a switch of its own, and a key of the file"
+)]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
