@@ -490,6 +490,7 @@ fn gestures(count: usize, busy: usize) {
 }
 
 #[test]
+#[ignore = "takes half a minute"]
 fn forty_random_gestures_surprise_nobody() {
     gestures(40, 0);
 }

@@ -69,8 +69,6 @@ struct TrackedBrush {
     newest: Sampled,
     /// True for a pen, which is led so that the mark is under its point.
     is_pen: bool,
-    /// True for a pen that presses at the newest sample.
-    is_pressed: bool,
     /// Lead of the handle.
     lead: Lead,
     /// Bend of the head along the surface.
@@ -81,13 +79,6 @@ struct TrackedBrush {
     before: Option<Sampled>,
     /// Cells from the newest sample back to where the head was solved last.
     left_over_m: f64,
-}
-
-impl TrackedBrush {
-    /// True in a stroke: a brush touches, or its pen presses, though it may be over no surface.
-    fn stays(&self) -> bool {
-        self.is_pressed || self.head.touches()
-    }
 }
 
 impl BrushModel {
@@ -214,7 +205,7 @@ impl BrushModel {
             event_ns > tracked.newest.event_ns
                 && (tracked.surface, tracked.zoom, tracked.is_pen) == (plane.id, plane.zoom, is_pen)
         });
-        let stays = |tracked: &TrackedBrush| tracked.stays() && !sample.in_air();
+        let stays = |tracked: &TrackedBrush| tracked.head.touches() && !sample.in_air();
         let paused = |tracked: &TrackedBrush| event_ns - tracked.newest.event_ns > BRIDGED_NS;
         let (mut tracked, solves) = match before {
             Some(mut tracked) if stays(&tracked) && !paused(&tracked) => {
@@ -228,10 +219,6 @@ impl BrushModel {
             }
             Some(mut tracked) if !paused(&tracked) => {
                 (tracked.before, tracked.left_over_m) = (None, 0.0);
-                if is_pen && sample.in_air() {
-                    // Let go, and far away perhaps: nothing holds it bent.
-                    tracked.head = SolvedHead::at_rest(&self.tuft, &here.pose);
-                }
                 let solve = self.land(&mut tracked, here, sample.in_air(), &plane);
                 (tracked, vec![solve])
             }
@@ -243,7 +230,6 @@ impl BrushModel {
             }
         };
         tracked.newest = here;
-        tracked.is_pressed = is_pen && !sample.in_air();
         self.tracked = Some(tracked);
         solves
     }
@@ -389,11 +375,14 @@ impl BrushModel {
         }
     }
 
-    /// The surface that a sample is over; a stroke belongs to the one where it began.
+    /// The surface that a sample is over; a touching brush stays on the one that it touches.
     fn plane_under(&self, sample: &StylusSample) -> Option<Plane> {
         let desk = self.desk.as_ref()?;
-        let stroke = self.tracked.as_ref().filter(|tracked| tracked.stays());
-        let kept = stroke.and_then(|tracked| desk.plane(tracked.surface));
+        let touching = self
+            .tracked
+            .as_ref()
+            .filter(|tracked| tracked.head.touches());
+        let kept = touching.and_then(|tracked| desk.plane(tracked.surface));
         kept.or_else(|| desk.under(aim(sample, self.file.length_m())))
             .copied()
     }
@@ -484,7 +473,6 @@ impl BrushModel {
             head: SolvedHead::at_rest(&self.tuft, &brush),
             newest: here,
             is_pen,
-            is_pressed: false,
             lead: Lead::default(),
             bent: DVec2::ZERO,
             force_n: 0.0,
