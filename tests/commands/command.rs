@@ -52,7 +52,8 @@ fn a_demo_becomes_a_picture_the_same_every_time() {
 #[test]
 fn a_take_that_embeds_what_it_is_painted_with_gives_the_same_painting() {
     let place = Place::new();
-    place.short_demo("bare.mcap", 4.0);
+    // The sweeps of its first seconds begin on the palette beside a small canvas.
+    place.short_demo("bare.mcap", 16.0);
     let brush = maulstick_brush::BrushFile::library("filbert").expect("a brush");
     std::fs::write(place.path("own.toml"), brush.to_toml().expect("a file")).expect("written");
     let kit = [

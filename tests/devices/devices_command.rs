@@ -17,7 +17,9 @@ fn devices(place: &Place) -> Value {
 fn the_devices_of_a_rig_are_listed_while_it_runs() {
     let place = Place::new();
     assert_eq!(devices(&place)["rig"], Value::Null);
-    let launcher = Launcher::up(&place, &[]);
+    let config = place.done(&["up", "--print-config"]).stdout;
+    std::fs::write(place.path("rig.toml"), config).expect("written");
+    let launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
     let rows = wait_for(PATIENCE, || {
         let rig = devices(&place)["rig"].clone();
         let row = rig

@@ -236,7 +236,7 @@ fn signals_stop_everything_with_the_right_code() {
     let place = Place::new();
     for (which, code) in [(Signal::SIGINT, 130), (Signal::SIGTERM, 143)] {
         let mut launcher = Launcher::up(&place, &[]);
-        assert!(place.processes().len() >= 3);
+        assert!(place.processes().len() >= 2, "brush and paint");
         launcher.signal(which);
         assert_eq!(launcher.wait(PATIENCE).code(), Some(code));
         place.wait_empty(Duration::ZERO);

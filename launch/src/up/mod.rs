@@ -21,7 +21,7 @@ use maulstick_device::player::Rate;
 use maulstick_document::scene;
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::UserError;
-use maulstick_rig::config::{DEFAULT, RigConfig, is_path};
+use maulstick_rig::config::{DEFAULT, DeviceSection, RigConfig, is_path};
 use maulstick_rig::files::Kind;
 use maulstick_rig::log::log_to_stderr;
 use maulstick_types::Mixture;
@@ -124,7 +124,7 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
     let mut config = match &options.rig {
         Some(path) => RigConfig::read(path)?,
         None if options.play.is_some() => picture_settings(),
-        None => RigConfig::default(),
+        None => unattended(RigConfig::default()),
     };
     if let Some(name) = &options.name {
         config.rig.name.clone_from(name);
@@ -213,6 +213,13 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
     };
     let mut supervisor = Supervisor::start(folder, &config, nodes, performance, first_load)?;
     supervisor.run()
+}
+
+/// Settings without the simulated devices that no hand moves: a painter who attached none has the mouse.
+fn unattended(mut config: RigConfig) -> RigConfig {
+    let moves = |device: &DeviceSection| device.driver != "simulated" || device.hand.is_some();
+    config.device.retain(moves);
+    config
 }
 
 /// An absolute path: nodes may be started by hand from another folder, and the paint node writes to the name it is

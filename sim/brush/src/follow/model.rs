@@ -69,6 +69,8 @@ struct TrackedBrush {
     newest: Sampled,
     /// True for a pen, which is led so that the mark is under its point.
     is_pen: bool,
+    /// True for a pen that presses at the newest sample.
+    is_pressed: bool,
     /// Lead of the handle.
     lead: Lead,
     /// Bend of the head along the surface.
@@ -219,7 +221,12 @@ impl BrushModel {
             }
             Some(mut tracked) if !paused(&tracked) => {
                 (tracked.before, tracked.left_over_m) = (None, 0.0);
-                let solve = self.land(&mut tracked, here, sample.in_air(), &plane);
+                let mut solve = self.land(&mut tracked, here, sample.in_air(), &plane);
+                if is_pen && sample.in_air() && tracked.head.touches() {
+                    // It was let go so far away that no bend could be followed there.
+                    tracked.head = SolvedHead::at_rest(&self.tuft, &here.pose);
+                    solve = self.land(&mut tracked, here, true, &plane);
+                }
                 (tracked, vec![solve])
             }
             _ => {
@@ -230,6 +237,7 @@ impl BrushModel {
             }
         };
         tracked.newest = here;
+        tracked.is_pressed = is_pen && !sample.in_air();
         self.tracked = Some(tracked);
         solves
     }
@@ -375,14 +383,13 @@ impl BrushModel {
         }
     }
 
-    /// The surface that a sample is over; a touching brush stays on the one that it touches.
+    /// The surface that a sample is over; a stroke belongs to the one where it began, also where the pen presses and the
+    /// head touches nothing, beyond its edge.
     fn plane_under(&self, sample: &StylusSample) -> Option<Plane> {
         let desk = self.desk.as_ref()?;
-        let touching = self
-            .tracked
-            .as_ref()
-            .filter(|tracked| tracked.head.touches());
-        let kept = touching.and_then(|tracked| desk.plane(tracked.surface));
+        let in_stroke = |tracked: &&TrackedBrush| tracked.is_pressed || tracked.head.touches();
+        let stroke = self.tracked.as_ref().filter(in_stroke);
+        let kept = stroke.and_then(|tracked| desk.plane(tracked.surface));
         kept.or_else(|| desk.under(aim(sample, self.file.length_m())))
             .copied()
     }
@@ -473,6 +480,7 @@ impl BrushModel {
             head: SolvedHead::at_rest(&self.tuft, &brush),
             newest: here,
             is_pen,
+            is_pressed: false,
             lead: Lead::default(),
             bent: DVec2::ZERO,
             force_n: 0.0,

@@ -390,3 +390,32 @@ fn no_brush_of_any_size_touches_in_the_air() {
         }
     }
 }
+
+/// A window has the point of a pressed pointer on whatever is below it.
+#[test]
+fn a_stroke_over_the_edge_of_the_canvas_is_the_canvas_s_to_its_end() {
+    let drawn = |lifts: bool| {
+        let mut model = brush();
+        model.set_scene(&scene_with_palette());
+        let at = |step: u32| -0.1 - 4e-3 * f64::from(step);
+        let (mut surfaces, mut strokes, mut anew) = (Vec::new(), Vec::new(), 0);
+        for step in 0..30 {
+            let pressure = if lifts && step == 12 { 0.0 } else { 0.5 };
+            let mut sample = pen(at(step), 0.0, pressure);
+            if let StylusPose::Contact { point_m, .. } = &mut sample.pose
+                && at(step) < -0.138
+            {
+                point_m[2] = 0.01;
+            }
+            for solve in model.follow(DEVICE, (1000 + 8 * u64::from(step)) * MS, &sample) {
+                surfaces.push(solve.surface);
+                strokes.extend((solve.stroke > 0).then_some(solve.stroke));
+                anew += solve.flags & solve_flags::RESTARTED;
+            }
+        }
+        strokes.dedup();
+        (surfaces.iter().all(|surface| *surface == 0), strokes, anew)
+    };
+    assert_eq!(drawn(false), (true, vec![1], 1));
+    assert!(!drawn(true).0, "a pen that lifts goes to the palette");
+}
