@@ -192,9 +192,7 @@ impl BrushModel {
             brush.translation.z = brush.translation.z.max(2.0 * length);
         }
         let is_pen = matches!(sample.pose, StylusPose::Contact { .. });
-        if is_pen && sample.in_air() {
-            self.hover(&mut brush, &plane);
-        }
+        self.hold(&mut brush, sample, &plane);
         let here = Sampled {
             pose: brush,
             event_ns,
@@ -491,6 +489,6 @@ impl BrushModel {
 }
 
 mod force;
-mod hover;
+mod height;
 #[cfg(test)]
 mod tests;

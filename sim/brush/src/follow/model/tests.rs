@@ -419,3 +419,37 @@ fn a_stroke_over_the_edge_of_the_canvas_is_the_canvas_s_to_its_end() {
     assert_eq!(drawn(false), (true, vec![1], 1));
     assert!(!drawn(true).0, "a pen that lifts goes to the palette");
 }
+
+#[test]
+fn a_pressed_brush_of_any_kind_and_size_touches_all_along_its_stroke() {
+    let mut bare = Vec::new();
+    for (kind, _) in LIBRARY {
+        let file = BrushFile::library(kind).expect("a brush");
+        for width_mm in file.sizes_mm.clone() {
+            for (pressure, twist_rad) in [(0.1, 0.0), (0.2, 1.5), (0.3, 0.7), (0.5, 2.2)] {
+                let mut model = BrushModel::new(file.scaled_to(width_mm).expect("a size"), 0.5);
+                model.set_scene(&scene());
+                for step in 0..60_u32 {
+                    let t = f64::from(step) / 60.0;
+                    let (sine, cosine) = maulstick_num::sin_cos(5.0 * t);
+                    let pose = StylusPose::Contact {
+                        point_m: [0.06 * cosine, 0.06 * sine * t, 0.0],
+                        tilt_rad: DEFAULT_TILT_RAD,
+                        twist_rad: twist_rad + 5.0 * t,
+                        pressure: if step == 0 { 0.0 } else { pressure },
+                    };
+                    let sample = StylusSample {
+                        pose,
+                        ..pen(0.0, 0.0, 0.0)
+                    };
+                    let solves = model.follow(DEVICE, (1000 + 8 * u64::from(step)) * MS, &sample);
+                    let lifts = |solve: &Solve| solve.contacts.is_empty();
+                    if step > 0 && solves.iter().any(lifts) {
+                        bare.push(format!("{kind} {width_mm} mm at {pressure}, step {step}"));
+                    }
+                }
+            }
+        }
+    }
+    assert!(bare.is_empty(), "{bare:#?}");
+}

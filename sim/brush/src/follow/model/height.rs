@@ -1,0 +1,64 @@
+//! The height at which a pen holds its brush.
+
+use glam::DVec3;
+use maulstick_num::geometry::Rigid;
+use maulstick_types::stylus::{StylusPose, StylusSample};
+
+use super::BrushModel;
+use crate::desk::{HOVER_M, Plane};
+
+/// Rises of a hovering brush at most: from over a tilted canvas a joint may come over the palette.
+const RISES: usize = 4;
+/// Surfaces steeper to each other than this cosine are no ground to hover over.
+const LEAST_COSINE: f64 = 0.1;
+
+impl BrushModel {
+    /// Holds the brush of a pen as high as its sample and its own head ask for; a handle that is measured stays.
+    pub(super) fn hold(&self, brush: &mut Rigid, sample: &StylusSample, plane: &Plane) {
+        if !matches!(sample.pose, StylusPose::Contact { .. }) {
+            return;
+        }
+        match sample.in_air() {
+            true => self.hover(brush, plane),
+            false => self.lower(brush),
+        }
+    }
+
+    /// Lowers a pressed brush whose head is shorter below than along its axis: on one side the slanted edge of a chisel
+    /// would be in the air.
+    fn lower(&self, brush: &mut Rigid) {
+        let lowest = |brush: &Rigid| {
+            let joints = self.tuft.joints_at_rest(brush).into_iter();
+            joints.map(|joint| joint.z).fold(f64::INFINITY, f64::min)
+        };
+        let tip = DVec3::new(0.0, 0.0, -self.file.length_m());
+        // An upright head may end short of its length.
+        let short = (lowest(&Rigid::IDENTITY) - tip.z).max(0.0);
+        let upright = (brush.rotation * DVec3::Z).z;
+        let lacks = lowest(brush) - brush.point(tip).z - short * upright;
+        brush.translation.z -= lacks.max(0.0);
+    }
+
+    /// Lifts the brush of a pen in the air until each joint of its head is [`HOVER_M`] above what lies under it: a wide
+    /// head that leans reaches lower than its middle, and to the palette beside the canvas.
+    fn hover(&self, brush: &mut Rigid, plane: &Plane) {
+        let Some(desk) = &self.desk else { return };
+        let up = plane.normal();
+        let lacking = |joint: DVec3| {
+            let in_desk = plane.to_desk.point(joint);
+            let lacks = |below: &Plane| {
+                let below = below.half_space();
+                (HOVER_M - below.gap(in_desk)) / below.normal.dot(up).max(LEAST_COSINE)
+            };
+            desk.below(in_desk).map(lacks).fold(0.0, f64::max)
+        };
+        for _ in 0..RISES {
+            let joints = self.tuft.joints_at_rest(brush).into_iter();
+            let rise = joints.map(lacking).fold(0.0, f64::max);
+            if rise <= 0.0 {
+                break;
+            }
+            brush.translation.z += rise;
+        }
+    }
+}
