@@ -395,12 +395,17 @@ impl BrushModel {
     /// Bends all spines of a brush that has moved.
     fn solve(&mut self, tracked: &mut TrackedBrush, at: Sampled, plane: &Plane) -> Solve {
         let brush = self.placed(tracked, &at);
-        let converged = self.bend(tracked, &brush, plane);
+        let mut converged = self.bend(tracked, &brush, plane);
+        let is_astray = tracked.is_pressed && !converged && !tracked.head.touches();
+        if is_astray && self.lowest_at_rest(&brush) < 0.0 {
+            // Bent away from a surface that it would reach unbent: it would stay so, and leave the stroke bare.
+            tracked.head = SolvedHead::at_rest(&self.tuft, &brush);
+            converged = self.bend(tracked, &brush, plane);
+        }
         let contacts = tracked.head.contacts();
-        let stroke = if contacts.is_empty() {
-            0
-        } else {
-            self.stroke(at.event_ns)
+        let stroke = match contacts.is_empty() {
+            true => 0,
+            false => self.stroke(at.event_ns),
         };
         let in_surface = Rigid {
             translation: brush.translation / plane.zoom,

@@ -27,16 +27,18 @@ impl BrushModel {
     /// Lowers a pressed brush whose head is shorter below than along its axis: on one side the slanted edge of a chisel
     /// would be in the air.
     fn lower(&self, brush: &mut Rigid) {
-        let lowest = |brush: &Rigid| {
-            let joints = self.tuft.joints_at_rest(brush).into_iter();
-            joints.map(|joint| joint.z).fold(f64::INFINITY, f64::min)
-        };
         let tip = DVec3::new(0.0, 0.0, -self.file.length_m());
         // An upright head may end short of its length.
-        let short = (lowest(&Rigid::IDENTITY) - tip.z).max(0.0);
+        let short = (self.lowest_at_rest(&Rigid::IDENTITY) - tip.z).max(0.0);
         let upright = (brush.rotation * DVec3::Z).z;
-        let lacks = lowest(brush) - brush.point(tip).z - short * upright;
+        let lacks = self.lowest_at_rest(brush) - brush.point(tip).z - short * upright;
         brush.translation.z -= lacks.max(0.0);
+    }
+
+    /// Height of the lowest joint of the unbent head.
+    pub(super) fn lowest_at_rest(&self, brush: &Rigid) -> f64 {
+        let joints = self.tuft.joints_at_rest(brush).into_iter();
+        joints.map(|joint| joint.z).fold(f64::INFINITY, f64::min)
     }
 
     /// Lifts the brush of a pen in the air until each joint of its head is [`HOVER_M`] above what lies under it: a wide

@@ -426,11 +426,17 @@ fn a_pressed_brush_of_any_kind_and_size_touches_all_along_its_stroke() {
     for (kind, _) in LIBRARY {
         let file = BrushFile::library(kind).expect("a brush");
         for width_mm in file.sizes_mm.clone() {
-            for (pressure, twist_rad) in [(0.1, 0.0), (0.2, 1.5), (0.3, 0.7), (0.5, 2.2)] {
+            // A hand of 1 m/s and one of 8 m/s, as a pointer that leaps.
+            for (pressure, twist_rad, steps) in [
+                (0.1, 0.0, 60_u32),
+                (0.2, 1.5, 60),
+                (0.3, 0.7, 8),
+                (0.5, 2.2, 8),
+            ] {
                 let mut model = BrushModel::new(file.scaled_to(width_mm).expect("a size"), 0.5);
                 model.set_scene(&scene());
-                for step in 0..60_u32 {
-                    let t = f64::from(step) / 60.0;
+                for step in 0..steps {
+                    let t = f64::from(step) / f64::from(steps);
                     let (sine, cosine) = maulstick_num::sin_cos(5.0 * t);
                     let pose = StylusPose::Contact {
                         point_m: [0.06 * cosine, 0.06 * sine * t, 0.0],
