@@ -395,9 +395,10 @@ impl BrushModel {
     /// Bends all spines of a brush that has moved.
     fn solve(&mut self, tracked: &mut TrackedBrush, at: Sampled, plane: &Plane) -> Solve {
         let brush = self.placed(tracked, &at);
+        let touched = tracked.head.touches();
         let mut converged = self.bend(tracked, &brush, plane);
-        let is_astray = tracked.is_pressed && !converged && !tracked.head.touches();
-        if is_astray && self.lowest_at_rest(&brush) < 0.0 {
+        let loses = tracked.is_pressed && (touched || !converged) && !tracked.head.touches();
+        if loses && self.lowest_at_rest(&brush) < 0.0 {
             // Bent away from a surface that it would reach unbent: it would stay so, and leave the stroke bare.
             tracked.head = SolvedHead::at_rest(&self.tuft, &brush);
             converged = self.bend(tracked, &brush, plane);
