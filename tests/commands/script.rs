@@ -15,7 +15,8 @@ fn script(place: &Place, name: &str, steps: &str) {
 #[test]
 fn a_script_of_a_take_is_the_take_and_more_steps_are_more() {
     let place = Place::new();
-    place.short_demo("flower.mcap", 4.0);
+    // The sweeps of its first seconds begin on the palette beside a small canvas.
+    place.short_demo("flower.mcap", 16.0);
     let size = ["--size", "640x600", "--cell-mm", "0.25"];
     let take = ["render", "flower.mcap", "-o", "take.png", "--load", LOAD];
     place.done(&[&take[..], &size].concat());

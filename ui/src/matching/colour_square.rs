@@ -3,9 +3,11 @@
 
 use eframe::egui::ecolor::Hsva;
 use eframe::egui::{
-    Color32, EventFilter, Key, Mesh, Modifiers, Pos2, Rect, Response, Role, Sense, Shape, Stroke,
-    StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Color32, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2,
+    vec2,
 };
+
+use crate::widgets::arrow_keys::arrow_steps;
 
 /// Size of the square, points.
 const SQUARE: Vec2 = vec2(240.0, 110.0);
@@ -68,33 +70,11 @@ fn field(
     }
     let pointer = response.interact_pointer_pos();
     let by_pointer = pointer.map(|pointer| ((pointer - area.min) / area.size()).to_pos2());
-    let by_keys = arrows(ui, &response).map(|step| mark + STEP * step);
+    let step = arrow_steps(ui, &response);
+    let by_keys = (step != Vec2::ZERO).then(|| mark + STEP * step);
     by_pointer
         .or(by_keys)
         .map(|at| at.clamp(Pos2::ZERO, pos2(1.0, 1.0)))
-}
-
-/// Arrow keys that were pressed while a field has the keyboard, as steps to the right and down.
-fn arrows(ui: &Ui, response: &Response) -> Option<Vec2> {
-    if !response.has_focus() {
-        return None;
-    }
-    let filter = EventFilter {
-        horizontal_arrows: true,
-        vertical_arrows: true,
-        ..EventFilter::default()
-    };
-    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
-    let pressed = |key: Key| {
-        f32::from(u8::from(
-            ui.input_mut(|input| input.consume_key(Modifiers::NONE, key)),
-        ))
-    };
-    let step = vec2(
-        pressed(Key::ArrowRight) - pressed(Key::ArrowLeft),
-        pressed(Key::ArrowDown) - pressed(Key::ArrowUp),
-    );
-    (step != Vec2::ZERO).then_some(step)
 }
 
 fn mesh(area: Rect, of: impl Fn(Pos2) -> Hsva) -> Mesh {

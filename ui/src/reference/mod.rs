@@ -12,9 +12,9 @@ mod picture;
 use std::path::{Path, PathBuf};
 
 use eframe::egui::{
-    self, Color32, Context, CornerRadius, EventFilter, Frame, Id, Key, Modifiers, Pos2, Rect,
-    Response, RichText, Role, ScrollArea, Sense, Slider, Stroke, StrokeKind, Ui, Vec2, WidgetInfo,
-    Window, pos2, vec2,
+    self, Color32, Context, CornerRadius, Frame, Id, Key, Modifiers, Pos2, Rect, Response,
+    RichText, Role, ScrollArea, Sense, Slider, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, Window,
+    pos2, vec2,
 };
 use maulstick_optics::colour::srgb_encode;
 use serde::{Deserialize, Serialize};
@@ -24,6 +24,7 @@ use crate::input::keys::Action;
 use crate::matching::picker::{Ask, Picker, of_palette};
 use crate::matching::proposals::{hex, matches, swatch};
 use crate::settings::preferences::Preferences;
+use crate::widgets::arrow_keys::arrow_steps;
 use crate::widgets::context::PanelContext;
 use frame::PictureFrame;
 use picture::{Picture, Pinned};
@@ -292,23 +293,14 @@ impl Reference {
             around = pointer;
         }
         if response.has_focus() {
-            let filter = EventFilter {
-                horizontal_arrows: true,
-                vertical_arrows: true,
-                ..EventFilter::default()
-            };
-            ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
-            let pressed = |key: Key| {
-                ui.input_mut(|input| f32::from(u8::from(input.consume_key(Modifiers::NONE, key))))
-            };
-            let step = vec2(
-                pressed(Key::ArrowRight) - pressed(Key::ArrowLeft),
-                pressed(Key::ArrowDown) - pressed(Key::ArrowUp),
-            );
+            let step = arrow_steps(ui, response);
             if step != Vec2::ZERO {
                 let cross = look.cross.unwrap_or(look.middle) + STEP * step / at.size();
                 look.cross = Some(cross.clamp(Pos2::ZERO, pos2(0.999, 0.999)));
             }
+            let pressed = |key: Key| {
+                ui.input_mut(|input| f32::from(u8::from(input.consume_key(Modifiers::NONE, key))))
+            };
             let closer = pressed(Key::Plus) + pressed(Key::Equals) - pressed(Key::Minus);
             zoom *= match closer {
                 c if c > 0.0 => 1.25,

@@ -2,6 +2,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | [`arrow_keys`] | arrow keys on a field that has the keyboard |
 //! | [`brush_gauge`] | colours of the brush in the hand, and how full it is |
 //! | [`context`] | state that a panel reads and changes |
 //! | [`rows`], [`labelled`] | rows of a panel: a word and a control |
@@ -10,6 +11,7 @@
 //! | [`progress`] | progress of long work |
 //! | [`swatches`] | colour patches of paints |
 
+pub(crate) mod arrow_keys;
 pub(crate) mod brush_gauge;
 pub(crate) mod context;
 pub(crate) mod labelled;

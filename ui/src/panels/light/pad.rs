@@ -2,10 +2,12 @@
 
 use eframe::egui::accesskit::Role;
 use eframe::egui::{
-    Color32, EventFilter, Key, Pos2, Rect, Sense, Stroke, TextureId, Ui, WidgetInfo, pos2, vec2,
+    Color32, Pos2, Rect, Sense, Stroke, TextureId, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use maulstick_num::{acos, atan2};
 use maulstick_optics::light::LOWEST;
+
+use crate::widgets::arrow_keys::arrow_steps;
 
 /// Side of the pad, points.
 const SIDE: f32 = 132.0;
@@ -23,20 +25,11 @@ pub(super) fn show(ui: &mut Ui, ball: TextureId, direction: [f64; 3]) -> Option<
         response.request_focus();
         moved = Some(from_pad(place, at));
     }
-    if response.has_focus() {
-        let filter = EventFilter {
-            horizontal_arrows: true,
-            vertical_arrows: true,
-            ..EventFilter::default()
-        };
-        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    let step = arrow_steps(ui, &response);
+    if step != Vec2::ZERO {
         let [x, y] = on_disc(direction);
-        let presses = |key: Key| ui.input(|input| input.num_presses(key)) as f64;
-        let right = presses(Key::ArrowRight) - presses(Key::ArrowLeft);
-        let up = presses(Key::ArrowUp) - presses(Key::ArrowDown);
-        if right != 0.0 || up != 0.0 {
-            moved = Some(of_disc([x + STEP * right, y + STEP * up]));
-        }
+        let [right, up] = [step.x, -step.y].map(f64::from);
+        moved = Some(of_disc([x + STEP * right, y + STEP * up]));
     }
     let painter = ui.painter();
     let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
