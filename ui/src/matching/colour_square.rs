@@ -103,6 +103,8 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable as _;
 
+    use eframe::egui::Key;
+
     use super::*;
 
     const SQUARE_NAME: &str = "Saturation and brightness. Arrow keys change them";
