@@ -28,6 +28,7 @@ pub mod settings;
 mod spectrum_file;
 #[cfg(test)]
 mod test_support;
+pub mod tracing;
 pub mod view;
 mod widgets;
 

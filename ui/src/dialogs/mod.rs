@@ -57,6 +57,7 @@ enum Dialog {
     SaveAs(SaveAs),
     Export(ExportPicture),
     Picture(ChoosePicture),
+    Tracing(ChoosePicture),
 }
 
 /// Files in the window.
@@ -101,7 +102,17 @@ impl Files {
                 let export = ExportPicture::new(&folder(work), &stem(work));
                 self.begin(Dialog::Export(export));
             }
-            Action::Reference => self.choose_picture(work),
+            Action::Reference => {
+                let known = work.preferences.reference.path.as_deref();
+                let choose = ChoosePicture::beside(known, "Pin a reference picture");
+                self.begin(Dialog::Picture(choose));
+            }
+            Action::ChooseTracing => {
+                let known = work.tracing().map(|tracing| &*tracing.path);
+                let choose =
+                    ChoosePicture::beside(known, "A picture to paint after, on the canvas");
+                self.begin(Dialog::Tracing(choose));
+            }
             _ => return false,
         }
         true
@@ -116,18 +127,6 @@ impl Files {
         let open = self.open.as_deref().unwrap_or(Path::new(""));
         let recent = RecentList::new(context, &work.preferences.recent, open);
         OpenPainting::new(&folder(work), recent, Unkept::of(work.rig))
-    }
-
-    /// Opens the dialog that picks a reference picture.
-    fn choose_picture(&mut self, work: &PanelContext<'_>) {
-        let known = work
-            .preferences
-            .reference
-            .path
-            .as_deref()
-            .and_then(Path::parent);
-        let folder = known.map_or_else(paths::pictures, Path::to_owned);
-        self.begin(Dialog::Picture(ChoosePicture::new(&folder)));
     }
 
     fn save(&mut self, work: &mut PanelContext<'_>) {
@@ -196,6 +195,15 @@ impl Files {
                 }
                 (answer, None)
             }
+            Dialog::Tracing(picture) => {
+                let (answer, path) = picture.show(context);
+                if let Some(path) = path {
+                    work.trace(&path);
+                    self.dialog = None;
+                    return;
+                }
+                (answer, None)
+            }
         };
         match (answer, command) {
             (Answer::Leave, _) => (self.dialog, self.waiting) = (None, None),
@@ -246,7 +254,7 @@ impl Files {
                     Some(Dialog::New(new)) => new.refused(words),
                     Some(Dialog::Open(open)) => open.refused(words),
                     Some(Dialog::SaveAs(save_as)) => save_as.refused(words),
-                    Some(Dialog::Export(_) | Dialog::Picture(_)) | None => {
+                    Some(Dialog::Export(_) | Dialog::Picture(_) | Dialog::Tracing(_)) | None => {
                         work.notifications.of(fault)
                     }
                 }

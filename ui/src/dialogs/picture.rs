@@ -1,4 +1,4 @@
-//! Dialog for a reference picture.
+//! Dialog for a picture to look at or to trace.
 
 use std::path::{Path, PathBuf};
 
@@ -11,16 +11,20 @@ use crate::dialogs::paths;
 /// A picture that is being chosen.
 #[derive(Debug)]
 pub(crate) struct ChoosePicture {
+    title: &'static str,
     browser: Browser,
     wrong: Option<String>,
 }
 
 impl ChoosePicture {
-    /// One of `folder`.
+    /// One of the folder of the picture that is known, or of the user's pictures; `title` says what it is for.
     #[must_use]
-    pub(crate) fn new(folder: &Path) -> Self {
-        let begin = format!("{}/", paths::shown(folder).trim_end_matches('/'));
+    pub(crate) fn beside(known: Option<&Path>, title: &'static str) -> Self {
+        let folder = known.and_then(Path::parent);
+        let folder = folder.map_or_else(paths::pictures, Path::to_owned);
+        let begin = format!("{}/", paths::shown(&folder).trim_end_matches('/'));
         Self {
+            title,
             browser: Browser::at(&begin, Purpose::Read, &paths::PICTURES),
             wrong: None,
         }
@@ -29,7 +33,7 @@ impl ChoosePicture {
     /// Shows the dialog; the picture that was chosen.
     pub(crate) fn show(&mut self, context: &Context) -> (Answer, Option<PathBuf>) {
         let mut taken = None;
-        let answer = dialog::show(context, "Pin a reference picture", |ui| {
+        let answer = dialog::show(context, self.title, |ui| {
             taken = self.browser.show(ui, "Picture");
             Foot {
                 go: "Open",

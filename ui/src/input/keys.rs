@@ -19,6 +19,10 @@ pub enum Action {
     Export,
     /// Show or hide the reference picture beside the canvas.
     Reference,
+    /// Choose a picture to paint after on the canvas.
+    ChooseTracing,
+    /// Show or hide it.
+    Tracing,
     /// The newest step back.
     Undo,
     /// The newest undo back.
@@ -85,7 +89,7 @@ const fn key(act: Action, modifiers: Modifiers, key: Key, words: &'static str) -
 }
 
 /// Bindings of keys that act once per press. One with more modifiers comes before the same with fewer.
-pub(crate) const BINDINGS: [Binding; 29] = [
+pub(crate) const BINDINGS: [Binding; 31] = [
     key(
         Action::Palette,
         Modifiers::NONE,
@@ -206,6 +210,18 @@ pub(crate) const BINDINGS: [Binding; 29] = [
         Modifiers::COMMAND,
         Key::R,
         "Show or hide the reference picture",
+    ),
+    key(
+        Action::ChooseTracing,
+        Modifiers::COMMAND.plus(Modifiers::SHIFT),
+        Key::T,
+        "Tracing picture…",
+    ),
+    key(
+        Action::Tracing,
+        Modifiers::COMMAND,
+        Key::T,
+        "Show or hide the tracing picture",
     ),
     key(
         Action::Keys,

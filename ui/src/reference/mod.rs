@@ -7,7 +7,7 @@
 //! | `picker` | the mixtures that come near a colour |
 
 mod picker;
-mod picture;
+pub(crate) mod picture;
 
 use std::path::{Path, PathBuf};
 

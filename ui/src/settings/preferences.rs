@@ -14,6 +14,7 @@ use crate::settings::brush_load::BrushLoad;
 use crate::settings::grip::Grip;
 use crate::settings::paint_sets::PaintSet;
 use crate::settings::presets::{Preset, classic};
+use crate::tracing::settings::Tracings;
 
 /// Recent paintings that are remembered.
 const RECENT: usize = 12;
@@ -48,6 +49,8 @@ pub struct Preferences {
     pub presets: Vec<Preset>,
     /// The painter's sets of paints.
     pub paint_sets: Vec<PaintSet>,
+    /// Tracing pictures of the paintings.
+    pub tracings: Tracings,
 }
 
 impl Default for Preferences {
@@ -66,6 +69,7 @@ impl Default for Preferences {
             widths_mm: BTreeMap::new(),
             presets: classic(),
             paint_sets: Vec::new(),
+            tracings: Tracings::default(),
         }
     }
 }
