@@ -165,7 +165,7 @@ fn palette_cells(cell_m: f64) -> [u32; 2] {
 
 /// Wells of a palette of so many cells, across and up, that hold these mixtures from the top: along its
 /// right edge, toward the canvas, smaller where they are many, so that they are within reach while the rest of the
-/// palette is not. Beside the lowest stand the cleaner and, next to it or, on a narrow palette, above it, the medium.
+/// palette is not. Beside the lowest stands the cleaner, above it the medium.
 #[must_use]
 pub fn wells_of(mixtures: &[Mixture], cells: [u32; 2], cell_m: f64) -> Vec<Well> {
     let [width, height] = cells.map(f64::from);
@@ -187,12 +187,8 @@ pub fn wells_of(mixtures: &[Mixture], cells: [u32; 2], cell_m: f64) -> Vec<Well>
         radius_m: cleaner_m,
         kind: WellKind::Cleaner,
     };
-    let medium = match width * cell_m - 7.0 * cleaner_m {
-        x if x >= 1.5 * cleaner_m => [x, cleaner.center_m[1]],
-        _ => [cleaner.center_m[0], 4.5 * cleaner_m],
-    };
     let medium = Well {
-        center_m: medium,
+        center_m: [cleaner.center_m[0], 4.25 * cleaner_m],
         radius_m: cleaner_m,
         kind: WellKind::Medium,
     };
