@@ -214,7 +214,7 @@ mod tests {
     }
 
     /// Edits that only a window asks for: their numbers are found with the pointer.
-    const POINTED_AT: [&str; 3] = ["NameLayer", "Place", "Wells"];
+    const POINTED_AT: [&str; 4] = ["GoTo", "NameLayer", "Place", "Wells"];
 
     macro_rules! walk {
         ($($edit:ident),*) => {

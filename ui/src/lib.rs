@@ -32,6 +32,7 @@ mod settings_page;
 mod spectrum_file;
 #[cfg(test)]
 mod test_support;
+pub mod tracing;
 pub mod view;
 mod widgets;
 

@@ -1,12 +1,12 @@
-//! Small pictures of the painting and of its versions, for whoever asks: drawn one at a time, on a
-//! thread of their own, from tiles that the painting shares.
+//! Small pictures of the painting, of its versions and of the steps of its history, for whoever asks: drawn one at a
+//! time, on a thread of their own, from tiles that the painting shares; those of steps only while nobody paints.
 
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::sync::{Arc, Weak};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use maulstick_bus::typed::Reader;
 use maulstick_bus::{Bus, BusError, Request, Server, Wake};
-use maulstick_exchange::small_picture;
+use maulstick_exchange::{HistoryPictures, small_picture};
 use maulstick_painting::Painting;
 use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
 use maulstick_types::scene::{CANVAS, Light};
@@ -16,6 +16,8 @@ use maulstick_types::{Flags, Origin, encode};
 const SIDES: std::ops::RangeInclusive<u32> = 1..=512;
 /// Number of cached pictures.
 const KEPT: usize = 64;
+/// Nobody paints if no paint has moved for so long, ns.
+const REST_NS: u64 = 300_000_000;
 /// Views that wait, at most: who asks too often is answered later.
 const WAITING: usize = 256;
 
@@ -34,21 +36,30 @@ enum State {
     Now([u64; 2]),
     /// The tiles of a version: another one of its name has others.
     Kept(Weak<dyn std::any::Any + Send + Sync>),
+    /// A step of the history; while it is not finished, with the newest tile version.
+    Step(u64, Option<u64>),
 }
 
 impl Shows {
     /// Content of the requested picture; `None` if there is no such version.
     fn of(painting: &Painting, asked: &ThumbnailRequest) -> Option<Self> {
-        let state = match asked.version.as_str() {
-            "" => State::Now([painting.versions(), painting.look().generation()]),
-            name => {
+        let state = match (asked.step, asked.version.as_str()) {
+            (Some(step), _) => {
+                let open = painting.history().is_open(step);
+                State::Step(step, open.then(|| painting.versions()))
+            }
+            (None, "") => State::Now([painting.versions(), painting.look().generation()]),
+            (None, name) => {
                 let version = painting.named().find(|version| version.name == name)?;
                 let tiles: Arc<dyn std::any::Any + Send + Sync> = version.tiles.clone();
                 State::Kept(Arc::downgrade(&tiles))
             }
         };
         Some(Self {
-            version: asked.version.clone(),
+            version: match asked.step {
+                Some(_) => String::new(),
+                None => asked.version.clone(),
+            },
             side: asked.side.clamp(*SIDES.start(), *SIDES.end()),
             light: painting.scene().light.clone(),
             state,
@@ -59,12 +70,23 @@ impl Shows {
         let state = match (&self.state, &other.state) {
             (State::Now(one), State::Now(two)) => one == two,
             (State::Kept(one), State::Kept(two)) => one.ptr_eq(two),
+            (State::Step(one, at), State::Step(two, then)) => (one, at) == (two, then),
             _ => false,
         };
         state
             && self.side == other.side
             && self.version == other.version
             && self.light == other.light
+    }
+}
+
+/// The answer where there is no picture.
+fn none() -> ThumbnailReply {
+    ThumbnailReply {
+        width: 0,
+        height: 0,
+        rgb: Vec::new().into(),
+        version: 0,
     }
 }
 
@@ -78,6 +100,9 @@ pub struct Thumbnails {
     drawing: Option<(Shows, Receiver<ThumbnailReply>)>,
     /// Newest last.
     kept: Vec<(Shows, ThumbnailReply)>,
+    of_steps: Arc<Mutex<HistoryPictures>>,
+    /// Steps of the paint model so far, and when there was a new one, ns.
+    work: (u64, u64),
 }
 
 impl Thumbnails {
@@ -94,6 +119,8 @@ impl Thumbnails {
             waiting: Vec::new(),
             drawing: None,
             kept: Vec::new(),
+            of_steps: Arc::default(),
+            work: (0, 0),
         })
     }
 
@@ -110,18 +137,19 @@ impl Thumbnails {
             }
         }
         self.take_drawn(bus);
+        let (steps, now_ns) = (painting.work().0, bus.now_ns());
+        if steps != self.work.0 {
+            self.work = (steps, now_ns);
+        }
+        let rests = now_ns >= self.work.1 + REST_NS;
         for (request, asked) in std::mem::take(&mut self.waiting) {
             let reply = match Shows::of(painting, &asked) {
-                None => ThumbnailReply {
-                    width: 0,
-                    height: 0,
-                    rgb: Vec::new().into(),
-                    version: 0,
-                },
+                None => none(),
                 Some(shows) => match self.kept.iter().find(|(kept, _)| kept.is(&shows)) {
                     Some((_, reply)) => reply.clone(),
                     None => {
-                        if self.drawing.is_none() {
+                        let may = rests || !matches!(shows.state, State::Step(..));
+                        if self.drawing.is_none() && may {
                             self.draw(painting, shows);
                         }
                         self.waiting.push((request, asked));
@@ -167,7 +195,7 @@ impl Thumbnails {
     fn answer_all_of_now(&mut self, bus: &dyn Bus, shows: &Shows, reply: &ThumbnailReply) {
         let of_it = |asked: &ThumbnailRequest| {
             let side = asked.side.clamp(*SIDES.start(), *SIDES.end());
-            asked.version.is_empty() && side == shows.side
+            asked.version.is_empty() && asked.step.is_none() && side == shows.side
         };
         let (answered, waiting): (Vec<_>, Vec<_>) = std::mem::take(&mut self.waiting)
             .into_iter()
@@ -179,14 +207,32 @@ impl Thumbnails {
     }
 
     fn draw(&mut self, painting: &mut Painting, shows: Shows) {
-        let mut still = painting.still();
         let (to_node, drawn) = channel();
+        let still = match shows.state {
+            State::Step(step, _) => painting.still_after(step),
+            _ => Some(painting.still()),
+        };
+        let Some(mut still) = still else {
+            to_node.send(none()).ok();
+            self.drawing = Some((shows, drawn));
+            return;
+        };
         let (version, side, wake) = (shows.version.clone(), shows.side, self.wake.clone());
+        let is_step = matches!(shows.state, State::Step(..));
+        let of_steps = Arc::clone(&self.of_steps);
         let work = move || {
             if !version.is_empty() && still.show_version(&version).is_err() {
                 return;
             }
-            let Some(picture) = small_picture(&mut still, CANVAS, side as usize) else {
+            let side = side as usize;
+            let picture = match is_step {
+                true => {
+                    let mut of_steps = of_steps.lock().unwrap_or_else(PoisonError::into_inner);
+                    of_steps.draw(&mut still, CANVAS, side)
+                }
+                false => small_picture(&mut still, CANVAS, side),
+            };
+            let Some(picture) = picture else {
                 return;
             };
             let reply = ThumbnailReply {

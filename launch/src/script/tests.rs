@@ -419,9 +419,10 @@ fn a_hundred_thousand_steps_have_their_lines() {
 }
 
 /// Edits that a script does not ask for: it has no pointer, and leaves what is done to its writer.
-const NOT_IN_SCRIPTS: [&str; 7] = [
+const NOT_IN_SCRIPTS: [&str; 8] = [
     "Branch",
     "Forget",
+    "GoTo",
     "NameLayer",
     "Place",
     "Redo",

@@ -224,6 +224,7 @@ fn all() -> String {
                 tooth_seed: 2,
                 wells: vec![
                     well(WellKind::Cleaner),
+                    well(WellKind::Medium),
                     well(WellKind::Paint {
                         mixture: mixture.clone(),
                     }),
@@ -326,6 +327,12 @@ fn all() -> String {
         line(&ThumbnailRequest {
             version: "first".into(),
             side: 96,
+            step: None,
+        }),
+        line(&ThumbnailRequest {
+            version: String::new(),
+            side: 96,
+            step: Some(7),
         }),
         line(&thumbnail()),
         examples()

@@ -25,12 +25,75 @@ pub struct WellLook {
     pub radius: f64,
     /// Its unlit colour, linear sRGB.
     pub rgb: [f32; 3],
-    /// Height of its paint, m.
-    pub height_m: f32,
+    /// What it is.
+    pub shape: WellShape,
 }
 
-/// The cleaner, as it looks: a jar of spirits, linear sRGB.
+/// What a well is, as it is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WellShape {
+    /// Paint from the tube.
+    Heap,
+    /// A glass jar, seen from above. Nothing that brushes leave in it is seen.
+    Jar,
+}
+
+/// The cleaner, as it looks: spirits, linear sRGB.
 pub const CLEANER_RGB: [f32; 3] = [0.30, 0.37, 0.40];
+/// The medium: oil, linear sRGB.
+pub const MEDIUM_RGB: [f32; 3] = [0.62, 0.36, 0.07];
+/// Glass on end: what is seen of a jar's wall, linear sRGB.
+const GLASS_RGB: [f32; 3] = [0.50, 0.60, 0.58];
+/// Inner radius of a jar's wall, by the outer one.
+const WALL: f64 = 0.84;
+/// Height of a jar's wall, and of what is in it, m.
+const JAR_M: [f32; 2] = [2.5e-3, 1e-3];
+
+impl WellLook {
+    /// Its colour at a place, linear sRGB. Light that falls into a jar from the upper left shines through the far side
+    /// of what is in it.
+    #[must_use]
+    fn rgb_at(&self, at: [f64; 2]) -> [f32; 3] {
+        let [x, y] = self.offset(at);
+        let out = (x * x + y * y).sqrt();
+        match self.shape {
+            WellShape::Heap => self.rgb,
+            WellShape::Jar if out > WALL => GLASS_RGB,
+            WellShape::Jar => {
+                let through = 1.0 + 0.45 * (x - y) / WALL;
+                self.rgb.map(|channel| channel * through as f32)
+            }
+        }
+    }
+
+    /// Its height at a place, m.
+    #[must_use]
+    fn height_at_m(&self, at: [f64; 2]) -> f32 {
+        let [x, y] = self.offset(at);
+        match self.shape {
+            WellShape::Heap => WELL_M as f32,
+            WellShape::Jar => JAR_M[usize::from(x * x + y * y <= WALL * WALL)],
+        }
+    }
+
+    /// A place seen from its middle, by its radius.
+    fn offset(&self, at: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|i| (at[i] - self.center[i]) / self.radius)
+    }
+}
+
+/// A cell of a tile that is in a well.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WellCell {
+    /// Its place in the tile.
+    pub cell: usize,
+    /// True if the well hides what brushes left there.
+    pub hides: bool,
+    /// Its unlit colour, linear sRGB.
+    pub rgb: [f32; 3],
+    /// Its height, m.
+    pub height_m: f32,
+}
 
 /// A surface without what was painted on it.
 #[derive(Clone, Debug)]
@@ -52,11 +115,21 @@ impl BlankSurface {
         tile.map(|tile| self.shown.films(tile)).unwrap_or_default()
     }
 
-    /// The cells of a tile that lie in a well, by their place in the tile, with the well.
-    pub fn in_wells(&self, id: TileId) -> impl Iterator<Item = (usize, &WellLook)> {
+    /// The cells of a tile that lie in a well.
+    pub fn in_wells(&self, id: TileId) -> impl Iterator<Item = WellCell> {
+        let corner = [f64::from(id.x), f64::from(id.y)].map(|tile| tile * TILE as f64);
         let wells = self.wells.iter();
         wells.flat_map(move |well| {
-            cells_in_circle(well.center, well.radius, id).map(move |cell| (cell, well))
+            cells_in_circle(well.center, well.radius, id).map(move |cell| {
+                let middle = [cell % TILE, cell / TILE].map(|at| at as f64 + 0.5);
+                let at = [corner[0] + middle[0], corner[1] + middle[1]];
+                WellCell {
+                    cell,
+                    hides: well.shape == WellShape::Jar,
+                    rgb: well.rgb_at(at),
+                    height_m: well.height_at_m(at),
+                }
+            })
         })
     }
 }

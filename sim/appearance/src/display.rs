@@ -136,9 +136,9 @@ impl DisplayTile {
     pub(crate) fn height_on(bare: &BlankSurface, id: TileId, tile: Option<&Tile>) -> Vec<f32> {
         let heights = tile.map(|tile| bare.shown.height(tile));
         let mut heights = heights.unwrap_or_else(|| vec![0.0; TILE_CELLS]);
-        for (cell, well) in bare.in_wells(id) {
-            if heights[cell] == 0.0 {
-                heights[cell] = well.height_m;
+        for well in bare.in_wells(id) {
+            if well.hides || heights[well.cell] == 0.0 {
+                heights[well.cell] = well.height_m;
             }
         }
         let relief = bare.relief.tile(id);
@@ -164,8 +164,13 @@ impl DisplayTile {
             bare.shown.finish(tile, &mut shown);
         }
         let dry = tile.and_then(Tile::dry);
-        for (cell, well) in bare.in_wells(id) {
-            if shown.wetness[cell] == 0.0 && dry.is_none_or(|stack| stack.height()[cell] == 0.0) {
+        for well in bare.in_wells(id) {
+            let cell = well.cell;
+            let is_bare = || {
+                let dried = dry.is_some_and(|stack| stack.height()[cell] != 0.0);
+                shown.wetness[cell] == 0.0 && !dried
+            };
+            if well.hides || is_bare() {
                 for (plane, channel) in shown.rgb.iter_mut().zip(well.rgb) {
                     plane[cell] = channel;
                 }

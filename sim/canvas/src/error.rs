@@ -116,6 +116,9 @@ pub enum EditError {
     /// Nothing to redo.
     #[error("there is nothing to redo")]
     NothingToRedo,
+    /// A step that is no longer apart.
+    #[error("this step is no longer in the history")]
+    NoStep,
     /// A step under a later one.
     #[error("'{what}' is covered by a later step{}", .over.as_ref().map_or(String::new(), |over| format!(", '{over}'")))]
     Covered {
@@ -273,6 +276,9 @@ impl EditError {
                     "there are {}",
                     known.collect::<Vec<_>>().join(", ")
                 ))
+            }
+            Self::NoStep => {
+                say("choose another one: old steps are merged, and new ones replace undone ones")
             }
             Self::NothingToRedo => say("only what was undone and not painted over can be redone"),
             Self::Covered { .. } => Advice::UndoNewest,

@@ -177,9 +177,9 @@ impl Tile {
         Some(Self { wet, dry })
     }
 
-    /// The tile without its wet paint, but for the cells of `stays`, and what is gone; `None` if nothing goes.
+    /// The tile without its wet paint, but for the cells of `stays`; `None` if nothing goes.
     #[must_use]
-    pub fn scraped(&self, stays: &[usize]) -> Option<(Self, Counts)> {
+    pub fn scraped(&self, stays: &[usize]) -> Option<Self> {
         let page = self.wet.as_ref()?;
         let wet = page.get();
         let kept = |plane: &Arc<[f32]>| -> Arc<[f32]> {
@@ -203,14 +203,9 @@ impl Tile {
         if left == *wet {
             return None;
         }
-        let mut gone = plane_counts(&wet);
-        let stay = plane_counts(&left);
-        gone.iter_mut()
-            .zip(&stay)
-            .for_each(|(gone, stay)| *gone -= stay);
         let wet = (!left.is_empty()).then(|| Page::new(page.pager(), Arc::new(left), Some(page)));
         let dry = self.dry.clone();
-        Some((Self { wet, dry }, gone))
+        Some(Self { wet, dry })
     }
 }
 

@@ -51,5 +51,5 @@ pub use open_raster::write_open_raster;
 pub use read_image::Image;
 pub use stl::{STL_TRIANGLES, StlSetup, StlSize, stl_step, write_stl};
 pub use surface::Progress;
-pub use thumbnail::small_picture;
+pub use thumbnail::{HistoryPictures, small_picture};
 pub use underpaint::{Likeness, Support, Underpainting};

@@ -1,12 +1,18 @@
 //! A picture made small.
 
+use std::collections::HashMap;
 use std::convert::Infallible;
 
+use maulstick_appearance::Bakery;
 use maulstick_appearance::bands::in_order;
-use maulstick_appearance::picture::{Depth, Export, Picture};
+use maulstick_appearance::display::DisplayTile;
+use maulstick_appearance::picture::{Depth, Drawing, Export, Picture};
+use maulstick_canvas::page::Page;
+use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_optics::colour::{SrgbTable, srgb_decode};
 use maulstick_painting::Painting;
 use maulstick_painting::picture::flat_drawing;
+use maulstick_types::paint::TILE;
 
 /// Pixels of the longer side of a thumbnail in a file, at most.
 pub(crate) const SIDE: usize = 256;
@@ -27,6 +33,105 @@ pub fn small_picture(painting: &mut Painting, surface: u32, side: usize) -> Opti
     );
     let [width, height] = small.size();
     Some(Picture::srgb(width, height, small.bytes()))
+}
+
+/// Small pictures of paintings that share tiles, as the states of a history do: of each tile there are a few colours, so
+/// that a picture costs what differs from those before it.
+#[derive(Debug, Default)]
+pub struct HistoryPictures {
+    tiles: HashMap<TileKey, Blocks>,
+    /// Pictures so far.
+    drawn: u64,
+}
+
+/// What the colours of a tile follow from: its place, its wet and its dried paint, the look of the painting, and how
+/// many cells a block has across.
+type TileKey = (TileId, Option<u64>, Option<u64>, i64, usize);
+
+/// Means of linear light of the blocks of a tile, rows from the top.
+#[derive(Debug)]
+struct Blocks {
+    light: Vec<[f32; 3]>,
+    /// The picture that they were last used for.
+    used: u64,
+}
+
+/// Cells of a block across, at most.
+const BLOCK: usize = 8;
+/// Tiles whose colours are kept besides those of a whole surface.
+const SPARE: usize = 4096;
+
+impl HistoryPictures {
+    /// A surface with its colours alone, in sRGB, with at most `side` pixels either way; none if there is no such
+    /// surface.
+    pub fn draw(&mut self, painting: &mut Painting, surface: u32, side: usize) -> Option<Picture> {
+        let print = painting.look().print();
+        let export = Export::default();
+        let drawing = flat_drawing(painting, surface, &export)?;
+        let cells = drawing.banded().cells();
+        let block = (cells[0].max(cells[1]) / side.max(1)).clamp(1, BLOCK);
+        // A power of two parts a tile evenly.
+        let block = 1 << block.ilog2();
+        self.drawn += 1;
+        let size = cells.map(|side| side.div_ceil(block));
+        let mut small = Thumbnail::new(size, side.max(1));
+        let (mut bakery, mut tiles) = (Bakery::default(), 0);
+        for band in 0..drawing.banded().bands() {
+            let mut light =
+                vec![[0.0f32; 3]; drawing.banded().rows(band).len().div_ceil(block) * size[0]];
+            for (id, tile) in drawing.banded().tiles(band) {
+                tiles += 1;
+                let wet = tile.and_then(Tile::wet_page).map(Page::id);
+                let dry = tile.and_then(Tile::dry).map(|stack| stack.id());
+                let key = (id, wet, dry, print, block);
+                let known = self.tiles.entry(key).or_insert_with(|| {
+                    let shown = drawing.banded().shown(id, tile, &mut bakery);
+                    Blocks {
+                        light: blocks(&drawing, (id, &shown), block, &small.light),
+                        used: 0,
+                    }
+                });
+                known.used = self.drawn;
+                let across = drawing.banded().within(id)[0].div_ceil(block);
+                let left = id.x as usize * TILE / block;
+                for (row, own) in known.light.chunks_exact(across).enumerate() {
+                    light[row * size[0] + left..][..across].copy_from_slice(own);
+                }
+            }
+            light
+                .chunks_exact(size[0])
+                .for_each(|row| small.add_light(row));
+        }
+        if self.tiles.len() > 2 * tiles + SPARE {
+            let drawn = self.drawn;
+            self.tiles.retain(|_, own| own.used == drawn);
+        }
+        let [width, height] = small.size();
+        Some(Picture::srgb(width, height, small.bytes()))
+    }
+}
+
+/// Means of linear light of the blocks of a tile, rows from the top; `linear` is that of a byte.
+fn blocks(
+    drawing: &Drawing<'_>,
+    (id, shown): (TileId, &DisplayTile),
+    block: usize,
+    linear: &[f64],
+) -> Vec<[f32; 3]> {
+    let [across, rows] = drawing.banded().within(id);
+    let pixels = drawing.tile((id, shown), Depth::Eight);
+    let size = [across, rows].map(|side| side.div_ceil(block));
+    let mut sums = vec![[0.0; 4]; size[0] * size[1]];
+    for (at, pixel) in pixels.chunks_exact(3).enumerate() {
+        let (x, y) = (at % across, at / across);
+        let sum: &mut [f64; 4] = &mut sums[y / block * size[0] + x / block];
+        for (sum, byte) in sum.iter_mut().zip(pixel) {
+            *sum += linear[usize::from(*byte)];
+        }
+        sum[3] += 1.0;
+    }
+    let mean = |[r, g, b, pixels]: [f64; 4]| [r, g, b].map(|sum| (sum / pixels) as f32);
+    sums.into_iter().map(mean).collect()
 }
 
 /// Means of linear light over the pixels of a picture that comes row after row.
@@ -79,6 +184,20 @@ impl Thumbnail {
             }
             self.rows += 1;
         }
+    }
+
+    /// Takes the next row, of linear light.
+    fn add_light(&mut self, row: &[[f32; 3]]) {
+        let y = self.rows * self.size[1] / self.from[1];
+        for (x, pixel) in row.iter().enumerate() {
+            let x = x * self.size[0] / self.from[0];
+            let sum = &mut self.sums[y * self.size[0] + x];
+            for (sum, light) in sum.iter_mut().zip(pixel) {
+                *sum += f64::from(*light);
+            }
+            sum[3] += 1.0;
+        }
+        self.rows += 1;
     }
 
     /// Its sRGB bytes, three a pixel.

@@ -179,7 +179,7 @@ fn the_books_balance_and_undo_and_redo_give_the_same_tiles() {
     );
     assert!((report.accounts_m3["canvas"] - volume).abs() < 1e-18);
     assert!(slots < painting.scene().paints.len());
-    assert_eq!(painting.undo(None).as_deref(), Ok("underpaint"));
+    assert_eq!(painting.undo(None).as_deref(), Ok("underpainting"));
     assert!(versions(&painting) == bare && painting.report().quanta_missing == 0);
     assert!(versions(&painting) != laid, "a fault would pass");
     painting.redo(None).expect("redone");

@@ -5,7 +5,7 @@ use std::fmt;
 use maulstick_canvas::EditError;
 use maulstick_types::Mixture;
 use maulstick_types::edits::{
-    Branch, Clean, Dry, Edit, Fill, Forget, Ground, Handle, Keep, Load, LoadFrom, NameLayer,
+    Branch, Clean, Dry, Edit, Fill, Forget, GoTo, Ground, Handle, Keep, Load, LoadFrom, NameLayer,
     Opacity, Piles, Place, Redo, Relight, ReturnTo, Scrape, Size, StopDrying, Tooth, Tune, Undo,
     Wells, Wet,
 };

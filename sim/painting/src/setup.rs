@@ -164,8 +164,8 @@ fn palette_cells(cell_m: f64) -> [u32; 2] {
 }
 
 /// Wells of a palette of so many cells, across and up, that hold these mixtures from the top: along its
-/// right edge, toward the canvas, smaller where they are many, and the cleaner beside the lowest, so that
-/// they are within reach while the rest of the palette is not.
+/// right edge, toward the canvas, smaller where they are many, so that they are within reach while the rest of the
+/// palette is not. Beside the lowest stands the cleaner, above it the medium.
 #[must_use]
 pub fn wells_of(mixtures: &[Mixture], cells: [u32; 2], cell_m: f64) -> Vec<Well> {
     let [width, height] = cells.map(f64::from);
@@ -187,7 +187,12 @@ pub fn wells_of(mixtures: &[Mixture], cells: [u32; 2], cell_m: f64) -> Vec<Well>
         radius_m: cleaner_m,
         kind: WellKind::Cleaner,
     };
-    paints.chain([cleaner]).collect()
+    let medium = Well {
+        center_m: [cleaner.center_m[0], 4.25 * cleaner_m],
+        radius_m: cleaner_m,
+        kind: WellKind::Medium,
+    };
+    paints.chain([cleaner, medium]).collect()
 }
 
 /// Checks the size of a surface and of its cells.
@@ -238,7 +243,7 @@ mod tests {
         };
         let right = palette.pose.position_m[0] + f64::from(palette.cells[0]) * palette.cell_m;
         assert!(right < canvas.pose.position_m[0]);
-        assert_eq!(palette.wells.len(), 11);
+        assert_eq!(palette.wells.len(), 12);
         for well in &palette.wells {
             for i in 0..2 {
                 let size = f64::from(palette.cells[i]) * palette.cell_m;
@@ -286,10 +291,18 @@ mod tests {
         for (count, cells) in [(1, whole), (12, whole), (40, [200, 900])] {
             let mixtures = vec![Mixture::pure("Bone Black"); count];
             let wells = wells_of(&mixtures, cells, 2.5e-4);
-            assert_eq!(wells.len(), count + 1);
+            assert_eq!(wells.len(), count + 2);
             for pair in wells[..count].windows(2) {
                 let apart = pair[0].center_m[1] - pair[1].center_m[1];
                 assert!(apart > 2.0 * pair[0].radius_m, "{count} wells overlap");
+            }
+            let jars = &wells[count..];
+            for (at, jar) in jars.iter().enumerate() {
+                for other in wells.iter().take(count + at) {
+                    let [x, y] = [0, 1].map(|i| jar.center_m[i] - other.center_m[i]);
+                    let apart = (x * x + y * y).sqrt() - jar.radius_m - other.radius_m;
+                    assert!(apart > 0.0, "{count} wells: {jar:?} {other:?}");
+                }
             }
             for well in &wells {
                 let inside = |i: usize| {

@@ -1,14 +1,18 @@
 //! The palette: a brush loads by touching a well, leaves paint in the mixing area, and is cleaned.
 
 use maulstick_brush::BrushFile;
+use maulstick_canvas::quantum::QUANTUM_M;
+use maulstick_canvas::tile::TileId;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::ledger::LedgerReport;
+use maulstick_painting::picture::unlit_picture;
 use maulstick_painting::setup::wells_of;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_session::Offline;
 use maulstick_types::Mixture;
 use maulstick_types::edits::Wells;
-use maulstick_types::scene::{PALETTE, Scene, Surface, Well, WellKind};
+use maulstick_types::paint::TILE;
+use maulstick_types::scene::{CANVAS, PALETTE, Scene, Surface, Well, WellKind};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
 
 /// A brush over a canvas and its palette.
@@ -50,6 +54,7 @@ impl Hand {
         let holds = |kind: &WellKind| match kind {
             WellKind::Paint { mixture } => paint == Some(mixture.parts[0].paint.as_str()),
             WellKind::Cleaner => paint.is_none(),
+            WellKind::Medium => paint == Some("Thinner"),
         };
         let well = palette
             .wells
@@ -190,7 +195,7 @@ fn other_wells_give_other_paint_and_what_was_stirred_in_them_is_scraped_off() {
     let wells = wells_of(&[teal], palette.cells, palette.cell_m);
     hand.lay(wells).expect("wells");
     let palette = hand.palette();
-    assert_eq!(palette.wells.len(), 2, "one paint and the cleaner");
+    assert_eq!(palette.wells.len(), 3, "one paint, the cleaner, the medium");
     let WellKind::Paint { mixture } = &palette.wells[0].kind else {
         panic!("a paint")
     };
@@ -241,4 +246,90 @@ fn wells_beside_the_palette_or_of_unknown_paint_are_refused() {
         error.advice().to_string()
     );
     assert_eq!(hand.palette(), before, "a refused command changes nothing");
+}
+
+/// Mean green of the canvas, 0 to 255, over the cells that have wet paint, and the volumes on it, m³: of all paint and of
+/// the medium.
+fn film(hand: &mut Hand) -> (f64, f64, f64) {
+    let painting = hand.offline.painting_mut();
+    let picture = unlit_picture(painting, CANVAS);
+    let store = painting.store(CANVAS).expect("a canvas");
+    let (mut sum, mut cells) = (0.0, 0.0);
+    for (id, version) in store.iter() {
+        let Some(tile) = &version.tile else { continue };
+        let wet = tile.wet();
+        for at in 0..TILE * TILE {
+            // Edges, where there is next to nothing, count for no film.
+            let film: f32 = wet.iter().map(|(_, plane)| plane[at]).sum();
+            if f64::from(film) * QUANTUM_M > 5e-6 {
+                let (x, y) = (
+                    id.x as usize * TILE + at % TILE,
+                    id.y as usize * TILE + at / TILE,
+                );
+                let pixel = (picture.height - 1 - y) * picture.width + x;
+                sum += f64::from(picture.rgb[3 * pixel + 1]);
+                cells += 1.0;
+            }
+        }
+    }
+    assert!(cells > 500.0, "a stroke");
+    let report = hand.report();
+    let medium = report
+        .paints_m3
+        .get("Thinner")
+        .map_or(0.0, |row| row["canvas"]);
+    (sum / cells, report.accounts_m3["canvas"], medium)
+}
+
+#[test]
+fn the_jar_of_medium_thins_what_the_brush_carries() {
+    let share = |hand: &mut Hand| {
+        let report = hand.report();
+        let of = |paint: &str| report.paints_m3.get(paint).map_or(0.0, |row| row["brush"]);
+        of("Thinner") / report.accounts_m3["brush"]
+    };
+    let (mut hands, mut shares) = (Vec::new(), Vec::new());
+    for dips in 0..3 {
+        let mut hand = Hand::new();
+        let blue = hand.well(Some("Ultramarine Blue"));
+        hand.drag_through(blue);
+        let jar = hand.well(Some("Thinner"));
+        for _ in 0..dips {
+            hand.drag_through(jar);
+        }
+        shares.push(share(&mut hand));
+        hand.stroke([-0.012, 0.0], [0.012, 0.003]);
+        hands.push(hand);
+    }
+    assert!(shares[0] == 0.0 && shares[1] > 0.2, "{shares:?}");
+    assert!(
+        shares[2] > shares[1] + 0.05 && shares[2] < 0.98,
+        "{shares:?}"
+    );
+    let films: Vec<_> = hands.iter_mut().map(film).collect();
+    for pair in films.windows(2) {
+        let ((dark, all, medium), (light, thin, more)) = (pair[0], pair[1]);
+        assert!(light > dark + 4.0, "the ground shines through: {films:?}");
+        assert!(thin - more < all - medium, "it has less pigment: {films:?}");
+    }
+    // Nothing stays in the jar, and it never runs out.
+    for hand in &mut hands {
+        let jar = hand.well(Some("Thinner"));
+        let palette = hand.palette();
+        let cell = [0, 1].map(|i| (jar[i] - palette.pose.position_m[i]) / palette.cell_m);
+        let store = hand
+            .offline
+            .painting_mut()
+            .store(PALETTE)
+            .expect("a palette");
+        let id = TileId {
+            x: cell[0] as u32 / TILE as u32,
+            y: cell[1] as u32 / TILE as u32,
+        };
+        let at = cell[1] as usize % TILE * TILE + cell[0] as usize % TILE;
+        let held = store.version(id).tile.as_ref().map_or(0.0, |tile| {
+            tile.wet().iter().map(|(_, plane)| plane[at]).sum::<f32>()
+        });
+        assert_eq!(held, 0.0);
+    }
 }

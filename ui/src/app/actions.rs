@@ -196,17 +196,24 @@ impl App {
         };
         // Once for each start of the paint node, and when the painter has changed hands.
         let key = (side, self.rig.starts);
+        let before = self.side.replace(key);
         let rests = is_same(&palette.pose, &beside(canvas, palette, other));
-        if self.side.replace(key) != Some(key) && rests {
-            let pose = beside(canvas, palette, side);
-            let wells = mirrored(&palette.wells, size_m(palette));
-            if let (Ok(laid), Ok(wells)) = (
-                Place::new(PALETTE, pose, palette.zoom),
-                Wells::new(PALETTE, wells),
-            ) {
-                self.requests.send(laid);
-                self.requests.send(wells);
-            }
+        let changes = before == Some((other, self.rig.starts));
+        if before == Some(key) || !(rests || changes) {
+            return;
+        }
+        // One that is out stays where it is.
+        let pose = match rests {
+            true => beside(canvas, palette, side),
+            false => palette.pose.clone(),
+        };
+        let wells = mirrored(&palette.wells, size_m(palette));
+        if let (Ok(laid), Ok(wells)) = (
+            Place::new(PALETTE, pose, palette.zoom),
+            Wells::new(PALETTE, wells),
+        ) {
+            self.requests.send(laid);
+            self.requests.send(wells);
         }
     }
 }

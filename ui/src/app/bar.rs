@@ -49,6 +49,8 @@ const GROUPS: [(&str, &[Action]); 4] = [
             Action::Palette,
             Action::Panels,
             Action::Reference,
+            Action::ChooseTracing,
+            Action::Tracing,
             Action::Fit,
             Action::Hundred,
             Action::Mirror,

@@ -38,7 +38,7 @@ use crate::input::presses;
 use crate::render::device_loss::DeviceLoss;
 use crate::render::display_transform::DisplayTransform;
 use crate::render::frame_reports::Presenter;
-use crate::render::scene::{SceneRenderer, Source};
+use crate::render::scene::{SceneRenderer, Seen, Source};
 use crate::rig::brushes::{BrushTracker, SILENCE_NS};
 use crate::rig::dispatcher::CommandDispatcher;
 use crate::rig::health::HealthMonitor;
@@ -46,9 +46,10 @@ use crate::rig::listener::RigListener;
 use crate::rig::requests::Requests;
 use crate::rig::state::RigState;
 use crate::rig::stroke_barrier::StrokeBarrier;
-use crate::rig::thumbnails::{Picture, ThumbnailFetcher};
+use crate::rig::thumbnails::{Picture, Pictured, ThumbnailFetcher};
 use crate::settings::look::Look;
 use crate::settings::preferences::Preferences;
+use crate::tracing::TracingPicture;
 use crate::view::camera::{DESK_COLOUR, View};
 use crate::view::palette_slide::PaletteSlide;
 use crate::widgets::context::PanelContext;
@@ -103,6 +104,7 @@ pub struct App {
     /// The side of the palette as it was last looked at, and the start of the paint node then.
     side: Option<(Side, u64)>,
     overlay: Overlay,
+    tracing: TracingPicture,
     requests: Requests,
     barrier: StrokeBarrier,
     dispatcher: CommandDispatcher,
@@ -180,6 +182,7 @@ impl App {
             view: None,
             pointer_path: PointerPath::default(),
             overlay: Overlay::default(),
+            tracing: TracingPicture::default(),
             requests: Requests::default(),
             barrier: StrokeBarrier::new(&**bus, topics)?,
             notifications,
@@ -329,14 +332,19 @@ impl App {
     }
 }
 
-/// Fetches small pictures of versions from the paint node.
+/// Fetches small pictures of versions and steps from the paint node.
 fn fetcher(member: &NodeHandle) -> ThumbnailFetcher {
     let (bus, topic) = (Arc::clone(&member.bus), member.topics.thumbnail());
     let me = member.origin("ui");
-    let fetch = move |version: &str| {
+    let fetch = move |what: &Pictured| {
+        let (version, step) = match what {
+            Pictured::Version(name) => (name.clone(), None),
+            Pictured::Step(step) => (String::new(), Some(*step)),
+        };
         let request = ThumbnailRequest {
-            version: version.to_owned(),
+            version,
             side: THUMBNAIL,
+            step,
         };
         let reply = ask(&*bus, &topic, Qos::Data, me, &request, FETCH).ok()?;
         let ThumbnailReply {
@@ -409,13 +417,20 @@ impl eframe::App for App {
                 ui.ctx().request_repaint();
             }
             let pixels_per_point = ui.ctx().pixels_per_point();
-            let shapes = self.scene_renderer.shapes(
-                &self.rig,
-                &surfaces,
-                &self.tracker,
-                &view,
+            let work = &mut PanelContext {
+                rig: &mut self.rig,
+                requests: &mut self.requests,
+                preferences: &mut self.preferences,
+                notifications: &mut self.notifications,
+            };
+            let seen = Seen {
+                view: &view,
                 pixels_per_point,
-            );
+                tracing: self.tracing.follow(ui.ctx(), work),
+            };
+            let shapes = self
+                .scene_renderer
+                .shapes(&self.rig, &surfaces, &self.tracker, &seen);
             ui.painter().extend(shapes);
             self.name_wells(ui.painter(), &view, &surfaces);
             let palette = surfaces.iter().find(|surface| surface.id == PALETTE);

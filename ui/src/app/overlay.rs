@@ -209,12 +209,17 @@ impl Overlay {
                 self.column.focus();
             }
             Action::Reference if self.reference.toggle(work.preferences) => {}
+            Action::Tracing => match work.tracing_mut() {
+                Some(tracing) => tracing.shown = !tracing.shown,
+                None => drop(self.files.follow(context, Action::ChooseTracing, work)),
+            },
             Action::New
             | Action::Open
             | Action::Save
             | Action::SaveAs
             | Action::Export
-            | Action::Reference => {
+            | Action::Reference
+            | Action::ChooseTracing => {
                 self.files.follow(context, act, work);
             }
             Action::Keys => self.keys = !self.keys,
@@ -294,6 +299,7 @@ fn past_tense(request: &Request) -> Option<&'static str> {
     match edit {
         Edit::Undo(_) => Some("Undone"),
         Edit::Redo(_) => Some("Redone"),
+        Edit::GoTo(_) => Some("Now at"),
         Edit::Dry(_) => Some("Dried"),
         Edit::LoadFrom(_) => Some("Loaded"),
         Edit::Scrape(_) => Some("Scraped"),
@@ -305,7 +311,9 @@ fn past_tense(request: &Request) -> Option<&'static str> {
 mod tests {
     use eframe::egui::{Key, Modifiers};
 
+    use crate::settings::preferences::Preferences;
     use crate::test_support::overlay_bench::{ctrl, press, window};
+    use crate::tracing::settings::{Tracing, Tracings};
 
     #[test]
     fn what_a_key_has_done_is_told_once_it_is_done() {
@@ -326,6 +334,24 @@ mod tests {
             bench.answer(&asked[0], Ok(detail));
             let lines = bench.told();
             assert!(lines.lines().any(|line| line.trim_end() == told), "{lines}");
+        }
+    }
+
+    #[test]
+    fn a_key_hides_the_tracing_picture_and_shows_it() {
+        let mut harness = window(None);
+        let shown = |preferences: &Preferences| {
+            let mut tracings = preferences.tracings.iter();
+            tracings.next().map(|tracing| tracing.shown)
+        };
+        let tracing = Tracing {
+            path: "/sketch.png".into(),
+            ..Tracing::default()
+        };
+        harness.state_mut().preferences.tracings = Tracings::of(tracing);
+        for expected in [false, true] {
+            ctrl(&mut harness, Key::T, Modifiers::NONE);
+            assert_eq!(shown(&harness.state().preferences), Some(expected));
         }
     }
 }

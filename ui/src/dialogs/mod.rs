@@ -58,6 +58,7 @@ enum Dialog {
     SaveAs(SaveAs),
     Export(ExportPicture),
     Picture(ChoosePicture),
+    Tracing(ChoosePicture),
 }
 
 /// Files in the window.
@@ -102,7 +103,16 @@ impl Files {
                 let export = ExportPicture::new(&folder(work), &stem(work));
                 self.begin(Dialog::Export(export));
             }
-            Action::Reference => self.choose_picture(work),
+            Action::Reference => {
+                let known = work.preferences.reference.path.as_deref();
+                let choose = Self::picture(known, "Pin a reference picture", work);
+                self.begin(Dialog::Picture(choose));
+            }
+            Action::ChooseTracing => {
+                let known = work.tracing().map(|tracing| &*tracing.path);
+                let choose = Self::picture(known, "A picture to paint after, on the canvas", work);
+                self.begin(Dialog::Tracing(choose));
+            }
             _ => return false,
         }
         true
@@ -119,17 +129,17 @@ impl Files {
         OpenPainting::new(&folder(work), recent, Unkept::of(work.rig))
     }
 
-    /// Opens the dialog that picks a reference picture: beside the one that is pinned, else beside the painting.
-    fn choose_picture(&mut self, work: &PanelContext<'_>) {
-        let known = work
-            .preferences
-            .reference
-            .path
-            .as_deref()
-            .and_then(Path::parent);
-        let known = known.filter(|folder| folder.is_dir());
+    /// The dialog that picks a picture: beside the one that is known, else beside the painting.
+    fn picture(
+        known: Option<&Path>,
+        title: &'static str,
+        work: &PanelContext<'_>,
+    ) -> ChoosePicture {
+        let known = known
+            .and_then(Path::parent)
+            .filter(|folder| folder.is_dir());
         let folder = known.map_or_else(|| folder(work), Path::to_owned);
-        self.begin(Dialog::Picture(ChoosePicture::new(&folder)));
+        ChoosePicture::new(&folder, title)
     }
 
     fn save(&mut self, work: &mut PanelContext<'_>) {
@@ -198,6 +208,15 @@ impl Files {
                 }
                 (answer, None)
             }
+            Dialog::Tracing(picture) => {
+                let (answer, path) = picture.show(context);
+                if let Some(path) = path {
+                    work.trace(&path);
+                    self.dialog = None;
+                    return;
+                }
+                (answer, None)
+            }
         };
         match (answer, command) {
             (Answer::Leave, _) => (self.dialog, self.waiting) = (None, None),
@@ -248,7 +267,7 @@ impl Files {
                     Some(Dialog::New(new)) => new.refused(words),
                     Some(Dialog::Open(open)) => open.refused(words),
                     Some(Dialog::SaveAs(save_as)) => save_as.refused(words),
-                    Some(Dialog::Export(_) | Dialog::Picture(_)) | None => {
+                    Some(Dialog::Export(_) | Dialog::Picture(_) | Dialog::Tracing(_)) | None => {
                         work.notifications.of(fault)
                     }
                 }

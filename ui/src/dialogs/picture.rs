@@ -1,4 +1,4 @@
-//! Dialog for a reference picture.
+//! Dialog for a picture to look at or to trace.
 
 use std::path::{Path, PathBuf};
 
@@ -11,16 +11,18 @@ use crate::dialogs::paths;
 /// A picture that is being chosen.
 #[derive(Debug)]
 pub(crate) struct ChoosePicture {
+    title: &'static str,
     browser: Browser,
     wrong: Option<String>,
 }
 
 impl ChoosePicture {
-    /// One of `folder`.
+    /// One of `folder`; `title` says what it is for.
     #[must_use]
-    pub(crate) fn new(folder: &Path) -> Self {
+    pub(crate) fn new(folder: &Path, title: &'static str) -> Self {
         let begin = format!("{}/", paths::shown(folder).trim_end_matches('/'));
         Self {
+            title,
             browser: Browser::at(&begin, Purpose::Read, &paths::PICTURES),
             wrong: None,
         }
@@ -29,7 +31,7 @@ impl ChoosePicture {
     /// Shows the dialog; the picture that was chosen.
     pub(crate) fn show(&mut self, context: &Context) -> (Answer, Option<PathBuf>) {
         let mut taken = None;
-        let answer = dialog::show(context, "Pin a reference picture", |ui| {
+        let answer = dialog::show(context, self.title, |ui| {
             taken = self.browser.show(ui, "Picture");
             Foot {
                 go: "Open",

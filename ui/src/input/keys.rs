@@ -19,6 +19,10 @@ pub enum Action {
     Export,
     /// Show or hide the reference picture beside the canvas.
     Reference,
+    /// Choose a picture to paint after on the canvas.
+    ChooseTracing,
+    /// Show or hide it.
+    Tracing,
     /// The newest step back.
     Undo,
     /// The newest undo back.
@@ -121,7 +125,7 @@ const fn key(act: Action, modifiers: Modifiers, key: Key, words: &'static str) -
 }
 
 /// The keys of a new painter.
-pub(crate) const BINDINGS: [Binding; 35] = [
+pub(crate) const BINDINGS: [Binding; 37] = [
     key(
         Action::Palette,
         Modifiers::NONE,
@@ -243,6 +247,18 @@ pub(crate) const BINDINGS: [Binding; 35] = [
         Modifiers::COMMAND,
         Key::R,
         "Show or hide the reference picture",
+    ),
+    key(
+        Action::ChooseTracing,
+        Modifiers::COMMAND.plus(Modifiers::SHIFT),
+        Key::T,
+        "Tracing picture…",
+    ),
+    key(
+        Action::Tracing,
+        Modifiers::COMMAND,
+        Key::T,
+        "Show or hide the tracing picture",
     ),
     key(
         Action::Keys,

@@ -11,12 +11,12 @@ use crate::widgets::context::PanelContext;
 /// Largest number of paints on a palette: more would make the wells too small for a brush.
 pub(crate) const MOST: usize = 24;
 
-/// Mixtures in the wells of a palette, from the top; without the cleaner.
+/// Mixtures in the wells of a palette, from the top; without the jars.
 #[must_use]
 pub(crate) fn mixtures(palette: &Surface) -> Vec<Mixture> {
     let held = palette.wells.iter().map(|well| match &well.kind {
         WellKind::Paint { mixture } => Some(mixture.clone()),
-        WellKind::Cleaner => None,
+        WellKind::Cleaner | WellKind::Medium => None,
     });
     held.flatten().collect()
 }

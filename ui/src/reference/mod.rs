@@ -7,7 +7,7 @@
 //! | `picture` | pictures, read and made small |
 
 mod frame;
-mod picture;
+pub(crate) mod picture;
 
 use std::path::{Path, PathBuf};
 

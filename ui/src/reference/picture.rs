@@ -55,6 +55,12 @@ impl Picture {
         })
     }
 
+    /// Its pixels, encoded sRGB, row after row from the top.
+    #[must_use]
+    pub(crate) fn rgb(&self) -> &[[u8; 3]] {
+        &self.rgb
+    }
+
     /// One of these pixels, row after row from the top.
     #[cfg(test)]
     pub(crate) fn of(size: [usize; 2], rgb: Vec<[u8; 3]>) -> Self {

@@ -9,6 +9,7 @@ use eframe::egui_wgpu::{self, CallbackResources, CallbackTrait, wgpu};
 use crate::render::gpu::{Filterable, Gpu, Pass, texture_binding};
 use crate::render::show_surface::PixelRect;
 use crate::render::surface::{Laid, Passes};
+use crate::tracing::projection::Projector;
 use crate::view::camera::View;
 
 /// The backdrop, and the pass that copies it into the window.
@@ -54,6 +55,17 @@ impl Backdrop {
     /// Draws what has changed of the surfaces in a view of `size` pixels, from the lowest; returns
     /// how many pixels that were.
     pub fn update(&mut self, gpu: &Gpu, passes: &Passes, size: [u32; 2], laid: &[Laid]) -> u64 {
+        self.update_with(gpu, passes, size, (laid, None))
+    }
+
+    /// As [`update`](Self::update), with what a projector throws on the lowest surface.
+    pub(crate) fn update_with(
+        &mut self,
+        gpu: &Gpu,
+        passes: &Passes,
+        size: [u32; 2],
+        (laid, projector): (&[Laid], Option<&Projector>),
+    ) -> u64 {
         if laid.is_empty() {
             self.drawn = None;
             return 0;
@@ -95,9 +107,15 @@ impl Backdrop {
                 ..Default::default()
             });
             pass.set_scissor_rect(from[0], from[1], extent[0], extent[1]);
-            passes
-                .show
-                .draw(&mut pass, laid.iter().map(|laid| &laid.bound));
+            for (i, laid) in laid.iter().enumerate() {
+                if i == 0 {
+                    passes.show.fill(&mut pass, &laid.bound);
+                }
+                passes.show.lay(&mut pass, &laid.bound);
+                if let (0, Some(projector)) = (i, projector) {
+                    projector.draw(&mut pass);
+                }
+            }
         }
         gpu.queue.submit([encoder.finish()]);
         u64::from(extent[0]) * u64::from(extent[1])

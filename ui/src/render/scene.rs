@@ -19,10 +19,12 @@ use crate::render::brush::renderer::{Below, BrushRenderer};
 use crate::render::frame_reports::{Completion, Holding};
 use crate::render::frames::{FrameInbox, FrameSource, pull};
 use crate::render::gpu::Gpu;
-use crate::render::surface::{Passes, SurfaceView};
+use crate::render::show_surface::PixelRect;
+use crate::render::surface::{Laid, Passes, SurfaceView};
 use crate::rig::brushes::BrushTracker;
 use crate::rig::health::RigEvent;
 use crate::rig::state::RigState;
+use crate::tracing::projection::{Projector, Slide};
 use crate::view::camera::View;
 use crate::view::visible_tiles::Wanted;
 
@@ -50,7 +52,19 @@ struct Painter {
     gpu: Gpu,
     passes: Passes,
     backdrop: Backdrop,
+    projector: Projector,
     brushes: BrushRenderer,
+}
+
+/// How the desk is seen.
+#[derive(Debug)]
+pub(crate) struct Seen<'a> {
+    /// Where it is in the window.
+    pub view: &'a View,
+    /// Pixels of a point.
+    pub pixels_per_point: f32,
+    /// The picture that is thrown on the canvas, and its strength.
+    pub tracing: Option<(Arc<Slide>, f32)>,
 }
 
 /// Source of frames, and receiver of their reports.
@@ -96,6 +110,7 @@ impl SceneRenderer {
         self.painter = Some(Painter {
             passes: Passes::new(&gpu, export),
             backdrop: Backdrop::new(&gpu),
+            projector: Projector::new(&gpu),
             brushes: BrushRenderer::new(&gpu, export),
             gpu,
         });
@@ -159,20 +174,20 @@ impl SceneRenderer {
         }
     }
 
-    /// The desk from the bottom: `surfaces` where they are to be seen, brushes.
+    /// The desk from the bottom: `surfaces` where they are to be seen, the tracing picture on the canvas, brushes.
     pub(crate) fn shapes(
         &mut self,
         rig: &RigState,
         surfaces: &[Surface],
         tracker: &BrushTracker,
-        view: &View,
-        pixels_per_point: f32,
+        seen: &Seen<'_>,
     ) -> Vec<Shape> {
+        let (view, pixels_per_point) = (seen.view, seen.pixels_per_point);
         let (Some(painter), Some(scene), Some(desk)) = (&mut self.painter, &rig.scene, &rig.desk)
         else {
             return Vec::new();
         };
-        let mut laid = Vec::new();
+        let mut laid: Vec<Laid> = Vec::new();
         for (layer, id) in self.surfaces.iter_mut().zip(SURFACES) {
             let Some(surface) = surfaces.iter().find(|surface| surface.id == id) else {
                 continue;
@@ -184,11 +199,21 @@ impl SceneRenderer {
             layer.inbox.want(wanted);
             let (gpu, passes) = (&painter.gpu, &painter.passes);
             let atlases = &mut layer.view;
-            laid.extend(atlases.lay(gpu, passes, surface, view, pixels_per_point));
+            let mut own = atlases.lay(gpu, passes, surface, view, pixels_per_point);
+            if let (CANVAS, Some(own)) = (id, &mut own) {
+                let slide = seen.tracing.as_ref();
+                let slide = slide.map(|(slide, strength)| (slide, *strength));
+                let projector = &mut painter.projector;
+                if projector.throw(gpu, slide, surface, (view, pixels_per_point)) {
+                    own.changed = PixelRect::EVERYTHING;
+                }
+            }
+            laid.extend(own);
         }
         let size = view.pixels(pixels_per_point);
         let (gpu, passes) = (&painter.gpu, &painter.passes);
-        painter.backdrop.update(gpu, passes, size, &laid);
+        let shown = (&laid[..], Some(&painter.projector));
+        painter.backdrop.update_with(gpu, passes, size, shown);
         let mut shapes: Vec<Shape> = painter.backdrop.shape(view).into_iter().collect();
         for held in tracker.held(desk) {
             if let Some(head) = tracker.head(held.name) {

@@ -269,20 +269,17 @@ impl ShowSurface {
         gpu.bind(&self.layout, &resources)
     }
 
-    /// Draws the desk and, over it, surfaces from the lowest.
-    pub fn draw<'a>(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        bound: impl Iterator<Item = &'a wgpu::BindGroup>,
-    ) {
-        for (i, bound) in bound.enumerate() {
-            pass.set_bind_group(0, bound, &[]);
-            if i == 0 {
-                pass.set_pipeline(&self.fill);
-                pass.draw(0..4, 0..1);
-                pass.set_pipeline(&self.show);
-            }
-            pass.draw(0..4, 0..1);
-        }
+    /// Draws the desk under the lowest surface.
+    pub fn fill(&self, pass: &mut wgpu::RenderPass<'_>, lowest: &wgpu::BindGroup) {
+        pass.set_pipeline(&self.fill);
+        pass.set_bind_group(0, lowest, &[]);
+        pass.draw(0..4, 0..1);
+    }
+
+    /// Draws a surface over what is drawn.
+    pub fn lay(&self, pass: &mut wgpu::RenderPass<'_>, bound: &wgpu::BindGroup) {
+        pass.set_pipeline(&self.show);
+        pass.set_bind_group(0, bound, &[]);
+        pass.draw(0..4, 0..1);
     }
 }

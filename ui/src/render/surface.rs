@@ -181,7 +181,7 @@ impl SurfaceView {
 /// A surface in its place, ready to be shown.
 #[derive(Debug)]
 pub struct Laid {
-    /// For [`ShowSurface::draw`].
+    /// For [`ShowSurface::lay`].
     pub bound: wgpu::BindGroup,
     /// Pixels that differ from those of the previous placement.
     pub changed: PixelRect,
@@ -303,9 +303,9 @@ pub(crate) mod tests {
         let laid = view
             .lay(gpu, passes, &surface, &look, 1.0)
             .expect("a picture");
-        let bound = std::iter::once(&laid.bound);
         draw(gpu, &target, wgpu::Color::RED, |pass| {
-            passes.show.draw(pass, bound)
+            passes.show.fill(pass, &laid.bound);
+            passes.show.lay(pass, &laid.bound);
         });
         let bytes = read(gpu, &target);
         bytes.chunks_exact(4).map(|p| [p[0], p[1], p[2]]).collect()

@@ -7,7 +7,7 @@
 //! | [`brushes`] | newest sample and bend of each brush |
 //! | `force_history` | force trace of each device, and the device that paints |
 //! | `health` | events of the other processes |
-//! | `thumbnails` | pictures of versions |
+//! | `thumbnails` | pictures of versions and steps |
 //! | `requests` | commands that wait to be sent |
 //! | `stroke_barrier` | delays a command until the strokes before it are painted |
 //! | `carried_paint` | what a brush carries, for its gauge |

@@ -1,4 +1,4 @@
-//! Thumbnails of versions, and the thread that fetches them.
+//! Thumbnails of versions and of the steps of the history, and the thread that fetches them.
 
 use std::collections::BTreeMap;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -28,6 +28,21 @@ impl Picture {
     }
 }
 
+/// What a picture shows.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Pictured {
+    /// The version of this name.
+    Version(String),
+    /// The painting after the step of this number, 0 for before all steps.
+    Step(u64),
+}
+
+impl From<&str> for Pictured {
+    fn from(version: &str) -> Self {
+        Self::Version(version.to_owned())
+    }
+}
+
 /// State of one picture.
 #[derive(Clone, Debug)]
 enum Known {
@@ -41,48 +56,52 @@ enum Known {
     Missing(u64),
 }
 
-/// The small pictures of versions, by name.
+/// The small pictures that the window has.
 #[derive(Clone, Debug, Default)]
 pub struct Thumbnails {
-    known: BTreeMap<String, Known>,
+    known: BTreeMap<Pictured, Known>,
 }
 
 impl Thumbnails {
-    /// The picture of a version; a missing one is requested.
-    pub fn of(&mut self, version: &str, now_ns: u64) -> Option<Arc<Picture>> {
-        match self.known.get(version) {
+    /// A picture; a missing one is requested.
+    pub fn of(&mut self, what: impl Into<Pictured>, now_ns: u64) -> Option<Arc<Picture>> {
+        let what = what.into();
+        match self.known.get(&what) {
             Some(Known::Here(picture)) => return Some(Arc::clone(picture)),
             Some(Known::Wanted | Known::Asked) => return None,
             Some(Known::Missing(until_ns)) if now_ns < *until_ns => return None,
             Some(Known::Missing(_)) | None => {}
         }
-        self.known.insert(version.to_owned(), Known::Wanted);
+        self.known.insert(what, Known::Wanted);
         None
     }
 
-    /// Forgets the pictures of all versions but these: a name may be given to another one.
-    pub fn keep<'a>(&mut self, versions: impl IntoIterator<Item = &'a str>) {
-        let versions: Vec<&str> = versions.into_iter().collect();
-        self.known
-            .retain(|name, _| versions.contains(&name.as_str()));
+    /// Forgets all pictures but these: a name may be given to another version.
+    pub fn keep(&mut self, shown: &[Pictured]) {
+        self.known.retain(|what, _| shown.contains(what));
     }
 
-    /// Takes the names to request.
-    fn wanted(&mut self) -> Vec<String> {
-        let mut names = Vec::new();
-        for (name, known) in &mut self.known {
+    /// Takes what is to be requested.
+    fn wanted(&mut self) -> Vec<Pictured> {
+        let mut wanted = Vec::new();
+        for (what, known) in &mut self.known {
             if matches!(known, Known::Wanted) {
                 *known = Known::Asked;
-                names.push(name.clone());
+                wanted.push(what.clone());
             }
         }
-        names
+        // Of steps the newest ones are looked at first.
+        wanted.sort_by_key(|what| match what {
+            Pictured::Version(_) => 0,
+            Pictured::Step(id) => u64::MAX - id,
+        });
+        wanted
     }
 
     /// Takes in what came of a question.
-    pub fn came(&mut self, version: &str, picture: Option<Picture>, now_ns: u64) {
+    pub fn came(&mut self, what: impl Into<Pictured>, picture: Option<Picture>, now_ns: u64) {
         // The version may have been deleted meanwhile.
-        if let Some(known) = self.known.get_mut(version) {
+        if let Some(known) = self.known.get_mut(&what.into()) {
             *known = match picture {
                 Some(picture) => Known::Here(Arc::new(picture)),
                 None => Known::Missing(now_ns + AGAIN_NS),
@@ -91,12 +110,12 @@ impl Thumbnails {
     }
 }
 
-type Answers = Arc<Mutex<Vec<(String, Option<Picture>)>>>;
+type Answers = Arc<Mutex<Vec<(Pictured, Option<Picture>)>>>;
 
 /// Asks for small pictures on a thread of its own, one after the other.
 #[derive(Debug)]
 pub(crate) struct ThumbnailFetcher {
-    names: Option<Sender<String>>,
+    questions: Option<Sender<Pictured>>,
     answers: Answers,
     thread: Option<JoinHandle<()>>,
 }
@@ -105,18 +124,18 @@ impl ThumbnailFetcher {
     /// A fetcher that asks by `fetch`, which may take its time, and rings `wake` at each answer.
     #[must_use]
     pub(crate) fn new(
-        fetch: impl Fn(&str) -> Option<Picture> + Send + 'static,
+        fetch: impl Fn(&Pictured) -> Option<Picture> + Send + 'static,
         wake: &Wake,
     ) -> Self {
-        let (names, asked): (Sender<String>, Receiver<String>) = channel();
+        let (questions, asked): (Sender<Pictured>, Receiver<Pictured>) = channel();
         let answers = Answers::default();
         let (out, wake) = (Arc::clone(&answers), wake.clone());
         let run = move || {
-            for name in asked {
-                let picture = fetch(&name);
+            for what in asked {
+                let picture = fetch(&what);
                 out.lock()
                     .unwrap_or_else(PoisonError::into_inner)
-                    .push((name, picture));
+                    .push((what, picture));
                 wake.ring();
             }
         };
@@ -127,7 +146,7 @@ impl ThumbnailFetcher {
             .inspect_err(|error| tracing::error!("no thread for small pictures: {error}"))
             .ok();
         Self {
-            names: Some(names),
+            questions: Some(questions),
             answers,
             thread,
         }
@@ -136,12 +155,12 @@ impl ThumbnailFetcher {
     /// Asks for what is wanted and brings what has come.
     pub(crate) fn exchange(&self, thumbnails: &mut Thumbnails, now_ns: u64) {
         let mut answers = self.answers.lock().unwrap_or_else(PoisonError::into_inner);
-        for (name, picture) in answers.drain(..) {
-            thumbnails.came(&name, picture, now_ns);
+        for (what, picture) in answers.drain(..) {
+            thumbnails.came(what, picture, now_ns);
         }
-        for name in thumbnails.wanted() {
-            if let Some(names) = &self.names {
-                names.send(name).ok();
+        for what in thumbnails.wanted() {
+            if let Some(questions) = &self.questions {
+                questions.send(what).ok();
             }
         }
     }
@@ -149,7 +168,7 @@ impl ThumbnailFetcher {
 
 impl Drop for ThumbnailFetcher {
     fn drop(&mut self) {
-        self.names = None;
+        self.questions = None;
         if let Some(thread) = self.thread.take() {
             thread.join().ok();
         }
@@ -171,7 +190,7 @@ mod tests {
     #[test]
     fn each_picture_is_asked_for_once_and_a_missing_one_later_again() {
         let wake = Wake::new();
-        let fetch = |name: &str| (name == "sketch").then(|| picture(7));
+        let fetch = |what: &Pictured| (*what == "sketch".into()).then(|| picture(7));
         let fetcher = ThumbnailFetcher::new(fetch, &wake);
         let mut thumbnails = Thumbnails::default();
         let mut asked = 0;
@@ -181,7 +200,7 @@ mod tests {
         fetcher.exchange(&mut thumbnails, 0);
         assert!(thumbnails.wanted().is_empty(), "both were asked for");
         while thumbnails.of("sketch", 0).is_none()
-            || matches!(thumbnails.known.get("gone"), Some(Known::Asked))
+            || matches!(thumbnails.known.get(&"gone".into()), Some(Known::Asked))
         {
             assert!(wake.wait(PATIENCE), "no answer");
             fetcher.exchange(&mut thumbnails, 0);
@@ -192,7 +211,23 @@ mod tests {
         assert_eq!(thumbnails.of("gone", AGAIN_NS - 1), None);
         assert!(thumbnails.wanted().is_empty());
         assert_eq!(thumbnails.of("gone", AGAIN_NS), None);
-        assert_eq!(thumbnails.wanted(), ["gone"]);
+        assert_eq!(thumbnails.wanted(), ["gone".into()]);
+    }
+
+    #[test]
+    fn the_newest_step_is_pictured_first() {
+        let mut thumbnails = Thumbnails::default();
+        for step in [3, 12, 7] {
+            assert!(thumbnails.of(Pictured::Step(step), 0).is_none());
+        }
+        assert_eq!(thumbnails.wanted(), [12, 7, 3].map(Pictured::Step));
+        thumbnails.keep(&[Pictured::Step(7)]);
+        assert!(thumbnails.of(Pictured::Step(12), 0).is_none());
+        assert_eq!(
+            thumbnails.wanted(),
+            [Pictured::Step(12)],
+            "it was forgotten"
+        );
     }
 
     #[test]
@@ -201,10 +236,10 @@ mod tests {
         assert!(thumbnails.of("one", 0).is_none());
         thumbnails.came("one", Some(picture(1)), 0);
         assert!(thumbnails.of("one", 0).is_some());
-        thumbnails.keep(["two"]);
+        thumbnails.keep(&["two".into()]);
         thumbnails.came("one", Some(picture(2)), 0);
         assert_eq!(thumbnails.of("one", 0), None, "nobody wanted that one");
-        assert_eq!(thumbnails.wanted(), ["one"]);
+        assert_eq!(thumbnails.wanted(), ["one".into()]);
     }
 
     #[test]

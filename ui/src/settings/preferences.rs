@@ -18,6 +18,7 @@ use crate::settings::paint_sets::PaintSet;
 use crate::settings::presets::{Preset, classic};
 use crate::settings::units::Units;
 use crate::settings::window_side::WindowSide;
+use crate::tracing::settings::Tracings;
 
 /// Recent paintings that are remembered.
 const RECENT: usize = 12;
@@ -73,6 +74,8 @@ pub struct Preferences {
     pub presets: Vec<Preset>,
     /// The painter's sets of paints.
     pub paint_sets: Vec<PaintSet>,
+    /// Tracing pictures of the paintings.
+    pub tracings: Tracings,
 }
 
 impl Default for Preferences {
@@ -98,6 +101,7 @@ impl Default for Preferences {
             widths_mm: BTreeMap::new(),
             presets: classic(),
             paint_sets: Vec::new(),
+            tracings: Tracings::default(),
         }
     }
 }

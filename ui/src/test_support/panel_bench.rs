@@ -61,6 +61,7 @@ pub(crate) fn status() -> PaintStatus {
         drying: None,
         export: None,
         backend: "cpu".to_owned(),
+        history: Vec::new(),
     }
 }
 
@@ -96,6 +97,16 @@ impl<P: Panel + Default> Bench<P> {
 }
 
 impl<P> Bench<P> {
+    /// What the panel works with.
+    pub(crate) fn work(&mut self) -> PanelContext<'_> {
+        PanelContext {
+            rig: &mut self.rig,
+            requests: &mut self.requests,
+            preferences: &mut self.preferences,
+            notifications: &mut self.notifications,
+        }
+    }
+
     /// The commands to the paint node since the last call.
     pub(crate) fn asked(&mut self) -> Vec<Command> {
         let requests = self.requests.take().into_iter();

@@ -27,6 +27,7 @@ pub(crate) enum Shown {
 pub(crate) fn name(well: &Well) -> String {
     match &well.kind {
         WellKind::Cleaner => "Cleaner".to_owned(),
+        WellKind::Medium => "Medium".to_owned(),
         WellKind::Paint { mixture } => match &mixture.parts[..] {
             [only] => only.paint.clone(),
             _ => mixture.to_string(),
@@ -119,10 +120,10 @@ mod tests {
                 .collect::<Vec<_>>()
         };
         let all = names(Shown::All);
-        assert_eq!(all.len(), 11);
+        assert_eq!(all.len(), 12);
         assert_eq!(
-            (all[0].as_str(), all[10].as_str()),
-            ("Titanium White", "Cleaner")
+            [0, 10, 11].map(|at| all[at].as_str()),
+            ["Titanium White", "Cleaner", "Medium"]
         );
         let [x, y] = palette.wells[5].center_m;
         let at = Rigid::from(&palette.pose).point(DVec3::new(x, y, 0.0));

@@ -130,8 +130,12 @@ impl Rig {
 
     fn thumbnail(&mut self, version: &str, side: u32) -> ThumbnailReply {
         let topic = self.topics.thumbnail();
-        let version = version.to_owned();
-        self.ask(&topic, &ThumbnailRequest { version, side })
+        let request = ThumbnailRequest {
+            version: version.to_owned(),
+            side,
+            step: None,
+        };
+        self.ask(&topic, &request)
     }
 }
 
@@ -347,4 +351,39 @@ fn a_painting_that_is_refused_its_name_says_none_and_gets_another() {
         std::fs::read(at("a.maul")).expect("there"),
         b"a shopping list"
     );
+}
+
+#[test]
+fn small_pictures_of_steps_show_the_painting_after_each() {
+    let mut rig = Rig::new();
+    let mut shown = vec![(0, rig.thumbnail("", 48))];
+    for paint in ["Titanium White", "Yellow Ochre", "Bone Black"] {
+        rig.fill(paint);
+        let steps = rig.node.sequencer.painting().history().around(30);
+        assert!(steps[0].done && steps[0].what == "fill");
+        shown.push((steps[0].id, rig.thumbnail("", 48)));
+    }
+    let after = |rig: &mut Rig, step: u64| -> ThumbnailReply {
+        let topic = rig.topics.thumbnail();
+        let request = ThumbnailRequest {
+            version: String::new(),
+            side: 48,
+            step: Some(step),
+        };
+        rig.ask(&topic, &request)
+    };
+    let far = |one: &ThumbnailReply, other: &ThumbnailReply| {
+        let bytes = one.rgb.iter().zip(other.rgb.iter());
+        bytes.map(|(one, other)| one.abs_diff(*other)).max()
+    };
+    for (step, picture) in &shown {
+        let drawn = after(&mut rig, *step);
+        assert_eq!((drawn.width, drawn.height), (48, 32));
+        assert!(far(&drawn, picture) <= Some(1), "step {step}");
+    }
+    assert!(
+        far(&shown[2].1, &shown[3].1) > Some(20),
+        "a fault would pass"
+    );
+    assert_eq!(after(&mut rig, 999).width, 0);
 }

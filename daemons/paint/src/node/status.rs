@@ -2,11 +2,37 @@
 
 use maulstick_bus::BusError;
 use maulstick_document::Document;
-use maulstick_types::paint::{DryingStatus, PaintStatus};
-use maulstick_types::scene::CANVAS;
+use maulstick_painting::Painting;
+use maulstick_types::paint::{DryingStatus, HistoryStep, PaintStatus};
+use maulstick_types::scene::{CANVAS, PALETTE};
 
 use super::{PaintNode, STATUS_PERIOD_NS};
 use maulstick_session::Autosave;
+
+/// Steps that a status lists.
+const LISTED: usize = 30;
+/// Letters of the description of a step.
+const LETTERS: usize = 80;
+
+/// How the description of a stroke ends.
+const STROKE: &str = " stroke";
+
+/// The steps around the present one.
+fn history(painting: &Painting) -> Vec<HistoryStep> {
+    let steps = painting.history().around(LISTED);
+    let listed = steps.into_iter().map(|step| {
+        let mut what: String = step.what.chars().take(LETTERS).collect();
+        if step.what.ends_with(STROKE) && step.surfaces.iter().eq([&PALETTE]) {
+            what.push_str(" on the palette");
+        }
+        HistoryStep {
+            id: step.id,
+            what,
+            done: step.done,
+        }
+    });
+    listed.collect()
+}
 
 impl PaintNode {
     /// Says once of each brush that it moves without a brush file.
@@ -66,6 +92,7 @@ impl PaintNode {
             drying,
             export: self.exporter.status(now_ns),
             backend: painting.backend(),
+            history: history(painting),
             undo: undo as u32,
             redo: redo as u32,
             merged: painting.history().merged(),

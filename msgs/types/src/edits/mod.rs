@@ -18,7 +18,7 @@ pub use brush::{Clean, Handle, Load, LoadFrom, Tune};
 #[cfg(feature = "cli")]
 pub use form::CommandForm;
 pub use form::{Form, StepForm};
-pub use history::{Branch, Forget, Keep, Redo, ReturnTo, Undo};
+pub use history::{Branch, Forget, GoTo, Keep, Redo, ReturnTo, Undo};
 pub use layer::{Dry, LayerRef, NameLayer, Opacity, StopDrying, Wet};
 pub use surface::{
     Exposure, Fill, FillPaint, Ground, GroundSource, LightChange, Piles, Place, Relight, Scrape,
@@ -33,7 +33,7 @@ macro_rules! for_each_edit {
             Load, LoadFrom, Clean, Tune, Handle,
             Dry, StopDrying, Wet, Opacity, NameLayer,
             Place, Relight, Ground, Tooth, Size, Piles, Fill, Scrape, Wells,
-            Undo, Redo, Keep, ReturnTo, Branch, Forget
+            Undo, Redo, Keep, ReturnTo, Branch, Forget, GoTo
         }
     };
 }

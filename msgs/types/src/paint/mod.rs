@@ -198,9 +198,21 @@ wire_struct! {
     }
 }
 
+wire_struct! {
+    /// A step that can be undone or redone.
+    pub struct HistoryStep {
+        /// Its number.
+        pub id: u64,
+        /// What it was, in words.
+        pub what: String,
+        /// True if it is done, false if it was undone.
+        pub done: bool,
+    }
+}
+
 message! {
     /// Status of the paint node, ten times a second.
-    pub struct PaintStatus [version 5, at most 32768 bytes] {
+    pub struct PaintStatus [version 6, at most 32768 bytes] {
         /// Entries of the journal so far.
         pub journal: u64,
         /// Steps of the paint model so far.
@@ -249,23 +261,29 @@ message! {
         pub export: Option<ExportStatus>,
         /// Backend of the paint: `cpu`, or `gpu` and the adapter's name.
         pub backend: String,
+        /// The steps around the present one, the newest first: those that are undone, the last of which would be redone
+        /// next, then those that are done.
+        pub history: Vec<HistoryStep>,
     }
 }
 
 message! {
     /// Asks for a small picture of the canvas under its light; the answer comes when it is drawn.
-    pub struct ThumbnailRequest [version 1, at most 256 bytes] {
+    pub struct ThumbnailRequest [version 2, at most 256 bytes] {
         /// Name of a version; the painting as it is if empty.
         pub version: String,
         /// Most pixels of its longer side, 1 to 512.
         pub side: u32,
+        /// Instead of a version the painting after this step of its history, 0 for before all of them. Drawn while
+        /// nobody paints.
+        pub step: Option<u64>,
     }
 }
 
 message! {
     /// A small picture.
     pub struct ThumbnailReply [version 1, at most 1048576 bytes] {
-        /// Pixels across; 0 where there is no such version.
+        /// Pixels across; 0 where there is no such version or step.
         pub width: u32,
         /// Pixels down.
         pub height: u32,

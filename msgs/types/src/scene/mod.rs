@@ -36,6 +36,8 @@ wire_enum! {
         },
         /// Takes all paint off the brush.
         Cleaner,
+        /// Thins the paint on the brush.
+        Medium,
     }
 }
 

@@ -6,7 +6,9 @@ use maulstick_types::command::{
 use maulstick_types::control::ControlSample;
 use maulstick_types::edits::Relight;
 use maulstick_types::haptics::ForceReply;
-use maulstick_types::paint::{DryingStatus, ExportStatus, FrameHolds, PaintStatus, ThumbnailReply};
+use maulstick_types::paint::{
+    DryingStatus, ExportStatus, FrameHolds, HistoryStep, PaintStatus, ThumbnailReply,
+};
 use maulstick_types::scene::{BrushHandling, BrushMode, Light};
 use maulstick_types::stylus::StylusStatus;
 use maulstick_types::values::{BrushName, BrushToml, MaterialName, WholePath};
@@ -99,6 +101,11 @@ pub(crate) fn paint_status() -> PaintStatus {
             since_ns: 17,
         }),
         backend: "cpu".into(),
+        history: vec![HistoryStep {
+            id: 18,
+            what: "fill".into(),
+            done: true,
+        }],
     }
 }
 

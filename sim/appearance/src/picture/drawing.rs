@@ -82,6 +82,28 @@ impl<'a> Drawing<'a> {
         pixels
     }
 
+    /// The pixels of a tile as if the surface were level, as far as it is on the surface, from its top row.
+    #[must_use]
+    pub fn tile(&self, (id, shown): (TileId, &DisplayTile), depth: Depth) -> Vec<u8> {
+        let [across, rows] = self.banded.within(id);
+        let row = across * depth.pixel_bytes();
+        let mut pixels = vec![0; rows * row];
+        for (y, pixels) in pixels.chunks_exact_mut(row).rev().enumerate() {
+            let colour = |x: usize| {
+                let cell = y * TILE + x;
+                let spot = Spot {
+                    unlit: [0, 1, 2].map(|c| shown.rgb[c][cell]),
+                    gloss: shown.gloss[cell],
+                    facet: Facet::LEVEL,
+                };
+                self.gamut.map((self.light)(&spot))
+            };
+            let colours: Vec<[f32; 3]> = (0..across).map(colour).collect();
+            self.encode(&colours, depth, pixels);
+        }
+        pixels
+    }
+
     /// As many zeros as a band has bytes.
     #[must_use]
     pub fn blank(&self, band: usize, depth: Depth) -> Vec<u8> {

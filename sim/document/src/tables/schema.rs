@@ -9,9 +9,9 @@ use crate::error::DocumentError;
 /// `application_id` of a painting: "Maul".
 pub const APPLICATION_ID: i32 = 0x4D61_756C;
 /// The schema that this program writes.
-pub const VERSION: i32 = 3;
+pub const VERSION: i32 = 4;
 /// The oldest schema that it reads.
-const OLDEST: i32 = 3;
+const OLDEST: i32 = 4;
 
 /// Every row begins with its table's number, so that rows can be sorted even if the schema is lost, and ends with a
 /// checksum of its other columns.

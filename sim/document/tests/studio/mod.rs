@@ -3,15 +3,17 @@
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 
 use maulstick_brush::BrushFile;
+use maulstick_brush::palette_place::{mirrored, size_m};
 use maulstick_canvas::page::Pager;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::history::{TilePlace, TileRef};
+use maulstick_painting::setup::wells_of;
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::command::{Command, CommandRequest, Outcome};
 use maulstick_types::edits::{
-    Branch, Clean, Dry, Fill, FillPaint, Forget, Ground, Keep, LayerRef, Load, NameLayer, Opacity,
-    Redo, ReturnTo, Scrape, StopDrying, Tooth, Undo, Wet,
+    Branch, Clean, Dry, Fill, FillPaint, Forget, GoTo, Ground, Keep, LayerRef, Load, NameLayer,
+    Opacity, Redo, ReturnTo, Scrape, StopDrying, Tooth, Undo, Wells, Wet,
 };
 use maulstick_types::scene::{CANVAS, PALETTE};
 use maulstick_types::values::{
@@ -190,7 +192,7 @@ impl Painter {
         let mixture = mixture(MIXTURES[self.dice.below(3) as usize]);
         let named = |dice: &mut Dice| ["one", "two", "three"][dice.below(3) as usize].to_owned();
         let maybe = |dice: &mut Dice, brush: &str| (dice.below(3) == 0).then(|| brush.to_owned());
-        let command = match self.dice.below(57) {
+        let command = match self.dice.below(60) {
             0..15 => {
                 let new = self.dice.below(2) == 0;
                 self.strokes[b] += u64::from(new);
@@ -273,6 +275,19 @@ impl Painter {
                 layers: Some(self.dice.below(3) as u32).filter(|count| *count > 0),
                 region: self.region(),
                 surface: CANVAS,
+            }),
+            57..59 => {
+                let palette = PaintingSetup::default().scene().surfaces.remove(1);
+                let mixtures = MIXTURES.map(self::mixture);
+                let left_out = self.dice.below(3) as usize;
+                let mut wells = wells_of(&mixtures[left_out..], palette.cells, palette.cell_m);
+                if self.dice.below(2) == 0 {
+                    wells = mirrored(&wells, size_m(&palette));
+                }
+                Command::from(Wells::new(PALETTE, wells).expect("valid"))
+            }
+            59 => Command::from(GoTo {
+                step: self.dice.below(40),
             }),
             55 => Command::from(Scrape {
                 region: self.region(),

@@ -5,11 +5,14 @@
 //! fewer steps; the newest sixteen stay apart.
 
 mod step;
+mod walk;
 
 pub(crate) use step::OpenStep;
 pub use step::{
     Change, NonTileState, Step, StepEffects, SurfaceMaterial, TilePlace, TileRef, same,
 };
+pub use walk::ListedStep;
+pub(crate) use walk::Way;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;

@@ -7,7 +7,7 @@ use maulstick_canvas::page::Page;
 use maulstick_canvas::store::TileRect;
 use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_model::brush::load::BrushLoad;
-use maulstick_types::scene::Layer;
+use maulstick_types::scene::{Layer, Well};
 use serde::{Deserialize, Serialize};
 
 use crate::ledger::{Booked, Ledger};
@@ -61,6 +61,8 @@ pub struct SurfaceMaterial {
     pub tooth: String,
     /// Seed of the tooth.
     pub tooth_seed: u64,
+    /// Its wells.
+    pub wells: Vec<Well>,
 }
 
 /// State of a painting besides its tiles, as far as a step can change it.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use maulstick_appearance::Appearance;
 use maulstick_appearance::blank_surface::{
-    BlankSurface, CLEANER_RGB, WELL_M, WellLook, well_colour,
+    BlankSurface, CLEANER_RGB, MEDIUM_RGB, WellLook, WellShape, well_colour,
 };
 use maulstick_appearance::ground::Ground;
 use maulstick_appearance::light::{changes_colour, studio_settings};
@@ -91,14 +91,22 @@ impl Optics {
         for well in &surface.wells {
             let center = well.center_m.map(|m| m / surface.cell_m);
             let radius = well.radius_m / surface.cell_m;
-            let WellKind::Paint { mixture } = &well.kind else {
-                wells.push(WellLook {
-                    center,
-                    radius,
-                    rgb: CLEANER_RGB,
-                    height_m: 0.0,
-                });
-                continue;
+            let jar = |rgb| WellLook {
+                center,
+                radius,
+                rgb,
+                shape: WellShape::Jar,
+            };
+            let mixture = match &well.kind {
+                WellKind::Paint { mixture } => mixture,
+                WellKind::Cleaner => {
+                    wells.push(jar(CLEANER_RGB));
+                    continue;
+                }
+                WellKind::Medium => {
+                    wells.push(jar(MEDIUM_RGB));
+                    continue;
+                }
             };
             let mixture = self.library.check(mixture).map_err(paint_error)?;
             let mut mixed = studio.clone();
@@ -111,7 +119,7 @@ impl Optics {
                 center,
                 radius,
                 rgb: well_colour(&mixed, &shares, ground.mean()),
-                height_m: WELL_M as f32,
+                shape: WellShape::Heap,
             });
         }
         Ok(BlankSurface {
@@ -181,7 +189,7 @@ impl Optics {
         self.note(scene);
     }
 
-    /// Notes in the look what it is made of: light, layers, grounds, wells, paints.
+    /// Notes in the look what it is made of: light, layers, grounds and wells, paints.
     pub(crate) fn note(&mut self, scene: &Scene) {
         let materials = materials(scene);
         let light = Light {
@@ -196,9 +204,8 @@ impl Optics {
         let layers = scene.layers.iter();
         let veiled = layers.filter(|layer| layer.opacity != 1.0);
         let veiled: Vec<(u32, f32)> = veiled.map(|layer| (layer.number, layer.opacity)).collect();
-        let wells: Vec<_> = scene.surfaces.iter().map(|own| &own.wells).collect();
         let hash = self.library.hash();
-        let made_of = format!("4 {light:?} {veiled:?} {materials:?} {wells:?} {hash}");
+        let made_of = format!("5 {light:?} {veiled:?} {materials:?} {hash}");
         Arc::make_mut(&mut self.look).note(&made_of);
     }
 }

@@ -7,7 +7,7 @@ use super::Painting;
 use super::brushes::Brushes;
 use super::strokes::backend::Backend;
 use crate::clock::Clock;
-use crate::history::History;
+use crate::history::{History, Way};
 
 impl Painting {
     /// The painting as it is, with its versions, without brushes and history. Its tiles are shared with
@@ -43,6 +43,47 @@ impl Painting {
         }
         self.turn_non_tile_state(Some(&version.rest.layers), Some(&version.rest.materials));
         Ok(())
+    }
+
+    /// A [`still`](Self::still) as the painting was when the step of this number was done and none after it, 0 for
+    /// before all of them; `None` if there is no such step.
+    pub fn still_after(&mut self, step: u64) -> Option<Self> {
+        let mut still = self.still();
+        if self.history.is_open(step) {
+            // It is the newest one.
+            return Some(still);
+        }
+        let open = self.open_steps();
+        let way = self.history.way_to(step)?;
+        let back = way.first().is_none_or(|(way, _)| *way == Way::Back);
+        let open = open
+            .iter()
+            .rev()
+            .filter(|_| back)
+            .map(|open| (Way::Back, open));
+        let (mut layers, mut materials) = (None, None);
+        for (way, step) in open.chain(way) {
+            let to = way.ends()[1];
+            for (place, change) in &*step.tiles {
+                still.surfaces.put(*place, change.end(to).clone());
+            }
+            layers = step
+                .effects
+                .layers
+                .as_ref()
+                .map(|ends| &ends[to])
+                .or(layers);
+            materials = step
+                .effects
+                .materials
+                .as_ref()
+                .map(|ends| &ends[to])
+                .or(materials);
+        }
+        if layers.is_some() || materials.is_some() {
+            still.turn_non_tile_state(layers, materials);
+        }
+        Some(still)
     }
 
     /// True if no paint was ever applied to it, and no version saved: loads of brushes do not count.
@@ -110,5 +151,47 @@ mod tests {
         assert_eq!(picture(&mut still, CANVAS), yellow);
         let red = picture(&mut painting, CANVAS);
         assert!(red != black && red != yellow, "a fault would pass");
+    }
+
+    #[test]
+    fn going_to_a_step_leads_there_as_undo_and_redo_do_and_a_still_shows_it_before() {
+        let setup = PaintingSetup {
+            cells: [96, 64],
+            ..PaintingSetup::default()
+        };
+        let library = PaintLibrary::measured().expect("whole");
+        let mut painting = Painting::new(&setup, library).expect("a painting");
+        let mut pictures = vec![(0, picture(&mut painting, CANVAS))];
+        for paint in ["Yellow Ochre", "Pyrrole Red", "Bone Black"] {
+            let film = Fill {
+                paint: FillPaint::Mixture {
+                    mixture: Mixture::pure(paint),
+                },
+                thickness: FilmThickness::new(3e-5).expect("in range"),
+                surface: CANVAS,
+            };
+            painting.apply(film).expect("laid");
+            pictures.push((painting.newest_step(), picture(&mut painting, CANVAS)));
+        }
+        painting
+            .apply(Ground::named(CANVAS, "black").expect("valid"))
+            .expect("a ground");
+        pictures.push((painting.newest_step(), picture(&mut painting, CANVAS)));
+        for (from, to) in [(4, 1), (1, 3), (3, 0), (0, 4), (4, 4), (4, 0), (0, 2)] {
+            let (step, expected) = &pictures[to];
+            let mut still = painting.still_after(*step).expect("it is there");
+            assert!(picture(&mut still, CANVAS) == *expected, "{from} to {to}");
+            painting.go_to(*step).expect("nothing lies over it");
+            assert!(
+                picture(&mut painting, CANVAS) == *expected,
+                "{from} to {to}"
+            );
+            assert_eq!(painting.history_depth(), (to, 4 - to));
+            assert_eq!(painting.report().quanta_missing, 0);
+        }
+        assert!(pictures[1].1 != pictures[2].1, "a fault would pass");
+        assert_eq!(painting.go_to(77), Err(EditError::NoStep));
+        assert!(painting.still_after(77).is_none());
+        assert_eq!(painting.history_depth(), (2, 2), "nothing has changed");
     }
 }

@@ -111,6 +111,7 @@ fn a_well_gives_its_mixture() {
         let picked = load_from(&mut painting, PALETTE, well.center_m);
         match &well.kind {
             WellKind::Paint { mixture } => assert_eq!(picked.as_ref(), Ok(mixture)),
+            WellKind::Medium => assert_eq!(picked, Ok(Mixture::pure("Thinner"))),
             WellKind::Cleaner => assert!(picked.is_err(), "{picked:?}"),
         }
     }

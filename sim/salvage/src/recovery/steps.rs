@@ -58,6 +58,7 @@ pub(super) fn materials(scene: &Scene) -> Vec<SurfaceMaterial> {
         ground: surface.ground.clone(),
         tooth: surface.tooth.clone(),
         tooth_seed: surface.tooth_seed,
+        wells: surface.wells.clone(),
     });
     materials.collect()
 }

@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | `film` | a film of wet paint over the whole canvas |
 //! | `placement` | tilt, turn and zoom of a surface |
+//! | `tracing` | the picture that is traced |
 
 use std::path::Path;
 
@@ -24,6 +25,7 @@ use crate::widgets::rows::{Number, Sliders, ask, below, choice, note, row, wrong
 
 mod film;
 mod placement;
+mod tracing;
 
 use film::FilmForm;
 use placement::Posture;
@@ -94,6 +96,8 @@ impl Panel for CanvasPanel {
         self.place(ui, work, &canvas);
         ui.separator();
         preferences(ui, work);
+        ui.separator();
+        tracing::show(ui, work, &mut self.sliders);
         CollapsingHeader::new("Cover the canvas with paint")
             .show(ui, |ui| self.film.show(ui, work));
     }

@@ -123,6 +123,34 @@ fn buttons_do_what_keys_do() {
 }
 
 #[test]
+fn a_tracing_picture_is_chosen_shown_and_removed() {
+    let mut harness = panel();
+    let click = |harness: &mut Harness<'static, Bench<CanvasPanel>>, label: &str| {
+        harness.get_by_label(label).click();
+        harness.run();
+    };
+    click(&mut harness, "Tracing picture…");
+    let acts = harness.state_mut().requests.take_acts();
+    assert_eq!(acts, [Action::ChooseTracing]);
+    let traced = |harness: &mut Harness<'static, Bench<CanvasPanel>>| {
+        let bench = harness.state_mut();
+        bench.work().tracing().cloned()
+    };
+    harness.state_mut().work().trace(Path::new("/sketch.png"));
+    harness.run();
+    click(&mut harness, "Show tracing picture");
+    set(&mut harness, Role::Slider, "Strength", 80.0);
+    let own = traced(&mut harness).expect("one");
+    assert!(!own.shown && (own.strength - 0.8).abs() < 1e-6, "{own:?}");
+    click(&mut harness, "Another…");
+    let acts = harness.state_mut().requests.take_acts();
+    assert_eq!(acts, [Action::ChooseTracing]);
+    click(&mut harness, "Remove");
+    assert_eq!(traced(&mut harness), None);
+    harness.get_by_label("Tracing picture…");
+}
+
+#[test]
 fn the_hand_and_the_lasting_paint_are_switched() {
     let mut harness = panel();
     harness.get_by_label("Left-handed").click();
@@ -176,6 +204,8 @@ fn a_film_is_of_a_paint_or_of_what_the_brush_carries() {
 #[test]
 fn the_panel_looks_as_it_did() {
     let open = |harness: &mut Harness<'static, Bench<CanvasPanel>>| {
+        harness.state_mut().work().trace(Path::new("/sketch.png"));
+        harness.run();
         harness.get_by_label("Cover the canvas with paint").click();
         harness.run();
         harness.remove_cursor();

@@ -1,7 +1,8 @@
-//! History panel: undo, redo and versions.
+//! History panel: undo, redo, the last steps and versions.
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | `steps` | the last steps, to go back or forth to |
 //! | `tree` | versions as a tree |
 
 use std::collections::BTreeMap;
@@ -12,16 +13,16 @@ use eframe::egui::{
     Align, Button, Color32, ColorImage, CornerRadius, Key, Layout, Rect, Response, RichText, Sense,
     TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
 };
-use maulstick_types::edits::{Branch, Forget, Keep, Redo, ReturnTo, Undo};
+use maulstick_types::edits::{Branch, Forget, Keep, ReturnTo};
 use maulstick_types::scene::NamedVersion;
 use maulstick_types::values::VersionName;
 
-use crate::input::keys::Action;
 use crate::panels::Panel;
-use crate::rig::thumbnails::Picture;
+use crate::rig::thumbnails::{Picture, Pictured};
 use crate::widgets::context::PanelContext;
 use crate::widgets::rows::{ask, note};
 
+mod steps;
 mod tree;
 
 /// Width and height of a small picture, points.
@@ -39,8 +40,11 @@ pub(crate) struct HistoryPanel {
     branching: Option<(String, String)>,
     /// The version whose deletion is to be confirmed.
     forgetting: Option<String>,
-    textures: BTreeMap<String, (Arc<Picture>, TextureHandle)>,
+    textures: Textures,
 }
+
+/// Small pictures as textures of the window.
+type Textures = BTreeMap<Pictured, (Arc<Picture>, TextureHandle)>;
 
 impl Panel for HistoryPanel {
     fn title(&self) -> &'static str {
@@ -48,16 +52,14 @@ impl Panel for HistoryPanel {
     }
 
     fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
-        steps(ui, work);
+        let scene = work.rig.scene.as_ref();
+        let versions = scene.map_or_else(Vec::new, |scene| scene.versions.clone());
+        let mut shown = steps::pictured(work);
+        shown.extend(versions.iter().map(|version| version.name.as_str().into()));
+        work.rig.thumbnails.keep(&shown);
+        self.textures.retain(|what, _| shown.contains(what));
+        steps::show(ui, work, &mut self.textures);
         self.keep(ui, work);
-        let Some(scene) = &work.rig.scene else {
-            return;
-        };
-        let versions = scene.versions.clone();
-        let names = || versions.iter().map(|version| version.name.as_str());
-        work.rig.thumbnails.keep(names());
-        self.textures
-            .retain(|name, _| names().any(|known| known == name));
         if versions.is_empty() {
             note(ui, "Keep a version, and you can come back to it.");
         }
@@ -65,27 +67,6 @@ impl Panel for HistoryPanel {
             ui.push_id(&version.name, |ui| self.version(ui, work, depth, version));
         }
     }
-}
-
-/// Undo and redo, and how many steps there are.
-fn steps(ui: &mut Ui, work: &mut PanelContext<'_>) {
-    let status = work.rig.paint.as_ref().map(|paint| &paint.status);
-    let (undo, redo) = status.map_or((0, 0), |status| (status.undo, status.redo));
-    ui.horizontal(|ui| {
-        let step = |ui: &mut Ui, word: &str, count: u32, hover: &str| {
-            let button = ui.add_enabled(count > 0, Button::new(format!("{word} ({count})")));
-            button.on_hover_text(hover).clicked()
-        };
-        let keys = &work.preferences.keys;
-        let back = keys.hint(ui.ctx(), "The newest step back", &[Action::Undo]);
-        let again = keys.hint(ui.ctx(), "What was undone, again", &[Action::Redo]);
-        if step(ui, "Undo", undo, &back) {
-            ask(work, Ok(Undo { brush: None }));
-        }
-        if step(ui, "Redo", redo, &again) {
-            ask(work, Ok(Redo { brush: None }));
-        }
-    });
 }
 
 /// A field for a name with a button; `true` where the painter is done.
@@ -133,7 +114,7 @@ impl HistoryPanel {
         let name = &version.name;
         ui.horizontal(|ui| {
             ui.add_space(INWARD * depth.min(MOST_INWARD) as f32);
-            self.picture(ui, work, name);
+            picture_of(ui, work, &mut self.textures, name);
             ui.with_layout(Layout::top_down(Align::Min), |ui| {
                 ui.horizontal(|ui| {
                     let title = match version.here {
@@ -204,37 +185,44 @@ impl HistoryPanel {
             }
         }
     }
+}
 
-    /// The small picture of a version, or its place.
-    fn picture(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, name: &str) {
-        let size = vec2(PICTURE[0], PICTURE[1]);
-        let (place, response) = ui.allocate_exact_size(size, Sense::hover());
-        response
-            .widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("Picture of {name}")));
-        let now_ns = work.rig.now_ns;
-        let Some(picture) = work.rig.thumbnails.of(name, now_ns) else {
-            let colour = ui.visuals().faint_bg_color;
-            ui.painter()
-                .rect_filled(place, CornerRadius::same(2), colour);
-            return;
-        };
-        let known = self.textures.get(name);
-        if known.is_none_or(|(drawn, _)| !Arc::ptr_eq(drawn, &picture)) {
-            let image = ColorImage::from_rgb(picture.size, &picture.rgb);
-            let texture = ui
-                .ctx()
-                .load_texture(name.to_owned(), image, TextureOptions::LINEAR);
-            self.textures
-                .insert(name.to_owned(), (Arc::clone(&picture), texture));
-        }
-        if let Some((_, texture)) = self.textures.get(name) {
-            let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-            let [across, down] = picture.size.map(|side| side as f32);
-            let scale = (size.x / across).min(size.y / down);
-            let shown = Rect::from_center_size(place.center(), scale * vec2(across, down));
-            ui.painter()
-                .image(texture.id(), shown, whole, Color32::WHITE);
-        }
+/// The small picture of a version, or its place.
+fn picture_of(ui: &mut Ui, work: &mut PanelContext<'_>, textures: &mut Textures, name: &str) {
+    let (place, response) = ui.allocate_exact_size(PICTURE.into(), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("Picture of {name}")));
+    paint_picture(ui, place, work, textures, &name.into());
+}
+
+/// Paints a small picture into a place, as large as it fits.
+fn paint_picture(
+    ui: &Ui,
+    place: Rect,
+    work: &mut PanelContext<'_>,
+    textures: &mut Textures,
+    what: &Pictured,
+) {
+    let now_ns = work.rig.now_ns;
+    let Some(picture) = work.rig.thumbnails.of(what.clone(), now_ns) else {
+        let colour = ui.visuals().faint_bg_color;
+        let corners = CornerRadius::same(2);
+        ui.painter().rect_filled(place, corners, colour);
+        return;
+    };
+    let known = textures.get(what);
+    if known.is_none_or(|(drawn, _)| !Arc::ptr_eq(drawn, &picture)) {
+        let image = ColorImage::from_rgb(picture.size, &picture.rgb);
+        let name = format!("{what:?}");
+        let texture = ui.ctx().load_texture(name, image, TextureOptions::LINEAR);
+        textures.insert(what.clone(), (Arc::clone(&picture), texture));
+    }
+    if let Some((_, texture)) = textures.get(what) {
+        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        let [across, down] = picture.size.map(|side| side as f32);
+        let scale = (place.width() / across).min(place.height() / down);
+        let shown = Rect::from_center_size(place.center(), scale * vec2(across, down));
+        let painter = ui.painter();
+        painter.image(texture.id(), shown, whole, Color32::WHITE);
     }
 }
 

@@ -2,7 +2,8 @@ use eframe::egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Branch, Forget, Keep, Redo, ReturnTo, Undo};
+use maulstick_types::edits::{Branch, Forget, GoTo, Keep, Redo, ReturnTo, Undo};
+use maulstick_types::paint::HistoryStep;
 use maulstick_types::values::VersionName;
 
 use super::*;
@@ -39,6 +40,34 @@ fn versioned() -> RigState {
     for (name, colour) in [("Sketch", [90, 120, 60]), ("Warm", [200, 120, 60])] {
         assert!(rig.thumbnails.of(name, 0).is_none());
         rig.thumbnails.came(name, Some(landscape(colour)), 0);
+    }
+    rig
+}
+
+/// A rig whose steps 5 to 7 are done and 8 undone.
+fn stepped() -> RigState {
+    let mut rig = versioned();
+    let status = &mut rig.paint.as_mut().expect("a node").status;
+    (status.undo, status.redo) = (3, 1);
+    let words = [
+        "dry",
+        "flat stroke",
+        "round stroke on the palette",
+        "load Yellow Ochre",
+    ];
+    let steps = (5..9).rev().zip(words);
+    status.history = steps
+        .map(|(id, what)| HistoryStep {
+            id,
+            what: what.to_owned(),
+            done: id < 8,
+        })
+        .collect();
+    for (step, blue) in [(8, 60), (7, 60), (6, 0), (0, 0)] {
+        let step = Pictured::Step(step);
+        assert!(rig.thumbnails.of(step.clone(), 0).is_none());
+        rig.thumbnails
+            .came(step, Some(landscape([90, 120, blue])), 0);
     }
     rig
 }
@@ -80,6 +109,41 @@ fn steps_go_back_and_forth_where_there_are_some() {
     click(&mut harness, "Redo (1)");
     let redo = Command::from(Redo { brush: None });
     assert_eq!(harness.state_mut().asked(), [redo]);
+}
+
+#[test]
+fn a_click_or_a_key_goes_to_a_step() {
+    let mut harness = harness::<HistoryPanel>(stepped());
+    click(&mut harness, "Now: Flat stroke");
+    assert!(
+        harness.state_mut().asked().is_empty(),
+        "it is there already"
+    );
+    click(&mut harness, "Back to: Load Yellow Ochre");
+    click(&mut harness, "Forward to: Dry");
+    harness
+        .get_by_role_and_label(Role::Button, "Back to: Beginning")
+        .focus();
+    harness.run();
+    harness.key_press(Key::Enter);
+    harness.run();
+    let asked = [5, 8, 0].map(|step| Command::from(GoTo { step }));
+    assert_eq!(harness.state_mut().asked(), asked);
+    // Where older steps are left out, the list does not reach back to the beginning.
+    let paint = harness.state_mut().rig.paint.as_mut().expect("a node");
+    paint.status.undo = 40;
+    harness.run();
+    assert!(harness.query_by_label("Back to: Beginning").is_none());
+}
+
+#[test]
+fn pictures_of_steps_that_are_gone_go() {
+    let mut harness = harness::<HistoryPanel>(stepped());
+    assert_eq!(harness.state().panel.textures.len(), 2 + 4);
+    let paint = harness.state_mut().rig.paint.as_mut().expect("a node");
+    paint.status.history.remove(0);
+    harness.run();
+    assert_eq!(harness.state().panel.textures.len(), 2 + 3);
 }
 
 #[test]
@@ -155,7 +219,7 @@ fn the_panel_looks_as_it_did() {
         click(harness, "New branch from Warm");
         harness.remove_cursor();
     };
-    picture::<HistoryPanel>("history", &versioned(), ask, |rig| {
+    picture::<HistoryPanel>("history", &stepped(), ask, |rig| {
         let scene = rig.scene.as_mut().expect("a scene");
         scene.versions[2].here = false;
         scene.versions[0].here = true;

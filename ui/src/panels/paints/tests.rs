@@ -33,17 +33,15 @@ fn laid(harness: &mut Harness<'_, Bench>) -> Vec<String> {
         panic!("{commands:?}")
     };
     assert_eq!(*surface, PALETTE);
-    assert_eq!(
-        wells.last().map(|well| &well.kind),
-        Some(&WellKind::Cleaner)
-    );
+    let jars: Vec<&WellKind> = wells.iter().rev().take(2).map(|well| &well.kind).collect();
+    assert_eq!(jars, [&WellKind::Medium, &WellKind::Cleaner]);
     let paints = wells.iter().filter_map(|well| match &well.kind {
         WellKind::Paint { mixture } => Some(
             PaintSet::of("", std::slice::from_ref(mixture))
                 .paints
                 .concat(),
         ),
-        WellKind::Cleaner => None,
+        WellKind::Cleaner | WellKind::Medium => None,
     });
     paints.collect()
 }

@@ -141,7 +141,8 @@ impl Easel {
         let laid = view.lay(&self.gpu, &self.passes, &self.surface, look, 1.0);
         let bound = laid.expect("a picture").bound;
         draw(&self.gpu, &target, wgpu::Color::RED, |pass| {
-            self.passes.show.draw(pass, std::iter::once(&bound));
+            self.passes.show.fill(pass, &bound);
+            self.passes.show.lay(pass, &bound);
         });
         read(&self.gpu, &target)
     }

@@ -2,6 +2,7 @@
 
 mod branch;
 mod forget;
+mod go_to;
 mod keep;
 mod redo;
 mod return_to;
@@ -9,6 +10,7 @@ mod undo;
 
 pub use branch::Branch;
 pub use forget::Forget;
+pub use go_to::GoTo;
 pub use keep::Keep;
 pub use redo::Redo;
 pub use return_to::ReturnTo;

@@ -12,7 +12,8 @@ use crate::wire::define::wire_struct;
 wire_struct! {
     /// Give a surface other wells
     ///
-    /// What brushes have stirred in those that go stays there, wet.
+    /// Wells that move take the wet paint on them along; what lies on those that go, and where others come, is scraped
+    /// off.
     pub struct Wells {
         /// The surface.
         pub surface: u32,

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::Counts;
 use maulstick_model::brush::load::Half;
+use maulstick_optics::THINNER;
 use maulstick_types::edits::{Clean, Load, LoadFrom};
 use maulstick_types::scene::{Scene, Surface, WellKind};
 use maulstick_types::values::Distance;
@@ -28,7 +29,7 @@ impl Apply for Load {
             .cloned()
             .collect();
         let slots = painting.optics.all_slots(&mut painting.scene, &mixtures)?;
-        painting.begin_step(&format!("load {}", self.brush.as_str()), Some(brush));
+        painting.begin_step(&format!("load {}", named(&mixtures)), Some(brush));
         let parts: Vec<_> = match &slots[..] {
             [both] => vec![(&both[..], Half::Both)],
             halves => halves
@@ -67,7 +68,7 @@ impl Apply for LoadFrom {
 impl Apply for Clean {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         let brush = painting.brushes.at(&self.brush)?;
-        painting.begin_step(&format!("clean {}", self.brush.as_str()), Some(brush));
+        painting.begin_step("clean brush", Some(brush));
         painting.brushes[brush].empty(&mut painting.accounts.ledger);
         painting.end_step_of(brush);
         Ok(Applied::Done)
@@ -111,16 +112,29 @@ impl PaintingBrush {
     }
 }
 
+/// The paints of mixtures, each once, without their shares.
+fn named(mixtures: &[Mixture]) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for part in mixtures.iter().flat_map(|mixture| &mixture.parts) {
+        if !names.contains(&part.paint.as_str()) {
+            names.push(&part.paint);
+        }
+    }
+    names.join(" + ")
+}
+
 /// Mixture of the well at a place, m, which nobody has stirred there.
 fn well_at(surface: &Surface, at_m: [f64; 2]) -> Option<Mixture> {
     let mut wells = surface.wells.iter();
-    wells.find_map(|well| match &well.kind {
-        WellKind::Paint { mixture } => {
-            let [x, y] = [0, 1].map(|i| at_m[i] - well.center_m[i]);
-            (x * x + y * y < well.radius_m * well.radius_m).then(|| mixture.clone())
-        }
+    let well = wells.find(|well| {
+        let [x, y] = [0, 1].map(|i| at_m[i] - well.center_m[i]);
+        x * x + y * y < well.radius_m * well.radius_m
+    })?;
+    match &well.kind {
+        WellKind::Paint { mixture } => Some(mixture.clone()),
+        WellKind::Medium => Some(Mixture::pure(THINNER)),
         WellKind::Cleaner => None,
-    })
+    }
 }
 
 /// Mixture of counted paint, shares by volume; `None` if there is none.

@@ -39,7 +39,7 @@ impl Apply for Opacity {
     /// Makes a dry layer more or less opaque: a factor on its optical thickness, never on its height.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         let place = place_of(&painting.scene, &self.layer)?;
-        painting.begin_step("opacity", None);
+        painting.begin_step("layer opacity", None);
         painting.scene.layers[place].opacity = self.opacity.get();
         painting.layers_changed();
         painting.end_own_step();
@@ -51,7 +51,7 @@ impl Apply for NameLayer {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         let number = self.layer;
         let place = place_of(&painting.scene, &LayerRef::Number { number })?;
-        painting.begin_step("name", None);
+        painting.begin_step("layer name", None);
         self.name
             .trim()
             .clone_into(&mut painting.scene.layers[place].name);

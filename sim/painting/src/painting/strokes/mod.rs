@@ -117,7 +117,7 @@ impl Painting {
     }
 
     fn begin_stroke(&mut self, brush: usize) -> Result<(), EditError> {
-        self.begin_step("stroke", Some(brush));
+        self.begin_stroke_step(brush);
         self.backend.fallback.stroke_ends();
         let own = &mut self.brushes[brush];
         own.deferral = Deferral::default();

@@ -41,7 +41,7 @@ impl Painting {
         };
         if self.history.open_of(Some(&own.name)).is_none() {
             // A command ended the stroke's undo step: the rest of the stroke is one of its own.
-            self.begin_step("stroke", Some(brush));
+            self.begin_stroke_step(brush);
         }
         // Paint is pushed a cell farther than the brush comes.
         self.claim(
@@ -93,6 +93,10 @@ impl Painting {
             false => 0,
         };
         self.note((brush, on), &report, 1 + unsettled);
+        if has_wells {
+            let (from, to) = (from.map(|cell| cell - 1), to.map(|cell| cell + 1));
+            self.empty_jars((brush, on), (from, to));
+        }
         if deferred {
             self.defer(brush);
         }

@@ -100,9 +100,10 @@ impl Painting {
             let (surface, own) = (&mut self.scene.surfaces[on], &mut self.surfaces[on]);
             let tooth =
                 (&surface.tooth, surface.tooth_seed) != (&material.tooth, material.tooth_seed);
-            if !tooth && surface.ground == material.ground {
+            if !tooth && surface.ground == material.ground && surface.wells == material.wells {
                 continue;
             }
+            surface.wells.clone_from(&material.wells);
             surface.ground.clone_from(&material.ground);
             surface.tooth.clone_from(&material.tooth);
             surface.tooth_seed = material.tooth_seed;

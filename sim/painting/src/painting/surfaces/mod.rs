@@ -7,6 +7,7 @@ mod part;
 pub(crate) mod preparation;
 mod scraping;
 pub(crate) mod underpainting;
+mod well_moves;
 pub(crate) mod wells;
 
 pub(crate) use part::{Changed, Part};

@@ -2,7 +2,7 @@
 
 use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::{Counts, SLOTS, add};
-use maulstick_canvas::tile::TileId;
+use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_types::edits::Scrape;
 
 use super::part::Changed;
@@ -16,7 +16,7 @@ impl Apply for Scrape {
         let (on, part) = painting.surfaces.part(self.surface, self.region.as_ref())?;
         let surface = &painting.surfaces[on];
         let scraped = surface.scraped(|id| surface.staying(&part, id));
-        if scraped.0.is_empty() {
+        if scraped.is_empty() {
             return Err(EditError::NothingWet(self.region.clone()));
         }
         painting.clock.stop(Some(self.surface));
@@ -29,34 +29,35 @@ impl Apply for Scrape {
 
 impl super::SurfaceState {
     /// Its tiles without their wet paint, but for that of the cells that `stay` of a tile has (a tile without stays
-    /// whole), and what was scraped off.
-    pub(crate) fn scraped(&self, stay: impl Fn(TileId) -> Option<Vec<usize>>) -> (Changed, Counts) {
-        let mut off = [0; SLOTS];
-        let tiles = self.wet_tiles();
-        let scraped = tiles.filter_map(|(id, tile)| {
-            let (tile, counts) = tile.scraped(&stay(id)?)?;
-            add(&mut off, &counts);
+    /// whole).
+    pub(crate) fn scraped(&self, stay: impl Fn(TileId) -> Option<Vec<usize>>) -> Changed {
+        let scraped = self.wet_tiles().filter_map(|(id, tile)| {
+            let tile = tile.scraped(&stay(id)?)?;
             Some((id, tile.into()))
         });
-        (scraped.collect(), off)
+        scraped.collect()
     }
 }
 
 impl Painting {
-    /// Puts tiles in place from which paint was scraped, within a step.
-    pub(crate) fn put_scraped(&mut self, on: usize, (tiles, mut off): (Changed, Counts)) {
+    /// Puts tiles in place that together have less wet paint than before, within a step; the cleaner takes the rest.
+    pub(crate) fn put_scraped(&mut self, on: usize, tiles: Changed) {
         let surface = &self.surfaces[on];
-        if let Some(count) = self.backend.models.of(surface.model).count_own() {
-            for (id, after) in &tiles {
-                let before = surface.store.version(*id).tile.clone();
-                let gone = before.map_or([0; SLOTS], |tile| count(tile.wet().own()));
-                let stays = count(after.wet().own());
-                let gone = gone.iter().zip(&stays).map(|(gone, stays)| gone - stays);
-                off.iter_mut()
-                    .zip(gone)
-                    .for_each(|(off, gone)| *off += gone);
+        let own = self.backend.models.of(surface.model).count_own();
+        let count = |sum: &mut Counts, tile: &Tile| {
+            add(sum, &tile.counts());
+            if let Some(own) = own {
+                add(sum, &own(tile.wet().own()));
             }
+        };
+        let (mut before, mut after) = ([0; SLOTS], [0; SLOTS]);
+        for (id, tile) in &tiles {
+            if let Some(tile) = &surface.store.version(*id).tile {
+                count(&mut before, tile);
+            }
+            count(&mut after, tile);
         }
+        let off = std::array::from_fn(|slot| before[slot].saturating_sub(after[slot]));
         self.put_changed(on, tiles);
         self.accounts.ledger.to_cleaner(&off);
         self.book(None);

@@ -50,7 +50,7 @@ impl Painting {
         let on = self.surfaces.at(surface)?;
         let slots = self.optics.slots_of(&mut self.scene, paints)?;
         let [across, up] = self.surfaces[on].store.grid();
-        self.begin_step("underpaint", None);
+        self.begin_step("underpainting", None);
         if matches!(wetness, Wetness::Dry { .. }) {
             // Wet paint dries first, as a step of its own: nothing dries on top of wet paint.
             self.dry_in_step(on, 1.0, "");

@@ -1,25 +1,27 @@
 //! The wells of a palette: paint that never runs out, and the cleaner.
 //!
 //! Under the brush a well's cells hold its mixture, fresh: paint that was pushed into them goes to the cleaner, paint
-//! that was taken comes from the tubes. A brush that touches the cleaner is clean.
+//! that was taken comes from the tubes. A jar of medium is a well of thinner in which nothing stays: what a step leaves
+//! there goes to the cleaner. A brush that touches the cleaner is clean.
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use maulstick_appearance::blank_surface::{WELL_M, cells_in_circle};
+use maulstick_appearance::blank_surface::WELL_M;
 use maulstick_brush::HeadPose;
 use maulstick_canvas::EditError;
-use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::quantum::{QUANTUM_M, SLOTS};
 use maulstick_canvas::window::Window;
 use maulstick_model::brush::traits::BrushTraits;
+use maulstick_optics::THINNER;
+use maulstick_types::Mixture;
 use maulstick_types::edits::Wells;
-use maulstick_types::scene::{Well, WellKind};
+use maulstick_types::scene::{Surface, Well, WellKind};
 
 use crate::apply::{Applied, Apply};
 use crate::error::paint_error;
 use crate::ledger::Ledger;
 use crate::painting::Painting;
+use crate::painting::surfaces::well_moves::WellMoves;
 
 /// Wells may reach beyond the edge of their surface by what rounding makes of it, m.
 const EDGE_M: f64 = 1e-6;
@@ -68,7 +70,8 @@ fn is_in((pose, traits): (&HeadPose, &BrushTraits), well: &Well, cell_m: f64) ->
 }
 
 impl Apply for Wells {
-    /// Gives a surface other wells. Paint in those that move or go, and where they come, is scraped off.
+    /// Gives a surface other wells. Those that move take the wet paint on them along; what lies on those that go, and
+    /// where others come, is scraped off.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         painting.set_wells(self.surface, &self.wells)?;
         Ok(Applied::Done)
@@ -96,38 +99,34 @@ impl Painting {
                 *mixture = self.optics.library.check(mixture).map_err(paint_error)?;
             }
         }
-        self.close_windows();
+        let before = &self.scene.surfaces[on].wells;
+        if changed.wells == *before {
+            return Ok(());
+        }
+        let ways = WellMoves::between((before, &changed.wells), &changed);
         let relief = Some(Arc::clone(&self.surfaces[on].bare.relief));
-        self.surfaces[on].bare = Arc::new(self.optics.blank(&changed, relief)?);
-        let before = std::mem::replace(&mut self.scene.surfaces[on], changed);
+        let bare = Arc::new(self.optics.blank(&changed, relief)?);
+        self.close_windows();
+        let moved = self.surfaces[on].with_moved_paint(&ways, &self.surfaces.pager);
+        // A palette that is laid out before anything was done is nothing to undo.
+        let is_step = !moved.is_empty() || self.history_depth() != (0, 0);
+        if !moved.is_empty() {
+            self.clock.stop(Some(surface));
+        }
+        if is_step {
+            self.begin_step("paints on the palette", None);
+        }
+        self.scene.surfaces[on] = changed;
+        self.surfaces[on].bare = bare;
         self.scene.version += 1;
         self.optics.renew(&self.scene);
-        self.scrape_moved_wells(on, &before.wells);
-        Ok(())
-    }
-
-    /// Scrapes the places of wells that are not where one of the same paint was before, and of those before that are
-    /// no more.
-    fn scrape_moved_wells(&mut self, on: usize, before: &[Well]) {
-        let now = &self.scene.surfaces[on];
-        let gone = before.iter().filter(|well| !now.wells.contains(well));
-        let come = now.wells.iter().filter(|well| !before.contains(well));
-        let moved: Vec<&Well> = gone.chain(come).collect();
-        let scraped = self.surfaces[on].scraped(|id| {
-            let cells = moved.iter().flat_map(|well| {
-                let center = well.center_m.map(|m| m / now.cell_m);
-                cells_in_circle(center, well.radius_m / now.cell_m, id)
-            });
-            let cells: BTreeSet<usize> = cells.collect();
-            let stays = (0..TILE_CELLS).filter(|cell| !cells.contains(cell));
-            (!cells.is_empty()).then(|| stays.collect())
-        });
-        if !scraped.0.is_empty() {
-            self.clock.stop(Some(now.id));
-            self.begin_step("scrape", None);
-            self.put_scraped(on, scraped);
+        if !moved.is_empty() {
+            self.put_scraped(on, moved);
+        }
+        if is_step {
             self.end_own_step();
         }
+        Ok(())
     }
 
     /// Tends the wells in the cells `from`..`to` of a surface before a brush steps there.
@@ -137,16 +136,8 @@ impl Painting {
         (from, to): ([i64; 2], [i64; 2]),
         head: (&HeadPose, &BrushTraits),
     ) {
-        let surface = &self.scene.surfaces[on];
-        let cell_m = surface.cell_m;
-        let near = |well: &&Well| {
-            (0..2).all(|i| {
-                let low = (well.center_m[i] - well.radius_m) / cell_m;
-                let high = (well.center_m[i] + well.radius_m) / cell_m;
-                low < to[i] as f64 && high > from[i] as f64
-            })
-        };
-        let wells: Vec<Well> = surface.wells.iter().filter(near).cloned().collect();
+        let cell_m = self.scene.surfaces[on].cell_m;
+        let wells = wells_near(&self.scene.surfaces[on], (from, to));
         let ledger = &mut self.accounts.ledger;
         for well in wells {
             let brush = &mut self.brushes[brush];
@@ -154,9 +145,13 @@ impl Painting {
                 return;
             };
             match &well.kind {
-                WellKind::Paint { mixture } => {
+                WellKind::Paint { .. } | WellKind::Medium => {
+                    let mixture = match &well.kind {
+                        WellKind::Paint { mixture } => mixture.clone(),
+                        _ => Mixture::pure(THINNER),
+                    };
                     // A paint without a slot: its well stays dry, and a command says why.
-                    let Ok(slots) = self.optics.slots(&mut self.scene, mixture) else {
+                    let Ok(slots) = self.optics.slots(&mut self.scene, &mixture) else {
                         continue;
                     };
                     let mut fresh = [0u32; SLOTS];
@@ -180,6 +175,36 @@ impl Painting {
             }
         }
     }
+
+    /// Empties the jars of medium in the cells `from`..`to` after a step of a brush there.
+    pub(crate) fn empty_jars(
+        &mut self,
+        (brush, on): (usize, usize),
+        (from, to): ([i64; 2], [i64; 2]),
+    ) {
+        let surface = &self.scene.surfaces[on];
+        let Some((_, window)) = &mut self.brushes[brush].window else {
+            return;
+        };
+        for well in wells_near(surface, (from, to)) {
+            if well.kind == WellKind::Medium {
+                let cells = cells_within(window, &well, surface.cell_m, (from, to));
+                renew(window, &cells, &[0; SLOTS], &mut self.accounts.ledger);
+            }
+        }
+    }
+}
+
+/// The wells of a surface that reach into the cells `from`..`to`.
+fn wells_near(surface: &Surface, (from, to): ([i64; 2], [i64; 2])) -> Vec<Well> {
+    let near = |well: &&Well| {
+        (0..2).all(|i| {
+            let low = (well.center_m[i] - well.radius_m) / surface.cell_m;
+            let high = (well.center_m[i] + well.radius_m) / surface.cell_m;
+            low < to[i] as f64 && high > from[i] as f64
+        })
+    };
+    surface.wells.iter().filter(near).cloned().collect()
 }
 
 /// Makes cells hold just `fresh`: the cleaner takes what is too much, the tubes give what is missing.

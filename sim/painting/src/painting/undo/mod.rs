@@ -4,37 +4,12 @@ mod steps;
 pub(crate) mod versions;
 
 use maulstick_canvas::EditError;
-use maulstick_types::edits::{Redo, Undo};
+use maulstick_types::edits::{GoTo, Redo, Undo};
 use maulstick_types::scene::{Layer, Scene};
 
 use super::Painting;
 use crate::apply::{Applied, Apply};
-use crate::history::{History, OpenStep, Step, SurfaceMaterial, same};
-
-/// Direction of a step: undo or redo.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Way {
-    Back,
-    Forth,
-}
-
-impl Way {
-    /// The end that a step is taken from, and the one that it is taken to.
-    fn ends(self) -> [usize; 2] {
-        match self {
-            Self::Back => [1, 0],
-            Self::Forth => [0, 1],
-        }
-    }
-
-    /// Factor on its bookings.
-    fn times(self) -> i64 {
-        match self {
-            Self::Back => -1,
-            Self::Forth => 1,
-        }
-    }
-}
+use crate::history::{History, OpenStep, Step, SurfaceMaterial, Way, same};
 
 /// Materials of the surfaces of a scene.
 pub(crate) fn materials(scene: &Scene) -> Vec<SurfaceMaterial> {
@@ -45,6 +20,7 @@ pub(crate) fn materials(scene: &Scene) -> Vec<SurfaceMaterial> {
             ground: surface.ground.clone(),
             tooth: surface.tooth.clone(),
             tooth_seed: surface.tooth_seed,
+            wells: surface.wells.clone(),
         })
         .collect()
 }
@@ -58,6 +34,12 @@ impl Apply for Undo {
 impl Apply for Redo {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         painting.redo(self.brush.as_deref()).map(Applied::Step)
+    }
+}
+
+impl Apply for GoTo {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.go_to(self.step).map(Applied::Step)
     }
 }
 
@@ -125,6 +107,48 @@ impl Painting {
         self.check(&step, Way::Forth)?;
         self.end_step(|_| true);
         Ok(self.walk(&step, Way::Forth))
+    }
+
+    /// Undoes or redoes steps until the one of this number is the newest that is done, 0 for none, and returns its
+    /// description.
+    ///
+    /// # Errors
+    /// [`EditError`] for an unknown step, and where something was painted over one on the way: then nothing has changed.
+    pub fn go_to(&mut self, step: u64) -> Result<String, EditError> {
+        let open = self.history.open().find(|open| open.id == step);
+        if let Some(what) = open.map(|open| open.what.clone()) {
+            // It is the newest one.
+            return Ok(what);
+        }
+        let way = self.history.way_to(step).ok_or(EditError::NoStep)?;
+        let way: Vec<Way> = way.into_iter().map(|(way, _)| way).collect();
+        let way: Vec<Way> = match way.first() {
+            Some(Way::Forth) => way,
+            _ => {
+                let open = self.history.open().map(|_| Way::Back);
+                open.chain(way).collect()
+            }
+        };
+        let mut gone = Vec::new();
+        for way in way {
+            let went = match way {
+                Way::Back => self.undo(None),
+                Way::Forth => self.redo(None),
+            };
+            if let Err(error) = went {
+                // Back by the way that was just gone, which nothing lies over.
+                for way in gone.into_iter().rev() {
+                    drop(match way {
+                        Way::Back => self.redo(None),
+                        Way::Forth => self.undo(None),
+                    });
+                }
+                return Err(error);
+            }
+            gone.push(way);
+        }
+        let newest = self.history.last_done(None);
+        Ok(newest.map_or_else(|| "the beginning".to_owned(), |step| step.what.clone()))
     }
 
     /// Sees that all is as the step left it, or found it.

@@ -28,6 +28,12 @@ impl Painting {
         self.history.begin(what, own.as_deref(), before);
     }
 
+    /// Begins a step that is a stroke of a brush.
+    pub(crate) fn begin_stroke_step(&mut self, brush: usize) {
+        let what = format!("{} stroke", self.brushes[brush].file.kind);
+        self.begin_step(&what, Some(brush));
+    }
+
     /// Ends the open steps of which `which` says so.
     pub(crate) fn end_step(&mut self, which: impl Fn(&OpenStep) -> bool) {
         self.close_windows();

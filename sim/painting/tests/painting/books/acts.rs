@@ -39,8 +39,10 @@ pub(super) enum Act {
     FillWith(usize),
     Scrape(u32),
     Prepare(u32, bool),
+    Wells(usize),
     Undo,
     Redo,
+    GoTo(u64),
 }
 
 pub(super) fn act() -> impl Strategy<Value = Act> {
@@ -70,8 +72,10 @@ pub(super) fn act() -> impl Strategy<Value = Act> {
         1 => (0..BRUSHES.len()).prop_map(Act::FillWith),
         1 => (CANVAS..=PALETTE, any::<bool>()).prop_map(|(s, last)| Act::Prepare(s, last)),
         1 => (CANVAS..=PALETTE).prop_map(Act::Scrape),
+        2 => (0..4usize).prop_map(Act::Wells),
         3 => Just(Act::Undo),
         2 => Just(Act::Redo),
+        1 => (0..12u64).prop_map(Act::GoTo),
     ]
 }
 
@@ -138,7 +142,27 @@ pub(super) fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act
                 })
                 .expect("a surface");
         }
+        Act::Wells(0) => {
+            let palette = painting.scene().surfaces[1].clone();
+            let wells = mirrored(&palette.wells, size_m(&palette));
+            lay(painting, wells);
+        }
+        // The first ones, so that others move or go.
+        Act::Wells(count) => {
+            let palette = painting.scene().surfaces[1].clone();
+            let mixtures: Vec<Mixture> = MIXTURES[3 - count..]
+                .iter()
+                .map(|text| mixture(text))
+                .collect();
+            lay(painting, wells_of(&mixtures, palette.cells, palette.cell_m));
+        }
+        Act::GoTo(step) => drop(painting.go_to(*step)),
         Act::Undo => drop(painting.undo(None)),
         Act::Redo => drop(painting.redo(None)),
     }
+}
+
+fn lay(painting: &mut Painting, wells: Vec<Well>) {
+    let edit = Wells::new(PALETTE, wells).expect("valid");
+    painting.apply(edit).map(drop).expect("they fit");
 }

@@ -213,14 +213,14 @@ fn undo_takes_back_what_dried_since_the_last_step_and_ends_the_drying() {
             .edit(undo.clone())
             .map(|done| done.to_string())
             .as_deref(),
-        Ok("stroke")
+        Ok("round stroke")
     );
     assert_eq!(
         sequencer
             .edit(undo.clone())
             .map(|done| done.to_string())
             .as_deref(),
-        Ok("load main")
+        Ok("load Bone Black")
     );
     assert_eq!(
         sequencer.edit(undo).map(|done| done.to_string()).as_deref(),
