@@ -112,7 +112,7 @@ fn a_painting_dries_and_is_seen_under_another_light() {
     place.done(&["opacity", "1", "0.2"]);
     place.done(&["snapshot", "-o", "glaze.png"]);
     assert!(place.bytes("day.png") != place.bytes("glaze.png"));
-    assert_eq!(says(&place, &["undo"]), "undone: opacity\n");
+    assert_eq!(says(&place, &["undo"]), "undone: layer opacity\n");
     assert_eq!(says(&place, &["undo"]), "undone: dry\n");
     assert!(support::on_canvas(&place) > 0.0, "wet again");
     bus.close();

@@ -140,3 +140,64 @@ fn forty_random_gestures_surprise_nobody() {
 fn five_hundred_random_gestures_beside_busy_loops_surprise_nobody() {
     gestures(500, 2);
 }
+
+/// Bytes of memory that a process holds.
+fn resident(pid: u32) -> u64 {
+    let status = std::fs::read_to_string(format!("/proc/{pid}/status")).expect("a process");
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    let kib = line.expect("its memory").trim().trim_end_matches(" kB");
+    kib.parse::<u64>().expect("a number") << 10
+}
+
+/// A thousand strokes are more than an hour of a painter.
+#[test]
+#[ignore = "takes several minutes"]
+fn a_thousand_strokes_leave_memory_and_file_within_their_bounds() {
+    /// The window may hold so much more after the last stroke than after the first two hundred.
+    const MORE: u64 = 24 << 20;
+    /// The painting's bound, as rigs have it.
+    const BOUND: u64 = 1 << 30;
+    let place = Place::new();
+    let display = Display::start();
+    let mut command = place.maulstick(&["up", "hand.maul"]);
+    command.env("DISPLAY", &display.name);
+    let mut launcher = Launcher::start(command);
+    launcher.wait_says("is up");
+    let (bus, topics) = support::join(&place);
+    display.window("Maulstick");
+    let mut hand = Hand::new(display, bus, &topics, SEED);
+    let window = place.pid("maulstick-ui").expect("a window");
+    let mut held = Vec::new();
+    for number in 1..=1000 {
+        hand.stroke();
+        if number % 20 == 0 {
+            hand.settle();
+            hand.display.keys(&[u32::from('b')]);
+        }
+        if number % 200 == 0 {
+            let status = hand.settle();
+            assert!(status.memory_bytes <= BOUND, "{status:?}");
+            held.push(resident(window));
+        }
+    }
+    println!("window after each 200 strokes: {held:?} bytes");
+    let grown = held[4].saturating_sub(held[0]);
+    assert!(
+        grown <= MORE,
+        "the window has grown by {grown} bytes: {held:?}"
+    );
+    hand.bus.close();
+    let window = hand.display.window("Maulstick");
+    hand.display.close(window);
+    assert_eq!(
+        launcher.wait(PATIENCE).code(),
+        Some(0),
+        "{}",
+        launcher.said()
+    );
+    let kept = place.bytes("hand.maul").len();
+    place.done(&["painting", "pack", "hand.maul"]);
+    let packed = place.bytes("hand.maul").len();
+    println!("file {kept} bytes, packed {packed}");
+    assert!(kept <= 2 * packed, "{kept} bytes, packed {packed}");
+}

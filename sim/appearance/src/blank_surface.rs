@@ -11,31 +11,70 @@ use maulstick_types::paint::TILE;
 
 use crate::display::WetFilms;
 use crate::ground::Ground;
+use crate::heap::{Heap, WELL_M};
 use crate::show_paint::ShowPaint;
 
-/// Thickness of the paint in a well, m.
-pub const WELL_M: f64 = 2e-3;
+/// Thicknesses of a heap of which the colour is known: evenly from nothing to [`MOST_M`].
+const LEVELS: usize = 17;
+/// No heap is thicker, m.
+const MOST_M: f64 = 2.0 * WELL_M;
 
 /// A well as it looks.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct WellLook {
     /// Its middle, cells.
     pub center: [f64; 2],
     /// Its radius, cells.
     pub radius: f64,
-    /// Its unlit colour, linear sRGB.
-    pub rgb: [f32; 3],
     /// What it is.
     pub shape: WellShape,
 }
 
-/// What a well is, as it is seen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What a well is, as it is seen. Colours are unlit, linear sRGB.
+#[derive(Clone, Debug, PartialEq)]
 pub enum WellShape {
     /// Paint from the tube.
-    Heap,
-    /// A glass jar, seen from above. Nothing that brushes leave in it is seen.
-    Jar,
+    Heap(Heap, HeapColours),
+    /// A glass jar of this colour, seen from above. Nothing that brushes leave in it is seen.
+    Jar([f32; 3]),
+}
+
+/// Colours of a heap by its thickness.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeapColours(Arc<[[f32; 3]; LEVELS]>);
+
+impl HeapColours {
+    /// The colours of a paint over a ground: its slots and shares in `studio`.
+    #[must_use]
+    pub fn of(studio: &Studio, shares: &[(usize, f64)], ground: &[f32]) -> Self {
+        let thickness = |level: usize| MOST_M * level as f64 / (LEVELS - 1) as f64;
+        let films: Vec<(usize, [f32; LEVELS])> = shares
+            .iter()
+            .map(|(slot, share)| {
+                let film = std::array::from_fn(|level| (share * thickness(level)) as f32);
+                (*slot, film)
+            })
+            .collect();
+        let paints: Vec<(usize, &[f32])> = films.iter().map(|(slot, d)| (*slot, &d[..])).collect();
+        let mut rgb = [[0.0f32; LEVELS]; 3];
+        let [red, green, blue] = &mut rgb;
+        let planes = FilmPlanes {
+            paints: &paints,
+            opacity: 1.0,
+            under: Under::Even(ground),
+        };
+        studio.shade(&planes, [red, green, blue]);
+        let level = |level: usize| rgb.map(|channel| channel[level]);
+        Self(Arc::new(std::array::from_fn(level)))
+    }
+
+    /// The colour where it is so thick, m.
+    fn at(&self, thickness_m: f64) -> [f32; 3] {
+        let at = (thickness_m / MOST_M * (LEVELS - 1) as f64).clamp(0.0, (LEVELS - 1) as f64);
+        let below = (at as usize).min(LEVELS - 2);
+        let share = (at - below as f64) as f32;
+        [0, 1, 2].map(|i| self.0[below][i] * (1.0 - share) + self.0[below + 1][i] * share)
+    }
 }
 
 /// The cleaner, as it looks: spirits, linear sRGB.
@@ -50,29 +89,22 @@ const WALL: f64 = 0.84;
 const JAR_M: [f32; 2] = [2.5e-3, 1e-3];
 
 impl WellLook {
-    /// Its colour at a place, linear sRGB. Light that falls into a jar from the upper left shines through the far side
-    /// of what is in it.
+    /// Its height at a place, m, and its colour. Light that falls into a jar from the upper left shines through the far
+    /// side of what is in it.
     #[must_use]
-    fn rgb_at(&self, at: [f64; 2]) -> [f32; 3] {
+    fn at(&self, at: [f64; 2]) -> (f32, [f32; 3]) {
         let [x, y] = self.offset(at);
-        let out = (x * x + y * y).sqrt();
-        match self.shape {
-            WellShape::Heap => self.rgb,
-            WellShape::Jar if out > WALL => GLASS_RGB,
-            WellShape::Jar => {
-                let through = 1.0 + 0.45 * (x - y) / WALL;
-                self.rgb.map(|channel| channel * through as f32)
+        let is_wall = || x * x + y * y > WALL * WALL;
+        match &self.shape {
+            WellShape::Heap(heap, colours) => {
+                let thickness_m = heap.thickness_m([x, y]);
+                (thickness_m as f32, colours.at(thickness_m))
             }
-        }
-    }
-
-    /// Its height at a place, m.
-    #[must_use]
-    fn height_at_m(&self, at: [f64; 2]) -> f32 {
-        let [x, y] = self.offset(at);
-        match self.shape {
-            WellShape::Heap => WELL_M as f32,
-            WellShape::Jar => JAR_M[usize::from(x * x + y * y <= WALL * WALL)],
+            WellShape::Jar(_) if is_wall() => (JAR_M[0], GLASS_RGB),
+            WellShape::Jar(rgb) => {
+                let through = 1.0 + 0.45 * (x - y) / WALL;
+                (JAR_M[1], rgb.map(|channel| channel * through as f32))
+            }
         }
     }
 
@@ -91,7 +123,7 @@ pub struct WellCell {
     pub hides: bool,
     /// Its unlit colour, linear sRGB.
     pub rgb: [f32; 3],
-    /// Its height, m.
+    /// Its height, m; 0 beside a heap that does not fill its well.
     pub height_m: f32,
 }
 
@@ -123,34 +155,16 @@ impl BlankSurface {
             cells_in_circle(well.center, well.radius, id).map(move |cell| {
                 let middle = [cell % TILE, cell / TILE].map(|at| at as f64 + 0.5);
                 let at = [corner[0] + middle[0], corner[1] + middle[1]];
+                let (height_m, rgb) = well.at(at);
                 WellCell {
                     cell,
-                    hides: well.shape == WellShape::Jar,
-                    rgb: well.rgb_at(at),
-                    height_m: well.height_at_m(at),
+                    hides: matches!(well.shape, WellShape::Jar(_)),
+                    rgb,
+                    height_m,
                 }
             })
         })
     }
-}
-
-/// The colour of paint as thick as in a well: its slots and shares in `studio`.
-#[must_use]
-pub fn well_colour(studio: &Studio, shares: &[(usize, f64)], ground: &[f32]) -> [f32; 3] {
-    let films: Vec<(usize, [f32; 1])> = shares
-        .iter()
-        .map(|(slot, share)| (*slot, [(share * WELL_M) as f32]))
-        .collect();
-    let paints: Vec<(usize, &[f32])> = films.iter().map(|(slot, d)| (*slot, &d[..])).collect();
-    let mut rgb = [[0.0f32]; 3];
-    let [red, green, blue] = &mut rgb;
-    let planes = FilmPlanes {
-        paints: &paints,
-        opacity: 1.0,
-        under: Under::Even(ground),
-    };
-    studio.shade(&planes, [red, green, blue]);
-    rgb.map(|channel| channel[0])
 }
 
 /// Cells of a tile whose middle is within a circle, whose center and radius are in cells.

@@ -170,7 +170,7 @@ impl DisplayTile {
                 let dried = dry.is_some_and(|stack| stack.height()[cell] != 0.0);
                 shown.wetness[cell] == 0.0 && !dried
             };
-            if well.hides || is_bare() {
+            if well.hides || well.height_m > 0.0 && is_bare() {
                 for (plane, channel) in shown.rgb.iter_mut().zip(well.rgb) {
                     plane[cell] = channel;
                 }

@@ -7,6 +7,7 @@
 //! | [`Appearance`], [`Bakery`] | optics of the paints in use, opacity of dry layers, and those layers baked |
 //! | [`light`], [`lamp`] | the scene's light as input of the optics, and its lamp over a surface |
 //! | [`ground`], [`blank_surface`] | what lies under the paint, and a surface without any |
+//! | [`heap`] | the shape of paint in a well |
 //! | [`show_paint`] | what the planes of a paint model mean to the optics |
 //! | [`display`] | a tile as it is shown before light: colour, gloss, height |
 //! | [`bands`] | a surface row of tiles by row of tiles |
@@ -43,6 +44,7 @@ pub mod bands;
 pub mod blank_surface;
 pub mod display;
 pub mod ground;
+pub mod heap;
 pub mod lamp;
 pub mod light;
 pub mod picture;

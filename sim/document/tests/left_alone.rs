@@ -17,7 +17,7 @@ fn painted(path: &Path) -> Vec<String> {
     let (document, _) = Document::open(&settings).expect("begun");
     let mut kept = sequencer(Arc::clone(document.pager()));
     equip(&mut kept);
-    let mut painter = Painter::new(6);
+    let mut painter = Painter::new(3);
     for _ in 0..12 {
         let act = painter.next();
         painter.act(&mut kept, &act);

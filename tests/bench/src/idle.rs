@@ -19,7 +19,7 @@ const SIZE: [u32; 2] = [1280, 800];
 /// time would show in the figures.
 const SETTLES: Duration = Duration::from_secs(8);
 /// Time over which is measured: several of the looks that a window at rest takes.
-const MEASURED: Duration = Duration::from_secs(20);
+const MEASURED: Duration = Duration::from_secs(120);
 /// Targets, shares of a core: of the window, and of all processes beside it.
 const WINDOW_SHARE: f64 = 0.01;
 const OTHERS_SHARE: f64 = 0.03;

@@ -236,6 +236,12 @@ impl Hand {
         status.expect("asserted")
     }
 
+    /// Paints a stroke on the canvas.
+    pub(crate) fn stroke(&mut self) {
+        let way = self.on_canvas();
+        self.drag(1, &way);
+    }
+
     /// Does a gesture; its name and what it may do.
     pub(crate) fn gesture(&mut self) -> (String, Effect) {
         let key = |letter: char| u32::from(letter);
@@ -243,8 +249,7 @@ impl Hand {
         let kind = self.below(24);
         let (name, effect) = match kind {
             0..=5 => {
-                let way = self.on_canvas();
-                self.drag(1, &way);
+                self.stroke();
                 ("stroke", Effect::Stroke)
             }
             6 | 7 => {

@@ -3,13 +3,14 @@
 
 use std::time::Duration;
 
-use eframe::egui::{Area, Color32, Context, Frame, Id, Margin, Order, RichText, Stroke};
+use eframe::egui::{Area, Color32, Context, Frame, Id, Margin, Order, Rect, RichText, Stroke};
 
 use crate::app::{rack, sides};
 use crate::input::keymap::Keymap;
 use crate::input::keys::Action;
 use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
+use crate::settings::window_side::WindowSide;
 
 /// The line of help, before its keys.
 pub(super) const HELP: &str =
@@ -37,6 +38,9 @@ const AGAIN_S: f64 = 10.0;
 
 /// Space between the line and the rack, points.
 const BESIDE: f32 = 24.0;
+/// Height of the line over the window's edge where it stands over the bar, and its width there, points.
+const ABOVE_BAR: f32 = 56.0;
+const LEAST_WIDTH: f32 = 300.0;
 
 /// State of the line of help.
 #[derive(Debug, Default)]
@@ -48,10 +52,11 @@ pub(super) struct FirstRun {
 }
 
 impl FirstRun {
-    /// Follows the painting, and shows the line while it helps.
+    /// Follows the painting, and shows the line while it helps, beside the part of the window that the palette covers.
     pub(super) fn show(
         &mut self,
         context: &Context,
+        palette: Option<Rect>,
         rig: &RigState,
         preferences: &mut Preferences,
     ) {
@@ -77,19 +82,28 @@ impl FirstRun {
             }
             context.request_repaint_after(Duration::from_secs_f64(left));
         }
-        line(context, preferences);
+        line(context, palette, preferences);
     }
 }
 
-/// Light on dark, with an edge: it is read over any canvas and in either theme. It stands beside the rack, so that it
-/// covers no paint of the palette.
-fn line(context: &Context, preferences: &Preferences) {
-    let side = sides::rack_side(preferences);
+/// Light on dark, with an edge: it is read over any canvas and in either theme. It stands beside the rack, or over the bar
+/// while the palette is beside the rack: it covers no paint.
+fn line(context: &Context, palette: Option<Rect>, preferences: &Preferences) {
+    let rack = sides::rack_side(preferences);
+    let middle = context.content_rect().center().x;
+    let is_out = |palette: Rect| match rack {
+        WindowSide::Right => palette.right() > middle,
+        WindowSide::Left => palette.left() < middle,
+    };
+    let (side, aside, above, most) = match palette.is_some_and(is_out) {
+        false => (rack, rack::WIDTH + BESIDE, 32.0, f32::INFINITY),
+        true => (rack.other(), BESIDE, ABOVE_BAR, LEAST_WIDTH),
+    };
     let (_, corner, inward) = side.anchors();
-    let aside = rack::WIDTH + BESIDE + sides::column_at(preferences, side);
+    let aside = aside + sides::column_at(preferences, side);
     Area::new(Id::unique("help"))
         .order(Order::Foreground)
-        .anchor(corner, [inward * aside, -32.0])
+        .anchor(corner, [inward * aside, -above])
         .interactable(false)
         .show(context, |ui| {
             Frame::NONE
@@ -98,6 +112,7 @@ fn line(context: &Context, preferences: &Preferences) {
                 .corner_radius(8.0)
                 .inner_margin(Margin::symmetric(14, 8))
                 .show(ui, |ui| {
+                    ui.set_max_width(most);
                     ui.label(
                         RichText::new(words(context, &preferences.keys))
                             .color(Color32::from_gray(240))
@@ -120,6 +135,7 @@ mod tests {
         first_run: FirstRun,
         rig: RigState,
         preferences: Preferences,
+        palette: Option<Rect>,
     }
 
     fn day(has_painted: bool) -> Harness<'static, Day> {
@@ -131,9 +147,11 @@ mod tests {
             first_run: FirstRun::default(),
             rig: rig(),
             preferences,
+            palette: None,
         };
         let show = |ui: &mut eframe::egui::Ui, day: &mut Day| {
-            day.first_run.show(ui.ctx(), &day.rig, &mut day.preferences);
+            day.first_run
+                .show(ui.ctx(), day.palette, &day.rig, &mut day.preferences);
         };
         let mut harness = Harness::builder()
             .with_size([800.0, 200.0])
@@ -175,5 +193,21 @@ mod tests {
         let mut harness = day(true);
         assert!(!says(&mut harness, |status| status.path = "/new.maul".into()));
         assert!(!says(&mut harness, |status| status.blank = false));
+    }
+
+    #[test]
+    fn the_line_gives_way_to_the_palette_at_either_side() {
+        for left_handed in [false, true] {
+            let mut harness = day(false);
+            harness.state_mut().preferences.left_handed = left_handed;
+            harness.set_size([1280.0, 800.0].into());
+            for left in [0.0, 350.0, 600.0, 900.0] {
+                let palette = Rect::from_min_size([left, 0.0].into(), [380.0, 800.0].into());
+                harness.state_mut().palette = Some(palette);
+                harness.run_steps(3);
+                let line = harness.get_by_label_contains(HELP).rect();
+                assert!(!line.intersects(palette), "{left}: {line:?}");
+            }
+        }
     }
 }

@@ -62,6 +62,8 @@ mod column;
 mod first_run;
 pub(crate) mod overlay;
 pub mod rack;
+#[cfg(test)]
+mod reach;
 pub(crate) mod sides;
 
 /// Longer side of a version's small picture, pixels, and how long one may take.
@@ -75,7 +77,7 @@ const STATUS_LOOK: Duration = Duration::from_millis(100);
 /// Time after which a silent device is away.
 const SILENCE: Duration = Duration::from_nanos(SILENCE_NS);
 /// Interval at which an idle window is drawn.
-const IDLE_LOOK: Duration = Duration::from_secs(10);
+const IDLE_LOOK: Duration = Duration::from_secs(60);
 /// Interval at which a request that waits for its stroke is checked again.
 const BARRIER_LOOK: Duration = Duration::from_millis(50);
 

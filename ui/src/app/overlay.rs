@@ -97,7 +97,8 @@ impl Overlay {
             self.table_of_keys(&context, &work.preferences.keys);
         }
         if !in_dialog && self.alone.is_none() {
-            self.first_run.show(&context, work.rig, work.preferences);
+            self.first_run
+                .show(&context, self.palette, work.rig, work.preferences);
         }
         if let Some(act) = self.reference.show(&context, self.palette, work) {
             self.files.follow(&context, act, work);

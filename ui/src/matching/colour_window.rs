@@ -22,6 +22,8 @@ const ASIDE: f32 = 40.0;
 #[derive(Debug)]
 pub(crate) struct ColourWindow {
     shown: bool,
+    /// True until it has the keyboard, with which it opens.
+    opens: bool,
     colour: Hsva,
     /// The field, while something else than the colour is written in it.
     typed: Option<String>,
@@ -32,6 +34,7 @@ impl Default for ColourWindow {
     fn default() -> Self {
         Self {
             shown: false,
+            opens: false,
             colour: Hsva::from_srgb([138, 90, 60]),
             typed: None,
             picker: Picker::default(),
@@ -63,6 +66,7 @@ impl ColourWindow {
     /// Shows or hides it.
     pub(crate) fn toggle(&mut self) {
         self.shown = !self.shown;
+        self.opens = self.shown;
     }
 
     /// Shows it, if it is open.
@@ -109,6 +113,9 @@ impl ColourWindow {
                 .char_limit(16)
                 .desired_width(80.0);
             let field = ui.add(edit).labelled_by(label.id);
+            if std::mem::take(&mut self.opens) {
+                field.request_focus();
+            }
             if field.changed() {
                 if let Ok(bytes) = parsed(&text) {
                     self.colour = Hsva::from_srgb(bytes);

@@ -1,7 +1,7 @@
 //! Pass that draws the desk and the lit surfaces on it.
 
 use bytemuck::{Pod, Zeroable};
-use eframe::egui::{Pos2, Vec2};
+use eframe::egui::Pos2;
 use eframe::egui_wgpu::wgpu;
 use half::f16;
 use maulstick_brush::palette_place::corner_radii;
@@ -18,7 +18,8 @@ use crate::view::camera::{DESK_COLOUR, View, corners};
 const SHADE: f32 = 14.0;
 const SHADED: f32 = 0.45;
 
-/// Placement of a surface in the view, as the shader takes it: pixels, from the view's upper left.
+/// Placement of a surface in the view, as the shader takes it: pixels, from the view's upper left; corner and sides are
+/// homogeneous.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Place {
@@ -28,7 +29,10 @@ pub struct Place {
     view: [f32; 2],
     spread: [f32; 2],
     shade: [f32; 2],
+    depth: [f32; 4],
     radii: [f32; 4],
+    sides: [f32; 2],
+    pad: [f32; 2],
     detail: Region,
     base: Region,
 }
@@ -61,10 +65,8 @@ impl Place {
         pixels_per_point: f32,
         [detail, base]: [Region; 2],
     ) -> Self {
-        let at = corners(surface).map(|corner| view.to_window(corner));
-        let pixels = |v: Vec2| (v * pixels_per_point).into();
-        let (right, up) = (at[1] - at[0], at[2] - at[0]);
-        let sides = [right, up].map(|side| side.length() * pixels_per_point);
+        let ([corner, right, up], depth) = view.quad(surface).pixels(pixels_per_point);
+        let sides = Self::pixels(surface, view, pixels_per_point);
         // Below one texel a pixel the sampler's own interpolation is all there is to do.
         let minified = (0..2).any(|i| detail.extent[i] > 1.01 * sides[i]);
         let shade = match surface.id {
@@ -74,12 +76,15 @@ impl Place {
         let pixels_per_m = view.scale * f64::from(pixels_per_point) * surface.zoom;
         let spread = sides.map(|side| if minified { 0.25 / side.max(1.0) } else { 0.0 });
         Self {
-            corner: pixels(at[0] - view.area.min),
-            right: pixels(right),
-            up: pixels(up),
-            view: pixels(view.area.size()),
+            corner,
+            right,
+            up,
+            view: (view.area.size() * pixels_per_point).into(),
             spread,
             shade,
+            depth,
+            sides,
+            pad: [0.0; 2],
             radii: corner_radii(surface).map(|radius_m| (radius_m * pixels_per_m) as f32),
             detail,
             base,
@@ -97,7 +102,12 @@ impl Place {
                 let end = area.from[i] + ((corner >> i) & 1) * area.size[i];
                 end as f32 / extent[i].max(1e-6)
             });
-            let pixel = [0, 1].map(|i| self.corner[i] + across * self.right[i] + up * self.up[i]);
+            let depth = self.depth[0] + across * self.depth[1] + up * self.depth[2];
+            if depth <= 0.0 {
+                return PixelRect::EVERYTHING;
+            }
+            let pixel =
+                [0, 1].map(|i| (self.corner[i] + across * self.right[i] + up * self.up[i]) / depth);
             let around = PixelRect {
                 from: pixel.map(|at| (at - REACH).floor().max(0.0) as u32),
                 to: pixel.map(|at| (at + REACH).ceil().max(0.0) as u32),

@@ -8,7 +8,7 @@ use maulstick_types::scene::Surface;
 
 use crate::reference::picture::Picture;
 use crate::render::gpu::{Filterable, Gpu, Pass, UNIFORM, texture_binding};
-use crate::view::camera::{View, corners};
+use crate::view::camera::View;
 
 /// A picture ready to be thrown: encoded sRGB in levels, each half as large as the one before, down to a pixel.
 pub(crate) struct Slide {
@@ -97,7 +97,8 @@ impl Slide {
     }
 }
 
-/// Place of the picture in the view, as the shader takes it: pixels, from the view's upper left.
+/// Place of the picture in the view, as the shader takes it: pixels, from the view's upper left; corner and sides are
+/// homogeneous.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 struct Place {
@@ -105,8 +106,9 @@ struct Place {
     right: [f32; 2],
     up: [f32; 2],
     view: [f32; 2],
+    depth: [f32; 4],
     strength: f32,
-    pad: f32,
+    pad: [f32; 3],
 }
 
 impl Place {
@@ -117,20 +119,20 @@ impl Place {
         view: &View,
         pixels_per_point: f32,
     ) -> Self {
-        let at = corners(surface).map(|corner| view.to_window(corner));
-        let (right, up) = (at[1] - at[0], at[2] - at[0]);
-        let [across, high] = [0, 1].map(|i| surface.cells[i] as f32 / size[i] as f32);
+        let [across, high] = [0, 1].map(|i| f64::from(surface.cells[i]) / size[i] as f64);
         let fits = across.min(high);
         let [wide, tall] = [fits / across, fits / high];
-        let corner = at[0] + 0.5 * ((1.0 - wide) * right + (1.0 - tall) * up);
-        let pixels = |v: eframe::egui::Vec2| (v * pixels_per_point).into();
+        let beside = [wide, tall].map(|share| 0.5 * (1.0 - share));
+        let picture = view.quad(surface).part(beside, [wide, tall]);
+        let ([corner, right, up], depth) = picture.pixels(pixels_per_point);
         Self {
-            corner: pixels(corner - view.area.min),
-            right: pixels(wide * right),
-            up: pixels(tall * up),
-            view: pixels(view.area.size()),
+            corner,
+            right,
+            up,
+            view: (view.area.size() * pixels_per_point).into(),
+            depth,
             strength,
-            pad: 0.0,
+            pad: [0.0; 3],
         }
     }
 }

@@ -4,10 +4,12 @@
 //! | --- | --- |
 //! | [`camera`] | desk points to window points and back |
 //! | [`visible_tiles`] | the tiles of a surface that are in view |
+//! | `quad` | a surface in perspective |
 //! | `palette_slide` | animation of the palette |
 //! | `well_labels` | labels of the wells |
 
 pub mod camera;
 pub(crate) mod palette_slide;
+pub(crate) mod quad;
 pub mod visible_tiles;
 pub(crate) mod well_labels;

@@ -1,6 +1,7 @@
 //! Tiles of a surface that are in view.
 
-use eframe::egui::{Pos2, Vec2};
+use eframe::egui::Pos2;
+use maulstick_brush::palette_place::size_m;
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::Surface;
 
@@ -147,17 +148,14 @@ impl Part {
     /// `None` if the surface is seen from its edge.
     fn of(surface: &Surface, view: &View, pixels_per_point: f32) -> Option<Self> {
         let at: [Pos2; 4] = corners(surface).map(|corner| view.to_window(corner));
-        let (right, up) = (at[1] - at[0], at[2] - at[0]);
-        let area = right.x * up.y - right.y * up.x;
-        let pixels = [right, up].map(|side| side.length() * pixels_per_point);
-        if area.abs() < 1e-3 * right.length() * up.length() || !area.is_finite() || area == 0.0 {
-            return None;
-        }
-        let shares = |v: Vec2| {
-            [
-                (v.x * up.y - v.y * up.x) / area,
-                (right.x * v.y - right.y * v.x) / area,
-            ]
+        // What is raised is larger.
+        let side = |from: usize, to: usize| (at[to] - at[from]).length() * pixels_per_point;
+        let pixels = [side(0, 1).max(side(2, 3)), side(0, 2).max(side(1, 3))];
+        let size = size_m(surface) * surface.zoom;
+        let shares = |at: Pos2| {
+            let own = view.on_plane(at, surface)?.truncate() / size;
+            own.is_finite()
+                .then(|| own.to_array().map(|share| share as f32))
         };
         let seen = view.area;
         let ends = [
@@ -165,8 +163,8 @@ impl Part {
             seen.right_top(),
             seen.left_bottom(),
             seen.right_bottom(),
-        ]
-        .map(|corner| shares(corner - at[0]));
+        ];
+        let ends = ends.into_iter().map(shares).collect::<Option<Vec<_>>>()?;
         let least = [0, 1].map(|i| ends.iter().map(|e| e[i]).fold(f32::INFINITY, f32::min));
         let most = [0, 1].map(|i| ends.iter().map(|e| e[i]).fold(f32::NEG_INFINITY, f32::max));
         Some(Self {

@@ -4,3 +4,4 @@ pub mod handle_path;
 pub mod lead;
 pub mod mark;
 pub mod model;
+mod stroke_count;

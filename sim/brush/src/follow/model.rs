@@ -9,6 +9,7 @@ use maulstick_types::stylus::{StylusPose, StylusSample};
 
 use crate::desk::{Desk, Obstacle, Plane, aim, ferrule};
 use crate::file::BrushFile;
+use crate::follow::stroke_count::StrokeCount;
 use crate::handle_path::{HandlePath, PathSegment, Sampled};
 use crate::head_solver::{HeadSolver, SolvedHead, settings_of};
 use crate::lead::Lead;
@@ -16,8 +17,6 @@ use crate::mark::{Beside, Mark, point_of};
 use crate::solver::Settings;
 use crate::spine_layout::SpineLayout;
 
-/// Contacts less than this apart are one stroke, ns.
-pub const STROKE_GAP_NS: u64 = 150_000_000;
 /// Longest pause between two samples in contact that the brush crosses along its path, ns; after a
 /// longer one it begins another stroke.
 pub const BRIDGED_NS: u64 = 300_000_000;
@@ -50,8 +49,7 @@ pub struct BrushModel {
     desk: Option<Desk>,
     follows: Option<Origin>,
     tracked: Option<TrackedBrush>,
-    strokes: u64,
-    last_contact_ns: u64,
+    strokes: StrokeCount,
     /// Factor on the stiffness of the file.
     tuned: f64,
     /// Wetness, 0 to 1.
@@ -71,6 +69,8 @@ struct TrackedBrush {
     is_pen: bool,
     /// True for a pen that presses at the newest sample.
     is_pressed: bool,
+    /// The stroke of this press; 0 before it touches.
+    stroke: u64,
     /// Lead of the handle.
     lead: Lead,
     /// Bend of the head along the surface.
@@ -101,8 +101,7 @@ impl BrushModel {
             desk: None,
             follows: None,
             tracked: None,
-            strokes: 0,
-            last_contact_ns: 0,
+            strokes: StrokeCount::default(),
             tuned: 1.0,
             wetness: 0.0,
         }
@@ -219,6 +218,12 @@ impl BrushModel {
             }
             Some(mut tracked) if !paused(&tracked) => {
                 (tracked.before, tracked.left_over_m) = (None, 0.0);
+                if !tracked.is_pressed {
+                    tracked.stroke = 0;
+                }
+                if !sample.in_air() {
+                    self.stay(&tracked, event_ns);
+                }
                 let mut solve = self.land(&mut tracked, here, sample.in_air(), &plane);
                 if is_pen && sample.in_air() && tracked.head.touches() {
                     // It was let go so far away that no bend could be followed there.
@@ -335,13 +340,13 @@ impl BrushModel {
         solves: &mut Vec<Solve>,
     ) {
         let mut tried = tracked.clone();
-        let strokes = (self.strokes, self.last_contact_ns);
+        let strokes = self.strokes;
         let end = segment.end();
         self.stay(&tried, end.event_ns);
         let solve = self.solve(&mut tried, end, plane);
         let moved = tried.head.moved_in_contact(&tracked.head);
         if splits > 0 && moved > FARTHEST_M {
-            (self.strokes, self.last_contact_ns) = strokes;
+            self.strokes = strokes;
             let [first, second] = segment.halves();
             self.walk(tracked, &first, plane, splits - 1, solves);
             self.walk(tracked, &second, plane, splits - 1, solves);
@@ -406,8 +411,9 @@ impl BrushModel {
         let contacts = tracked.head.contacts();
         let stroke = match contacts.is_empty() {
             true => 0,
-            false => self.stroke(at.event_ns),
+            false => self.strokes.touch(at.event_ns),
         };
+        tracked.stroke = tracked.stroke.max(stroke);
         let in_surface = Rigid {
             translation: brush.translation / plane.zoom,
             ..brush
@@ -458,21 +464,13 @@ impl BrushModel {
         })
     }
 
-    /// Contact lasts from one solve of a path to the next, however long the pause between its samples.
+    /// A stroke lasts from one solve to the next, however long the pause between samples, while the brush touches or its
+    /// pen presses on: also where it touches nothing, beyond an edge.
     fn stay(&mut self, tracked: &TrackedBrush, until_ns: u64) {
-        if tracked.head.touches() {
-            self.last_contact_ns = until_ns;
+        let presses_on = tracked.is_pressed && tracked.stroke == self.strokes.number();
+        if tracked.head.touches() || presses_on && tracked.stroke > 0 {
+            self.strokes.last_to(until_ns);
         }
-    }
-
-    /// The stroke of a contact at `event_ns`.
-    fn stroke(&mut self, event_ns: u64) -> u64 {
-        let apart = event_ns.abs_diff(self.last_contact_ns) >= STROKE_GAP_NS;
-        if self.strokes == 0 || apart {
-            self.strokes += 1;
-        }
-        self.last_contact_ns = event_ns;
-        self.strokes
     }
 
     fn fresh(&self, plane: &Plane, here: Sampled, is_pen: bool) -> TrackedBrush {
@@ -485,6 +483,7 @@ impl BrushModel {
             newest: here,
             is_pen,
             is_pressed: false,
+            stroke: 0,
             lead: Lead::default(),
             bent: DVec2::ZERO,
             force_n: 0.0,

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use maulstick_appearance::Appearance;
 use maulstick_appearance::blank_surface::{
-    BlankSurface, CLEANER_RGB, MEDIUM_RGB, WellLook, WellShape, well_colour,
+    BlankSurface, CLEANER_RGB, HeapColours, MEDIUM_RGB, WellLook, WellShape,
 };
 use maulstick_appearance::ground::Ground;
+use maulstick_appearance::heap::Heap;
 use maulstick_appearance::light::{changes_colour, studio_settings};
 use maulstick_canvas::EditError;
 use maulstick_canvas::assets::Assets;
@@ -94,8 +95,7 @@ impl Optics {
             let jar = |rgb| WellLook {
                 center,
                 radius,
-                rgb,
-                shape: WellShape::Jar,
+                shape: WellShape::Jar(rgb),
             };
             let mixture = match &well.kind {
                 WellKind::Paint { mixture } => mixture,
@@ -115,11 +115,11 @@ impl Optics {
                 let paint = self.library.find(&part.paint).map_err(paint_error)?;
                 shares.push((mixed.add(paint), part.share));
             }
+            let colours = HeapColours::of(&mixed, &shares, ground.mean());
             wells.push(WellLook {
                 center,
                 radius,
-                rgb: well_colour(&mixed, &shares, ground.mean()),
-                shape: WellShape::Heap,
+                shape: WellShape::Heap(Heap::of(&mixture), colours),
             });
         }
         Ok(BlankSurface {

@@ -3,7 +3,7 @@
 // takes it.
 
 struct Place {
-    // Pixels of the view: the surface's lower left corner, and its sides from there.
+    // Pixels of the view times their depth: the surface's lower left corner, and its sides from there.
     corner: vec2<f32>,
     right: vec2<f32>,
     up: vec2<f32>,
@@ -12,8 +12,13 @@ struct Place {
     spread: vec2<f32>,
     // How far the shadow of a board that lies over others reaches, pixels; 0 for a canvas. Its strength.
     shade: vec2<f32>,
+    // Depth of the corner, and what the sides add to it; 1 is that of the desk.
+    depth: vec4<f32>,
     // Radii of the corners, pixels: lower left, lower right, upper left, upper right.
     radii: vec4<f32>,
+    // Lengths of the sides, pixels.
+    sides: vec2<f32>,
+    pad: vec2<f32>,
     detail: Region,
     // Its extent is 0 where there is none.
     base: Region,
@@ -53,19 +58,16 @@ struct Corner {
     @location(0) at: vec2<f32>,
 }
 
-fn pixels() -> vec2<f32> {
-    return vec2<f32>(length(place.right), length(place.up));
-}
-
 @vertex
 fn lay(@builtin(vertex_index) corner: u32) -> Corner {
     // A pixel wider than the surface, for its soft edge; farther by its shadow.
     let unit = vec2<f32>(f32(corner & 1u), f32(corner >> 1u));
     let margin = 1.0 + 1.5 * place.shade.x;
-    let at = unit + (2.0 * unit - 1.0) * margin / max(pixels(), vec2<f32>(1.0));
+    let at = unit + (2.0 * unit - 1.0) * margin / max(place.sides, vec2<f32>(1.0));
     let pixel = place.corner + at.x * place.right + at.y * place.up;
-    let clip = pixel / place.view * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
-    return Corner(vec4<f32>(clip, 0.0, 1.0), at);
+    let depth = dot(place.depth.xyz, vec3<f32>(1.0, at));
+    let clip = pixel / place.view * vec2<f32>(2.0, -2.0) + depth * vec2<f32>(-1.0, 1.0);
+    return Corner(vec4<f32>(clip, 0.0, depth), at);
 }
 
 fn sampled(at: vec2<f32>) -> vec3<f32> {
@@ -124,8 +126,8 @@ fn sent(light: vec3<f32>) -> vec3<f32> {
 
 // Distance from the edge of the board, pixels; negative within.
 fn beyond(at: vec2<f32>) -> f32 {
-    let half = 0.5 * pixels();
-    let p = at * pixels() - half;
+    let half = 0.5 * place.sides;
+    let p = at * place.sides - half;
     let lower = select(place.radii.x, place.radii.y, p.x > 0.0);
     let upper = select(place.radii.z, place.radii.w, p.x > 0.0);
     let radius = select(lower, upper, p.y > 0.0);
@@ -141,7 +143,7 @@ fn show(in: Corner) -> @location(0) vec4<f32> {
         light = 0.25 * (sampled(in.at - s) + sampled(in.at + s)
             + sampled(in.at + vec2<f32>(s.x, -s.y)) + sampled(in.at + vec2<f32>(-s.x, s.y)));
     }
-    let inner = clamp(min(in.at, 1.0 - in.at) * pixels() + 0.5, vec2<f32>(0.0), vec2<f32>(1.0));
+    let inner = clamp(min(in.at, 1.0 - in.at) * place.sides + 0.5, vec2<f32>(0.0), vec2<f32>(1.0));
     if place.shade.x == 0.0 {
         let cover = inner.x * inner.y;
         return vec4<f32>(sent(light) * cover, cover);
@@ -150,7 +152,7 @@ fn show(in: Corner) -> @location(0) vec4<f32> {
     let edge = beyond(in.at);
     let cover = clamp(0.5 - edge, 0.0, 1.0);
     let rim = mix(0.72, 1.0, smoothstep(0.0, 2.5, -edge));
-    let aside = vec2<f32>(0.3, -0.3) * place.shade.x / max(pixels(), vec2<f32>(1.0));
+    let aside = vec2<f32>(0.3, -0.3) * place.shade.x / max(place.sides, vec2<f32>(1.0));
     let away = smoothstep(-0.5 * place.shade.x, place.shade.x, beyond(in.at - aside));
     let shadow = place.shade.y * (1.0 - away);
     return vec4<f32>(sent(light * rim) * cover, cover + (1.0 - cover) * shadow);

@@ -1,11 +1,13 @@
 // A picture thrown on a surface that is drawn already: what is there is multiplied by its light.
 
 struct Place {
-    // Pixels of the view: the picture's lower left corner, and its sides from there.
+    // Pixels of the view times their depth: the picture's lower left corner, and its sides from there.
     corner: vec2<f32>,
     right: vec2<f32>,
     up: vec2<f32>,
     view: vec2<f32>,
+    // Depth of the corner, and what the sides add to it; 1 is that of the desk.
+    depth: vec4<f32>,
     // How much of the picture is seen, 0 to 1.
     strength: f32,
     pad: f32,
@@ -28,8 +30,9 @@ struct Corner {
 fn lay(@builtin(vertex_index) corner: u32) -> Corner {
     let unit = vec2<f32>(f32(corner & 1u), f32(corner >> 1u));
     let pixel = place.corner + unit.x * place.right + unit.y * place.up;
-    let clip = pixel / place.view * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
-    return Corner(vec4<f32>(clip, 0.0, 1.0), vec2<f32>(unit.x, 1.0 - unit.y));
+    let depth = dot(place.depth.xyz, vec3<f32>(1.0, unit));
+    let clip = pixel / place.view * vec2<f32>(2.0, -2.0) + depth * vec2<f32>(-1.0, 1.0);
+    return Corner(vec4<f32>(clip, 0.0, depth), vec2<f32>(unit.x, 1.0 - unit.y));
 }
 
 // IEC 61966-2-1.

@@ -421,6 +421,32 @@ fn a_stroke_over_the_edge_of_the_canvas_is_the_canvas_s_to_its_end() {
 }
 
 #[test]
+fn a_press_that_touches_nothing_for_long_and_then_again_is_one_stroke() {
+    let drawn = |lifts: bool| {
+        let mut model = brush();
+        let mut strokes = Vec::new();
+        for step in 0..120_u32 {
+            // .6 s of it so lightly that the head is clear of the canvas.
+            let pressure = match step {
+                60..90 if lifts => 0.0,
+                40..115 => 1e-6,
+                _ => 0.5,
+            };
+            let ns = (1000 + 8 * u64::from(step)) * MS;
+            for solve in model.follow(DEVICE, ns, &pen(1e-4 * f64::from(step), 0.0, pressure)) {
+                strokes.push(solve.stroke);
+            }
+        }
+        strokes.dedup();
+        strokes
+    };
+    let (stays, lifts) = (drawn(false), drawn(true));
+    assert!(stays.contains(&0), "it touches all along");
+    assert_eq!(stays.iter().max(), Some(&1), "{stays:?}");
+    assert_eq!(lifts.last(), Some(&2), "{lifts:?}");
+}
+
+#[test]
 fn a_pressed_brush_of_any_kind_and_size_touches_all_along_its_stroke() {
     let mut bare = Vec::new();
     for (kind, _) in LIBRARY {

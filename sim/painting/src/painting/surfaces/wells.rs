@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use maulstick_appearance::blank_surface::WELL_M;
+use maulstick_appearance::heap::{Heap, WELL_M};
 use maulstick_brush::HeadPose;
 use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::{QUANTUM_M, SLOTS};
@@ -154,19 +154,20 @@ impl Painting {
                     let Ok(slots) = self.optics.slots(&mut self.scene, &mixture) else {
                         continue;
                     };
-                    let mut fresh = [0u32; SLOTS];
-                    for (slot, share) in slots {
-                        fresh[slot] += (share * WELL_M / QUANTUM_M) as u32;
-                    }
                     let cells = cells_within(window, &well, cell_m, (from, to));
-                    renew(window, &cells, &fresh, ledger);
-                    window.note_top(fresh.iter().sum::<u32>() as f32);
+                    let thick = thicknesses(window, &cells, &well, &mixture, cell_m);
+                    let mut shares = [0.0; SLOTS];
+                    for (slot, share) in slots {
+                        shares[slot] += share;
+                    }
+                    renew(window, &cells, (&shares, &thick), ledger);
+                    window.note_top(thick.iter().copied().fold(0.0, f64::max) as f32);
                 }
                 // Whatever else of the head is low, the jar cleans a brush that is in it.
                 WellKind::Cleaner if is_in(head, &well, cell_m) => {
                     let cells = cells_within(window, &well, cell_m, (from, to));
                     if !cells.is_empty() {
-                        renew(window, &cells, &[0; SLOTS], ledger);
+                        renew(window, &cells, NOTHING, ledger);
                         let left = Arc::make_mut(&mut brush.load).take_all();
                         ledger.to_cleaner(&left);
                     }
@@ -189,7 +190,7 @@ impl Painting {
         for well in wells_near(surface, (from, to)) {
             if well.kind == WellKind::Medium {
                 let cells = cells_within(window, &well, surface.cell_m, (from, to));
-                renew(window, &cells, &[0; SLOTS], &mut self.accounts.ledger);
+                renew(window, &cells, NOTHING, &mut self.accounts.ledger);
             }
         }
     }
@@ -207,17 +208,49 @@ fn wells_near(surface: &Surface, (from, to): ([i64; 2], [i64; 2])) -> Vec<Well> 
     surface.wells.iter().filter(near).cloned().collect()
 }
 
-/// Makes cells hold just `fresh`: the cleaner takes what is too much, the tubes give what is missing.
-fn renew(window: &mut Window, cells: &[usize], fresh: &[u32; SLOTS], ledger: &mut Ledger) {
+/// Quanta of paint in cells of a well: its heap, or a jar filled evenly.
+fn thicknesses(
+    window: &Window,
+    cells: &[usize],
+    well: &Well,
+    mixture: &Mixture,
+    cell_m: f64,
+) -> Vec<f64> {
+    if well.kind == WellKind::Medium {
+        return vec![WELL_M / QUANTUM_M; cells.len()];
+    }
+    let heap = Heap::of(mixture);
+    let (origin, width) = (window.origin(), window.width());
+    let offset = |cell: usize| {
+        let place = [cell % width, cell / width].map(|at| at as f64 + 0.5);
+        [0, 1].map(|i| ((origin[i] as f64 + place[i]) * cell_m - well.center_m[i]) / well.radius_m)
+    };
+    let cells = cells.iter();
+    cells
+        .map(|cell| heap.thickness_m(offset(*cell)) / QUANTUM_M)
+        .collect()
+}
+
+/// No paint, for [`renew`].
+const NOTHING: (&[f64; SLOTS], &[f64]) = (&[0.0; SLOTS], &[]);
+
+/// Makes cells hold just what is fresh, of each slot a share of the cell's quanta: the cleaner takes what is too much,
+/// the tubes give what is missing.
+fn renew(
+    window: &mut Window,
+    cells: &[usize],
+    (shares, quanta): (&[f64; SLOTS], &[f64]),
+    ledger: &mut Ledger,
+) {
     let (mut given, mut taken) = ([0; SLOTS], [0; SLOTS]);
-    for slot in 0..SLOTS {
-        if fresh[slot] == 0 && !window.has(slot) {
+    for (slot, share) in shares.iter().enumerate() {
+        if *share == 0.0 && !window.has(slot) {
             continue;
         }
         let plane = window.plane_mut(slot);
-        for cell in cells {
+        for (at, cell) in cells.iter().enumerate() {
             let held = plane[*cell] as u64;
-            let wanted = u64::from(fresh[slot]);
+            let wanted = quanta.get(at).map_or(0, |quanta| (share * quanta) as u64);
             given[slot] += wanted.saturating_sub(held);
             taken[slot] += held.saturating_sub(wanted);
             plane[*cell] = wanted as f32;

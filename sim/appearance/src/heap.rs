@@ -1,0 +1,137 @@
+//! The shape of paint that was squeezed onto a palette.
+//!
+//! Stiff paint stays as it came out of the tube: a coil of a strand that rises to a tip. Much thinner makes it run
+//! level, a puddle.
+
+use std::f64::consts::TAU;
+
+use maulstick_num::{atan2, exp, sin, sin_cos};
+use maulstick_optics::THINNER;
+use maulstick_types::Mixture;
+
+/// Thickness of the paint in a well in the mean, m.
+pub const WELL_M: f64 = 2e-3;
+/// Shares of thinner at which paint begins to run, and runs level.
+const RUNS: [f64; 2] = [0.1, 0.4];
+/// Radius of the heap's outline in the mean, and the depth of its two swings, by the well's radius.
+const OUTLINE: [f64; 3] = [0.93, 0.035, 0.02];
+/// Least and most turns of a strand from the outline to the middle.
+const TURNS: [f64; 2] = [1.5, 2.4];
+/// Depth of the groove between two turns, by the height of the heap there.
+const GROOVE: f64 = 0.3;
+/// Fall from the middle to the rim, by the height in the middle.
+const FALL: f64 = 0.2;
+/// Distance of the tip from the middle, its radius, by the well's radius, and its height, by that of the heap.
+const TIP: [f64; 3] = [0.1, 0.13, 0.16];
+/// Height in the middle without the tip by the height in the mean: of a heap, and of a puddle.
+const RISE: [f64; 2] = [1.754, 1.240];
+
+/// A heap in a well.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Heap {
+    /// How it lies, rad.
+    turn: f64,
+    /// Turns of its strand.
+    turns: f64,
+    /// 0 where it runs level, 1 where it stays as it was squeezed.
+    stiffness: f64,
+}
+
+impl Heap {
+    /// The heap of a mixture: each lies another way.
+    #[must_use]
+    pub fn of(mixture: &Mixture) -> Self {
+        let thinner = mixture.parts.iter().filter(|part| part.paint == THINNER);
+        let thinner: f64 = thinner.map(|part| part.share).sum();
+        let names = mixture.parts.iter().flat_map(|part| part.paint.bytes());
+        // FNV-1a.
+        let hash = names.fold(0x811c_9dc5_u32, |hash, byte| {
+            (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)
+        });
+        let runs = ((thinner - RUNS[0]) / (RUNS[1] - RUNS[0])).clamp(0.0, 1.0);
+        Self {
+            turn: f64::from(hash >> 16) / f64::from(1 << 16) * TAU,
+            turns: TURNS[0] + (TURNS[1] - TURNS[0]) * f64::from(hash & 0xffff) / f64::from(0xffff),
+            stiffness: 1.0 - runs,
+        }
+    }
+
+    /// Thickness at a place seen from the well's middle, by the well's radius, m.
+    #[must_use]
+    pub fn thickness_m(&self, [x, y]: [f64; 2]) -> f64 {
+        let out = (x * x + y * y).sqrt();
+        let round = atan2(y, x) + self.turn;
+        let [mean, two, three] = OUTLINE;
+        let outline = mean + two * sin(2.0 * round) + three * sin(3.0 * round + self.turn);
+        let rho = out / outline;
+        if rho >= 1.0 {
+            return 0.0;
+        }
+        let inside = 1.0 - rho * rho;
+        // Flat, with a round rim.
+        let puddle = (1.0 - rho.powi(16)).sqrt();
+        // Grooves where the strand comes round.
+        let strand = self.turns * rho + round / TAU;
+        let across = 2.0 * (strand - strand.floor()) - 1.0;
+        let bead = (1.0 - across * across).sqrt();
+        let (tip_y, tip_x) = sin_cos(-self.turn);
+        let [dx, dy] = [x - TIP[0] * tip_x, y - TIP[0] * tip_y].map(|d| d / TIP[1]);
+        let tip = TIP[2] * exp(-(dx * dx + dy * dy));
+        let dome = inside.sqrt().sqrt() * (1.0 - FALL * rho);
+        let coil = dome * (1.0 - GROOVE + GROOVE * bead) + tip;
+        let [heap, level] = RISE;
+        WELL_M * (self.stiffness * heap * coil + (1.0 - self.stiffness) * level * puddle)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use maulstick_types::mixture::Part;
+
+    fn heap(parts: &[(&str, f64)]) -> Heap {
+        let part = |(paint, share): &(&str, f64)| Part {
+            paint: (*paint).to_owned(),
+            share: *share,
+        };
+        Heap::of(&Mixture {
+            parts: parts.iter().map(part).collect(),
+        })
+    }
+
+    /// Thicknesses over the circle of a well, m, on a grid of 401 × 401 places.
+    fn thicknesses(heap: &Heap) -> Vec<f64> {
+        let at = |i: i32| f64::from(i) / 200.0;
+        let places = (-200..=200).flat_map(|y| (-200..=200).map(move |x| [at(x), at(y)]));
+        places
+            .filter(|[x, y]| x * x + y * y < 1.0)
+            .map(|place| heap.thickness_m(place))
+            .collect()
+    }
+
+    #[test]
+    fn heaps_and_puddles_hold_what_a_well_holds() {
+        for parts in [
+            &[("Titanium White", 1.0)][..],
+            &[("Yellow Ochre", 1.0)],
+            &[("Yellow Ochre", 0.75), (THINNER, 0.25)],
+            &[("Ultramarine Blue", 0.3), (THINNER, 0.7)],
+        ] {
+            let all = thicknesses(&heap(parts));
+            let mean = all.iter().sum::<f64>() / all.len() as f64;
+            assert!((mean - 2e-3).abs() < 4e-5, "{parts:?}: {mean}");
+            let most = all.iter().copied().fold(0.0, f64::max);
+            assert!(most < 4e-3, "{parts:?}: {most}");
+        }
+    }
+
+    #[test]
+    fn stiff_paint_stands_and_thin_paint_lies_level() {
+        let most = |parts: &[(&str, f64)]| {
+            let all = thicknesses(&heap(parts));
+            all.into_iter().fold(0.0, f64::max)
+        };
+        assert!(most(&[("Titanium White", 1.0)]) > 3.5e-3);
+        assert!(most(&[("Ultramarine Blue", 0.3), (THINNER, 0.7)]) < 2.6e-3);
+    }
+}

@@ -1,0 +1,33 @@
+//! Which contacts are one stroke.
+
+/// Contacts less than this apart are one stroke, ns.
+const STROKE_GAP_NS: u64 = 150_000_000;
+
+/// Numbers the strokes of a brush, from 1.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct StrokeCount {
+    number: u64,
+    lasts_to_ns: u64,
+}
+
+impl StrokeCount {
+    /// The number of the newest stroke; 0 before the first.
+    #[must_use]
+    pub(crate) const fn number(self) -> u64 {
+        self.number
+    }
+
+    /// The newest stroke lasts until `ns`, whatever touches.
+    pub(crate) const fn last_to(&mut self, ns: u64) {
+        self.lasts_to_ns = ns;
+    }
+
+    /// The stroke of a contact at `ns`.
+    pub(crate) const fn touch(&mut self, ns: u64) -> u64 {
+        if self.number == 0 || ns.abs_diff(self.lasts_to_ns) >= STROKE_GAP_NS {
+            self.number += 1;
+        }
+        self.lasts_to_ns = ns;
+        self.number
+    }
+}
