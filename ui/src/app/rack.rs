@@ -10,6 +10,7 @@ use eframe::egui::{
 use maulstick_brush::BrushFile;
 
 use crate::input::brush_choice::{called, is_of_library, library};
+use crate::language::known;
 use crate::render::brush::icon_cache;
 use crate::widgets::context::PanelContext;
 
@@ -45,7 +46,7 @@ pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) -> Rect {
     let shown = Area::new(Id::unique("rack"))
         .order(Order::Middle)
         .anchor(side, [0.0, 0.0])
-        .accessible_name("Brushes")
+        .accessible_name(tr!("Brushes"))
         .show(context, |ui| {
             let fill = ui.visuals().panel_fill.gamma_multiply(0.94);
             let frame = Frame::NONE
@@ -103,7 +104,7 @@ fn switch(ui: &mut Ui, work: &mut PanelContext<'_>) {
         let button = eframe::egui::Button::selectable(work.rig.in_hand == place, &name)
             .min_size(vec2(ui.available_width(), 0.0))
             .truncate();
-        let hover = format!("The brush called '{name}' in the rig's settings");
+        let hover = tr!("The brush called '{name}' in the rig's settings", name);
         if ui.add(button).on_hover_text(hover).clicked() {
             work.rig.in_hand = place;
         }
@@ -155,7 +156,7 @@ fn brushes(ui: &mut Ui, work: &mut PanelContext<'_>) {
             }
             Err(fault) => {
                 let button = eframe::egui::Button::new(stem(path)).truncate();
-                let hover = "This brush file cannot be read; click: why";
+                let hover = tr!("This brush file cannot be read; click: why");
                 if ui.add(button).on_hover_text(hover).clicked() {
                     icon_cache::forget(ui.ctx(), path);
                     work.notifications.of(&fault);
@@ -226,7 +227,7 @@ fn cell(ui: &mut Ui, work: &PanelContext<'_>, place: &Place<'_>) -> Response {
     }
     match place.file.about.is_empty() {
         true => response.on_hover_text(words),
-        false => response.on_hover_text(format!("{words}\n{}", place.file.about)),
+        false => response.on_hover_text(format!("{words}\n{}", known(&place.file.about))),
     }
 }
 

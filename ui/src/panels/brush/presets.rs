@@ -3,6 +3,7 @@
 use eframe::egui::{Button, Key, TextEdit, Ui, vec2};
 
 use super::entry;
+use crate::language::known;
 use crate::settings::presets::{Preset, check_name};
 use crate::widgets::context::PanelContext;
 use crate::widgets::labelled;
@@ -28,7 +29,7 @@ enum Deed {
 
 impl PresetRows {
     pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
-        ui.strong("Presets");
+        ui.strong(tr!("Presets"));
         let mut asked = None;
         for place in 0..work.preferences.presets.len() {
             if self.renamed.as_ref().is_some_and(|(own, _)| *own == place) {
@@ -36,7 +37,7 @@ impl PresetRows {
                 continue;
             }
             let preset = &work.preferences.presets[place];
-            let name = preset.name.clone();
+            let name = known(&preset.name).to_owned();
             let words = preset.words(work.preferences.units);
             let mut take = false;
             let mut deed = None;
@@ -53,15 +54,15 @@ impl PresetRows {
                 },
                 |ui| {
                     if ui
-                        .small_button("Delete")
-                        .on_hover_text(format!("Delete {name}"))
+                        .small_button(tr!("Delete"))
+                        .on_hover_text(tr!("Delete {name}", name))
                         .clicked()
                     {
                         deed = Some(Deed::Delete);
                     }
                     if ui
-                        .small_button("Rename")
-                        .on_hover_text(format!("Rename {name}"))
+                        .small_button(tr!("Rename"))
+                        .on_hover_text(tr!("Rename {name}", name))
                         .clicked()
                     {
                         deed = Some(Deed::Rename);
@@ -81,7 +82,10 @@ impl PresetRows {
                 }
             }
             Some((place, Deed::Rename)) => {
-                self.renamed = Some((place, work.preferences.presets[place].name.clone()));
+                self.renamed = Some((
+                    place,
+                    known(&work.preferences.presets[place].name).to_owned(),
+                ));
                 self.wrong = None;
             }
             Some((place, Deed::Delete)) => {
@@ -99,11 +103,11 @@ impl PresetRows {
             return;
         };
         let mut back = false;
-        let words = format!("{} is deleted.", preset.name);
+        let words = tr!("{name} is deleted.", name = known(&preset.name));
         entry(
             ui,
             |ui| drop(ui.label(words)),
-            |ui| back = ui.small_button("Bring back").clicked(),
+            |ui| back = ui.small_button(tr!("Bring back")).clicked(),
         );
         if back {
             let place = (*place).min(work.preferences.presets.len());
@@ -118,7 +122,7 @@ impl PresetRows {
         };
         let shown = labelled::named(
             ui,
-            "New name",
+            tr!("New name"),
             "",
             TextEdit::singleline(name).desired_width(190.0),
         );
@@ -142,16 +146,16 @@ impl PresetRows {
 
     fn save(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let edit = TextEdit::singleline(&mut self.name)
-            .hint_text("Sky wash")
+            .hint_text(tr!("Sky wash"))
             .desired_width(190.0);
-        let hover = "What the brush in the hand, its settings and its paint are to be called.";
-        let shown = labelled::named(ui, "Name", hover, edit);
+        let hover = tr!("What the brush in the hand, its settings and its paint are to be called.");
+        let shown = labelled::named(ui, tr!("Name"), hover, edit);
         if shown.changed() {
             self.wrong = None;
         }
         let enter = shown.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-        let button = ui.button("Save this brush");
-        let hover = "Keeps the brush, how it is used, and the paint above.";
+        let button = ui.button(tr!("Save this brush"));
+        let hover = tr!("Keeps the brush, how it is used, and the paint above.");
         if button.on_hover_text(hover).clicked() || enter {
             let name = self.name.trim().to_owned();
             let others = work
