@@ -33,6 +33,9 @@ const TURN_DEG: f64 = 15.0;
 /// Change of the mouse's pressure by one press of a key.
 const PRESS: f64 = 0.05;
 
+/// Height of the table of keys beyond its list, points.
+const HEAD: f32 = 80.0;
+
 /// Rack, panels, dialogs and notifications over the desk.
 #[derive(Default)]
 pub(crate) struct Overlay {
@@ -261,24 +264,28 @@ impl Overlay {
             .resizable(false)
             .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
             .show(context, |ui| {
-                egui::Grid::new("keys")
-                    .num_columns(2)
-                    .striped(true)
-                    .show(ui, |ui| {
-                        for (binding, key) in keymap.bindings() {
-                            // What has no key is in the menu, and in the settings.
-                            if let Some(key) = key {
-                                ui.monospace(keys::written(context, &key));
-                                ui.label(translated(binding.words));
+                let height = context.content_rect().height() - HEAD;
+                let list = egui::ScrollArea::vertical().max_height(height);
+                list.show(ui, |ui| {
+                    egui::Grid::new("keys")
+                        .num_columns(2)
+                        .striped(true)
+                        .show(ui, |ui| {
+                            for (binding, key) in keymap.bindings() {
+                                // What has no key is in the menu, and in the settings.
+                                if let Some(key) = key {
+                                    ui.monospace(keys::written(context, &key));
+                                    ui.label(translated(binding.words));
+                                    ui.end_row();
+                                }
+                            }
+                            for (keys, words) in keys::HELD {
+                                ui.monospace(translated(keys));
+                                ui.label(translated(words));
                                 ui.end_row();
                             }
-                        }
-                        for (keys, words) in keys::HELD {
-                            ui.monospace(translated(keys));
-                            ui.label(translated(words));
-                            ui.end_row();
-                        }
-                    });
+                        });
+                });
             });
         self.keys = open;
     }

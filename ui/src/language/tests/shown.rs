@@ -1,21 +1,24 @@
-//! The window in German, as large as a small display.
+//! The window in each language, as large as a small display.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use eframe::egui::accesskit::Role;
 use eframe::egui::epaint::{ClippedShape, Shape};
 use eframe::egui::{Key, Modifiers, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use maulstick_optics::THINNER;
 use maulstick_types::paint::{HistoryStep, PaintStatus};
 
 use super::MISSED;
-use crate::language::{self, Language, all, choose};
+use crate::language::{Language, all, choose, chosen, translated};
+use crate::panels::canvas::CanvasPanel;
 use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 use crate::test_support::context_bench;
-use crate::test_support::overlay_bench::{Bench, ctrl, picture, press, window_of};
-use crate::test_support::panel_bench::{rig, steps};
+use crate::test_support::overlay_bench::{Bench, ctrl, press, until, window_of};
+use crate::test_support::panel_bench::{self, rig, steps};
 
 /// A small display, points.
 const DISPLAY: [f32; 2] = [1280.0, 720.0];
@@ -41,13 +44,13 @@ fn studio() -> RigState {
     studio
 }
 
-/// A window in German with one panel unfolded.
-fn german(panel: &str) -> Harness<'static, Bench> {
-    choose(Some("de"));
+/// A window in a language with one panel unfolded.
+fn speaking(code: &str, panel: &str) -> Harness<'static, Bench> {
+    choose(Some(code));
     let preferences = Preferences {
         panels: true,
         open: vec![panel.to_owned()],
-        language: Some("de".to_owned()),
+        language: Some(code.to_owned()),
         ..Preferences::default()
     };
     let mut harness = window_of(DISPLAY, studio(), preferences);
@@ -62,22 +65,19 @@ fn words(text: &str) -> impl Iterator<Item = String> {
         .map(str::to_lowercase)
 }
 
-/// English words of the window that no German sentence and no paint has.
+/// English words of the window that no sentence of the language and no paint has.
 fn english_words(language: &Language) -> BTreeSet<String> {
     let english = language.by_english.keys().flat_map(|text| words(text));
-    let german: BTreeSet<String> = language
+    let own: BTreeSet<String> = language
         .by_english
         .values()
         .flat_map(|text| words(text))
         .collect();
     let library = maulstick_optics::PaintLibrary::measured().expect("whole");
-    let paints: BTreeSet<String> = library
-        .paints()
-        .iter()
-        .flat_map(|paint| words(&paint.name))
-        .collect();
+    let paints = library.paints().iter().map(|paint| paint.name.as_str());
+    let paints: BTreeSet<String> = paints.chain([THINNER]).flat_map(words).collect();
     english
-        .filter(|word| !german.contains(word) && !paints.contains(word))
+        .filter(|word| !own.contains(word) && !paints.contains(word))
         .collect()
 }
 
@@ -88,7 +88,8 @@ fn read(harness: &Harness<'_, Bench>) -> Vec<String> {
         let node = node.accesskit_node();
         [node.label(), node.value()].into_iter().flatten()
     });
-    said.collect()
+    // A word of egui's own.
+    said.filter(|said| said != "Close window").collect()
 }
 
 /// Texts with their places, as far as they are seen.
@@ -117,9 +118,8 @@ fn texts(harness: &Harness<'_, Bench>) -> Vec<(String, Rect, Rect, bool)> {
 }
 
 /// English words, and texts that are cut off or lie over each other.
-fn faults(harness: &Harness<'_, Bench>, may_overlap: bool) -> Vec<String> {
-    let german = &all()["de"];
-    let english = english_words(german);
+fn faults(harness: &Harness<'_, Bench>, language: &Language, may_overlap: bool) -> Vec<String> {
+    let english = english_words(language);
     let mut faults = Vec::new();
     for text in read(harness) {
         let foreign: Vec<String> = words(&text).filter(|word| english.contains(word)).collect();
@@ -128,7 +128,7 @@ fn faults(harness: &Harness<'_, Bench>, may_overlap: bool) -> Vec<String> {
         }
     }
     let texts = texts(harness);
-    let known: BTreeSet<&String> = german.by_english.values().collect();
+    let known: BTreeSet<&String> = language.by_english.values().collect();
     let window = Rect::from_min_size(Default::default(), DISPLAY.into());
     for (place, (text, area, clip, elided)) in texts.iter().enumerate() {
         if *elided && known.contains(text) {
@@ -158,78 +158,104 @@ fn faults(harness: &Harness<'_, Bench>, may_overlap: bool) -> Vec<String> {
 }
 
 /// Saves a picture where somebody wants to look at it.
-fn look(harness: &mut Harness<'_, Bench>, name: &str) {
+fn look(harness: &mut Harness<'_, Bench>, code: &str, name: &str) {
     if let Some(place) = std::env::var_os("MAULSTICK_LOOK") {
         let image = harness.render().expect("a picture");
-        let path = Path::new(&place).join(format!("german_{name}.png"));
+        let path = Path::new(&place).join(format!("{code}_{name}.png"));
         image.save(path).expect("saved");
     }
 }
 
 #[test]
-fn panels_rack_and_bar_are_german_and_nothing_is_cut_off() {
-    for panel in crate::panels::all() {
-        let mut harness = german(panel.title());
-        look(&mut harness, panel.title());
-        assert_eq!(faults(&harness, false), [""; 0], "{}", panel.title());
-    }
-}
-
-#[test]
-fn folded_parts_of_panels_are_german() {
-    for (panel, parts) in [
-        ("Brush", &["Maus", "Borsten", "Eigene Pinseldateien"][..]),
-        ("Canvas", &["Leinwand mit Farbe überziehen"]),
-        ("Light", &["Farbe im Einzelnen"]),
-    ] {
-        for part in parts {
-            let mut harness = german(panel);
-            harness.get_by_label(part).click_accesskit();
-            harness.run_steps(20);
-            look(&mut harness, part);
-            assert_eq!(faults(&harness, false), [""; 0], "{part}");
+fn panels_rack_and_bar_have_no_english_word_and_nothing_is_cut_off() {
+    for (code, language) in all() {
+        for panel in crate::panels::all() {
+            let mut harness = speaking(code, panel.title());
+            look(&mut harness, code, panel.title());
+            let found = faults(&harness, language, false);
+            assert_eq!(found, [""; 0], "{code}: {}", panel.title());
         }
     }
 }
 
 #[test]
-fn menu_keys_settings_and_dialogs_are_german() {
-    let mut harness = german("Brush");
-    harness.get_by_label("Menü").click_accesskit();
-    harness.run_steps(4);
-    for group in ["Gemälde", "Ansicht", "Hilfe"] {
-        harness.get_by_label_contains(group);
-    }
-    let mut harness = german("none");
-    press(&mut harness, Key::F1);
-    harness.run_steps(4);
-    look(&mut harness, "keys");
-    assert_eq!(faults(&harness, true), [""; 0], "keys");
-    for (name, key, more) in [
-        ("settings", Key::Comma, Modifiers::NONE),
-        ("new", Key::N, Modifiers::NONE),
-        ("open", Key::O, Modifiers::NONE),
-        ("save_as", Key::S, Modifiers::SHIFT),
-        ("export", Key::E, Modifiers::NONE),
-    ] {
-        let mut harness = german("none");
-        ctrl(&mut harness, key, more);
-        look(&mut harness, name);
-        assert_eq!(faults(&harness, true), [""; 0], "{name}");
+fn folded_parts_of_panels_have_no_english_word_and_nothing_is_cut_off() {
+    for (code, language) in all() {
+        for (panel, part) in [
+            ("Brush", "Mouse"),
+            ("Brush", "Bristles"),
+            ("Brush", "Own brush files"),
+            ("Canvas", "Cover the canvas with paint"),
+            ("Light", "Advanced colour"),
+        ] {
+            let mut harness = speaking(code, panel);
+            harness.get_by_label(translated(part)).click_accesskit();
+            harness.run_steps(20);
+            look(&mut harness, code, part);
+            let found = faults(&harness, language, false);
+            assert_eq!(found, [""; 0], "{code}: {part}");
+        }
     }
 }
 
 #[test]
-fn an_english_word_and_a_long_one_are_found() {
-    choose(None);
-    let mut harness = german("Brush");
+fn menu_keys_settings_and_dialogs_have_no_english_word_and_nothing_is_cut_off() {
+    for (code, language) in all() {
+        let mut harness = speaking(code, "none");
+        harness
+            .get_by_role_and_label(Role::Button, translated("Menu"))
+            .click_accesskit();
+        harness.run_steps(4);
+        look(&mut harness, code, "menu");
+        assert_eq!(faults(&harness, language, true), [""; 0], "{code}: menu");
+        let mut harness = speaking(code, "none");
+        press(&mut harness, Key::F1);
+        harness.run_steps(4);
+        look(&mut harness, code, "keys");
+        assert_eq!(faults(&harness, language, true), [""; 0], "{code}: keys");
+        let title = translated("Keys");
+        let mut shown = texts(&harness).into_iter();
+        let title = shown.find(|(text, ..)| text == title).expect("a title");
+        assert!(title.1.top() > 0.0, "{code}: the table is too high");
+        for (name, key, more) in [
+            ("settings", Key::Comma, Modifiers::NONE),
+            ("new", Key::N, Modifiers::NONE),
+            ("open", Key::O, Modifiers::NONE),
+            ("save_as", Key::S, Modifiers::SHIFT),
+            ("export", Key::E, Modifiers::NONE),
+        ] {
+            let folder = tempfile::tempdir().expect("a folder");
+            let mut harness = speaking(code, "none");
+            harness.state_mut().preferences.recent = vec![folder.path().join("1.maul")];
+            harness.key_press_modifiers(Modifiers::COMMAND.plus(more), key);
+            let looks = translated("Looking …");
+            until(&mut harness, |harness| {
+                harness.query_by_label(looks).is_none()
+            });
+            harness.run_steps(4);
+            look(&mut harness, code, name);
+            assert_eq!(faults(&harness, language, true), [""; 0], "{code}: {name}");
+        }
+    }
+}
+
+#[test]
+fn an_english_word_and_a_text_that_lies_over_another_are_found() {
+    let mut harness = speaking("de", "Brush");
+    let found = |harness: &Harness<'_, Bench>| faults(harness, &all()["de"], false);
+    assert_eq!(found(&harness), [""; 0]);
     choose(None);
     harness.run_steps(4);
-    let found = faults(&harness, false);
     assert!(
-        found.iter().any(|fault| fault.contains("English")),
-        "a fault would pass"
+        found(&harness)
+            .iter()
+            .any(|fault| fault.contains("English"))
     );
+    choose(Some("de"));
+    harness.set_size([380.0, 720.0].into());
+    harness.run_steps(4);
+    let over = |fault: &String| fault.contains("lies over") || fault.contains("out of its place");
+    assert!(found(&harness).iter().any(over), "{:?}", found(&harness));
 }
 
 #[test]
@@ -237,8 +263,12 @@ fn another_language_is_chosen_on_the_page_of_settings_and_holds_at_once() {
     let mut harness = window_of(DISPLAY, studio(), Preferences::default());
     ctrl(&mut harness, Key::Comma, Modifiers::NONE);
     let choose_by_name = |harness: &mut Harness<'_, Bench>, label: &str, name: &str| {
-        let role = eframe::egui::accesskit::Role::ComboBox;
-        harness.get_by_role_and_label(role, label).click_accesskit();
+        // The list stays open where it was not the pointer that chose.
+        if harness.query_by_label(name).is_none() {
+            harness
+                .get_by_role_and_label(Role::ComboBox, label)
+                .click_accesskit();
+        }
         harness.run_steps(3);
         harness.get_by_label(name).click_accesskit();
         harness.run_steps(3);
@@ -246,32 +276,19 @@ fn another_language_is_chosen_on_the_page_of_settings_and_holds_at_once() {
     choose_by_name(&mut harness, "Language", "Deutsch");
     assert_eq!(harness.state().preferences.language.as_deref(), Some("de"));
     harness.get_by_label("Schriftgröße");
-    harness.get_by_label("Rückgängig");
+    harness.get_by_role_and_label(Role::Button, "Rückgängig");
     choose_by_name(&mut harness, "Sprache", "English");
     assert_eq!(harness.state().preferences.language.as_deref(), Some("en"));
     harness.get_by_label("Text size");
-    assert!(language::chosen().is_none());
+    assert!(chosen().is_none());
 }
 
 #[test]
-fn the_page_of_settings_looks_as_in_its_picture() {
-    struct Wall {
-        page: crate::settings_page::SettingsPage,
-        bench: context_bench::Bench,
-    }
-    let wall = || {
-        choose(Some("de"));
-        let mut page = crate::settings_page::SettingsPage::default();
-        page.open();
-        let mut bench = context_bench::Bench::new();
-        bench.preferences.language = Some("de".to_owned());
-        Wall { page, bench }
-    };
-    picture(
-        "settings_german",
-        [540.0, 540.0],
-        wall,
-        |ui, wall| wall.page.show(ui.ctx(), &mut wall.bench.work()),
+fn a_panel_in_german_looks_as_in_its_picture() {
+    choose(Some("de"));
+    panel_bench::picture::<CanvasPanel>(
+        "canvas_german",
+        &panel_bench::rig(),
         |_| {},
         |_| choose(Some("en")),
     );

@@ -110,6 +110,10 @@ fn uses_in(place: &str, code: &str) -> Vec<Use> {
     let mut found = Vec::new();
     for macro_name in ["tr!(", "tr_noop!("] {
         for (at, _) in code.match_indices(macro_name) {
+            let is_other = |letter: char| letter.is_alphanumeric() || letter == '_';
+            if code[..at].ends_with(is_other) {
+                continue;
+            }
             let rest = code[at + macro_name.len()..].trim_start();
             let Some(rest) = rest.strip_prefix('"') else {
                 continue;

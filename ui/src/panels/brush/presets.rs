@@ -1,6 +1,6 @@
 //! Presets: brushes with their paint.
 
-use eframe::egui::{Button, Key, TextEdit, Ui, vec2};
+use eframe::egui::{Button, Color32, Key, TextEdit, TextStyle, Ui, vec2};
 
 use super::entry;
 use crate::language::known;
@@ -18,6 +18,19 @@ pub(super) struct PresetRows {
     renamed: Option<(usize, String)>,
     /// The one that was deleted last, and where it stood.
     deleted: Option<(usize, Preset)>,
+}
+
+/// Width of a preset's name at most, points.
+const NAME: f32 = 150.0;
+
+/// Width of a small button with the space before it, points.
+fn small_width(ui: &Ui, word: &str) -> f32 {
+    let font = TextStyle::Button.resolve(ui.style());
+    let text = ui
+        .painter()
+        .layout_no_wrap(word.to_owned(), font, Color32::WHITE);
+    let spacing = ui.spacing();
+    text.size().x + 2.0 * spacing.button_padding.x + spacing.item_spacing.x
 }
 
 /// Action on a preset.
@@ -40,14 +53,16 @@ impl PresetRows {
             let name = known(&preset.name).to_owned();
             let words = preset.words(work.preferences.units);
             let mut take = false;
+            let taken = [tr!("Rename"), tr!("Delete")].map(|word| small_width(ui, word));
+            let width = (ui.available_width() - taken.iter().sum::<f32>()).min(NAME);
             let mut deed = None;
             entry(
                 ui,
                 |ui| {
-                    let button = Button::new(&name).truncate().min_size(vec2(150.0, 0.0));
+                    let button = Button::new(&name).truncate().min_size(vec2(width, 0.0));
                     take = ui
                         .scope(|ui| {
-                            ui.set_max_width(150.0);
+                            ui.set_max_width(width);
                             ui.add(button).on_hover_text(words).clicked()
                         })
                         .inner;
