@@ -14,6 +14,7 @@ use maulstick_types::paint::{HistoryStep, PaintStatus};
 use super::MISSED;
 use crate::language::{Language, all, choose, chosen, translated};
 use crate::panels::canvas::CanvasPanel;
+use crate::panels::device::tests::devices;
 use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 use crate::test_support::context_bench;
@@ -40,6 +41,10 @@ fn studio() -> RigState {
         ..steps(3, 1)
     };
     studio.paint = Some(paint);
+    let mut named = devices();
+    // Its daemon words its driver and its trouble.
+    named.devices.remove("tablet");
+    (studio.devices, studio.now_ns) = (named.devices, named.now_ns);
     studio.brushes.truncate(1);
     studio
 }

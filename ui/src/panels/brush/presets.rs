@@ -54,7 +54,8 @@ impl PresetRows {
             let words = preset.words(work.preferences.units);
             let mut take = false;
             let taken = [tr!("Rename"), tr!("Delete")].map(|word| small_width(ui, word));
-            let width = (ui.available_width() - taken.iter().sum::<f32>()).min(NAME);
+            let room = ui.available_width() - taken.iter().sum::<f32>();
+            let width = room.ceil().min(NAME);
             let mut deed = None;
             entry(
                 ui,

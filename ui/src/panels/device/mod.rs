@@ -7,7 +7,7 @@
 mod health;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use eframe::egui::{
     Align2, Button, Color32, FontId, Frame, Grid, Response, RichText, Role, Sense, Slider, Stroke,
