@@ -265,7 +265,9 @@ impl Overlay {
             .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
             .show(context, |ui| {
                 let height = context.content_rect().height() - HEAD;
-                let list = egui::ScrollArea::vertical().max_height(height);
+                let list = egui::ScrollArea::vertical()
+                    .max_height(height)
+                    .min_scrolled_height(height);
                 list.show(ui, |ui| {
                     egui::Grid::new("keys")
                         .num_columns(2)
