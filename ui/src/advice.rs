@@ -6,19 +6,20 @@ use maulstick_types::command::advice::Advice;
 #[must_use]
 pub(crate) fn words(advice: &Advice) -> Option<String> {
     let words = match advice {
-        Advice::StopDrying => "wait for its end, or press Stop in the panel Layers",
-        Advice::BeginDrying => "press Start in the panel Layers",
-        Advice::DryFirst => "press Dry in the panel Layers",
+        Advice::StopDrying => tr!("wait for its end, or press Stop in the panel Layers"),
+        Advice::BeginDrying => tr!("press Start in the panel Layers"),
+        Advice::DryFirst => tr!("press Dry in the panel Layers"),
         Advice::FullOpacity { layer } => {
-            return Some(format!(
-                "set the opacity of layer {layer} to 100 % in the panel Layers"
+            return Some(tr!(
+                "set the opacity of layer {layer} to 100 % in the panel Layers",
+                layer
             ));
         }
-        Advice::ListPaints => "choose one of the panel Tubes",
-        Advice::UndoNewest => "undo that first: Undo takes the newest step of all",
-        Advice::StopExport => "wait for its end, or press Stop",
-        Advice::Replace => "write another name, or tick that the one that is there may go",
-        Advice::SaveOrForget => "save it under another name first, or tick that it may go",
+        Advice::ListPaints => tr!("choose one of the panel Tubes"),
+        Advice::UndoNewest => tr!("undo that first: Undo takes the newest step of all"),
+        Advice::StopExport => tr!("wait for its end, or press Stop"),
+        Advice::Replace => tr!("write another name, or tick that the one that is there may go"),
+        Advice::SaveOrForget => tr!("save it under another name first, or tick that it may go"),
         Advice::Say { .. }
         | Advice::Recover
         | Advice::BeginExport

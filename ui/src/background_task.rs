@@ -5,6 +5,8 @@ use std::task::Poll;
 
 use eframe::egui::Context;
 
+use crate::language;
+
 /// Work in progress. Its result is dropped with it.
 #[derive(Debug)]
 pub(crate) struct BackgroundTask<T> {
@@ -21,7 +23,9 @@ impl<T: Send + 'static> BackgroundTask<T> {
     ) -> Self {
         let (to_window, found) = channel();
         let context = context.clone();
+        let language = language::chosen();
         let run = move || {
+            language::adopt(language);
             // The window may have dropped the task already.
             to_window.send(work()).ok();
             context.request_repaint();

@@ -7,6 +7,7 @@
 //! | [`rig`] | state of the rig, and requests to it |
 //! | [`view`] | the desk seen from above |
 //! | [`render`] | drawing of desk, surfaces and brushes |
+//! | `language` | languages, and the English sentences that are their keys |
 //! | `matching` | from a colour to mixtures of paints |
 //! | `panels` | the panels, a folder each |
 //! | `dialogs` | files in the window: new, open, save, export, dropped files |
@@ -16,6 +17,9 @@
 //! | [`settings`] | settings that outlive the window |
 //! | `background_task` | work on a thread beside the window |
 //! | `spectrum_file` | spectra from CSV files |
+
+#[macro_use]
+mod language;
 
 mod advice;
 pub mod app;
@@ -51,6 +55,7 @@ pub fn run(
     export: &Export,
     library: PaintLibrary,
 ) -> Result<(), UserError> {
+    language::follow_system();
     let mut app = app::App::new(&member, mouse, library)?;
     let export = export.clone();
     let viewport = eframe::egui::ViewportBuilder::default()

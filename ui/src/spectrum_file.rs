@@ -12,9 +12,9 @@ fn text(path: &Path, row: &str) -> Result<String, UserError> {
     let failed = |error: std::io::Error| UserError::reading(path, &error);
     let place = || path.display().to_string();
     if !std::fs::metadata(path).map_err(failed)?.is_file() {
-        return Err(UserError::usage("this is no file")
+        return Err(UserError::usage(tr!("this is no file"))
             .at(place())
-            .help(format!("name a CSV file: {row}")));
+            .help(tr!("name a CSV file: {row}", row)));
     }
     let file = std::fs::File::open(path).map_err(failed)?;
     let mut text = String::new();
@@ -23,9 +23,9 @@ fn text(path: &Path, row: &str) -> Result<String, UserError> {
         .read_to_string(&mut text)
         .map_err(failed)?;
     if text.len() > SPECTRUM_MAX {
-        return Err(UserError::usage("a file of this size is no spectrum")
+        return Err(UserError::usage(tr!("a file of this size is no spectrum"))
             .at(place())
-            .help(format!("give a row a wavelength: {row}")));
+            .help(tr!("give a row a wavelength: {row}", row)));
     }
     Ok(text.trim_start_matches('\u{feff}').to_owned())
 }
@@ -40,7 +40,7 @@ pub(crate) fn light(path: &Path) -> Result<Illuminant, UserError> {
     Illuminant::parse(&stem, &text).map_err(|error| {
         UserError::usage(error.what)
             .at(format!("{}:{}", path.display(), error.line))
-            .help("a row a wavelength: nm,power, rising")
+            .help(tr!("a row a wavelength: nm,power, rising"))
     })
 }
 
@@ -53,7 +53,7 @@ pub(crate) fn reflectance(path: &Path) -> Result<String, UserError> {
     Reflectance::parse(&text).map_err(|error| {
         UserError::usage(error.what)
             .at(format!("{}:{}", path.display(), error.line))
-            .help("a row a wavelength: nm,reflectance, rising, 0 to 1")
+            .help(tr!("a row a wavelength: nm,reflectance, rising, 0 to 1"))
     })?;
     Ok(text)
 }

@@ -79,8 +79,8 @@ impl App {
                 brush,
             }),
             _ => self.notifications.fault(
-                "The brush is over neither the canvas nor the palette.",
-                "Move it over the mixture that it is to take up.",
+                tr!("The brush is over neither the canvas nor the palette."),
+                tr!("Move it over the mixture that it is to take up."),
             ),
         }
     }

@@ -8,13 +8,14 @@ use eframe::egui::{
 use crate::app::sides;
 use crate::input::keymap::Keymap;
 use crate::input::keys::{Action, BINDINGS, Binding};
+use crate::language::translated;
 use crate::widgets::brush_gauge;
 use crate::widgets::context::PanelContext;
 
 /// Entries of the menu, by what they concern.
 const GROUPS: [(&str, &[Action]); 4] = [
     (
-        "Painting",
+        tr_noop!("Painting"),
         &[
             Action::New,
             Action::Open,
@@ -27,7 +28,7 @@ const GROUPS: [(&str, &[Action]); 4] = [
         ],
     ),
     (
-        "Brush",
+        tr_noop!("Brush"),
         &[
             Action::NextBrush,
             Action::LoadFrom,
@@ -44,7 +45,7 @@ const GROUPS: [(&str, &[Action]); 4] = [
         ],
     ),
     (
-        "View",
+        tr_noop!("View"),
         &[
             Action::Palette,
             Action::Panels,
@@ -59,7 +60,10 @@ const GROUPS: [(&str, &[Action]); 4] = [
             Action::Focus,
         ],
     ),
-    ("Help", &[Action::Keys, Action::Settings, Action::ForceOff]),
+    (
+        tr_noop!("Help"),
+        &[Action::Keys, Action::Settings, Action::ForceOff],
+    ),
 ];
 
 /// Distance from the window's edges, points.
@@ -74,7 +78,7 @@ pub(super) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action>
     Area::new(Id::unique("bar"))
         .order(Order::Middle)
         .anchor(corner, [inward * aside, -MARGIN])
-        .accessible_name("Commands")
+        .accessible_name(tr!("Commands"))
         .show(context, |ui| {
             ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);
             let back = ui.visuals().window_fill.gamma_multiply(0.8);
@@ -84,8 +88,8 @@ pub(super) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action>
                     ui.spacing_mut().item_spacing.x = 2.0;
                     chosen = menu(ui, &work.preferences.keys);
                     for (word, action) in [
-                        ("Undo", Action::Undo),
-                        ("Redo", Action::Redo),
+                        (tr!("Undo"), Action::Undo),
+                        (tr!("Redo"), Action::Redo),
                         ("?", Action::Keys),
                     ] {
                         let button = ui.add(Button::new(word).min_size([26.0, 24.0].into()));
@@ -103,14 +107,14 @@ pub(super) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action>
 /// The button of the menu; the action that was chosen in it.
 fn menu(ui: &mut Ui, keymap: &Keymap) -> Option<Action> {
     let mut chosen = None;
-    let button = Button::new("Menu").min_size([26.0, 24.0].into());
+    let button = Button::new(tr!("Menu")).min_size([26.0, 24.0].into());
     let (shown, _) = MenuButton::from_button(button).ui(ui, |ui| {
         for (title, actions) in GROUPS {
-            ui.menu_button(title, |ui| {
+            ui.menu_button(translated(title), |ui| {
                 for action in actions {
                     if let Some(binding) = binding(*action) {
                         let keys = keymap.written(ui.ctx(), *action);
-                        let entry = Button::new(binding.words).shortcut_text(keys);
+                        let entry = Button::new(translated(binding.words)).shortcut_text(keys);
                         if ui.add(entry).clicked() {
                             chosen = Some(*action);
                             ui.close();
@@ -120,8 +124,8 @@ fn menu(ui: &mut Ui, keymap: &Keymap) -> Option<Action> {
             });
         }
     });
-    shown.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Menu"));
-    shown.on_hover_text("All commands");
+    shown.widget_info(|| WidgetInfo::labeled(Role::Button, true, tr!("Menu")));
+    shown.on_hover_text(tr!("All commands"));
     chosen
 }
 
@@ -130,8 +134,8 @@ fn described(button: Response, action: Action, keymap: &Keymap) -> Response {
     let Some(binding) = binding(action) else {
         return button;
     };
-    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, binding.words));
-    let hint = keymap.hint(&button.ctx, binding.words, &[action]);
+    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, translated(binding.words)));
+    let hint = keymap.hint(&button.ctx, translated(binding.words), &[action]);
     button.on_hover_text(hint)
 }
 

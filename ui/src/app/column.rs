@@ -6,6 +6,7 @@ use eframe::egui::{
 };
 
 use crate::app::sides::{COLUMN, MARGIN, column_side, rack_at};
+use crate::language::translated;
 use crate::panels::{self, Panel};
 use crate::settings::window_side::WindowSide;
 use crate::widgets::context::PanelContext;
@@ -41,7 +42,7 @@ impl Column {
         Area::new(Id::unique("panels"))
             .order(Order::Middle)
             .anchor(corner, [inward * aside, MARGIN])
-            .accessible_name("Panels")
+            .accessible_name(tr!("Panels"))
             .show(context, |ui| {
                 Frame::popup(ui.style()).show(ui, |ui| {
                     ui.set_width(COLUMN);
@@ -58,7 +59,7 @@ impl Column {
         for panel in &mut self.panels {
             let title = panel.title();
             let open = work.preferences.is_open(title);
-            let header = CollapsingHeader::new(RichText::new(title).strong())
+            let header = CollapsingHeader::new(RichText::new(translated(title)).strong())
                 .id_salt(title)
                 .default_open(open);
             let shown = header.show(ui, |ui| {
@@ -80,18 +81,20 @@ fn head(ui: &mut Ui, side: WindowSide, work: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let layout = Layout::right_to_left(Align::Center);
         ui.with_layout(layout, |ui| {
-            let named = |ui: &mut Ui, word: &str, name: String| {
+            let named = |ui: &mut Ui, word: &str, name: &str| {
                 let button = ui.small_button(word);
-                button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+                button.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
                 button.on_hover_text(name).clicked()
             };
-            if named(ui, "×", "Hide the panels".to_owned()) {
+            if named(ui, "×", tr!("Hide the panels")) {
                 work.preferences.panels = false;
             }
             let other = side.other();
-            let word = format!("To the {}", other.word());
-            let name = format!("Move the panels to the {}", other.word());
-            if named(ui, &word, name) {
+            let (word, name) = match other {
+                WindowSide::Left => (tr!("To the left"), tr!("Move the panels to the left")),
+                WindowSide::Right => (tr!("To the right"), tr!("Move the panels to the right")),
+            };
+            if named(ui, word, name) {
                 work.preferences.panel_side = Some(other);
             }
             let size = ui.available_size_before_wrap();
@@ -100,10 +103,10 @@ fn head(ui: &mut Ui, side: WindowSide, work: &mut PanelContext<'_>) {
             let font = eframe::egui::TextStyle::Small.resolve(ui.style());
             let colour = ui.visuals().weak_text_color();
             let anchor = eframe::egui::Align2::LEFT_CENTER;
-            ui.painter().text(at, anchor, "Panels", font, colour);
+            ui.painter().text(at, anchor, tr!("Panels"), font, colour);
             let handle = handle
                 .on_hover_cursor(CursorIcon::Grab)
-                .on_hover_text("Drag the panels to the other side");
+                .on_hover_text(tr!("Drag the panels to the other side"));
             if let Some(pointer) = handle.interact_pointer_pos() {
                 let window = ui.ctx().content_rect();
                 let to = half_of(window, pointer);

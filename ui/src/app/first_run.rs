@@ -8,27 +8,28 @@ use eframe::egui::{Area, Color32, Context, Frame, Id, Margin, Order, Rect, RichT
 use crate::app::{rack, sides};
 use crate::input::keymap::Keymap;
 use crate::input::keys::Action;
+use crate::language::translated;
 use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 use crate::settings::window_side::WindowSide;
 
 /// The line of help, before its keys.
 pub(super) const HELP: &str =
-    "Drag the brush through a paint of the palette, then over the canvas.";
+    tr_noop!("Drag the brush through a paint of the palette, then over the canvas.");
 /// Its keys.
 const KEYS: [(Action, &str); 3] = [
-    (Action::Palette, "palette"),
-    (Action::Panels, "panels"),
-    (Action::Keys, "keys"),
+    (Action::Palette, tr_noop!("palette")),
+    (Action::Panels, tr_noop!("panels")),
+    (Action::Keys, tr_noop!("keys")),
 ];
 
 /// The line of help with its keys.
 fn words(context: &Context, keymap: &Keymap) -> String {
-    let mut words = HELP.to_owned();
+    let mut words = translated(HELP).to_owned();
     for (act, what) in KEYS {
         let key = keymap.written(context, act);
         if !key.is_empty() {
-            words += &format!("   {key}: {what}");
+            words += &format!("   {key}: {}", translated(what));
         }
     }
     words

@@ -35,6 +35,7 @@ use crate::input::navigation::Navigation;
 use crate::input::palette_gesture::PaletteGesture;
 use crate::input::pointer_path::PointerPath;
 use crate::input::presses;
+use crate::language;
 use crate::render::device_loss::DeviceLoss;
 use crate::render::display_transform::DisplayTransform;
 use crate::render::frame_reports::Presenter;
@@ -143,14 +144,18 @@ impl App {
             notifications.of(&fault);
             Preferences::default()
         });
+        language::choose(preferences.language.as_deref());
         if let Some(what) = preferences.keys.fault() {
-            notifications.fault(what, "All else is as you left it; Settings has the keys.");
+            notifications.fault(
+                what,
+                tr!("All else is as you left it; Settings has the keys."),
+            );
         }
         let lost = DeviceLoss::new(&member.folder);
         if let Some(why) = lost.word() {
             notifications.fault(
-                format!("The graphics device was lost: {why}"),
-                "The window was opened again, and nothing is missing.",
+                tr!("The graphics device was lost: {why}", why),
+                tr!("The window was opened again, and nothing is missing."),
             );
         }
         Ok(Self {
@@ -408,7 +413,7 @@ impl eframe::App for App {
                 self.view = self.view.map(View::mirrored);
             }
             let Some(view) = self.view else {
-                ui.centered_and_justified(|ui| ui.label("waiting for the paint …"));
+                ui.centered_and_justified(|ui| ui.label(tr!("waiting for the paint …")));
                 return;
             };
             ui.ctx().set_cursor_icon(CursorIcon::Crosshair);

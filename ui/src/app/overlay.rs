@@ -16,6 +16,7 @@ use crate::input::keymap::Keymap;
 use crate::input::keys::{self, Action};
 use crate::input::presses;
 use crate::input::size_drag::SizeDrag;
+use crate::language::{step, translated};
 use crate::matching::colour_window::ColourWindow;
 use crate::panels;
 use crate::reference::Reference;
@@ -31,6 +32,9 @@ use crate::widgets::rows::ask;
 const TURN_DEG: f64 = 15.0;
 /// Change of the mouse's pressure by one press of a key.
 const PRESS: f64 = 0.05;
+
+/// Height of the table of keys beyond its list, points.
+const HEAD: f32 = 80.0;
 
 /// Rack, panels, dialogs and notifications over the desk.
 #[derive(Default)]
@@ -147,7 +151,7 @@ impl Overlay {
                 if let Some(done) = past_tense(&outcome.request) {
                     let what = match detail.is_empty() {
                         true => done.to_owned(),
-                        false => format!("{done}: {detail}"),
+                        false => format!("{done}: {}", step(detail)),
                     };
                     work.notifications.note(what);
                 }
@@ -176,15 +180,17 @@ impl Overlay {
                 };
                 work.preferences.mouse.turn(by_deg);
                 let turn = work.preferences.mouse.turn_deg;
-                work.notifications
-                    .note(format!("Brush turned by {turn:.0}°"));
+                work.notifications.note(tr!(
+                    "Brush turned by {turn}°",
+                    turn = format_args!("{turn:.0}")
+                ));
             }
             Action::Follow => {
                 let follows = &mut work.preferences.mouse.follows;
                 *follows = !*follows;
                 let words = match *follows {
-                    true => "The mouse's brush follows the stroke",
-                    false => "The mouse's brush keeps its turn",
+                    true => tr!("The mouse's brush follows the stroke"),
+                    false => tr!("The mouse's brush keeps its turn"),
                 };
                 work.notifications.note(words.to_owned());
             }
@@ -192,15 +198,17 @@ impl Overlay {
                 let by = if act == Action::Harder { PRESS } else { -PRESS };
                 work.preferences.mouse.press(by);
                 let percent = 100.0 * work.preferences.mouse.pressure;
-                work.notifications
-                    .note(format!("Mouse presses with {percent:.0} %"));
+                work.notifications.note(tr!(
+                    "Mouse presses with {percent} %",
+                    percent = format_args!("{percent:.0}")
+                ));
             }
             Action::Mirror => {
                 let mirrored = &mut work.preferences.mirrored;
                 *mirrored = !*mirrored;
                 let words = match *mirrored {
-                    true => "The view is mirrored; the painting is not",
-                    false => "The view is no longer mirrored",
+                    true => tr!("The view is mirrored; the painting is not"),
+                    false => tr!("The view is no longer mirrored"),
                 };
                 work.notifications.note(words.to_owned());
             }
@@ -240,7 +248,7 @@ impl Overlay {
                     let key = work.preferences.keys.written(context, Action::Alone);
                     if !key.is_empty() {
                         work.notifications
-                            .note(format!("{key} shows the tools again"));
+                            .note(tr!("{key} shows the tools again", key));
                     }
                 }
             },
@@ -251,30 +259,36 @@ impl Overlay {
 
     fn table_of_keys(&mut self, context: &Context, keymap: &Keymap) {
         let mut open = self.keys;
-        egui::Window::new("Keys")
+        egui::Window::new(tr!("Keys"))
             .open(&mut open)
             .collapsible(false)
             .resizable(false)
             .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
             .show(context, |ui| {
-                egui::Grid::new("keys")
-                    .num_columns(2)
-                    .striped(true)
-                    .show(ui, |ui| {
-                        for (binding, key) in keymap.bindings() {
-                            // What has no key is in the menu, and in the settings.
-                            if let Some(key) = key {
-                                ui.monospace(keys::written(context, &key));
-                                ui.label(binding.words);
+                let height = context.content_rect().height() - HEAD;
+                let list = egui::ScrollArea::vertical()
+                    .max_height(height)
+                    .min_scrolled_height(height);
+                list.show(ui, |ui| {
+                    egui::Grid::new("keys")
+                        .num_columns(2)
+                        .striped(true)
+                        .show(ui, |ui| {
+                            for (binding, key) in keymap.bindings() {
+                                // What has no key is in the menu, and in the settings.
+                                if let Some(key) = key {
+                                    ui.monospace(keys::written(context, &key));
+                                    ui.label(translated(binding.words));
+                                    ui.end_row();
+                                }
+                            }
+                            for (keys, words) in keys::HELD {
+                                ui.monospace(translated(keys));
+                                ui.label(translated(words));
                                 ui.end_row();
                             }
-                        }
-                        for (keys, words) in keys::HELD {
-                            ui.monospace(keys);
-                            ui.label(words);
-                            ui.end_row();
-                        }
-                    });
+                        });
+                });
             });
         self.keys = open;
     }
@@ -298,12 +312,12 @@ fn past_tense(request: &Request) -> Option<&'static str> {
         return None;
     };
     match edit {
-        Edit::Undo(_) => Some("Undone"),
-        Edit::Redo(_) => Some("Redone"),
-        Edit::GoTo(_) => Some("Now at"),
-        Edit::Dry(_) => Some("Dried"),
-        Edit::LoadFrom(_) => Some("Loaded"),
-        Edit::Scrape(_) => Some("Scraped"),
+        Edit::Undo(_) => Some(tr!("Undone")),
+        Edit::Redo(_) => Some(tr!("Redone")),
+        Edit::GoTo(_) => Some(tr!("Now at")),
+        Edit::Dry(_) => Some(tr!("Dried")),
+        Edit::LoadFrom(_) => Some(tr!("Loaded")),
+        Edit::Scrape(_) => Some(tr!("Scraped")),
         _ => None,
     }
 }

@@ -2,14 +2,16 @@
 //! click takes one into the hand.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use eframe::egui::{
-    Align2, Area, Context, FontId, Frame, Id, Layout, Margin, Order, Rect, Response, Role,
-    ScrollArea, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
+    Align2, Area, Color32, Context, FontId, Frame, Galley, Id, Layout, Margin, Order, Rect,
+    Response, Role, ScrollArea, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 use maulstick_brush::BrushFile;
 
 use crate::input::brush_choice::{called, is_of_library, library};
+use crate::language::known;
 use crate::render::brush::icon_cache;
 use crate::widgets::context::PanelContext;
 
@@ -21,6 +23,9 @@ const MARGIN: f32 = 6.0;
 const CELL: f32 = 88.0;
 /// Height of its name, points.
 const NAME: f32 = 15.0;
+/// Size of its letters, points, and the share of it that they have at least.
+const LETTERS: f32 = 11.0;
+const SMALLEST: f32 = 0.8;
 /// Height of the mark at an edge beyond which the list goes on, points.
 const MORE: f32 = 7.0;
 
@@ -45,7 +50,7 @@ pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) -> Rect {
     let shown = Area::new(Id::unique("rack"))
         .order(Order::Middle)
         .anchor(side, [0.0, 0.0])
-        .accessible_name("Brushes")
+        .accessible_name(tr!("Brushes"))
         .show(context, |ui| {
             let fill = ui.visuals().panel_fill.gamma_multiply(0.94);
             let frame = Frame::NONE
@@ -103,7 +108,7 @@ fn switch(ui: &mut Ui, work: &mut PanelContext<'_>) {
         let button = eframe::egui::Button::selectable(work.rig.in_hand == place, &name)
             .min_size(vec2(ui.available_width(), 0.0))
             .truncate();
-        let hover = format!("The brush called '{name}' in the rig's settings");
+        let hover = tr!("The brush called '{name}' in the rig's settings", name);
         if ui.add(button).on_hover_text(hover).clicked() {
             work.rig.in_hand = place;
         }
@@ -155,7 +160,7 @@ fn brushes(ui: &mut Ui, work: &mut PanelContext<'_>) {
             }
             Err(fault) => {
                 let button = eframe::egui::Button::new(stem(path)).truncate();
-                let hover = "This brush file cannot be read; click: why";
+                let hover = tr!("This brush file cannot be read; click: why");
                 if ui.add(button).on_hover_text(hover).clicked() {
                     icon_cache::forget(ui.ctx(), path);
                     work.notifications.of(&fault);
@@ -187,6 +192,17 @@ fn stem(path: &Path) -> String {
     called(&stem.to_string_lossy())
 }
 
+/// The name of a brush, in smaller letters where it is a little too long.
+fn name_galley(ui: &Ui, name: &str, colour: Color32, width: f32) -> Arc<Galley> {
+    let font = |size: f32| FontId::proportional(size);
+    let laid = |size: f32, width: f32| {
+        ui.painter()
+            .layout(name.to_owned(), font(size), colour, width)
+    };
+    let whole = laid(LETTERS, f32::INFINITY).size().x;
+    laid(LETTERS * (width / whole).clamp(SMALLEST, 1.0), width)
+}
+
 /// A brush with its name; `clicked` also by the keyboard.
 fn cell(ui: &mut Ui, work: &PanelContext<'_>, place: &Place<'_>) -> Response {
     let size = vec2(ui.available_width(), CELL);
@@ -209,10 +225,7 @@ fn cell(ui: &mut Ui, work: &PanelContext<'_>, place: &Place<'_>) -> Response {
         let picture =
             Rect::from_min_max(area.min + vec2(4.0, 3.0), area.max - vec2(4.0, NAME + 2.0));
         icon_cache::draw(ui, picture, &work.rig.tint, &place.key, place.file);
-        let font = FontId::proportional(11.0);
-        let galley = ui
-            .painter()
-            .layout(place.name.clone(), font, text, area.width());
+        let galley = name_galley(ui, &place.name, text, area.width());
         let at = eframe::egui::pos2(
             area.center().x - 0.5 * galley.size().x.min(area.width()),
             area.max.y - NAME,
@@ -226,7 +239,7 @@ fn cell(ui: &mut Ui, work: &PanelContext<'_>, place: &Place<'_>) -> Response {
     }
     match place.file.about.is_empty() {
         true => response.on_hover_text(words),
-        false => response.on_hover_text(format!("{words}\n{}", place.file.about)),
+        false => response.on_hover_text(format!("{words}\n{}", known(&place.file.about))),
     }
 }
 

@@ -190,10 +190,10 @@ impl Browser {
             pictures.take_in(ui.ctx());
         }
         let told = match self.folder.entries(ui.ctx()) {
-            None => Some("Looking …".to_owned()),
+            None => Some(tr!("Looking …").to_owned()),
             Some(Err(what)) => Some(dialog::in_words(what, "")),
             Some(Ok(_)) if fitting.is_empty() && self.purpose == Purpose::Read => {
-                Some("No file here starts with that.".to_owned())
+                Some(tr!("No file here starts with that.").to_owned())
             }
             Some(Ok(_)) => None,
         };
@@ -208,7 +208,7 @@ impl Browser {
             let above = self.folder.path.parent().is_some().then(|| Entry {
                 name: "..".to_owned(),
                 is_folder: true,
-                age: "the folder above".to_owned(),
+                age: tr!("the folder above").to_owned(),
             });
             ScrollArea::vertical()
                 .max_height(HEIGHT)

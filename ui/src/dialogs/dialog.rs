@@ -115,7 +115,7 @@ fn below(ui: &mut Ui, foot: &Foot) -> Answer {
         if go.clicked() {
             answer = Answer::Go;
         }
-        let cancel = eframe::egui::Button::new("Cancel").min_size([80.0, 28.0].into());
+        let cancel = eframe::egui::Button::new(tr!("Cancel")).min_size([80.0, 28.0].into());
         if ui.add(cancel).clicked() {
             answer = Answer::Leave;
         }
@@ -153,9 +153,10 @@ pub(crate) fn number(what: &str, text: &str) -> Result<f64, String> {
     let plain = text.trim().replace(',', ".");
     let number: Option<f64> = plain.parse().ok();
     number.filter(|number| number.is_finite()).ok_or_else(|| {
-        format!(
-            "{what}: “{}” is no number. Write one such as 20 or 0.5.",
-            text.trim()
+        tr!(
+            "{what}: “{text}” is no number. Write one such as 20 or 0.5.",
+            what,
+            text = text.trim()
         )
     })
 }

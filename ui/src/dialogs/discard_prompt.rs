@@ -35,7 +35,7 @@ impl Unkept {
             ui.add_space(6.0);
             ui.checkbox(
                 &mut self.let_go,
-                "Let go of the painting on the easel: it is in no file",
+                tr!("Let go of the painting on the easel: it is in no file"),
             );
         }
     }
@@ -46,11 +46,11 @@ impl Unkept {
     /// Advice in words.
     pub(crate) fn check(self) -> Result<(), String> {
         match self.would_go && !self.let_go {
-            true => Err(
+            true => Err(tr!(
                 "The painting on the easel is in no file and would be gone. Keep it first \
                  (Escape, then Ctrl+S), or tick that you let it go."
-                    .to_owned(),
-            ),
+            )
+            .to_owned()),
             false => Ok(()),
         }
     }

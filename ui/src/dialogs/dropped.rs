@@ -9,10 +9,11 @@ use maulstick_brush::BrushFile;
 use maulstick_types::command::BRUSH_FILE_MAX;
 
 use crate::dialogs::paths;
+use crate::language::translated;
 
 /// The kinds of files that may be dropped.
 pub(crate) const KINDS: &str =
-    "Drop a painting (.maul), a picture to look at (PNG, JPEG, TIFF) or a brush (.toml).";
+    tr_noop!("Drop a painting (.maul), a picture to look at (PNG, JPEG, TIFF) or a brush (.toml).");
 
 /// A file that was dropped, as it was found to be.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,14 +42,14 @@ pub(crate) fn found(path: &Path) -> Dropped {
         help: help.to_owned(),
     };
     if path.is_dir() {
-        return nothing(format!("{name} is a folder"), KINDS);
+        return nothing(tr!("{name} is a folder", name), translated(KINDS));
     }
     let head = match head(path) {
         Ok(head) => head,
         Err(error) => {
             return nothing(
-                format!("{name} cannot be read: {error}"),
-                "See that it is there and that you may read it.",
+                tr!("{name} cannot be read: {error}", name, error),
+                tr!("See that it is there and that you may read it."),
             );
         }
     };
@@ -65,11 +66,17 @@ pub(crate) fn found(path: &Path) -> Dropped {
     match ending.as_str() {
         "toml" => brush(path, &name),
         "mcap" => nothing(
-            format!("{name} is a take, and the window does not play one"),
-            "Paint it from a terminal: maulstick render TAKE -o picture.png",
+            tr!("{name} is a take, and the window does not play one", name),
+            tr!("Paint it from a terminal: maulstick render TAKE -o picture.png"),
         ),
-        "" => nothing(format!("{name} is none that can be opened"), KINDS),
-        ending => nothing(format!("A .{ending} file cannot be opened"), KINDS),
+        "" => nothing(
+            tr!("{name} is none that can be opened", name),
+            translated(KINDS),
+        ),
+        ending => nothing(
+            tr!("A .{ending} file cannot be opened", ending),
+            translated(KINDS),
+        ),
     }
 }
 
@@ -88,15 +95,15 @@ fn brush(path: &Path, name: &str) -> Dropped {
     });
     let wrong = match read {
         Err(error) => error.to_string(),
-        Ok(bytes) if bytes > BRUSH_FILE_MAX => "it has more than a megabyte".to_owned(),
+        Ok(bytes) if bytes > BRUSH_FILE_MAX => tr!("it has more than a megabyte").to_owned(),
         Ok(_) => match BrushFile::parse(&toml) {
             Ok(file) => return Dropped::Brush(Box::new(file)),
             Err(error) => error.to_string(),
         },
     };
     Dropped::Nothing {
-        what: format!("{name} is no brush that can be used: {wrong}"),
-        help: "Brushes are files as docs/brushes.md says.".to_owned(),
+        what: tr!("{name} is no brush that can be used: {wrong}", name, wrong),
+        help: tr!("Brushes are files as docs/brushes.md says.").to_owned(),
     }
 }
 
@@ -110,13 +117,13 @@ pub(crate) fn hint(context: &Context) {
         return;
     };
     let words = match (path.as_deref().map(paths::ending).as_deref(), count) {
-        (_, 2..) => "One file at a time.",
-        (Some(paths::PAINTING), _) => "Let go to open the painting.",
-        (Some("toml"), _) => "Let go to take this brush into the hand.",
+        (_, 2..) => tr!("One file at a time."),
+        (Some(paths::PAINTING), _) => tr!("Let go to open the painting."),
+        (Some("toml"), _) => tr!("Let go to take this brush into the hand."),
         (Some(ending), _) if paths::PICTURES.contains(&ending) => {
-            "Let go to pin the picture beside the canvas."
+            tr!("Let go to pin the picture beside the canvas.")
         }
-        _ => KINDS,
+        _ => translated(KINDS),
     };
     Area::new(Id::unique("dropping"))
         .order(Order::Tooltip)

@@ -8,6 +8,7 @@ use maulstick_types::command::{Command, ExportOrder, FileCommand};
 use crate::dialogs::browser::{Browser, Purpose};
 use crate::dialogs::dialog::{self, Answer, Foot, line, number};
 use crate::dialogs::paths;
+use crate::language::{known, translated};
 
 /// A file format: its name in the command, its file ending, its description.
 struct Format {
@@ -20,34 +21,37 @@ const FORMATS: [Format; 5] = [
     Format {
         name: "png",
         ending: "png",
-        words: "Picture under its light (PNG)",
+        words: tr_noop!("Picture under its light (PNG)"),
     },
     Format {
         name: "ora",
         ending: "ora",
-        words: "Layers (OpenRaster)",
+        words: tr_noop!("Layers (OpenRaster)"),
     },
     Format {
         name: "exr",
         ending: "exr",
-        words: "Unlit colour, height, each paint (OpenEXR)",
+        words: tr_noop!("Unlit colour, height, each paint (OpenEXR)"),
     },
     Format {
         name: "height",
         ending: "png",
-        words: "Heights in grey (PNG)",
+        words: tr_noop!("Heights in grey (PNG)"),
     },
     Format {
         name: "stl",
         ending: "stl",
-        words: "Relief to print (STL)",
+        words: tr_noop!("Relief to print (STL)"),
     },
 ];
 /// File endings of exports.
 const ENDINGS: &[&str] = &["png", "ora", "exr", "stl"];
-const DEPTHS: [(u32, &str); 2] = [(8, "8 bits a channel"), (16, "16 bits a channel")];
+const DEPTHS: [(u32, &str); 2] = [
+    (8, tr_noop!("8 bits a channel")),
+    (16, tr_noop!("16 bits a channel")),
+];
 const PROFILES: [(&str, &str); 3] = [
-    ("", "As the window"),
+    ("", tr_noop!("As the window")),
     ("srgb", "sRGB"),
     ("display-p3", "Display P3"),
 ];
@@ -98,22 +102,23 @@ impl ExportPicture {
         let ending = paths::ending(path);
         let format = &FORMATS[self.format];
         if !ending.is_empty() && ending != format.ending {
-            return Err(format!(
+            return Err(tr!(
                 "A name that ends in .{ending} says nothing that can be written. End it in .png, \
-                 .ora, .exr or .stl."
+                 .ora, .exr or .stl.",
+                ending
             ));
         }
         if path.file_name().is_none() {
-            return Err("Write the name of a file.".to_owned());
+            return Err(tr!("Write the name of a file.").to_owned());
         }
         let path = paths::ending_in(path, format.ending);
         if path.is_dir() {
-            return Err("Write the name of a file.".to_owned());
+            return Err(tr!("Write the name of a file.").to_owned());
         }
         if !path.parent().is_some_and(Path::is_dir) {
-            return Err(format!(
-                "There is no folder {}. Write one that is there.",
-                paths::shown(path.parent().unwrap_or(Path::new("/")))
+            return Err(tr!(
+                "There is no folder {folder}. Write one that is there.",
+                folder = paths::shown(path.parent().unwrap_or(Path::new("/")))
             ));
         }
         let mut order = ExportOrder {
@@ -123,13 +128,14 @@ impl ExportPicture {
         match format.name {
             "png" => (order.bits, order.profile) = (self.bits, self.profile.to_owned()),
             "stl" => {
-                let base_mm = number("Base", &self.base_mm)?;
-                order.exaggeration = number("Heights", &self.exaggeration)?;
+                let base_mm = number(tr!("Base"), &self.base_mm)?;
+                order.exaggeration = number(tr!("Heights"), &self.exaggeration)?;
                 order.base_m = base_mm * 1e-3;
                 if base_mm <= 0.0 || order.exaggeration <= 0.0 {
-                    return Err(
-                        "Base and heights: write numbers above 0; 2 mm and 1 are usual.".to_owned(),
-                    );
+                    return Err(tr!(
+                        "Base and heights: write numbers above 0; 2 mm and 1 are usual."
+                    )
+                    .to_owned());
                 }
             }
             _ => {}
@@ -150,20 +156,20 @@ impl ExportPicture {
     /// Shows the dialog.
     pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
         let mut taken = None;
-        let answer = dialog::show(context, "Export", |ui| {
-            taken = self.browser.show(ui, "File");
+        let answer = dialog::show(context, tr!("Export"), |ui| {
+            taken = self.browser.show(ui, tr!("File"));
             self.follow();
             ui.add_space(6.0);
             let entered = self.options(ui);
             let path = paths::ending_in(&self.browser.path(), FORMATS[self.format].ending);
             if self.browser.lists(ui.ctx(), &path) {
-                ui.weak(format!("{} will be replaced.", paths::name(&path)));
+                ui.weak(tr!("{file} will be replaced.", file = paths::name(&path)));
             }
             Foot {
-                go: "Export",
+                go: tr!("Export"),
                 wrong: self.wrong.clone(),
                 entered: taken.is_some() || entered,
-                busy: busy.then_some("Beginning …"),
+                busy: busy.then_some(tr!("Beginning …")),
             }
         });
         let asked = (answer == Answer::Go).then(|| {
@@ -177,14 +183,14 @@ impl ExportPicture {
         let mut entered = false;
         let grid = Grid::new("export").num_columns(2).spacing([12.0, 8.0]);
         grid.show(ui, |ui| {
-            let format = ui.label("Format");
+            let format = ui.label(tr!("Format"));
             let before = self.format;
             let combo = ComboBox::from_id_salt("format")
                 .width(300.0)
-                .selected_text(FORMATS[self.format].words);
+                .selected_text(translated(FORMATS[self.format].words));
             let combo = combo.show_ui(ui, |ui| {
                 for (place, format) in FORMATS.iter().enumerate() {
-                    ui.selectable_value(&mut self.format, place, format.words);
+                    ui.selectable_value(&mut self.format, place, translated(format.words));
                 }
             });
             combo.response.labelled_by(format.id);
@@ -198,17 +204,17 @@ impl ExportPicture {
             ui.end_row();
             match FORMATS[self.format].name {
                 "png" => {
-                    choice(ui, "Depth", &DEPTHS, &mut self.bits);
-                    choice(ui, "Colours", &PROFILES, &mut self.profile);
+                    choice(ui, tr!("Depth"), &DEPTHS, &mut self.bits);
+                    choice(ui, tr!("Colours"), &PROFILES, &mut self.profile);
                 }
                 "stl" => {
-                    ui.label("Solid");
+                    ui.label(tr!("Solid"));
                     ui.horizontal(|ui| {
-                        entered |= line(ui, "Base", &mut self.base_mm, false, 48.0);
+                        entered |= line(ui, tr!("Base"), &mut self.base_mm, false, 48.0);
                         ui.label("mm");
                         ui.add_space(8.0);
-                        entered |= line(ui, "Heights", &mut self.exaggeration, false, 48.0);
-                        ui.label("times");
+                        entered |= line(ui, tr!("Heights"), &mut self.exaggeration, false, 48.0);
+                        ui.label(tr!("times"));
                     });
                     ui.end_row();
                 }
@@ -224,10 +230,10 @@ fn choice<T: Copy + PartialEq>(ui: &mut Ui, label: &str, all: &[(T, &str)], chos
     let shown = all.iter().find(|(value, _)| value == chosen);
     let combo = ComboBox::from_id_salt(label)
         .width(140.0)
-        .selected_text(shown.map_or("", |(_, words)| words));
+        .selected_text(shown.map_or("", |(_, words)| known(words)));
     let combo = combo.show_ui(ui, |ui| {
         for (value, words) in all {
-            ui.selectable_value(chosen, *value, *words);
+            ui.selectable_value(chosen, *value, known(words));
         }
     });
     combo.response.labelled_by(name.id);

@@ -22,8 +22,11 @@ fn left(export: &ExportStatus) -> String {
     let seconds = export.since_ns as f64 * 1e-9;
     let left = (seconds * f64::from((1.0 - export.share) / export.share)).ceil();
     match left {
-        left if left < 60.0 => format!("{left:.0} s left"),
-        left => format!("{:.0} min left", (left / 60.0).ceil()),
+        left if left < 60.0 => tr!("{left} s left", left = format_args!("{left:.0}")),
+        left => tr!(
+            "{minutes} min left",
+            minutes = format_args!("{:.0}", (left / 60.0).ceil())
+        ),
     }
 }
 
@@ -41,11 +44,11 @@ pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) {
             Frame::popup(ui.style()).show(ui, |ui| {
                 ui.horizontal(|ui| {
                     let name = paths::name(Path::new(&export.path));
-                    ui.label(format!("Exporting {name}"));
+                    ui.label(tr!("Exporting {name}", name));
                     let bar = ProgressBar::new(export.share).desired_width(140.0);
                     ui.add(bar.show_percentage());
                     ui.label(left(&export));
-                    if ui.button("Stop").clicked() {
+                    if ui.button(tr!("Stop")).clicked() {
                         work.requests.send(FileCommand::StopExport);
                     }
                 });

@@ -31,6 +31,7 @@ use maulstick_types::command::{Command, FileCommand, RigCommand};
 
 use crate::background_task::BackgroundTask;
 use crate::input::keys::Action;
+use crate::language::translated;
 use crate::reference::Reference;
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
@@ -105,12 +106,13 @@ impl Files {
             }
             Action::Reference => {
                 let known = work.preferences.reference.path.as_deref();
-                let choose = Self::picture(known, "Pin a reference picture", work);
+                let choose = Self::picture(known, tr!("Pin a reference picture"), work);
                 self.begin(Dialog::Picture(choose));
             }
             Action::ChooseTracing => {
                 let known = work.tracing().map(|tracing| &*tracing.path);
-                let choose = Self::picture(known, "A picture to paint after, on the canvas", work);
+                let choose =
+                    Self::picture(known, tr!("A picture to paint after, on the canvas"), work);
                 self.begin(Dialog::Tracing(choose));
             }
             _ => return false,
@@ -145,8 +147,8 @@ impl Files {
     fn save(&mut self, work: &mut PanelContext<'_>) {
         let Some(node) = &work.rig.paint else {
             work.notifications.fault(
-                "nothing is known of the painting yet",
-                "wait for the painting engine: it comes back by itself",
+                tr!("nothing is known of the painting yet"),
+                tr!("wait for the painting engine: it comes back by itself"),
             );
             return;
         };
@@ -155,8 +157,8 @@ impl Files {
             (path, all) => {
                 let file = paths::shown(Path::new(path));
                 work.notifications.note(match all {
-                    true => format!("Saved to {file}"),
-                    false => format!("Saving to {file} …"),
+                    true => tr!("Saved to {file}", file),
+                    false => tr!("Saving to {file} …", file),
                 });
             }
         }
@@ -301,8 +303,8 @@ impl Files {
         let files = context.input(|input| input.raw.dropped_files.clone());
         if let Some(first) = files.first() {
             if files.len() > 1 {
-                let what = format!("{} files were dropped", files.len());
-                work.notifications.fault(what, "drop one at a time");
+                let what = tr!("{count} files were dropped", count = files.len());
+                work.notifications.fault(what, tr!("drop one at a time"));
             } else {
                 let path = first.path().to_owned();
                 let look = move || dropped::found(&path);
@@ -322,9 +324,10 @@ impl Files {
             Some(Dropped::Picture(path)) => reference.pin(context, &path, work.preferences),
             Some(Dropped::Brush(file)) => work.take_up(*file),
             Some(Dropped::Nothing { what, help }) => work.notifications.fault(what, help),
-            None => work
-                .notifications
-                .fault("the dropped file cannot be read", dropped::KINDS),
+            None => work.notifications.fault(
+                tr!("the dropped file cannot be read"),
+                translated(dropped::KINDS),
+            ),
         }
     }
 
@@ -337,7 +340,7 @@ impl Files {
             return;
         }
         work.notifications
-            .note(format!("Opening {} …", paths::name(path)));
+            .note(tr!("Opening {file} …", file = paths::name(path)));
         let forget = false;
         match paths::named(path) {
             Ok(path) => drop(ask(RigCommand::Open { path, forget }.into(), work)),
@@ -362,16 +365,20 @@ fn switches(command: &Command) -> bool {
 fn done(command: &Command) -> Option<String> {
     let file = |path: &str| paths::shown(Path::new(path));
     Some(match command {
-        Command::Rig(RigCommand::Open { path, .. }) => format!("Opened {}.", file(path)),
+        Command::Rig(RigCommand::Open { path, .. }) => tr!("Opened {file}.", file = file(path)),
         Command::Rig(RigCommand::New { path, .. }) => match path {
-            Some(path) => format!("A new painting, kept in {}.", file(path)),
-            None => "A new painting, in no file.".to_owned(),
+            Some(path) => tr!("A new painting, kept in {file}.", file = file(path)),
+            None => tr!("A new painting, in no file.").to_owned(),
         },
         Command::Rig(RigCommand::SaveAs(save_as)) | Command::File(FileCommand::SaveAs(save_as)) => {
-            format!("The painting is in {} now.", file(&save_as.path))
+            tr!("The painting is in {file} now.", file = file(&save_as.path))
         }
-        Command::File(FileCommand::Export(order)) => format!("Exported to {}.", file(&order.path)),
-        Command::File(FileCommand::StopExport) => "The export has ended without a file.".to_owned(),
+        Command::File(FileCommand::Export(order)) => {
+            tr!("Exported to {file}.", file = file(&order.path))
+        }
+        Command::File(FileCommand::StopExport) => {
+            tr!("The export has ended without a file.").to_owned()
+        }
         Command::Edit(_) | Command::Take(_) | Command::Brush(_) => return None,
     })
 }
@@ -393,7 +400,7 @@ fn stem(work: &PanelContext<'_>) -> String {
     let status = work.rig.paint.as_ref().map(|node| &node.status);
     let stem = status.and_then(|status| Path::new(&status.path).file_stem());
     stem.map_or_else(
-        || "Painting".to_owned(),
+        || tr!("Painting").to_owned(),
         |stem| stem.to_string_lossy().into_owned(),
     )
 }

@@ -11,6 +11,7 @@ use maulstick_types::values::{MaterialName, ValueError, WholePath};
 use crate::dialogs::dialog::{self, Answer, Foot, in_words, line, number};
 use crate::dialogs::discard_prompt::Unkept;
 use crate::dialogs::paths;
+use crate::language::{known, translated};
 use crate::settings::units::Units;
 
 /// Sizes that are chosen with a click: name, width and height, cm.
@@ -24,10 +25,10 @@ const fn usual(units: Units) -> [(&'static str, &'static str, &'static str); 2] 
 }
 /// Grounds by name; the last is a file.
 const GROUNDS: [(&str, &str); 4] = [
-    ("gesso", "Gesso, white"),
-    ("grey", "Grey"),
-    ("black", "Black"),
-    (FILE, "A file …"),
+    ("gesso", tr_noop!("Gesso, white")),
+    ("grey", tr_noop!("Grey")),
+    ("black", tr_noop!("Black")),
+    (FILE, tr_noop!("A file …")),
 ];
 const FILE: &str = "";
 /// Bytes that a cell takes when it is painted with three paints: their counts, its colour and height as
@@ -55,7 +56,7 @@ impl NewPainting {
     /// A form for a painting in `folder`.
     #[must_use]
     pub(crate) fn new(folder: &Path, units: Units, unkept: Unkept) -> Self {
-        let free = paths::free(folder, "Painting", paths::PAINTING);
+        let free = paths::free(folder, tr!("Painting"), paths::PAINTING);
         Self::kept_in(paths::shown(&free), units, unkept)
     }
 
@@ -85,18 +86,18 @@ impl NewPainting {
     /// # Errors
     /// Error and advice in words.
     fn canvas(&self) -> Result<NewCanvas, String> {
-        let width = number("Width", &self.width)?;
-        let height = number("Height", &self.height)?;
-        let fine = number("Cells per mm", &self.fine)?;
+        let width = number(tr!("Width"), &self.width)?;
+        let height = number(tr!("Height"), &self.height)?;
+        let fine = number(tr!("Cells per mm"), &self.fine)?;
         if fine <= 0.0 {
-            return Err("Cells per mm: write a number above 0; 4 is usual.".to_owned());
+            return Err(tr!("Cells per mm: write a number above 0; 4 is usual.").to_owned());
         }
         let ground = match self.ground {
             FILE if self.ground_file.trim().is_empty() => {
-                return Err(
+                return Err(tr!(
                     "Ground: write the path of a picture, or of a CSV file of nm,reflectance."
-                        .to_owned(),
-                );
+                )
+                .to_owned());
             }
             FILE => paths::whole(&self.ground_file).display().to_string(),
             name => name.to_owned(),
@@ -138,19 +139,21 @@ impl NewPainting {
     /// The whole path of its file.
     fn file(&self) -> Result<WholePath, String> {
         if self.path.trim().is_empty() || self.path.trim().ends_with('/') {
-            return Err("Keep in: write the name of a file, or choose to keep nothing.".to_owned());
+            return Err(
+                tr!("Keep in: write the name of a file, or choose to keep nothing.").to_owned(),
+            );
         }
         let path = paths::ending_in(&paths::whole(&self.path), paths::PAINTING);
         if path.exists() {
-            return Err(format!(
-                "There is a file {} already. Write another name, or open that one.",
-                paths::shown(&path)
+            return Err(tr!(
+                "There is a file {file} already. Write another name, or open that one.",
+                file = paths::shown(&path)
             ));
         }
         if !path.parent().is_some_and(Path::is_dir) {
-            return Err(format!(
-                "There is no folder {}. Write one that is there.",
-                paths::shown(path.parent().unwrap_or(Path::new("/")))
+            return Err(tr!(
+                "There is no folder {folder}. Write one that is there.",
+                folder = paths::shown(path.parent().unwrap_or(Path::new("/")))
             ));
         }
         paths::named(&path)
@@ -158,7 +161,7 @@ impl NewPainting {
 
     /// Shows the dialog.
     pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
-        let answer = dialog::show(context, "New painting", |ui| {
+        let answer = dialog::show(context, tr!("New painting"), |ui| {
             let entered = self.fields(ui);
             let estimate = self.canvas().map(|canvas| estimate(&canvas));
             ui.add_space(6.0);
@@ -171,10 +174,10 @@ impl NewPainting {
             };
             self.unkept.show(ui);
             Foot {
-                go: "Create",
+                go: tr!("Create"),
                 wrong,
                 entered,
-                busy: busy.then_some("Laying out the canvas …"),
+                busy: busy.then_some(tr!("Laying out the canvas …")),
             }
         });
         let asked = (answer == Answer::Go).then(|| self.command());
@@ -198,7 +201,7 @@ impl NewPainting {
                     changed = true;
                 }
             }
-            let turn = ui.button("Swap width and height");
+            let turn = ui.button(tr!("Swap width and height"));
             if turn.clicked() {
                 std::mem::swap(&mut self.width, &mut self.height);
             }
@@ -208,51 +211,51 @@ impl NewPainting {
             .num_columns(2)
             .spacing([12.0, 8.0]);
         grid.show(ui, |ui| {
-            ui.label("Size");
+            ui.label(tr!("Size"));
             ui.horizontal(|ui| {
-                entered |= line(ui, "Width", &mut self.width, true, 56.0);
+                entered |= line(ui, tr!("Width"), &mut self.width, true, 56.0);
                 ui.label(unit);
                 ui.add_space(8.0);
-                entered |= line(ui, "Height", &mut self.height, false, 56.0);
+                entered |= line(ui, tr!("Height"), &mut self.height, false, 56.0);
                 ui.label(unit);
             });
             ui.end_row();
-            ui.label("Detail");
+            ui.label(tr!("Detail"));
             ui.horizontal(|ui| {
-                entered |= line(ui, "Cells per mm", &mut self.fine, false, 56.0);
-                ui.weak("4 for most, 8 for miniatures");
+                entered |= line(ui, tr!("Cells per mm"), &mut self.fine, false, 56.0);
+                ui.weak(tr!("4 for most, 8 for miniatures"));
             });
             ui.end_row();
-            let ground = ui.label("Ground");
+            let ground = ui.label(tr!("Ground"));
             ui.horizontal(|ui| {
                 let name = |known: &str| GROUNDS.iter().find(|(name, _)| *name == known);
-                let shown = name(self.ground).map_or("", |(_, shown)| shown);
+                let shown = name(self.ground).map_or("", |(_, shown)| translated(shown));
                 let combo = ComboBox::from_id_salt("ground")
                     .width(120.0)
                     .selected_text(shown);
                 let combo = combo.show_ui(ui, |ui| {
                     for (name, shown) in GROUNDS {
-                        ui.selectable_value(&mut self.ground, name, shown);
+                        ui.selectable_value(&mut self.ground, name, translated(shown));
                     }
                 });
                 combo.response.labelled_by(ground.id);
                 if self.ground == FILE {
-                    entered |= line(ui, "Path", &mut self.ground_file, false, 120.0);
+                    entered |= line(ui, tr!("Path"), &mut self.ground_file, false, 120.0);
                 }
             });
             ui.end_row();
-            let tooth = ui.label("Tooth");
+            let tooth = ui.label(tr!("Tooth"));
             let combo = ComboBox::from_id_salt("tooth")
                 .width(120.0)
-                .selected_text(capital(&self.tooth));
+                .selected_text(capital(known(&self.tooth)));
             let combo = combo.show_ui(ui, |ui| {
                 for name in Tooth::names() {
-                    ui.selectable_value(&mut self.tooth, name.to_owned(), capital(name));
+                    ui.selectable_value(&mut self.tooth, name.to_owned(), capital(known(name)));
                 }
             });
             combo.response.labelled_by(tooth.id);
             ui.end_row();
-            let keep = ui.label("Keep in");
+            let keep = ui.label(tr!("Keep in"));
             ui.vertical(|ui| {
                 ui.add_enabled_ui(!self.in_memory, |ui| {
                     let edit = TextEdit::singleline(&mut self.path).desired_width(f32::INFINITY);
@@ -263,7 +266,7 @@ impl NewPainting {
                 });
                 ui.checkbox(
                     &mut self.in_memory,
-                    "Do not save: the sketch is lost when you quit",
+                    tr!("Do not save: the sketch is lost when you quit"),
                 );
             });
             ui.end_row();
@@ -289,16 +292,29 @@ fn estimate(canvas: &NewCanvas) -> String {
     let cells = across * up;
     let count = match cells {
         cells if cells < 1e5 => format!("{cells:.0}"),
-        cells => format!("{:.1} million", cells * 1e-6),
+        cells => tr!(
+            "{count} million",
+            count = format_args!("{:.1}", cells * 1e-6)
+        ),
     };
     let bytes = cells * CELL_BYTES;
     let room = match bytes {
-        bytes if bytes < 1e6 => "less than 1 MB".to_owned(),
-        bytes if bytes < 1e9 => format!("about {:.0} MB", bytes * 1e-6),
-        bytes => format!("about {:.1} GB", bytes * 1e-9),
+        bytes if bytes < 1e6 => tr!("less than 1 MB").to_owned(),
+        bytes if bytes < 1e9 => tr!(
+            "about {size} MB",
+            size = format_args!("{:.0}", bytes * 1e-6)
+        ),
+        bytes => tr!(
+            "about {size} GB",
+            size = format_args!("{:.1}", bytes * 1e-9)
+        ),
     };
-    format!(
-        "{across:.0} × {up:.0} cells, {count} in all; {room} of memory when all of it is painted."
+    tr!(
+        "{across} × {up} cells, {count} in all; {room} of memory when all of it is painted.",
+        across = format_args!("{across:.0}"),
+        up = format_args!("{up:.0}"),
+        count,
+        room
     )
 }
 

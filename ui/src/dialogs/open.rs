@@ -57,12 +57,12 @@ impl OpenPainting {
     fn command(&self, path: &Path) -> Result<Command, String> {
         self.unkept.check()?;
         if path.is_dir() {
-            return Err("This is a folder. Choose a painting in it.".to_owned());
+            return Err(tr!("This is a folder. Choose a painting in it.").to_owned());
         }
         if !path.exists() {
-            return Err(format!(
-                "There is no file {}. Choose one of the list, or begin a new one.",
-                paths::shown(path)
+            return Err(tr!(
+                "There is no file {file}. Choose one of the list, or begin a new one.",
+                file = paths::shown(path)
             ));
         }
         Ok(RigCommand::Open {
@@ -75,21 +75,21 @@ impl OpenPainting {
     /// Shows the dialog.
     pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
         let mut taken: Option<PathBuf> = None;
-        let answer = dialog::show(context, "Open a painting", |ui| {
+        let answer = dialog::show(context, tr!("Open a painting"), |ui| {
             taken = self.recent.show(ui, self.browser.pictures());
             if taken.is_some() {
                 taken
                     .iter()
                     .for_each(|path| self.browser.set(paths::shown(path)));
             }
-            let typed = self.browser.show(ui, "File");
+            let typed = self.browser.show(ui, tr!("File"));
             taken = taken.take().or(typed);
             self.unkept.show(ui);
             Foot {
-                go: "Open",
+                go: tr!("Open"),
                 wrong: self.wrong.clone(),
                 entered: taken.is_some(),
-                busy: busy.then_some("Opening …"),
+                busy: busy.then_some(tr!("Opening …")),
             }
         });
         let asked = (answer == Answer::Go).then(|| {

@@ -18,8 +18,8 @@ pub(crate) const PICTURES: [&str; 5] = ["png", "jpg", "jpeg", "tif", "tiff"];
 pub(crate) fn named(path: &Path) -> Result<WholePath, String> {
     let name = path.to_str().map(WholePath::new);
     match name {
-        Some(named) => named.map_err(|error| format!("This path cannot be used: {error}.")),
-        None => Err("This path is not UTF-8: give the file another name.".to_owned()),
+        Some(named) => named.map_err(|error| tr!("This path cannot be used: {error}.", error)),
+        None => Err(tr!("This path is not UTF-8: give the file another name.").to_owned()),
     }
 }
 
@@ -115,17 +115,20 @@ pub(crate) fn free(folder: &Path, stem: &str, ending: &str) -> PathBuf {
 pub(crate) fn age(changed: SystemTime, now: SystemTime) -> String {
     let past = now.duration_since(changed).unwrap_or(Duration::ZERO);
     let minutes = past.as_secs() / 60;
-    let of = |count: u64, unit: &str| match count {
-        1 => format!("1 {unit} ago"),
-        _ => format!("{count} {unit}s ago"),
-    };
+    let [hours, days, months, years] =
+        [60, 1440, 43_200, 525_600].map(|in_minutes| minutes / in_minutes);
     match minutes {
-        0 => "just now".to_owned(),
-        1..=59 => of(minutes, "minute"),
-        60..=1439 => of(minutes / 60, "hour"),
-        1440..=43_199 => of(minutes / 1440, "day"),
-        43_200..=525_599 => of(minutes / 43_200, "month"),
-        _ => of(minutes / 525_600, "year"),
+        0 => tr!("just now").to_owned(),
+        1 => tr!("1 minute ago").to_owned(),
+        2..=59 => tr!("{minutes} minutes ago", minutes),
+        60..=119 => tr!("1 hour ago").to_owned(),
+        120..=1439 => tr!("{hours} hours ago", hours),
+        1440..=2879 => tr!("1 day ago").to_owned(),
+        2880..=43_199 => tr!("{days} days ago", days),
+        43_200..=86_399 => tr!("1 month ago").to_owned(),
+        86_400..=525_599 => tr!("{months} months ago", months),
+        525_600..=1_051_199 => tr!("1 year ago").to_owned(),
+        _ => tr!("{years} years ago", years),
     }
 }
 

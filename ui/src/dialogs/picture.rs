@@ -32,9 +32,9 @@ impl ChoosePicture {
     pub(crate) fn show(&mut self, context: &Context) -> (Answer, Option<PathBuf>) {
         let mut taken = None;
         let answer = dialog::show(context, self.title, |ui| {
-            taken = self.browser.show(ui, "Picture");
+            taken = self.browser.show(ui, tr!("Picture"));
             Foot {
-                go: "Open",
+                go: tr!("Open"),
                 wrong: self.wrong.clone(),
                 entered: taken.is_some(),
                 busy: None,
@@ -47,9 +47,9 @@ impl ChoosePicture {
         if path.is_file() {
             return (answer, Some(path));
         }
-        self.wrong = Some(format!(
-            "{} is no file. Choose a PNG, JPEG or TIFF of the list.",
-            paths::shown(&path)
+        self.wrong = Some(tr!(
+            "{file} is no file. Choose a PNG, JPEG or TIFF of the list.",
+            file = paths::shown(&path)
         ));
         (Answer::Stay, None)
     }

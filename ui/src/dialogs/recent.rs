@@ -75,10 +75,10 @@ impl RecentList {
             return None;
         }
         let mut chosen = None;
-        ui.label(RichText::new("Recent paintings").weak());
+        ui.label(RichText::new(tr!("Recent paintings")).weak());
         for recent in &self.here {
             let folder = recent.path.parent().map_or_else(String::new, paths::shown);
-            let age = recent.age.as_deref().unwrap_or("no longer there");
+            let age = recent.age.as_deref().unwrap_or(tr!("no longer there"));
             let beside = RichText::new(age).weak().small();
             let response = ui.horizontal(|ui| {
                 if let Some(pictures) = &mut pictures {

@@ -48,24 +48,24 @@ impl SaveAs {
 
     fn command(&mut self, path: &Path) -> Result<Command, String> {
         if path.file_name().is_none() {
-            return Err("Write the name of a file.".to_owned());
+            return Err(tr!("Write the name of a file.").to_owned());
         }
         let path = paths::ending_in(path, paths::PAINTING);
         if path.is_dir() {
-            return Err("Write the name of a file.".to_owned());
+            return Err(tr!("Write the name of a file.").to_owned());
         }
         if !path.parent().is_some_and(Path::is_dir) {
-            return Err(format!(
-                "There is no folder {}. Write one that is there.",
-                paths::shown(path.parent().unwrap_or(Path::new("/")))
+            return Err(tr!(
+                "There is no folder {folder}. Write one that is there.",
+                folder = paths::shown(path.parent().unwrap_or(Path::new("/")))
             ));
         }
         let may_go = |(found, may_go): &(PathBuf, bool)| *found == path && *may_go;
         let replace = self.found.as_ref().is_some_and(may_go);
         if path.exists() && !replace {
-            let words = format!(
-                "There is a file {} already. Write another name, or tick that it may go.",
-                paths::shown(&path)
+            let words = tr!(
+                "There is a file {file} already. Write another name, or tick that it may go.",
+                file = paths::shown(&path)
             );
             self.found = Some((path, false));
             return Err(words);
@@ -77,23 +77,25 @@ impl SaveAs {
     /// Shows the dialog.
     pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
         let mut taken = None;
-        let answer = dialog::show(context, "Save under another name", |ui| {
-            ui.weak("History and versions go along, and the painting goes on in the new file.");
+        let answer = dialog::show(context, tr!("Save under another name"), |ui| {
+            ui.weak(tr!(
+                "History and versions go along, and the painting goes on in the new file."
+            ));
             ui.add_space(4.0);
-            taken = self.browser.show(ui, "File");
+            taken = self.browser.show(ui, tr!("File"));
             let now = paths::ending_in(&self.browser.path(), paths::PAINTING);
             if let Some((found, may_go)) = &mut self.found
                 && *found == now
             {
-                let words = format!("Replace the painting {}", paths::name(found));
+                let words = tr!("Replace the painting {file}", file = paths::name(found));
                 ui.add_space(6.0);
                 ui.checkbox(may_go, words);
             }
             Foot {
-                go: "Save",
+                go: tr!("Save"),
                 wrong: self.wrong.clone(),
                 entered: taken.is_some(),
-                busy: busy.then_some("Writing …"),
+                busy: busy.then_some(tr!("Writing …")),
             }
         });
         let asked = (answer == Answer::Go).then(|| {

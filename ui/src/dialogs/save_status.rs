@@ -31,19 +31,19 @@ fn words(context: &Context, work: &PanelContext<'_>) -> String {
     let status = &node.status;
     if status.path.is_empty() {
         return match status.blank {
-            true => "New painting".to_owned(),
+            true => tr!("New painting").to_owned(),
             false => match work.preferences.keys.written(context, Action::Save) {
-                key if key.is_empty() => "In no file".to_owned(),
-                key => format!("In no file · {key} keeps it"),
+                key if key.is_empty() => tr!("In no file").to_owned(),
+                key => tr!("In no file · {key} keeps it", key),
             },
         };
     }
     let name = paths::name(Path::new(&status.path));
     let since = work.rig.now_ns.saturating_sub(status.committed_ns);
     let state = match (status.fault.is_empty(), status.all_committed) {
-        (false, _) => "not saved",
-        (true, false) if since > LATE_NS => "saving …",
-        _ => "saved",
+        (false, _) => tr!("not saved"),
+        (true, false) if since > LATE_NS => tr!("saving …"),
+        _ => tr!("saved"),
     };
     format!("{name} · {state}")
 }
@@ -61,7 +61,7 @@ pub(crate) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action>
     Area::new(Id::unique("saved"))
         .order(Order::Middle)
         .anchor(corner, [inward * aside, -4.0])
-        .accessible_name("Painting")
+        .accessible_name(tr!("Painting"))
         .show(context, |ui| {
             ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);
             let back = ui.visuals().window_fill.gamma_multiply(0.8);

@@ -11,6 +11,7 @@ use maulstick_types::command::{BrushCommand, Command};
 use maulstick_types::edits::{Edit, Load};
 use maulstick_types::values::{BrushName, BrushToml};
 
+use crate::language::known;
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
 use crate::rig::state::RigBrush;
@@ -60,7 +61,7 @@ pub(crate) fn resized(file: &BrushFile, width_mm: f64) -> Result<BrushFile, Brus
 /// A kind as a word in a sentence: its first letter large.
 #[must_use]
 pub(crate) fn called(kind: &str) -> String {
-    let mut letters = kind.chars();
+    let mut letters = known(kind).chars();
     letters.next().map_or(String::new(), |first| {
         first.to_uppercase().chain(letters).collect()
     })
@@ -118,13 +119,13 @@ pub(crate) fn read(path: &Path) -> Result<BrushFile, UserError> {
     let read = match extension == "glb" || extension == "gltf" {
         true => maulstick_brush::gltf::read(&bytes).map_err(|error| error.to_string()),
         false => std::str::from_utf8(&bytes)
-            .map_err(|_| "this is no text".to_owned())
+            .map_err(|_| tr!("this is no text").to_owned())
             .and_then(|text| BrushFile::parse(text).map_err(|error| error.to_string())),
     };
     read.map_err(|what| {
         UserError::failure(what)
             .at(path.display().to_string())
-            .help("docs/brushes.md says what a brush file holds")
+            .help(tr!("docs/brushes.md says what a brush file holds"))
     })
 }
 
@@ -152,7 +153,7 @@ impl PanelContext<'_> {
         let toml = match file.check().and_then(|()| file.to_toml()) {
             Ok(toml) => toml,
             Err(error) => {
-                let help = "choose another width, or another brush";
+                let help = tr!("choose another width, or another brush");
                 return self.notifications.fault(error.to_string(), help);
             }
         };
@@ -164,7 +165,7 @@ impl PanelContext<'_> {
         let define = match define {
             Ok(define) => define,
             Err(error) => {
-                let help = "make its skin of fewer faces";
+                let help = tr!("make its skin of fewer faces");
                 return self.notifications.fault(error.to_string(), help);
             }
         };
@@ -273,10 +274,12 @@ impl PanelContext<'_> {
                 self.take_up(file);
             }
             None => {
-                let end = if up { "widest" } else { "narrowest" };
                 let kind = called(&file_kind(self));
-                self.notifications
-                    .note(format!("{kind} {} is the {end}", units.width(now_mm)));
+                let width = units.width(now_mm);
+                self.notifications.note(match up {
+                    true => tr!("{kind} {width} is the widest", kind, width),
+                    false => tr!("{kind} {width} is the narrowest", kind, width),
+                });
             }
         }
     }

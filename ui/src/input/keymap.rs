@@ -5,28 +5,29 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use crate::input::keys::{Action, BINDINGS, Binding, written};
+use crate::language::translated;
 
 /// Keys that cannot be given to an action, and what they do.
 const FIXED: [(KeyboardShortcut, &str); 5] = [
     (
         KeyboardShortcut::new(Modifiers::NONE, Key::Escape),
-        "Close, or leave",
+        tr_noop!("Close, or leave"),
     ),
     (
         KeyboardShortcut::new(Modifiers::COMMAND, Key::Plus),
-        "Larger text",
+        tr_noop!("Larger text"),
     ),
     (
         KeyboardShortcut::new(Modifiers::COMMAND, Key::Equals),
-        "Larger text",
+        tr_noop!("Larger text"),
     ),
     (
         KeyboardShortcut::new(Modifiers::COMMAND, Key::Minus),
-        "Smaller text",
+        tr_noop!("Smaller text"),
     ),
     (
         KeyboardShortcut::new(Modifiers::COMMAND, Key::Num0),
-        "Text at 100 %",
+        tr_noop!("Text at 100 %"),
     ),
 ];
 
@@ -44,8 +45,10 @@ impl Holder {
     #[must_use]
     pub(crate) fn words(self) -> &'static str {
         match self {
-            Self::Binding(place) => BINDINGS.get(place).map_or("", |binding| binding.words),
-            Self::Fixed(words) => words,
+            Self::Binding(place) => BINDINGS
+                .get(place)
+                .map_or("", |binding| translated(binding.words)),
+            Self::Fixed(words) => translated(words),
         }
     }
 }
@@ -146,7 +149,7 @@ impl Keymap {
         let keys: Vec<String> = keys.filter(|key| !key.is_empty()).collect();
         match keys.is_empty() {
             true => words.to_owned(),
-            false => format!("{words}  {}", keys.join(" and ")),
+            false => format!("{words}  {}", keys.join(tr!(" and "))),
         }
     }
 
@@ -189,9 +192,9 @@ impl Keymap {
             .map(|(name, value)| format!("{name} = {value}"))
             .collect();
         (!entries.is_empty()).then(|| {
-            format!(
-                "The preferences have keys that are not known, or named twice: {}",
-                entries.join(", ").replace('\n', " ")
+            tr!(
+                "The preferences have keys that are not known, or named twice: {entries}",
+                entries = entries.join(", ").replace('\n', " ")
             )
         })
     }

@@ -3,6 +3,8 @@
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 use serde::{Deserialize, Serialize};
 
+use crate::language;
+
 /// Action of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -321,7 +323,7 @@ pub(crate) const HELD: [(&str, &str); 6] = [
 pub(crate) fn written(context: &Context, shortcut: &KeyboardShortcut) -> String {
     let text = context.format_shortcut(shortcut);
     let key = shortcut.logical_key;
-    match key {
+    let text = match key {
         // Shift is what makes it this sign.
         Key::Questionmark => text
             .replace(key.name(), key.symbol_or_name())
@@ -333,5 +335,13 @@ pub(crate) fn written(context: &Context, shortcut: &KeyboardShortcut) -> String 
         | Key::Minus
         | Key::Equals => text.replace(key.name(), key.symbol_or_name()),
         _ => text,
+    };
+    match language::chosen() {
+        None => text,
+        Some(_) => text
+            .split('+')
+            .map(language::known)
+            .collect::<Vec<_>>()
+            .join("+"),
     }
 }

@@ -32,8 +32,8 @@ impl PanelContext<'_> {
     pub fn lay_wells(&mut self, mixtures: &[Mixture]) {
         if mixtures.len() > MOST {
             return self.notifications.fault(
-                format!("A palette holds at most {MOST} paints."),
-                "Take one off the palette first.",
+                tr!("A palette holds at most {most} paints.", most = MOST),
+                tr!("Take one off the palette first."),
             );
         }
         let Some(palette) = self.rig.palette() else {

@@ -25,7 +25,7 @@ pub(super) fn show(ui: &mut Ui, colour: &mut Hsva) -> bool {
     let place = field(
         ui,
         SQUARE,
-        "Saturation and brightness. Arrow keys change them",
+        tr!("Saturation and brightness. Arrow keys change them"),
         pos2(colour.s, 1.0 - colour.v),
         |at| Hsva::new(hue, at.x, 1.0 - at.y, 1.0),
     );
@@ -35,7 +35,7 @@ pub(super) fn show(ui: &mut Ui, colour: &mut Hsva) -> bool {
     let place = field(
         ui,
         vec2(SQUARE.x, STRIP),
-        "Hue. Arrow keys change it",
+        tr!("Hue. Arrow keys change it"),
         pos2(colour.h, 0.5),
         |at| Hsva::new(at.x, 1.0, 1.0, 1.0),
     );

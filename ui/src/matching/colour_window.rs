@@ -56,8 +56,9 @@ fn parsed(text: &str) -> Result<[u8; 3], String> {
     match values.as_deref() {
         Some([r, g, b]) => Ok([r * 17, g * 17, b * 17]),
         Some([r, s, g, h, b, c]) => Ok([r * 16 + s, g * 16 + h, b * 16 + c]),
-        _ => Err(format!(
-            "“{text}” is no colour. Write six digits of 0 to 9 and a to f, such as #8a5a3c."
+        _ => Err(tr!(
+            "“{text}” is no colour. Write six digits of 0 to 9 and a to f, such as #8a5a3c.",
+            text
         )),
     }
 }
@@ -82,7 +83,7 @@ impl ColourWindow {
         let side = sides::rack_side(work.preferences);
         let aside = rack::WIDTH + sides::column_at(work.preferences, side) + ASIDE;
         let mut open = true;
-        Window::new("A colour in mind")
+        Window::new(tr!("A colour in mind"))
             .id(Id::unique("colour"))
             .open(&mut open)
             .collapsible(false)
@@ -106,8 +107,8 @@ impl ColourWindow {
         }
         ui.horizontal(|ui| {
             let bytes = self.colour.to_srgb();
-            swatch(ui, bytes, "The colour");
-            let label = ui.label("Hex");
+            swatch(ui, bytes, tr!("The colour"));
+            let label = ui.label(tr!("Hex"));
             let mut text = self.typed.clone().unwrap_or_else(|| hex(bytes));
             let edit = TextEdit::singleline(&mut text)
                 .char_limit(16)
@@ -136,8 +137,8 @@ impl ColourWindow {
     /// The mixtures, searched for while nothing is dragged.
     fn proposals(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let all = &mut work.preferences.reference.all_paints;
-        ui.checkbox(all, "All paints")
-            .on_hover_text("Not only those on the palette");
+        ui.checkbox(all, tr!("All paints"))
+            .on_hover_text(tr!("Not only those on the palette"));
         let paints = match *all {
             true => None,
             false => of_palette(work.rig.palette()),

@@ -73,14 +73,20 @@ pub(crate) fn search(ask: &Ask, library: &PaintLibrary) -> Matches {
         }
     };
     if paints.len() < 2 {
-        return Err("With one paint there is nothing to mix. Search among all paints.".to_owned());
+        return Err(
+            tr!("With one paint there is nothing to mix. Search among all paints.").to_owned(),
+        );
     }
     let gain = ask.light.intensity * ask.light.exposure;
     if gain < DARK {
-        return Err("It is too dark to compare colours. Turn the light up.".to_owned());
+        return Err(tr!("It is too dark to compare colours. Turn the light up.").to_owned());
     }
-    let settings = studio_settings(&ask.light)
-        .map_err(|refusal| format!("The light is none to compare colours in: {}.", refusal))?;
+    let settings = studio_settings(&ask.light).map_err(|refusal| {
+        tr!(
+            "The light is none to compare colours in: {why}.",
+            why = refusal
+        )
+    })?;
     let viewing = Viewing::new(&settings, library.paints());
     let target = viewing
         .display(ask.linear.map(|channel| channel / gain))
@@ -132,7 +138,7 @@ impl Picker {
             && let Poll::Ready(found) = task.poll()
         {
             if Some(ask) == self.asked.as_ref() {
-                let fell = || Err("The search has failed. Pick again.".to_owned());
+                let fell = || Err(tr!("The search has failed. Pick again.").to_owned());
                 self.found = Some(found.unwrap_or_else(fell));
             }
             self.running = None;

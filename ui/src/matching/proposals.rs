@@ -13,7 +13,7 @@ pub(crate) fn matches(ui: &mut Ui, found: Option<&Matches>, work: &mut PanelCont
         None => {
             ui.horizontal(|ui| {
                 ui.spinner();
-                ui.weak("Mixing …");
+                ui.weak(tr!("Mixing …"));
             });
         }
         Some(Err(words)) => {
@@ -31,12 +31,17 @@ pub(crate) fn matches(ui: &mut Ui, found: Option<&Matches>, work: &mut PanelCont
 fn proposal(ui: &mut Ui, found: &Match, work: &mut PanelContext<'_>) {
     let words = in_parts(found);
     ui.horizontal(|ui| {
-        let near = format!("off by ΔE {:.1}", found.delta_e);
+        let near = tr!(
+            "off by ΔE {distance}",
+            distance = format_args!("{:.1}", found.delta_e)
+        );
         swatch(ui, found.rgb, &near);
         ui.label(RichText::new(format!("ΔE {:.1}", found.delta_e)).small())
-            .on_hover_text("How far it is from the colour, ΔE₀₀: 1 is hardly seen");
-        let load = ui.button("Load").on_hover_text("Load the brush with it");
-        load.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Load {words}")));
+            .on_hover_text(tr!("How far it is from the colour, ΔE₀₀: 1 is hardly seen"));
+        let load = ui
+            .button(tr!("Load"))
+            .on_hover_text(tr!("Load the brush with it"));
+        load.widget_info(|| WidgetInfo::labeled(Role::Button, true, tr!("Load {words}", words)));
         if load.clicked() {
             let load = BrushName::new(work.rig.brush_name()).map(|brush| Load {
                 mixture: found.mixture.clone(),
@@ -45,17 +50,17 @@ fn proposal(ui: &mut Ui, found: &Match, work: &mut PanelContext<'_>) {
             });
             crate::widgets::rows::ask(work, load);
         }
-        let put = ui.button("+").on_hover_text("Put it on the palette");
+        let put = ui.button("+").on_hover_text(tr!("Put it on the palette"));
         put.widget_info(|| {
-            WidgetInfo::labeled(Role::Button, true, format!("To the palette: {words}"))
+            WidgetInfo::labeled(Role::Button, true, tr!("To the palette: {words}", words))
         });
         if put.clicked() {
             let mut wells = work.wells();
             wells.push(found.mixture.clone());
             work.lay_wells(&wells);
         }
-        let copy = ui.button("Copy").on_hover_text("Copy it as text");
-        copy.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Copy {words}")));
+        let copy = ui.button(tr!("Copy")).on_hover_text(tr!("Copy it as text"));
+        copy.widget_info(|| WidgetInfo::labeled(Role::Button, true, tr!("Copy {words}", words)));
         if copy.clicked() {
             ui.ctx().copy_text(found.mixture.to_string());
         }

@@ -199,17 +199,23 @@ impl Reference {
     fn header(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) -> Option<Action> {
         let mut asked = None;
         ui.horizontal(|ui| {
-            let another = ui.button("Another …").on_hover_text("Pin another picture");
+            let another = ui
+                .button(tr!("Another …"))
+                .on_hover_text(tr!("Pin another picture"));
             if another.clicked() {
                 asked = Some(Action::Reference);
             }
-            if ui.button("Fit").on_hover_text("See all of it").clicked() {
+            if ui
+                .button(tr!("Fit"))
+                .on_hover_text(tr!("See all of it"))
+                .clicked()
+            {
                 self.look.zoom = 1.0;
                 self.look.middle = pos2(0.5, 0.5);
             }
             ui.spacing_mut().slider_width = 60.0;
             let mut opacity = work.preferences.reference.sound().opacity;
-            let label = ui.label("Opaque");
+            let label = ui.label(tr!("Opaque"));
             let slider = Slider::new(&mut opacity, 0.1..=1.0).show_value(false);
             let slider = ui.add(slider).labelled_by(label.id);
             if slider.changed() {
@@ -225,9 +231,9 @@ impl Reference {
         response.widget_info(|| {
             let label = match &self.pinned {
                 Pinned::Here(..) => {
-                    "Reference picture. Arrow keys move the cross, Enter picks, + and - zoom"
+                    tr!("Reference picture. Arrow keys move the cross, Enter picks, + and - zoom")
                 }
-                _ => "Reference picture that is not there yet",
+                _ => tr!("Reference picture that is not there yet"),
             };
             WidgetInfo::labeled(Role::Image, true, label)
         });
@@ -240,7 +246,7 @@ impl Reference {
             }
             Pinned::Failed(_, words) => {
                 let colour = ui.visuals().warn_fg_color;
-                let words = RichText::new(format!("This picture cannot be shown. {words}"));
+                let words = RichText::new(tr!("This picture cannot be shown. {words}", words));
                 ui.put(area, egui::Label::new(words.color(colour)).wrap());
                 return;
             }
@@ -346,16 +352,18 @@ impl Reference {
     /// The picked colour, and the mixtures that come near it.
     fn proposals(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let Some(linear) = self.picked else {
-            ui.weak("Click a colour to see mixtures for it. Scroll to zoom.");
+            ui.weak(tr!(
+                "Click a colour to see mixtures for it. Scroll to zoom."
+            ));
             return;
         };
         let bytes = linear.map(|channel| (srgb_encode(channel) * 255.0).round() as u8);
         ui.horizontal(|ui| {
-            swatch(ui, bytes, "Picked");
+            swatch(ui, bytes, tr!("Picked"));
             ui.label(RichText::new(hex(bytes)).monospace());
             let all = &mut work.preferences.reference.all_paints;
-            let choice = ui.checkbox(all, "All paints");
-            let choice = choice.on_hover_text("Not only those on the palette");
+            let choice = ui.checkbox(all, tr!("All paints"));
+            let choice = choice.on_hover_text(tr!("Not only those on the palette"));
             if choice.changed()
                 && let Pinned::Here(_, picture, _) = &self.pinned
             {
@@ -363,8 +371,8 @@ impl Reference {
                 self.pick(&picture, work);
             }
             if ui
-                .button("Done")
-                .on_hover_text("Hide the mixtures")
+                .button(tr!("Done"))
+                .on_hover_text(tr!("Hide the mixtures"))
                 .clicked()
             {
                 self.picked = None;

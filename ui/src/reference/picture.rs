@@ -36,12 +36,17 @@ impl Picture {
     pub(crate) fn read(path: &Path) -> Result<Self, String> {
         let image = Image::open_within(path, MOST_BYTES).map_err(|error| match error {
             ImportError::File(error) => {
-                format!("It cannot be read: {error}. See that it is still there.")
+                tr!(
+                    "It cannot be read: {error}. See that it is still there.",
+                    error
+                )
             }
-            ImportError::TooLarge(width, height) | ImportError::Memory(width, height) => format!(
-                "Its {width} × {height} pixels are too many to look at. Make a smaller copy of it."
+            ImportError::TooLarge(width, height) | ImportError::Memory(width, height) => tr!(
+                "Its {width} × {height} pixels are too many to look at. Make a smaller copy of it.",
+                width,
+                height
             ),
-            _ => "It is damaged, or no PNG, JPEG or TIFF. Take another copy.".to_owned(),
+            _ => tr!("It is damaged, or no PNG, JPEG or TIFF. Take another copy.").to_owned(),
         })?;
         let own_size = image.size();
         let longer = own_size[0].max(own_size[1]);
@@ -153,7 +158,10 @@ impl Pinned {
         *self = match found {
             Some(Ok(picture)) => Self::here(context, &path, picture),
             Some(Err(words)) => Self::Failed(path, words),
-            None => Self::Failed(path, "It is damaged. Take another copy of it.".to_owned()),
+            None => Self::Failed(
+                path,
+                tr!("It is damaged. Take another copy of it.").to_owned(),
+            ),
         };
     }
 

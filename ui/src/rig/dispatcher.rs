@@ -157,7 +157,7 @@ impl CommandDispatcher {
             queue.given_up = queue.since.is_some();
             outcomes.extend(queue.waiting.drain(..).map(|ready| Outcome {
                 request: ready.request,
-                result: Err(UserError::failure("it was not sent")),
+                result: Err(UserError::failure(tr!("it was not sent"))),
             }));
         }
         drop(outcomes);

@@ -18,7 +18,7 @@ const BRUSH: &str = "brush-";
 const PLAYER: &str = "player";
 /// Message that a node has left.
 fn stopped(who: &str) -> String {
-    format!("{who} stopped; it is being started again.")
+    tr!("{who} stopped; it is being started again.", who)
 }
 
 /// Prefix of the decision that the processor takes over from the graphics card.
@@ -86,7 +86,7 @@ impl HealthMonitor {
                 && let Some((who, _)) = who(node, state)
             {
                 notifications.over(&stopped(&who));
-                notifications.note(format!("{who} is back."));
+                notifications.note(tr!("{who} is back.", who));
             }
         }
         self.known.extend(present);
@@ -106,17 +106,21 @@ impl HealthMonitor {
                 continue;
             }
             if trouble.is_empty() {
-                notifications.note(format!("The device '{name}' is in order again."));
+                notifications.note(tr!("The device '{name}' is in order again.", name));
             } else if status.faults.is_empty() {
                 let (what, help) = parted(&trouble);
                 notifications.fault(
-                    format!("The device '{name}': {what}"),
+                    tr!("The device '{name}': {what}", name, what),
                     help.unwrap_or_default(),
                 );
             } else {
                 notifications.fault(
-                    format!("The device '{name}' gives no force: {trouble}"),
-                    "Lift the brush, then press Re-arm in the panel Device.",
+                    tr!(
+                        "The device '{name}' gives no force: {trouble}",
+                        name,
+                        trouble
+                    ),
+                    tr!("Lift the brush, then press Re-arm in the panel Device."),
                 );
             }
             *told = trouble;
@@ -130,33 +134,39 @@ impl HealthMonitor {
         };
         let unsaved = !paint.status.fault.is_empty();
         if std::mem::replace(&mut self.unsaved, unsaved) && !unsaved {
-            notifications.note("The painting is being saved again.");
+            notifications.note(tr!("The painting is being saved again."));
         }
     }
 
     fn refused(&mut self, topics: &Topics, refusal: &Refusal, notifications: &mut Notifications) {
         let relative = topics.relative(&refusal.topic).unwrap_or(&refusal.topic);
         let who = match relative.split('/').collect::<Vec<_>>()[..] {
-            ["stylus" | "control" | "haptics", device, ..] => format!("The device '{device}'"),
-            ["brush", brush, ..] => format!("The node of the brush '{brush}'"),
-            ["paint", ..] | ["scene"] => "The painting engine".to_owned(),
-            _ => format!("Who sends {relative}"),
+            ["stylus" | "control" | "haptics", device, ..] => tr!("The device '{device}'", device),
+            ["brush", brush, ..] => tr!("The node of the brush '{brush}'", brush),
+            ["paint", ..] | ["scene"] => tr!("The painting engine").to_owned(),
+            _ => tr!("Who sends {relative}", relative),
         };
         if !self.strange.insert(who.clone()) {
             return;
         }
         match &refusal.reason {
             Reason::Unread(DecodeError::UnknownSchema { .. }) => notifications.fault(
-                format!("{who} is of another version of Maulstick than this window."),
-                "End the rig, and start it again with all of its programs of one version.",
+                tr!(
+                    "{who} is of another version of Maulstick than this window.",
+                    who
+                ),
+                tr!("End the rig, and start it again with all of its programs of one version."),
             ),
             Reason::Rival | Reason::Leap => notifications.fault(
-                format!("{who} is there twice: the one that started last is followed."),
-                "End the other program, or give it another name.",
+                tr!(
+                    "{who} is there twice: the one that started last is followed.",
+                    who
+                ),
+                tr!("End the other program, or give it another name."),
             ),
             error => notifications.fault(
-                format!("{who} sends what is not understood: {error}"),
-                "Start it again; if it is a program of your own, see docs/devices.md.",
+                tr!("{who} sends what is not understood: {error}", who, error),
+                tr!("Start it again; if it is a program of your own, see docs/devices.md."),
             ),
         }
     }
@@ -165,25 +175,30 @@ impl HealthMonitor {
 /// Description of a node, and advice while it is away; `None` for a process that comes and goes.
 fn who(node: &str, state: &RigState) -> Option<(String, &'static str)> {
     if node == PAINT {
-        let help = "The canvas stays as it is shown, and goes on when it is back.";
-        return Some(("The painting engine".to_owned(), help));
+        let help = tr!("The canvas stays as it is shown, and goes on when it is back.");
+        return Some((tr!("The painting engine").to_owned(), help));
     }
     if let Some(brush) = node.strip_prefix(BRUSH) {
-        let help = "Lift the stylus; the brush follows again when it is back.";
-        return Some((format!("The node of the brush '{brush}'"), help));
+        let help = tr!("Lift the stylus; the brush follows again when it is back.");
+        return Some((tr!("The node of the brush '{brush}'", brush), help));
     }
     let is_device = node != PLAYER && state.devices.contains_key(node);
-    let help = "Any other stylus and the mouse go on painting.";
-    is_device.then(|| (format!("The driver of '{node}'"), help))
+    let help = tr!("Any other stylus and the mouse go on painting.");
+    is_device.then(|| (tr!("The driver of '{node}'", node), help))
 }
 
 /// Tells of a decision that the painter ought to know.
 fn decided(what: &str, notifications: &mut Notifications) {
     if let Some(why) = what.strip_prefix(FALL) {
         notifications.fault(
-            format!("The paint is computed by the processor from now on: {why}"),
-            "Nothing is missing, but large brushes may lag. Starting the rig again tries the \
-             graphics card anew.",
+            tr!(
+                "The paint is computed by the processor from now on: {why}",
+                why
+            ),
+            tr!(
+                "Nothing is missing, but large brushes may lag. Starting the rig again tries the \
+             graphics card anew."
+            ),
         );
     }
 }

@@ -55,7 +55,8 @@ impl BrushLoad {
 /// # Errors
 /// A [`UserError`] that says what is wrong with it.
 pub(crate) fn read(text: &str, library: &PaintLibrary) -> Result<Mixture, UserError> {
-    let help = "a paint's name, or a mixture by volume such as \"2 Cobalt Blue, 1 Titanium White\"";
+    let help =
+        tr!("a paint's name, or a mixture by volume such as \"2 Cobalt Blue, 1 Titanium White\"");
     let mixture = text.trim().parse::<Mixture>();
     let mixture = mixture.map_err(|error| UserError::usage(error.to_string()).help(help))?;
     library

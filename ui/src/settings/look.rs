@@ -26,9 +26,9 @@ pub enum Theme {
 impl Theme {
     /// All themes, as a painter reads them.
     pub(crate) const WORDS: [(Self, &'static str); 3] = [
-        (Self::System, "As the system"),
-        (Self::Dark, "Dark"),
-        (Self::Light, "Light"),
+        (Self::System, tr_noop!("As the system")),
+        (Self::Dark, tr_noop!("Dark")),
+        (Self::Light, tr_noop!("theme|Light")),
     ];
 }
 

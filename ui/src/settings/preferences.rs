@@ -51,6 +51,9 @@ pub struct Preferences {
     pub text_size: f32,
     /// Theme of panels and dialogs.
     pub theme: Theme,
+    /// Language of the window, by its code; absent for the system's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub language: Option<String>,
     /// Units of lengths.
     pub units: Units,
     /// The keys.
@@ -90,6 +93,7 @@ impl Default for Preferences {
             size: [1280.0, 800.0],
             text_size: 1.0,
             theme: Theme::default(),
+            language: None,
             units: Units::default(),
             keys: Keymap::default(),
             recent: Vec::new(),
@@ -128,8 +132,10 @@ impl Preferences {
             Err(error) => return Err(UserError::reading(path, &error)),
         };
         let mut preferences: Self = toml::from_str(&text).map_err(|error| {
-            UserError::failure("the window's habits cannot be read; it begins with new ones")
-                .at(format!("{}: {}", path.display(), error.message()))
+            UserError::failure(tr!(
+                "the window's habits cannot be read; it begins with new ones"
+            ))
+            .at(format!("{}: {}", path.display(), error.message()))
         })?;
         let sane = |side: f32| side.is_finite() && (200.0..=20_000.0).contains(&side);
         if !preferences.size.iter().all(|side| sane(*side)) {
@@ -149,7 +155,7 @@ impl Preferences {
     pub fn keep(&self, path: &Path) -> Result<(), UserError> {
         let failed = |error: std::io::Error| UserError::writing(path, &error);
         let text = toml::to_string(self)
-            .map_err(|error| UserError::failure(format!("habits that are no TOML: {error}")))?;
+            .map_err(|error| UserError::failure(tr!("habits that are no TOML: {error}", error)))?;
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).map_err(failed)?;
         }

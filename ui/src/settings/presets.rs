@@ -85,22 +85,22 @@ pub(crate) fn classic() -> Vec<Preset> {
                 thinner: 0.7,
                 ..BrushLoad::default()
             },
-            ..of("Glaze", "flat", 20.0, 0.3)
+            ..of(tr_noop!("Glaze"), "flat", 20.0, 0.3)
         },
         // Little paint, dragged lightly over the ridges.
         Preset {
             most_m: 60e-6,
-            ..of("Scumble", "bright", 20.0, 0.15)
+            ..of(tr_noop!("Scumble"), "bright", 20.0, 0.15)
         },
         // Nothing but what lies there, softened.
         Preset {
             clean: true,
-            ..of("Blend", "badger", 25.0, 0.15)
+            ..of(tr_noop!("Blend"), "badger", 25.0, 0.15)
         },
         Preset {
             stiffness: 2.0,
             most_m: 120e-6,
-            ..of("Dry brush", "flat", 20.0, 0.08)
+            ..of(tr_noop!("Dry brush"), "flat", 20.0, 0.08)
         },
     ]
 }
@@ -141,10 +141,10 @@ impl Preset {
         let wrong = |what: String| {
             let (whose, help) = match self.name.as_str() {
                 "" => (
-                    "the brush of the last session".to_owned(),
-                    "choose one from the rack",
+                    tr!("the brush of the last session").to_owned(),
+                    tr!("choose one from the rack"),
                 ),
-                name => (format!("the preset '{name}'"), "save it anew"),
+                name => (tr!("the preset '{name}'", name), tr!("save it anew")),
             };
             UserError::failure(format!("{whose}: {what}")).help(help)
         };
@@ -152,7 +152,7 @@ impl Preset {
             return BrushFile::parse(&self.file).map_err(|error| wrong(error.to_string()));
         }
         let file = of_library(&self.kind)
-            .ok_or_else(|| wrong(format!("there is no brush called '{}'", self.kind)))?;
+            .ok_or_else(|| wrong(tr!("there is no brush called '{kind}'", kind = self.kind)))?;
         file.scaled_to(self.width_mm)
             .map_err(|error| wrong(error.to_string()))
     }
@@ -208,7 +208,10 @@ impl Preset {
         }
         if loading.paint.is_empty() && loading.thinner > 0.0 {
             let percent = 100.0 * loading.thinner;
-            let words = format!("The next paint that you load is thinned by {percent:.0} %");
+            let words = tr!(
+                "The next paint that you load is thinned by {percent} %",
+                percent = format_args!("{percent:.0}")
+            );
             work.notifications.note(words);
             work.preferences.loading.thinner = loading.thinner;
         }
@@ -226,17 +229,18 @@ impl Preset {
     pub fn words(&self, units: Units) -> String {
         let kind = crate::input::brush_choice::called(&self.kind);
         let width = units.width(self.width_mm);
-        let mut words = format!("{kind}, {width}");
-        if !self.loading.paint.is_empty() {
-            words += &format!("\n{}", self.loading.paint);
-            if let Some(other) = &self.loading.beside {
-                words += &format!(" beside {other}");
-            }
-            if self.loading.thinner > 0.0 {
-                words += &format!(", {:.0} % thinner", 100.0 * self.loading.thinner);
-            }
+        if self.loading.paint.is_empty() {
+            return format!("{kind}, {width}");
         }
-        words
+        let mut paint = self.loading.paint.clone();
+        if let Some(other) = &self.loading.beside {
+            paint = tr!("{paint} beside {other}", paint, other);
+        }
+        if self.loading.thinner > 0.0 {
+            let percent = (100.0 * self.loading.thinner).round();
+            paint = tr!("{paint}, {percent} % thinner", paint, percent);
+        }
+        format!("{kind}, {width}\n{paint}")
     }
 }
 
@@ -250,13 +254,19 @@ pub(crate) fn check_name<'a>(
 ) -> Result<(), String> {
     let length = name.chars().count();
     if length == 0 {
-        return Err("Give it a name first.".to_owned());
+        return Err(tr!("Give it a name first.").to_owned());
     }
     if length > NAME_MAX || name.contains(char::is_control) {
-        return Err(format!("Choose a name of at most {NAME_MAX} letters."));
+        return Err(tr!(
+            "Choose a name of at most {most} letters.",
+            most = NAME_MAX
+        ));
     }
     match others.any(|other| other == name) {
-        true => Err(format!("There is a '{name}' already; choose another name.")),
+        true => Err(tr!(
+            "There is a '{name}' already; choose another name.",
+            name
+        )),
         false => Ok(()),
     }
 }

@@ -15,8 +15,10 @@ pub enum Units {
 
 impl Units {
     /// Both, as a painter reads them.
-    pub(crate) const WORDS: [(Self, &'static str); 2] =
-        [(Self::Metric, "mm and cm"), (Self::Inches, "Inches")];
+    pub(crate) const WORDS: [(Self, &'static str); 2] = [
+        (Self::Metric, tr_noop!("mm and cm")),
+        (Self::Inches, tr_noop!("Inches")),
+    ];
 
     /// Unit of small lengths: millimetres of one, digits after the point that are shown, and its sign.
     #[must_use]

@@ -31,13 +31,4 @@ impl WindowSide {
             Self::Right => (Align2::RIGHT_TOP, Align2::RIGHT_BOTTOM, -1.0),
         }
     }
-
-    /// Its name in a sentence.
-    #[must_use]
-    pub(crate) fn word(self) -> &'static str {
-        match self {
-            Self::Left => "left",
-            Self::Right => "right",
-        }
-    }
 }

@@ -9,6 +9,7 @@ use eframe::egui::{
 use crate::dialogs::wrong;
 use crate::input::keymap::{Holder, Keymap, fits};
 use crate::input::keys::{BINDINGS, Binding, written};
+use crate::language::translated;
 
 /// Height of the list, points.
 const HEIGHT: f32 = 220.0;
@@ -79,11 +80,11 @@ impl KeyRows {
 
     pub(super) fn show(&mut self, ui: &mut Ui, keymap: &mut Keymap) {
         ui.horizontal(|ui| {
-            ui.strong("Keys");
+            ui.strong(tr!("Keys"));
             if ui
                 .add_enabled(
                     *keymap != Keymap::default(),
-                    Button::new("Reset all keys").small(),
+                    Button::new(tr!("Reset all keys")).small(),
                 )
                 .clicked()
             {
@@ -110,29 +111,32 @@ impl KeyRows {
     fn answer(&mut self, ui: &mut Ui, keymap: &mut Keymap) {
         match self.waits {
             Waits::Nothing => {
-                ui.weak("Click a key to change it.");
+                ui.weak(tr!("Click a key to change it."));
             }
             Waits::Key(_) => {
-                ui.label("Press the new key. Escape: leave it as it is.");
+                ui.label(tr!("Press the new key. Escape: leave it as it is."));
             }
             Waits::NotHeld => {
                 let colour = wrong(ui.visuals());
                 ui.colored_label(
                     colour,
-                    "This one is held: choose a key without Ctrl, Shift or Alt.",
+                    tr!("This one is held: choose a key without Ctrl, Shift or Alt."),
                 );
             }
             Waits::Answer(place, key, holder) => {
                 ui.horizontal(|ui| {
                     let (key_words, words) = (written(ui.ctx(), &key), holder.words());
                     let colour = wrong(ui.visuals());
-                    ui.colored_label(colour, format!("{key_words} is “{words}” now."));
+                    ui.colored_label(
+                        colour,
+                        tr!("{key_words} is “{words}” now.", key_words, words),
+                    );
                     let can = matches!(holder, Holder::Binding(_)) && fits(place, Some(key));
-                    if can && ui.button("Take it").clicked() {
+                    if can && ui.button(tr!("Take it")).clicked() {
                         keymap.set(place, Some(key));
                         self.waits = Waits::Nothing;
                     }
-                    if ui.button("Leave it").clicked() {
+                    if ui.button(tr!("Leave it")).clicked() {
                         self.waits = Waits::Nothing;
                     }
                 });
@@ -141,9 +145,9 @@ impl KeyRows {
     }
 
     fn row(&mut self, ui: &mut Ui, place: usize, binding: &Binding, keymap: &mut Keymap) {
-        ui.label(binding.words);
+        ui.label(translated(binding.words));
         let key = keymap.key(place);
-        let now = key.map_or_else(|| "none".to_owned(), |key| written(ui.ctx(), &key));
+        let now = key.map_or_else(|| tr!("none").to_owned(), |key| written(ui.ctx(), &key));
         let is_waiting = self.waits == Waits::Key(place);
         let text = if is_waiting { "…" } else { &now };
         let button = ui.add(
@@ -152,7 +156,11 @@ impl KeyRows {
                 .min_size([96.0, 0.0].into()),
         );
         button.widget_info(|| {
-            let name = format!("Key of “{}”: {now}", binding.words);
+            let name = tr!(
+                "Key of “{words}”: {now}",
+                words = translated(binding.words),
+                now
+            );
             WidgetInfo::selected(Role::Button, true, is_waiting, name)
         });
         if is_waiting {
@@ -174,12 +182,15 @@ impl KeyRows {
         }
         if keymap.is_changed(place) {
             let usual = written(ui.ctx(), &binding.shortcut);
-            let reset = ui.small_button("Reset");
+            let reset = ui.small_button(tr!("Reset"));
             reset.widget_info(|| {
-                let name = format!("Reset the key of “{}”", binding.words);
+                let name = tr!(
+                    "Reset the key of “{words}”",
+                    words = translated(binding.words)
+                );
                 WidgetInfo::labeled(Role::Button, true, name)
             });
-            if reset.on_hover_text(format!("{usual} again")).clicked() {
+            if reset.on_hover_text(tr!("{usual} again", usual)).clicked() {
                 self.wish(place, binding.shortcut, keymap);
             }
         } else {

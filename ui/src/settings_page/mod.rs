@@ -1,4 +1,4 @@
-//! Dialog of settings: text size, theme, units, keys. What is changed holds at once.
+//! Dialog of settings: text size, language, theme, units, keys. What is changed holds at once.
 //!
 //! | module | holds |
 //! | --- | --- |
@@ -7,10 +7,12 @@
 mod key_rows;
 
 use eframe::egui::{
-    Align, Button, Context, Frame, Grid, Id, Layout, Margin, Modal, RichText, Role, Ui, WidgetInfo,
-    gui_zoom,
+    Align, Button, ComboBox, Context, Frame, Grid, Id, Layout, Margin, Modal, Response, RichText,
+    Role, Ui, WidgetInfo, gui_zoom,
 };
 
+use crate::language;
+use crate::language::translated;
 use crate::settings::look::{TEXT_SIZES, Theme};
 use crate::settings::units::Units;
 use crate::widgets::context::PanelContext;
@@ -48,7 +50,7 @@ impl SettingsPage {
             .frame(frame)
             .show(context, |ui| {
                 ui.set_width(WIDTH);
-                ui.heading(RichText::new("Settings").strong());
+                ui.heading(RichText::new(tr!("Settings")).strong());
                 ui.add_space(8.0);
                 look(ui, work);
                 ui.add_space(6.0);
@@ -56,7 +58,7 @@ impl SettingsPage {
                 rows.show(ui, &mut work.preferences.keys);
                 ui.add_space(8.0);
                 let layout = Layout::right_to_left(Align::Center);
-                let close = Button::new("Close").min_size([80.0, 28.0].into());
+                let close = Button::new(tr!("Close")).min_size([80.0, 28.0].into());
                 ui.with_layout(layout, |ui| ui.add(close)).inner
             });
         if modal.inner.clicked() || modal.should_close() {
@@ -70,29 +72,60 @@ impl SettingsPage {
     }
 }
 
-/// Text size, theme and units.
+/// Text size, language, theme and units.
 fn look(ui: &mut Ui, work: &mut PanelContext<'_>) {
     let preferences = &mut *work.preferences;
     let grid = Grid::new("look").num_columns(2).spacing([12.0, 8.0]);
     grid.show(ui, |ui| {
-        ui.label("Text size");
+        ui.label(tr!("Text size"));
         ui.horizontal(text_size);
         ui.end_row();
-        ui.label("Theme");
+        let language_name = ui.label(tr!("Language"));
+        language_choice(ui, &mut preferences.language).labelled_by(language_name.id);
+        ui.end_row();
+        ui.label(tr!("Theme"));
         ui.horizontal(|ui| {
             for (theme, words) in Theme::WORDS {
-                ui.selectable_value(&mut preferences.theme, theme, words);
+                ui.selectable_value(&mut preferences.theme, theme, translated(words));
             }
         });
         ui.end_row();
-        ui.label("Lengths");
+        ui.label(tr!("Lengths"));
         ui.horizontal(|ui| {
             for (units, words) in Units::WORDS {
-                ui.selectable_value(&mut preferences.units, units, words);
+                ui.selectable_value(&mut preferences.units, units, translated(words));
             }
         });
         ui.end_row();
     });
+}
+
+/// The languages by their own names; the window speaks the chosen one at once.
+fn language_choice(ui: &mut Ui, chosen: &mut Option<String>) -> Response {
+    let system = tr!("As the system");
+    let english = (language::ENGLISH, "English");
+    let others = language::all().iter();
+    let names = std::iter::once(english).chain(others.map(|(code, other)| (*code, &*other.name)));
+    let now = names
+        .clone()
+        .find(|(code, _)| chosen.as_deref() == Some(code));
+    let combo = ComboBox::from_id_salt("language")
+        .width(150.0)
+        .selected_text(now.map_or(system, |(_, name)| name));
+    let shown = combo.show_ui(ui, |ui| {
+        let mut is_changed = ui.selectable_value(chosen, None, system).clicked();
+        for (code, name) in names {
+            is_changed |= ui
+                .selectable_value(chosen, Some(code.to_owned()), name)
+                .clicked();
+        }
+        is_changed
+    });
+    if shown.inner.unwrap_or(false) {
+        language::choose(chosen.as_deref());
+        ui.ctx().request_repaint();
+    }
+    shown.response
 }
 
 fn text_size(ui: &mut Ui) {
@@ -103,14 +136,14 @@ fn text_size(ui: &mut Ui) {
         shown.widget_info(|| WidgetInfo::labeled(Role::Button, can, name));
         shown.clicked()
     };
-    if button(ui, "−", "Smaller text", now > *TEXT_SIZES.start()) {
+    if button(ui, "−", tr!("Smaller text"), now > *TEXT_SIZES.start()) {
         gui_zoom::zoom_out(ui.ctx());
     }
     ui.label(format!("{:.0} %", 100.0 * now));
-    if button(ui, "+", "Larger text", now < *TEXT_SIZES.end()) {
+    if button(ui, "+", tr!("Larger text"), now < *TEXT_SIZES.end()) {
         gui_zoom::zoom_in(ui.ctx());
     }
-    ui.weak("also by Ctrl + and −");
+    ui.weak(tr!("also by Ctrl + and −"));
 }
 
 #[cfg(test)]

@@ -84,9 +84,18 @@ pub(crate) fn window(folder: Option<&Path>) -> Harness<'static, Bench> {
         has_painted: true,
         ..Preferences::default()
     };
+    window_of([900.0, 700.0], rig(), preferences)
+}
+
+/// A window of this size, points, of a rig and a painter.
+pub(crate) fn window_of(
+    size: [f32; 2],
+    rig: RigState,
+    preferences: Preferences,
+) -> Harness<'static, Bench> {
     let bench = Bench {
         overlay: Overlay::default(),
-        rig: rig(),
+        rig,
         requests: Requests::default(),
         preferences,
         notifications: Notifications::default(),
@@ -96,7 +105,7 @@ pub(crate) fn window(folder: Option<&Path>) -> Harness<'static, Bench> {
         assert!(rest.is_empty(), "{rest:?}");
     };
     let mut harness = Harness::builder()
-        .with_size([900.0, 700.0])
+        .with_size(size)
         .build_ui_state(show, bench);
     harness.run_steps(2);
     harness

@@ -77,7 +77,7 @@ impl TracingPicture {
             self.slot = match found {
                 Some(Ok(slide)) => Slot::Here(path, Arc::new(slide)),
                 Some(Err(words)) => failed(work, path, &words),
-                None => failed(work, path, "It is damaged. Take another copy of it."),
+                None => failed(work, path, tr!("It is damaged. Take another copy of it.")),
             };
         }
         match &self.slot {
@@ -88,7 +88,10 @@ impl TracingPicture {
 }
 
 fn failed(work: &mut PanelContext<'_>, path: PathBuf, words: &str) -> Slot {
-    let what = format!("The tracing picture {} is not shown", path.display());
+    let what = tr!(
+        "The tracing picture {picture} is not shown",
+        picture = path.display()
+    );
     work.notifications.fault(what, words);
     Slot::Failed(path)
 }

@@ -26,8 +26,8 @@ pub(crate) enum Shown {
 #[must_use]
 pub(crate) fn name(well: &Well) -> String {
     match &well.kind {
-        WellKind::Cleaner => "Cleaner".to_owned(),
-        WellKind::Medium => "Medium".to_owned(),
+        WellKind::Cleaner => tr!("Cleaner").to_owned(),
+        WellKind::Medium => tr!("Medium").to_owned(),
         WellKind::Paint { mixture } => match &mixture.parts[..] {
             [only] => only.paint.clone(),
             _ => mixture.to_string(),

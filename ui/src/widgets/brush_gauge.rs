@@ -17,8 +17,11 @@ pub(crate) fn show(ui: &mut Ui, work: &PanelContext<'_>) -> Option<Response> {
     let carried = brush.and_then(|brush| brush.carried.as_ref())?;
     let (area, response) = ui.allocate_exact_size(SIZE.into(), Sense::hover());
     let words = match carried.load_share {
-        0.0 => "The brush is clean".to_owned(),
-        full => format!("The brush is {} % full", (100.0 * full).ceil()),
+        0.0 => tr!("The brush is clean").to_owned(),
+        full => tr!(
+            "The brush is {percent} % full",
+            percent = (100.0 * full).ceil()
+        ),
     };
     response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &words));
     if ui.is_rect_visible(area) {
@@ -44,7 +47,7 @@ pub(crate) fn show(ui: &mut Ui, work: &PanelContext<'_>) -> Option<Response> {
         };
         painter.rect_filled(level, 0.0, colour);
     }
-    let hover = "Above, the colours of its tip from left to right; below, how full it is.";
+    let hover = tr!("Above, the colours of its tip from left to right; below, how full it is.");
     Some(response.on_hover_text(format!("{words}.\n{hover}")))
 }
 

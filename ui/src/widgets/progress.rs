@@ -9,6 +9,7 @@ use maulstick_types::edits::{Relight, StopDrying};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::{CANVAS, Light};
 
+use crate::language::layer_name;
 use crate::rig::state::RigState;
 use crate::widgets::context::PanelContext;
 
@@ -144,10 +145,10 @@ impl Progress {
         };
         (status.baked < status.baking).then(|| Job {
             kind: Kind::Relighting,
-            words: "Relighting dry layers".into(),
+            words: tr!("Relighting dry layers").into(),
             share: Some(share),
             cancel: before.as_ref().map(back),
-            hint: "Go back to the light before",
+            hint: tr!("Go back to the light before"),
         })
     }
 }
@@ -160,15 +161,20 @@ fn lines(status: &PaintStatus) -> impl Iterator<Item = String> {
         lag_ns,
         ..
     } = status;
-    let unsaved = (!fault.is_empty()).then(|| format!("A fault of the painting's file: {fault}"));
+    let unsaved =
+        (!fault.is_empty()).then(|| tr!("A fault of the painting's file: {fault}", fault));
     let late = (*longer > 1).then(|| {
-        format!(
-            "Painting falls behind: until the brush lifts, its steps are {longer} times as long"
+        tr!(
+            "Painting falls behind: until the brush lifts, its steps are {longer} times as long",
+            longer
         )
     });
     let behind = (*lag_ns >= SHORT_NS).then(|| {
         let seconds = *lag_ns as f64 * 1e-9;
-        format!("The paint is {seconds:.1} s behind the hand")
+        tr!(
+            "The paint is {seconds} s behind the hand",
+            seconds = format_args!("{seconds:.1}")
+        )
     });
     unsaved.into_iter().chain(behind).chain(late)
 }
@@ -179,29 +185,29 @@ fn drying(rig: &RigState) -> Option<Job> {
     Some(Job {
         kind: Kind::Drying,
         words: match drying.layer.is_empty() {
-            true => "Drying".to_owned(),
-            false => format!("Drying “{}”", drying.layer),
+            true => tr!("Drying").to_owned(),
+            false => tr!("Drying “{layer}”", layer = layer_name(&drying.layer)),
         },
         share: Some(f64::from(drying.share)),
         cancel: Some(Cancel::Paint(Box::new(stop.into()))),
-        hint: "What is wet still stays wet",
+        hint: tr!("What is wet still stays wet"),
     })
 }
 
 fn waiting(name: &str) -> Job {
-    let who = match name.split_once(' ') {
-        Some(("node", "paint")) => "the painting engine".to_owned(),
-        Some(("node", "rig")) => "the rig, which opens the painting".to_owned(),
-        Some(("node", brush)) => format!("the brush '{brush}'"),
-        Some((_, device)) => format!("the device '{device}'"),
-        None => name.to_owned(),
+    let words = match name.split_once(' ') {
+        Some(("node", "paint")) => tr!("Waiting for the painting engine …").to_owned(),
+        Some(("node", "rig")) => tr!("Waiting for the rig, which opens the painting …").to_owned(),
+        Some(("node", brush)) => tr!("Waiting for the brush '{brush}' …", brush),
+        Some((_, device)) => tr!("Waiting for the device '{device}' …", device),
+        None => tr!("Waiting for {name} …", name),
     };
     Job {
         kind: Kind::Waiting(name.to_owned()),
-        words: format!("Waiting for {who} …"),
+        words,
         share: None,
         cancel: Some(Cancel::GiveUp),
-        hint: "Wait no longer; what waits is not sent any more",
+        hint: tr!("Wait no longer; what waits is not sent any more"),
     }
 }
 
@@ -226,7 +232,7 @@ fn bar(ui: &mut Ui, job: &Job, elapsed_s: f64) -> bool {
                 ui.spinner();
             }
         }
-        job.cancel.is_some() && ui.button("Cancel").on_hover_text(job.hint).clicked()
+        job.cancel.is_some() && ui.button(tr!("Cancel")).on_hover_text(job.hint).clicked()
     })
     .inner
 }
@@ -236,12 +242,15 @@ fn bar(ui: &mut Ui, job: &Job, elapsed_s: f64) -> bool {
 pub(crate) fn left(seconds: f64) -> String {
     let near = |value: f64, step: f64| (value / step).round() * step;
     match seconds {
-        s if s < 8.0 => "a few seconds left".to_owned(),
-        s if s < 28.0 => format!("about {} s left", near(s, 5.0)),
-        s if s < 55.0 => format!("about {} s left", near(s, 10.0)),
-        s if s < 3570.0 => format!("about {} min left", (s / 60.0).round().max(1.0)),
-        s if s < 86_400.0 => format!("about {} h left", (s / 3600.0).round()),
-        s if s.is_finite() => format!("about {} days left", (s / 86_400.0).round()),
+        s if s < 8.0 => tr!("a few seconds left").to_owned(),
+        s if s < 28.0 => tr!("about {count} s left", count = near(s, 5.0)),
+        s if s < 55.0 => tr!("about {count} s left", count = near(s, 10.0)),
+        s if s < 3570.0 => tr!(
+            "about {count} min left",
+            count = (s / 60.0).round().max(1.0)
+        ),
+        s if s < 86_400.0 => tr!("about {count} h left", count = (s / 3600.0).round()),
+        s if s.is_finite() => tr!("about {count} days left", count = (s / 86_400.0).round()),
         _ => String::new(),
     }
 }

@@ -10,6 +10,7 @@ use eframe::egui::{
 use maulstick_types::command::Command;
 use maulstick_types::values::ValueError;
 
+use crate::language::{known, translated};
 use crate::widgets::context::PanelContext;
 use crate::widgets::pending::Pending;
 
@@ -84,12 +85,12 @@ pub(crate) fn choice<'a>(
         let width = ui.available_width();
         let combo = ComboBox::from_id_salt(word)
             .width(width)
-            .selected_text(chosen)
+            .selected_text(known(chosen))
             .truncate();
         let shown = combo.show_ui(ui, |ui| {
             for name in names {
                 let is_it = name == chosen;
-                if ui.selectable_label(is_it, name).clicked() && !is_it {
+                if ui.selectable_label(is_it, known(name)).clicked() && !is_it {
                     other = Some(name.to_owned());
                 }
             }
@@ -137,7 +138,7 @@ impl Sliders {
     /// A row with a slider whose number is `actual` in the rig.
     pub(crate) fn row(&mut self, ui: &mut Ui, number: &Number<'_>, actual: f64) -> Change {
         let mut change = Change::default();
-        row(ui, number.word, |ui| {
+        row(ui, translated(number.word), |ui| {
             let (response, changed) = self.bare(ui, number, number.word, actual);
             change = changed;
             response
@@ -169,7 +170,7 @@ impl Sliders {
             .clamping(SliderClamping::Never)
             .update_while_editing(false);
         let response = ui.push_id(key, |ui| ui.add(slider)).inner;
-        let response = response.on_hover_text(number.hover);
+        let response = response.on_hover_text(translated(number.hover));
         let value = rounded(value);
         let moved = (response.changed() && value != shown).then_some(value);
         if moved.is_some() || response.dragged() {

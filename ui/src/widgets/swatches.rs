@@ -157,20 +157,26 @@ pub(crate) fn covers(paint: &Paint) -> f64 {
 #[must_use]
 pub(crate) fn words(paint: &Paint) -> String {
     if paint.is_thinner() {
-        return format!("{}\nA clear medium: it thins the paint.", paint.name);
+        return tr!(
+            "{name}\nA clear medium: it thins the paint.",
+            name = paint.name
+        );
     }
     let cover = match (100.0 * covers(paint)).round() {
-        percent if percent >= 80.0 => format!("opaque ({percent} %)"),
-        percent if percent >= 65.0 => format!("half opaque ({percent} %)"),
-        percent => format!("transparent ({percent} %)"),
+        percent if percent >= 80.0 => tr!("opaque ({percent} %)", percent),
+        percent if percent >= 65.0 => tr!("half opaque ({percent} %)", percent),
+        percent => tr!("transparent ({percent} %)", percent),
     };
     let index = match paint.colour_index.is_empty() {
-        true => "unknown",
+        true => tr!("unknown"),
         false => &paint.colour_index,
     };
-    format!(
-        "{}\nPigment: {index}\nIn a film of 50 µm it is {cover}.\nMeasured by: {}",
-        paint.name, paint.source
+    tr!(
+        "{name}\nPigment: {index}\nIn a film of 50 µm it is {cover}.\nMeasured by: {source}",
+        name = paint.name,
+        index,
+        cover,
+        source = paint.source
     )
 }
 

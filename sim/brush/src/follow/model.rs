@@ -25,8 +25,10 @@ pub const BRIDGED_NS: u64 = 300_000_000;
 const SOLVE_M: f64 = 0.175e-3;
 /// See [`SOLVE_M`].
 const FARTHEST_M: f64 = 0.25e-3;
-/// Solves between two samples at most: a hand is seldom that fast.
+/// Solves between two samples at most: a hand is seldom that fast. Those of a pointer that leaps are more.
 const MOST_SOLVES: f64 = 64.0;
+/// Greatest distance between two solves, m.
+const APART_M: f64 = 1.8e-3;
 /// The time for which that many are enough, ns: a pause that is bridged may have more.
 const MOST_SOLVES_NS: f64 = 1e8;
 /// Trial landings of a pen that find its mark: an upright head may bend to another side once its handle stands beside
@@ -302,7 +304,7 @@ impl BrushModel {
         );
         let motion_m = path.length_m();
         let pause = (here.event_ns - start_ns) as f64 / MOST_SOLVES_NS;
-        let part_m = (motion_m / (MOST_SOLVES * pause.max(1.0))).max(SOLVE_M);
+        let part_m = (motion_m / (MOST_SOLVES * pause.max(1.0))).clamp(SOLVE_M, APART_M);
         let whole_m = tracked.left_over_m + motion_m;
         let mut solves = Vec::new();
         let (mut gone_m, mut at) = (part_m, 0.0);

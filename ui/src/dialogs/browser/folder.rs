@@ -81,7 +81,7 @@ impl Folder {
         if let Content::Coming(task) = content
             && let Poll::Ready(found) = task.poll()
         {
-            let fell = || Err("it cannot be read".to_owned());
+            let fell = || Err(tr!("it cannot be read").to_owned());
             *content = Content::Here(found.unwrap_or_else(fell));
         }
         match content {
@@ -95,10 +95,10 @@ impl Folder {
 fn read(path: &Path, kinds: &[&str]) -> Result<Vec<Entry>, String> {
     let now = SystemTime::now();
     let found = std::fs::read_dir(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => "there is no such folder".to_owned(),
-        std::io::ErrorKind::NotADirectory => "this is no folder".to_owned(),
-        std::io::ErrorKind::PermissionDenied => "this folder is closed to you".to_owned(),
-        _ => format!("the folder cannot be read: {error}"),
+        std::io::ErrorKind::NotFound => tr!("there is no such folder").to_owned(),
+        std::io::ErrorKind::NotADirectory => tr!("this is no folder").to_owned(),
+        std::io::ErrorKind::PermissionDenied => tr!("this folder is closed to you").to_owned(),
+        _ => tr!("the folder cannot be read: {error}", error),
     })?;
     let mut entries = Vec::new();
     for entry in found.flatten().take(MOST) {

@@ -4,6 +4,7 @@ use eframe::egui::{Slider, SliderClamping, Ui};
 use maulstick_brush::BrushFile;
 
 use crate::input::brush_choice::{is_of_library, of_library};
+use crate::language::translated;
 use crate::widgets::context::PanelContext;
 use crate::widgets::labelled;
 
@@ -21,44 +22,50 @@ struct Number {
 
 const NUMBERS: [Number; 6] = [
     Number {
-        name: "Film",
-        hover: "Thickness of paint on the bristles of a freshly loaded brush.",
+        name: tr_noop!("Film"),
+        hover: tr_noop!("Thickness of paint on the bristles of a freshly loaded brush."),
         unit: " µm",
         range: 0.0..=2000.0,
         of: |file| &mut file.load.film_um,
     },
     Number {
-        name: "Inside",
-        hover: "Paint within the head, as thick as if it were spread over the bristles: with more of it a \
-                stroke is longer.",
+        name: tr_noop!("Inside"),
+        hover: tr_noop!(
+            "Paint within the head, as thick as if it were spread over the bristles: with more of it a \
+                stroke is longer."
+        ),
         unit: " µm",
         range: 0.0..=2000.0,
         of: |file| &mut file.load.inside_um,
     },
     Number {
-        name: "Uneven",
-        hover: "By which share bristles differ in how much they carry: uneven ones leave streaks.",
+        name: tr_noop!("Uneven"),
+        hover: tr_noop!(
+            "By which share bristles differ in how much they carry: uneven ones leave streaks."
+        ),
         unit: "",
         range: 0.0..=1.0,
         of: |file| &mut file.strips.unevenness,
     },
     Number {
-        name: "Unruly",
-        hover: "How far the most unruly bristle keeps off the surface while the brush is hardly pressed.",
+        name: tr_noop!("Unruly"),
+        hover: tr_noop!(
+            "How far the most unruly bristle keeps off the surface while the brush is hardly pressed."
+        ),
         unit: MILLIMETRES,
         range: 0.0..=3.0,
         of: |file| &mut file.strips.lift_mm,
     },
     Number {
-        name: "Spread",
-        hover: "Width of the fully pressed point, by that of the head.",
+        name: tr_noop!("Spread"),
+        hover: tr_noop!("Width of the fully pressed point, by that of the head."),
         unit: "",
         range: 0.0..=2.0,
         of: |file| &mut file.strips.open,
     },
     Number {
-        name: "Friction",
-        hover: "Friction of the bristles on the canvas.",
+        name: tr_noop!("Friction"),
+        hover: tr_noop!("Friction of the bristles on the canvas."),
         unit: "",
         range: 0.0..=1.0,
         of: |file| &mut file.contact.friction,
@@ -86,7 +93,12 @@ pub(super) fn show(
             .max_decimals(decimals)
             .clamping(SliderClamping::Edits)
             .suffix(sign);
-        let slider = labelled::named(ui, number.name, number.hover, slider);
+        let slider = labelled::named(
+            ui,
+            translated(number.name),
+            translated(number.hover),
+            slider,
+        );
         is_held |= slider.dragged();
         // A slider rounds what it shows.
         if labelled::is_moved(*value, shown * unit) {
@@ -101,7 +113,7 @@ pub(super) fn show(
         match wanted.check() {
             Ok(()) => *changed = Some(wanted),
             Err(error) => {
-                let help = "choose a number within these bounds";
+                let help = tr!("choose a number within these bounds");
                 work.notifications.fault(error.to_string(), help);
             }
         }
@@ -109,8 +121,8 @@ pub(super) fn show(
     if !is_of_library(file)
         && let Some(made) = of_library(&file.kind)
     {
-        let button = ui.button("As it was made");
-        let hover = "Gives the brush back the numbers of the library, at its width.";
+        let button = ui.button(tr!("As it was made"));
+        let hover = tr!("Gives the brush back the numbers of the library, at its width.");
         if button.on_hover_text(hover).clicked() {
             *changed = made.scaled_to(file.head.width_mm).ok();
         }

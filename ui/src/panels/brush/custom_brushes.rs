@@ -17,14 +17,14 @@ pub(super) struct OwnBrushes {
 
 impl OwnBrushes {
     pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
-        ui.label("A brush file (.toml, .glb) joins the rack.");
+        ui.label(tr!("A brush file (.toml, .glb) joins the rack."));
         let edit = TextEdit::singleline(&mut self.path)
             .hint_text("/home/me/brushes/rake.toml")
             .desired_width(190.0);
-        let shown = labelled::named(ui, "File", "Where the brush file lies.", edit);
+        let shown = labelled::named(ui, tr!("File"), tr!("Where the brush file lies."), edit);
         let enter = shown.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         let is_given = !self.path.trim().is_empty();
-        let add = ui.add_enabled(is_given, Button::new("Add to the rack"));
+        let add = ui.add_enabled(is_given, Button::new(tr!("Add to the rack")));
         if is_given
             && (add.clicked() || enter)
             && add_file(ui, work, PathBuf::from(self.path.trim()))
@@ -39,8 +39,8 @@ impl OwnBrushes {
                     .on_hover_text(path.display().to_string());
             };
             let right = |ui: &mut Ui| {
-                let button = ui.small_button("Remove");
-                let hover = format!("Takes {name} off the rack; the file stays.");
+                let button = ui.small_button(tr!("Remove"));
+                let hover = tr!("Takes {name} off the rack; the file stays.", name);
                 if button.on_hover_text(hover).clicked() {
                     gone = Some(place);
                 }

@@ -25,6 +25,7 @@ use maulstick_types::scene::{BrushHandling, Tuning};
 use crate::input::brush_choice::{called, library, resized, widths_mm};
 use crate::input::keymap::Keymap;
 use crate::input::keys::Action;
+use crate::language::known;
 use crate::panels::Panel;
 use crate::render::brush::icon_cache;
 use crate::settings::grip::{Grip, MOUSE_PRESSURE};
@@ -50,14 +51,14 @@ pub(crate) struct BrushPanel {
 
 impl Panel for BrushPanel {
     fn title(&self) -> &'static str {
-        "Brush"
+        tr_noop!("Brush")
     }
 
     fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let Some(file) = self.dragged.clone().or_else(|| work.in_hand().cloned()) else {
-            ui.label(format!(
-                "The brush '{}' has not said yet what it is.",
-                work.rig.brush_name()
+            ui.label(tr!(
+                "The brush '{brush}' has not said yet what it is.",
+                brush = work.rig.brush_name()
             ));
             return;
         };
@@ -65,18 +66,18 @@ impl Panel for BrushPanel {
         let mut is_held = self.width(ui, work, &file);
         self.tuning(ui, work);
         modes::show(ui, work, &mut self.handling);
-        ui.collapsing("Mouse", |ui| {
+        ui.collapsing(tr!("Mouse"), |ui| {
             mouse(ui, &work.preferences.keys, &mut work.preferences.mouse);
         });
         ui.separator();
         self.paint.show(ui, work);
         ui.separator();
         self.presets.show(ui, work);
-        let bristles = ui.collapsing("Bristles", |ui| {
+        let bristles = ui.collapsing(tr!("Bristles"), |ui| {
             bristles::show(ui, work, &file, &mut self.dragged)
         });
         is_held |= bristles.body_returned.unwrap_or(false);
-        ui.collapsing("Own brush files", |ui| self.own.show(ui, work));
+        ui.collapsing(tr!("Own brush files"), |ui| self.own.show(ui, work));
         // The change is requested when the control is released.
         if !is_held && let Some(file) = self.dragged.take() {
             work.take_up(file);
@@ -91,7 +92,7 @@ fn shape(ui: &mut Ui, work: &mut PanelContext<'_>, file: &BrushFile) {
         let key = file.to_toml().unwrap_or_default();
         icon_cache::draw(ui, area, &work.rig.tint, &key, file);
         ui.vertical(|ui| {
-            let name = ui.label("Shape");
+            let name = ui.label(tr!("Shape"));
             let mut chosen = None;
             ComboBox::from_id_salt("shape")
                 .width(150.0)
@@ -109,7 +110,7 @@ fn shape(ui: &mut Ui, work: &mut PanelContext<'_>, file: &BrushFile) {
             if let Some(other) = chosen {
                 work.choose(other);
             }
-            ui.label(RichText::new(&file.about).small());
+            ui.label(RichText::new(known(&file.about)).small());
         });
     });
 }
@@ -117,19 +118,19 @@ fn shape(ui: &mut Ui, work: &mut PanelContext<'_>, file: &BrushFile) {
 /// Turn and pressure of a brush that the mouse moves.
 fn mouse(ui: &mut Ui, keys: &Keymap, grip: &mut Grip) {
     let hint = |ui: &Ui, words: &str, acts: &[Action]| keys.hint(ui.ctx(), words, acts);
-    let check = ui.checkbox(&mut grip.follows, "Brush follows the stroke");
-    let words = "Its broad side stays across the stroke.";
+    let check = ui.checkbox(&mut grip.follows, tr!("Brush follows the stroke"));
+    let words = tr!("Its broad side stays across the stroke.");
     check.on_hover_text(hint(ui, words, &[Action::Follow]));
     let slider = labelled::slider(&mut grip.turn_deg, -180.0..=180.0, "°").max_decimals(0);
-    let words = "Angle from across the stroke, or from the horizontal if it does not follow.";
+    let words = tr!("Angle from across the stroke, or from the horizontal if it does not follow.");
     let hover = hint(ui, words, &[Action::TurnLeft, Action::TurnRight]);
-    labelled::named(ui, "Turn", &hover, slider);
+    labelled::named(ui, tr!("Turn"), &hover, slider);
     let mut percent = (100.0 * grip.pressure).round();
     let [least, most] = [MOUSE_PRESSURE.start(), MOUSE_PRESSURE.end()].map(|share| 100.0 * share);
     let slider = labelled::slider(&mut percent, least..=most, " %").max_decimals(0);
-    let words = "Pressure while the button is down.";
+    let words = tr!("Pressure while the button is down.");
     let hover = hint(ui, words, &[Action::Lighter, Action::Harder]);
-    if labelled::named(ui, "Pressure", &hover, slider).changed() {
+    if labelled::named(ui, tr!("Pressure"), &hover, slider).changed() {
         grip.pressure = 0.01 * percent;
     }
 }
@@ -165,18 +166,18 @@ impl BrushPanel {
         let mut width = file.head.width_mm / unit_mm;
         let hover = work.preferences.keys.hint(
             ui.ctx(),
-            "Width of the head. A wider brush is longer and stiffer in proportion.",
+            tr!("Width of the head. A wider brush is longer and stiffer in proportion."),
             &[Action::Smaller, Action::Larger],
         );
         let range = self.widths(file);
         let range = range.start() / unit_mm..=range.end() / unit_mm;
         let slider = labelled::slider(&mut width, range, sign).max_decimals(decimals);
-        let shown = labelled::named(ui, "Width", &hover, slider);
+        let shown = labelled::named(ui, tr!("Width"), &hover, slider);
         if shown.changed() {
             match resized(file, width * unit_mm) {
                 Ok(scaled) => self.dragged = Some(scaled),
                 Err(error) => {
-                    let help = "choose another width";
+                    let help = tr!("choose another width");
                     work.notifications.fault(error.to_string(), help);
                 }
             }
@@ -190,8 +191,8 @@ impl BrushPanel {
         let mut factor = wanted.stiffness;
         labelled::named(
             ui,
-            "Stiffness",
-            "Factor on the stiffness that the brush was made with: 1 is as it was made.",
+            tr!("Stiffness"),
+            tr!("Factor on the stiffness that the brush was made with: 1 is as it was made."),
             labelled::slider(&mut factor, STIFFNESS, " ×"),
         );
         if labelled::is_moved(wanted.stiffness, factor) {
@@ -199,8 +200,8 @@ impl BrushPanel {
         }
         let mut percent = (wanted.wetness * 100.0).round();
         let slider = labelled::slider(&mut percent, 0.0..=100.0, " %").max_decimals(0);
-        let hover = "How soaked the head is: a soaked one is half as stiff.";
-        if labelled::named(ui, "Wetness", hover, slider).changed() {
+        let hover = tr!("How soaked the head is: a soaked one is half as stiff.");
+        if labelled::named(ui, tr!("Wetness"), hover, slider).changed() {
             wanted.wetness = percent / 100.0;
         }
         if wanted != tuning {

@@ -4,6 +4,7 @@ use eframe::egui::{ComboBox, Ui};
 use maulstick_types::edits::Handle;
 use maulstick_types::scene::{BrushHandling, BrushMode, FLOWS};
 
+use crate::language::translated;
 use crate::widgets::context::PanelContext;
 use crate::widgets::labelled::{self, PendingValue};
 
@@ -16,38 +17,38 @@ const PROPOSED_M: f64 = 60e-6;
 const WAYS: [(BrushMode, &str, &str); 7] = [
     (
         BrushMode::Normal,
-        "Paint",
-        "It pushes paint, leaves some and takes some up.",
+        tr_noop!("mode|Paint"),
+        tr_noop!("It pushes paint, leaves some and takes some up."),
     ),
     (
         BrushMode::NoPush,
-        "Paint without pushing",
-        "It leaves paint and takes some up, but pushes none aside.",
+        tr_noop!("Paint without pushing"),
+        tr_noop!("It leaves paint and takes some up, but pushes none aside."),
     ),
     (
         BrushMode::Sponge,
-        "Never runs out",
-        "It stays as it is, full or empty, whatever it leaves or takes up.",
+        tr_noop!("Never runs out"),
+        tr_noop!("It stays as it is, full or empty, whatever it leaves or takes up."),
     ),
     (
         BrushMode::SpongeNoPush,
-        "Never runs out, without pushing",
-        "It stays as it is, full or empty, and pushes nothing aside.",
+        tr_noop!("Never runs out, without pushing"),
+        tr_noop!("It stays as it is, full or empty, and pushes nothing aside."),
     ),
     (
         BrushMode::Marker,
-        "Marker",
-        "It leaves as much as its flow says, and takes up nothing.",
+        tr_noop!("Marker"),
+        tr_noop!("It leaves as much as its flow says, and takes up nothing."),
     ),
     (
         BrushMode::Sampler,
-        "Pick up colour",
-        "It takes on the colours that it touches; the surface stays as it is.",
+        tr_noop!("Pick up colour"),
+        tr_noop!("It takes on the colours that it touches; the surface stays as it is."),
     ),
     (
         BrushMode::Vacuum,
-        "Lift paint",
-        "It lifts off the wet paint that it touches, and is clean.",
+        tr_noop!("Lift paint"),
+        tr_noop!("It lifts off the wet paint that it touches, and is clean."),
     ),
 ];
 
@@ -60,19 +61,19 @@ pub(super) fn show(
     let handling = asked.shown(ui, work.rig.handling());
     let mut wanted = handling.clone();
     ui.horizontal(|ui| {
-        let hover = "What the brush does with the paint that it touches.";
-        let name = labelled::label(ui, "Mode", hover);
+        let hover = tr!("What the brush does with the paint that it touches.");
+        let name = labelled::label(ui, tr!("Mode"), hover);
         let mut ways = WAYS.iter();
         let own = ways.find(|(mode, ..)| *mode == handling.mode);
         ComboBox::from_id_salt("way")
             .width(150.0)
-            .selected_text(own.map_or("", |(_, words, _)| words))
+            .selected_text(own.map_or("", |(_, words, _)| translated(words)))
             .show_ui(ui, |ui| {
                 for (mode, words, does) in &WAYS {
                     let is_own = *mode == handling.mode;
                     if ui
-                        .selectable_label(is_own, *words)
-                        .on_hover_text(*does)
+                        .selectable_label(is_own, translated(words))
+                        .on_hover_text(translated(does))
                         .clicked()
                     {
                         wanted.mode = mode.clone();
@@ -81,15 +82,15 @@ pub(super) fn show(
             })
             .response
             .labelled_by(name.id)
-            .on_hover_text(own.map_or("", |(.., does)| does));
+            .on_hover_text(own.map_or("", |(.., does)| translated(does)));
     });
     if handling.mode == BrushMode::Marker {
         // Micrometres along a millimetre.
         let mut um = handling.flow * 1e3;
         let range = FLOWS.start() * 1e3..=FLOWS.end() * 1e3;
         let slider = labelled::slider(&mut um, range, " µm/mm").max_decimals(3);
-        let hover = "Thickness that the marker leaves along a millimetre of its way.";
-        if labelled::named(ui, "Flow", hover, slider).changed() {
+        let hover = tr!("Thickness that the marker leaves along a millimetre of its way.");
+        if labelled::named(ui, tr!("Flow"), hover, slider).changed() {
             wanted.flow = um * 1e-3;
         }
     }
@@ -103,16 +104,16 @@ pub(super) fn show(
 }
 
 fn most(ui: &mut Ui, handling: &BrushHandling, wanted: &mut BrushHandling) {
-    let hover = "The brush adds no paint where as much lies wet already.";
+    let hover = tr!("The brush adds no paint where as much lies wet already.");
     let mut bounded = handling.most_m > 0.0;
-    let check = ui.checkbox(&mut bounded, "Limit the thickness");
+    let check = ui.checkbox(&mut bounded, tr!("Limit the thickness"));
     if check.on_hover_text(hover).changed() {
         wanted.most_m = if bounded { PROPOSED_M } else { 0.0 };
     }
     if handling.most_m > 0.0 {
         let mut um = (handling.most_m * 1e9).round() * 1e-3;
         let slider = labelled::slider(&mut um, MOST_UM, " µm").max_decimals(0);
-        if labelled::named(ui, "Thickness", hover, slider).changed() {
+        if labelled::named(ui, tr!("Thickness"), hover, slider).changed() {
             wanted.most_m = um * 1e-6;
         }
     }

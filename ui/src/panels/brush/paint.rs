@@ -29,22 +29,28 @@ impl PaintRows {
             .is_some_and(|brush| brush.carried.is_some())
         {
             ui.horizontal(|ui| {
-                labelled::label(ui, "Carries", "The paint that is on the brush now.");
+                labelled::label(
+                    ui,
+                    tr!("Carries"),
+                    tr!("The paint that is on the brush now."),
+                );
                 brush_gauge::show(ui, work);
             });
         }
         let hover =
-            "A paint's name, or a mixture by volume such as 2 Cobalt Blue, 1 Titanium White";
-        let mut enter = field(ui, work, "Paint", hover, |loading| Some(&mut loading.paint));
+            tr!("A paint's name, or a mixture by volume such as 2 Cobalt Blue, 1 Titanium White");
+        let mut enter = field(ui, work, tr!("Paint"), hover, |loading| {
+            Some(&mut loading.paint)
+        });
         let mut two = work.preferences.loading.beside.is_some();
-        let check = ui.checkbox(&mut two, "Second colour on the right half");
-        let hover = "Two paints side by side on one brush (double loading).";
+        let check = ui.checkbox(&mut two, tr!("Second colour on the right half"));
+        let hover = tr!("Two paints side by side on one brush (double loading).");
         if check.on_hover_text(hover).changed() {
             work.preferences.loading.beside = two.then(String::new);
         }
         if two {
-            let hover = "What the right half of the brush takes up.";
-            enter |= field(ui, work, "Right half", hover, |loading| {
+            let hover = tr!("What the right half of the brush takes up.");
+            enter |= field(ui, work, tr!("Right half"), hover, |loading| {
                 loading.beside.as_mut()
             });
         }
@@ -52,25 +58,25 @@ impl PaintRows {
         let most = MOST_THINNER * 100.0;
         let slider = labelled::slider(&mut percent, 0.0..=most, " %").max_decimals(0);
         let hover =
-            "Share of thinner in what the brush takes up: thin paint is transparent and runs.";
-        if labelled::named(ui, "Thinner", hover, slider).changed() {
+            tr!("Share of thinner in what the brush takes up: thin paint is transparent and runs.");
+        if labelled::named(ui, tr!("Thinner"), hover, slider).changed() {
             work.preferences.loading.thinner = percent / 100.0;
         }
         ui.horizontal(|ui| {
             let load = ui.add_enabled(
                 !work.preferences.loading.paint.is_empty(),
-                Button::new("Load"),
+                Button::new(tr!("Load")),
             );
-            let load = load.on_hover_text("The brush is cleaned, and full of this paint.");
+            let load = load.on_hover_text(tr!("The brush is cleaned, and full of this paint."));
             if load.clicked() || enter {
                 self.load(work);
             }
-            let words = "Takes all paint off the brush.";
+            let words = tr!("Takes all paint off the brush.");
             let hover = work
                 .preferences
                 .keys
                 .hint(ui.ctx(), words, &[Action::Clean]);
-            let clean = ui.button("Clean").on_hover_text(hover);
+            let clean = ui.button(tr!("Clean")).on_hover_text(hover);
             if clean.clicked() {
                 let brush = BrushName::new(work.rig.brush_name());
                 crate::widgets::rows::ask(work, brush.map(|brush| Clean { brush }));

@@ -1,8 +1,9 @@
 //! Presets: brushes with their paint.
 
-use eframe::egui::{Button, Key, TextEdit, Ui, vec2};
+use eframe::egui::{Button, Color32, Key, TextEdit, TextStyle, Ui, vec2};
 
 use super::entry;
+use crate::language::known;
 use crate::settings::presets::{Preset, check_name};
 use crate::widgets::context::PanelContext;
 use crate::widgets::labelled;
@@ -19,6 +20,19 @@ pub(super) struct PresetRows {
     deleted: Option<(usize, Preset)>,
 }
 
+/// Width of a preset's name at most, points.
+const NAME: f32 = 150.0;
+
+/// Width of a small button with the space before it, points.
+fn small_width(ui: &Ui, word: &str) -> f32 {
+    let font = TextStyle::Button.resolve(ui.style());
+    let text = ui
+        .painter()
+        .layout_no_wrap(word.to_owned(), font, Color32::WHITE);
+    let spacing = ui.spacing();
+    text.size().x + 2.0 * spacing.button_padding.x + spacing.item_spacing.x
+}
+
 /// Action on a preset.
 enum Deed {
     Apply,
@@ -28,7 +42,7 @@ enum Deed {
 
 impl PresetRows {
     pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
-        ui.strong("Presets");
+        ui.strong(tr!("Presets"));
         let mut asked = None;
         for place in 0..work.preferences.presets.len() {
             if self.renamed.as_ref().is_some_and(|(own, _)| *own == place) {
@@ -36,32 +50,35 @@ impl PresetRows {
                 continue;
             }
             let preset = &work.preferences.presets[place];
-            let name = preset.name.clone();
+            let name = known(&preset.name).to_owned();
             let words = preset.words(work.preferences.units);
             let mut take = false;
+            let taken = [tr!("Rename"), tr!("Delete")].map(|word| small_width(ui, word));
+            let room = ui.available_width() - taken.iter().sum::<f32>();
+            let width = room.ceil().min(NAME);
             let mut deed = None;
             entry(
                 ui,
                 |ui| {
-                    let button = Button::new(&name).truncate().min_size(vec2(150.0, 0.0));
+                    let button = Button::new(&name).truncate().min_size(vec2(width, 0.0));
                     take = ui
                         .scope(|ui| {
-                            ui.set_max_width(150.0);
+                            ui.set_max_width(width);
                             ui.add(button).on_hover_text(words).clicked()
                         })
                         .inner;
                 },
                 |ui| {
                     if ui
-                        .small_button("Delete")
-                        .on_hover_text(format!("Delete {name}"))
+                        .small_button(tr!("Delete"))
+                        .on_hover_text(tr!("Delete {name}", name))
                         .clicked()
                     {
                         deed = Some(Deed::Delete);
                     }
                     if ui
-                        .small_button("Rename")
-                        .on_hover_text(format!("Rename {name}"))
+                        .small_button(tr!("Rename"))
+                        .on_hover_text(tr!("Rename {name}", name))
                         .clicked()
                     {
                         deed = Some(Deed::Rename);
@@ -81,7 +98,10 @@ impl PresetRows {
                 }
             }
             Some((place, Deed::Rename)) => {
-                self.renamed = Some((place, work.preferences.presets[place].name.clone()));
+                self.renamed = Some((
+                    place,
+                    known(&work.preferences.presets[place].name).to_owned(),
+                ));
                 self.wrong = None;
             }
             Some((place, Deed::Delete)) => {
@@ -99,11 +119,11 @@ impl PresetRows {
             return;
         };
         let mut back = false;
-        let words = format!("{} is deleted.", preset.name);
+        let words = tr!("{name} is deleted.", name = known(&preset.name));
         entry(
             ui,
             |ui| drop(ui.label(words)),
-            |ui| back = ui.small_button("Bring back").clicked(),
+            |ui| back = ui.small_button(tr!("Bring back")).clicked(),
         );
         if back {
             let place = (*place).min(work.preferences.presets.len());
@@ -118,7 +138,7 @@ impl PresetRows {
         };
         let shown = labelled::named(
             ui,
-            "New name",
+            tr!("New name"),
             "",
             TextEdit::singleline(name).desired_width(190.0),
         );
@@ -142,16 +162,16 @@ impl PresetRows {
 
     fn save(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let edit = TextEdit::singleline(&mut self.name)
-            .hint_text("Sky wash")
+            .hint_text(tr!("Sky wash"))
             .desired_width(190.0);
-        let hover = "What the brush in the hand, its settings and its paint are to be called.";
-        let shown = labelled::named(ui, "Name", hover, edit);
+        let hover = tr!("What the brush in the hand, its settings and its paint are to be called.");
+        let shown = labelled::named(ui, tr!("Name"), hover, edit);
         if shown.changed() {
             self.wrong = None;
         }
         let enter = shown.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-        let button = ui.button("Save this brush");
-        let hover = "Keeps the brush, how it is used, and the paint above.";
+        let button = ui.button(tr!("Save this brush"));
+        let hover = tr!("Keeps the brush, how it is used, and the paint above.");
         if button.on_hover_text(hover).clicked() || enter {
             let name = self.name.trim().to_owned();
             let others = work

@@ -10,11 +10,11 @@ use crate::widgets::context::PanelContext;
 use crate::widgets::rows::{Number, Sliders, ask, below, choice};
 
 /// The paint that the brush carries.
-const CARRIED: &str = "What the brush carries";
+const CARRIED: &str = tr_noop!("What the brush carries");
 
 const THICKNESS: Number<'_> = Number {
-    word: "Thickness",
-    hover: "How thick the film is, µm: a thin toning has 20, a couch of paint 100",
+    word: tr_noop!("Thickness"),
+    hover: tr_noop!("How thick the film is, µm: a thin toning has 20, a couch of paint 100"),
     range: 1.0..=500.0,
     unit: " µm",
     decimals: 0,
@@ -45,14 +45,14 @@ impl FilmForm {
         let library = std::sync::Arc::clone(&work.rig.library);
         let paints = library.paints().iter().map(|paint| paint.name.as_str());
         let names = std::iter::once(CARRIED).chain(paints);
-        if let Some(paint) = choice(ui, "Paint", &self.paint, names) {
+        if let Some(paint) = choice(ui, tr!("Paint"), &self.paint, names) {
             self.paint = paint;
         }
         let change = self.sliders.row(ui, &THICKNESS, self.thickness_um);
         self.thickness_um = change.moved.unwrap_or(self.thickness_um);
         below(ui, |ui| {
-            let button = ui.button("Cover");
-            let button = button.on_hover_text("Over the whole canvas; it can be undone");
+            let button = ui.button(tr!("Cover"));
+            let button = button.on_hover_text(tr!("Over the whole canvas; it can be undone"));
             if button.clicked() {
                 ask(work, self.edit(work.rig.brush_name()));
             }

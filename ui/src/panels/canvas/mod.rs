@@ -31,32 +31,36 @@ use film::FilmForm;
 use placement::Posture;
 
 const SIZING: Number<'_> = Number {
-    word: "Absorbency",
-    hover: "Stain: thickness of the film that soaks in and cannot be wiped off, µm; thin on a heavily sized canvas",
+    word: tr_noop!("Absorbency"),
+    hover: tr_noop!(
+        "Stain: thickness of the film that soaks in and cannot be wiped off, µm; thin on a heavily sized canvas"
+    ),
     range: 0.0..=50.0,
     unit: " µm",
     decimals: 1,
     factors: false,
 };
 const TILT: Number<'_> = Number {
-    word: "Tilt",
-    hover: "How far its upper edge is raised, as on an easel, degrees",
+    word: tr_noop!("Tilt"),
+    hover: tr_noop!("How far its upper edge is raised, as on an easel, degrees"),
     range: 0.0..=60.0,
     unit: "°",
     decimals: 0,
     factors: false,
 };
 const TURN: Number<'_> = Number {
-    word: "Turn",
-    hover: "How far it is turned to the left, degrees",
+    word: tr_noop!("Turn"),
+    hover: tr_noop!("How far it is turned to the left, degrees"),
     range: -180.0..=180.0,
     unit: "°",
     decimals: 0,
     factors: false,
 };
 const ZOOM: Number<'_> = Number {
-    word: "Zoom",
-    hover: "How large it lies on the desk: 100 % is life size, and the brush stays as it is",
+    word: tr_noop!("Zoom"),
+    hover: tr_noop!(
+        "How large it lies on the desk: 100 % is life size, and the brush stays as it is"
+    ),
     range: 10.0..=1000.0,
     unit: " %",
     decimals: 0,
@@ -76,7 +80,7 @@ pub(crate) struct CanvasPanel {
 
 impl Panel for CanvasPanel {
     fn title(&self) -> &'static str {
-        "Canvas"
+        tr_noop!("Canvas")
     }
 
     fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
@@ -98,7 +102,7 @@ impl Panel for CanvasPanel {
         preferences(ui, work);
         ui.separator();
         tracing::show(ui, work, &mut self.sliders);
-        CollapsingHeader::new("Cover the canvas with paint")
+        CollapsingHeader::new(tr!("Cover the canvas with paint"))
             .show(ui, |ui| self.film.show(ui, work));
     }
 }
@@ -112,12 +116,16 @@ fn size(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
     let per_mm = 1e-3 / canvas.cell_m;
     ui.horizontal(|ui| {
         ui.label(format!("{width:.1} × {height:.1} {unit}"))
-            .on_hover_text(format!("{} × {} cells", canvas.cells[0], canvas.cells[1]));
+            .on_hover_text(tr!(
+                "{across} × {up} cells",
+                across = canvas.cells[0],
+                up = canvas.cells[1]
+            ));
         let tidy = (per_mm * 100.0).round() / 100.0;
-        ui.label(format!("{tidy} cells a mm"));
+        ui.label(tr!("{tidy} cells a mm", tidy));
         let new = ui
-            .button("New…")
-            .on_hover_text("A canvas of another size is a new painting");
+            .button(tr!("New…"))
+            .on_hover_text(tr!("A canvas of another size is a new painting"));
         if new.clicked() {
             work.requests.act(Action::New);
         }
@@ -127,7 +135,7 @@ fn size(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
 /// Display name of an entry of the scene.
 fn shown<'a>(name: &'a str, measured: &'a str) -> &'a str {
     if name.starts_with(IMAGE) {
-        "a picture"
+        tr!("a picture")
     } else if name.starts_with(SPECTRUM) {
         measured
     } else {
@@ -137,14 +145,18 @@ fn shown<'a>(name: &'a str, measured: &'a str) -> &'a str {
 
 /// Preferences of the painter, the same for every painting.
 fn preferences(ui: &mut Ui, work: &mut PanelContext<'_>) {
-    ui.checkbox(&mut work.preferences.left_handed, "Left-handed")
-        .on_hover_text("The palette lies at the right, brushes and panels at the left");
+    ui.checkbox(&mut work.preferences.left_handed, tr!("Left-handed"))
+        .on_hover_text(tr!(
+            "The palette lies at the right, brushes and panels at the left"
+        ));
     let Some(mut last) = work.rig.palette().map(|palette| palette.piles_last) else {
         return;
     };
     let lasts = ui
-        .checkbox(&mut last, "Palette never runs out")
-        .on_hover_text("Brushes take paint from the palette, and it stays there all the same");
+        .checkbox(&mut last, tr!("Palette never runs out"))
+        .on_hover_text(tr!(
+            "Brushes take paint from the palette, and it stays there all the same"
+        ));
     if lasts.changed() {
         let surface = PALETTE;
         ask(work, Ok(Piles { last, surface }));
@@ -161,7 +173,7 @@ impl CanvasPanel {
                 surface: CANVAS,
             })
         };
-        let chosen = choice(ui, "Tooth", shown(name, name), tooth::Tooth::names());
+        let chosen = choice(ui, tr!("Tooth"), shown(name, name), tooth::Tooth::names());
         if let Some(tooth) = chosen {
             ask(work, edit(&tooth, seed));
         }
@@ -169,12 +181,12 @@ impl CanvasPanel {
             return;
         }
         let mut piece = seed;
-        let changed = row(ui, "Pattern no.", |ui| {
+        let changed = row(ui, tr!("Pattern no."), |ui| {
             let number = DragValue::new(&mut piece)
                 .speed(0.1)
                 .update_while_editing(false);
             ui.add(number)
-                .on_hover_text("Another number is another piece of the same cloth")
+                .on_hover_text(tr!("Another number is another piece of the same cloth"))
         });
         if changed.changed() && piece != seed {
             ask(work, edit(name, piece));
@@ -183,12 +195,17 @@ impl CanvasPanel {
 
     fn ground(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
         let names = GROUNDS.map(|(name, _)| name);
-        let chosen = choice(ui, "Ground", shown(&canvas.ground, "a measured one"), names);
+        let chosen = choice(
+            ui,
+            tr!("Ground"),
+            shown(&canvas.ground, tr!("a measured one")),
+            names,
+        );
         if let Some(ground) = chosen {
             ask(work, Ground::named(CANVAS, &ground));
         }
-        row(ui, "From a file", |ui| {
-            let edit = TextEdit::singleline(&mut self.file).hint_text("CSV of nm,reflectance");
+        row(ui, tr!("From a file"), |ui| {
+            let edit = TextEdit::singleline(&mut self.file).hint_text(tr!("CSV of nm,reflectance"));
             let edit = ui.add(edit.desired_width(f32::INFINITY));
             let entered = ui.input(|input| input.key_pressed(Key::Enter));
             if edit.lost_focus() && entered && !self.file.trim().is_empty() {
@@ -200,11 +217,11 @@ impl CanvasPanel {
                     Err(fault) => self.told = spectrum_file::told(&fault),
                 }
             }
-            edit.on_hover_text("The whole path of a measured ground; Enter reads it")
+            edit.on_hover_text(tr!("The whole path of a measured ground; Enter reads it"))
         });
         if !self.told.is_empty() {
             wrong(ui, &self.told);
-            note(ui, "A picture is a ground only of a new painting.");
+            note(ui, tr!("A picture is a ground only of a new painting."));
         }
     }
 
@@ -223,14 +240,14 @@ impl CanvasPanel {
         }
         below(ui, |ui| {
             let keys = &work.preferences.keys;
-            let hover = keys.hint(ui.ctx(), "See the whole canvas", &[Action::Fit]);
-            let fit = ui.button("Fit").on_hover_text(hover);
+            let hover = keys.hint(ui.ctx(), tr!("See the whole canvas"), &[Action::Fit]);
+            let fit = ui.button(tr!("Fit")).on_hover_text(hover);
             if fit.clicked() {
                 work.requests.act(Action::Fit);
             }
-            let words = "A point of the canvas a pixel of the display.";
+            let words = tr!("A point of the canvas a pixel of the display.");
             let hover = keys.hint(ui.ctx(), words, &[Action::Hundred]);
-            let cells = ui.button("Actual pixels (1:1)").on_hover_text(hover);
+            let cells = ui.button(tr!("Actual pixels (1:1)")).on_hover_text(hover);
             if cells.clicked() {
                 work.requests.act(Action::Hundred);
             }

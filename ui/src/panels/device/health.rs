@@ -16,18 +16,18 @@ pub(super) fn show(ui: &mut Ui, status: &StylusStatus) {
     if status.lateness.is_empty() && status.execution.is_empty() {
         return;
     }
-    CollapsingHeader::new("Loop health")
+    CollapsingHeader::new(tr!("Loop health"))
         .id_salt("health")
         .show(ui, |ui| {
             let bins = [
                 (
-                    "Late:",
-                    "How late the loop of the force wakes up",
+                    tr!("Late:"),
+                    tr!("How late the loop of the force wakes up"),
                     &status.lateness,
                 ),
                 (
-                    "Tick:",
-                    "Reading, force and writing together",
+                    tr!("Tick:"),
+                    tr!("Reading, force and writing together"),
                     &status.execution,
                 ),
             ];
@@ -36,14 +36,16 @@ pub(super) fn show(ui: &mut Ui, status: &StylusStatus) {
                     .on_hover_text(hint);
                 histogram(ui, name, counts);
             }
-            ui.label(format!(
-                "{} samples, {} dropped, {} strange models",
-                status.samples, status.dropped, status.foreign_models
+            ui.label(tr!(
+                "{samples} samples, {dropped} dropped, {strange} strange models",
+                samples = status.samples,
+                dropped = status.dropped,
+                strange = status.foreign_models
             ))
-            .on_hover_text(
+            .on_hover_text(tr!(
                 "Dropped: the publisher was behind. Strange: contact models that named another \
-                 device or brush.",
-            );
+                 device or brush."
+            ));
         });
 }
 
@@ -70,8 +72,8 @@ fn bin(place: usize, bins: usize) -> String {
         }
     };
     match place + 1 < bins {
-        true => format!("under {}", time(place)),
-        false => format!("over {}", time(place.saturating_sub(1))),
+        true => tr!("under {time}", time = time(place)),
+        false => tr!("over {time}", time = time(place.saturating_sub(1))),
     }
 }
 
@@ -80,8 +82,8 @@ fn worded(counts: &[u64]) -> String {
     let at = |share: f64| quantile(counts, share).map(|place| bin(place, counts.len()));
     match (at(0.5), at(0.99)) {
         (Some(median), Some(most)) if median == most => format!("99 % {most}"),
-        (Some(median), Some(most)) => format!("half {median}, 99 % {most}"),
-        _ => "not known yet".to_owned(),
+        (Some(median), Some(most)) => tr!("half {median}, 99 % {most}", median, most),
+        _ => tr!("not known yet").to_owned(),
     }
 }
 

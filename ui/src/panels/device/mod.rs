@@ -7,7 +7,7 @@
 mod health;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use eframe::egui::{
     Align2, Button, Color32, FontId, Frame, Grid, Response, RichText, Role, Sense, Slider, Stroke,
@@ -42,14 +42,16 @@ pub(crate) struct DevicePanel {
 
 impl Panel for DevicePanel {
     fn title(&self) -> &'static str {
-        "Device"
+        tr_noop!("Device")
     }
 
     fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let painting = force_history::active_device(work.rig).map(|(name, _)| name.to_owned());
         match &painting {
-            Some(name) => ui.label(RichText::new(format!("{} paints", worded(name))).strong()),
-            None => ui.label("No pen in range. You are painting with the mouse."),
+            Some(name) => {
+                ui.label(RichText::new(tr!("{device} paints", device = worded(name))).strong())
+            }
+            None => ui.label(tr!("No pen in range. You are painting with the mouse.")),
         };
         let mut devices: Vec<(&String, &Device)> = work.rig.devices.iter().collect();
         let priority = |device: &Device| device.info.as_ref().map_or(i32::MIN, |it| it.priority);
@@ -73,7 +75,7 @@ impl DevicePanel {
         if let Some(info) = &device.info {
             ui.label(what(info));
             if info.senses != 0 {
-                ui.small(format!("Senses {}", senses(info.senses)));
+                ui.small(tr!("Senses {list}", list = senses(info.senses)));
             }
         }
         let Some(status) = &device.status else {
@@ -101,21 +103,26 @@ impl DevicePanel {
         work: &mut PanelContext<'_>,
     ) {
         if status.is_on {
-            let words = RichText::new("Force off").strong().color(Color32::WHITE);
+            let words = RichText::new(tr!("Force off"))
+                .strong()
+                .color(Color32::WHITE);
             let button = Button::new(words).fill(RED).min_size(vec2(0.0, 32.0));
             let key = work.preferences.keys.written(ui.ctx(), Action::ForceOff);
             let hint = match key.is_empty() {
-                true => "The device gives no force any more, at once".to_owned(),
+                true => tr!("The device gives no force any more, at once").to_owned(),
                 false => {
-                    format!("The device gives no force any more, at once ({key}, for all devices)")
+                    tr!(
+                        "The device gives no force any more, at once ({key}, for all devices)",
+                        key
+                    )
                 }
             };
             if wide(ui, button).on_hover_text(hint).clicked() {
                 work.requests.force(name, ForceOrder::Off);
             }
         } else {
-            let button = Button::new("Force on").min_size(vec2(0.0, 32.0));
-            let hint = "The device gives force again, from nothing on";
+            let button = Button::new(tr!("Force on")).min_size(vec2(0.0, 32.0));
+            let hint = tr!("The device gives force again, from nothing on");
             if wide(ui, button).on_hover_text(hint).clicked() {
                 work.requests.force(name, ForceOrder::On);
             }
@@ -123,8 +130,8 @@ impl DevicePanel {
         self.strength(ui, name, status, work);
         if !status.faults.is_empty() {
             ui.colored_label(ui.visuals().error_fg_color, status.faults.join("; "));
-            let hint = "Lift the brush first: force comes back from nothing on";
-            if ui.button("Re-arm").on_hover_text(hint).clicked() {
+            let hint = tr!("Lift the brush first: force comes back from nothing on");
+            if ui.button(tr!("Re-arm")).on_hover_text(hint).clicked() {
                 work.requests.force(name, ForceOrder::Rearm);
             }
         }
@@ -138,7 +145,7 @@ impl DevicePanel {
             dial(ui, force_n.unwrap_or_default(), most_n);
             ui.vertical(|ui| numbers(ui, force_n, most_n, status));
         });
-        ui.small("Force over the last 5 s, N");
+        ui.small(tr!("Force over the last 5 s, N"));
         graph(ui, name, device.forces.line(now_ns), most_n);
         health::show(ui, status);
     }
@@ -158,8 +165,8 @@ impl DevicePanel {
         let slider = Slider::new(&mut percent, 0.0..=100.0)
             .integer()
             .suffix(" %")
-            .text("Strength");
-        let hint = "Share of the force that the brush asks for";
+            .text(tr!("Strength"));
+        let hint = tr!("Share of the force that the brush asks for");
         let response = ui.add(slider).on_hover_text(hint);
         if response.changed() {
             let share = (percent / 100.0).clamp(0.0, 1.0);
@@ -189,8 +196,8 @@ fn wide(ui: &mut Ui, button: Button<'_>) -> Response {
 /// A device as a painter calls it.
 fn worded(name: &str) -> String {
     match name {
-        "mouse" => "The mouse".to_owned(),
-        "player" => "A take".to_owned(),
+        "mouse" => tr!("The mouse").to_owned(),
+        "player" => tr!("A take").to_owned(),
         _ => name.to_owned(),
     }
 }
@@ -203,26 +210,31 @@ fn sentence(words: &str) -> String {
 
 /// Driver, brush and rate.
 fn what(info: &StylusInfo) -> String {
-    let rate = match info.rate_hz >= 1.0 {
-        true => format!(", {:.0} Hz", info.rate_hz),
-        false => String::new(),
-    };
-    format!("{}, controls brush '{}'{rate}", info.driver, info.brush)
+    let (driver, brush) = (&info.driver, &info.brush);
+    match info.rate_hz >= 1.0 {
+        true => tr!(
+            "{driver}, controls brush '{brush}', {rate} Hz",
+            driver,
+            brush,
+            rate = format_args!("{:.0}", info.rate_hz)
+        ),
+        false => tr!("{driver}, controls brush '{brush}'", driver, brush),
+    }
 }
 
 /// Sensors of a device, in words.
 fn senses(bits: u32) -> String {
     let all = [
-        (axes::POSITION, "position"),
-        (axes::ORIENTATION, "orientation"),
-        (axes::PRESSURE, "pressure"),
-        (axes::TILT, "tilt"),
-        (axes::TWIST, "twist"),
-        (axes::SWITCHES, "switches"),
-        (axes::PROXIMITY, "nearness"),
-        (axes::FORCE, "force"),
-        (axes::VELOCITY, "velocity"),
-        (axes::TORQUE, "torque"),
+        (axes::POSITION, tr!("position")),
+        (axes::ORIENTATION, tr!("orientation")),
+        (axes::PRESSURE, tr!("pressure")),
+        (axes::TILT, tr!("tilt")),
+        (axes::TWIST, tr!("twist")),
+        (axes::SWITCHES, tr!("switches")),
+        (axes::PROXIMITY, tr!("nearness")),
+        (axes::FORCE, tr!("force")),
+        (axes::VELOCITY, tr!("velocity")),
+        (axes::TORQUE, tr!("torque")),
     ];
     let sensed = all.iter().filter(|(bit, _)| bits & bit != 0);
     let words: Vec<&str> = sensed.map(|(_, word)| *word).collect();
@@ -232,29 +244,43 @@ fn senses(bits: u32) -> String {
 fn numbers(ui: &mut Ui, force_n: Option<[f64; 3]>, most_n: f64, status: &StylusStatus) {
     let now = match force_n {
         Some(force_n) => format!("{:.2} N", size(force_n)),
-        None => "silent".to_owned(),
+        None => tr!("silent").to_owned(),
     };
-    let stiffness = format!("{:.0} of {:.0} N/m", status.stiffness_n_m, status.asked_n_m);
+    let stiffness = tr!(
+        "{given} of {asked} N/m",
+        given = format_args!("{:.0}", status.stiffness_n_m),
+        asked = format_args!("{:.0}", status.asked_n_m)
+    );
     let motors = match status.resting {
-        true => format!("{:.0} % hot, resting", 100.0 * status.motor_temperature),
-        false => format!("{:.0} % hot", 100.0 * status.motor_temperature),
+        true => tr!(
+            "{percent} % hot, resting",
+            percent = format_args!("{:.0}", 100.0 * status.motor_temperature)
+        ),
+        false => tr!(
+            "{percent} % hot",
+            percent = format_args!("{:.0}", 100.0 * status.motor_temperature)
+        ),
     };
     Grid::new("numbers")
         .num_columns(2)
         .spacing([8.0, 2.0])
         .show(ui, |ui| {
             let rows = [
-                ("Force", now, "On the hand now"),
+                (tr!("Force"), now, tr!("On the hand now")),
                 (
-                    "At most",
+                    tr!("At most"),
                     format!("{most_n:.1} N"),
-                    "As warm as the motors are",
+                    tr!("As warm as the motors are"),
                 ),
-                ("Stiffness", stiffness, "Given, of what the brush asks for"),
                 (
-                    "Motor heat",
+                    tr!("Stiffness"),
+                    stiffness,
+                    tr!("Given, of what the brush asks for"),
+                ),
+                (
+                    tr!("Motor heat"),
                     motors,
-                    "The hottest motor; amplifiers rest for want of contact",
+                    tr!("The hottest motor; amplifiers rest for want of contact"),
                 ),
             ];
             for (name, value, hint) in rows {
@@ -268,9 +294,11 @@ fn numbers(ui: &mut Ui, force_n: Option<[f64; 3]>, most_n: f64, status: &StylusS
 /// The force as an arrow along the desk, and as a bar out of it.
 fn dial(ui: &mut Ui, force_n: [f64; 3], most_n: f64) {
     let (area, response) = ui.allocate_exact_size(vec2(DIAL + 12.0, DIAL), Sense::hover());
-    let words = format!(
-        "Force on the hand: {:.2} N right, {:.2} N up, {:.2} N toward you",
-        force_n[0], force_n[1], force_n[2]
+    let words = tr!(
+        "Force on the hand: {right} N right, {up} N up, {toward} N toward you",
+        right = format_args!("{:.2}", force_n[0]),
+        up = format_args!("{:.2}", force_n[1]),
+        toward = format_args!("{:.2}", force_n[2])
     );
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &words));
     response.on_hover_text(&words);

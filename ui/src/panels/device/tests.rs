@@ -26,7 +26,7 @@ fn info(device: &str, driver: &str, priority: i32, senses: u32, drives: u32) -> 
 }
 
 /// A mouse, a pen that is not there and an arm that pushes.
-fn devices() -> RigState {
+pub(crate) fn devices() -> RigState {
     let mut rig = rig();
     rig.now_ns = 10_000_000_000;
     let pen = axes::POSITION | axes::PRESSURE | axes::TILT | axes::PROXIMITY;

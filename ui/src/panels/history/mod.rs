@@ -48,7 +48,7 @@ type Textures = BTreeMap<Pictured, (Arc<Picture>, TextureHandle)>;
 
 impl Panel for HistoryPanel {
     fn title(&self) -> &'static str {
-        "History"
+        tr_noop!("History")
     }
 
     fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
@@ -61,7 +61,7 @@ impl Panel for HistoryPanel {
         steps::show(ui, work, &mut self.textures);
         self.keep(ui, work);
         if versions.is_empty() {
-            note(ui, "Keep a version, and you can come back to it.");
+            note(ui, tr!("Keep a version, and you can come back to it."));
         }
         for (depth, version) in tree::in_order(&versions) {
             ui.push_id(&version.name, |ui| self.version(ui, work, depth, version));
@@ -94,7 +94,7 @@ fn naming(ui: &mut Ui, name: &mut String, label: &str, word: &str) -> (Response,
 impl HistoryPanel {
     /// Keeps the painting as it is.
     fn keep(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
-        let (_, done) = naming(ui, &mut self.name, "Name of a version", "Keep");
+        let (_, done) = naming(ui, &mut self.name, tr!("Name of a version"), tr!("Keep"));
         if done {
             let name = VersionName::new(self.name.trim());
             if ask(work, name.map(|name| Keep { name })) {
@@ -123,8 +123,8 @@ impl HistoryPanel {
                     };
                     ui.add(eframe::egui::Label::new(title).truncate());
                     if version.here {
-                        ui.label(RichText::new("here").small())
-                            .on_hover_text("What is painted now goes on from this version");
+                        ui.label(RichText::new(tr!("here")).small())
+                            .on_hover_text(tr!("What is painted now goes on from this version"));
                     }
                 });
                 ui.horizontal(|ui| self.buttons(ui, work, name));
@@ -135,35 +135,42 @@ impl HistoryPanel {
 
     fn buttons(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, name: &str) {
         if self.forgetting.as_deref() == Some(name) {
-            ui.label("Delete?");
+            ui.label(tr!("Delete?"));
             let yes = small(
                 ui,
-                "Yes",
-                &format!("Delete {name}"),
-                "It cannot be had back",
+                tr!("Yes"),
+                &tr!("Delete {name}", name),
+                tr!("It cannot be had back"),
             );
             if yes.clicked() {
                 ask(work, VersionName::new(name).map(|name| Forget { name }));
                 self.forgetting = None;
             }
-            if small(ui, "No", &format!("Keep {name}"), "It stays").clicked() {
+            if small(ui, tr!("No"), &tr!("Keep {name}", name), tr!("It stays")).clicked() {
                 self.forgetting = None;
             }
             return;
         }
-        let hover = "The painting becomes as it was then; this can be undone";
-        if small(ui, "Go back", &format!("Go back to {name}"), hover).clicked() {
+        let hover = tr!("The painting becomes as it was then; this can be undone");
+        if small(ui, tr!("Go back"), &tr!("Go back to {name}", name), hover).clicked() {
             ask(work, VersionName::new(name).map(|name| ReturnTo { name }));
         }
-        let hover = "Begin another version from this one";
-        if small(ui, "New branch", &format!("New branch from {name}"), hover).clicked() {
+        let hover = tr!("Begin another version from this one");
+        if small(
+            ui,
+            tr!("New branch"),
+            &tr!("New branch from {name}", name),
+            hover,
+        )
+        .clicked()
+        {
             self.branching = match self.branching.take() {
                 Some((from, _)) if from == name => None,
                 _ => Some((name.to_owned(), String::new())),
             };
         }
-        let hover = "Take it off the list, after a question";
-        if small(ui, "Delete", &format!("Delete {name}?"), hover).clicked() {
+        let hover = tr!("Take it off the list, after a question");
+        if small(ui, tr!("Delete"), &tr!("Delete {name}?", name), hover).clicked() {
             self.forgetting = Some(name.to_owned());
         }
     }
@@ -176,7 +183,7 @@ impl HistoryPanel {
         if parent != from {
             return;
         }
-        let (_, done) = naming(ui, name, "Name of the new version", "Create");
+        let (_, done) = naming(ui, name, tr!("Name of the new version"), tr!("Create"));
         if done {
             let name = VersionName::new(name.trim());
             let branch = VersionName::new(from).and_then(|from| Ok(Branch { from, name: name? }));
@@ -190,7 +197,7 @@ impl HistoryPanel {
 /// The small picture of a version, or its place.
 fn picture_of(ui: &mut Ui, work: &mut PanelContext<'_>, textures: &mut Textures, name: &str) {
     let (place, response) = ui.allocate_exact_size(PICTURE.into(), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("Picture of {name}")));
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, tr!("Picture of {name}", name)));
     paint_picture(ui, place, work, textures, &name.into());
 }
 

@@ -9,6 +9,7 @@ use maulstick_types::paint::HistoryStep;
 
 use super::{Textures, paint_picture};
 use crate::input::keys::Action;
+use crate::language;
 use crate::rig::thumbnails::Pictured;
 use crate::widgets::context::PanelContext;
 use crate::widgets::rows::ask;
@@ -35,7 +36,7 @@ fn rows(work: &PanelContext<'_>) -> Vec<Row> {
     };
     let row = |step: &HistoryStep| Row {
         id: step.id,
-        words: capital(&step.what),
+        words: capital(&language::step(&step.what)),
         done: step.done,
     };
     let mut rows: Vec<Row> = paint.status.history.iter().map(row).collect();
@@ -43,7 +44,7 @@ fn rows(work: &PanelContext<'_>) -> Vec<Row> {
     if !rows.is_empty() && done == paint.status.undo as usize {
         rows.push(Row {
             id: 0,
-            words: "Beginning".to_owned(),
+            words: tr!("Beginning").to_owned(),
             done: true,
         });
     }
@@ -73,12 +74,12 @@ pub(super) fn show(ui: &mut Ui, work: &mut PanelContext<'_>, textures: &mut Text
             button.on_hover_text(hover).clicked()
         };
         let keys = &work.preferences.keys;
-        let back = keys.hint(ui.ctx(), "The newest step back", &[Action::Undo]);
-        let again = keys.hint(ui.ctx(), "What was undone, again", &[Action::Redo]);
-        if step(ui, "Undo", undo, &back) {
+        let back = keys.hint(ui.ctx(), tr!("The newest step back"), &[Action::Undo]);
+        let again = keys.hint(ui.ctx(), tr!("What was undone, again"), &[Action::Redo]);
+        if step(ui, tr!("Undo"), undo, &back) {
             ask(work, Ok(Undo { brush: None }));
         }
-        if step(ui, "Redo", redo, &again) {
+        if step(ui, tr!("Redo"), redo, &again) {
             ask(work, Ok(Redo { brush: None }));
         }
     });
@@ -90,9 +91,9 @@ pub(super) fn show(ui: &mut Ui, work: &mut PanelContext<'_>, textures: &mut Text
         for (at, row) in rows.iter().enumerate() {
             let place = now.map(|now| at.cmp(&now));
             let said = match place {
-                Some(std::cmp::Ordering::Equal) => format!("Now: {}", row.words),
-                Some(std::cmp::Ordering::Greater) => format!("Back to: {}", row.words),
-                _ => format!("Forward to: {}", row.words),
+                Some(std::cmp::Ordering::Equal) => tr!("Now: {step}", step = row.words),
+                Some(std::cmp::Ordering::Greater) => tr!("Back to: {step}", step = row.words),
+                _ => tr!("Forward to: {step}", step = row.words),
             };
             let is_now = place == Some(std::cmp::Ordering::Equal);
             let shown = ui.push_id(row.id, |ui| {

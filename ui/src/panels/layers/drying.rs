@@ -10,15 +10,16 @@ use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{LayerName, Share, Ticks, ValueError};
 
 use super::region;
+use crate::language::layer_name;
 use crate::widgets::context::PanelContext;
 use crate::widgets::rows::{Number, Sliders, ask, choice, row};
 
 /// Choice of region.
-const PLACES: [&str; 2] = ["Whole canvas", "A part"];
+const PLACES: [&str; 2] = [tr_noop!("Whole canvas"), tr_noop!("A part")];
 
 const SHARE: Number<'_> = Number {
-    word: "Share",
-    hover: "How much of the wet film dries, from below: 100 % leaves nothing wet",
+    word: tr_noop!("Share"),
+    hover: tr_noop!("How much of the wet film dries, from below: 100 % leaves nothing wet"),
     range: 1.0..=100.0,
     unit: " %",
     decimals: 0,
@@ -80,8 +81,8 @@ impl DryingForm {
     pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, layers: usize) {
         let change = self.sliders.row(ui, &SHARE, self.percent);
         self.percent = change.moved.unwrap_or(self.percent);
-        row(ui, "Name", |ui| {
-            let name = TextEdit::singleline(&mut self.name).hint_text("of the new layer");
+        row(ui, tr!("Name"), |ui| {
+            let name = TextEdit::singleline(&mut self.name).hint_text(tr!("of the new layer"));
             ui.add(name.desired_width(f32::INFINITY))
         });
         let Some(canvas) = work.rig.canvas() else {
@@ -89,7 +90,7 @@ impl DryingForm {
         };
         let size_m = canvas.cells.map(|cells| f64::from(cells) * canvas.cell_m);
         let place = PLACES[usize::from(self.part.is_some())];
-        if let Some(chosen) = choice(ui, "Where", place, PLACES) {
+        if let Some(chosen) = choice(ui, tr!("Where"), place, PLACES) {
             self.part = (chosen == PLACES[1]).then(|| region::middle(size_m));
         }
         if let Some(region) = &mut self.part {
@@ -97,15 +98,15 @@ impl DryingForm {
         }
         ui.horizontal(|ui| {
             let dry = ui
-                .button("Dry")
-                .on_hover_text("Wet paint becomes a dry layer at once");
+                .button(tr!("Dry"))
+                .on_hover_text(tr!("Wet paint becomes a dry layer at once"));
             if dry.clicked() {
                 let share = Share::new((self.percent * 1e-2) as f32);
                 ask(work, share.and_then(|share| self.dry(share, None)));
                 self.name.clear();
             }
-            let wet = ui.add_enabled(layers > 0, eframe::egui::Button::new("Wet again"));
-            let wet = wet.on_hover_text("The newest dry layer becomes wet paint again");
+            let wet = ui.add_enabled(layers > 0, eframe::egui::Button::new(tr!("Wet again")));
+            let wet = wet.on_hover_text(tr!("The newest dry layer becomes wet paint again"));
             if wet.clicked() {
                 let wet = Wet {
                     surface: CANVAS,
@@ -134,7 +135,7 @@ impl DryingForm {
 
     /// Drying while time goes by.
     fn in_time(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
-        row(ui, "Dry over", |ui| {
+        row(ui, tr!("Dry over"), |ui| {
             let most = f64::from(*DRYING_TICKS.end()) / f64::from(TICKS_A_SECOND);
             let time = DragValue::new(&mut self.time_s)
                 .range(1.0..=most)
@@ -142,9 +143,9 @@ impl DryingForm {
                 .custom_formatter(|seconds, _| clock(seconds))
                 .custom_parser(seconds);
             let time = ui.add(time);
-            let start = ui
-                .button("Start")
-                .on_hover_text("All that is wet there dries evenly; one may paint meanwhile");
+            let start = ui.button(tr!("Start")).on_hover_text(tr!(
+                "All that is wet there dries evenly; one may paint meanwhile"
+            ));
             if start.clicked() {
                 let ticks = (self.time_s * f64::from(TICKS_A_SECOND)).round() as u32;
                 let over = Ticks::new(ticks).map(Some);
@@ -152,20 +153,20 @@ impl DryingForm {
                 self.name.clear();
             }
             let stop = ui
-                .button("Stop")
-                .on_hover_text("What is wet still stays wet");
+                .button(tr!("Stop"))
+                .on_hover_text(tr!("What is wet still stays wet"));
             if stop.clicked() {
                 ask(work, Ok(StopDrying { surface: CANVAS }));
             }
-            time.on_hover_text("Minutes and seconds")
+            time.on_hover_text(tr!("Minutes and seconds"))
         });
         let status = work.rig.paint.as_ref().map(|paint| &paint.status);
         if let Some(goes_on) = status.and_then(drying) {
-            let name = match goes_on.layer.as_str() {
-                "" => "Dries",
-                name => name,
+            let time = clock(goes_on.left_s);
+            let text = match goes_on.layer.as_str() {
+                "" => tr!("Dries: {time} left", time),
+                layer => tr!("{layer}: {time} left", layer = layer_name(layer), time),
             };
-            let text = format!("{name}: {} left", clock(goes_on.left_s));
             ui.add(ProgressBar::new(goes_on.share).text(text));
         }
     }

@@ -14,6 +14,7 @@ use maulstick_types::edits::{LayerRef, NameLayer, Opacity};
 use maulstick_types::scene::Layer;
 use maulstick_types::values::{LayerName, OpacityFactor, ValueError};
 
+use crate::language::layer_name;
 use crate::panels::Panel;
 use crate::widgets::context::PanelContext;
 use crate::widgets::rows::{Number, Sliders, ask, cell, note};
@@ -27,8 +28,8 @@ const NAME: f32 = 92.0;
 const WAY: f32 = 84.0;
 
 const OPACITY: Number<'_> = Number {
-    word: "Opacity",
-    hover: "How much the layer hides what lies below; its relief stays",
+    word: tr_noop!("Opacity"),
+    hover: tr_noop!("How much the layer hides what lies below; its relief stays"),
     range: 0.0..=100.0,
     unit: " %",
     decimals: 0,
@@ -48,7 +49,7 @@ pub(crate) struct LayersPanel {
 
 impl Panel for LayersPanel {
     fn title(&self) -> &'static str {
-        "Layers"
+        tr_noop!("Layers")
     }
 
     fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
@@ -56,15 +57,17 @@ impl Panel for LayersPanel {
             return;
         };
         let layers = scene.layers.clone();
-        ui.checkbox(&mut work.rig.show_wet, "Highlight wet paint")
-            .on_hover_text("Wet paint is shown under a tint, so that it is told from dry paint");
+        ui.checkbox(&mut work.rig.show_wet, tr!("Highlight wet paint"))
+            .on_hover_text(tr!(
+                "Wet paint is shown under a tint, so that it is told from dry paint"
+            ));
         self.hidden
             .retain(|number, _| layers.iter().any(|layer| layer.number == *number));
         for layer in layers.iter().rev() {
             self.layer(ui, work, layer);
         }
         if layers.is_empty() {
-            note(ui, "Nothing has dried yet: all paint is wet.");
+            note(ui, tr!("Nothing has dried yet: all paint is wet."));
         }
         ui.separator();
         self.drying.show(ui, work, layers.len());
@@ -98,7 +101,11 @@ impl LayersPanel {
                     self.sliders
                         .bare(ui, &OPACITY, &format!("opacity {number}"), shown);
                 slider.widget_info(|| {
-                    WidgetInfo::slider(true, change.shown, format!("Opacity of {}", layer.name))
+                    WidgetInfo::slider(
+                        true,
+                        change.shown,
+                        tr!("Opacity of {layer}", layer = layer_name(&layer.name)),
+                    )
                 });
                 // All layers above are computed anew, and an opacity is a step to undo: once is enough.
                 if let Some(percent) = change.settled {
@@ -117,12 +124,12 @@ impl LayersPanel {
                 Role::CheckBox,
                 true,
                 is_shown,
-                format!("Show {}", layer.name),
+                tr!("Show {layer}", layer = layer_name(&layer.name)),
             )
         });
         let button = button.on_hover_text(match is_shown {
-            true => "Hide this layer; its relief stays",
-            false => "Show this layer again",
+            true => tr!("Hide this layer; its relief stays"),
+            false => tr!("Show this layer again"),
         });
         if !button.clicked() {
             return None;
@@ -137,8 +144,9 @@ impl LayersPanel {
     /// The name of a layer; a click gives it another one.
     fn title(&mut self, ui: &mut Ui, layer: &Layer) {
         let name = cell(ui, NAME, |ui| {
-            let name = ui.add(Button::new(&layer.name).frame(false).truncate());
-            name.on_hover_text("Click to give it another name")
+            let name = layer_name(&layer.name);
+            let name = ui.add(Button::new(name).frame(false).truncate());
+            name.on_hover_text(tr!("Click to give it another name"))
         });
         if name.clicked() {
             self.naming = Some((layer.number, layer.name.clone()));
@@ -151,7 +159,7 @@ impl LayersPanel {
             return;
         };
         let field = ui.add(TextEdit::singleline(name).desired_width(NAME - 8.0));
-        field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Name of the layer"));
+        field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, tr!("Name of the layer")));
         if field.lost_focus() {
             let given = !ui.input(|input| input.key_pressed(Key::Escape));
             let (layer, name) = (*layer, LayerName::new(name.trim()));

@@ -36,10 +36,10 @@ pub(super) fn show(ui: &mut Ui, region: &mut Region, size_m: [f64; 2], units: Un
             let [x, y] = &mut region.corner_m;
             let [width, height] = &mut region.size_m;
             for (word, hover, m) in [
-                ("Left", "From the left edge of the canvas", x),
-                ("Bottom", "From the lower edge of the canvas", y),
-                ("Width", "Width of the part", width),
-                ("Height", "Height of the part", height),
+                (tr!("Left"), tr!("From the left edge of the canvas"), x),
+                (tr!("Bottom"), tr!("From the lower edge of the canvas"), y),
+                (tr!("Width"), tr!("Width of the part"), width),
+                (tr!("Height"), tr!("Height of the part"), height),
             ] {
                 ui.horizontal(|ui| {
                     let mut shown = *m / unit_m;
@@ -65,7 +65,7 @@ fn map(ui: &mut Ui, region: &mut Region, size_m: [f64; 2]) {
     let scale = f64::from(MAP) / size_m[0].max(size_m[1]).max(1e-6);
     let size = vec2((size_m[0] * scale) as f32, (size_m[1] * scale) as f32);
     let (place, response) = ui.allocate_exact_size(size.max(vec2(8.0, 8.0)), Sense::drag());
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Map of the canvas"));
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, tr!("Map of the canvas")));
     let start = ui.input(|input| input.pointer.press_origin());
     if let (true, Some(from), Some(to)) =
         (response.dragged(), start, response.interact_pointer_pos())
@@ -80,7 +80,7 @@ fn map(ui: &mut Ui, region: &mut Region, size_m: [f64; 2]) {
     let ink = Color32::from_rgb(30, 96, 170);
     painter.rect_filled(part, square, ink.gamma_multiply(0.35));
     painter.rect_stroke(part, square, Stroke::new(1.5, ink), StrokeKind::Inside);
-    response.on_hover_text("Drag over the part of the canvas that is meant");
+    response.on_hover_text(tr!("Drag over the part of the canvas that is meant"));
 }
 
 /// The region between two points of the map; `None` if it is too narrow.

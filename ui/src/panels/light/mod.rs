@@ -25,51 +25,51 @@ mod sphere;
 
 /// Descriptions of the CIE's illuminants, in their order.
 const LIKE: [&str; ILLUMINANTS.len()] = [
-    "A, light bulb",
-    "D50, warm daylight",
-    "D65, daylight",
-    "FL2, cool white tube",
-    "FL8, broad-band tube",
-    "FL11, three-band tube",
+    tr_noop!("A, light bulb"),
+    tr_noop!("D50, warm daylight"),
+    tr_noop!("D65, daylight"),
+    tr_noop!("FL2, cool white tube"),
+    tr_noop!("FL8, broad-band tube"),
+    tr_noop!("FL11, three-band tube"),
 ];
 /// Years of the observers.
 const OBSERVERS: [(&str, u32); 2] = [("1931, 2°", 1931), ("1964, 10°", 1964)];
 
 const STRENGTH: Number<'_> = Number {
-    word: "Strength",
-    hover: "How strong the lamp is; 1 as it was built",
+    word: tr_noop!("Strength"),
+    hover: tr_noop!("How strong the lamp is; 1 as it was built"),
     range: 0.1..=10.0,
     unit: "",
     decimals: 2,
     factors: true,
 };
 const EXPOSURE: Number<'_> = Number {
-    word: "Exposure",
-    hover: "How much of the light the eye takes",
+    word: tr_noop!("Exposure"),
+    hover: tr_noop!("How much of the light the eye takes"),
     range: 0.1..=10.0,
     unit: "",
     decimals: 2,
     factors: true,
 };
 const RELIEF: Number<'_> = Number {
-    word: "Relief",
-    hover: "How strongly brush marks stand out; 1 as they are, 0 flat",
+    word: tr_noop!("Relief"),
+    hover: tr_noop!("How strongly brush marks stand out; 1 as they are, 0 flat"),
     range: 0.0..=5.0,
     unit: "",
     decimals: 2,
     factors: false,
 };
 const SOFTNESS: Number<'_> = Number {
-    word: "Softness",
-    hover: "How large the lamp is: 0 casts sharp shadows, 1 soft ones",
+    word: tr_noop!("Softness"),
+    hover: tr_noop!("How large the lamp is: 0 casts sharp shadows, 1 soft ones"),
     range: 0.0..=1.0,
     unit: "",
     decimals: 2,
     factors: false,
 };
 const WAVELENGTHS: Number<'_> = Number {
-    word: "Samples",
-    hover: "Wavelengths that are computed",
+    word: tr_noop!("Samples"),
+    hover: tr_noop!("Wavelengths that are computed"),
     range: *SAMPLES.start() as f64..=*SAMPLES.end() as f64,
     unit: "",
     decimals: 0,
@@ -89,7 +89,7 @@ pub(crate) struct LightPanel {
 
 impl Panel for LightPanel {
     fn title(&self) -> &'static str {
-        "Light"
+        tr_noop!("Light")
     }
 
     fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
@@ -108,7 +108,7 @@ impl Panel for LightPanel {
             let change = self.sliders.row(ui, number, *value);
             *value = change.moved.unwrap_or(*value);
         }
-        CollapsingHeader::new("Advanced colour").show(ui, |ui| self.research(ui, &mut light));
+        CollapsingHeader::new(tr!("Advanced colour")).show(ui, |ui| self.research(ui, &mut light));
         if light == before && !expose {
             return;
         }
@@ -142,8 +142,9 @@ impl LightPanel {
         let change = self.sliders.row(ui, &EXPOSURE, light.exposure);
         light.exposure = change.moved.unwrap_or(light.exposure);
         below(ui, |ui| {
-            let button = ui.button("Auto exposure");
-            let button = button.on_hover_text("So that the bare canvas is as bright as it can be");
+            let button = ui.button(tr!("Auto exposure"));
+            let button =
+                button.on_hover_text(tr!("So that the bare canvas is as bright as it can be"));
             button.clicked()
         })
     }
@@ -173,13 +174,13 @@ impl LightPanel {
             .position(|name| *name == light.illuminant);
         let known = known.filter(|_| light.spectrum.is_empty());
         let shown = known.map_or(light.illuminant.as_str(), |place| LIKE[place]);
-        let chosen = choice(ui, "Light", shown, LIKE);
+        let chosen = choice(ui, tr!("Light"), shown, LIKE);
         if let Some(place) = chosen.and_then(|chosen| LIKE.iter().position(|l| **l == chosen)) {
             ILLUMINANTS[place].clone_into(&mut light.illuminant);
             light.spectrum.clear();
         }
-        row(ui, "From a file", |ui| {
-            let edit = TextEdit::singleline(&mut self.file).hint_text("CSV of nm,power");
+        row(ui, tr!("From a file"), |ui| {
+            let edit = TextEdit::singleline(&mut self.file).hint_text(tr!("CSV of nm,power"));
             let edit = ui.add(edit.desired_width(f32::INFINITY));
             let entered = ui.input(|input| input.key_pressed(eframe::egui::Key::Enter));
             if edit.lost_focus() && entered && !self.file.trim().is_empty() {
@@ -192,29 +193,31 @@ impl LightPanel {
                     Err(fault) => self.told = spectrum_file::told(&fault),
                 }
             }
-            edit.on_hover_text("The whole path of a measured spectrum; Enter reads it")
+            edit.on_hover_text(tr!("The whole path of a measured spectrum; Enter reads it"))
         });
         if !self.told.is_empty() {
             wrong(ui, &self.told);
         }
-        ui.checkbox(&mut light.adapted, "White-balance to this light")
-            .on_hover_text("White looks white; else the light's own colour is seen");
+        ui.checkbox(&mut light.adapted, tr!("White-balance to this light"))
+            .on_hover_text(tr!(
+                "White looks white; else the light's own colour is seen"
+            ));
     }
 
     /// Conversion of its light to colour.
     fn research(&mut self, ui: &mut Ui, light: &mut Light) {
         let year = OBSERVERS.iter().find(|(_, year)| *year == light.observer);
         let (shown, _) = year.unwrap_or(&OBSERVERS[0]);
-        let chosen = choice(ui, "Observer", shown, OBSERVERS.map(|(name, _)| name));
+        let chosen = choice(ui, tr!("Observer"), shown, OBSERVERS.map(|(name, _)| name));
         let year = OBSERVERS
             .iter()
             .find(|(name, _)| chosen.as_deref() == Some(name));
         light.observer = year.map_or(light.observer, |(_, year)| *year);
-        if let Some(rule) = choice(ui, "Rule", &light.rule.clone(), RULES) {
+        if let Some(rule) = choice(ui, tr!("Rule"), &light.rule.clone(), RULES) {
             light.rule = rule;
         }
         if light.rule == "reference" {
-            note(ui, "All 101 wavelengths: slow, and exact.");
+            note(ui, tr!("All 101 wavelengths: slow, and exact."));
             return;
         }
         let change = self.sliders.row(ui, &WAVELENGTHS, f64::from(light.samples));

@@ -17,7 +17,7 @@ const STEP: f64 = 0.05;
 /// Shows the pad with the picture of a ball on it; where the lamp was dragged to.
 pub(super) fn show(ui: &mut Ui, ball: TextureId, direction: [f64; 3]) -> Option<[f64; 3]> {
     let (place, response) = ui.allocate_exact_size(vec2(SIDE, SIDE), Sense::click_and_drag());
-    response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, "Lamp"));
+    response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, tr!("Lamp")));
     let mut moved = None;
     if let Some(at) = response.interact_pointer_pos()
         && (response.dragged() || response.clicked())
@@ -47,7 +47,9 @@ pub(super) fn show(ui: &mut Ui, ball: TextureId, direction: [f64; 3]) -> Option<
         gold,
         Stroke::new(1.5, Color32::from_black_alpha(200)),
     );
-    response.on_hover_text("Drag the lamp over the canvas, or move it by the arrow keys");
+    response.on_hover_text(tr!(
+        "Drag the lamp over the canvas, or move it by the arrow keys"
+    ));
     moved
 }
 
@@ -88,21 +90,19 @@ pub(super) fn words(direction: [f64; 3]) -> String {
     let across = (x * x + y * y).sqrt();
     let height = acos(across.clamp(0.0, 1.0)).to_degrees().round();
     if across < 0.1 {
-        return "From straight above".to_owned();
+        return tr!("From straight above").to_owned();
     }
-    let sides = [
-        "the right",
-        "the upper right",
-        "above",
-        "the upper left",
-        "the left",
-        "the lower left",
-        "below",
-        "the lower right",
-    ];
     let eighth = (atan2(y, x) / std::f64::consts::FRAC_PI_4).round();
-    let side = sides[eighth.rem_euclid(8.0) as usize % 8];
-    format!("From {side}, {height}° high")
+    match eighth.rem_euclid(8.0) as usize % 8 {
+        0 => tr!("From the right, {height}° high", height),
+        1 => tr!("From the upper right, {height}° high", height),
+        2 => tr!("From above, {height}° high", height),
+        3 => tr!("From the upper left, {height}° high", height),
+        4 => tr!("From the left, {height}° high", height),
+        5 => tr!("From the lower left, {height}° high", height),
+        6 => tr!("From below, {height}° high", height),
+        _ => tr!("From the lower right, {height}° high", height),
+    }
 }
 
 #[cfg(test)]

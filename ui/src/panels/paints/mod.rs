@@ -38,14 +38,14 @@ struct Carried(String);
 
 impl Panel for PaintsPanel {
     fn title(&self) -> &'static str {
-        "Tubes"
+        tr_noop!("Tubes")
     }
 
     fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let edit = TextEdit::singleline(&mut self.search)
-            .hint_text("Blue, or PB29")
+            .hint_text(tr!("Blue, or PB29"))
             .desired_width(190.0);
-        labelled::named(ui, "Search", "By name, or by colour index.", edit);
+        labelled::named(ui, tr!("Search"), tr!("By name, or by colour index."), edit);
         self.choose_set(ui, work);
         rows::show(self, ui, work);
         ui.separator();
@@ -67,16 +67,19 @@ impl PaintsPanel {
         ui.horizontal(|ui| {
             let name = labelled::label(
                 ui,
-                "Set",
-                "Which tubes are shown: all, or a set of your own.",
+                tr!("Set"),
+                tr!("Which tubes are shown: all, or a set of your own."),
             );
-            let shown = self.set.clone().unwrap_or_else(|| "All tubes".to_owned());
+            let shown = self
+                .set
+                .clone()
+                .unwrap_or_else(|| tr!("All tubes").to_owned());
             ComboBox::from_id_salt("set")
                 .width(150.0)
                 .truncate()
                 .selected_text(shown)
                 .show_ui(ui, |ui| {
-                    ui.selectable_value(&mut self.set, None, "All tubes");
+                    ui.selectable_value(&mut self.set, None, tr!("All tubes"));
                     for set in sets {
                         let value = Some(set.name.clone());
                         ui.selectable_value(&mut self.set, value, &set.name);

@@ -42,7 +42,9 @@ enum Deed {
 pub(super) fn show(panel: &mut PaintsPanel, ui: &mut Ui, work: &mut PanelContext<'_>) {
     let tubes = tubes(panel, work);
     if tubes.is_empty() {
-        ui.label("No tube is called so. Search for a part of its name, or its colour index.");
+        ui.label(tr!(
+            "No tube is called so. Search for a part of its name, or its colour index."
+        ));
         return;
     }
     let mut asked = None;
@@ -150,29 +152,29 @@ fn tube_row(ui: &mut Ui, work: &PanelContext<'_>, tube: &Tube) -> Option<Deed> {
         }
         shown.dnd_set_drag_payload(Carried(tube.text.clone()));
         shown.context_menu(|ui| {
-            if ui.button("Load the brush").clicked() {
+            if ui.button(tr!("Load the brush")).clicked() {
                 deed = Some(Deed::Load);
             }
-            if ui.button("To the palette").clicked() {
+            if ui.button(tr!("To the palette")).clicked() {
                 deed = Some(Deed::ToPalette);
             }
             for (place, set) in work.preferences.paint_sets.iter().enumerate() {
                 let held = set.paints.contains(&tube.text);
                 let words = match held {
-                    true => format!("Out of '{}'", set.name),
-                    false => format!("Into '{}'", set.name),
+                    true => tr!("Out of '{set}'", set = set.name),
+                    false => tr!("Into '{set}'", set = set.name),
                 };
                 if ui.button(words).clicked() {
                     deed = Some(Deed::IntoSet(place, !held));
                 }
             }
         });
-        let hover = format!(
-            "Load the brush with it. Right: more. Drag it into a well.\n{}",
-            tube.about
+        let hover = tr!(
+            "Load the brush with it. Right: more. Drag it into a well.\n{about}",
+            about = tube.about
         );
         shown.on_hover_text(hover);
-        let words = format!("{} to the palette", tube.name);
+        let words = tr!("{paint} to the palette", paint = tube.name);
         let plus = ui.add(Button::new("+").min_size(vec2(PLUS, ROW)));
         let plus = plus.on_hover_text(&words);
         plus.widget_info(|| WidgetInfo::labeled(Role::Button, true, &words));

@@ -24,7 +24,7 @@ impl SetRows {
         work: &mut PanelContext<'_>,
         shown: &mut Option<String>,
     ) {
-        ui.strong("Sets");
+        ui.strong(tr!("Sets"));
         let place = shown.as_ref().and_then(|own| {
             let mut sets = work.preferences.paint_sets.iter();
             sets.position(|set| set.name == *own)
@@ -32,27 +32,30 @@ impl SetRows {
         if let Some(place) = place {
             self.deeds(ui, work, shown, place);
         } else if !work.preferences.paint_sets.is_empty() {
-            ui.label("Choose a set above to lay it out.");
+            ui.label(tr!("Choose a set above to lay it out."));
         }
         self.bring_back(ui, work);
         let edit = TextEdit::singleline(&mut self.name)
-            .hint_text("Portrait")
+            .hint_text(tr!("Portrait"))
             .desired_width(190.0);
-        let hover = "What the paints on the palette are to be called as a set.";
-        let field = labelled::named(ui, "Name", hover, edit);
+        let hover = tr!("What the paints on the palette are to be called as a set.");
+        let field = labelled::named(ui, tr!("Name"), hover, edit);
         if field.changed() {
             self.wrong = None;
         }
         let enter = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         ui.horizontal(|ui| {
-            let button = ui.button("Save palette as set");
-            let hover = "Keeps the paints that lie on the palette as a set of this name.";
+            let button = ui.button(tr!("Save palette as set"));
+            let hover = tr!("Keeps the paints that lie on the palette as a set of this name.");
             if button.on_hover_text(hover).clicked() || enter {
                 self.keep(work, shown);
             }
             if let Some(place) = place {
-                let button = ui.button("Rename the set");
-                if button.on_hover_text("Calls the chosen set so.").clicked() {
+                let button = ui.button(tr!("Rename the set"));
+                if button
+                    .on_hover_text(tr!("Calls the chosen set so."))
+                    .clicked()
+                {
                     self.rename(work, shown, place);
                 }
             }
@@ -70,8 +73,8 @@ impl SetRows {
         place: usize,
     ) {
         ui.horizontal(|ui| {
-            let lay = ui.button("Lay out");
-            let hover = "The palette holds the paints of this set, and no others.";
+            let lay = ui.button(tr!("Lay out"));
+            let hover = tr!("The palette holds the paints of this set, and no others.");
             if lay.on_hover_text(hover).clicked() {
                 let set = work.preferences.paint_sets[place].clone();
                 match set.mixtures(&work.rig.library) {
@@ -79,13 +82,13 @@ impl SetRows {
                     Err(fault) => work.notifications.of(&fault),
                 }
             }
-            let renew = ui.button("Renew");
-            let hover = "The set becomes what lies on the palette now.";
+            let renew = ui.button(tr!("Renew"));
+            let hover = tr!("The set becomes what lies on the palette now.");
             if renew.on_hover_text(hover).clicked() {
                 let name = work.preferences.paint_sets[place].name.clone();
                 work.preferences.paint_sets[place] = PaintSet::of(&name, &work.wells());
             }
-            if ui.button("Delete set").clicked() {
+            if ui.button(tr!("Delete set")).clicked() {
                 self.deleted = Some((place, work.preferences.paint_sets.remove(place)));
                 *shown = None;
             }
@@ -98,8 +101,8 @@ impl SetRows {
         };
         let mut back = false;
         ui.horizontal(|ui| {
-            ui.label(format!("{} is deleted.", set.name));
-            back = ui.small_button("Bring back").clicked();
+            ui.label(tr!("{name} is deleted.", name = set.name));
+            back = ui.small_button(tr!("Bring back")).clicked();
         });
         if back {
             let place = (*place).min(work.preferences.paint_sets.len());

@@ -55,11 +55,9 @@ impl WellRows {
     ) {
         let mut wells = work.wells();
         ui.horizontal(|ui| {
-            ui.strong("On the palette");
+            ui.strong(tr!("On the palette"));
             let paints = work.rig.scene.as_ref().map_or(0, |scene| scene.paints.len());
-            ui.weak(format!("{paints} of {SLOTS} paints")).on_hover_text(format!(
-                "Tubes that this painting has used. It has room for {SLOTS}, its palette for {MOST} mixtures."
-            ));
+            ui.weak(tr!("{paints} of {slots} paints", paints, slots = SLOTS)).on_hover_text(tr!("Tubes that this painting has used. It has room for {slots}, its palette for {most} mixtures.", slots = SLOTS, most = MOST));
         });
         self.chosen.take_if(|place| *place >= wells.len());
         let mut asked = None;
@@ -101,7 +99,7 @@ impl WellRows {
             None => {}
         }
         if wells.is_empty() {
-            ui.label("No paint lies there. Put some on it with +.");
+            ui.label(tr!("No paint lies there. Put some on it with +."));
         }
         self.field(ui, work, wells.len());
     }
@@ -112,8 +110,8 @@ impl WellRows {
             .hint_text("2 Cobalt Blue, 1 …")
             .char_limit(4096)
             .desired_width(190.0);
-        let hover = "A paint's name, or a mixture such as Cobalt Blue=0.7,Titanium White=0.3";
-        let shown = labelled::named(ui, "Mixture", hover, edit);
+        let hover = tr!("A paint's name, or a mixture such as Cobalt Blue=0.7,Titanium White=0.3");
+        let shown = labelled::named(ui, tr!("Mixture"), hover, edit);
         if shown.changed() {
             self.fault = None;
         }
@@ -131,15 +129,16 @@ impl WellRows {
             });
         }
         let words = match self.chosen {
-            Some(place) => format!("Into well {}", place + 1),
-            None => "Add to palette".to_owned(),
+            Some(place) => tr!("Into well {number}", number = place + 1),
+            None => tr!("Add to palette").to_owned(),
         };
         let is_room = self.chosen.is_some() || count < MOST;
         let button = ui.add_enabled(is_room && !self.text.trim().is_empty(), Button::new(words));
         let button = match is_room {
             true => button,
-            false => button.on_disabled_hover_text(format!(
-                "The palette holds {MOST} mixtures: choose one to replace, or remove one."
+            false => button.on_disabled_hover_text(tr!(
+                "The palette holds {most} mixtures: choose one to replace, or remove one.",
+                most = MOST
             )),
         };
         if button.clicked() || (enter && is_room) {
@@ -176,23 +175,35 @@ fn well(
         let (area, _) = ui.allocate_exact_size(size, Sense::hover());
         draw(ui, Rect::from_center_size(area.center(), size), [colour; 2]);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let mut tool = |ui: &mut Ui, sign: &str, enabled: bool, does: &str, asked: Deed| {
-                let said = format!("{does} {name}");
+            let mut tool = |ui: &mut Ui, sign: &str, enabled: bool, said: String, asked: Deed| {
                 let button = ui.add_enabled(enabled, Button::new(sign).small());
                 button.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, &said));
                 if button.on_hover_text(&said).clicked() {
                     deed = Some(asked);
                 }
             };
-            tool(ui, "Remove", true, "Remove from the palette:", Deed::Remove);
-            tool(ui, "Down", !is_last, "Down:", Deed::Down);
-            tool(ui, "Up", place > 0, "Up:", Deed::Up);
+            tool(
+                ui,
+                tr!("Remove"),
+                true,
+                tr!("Remove from the palette: {name}", name),
+                Deed::Remove,
+            );
+            tool(
+                ui,
+                tr!("Down"),
+                !is_last,
+                tr!("Down: {name}", name),
+                Deed::Down,
+            );
+            tool(ui, tr!("Up"), place > 0, tr!("Up: {name}", name), Deed::Up);
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 let button = Button::selectable(is_chosen, &name).truncate();
                 let shown: Response = ui.add(button.min_size(vec2(ui.available_width(), 0.0)));
-                let hover = format!(
-                    "Well {}: {name}\nClick, then choose a tube to replace this paint.",
-                    place + 1
+                let hover = tr!(
+                    "Well {number}: {name}\nClick, then choose a tube to replace this paint.",
+                    number = place + 1,
+                    name
                 );
                 if shown.on_hover_text(hover).clicked() {
                     deed = Some(Deed::Choose);

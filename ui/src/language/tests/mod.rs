@@ -1,0 +1,89 @@
+//! Languages.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | `sources` | the sentences of the sources, and what each language has of them |
+//! | `shown` | the window in German |
+
+mod shown;
+mod sources;
+
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+
+use super::*;
+use crate::settings::preferences::Preferences;
+
+thread_local! {
+    /// Sentences without a translation that were shown.
+    static MISSED: RefCell<BTreeSet<String>> = const { RefCell::new(BTreeSet::new()) };
+}
+
+pub(super) fn missed(english: &str) {
+    MISSED.with_borrow_mut(|missed| missed.insert(english.to_owned()));
+}
+
+#[test]
+fn places_are_filled_in_the_order_of_the_language() {
+    let (paints, slots) = (3, 48);
+    assert_eq!(
+        tr!("{paints} of {slots} paints", paints, slots),
+        "3 of 48 paints"
+    );
+    assert_eq!(tr!("Delete {name}?", name = "Blue {x}"), "Delete Blue {x}?");
+    choose(Some("de"));
+    assert_eq!(
+        tr!("Delete {name}?", name = "Blue {x}"),
+        "Blue {x} löschen?"
+    );
+    assert_eq!(tr!("theme|Light"), "Hell");
+    assert_eq!(step("round stroke"), "Strich: Rund");
+    assert_eq!(
+        step("load Cobalt Blue + Ivory Black"),
+        "Laden: Cobalt Blue + Ivory Black"
+    );
+    assert_eq!(step("return to 'first'"), "Zurück zu „first“");
+    assert_eq!(step("12 steps"), "12 Schritte");
+    assert_eq!(layer_name("layer 3"), "Schicht 3");
+    assert_eq!(layer_name("layer of mine"), "layer of mine");
+    choose(Some("en"));
+    assert_eq!(tr!("theme|Light"), "Light");
+    assert_eq!(step("round stroke"), "round stroke");
+}
+
+#[test]
+fn the_system_says_which_language_unless_it_is_unknown() {
+    let of = |locales: &[&str]| spoken(locales.iter().map(|locale| (*locale).to_owned()));
+    assert_eq!(of(&["de-AT", "en"]), "de");
+    assert_eq!(of(&["tlh", "de_DE"]), "de");
+    assert_eq!(of(&["en-GB", "de"]), "en");
+    assert_eq!(of(&["C", "de"]), "en");
+    assert_eq!(of(&["tlh"]), "en");
+    assert_eq!(of(&[]), "en");
+}
+
+#[test]
+fn the_choice_is_remembered_and_tasks_of_the_window_speak_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("window.toml");
+    let preferences = Preferences {
+        language: Some("de".to_owned()),
+        ..Preferences::default()
+    };
+    preferences.keep(&path).expect("kept");
+    let read = Preferences::read(&path).expect("read");
+    assert_eq!(read.language.as_deref(), Some("de"));
+    choose(read.language.as_deref());
+    let context = eframe::egui::Context::default();
+    let work = || tr!("this is no folder").to_owned();
+    let task = crate::background_task::BackgroundTask::start(&context, "words", work);
+    let said = loop {
+        if let std::task::Poll::Ready(said) = task.poll() {
+            break said;
+        }
+        std::thread::yield_now();
+    };
+    assert_eq!(said.as_deref(), Some("das ist kein Ordner"));
+    choose(Some("tlh"));
+    assert!(chosen().is_none(), "one that is unknown is the system's");
+}
