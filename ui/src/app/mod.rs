@@ -63,9 +63,9 @@ mod column;
 mod first_run;
 pub(crate) mod overlay;
 pub mod rack;
-#[cfg(test)]
-mod reach;
 pub(crate) mod sides;
+#[cfg(test)]
+mod tests;
 
 /// Longer side of a version's small picture, pixels, and how long one may take.
 const THUMBNAIL: u32 = 128;

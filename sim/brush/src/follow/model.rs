@@ -17,22 +17,20 @@ use crate::mark::{Beside, Mark, point_of};
 use crate::solver::Settings;
 use crate::spine_layout::SpineLayout;
 
-/// Longest pause between two samples in contact that the brush crosses along its path, ns; after a
-/// longer one it begins another stroke.
+/// Longest pause between two samples in contact that is crossed along their path, ns; a longer one begins a stroke.
 pub const BRIDGED_NS: u64 = 300_000_000;
 /// A touching brush is solved each time its handle has moved so far, and again between where a joint in contact
 /// moves [farther](FARTHEST_M), m: about as finely as paint is stepped. In between it is interpolated.
 const SOLVE_M: f64 = 0.175e-3;
 /// See [`SOLVE_M`].
 const FARTHEST_M: f64 = 0.25e-3;
-/// Solves between two samples at most: a hand is seldom that fast. Those of a pointer that leaps are more.
+/// Solves between two samples at most, but of a pointer that leaps.
 const MOST_SOLVES: f64 = 64.0;
-/// Greatest distance between two solves, m.
+/// Greatest distance between two solves, m of the surface.
 const APART_M: f64 = 1.8e-3;
-/// The time for which that many are enough, ns: a pause that is bridged may have more.
+/// The time for which so many are enough, ns.
 const MOST_SOLVES_NS: f64 = 1e8;
-/// Trial landings of a pen that find its mark: an upright head may bend to another side once its handle stands beside
-/// the point.
+/// Trial landings of a pen that find its mark: an upright head may bend otherwise with its handle beside the point.
 const LANDINGS: usize = 2;
 /// Largest number of times that a piece of the path is halved.
 const SPLITS: u32 = 2;
@@ -304,7 +302,8 @@ impl BrushModel {
         );
         let motion_m = path.length_m();
         let pause = (here.event_ns - start_ns) as f64 / MOST_SOLVES_NS;
-        let part_m = (motion_m / (MOST_SOLVES * pause.max(1.0))).clamp(SOLVE_M, APART_M);
+        let many_m = motion_m / (MOST_SOLVES * pause.max(1.0));
+        let part_m = many_m.min(APART_M * plane.zoom).max(SOLVE_M);
         let whole_m = tracked.left_over_m + motion_m;
         let mut solves = Vec::new();
         let (mut gone_m, mut at) = (part_m, 0.0);
