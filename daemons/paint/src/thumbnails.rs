@@ -36,17 +36,18 @@ enum State {
     Now([u64; 2]),
     /// The tiles of a version: another one of its name has others.
     Kept(Weak<dyn std::any::Any + Send + Sync>),
-    /// A step of the history; while it is not finished, with the newest tile version.
-    Step(u64, Option<u64>),
+    /// A step of the history, and how many before it are undone; while it is not finished, with the newest tile version.
+    Step([u64; 2], Option<u64>),
 }
 
 impl Shows {
-    /// Content of the requested picture; `None` if there is no such version.
+    /// Content of the requested picture; `None` if there is no such version or step.
     fn of(painting: &Painting, asked: &ThumbnailRequest) -> Option<Self> {
         let state = match (asked.step, asked.version.as_str()) {
             (Some(step), _) => {
+                let at = painting.history().undone_before(step)?;
                 let open = painting.history().is_open(step);
-                State::Step(step, open.then(|| painting.versions()))
+                State::Step([step, at], open.then(|| painting.versions()))
             }
             (None, "") => State::Now([painting.versions(), painting.look().generation()]),
             (None, name) => {
@@ -81,7 +82,7 @@ impl Shows {
 }
 
 /// The answer where there is no picture.
-fn none() -> ThumbnailReply {
+fn no_picture() -> ThumbnailReply {
     ThumbnailReply {
         width: 0,
         height: 0,
@@ -90,7 +91,7 @@ fn none() -> ThumbnailReply {
     }
 }
 
-/// ReplyCache for small pictures.
+/// Server of small pictures.
 pub struct Thumbnails {
     server: Server,
     reader: Reader,
@@ -144,7 +145,7 @@ impl Thumbnails {
         let rests = now_ns >= self.work.1 + REST_NS;
         for (request, asked) in std::mem::take(&mut self.waiting) {
             let reply = match Shows::of(painting, &asked) {
-                None => none(),
+                None => no_picture(),
                 Some(shows) => match self.kept.iter().find(|(kept, _)| kept.is(&shows)) {
                     Some((_, reply)) => reply.clone(),
                     None => {
@@ -209,11 +210,11 @@ impl Thumbnails {
     fn draw(&mut self, painting: &mut Painting, shows: Shows) {
         let (to_node, drawn) = channel();
         let still = match shows.state {
-            State::Step(step, _) => painting.still_after(step),
+            State::Step([step, _], _) => painting.still_after(step),
             _ => Some(painting.still()),
         };
         let Some(mut still) = still else {
-            to_node.send(none()).ok();
+            to_node.send(no_picture()).ok();
             self.drawing = Some((shows, drawn));
             return;
         };

@@ -11,7 +11,7 @@ use maulstick_types::paint::TILE;
 
 use crate::display::WetFilms;
 use crate::ground::Ground;
-use crate::heap::{Heap, WELL_M};
+use crate::heap::{HeapCells, WELL_M};
 use crate::show_paint::ShowPaint;
 
 /// Thicknesses of a heap of which the colour is known: evenly from nothing to [`MOST_M`].
@@ -34,7 +34,7 @@ pub struct WellLook {
 #[derive(Clone, Debug, PartialEq)]
 pub enum WellShape {
     /// Paint from the tube.
-    Heap(Heap, HeapColours),
+    Heap(HeapCells, HeapColours),
     /// A glass jar of this colour, seen from above. Nothing that brushes leave in it is seen.
     Jar([f32; 3]),
 }
@@ -89,28 +89,31 @@ const WALL: f64 = 0.84;
 const JAR_M: [f32; 2] = [2.5e-3, 1e-3];
 
 impl WellLook {
-    /// Its height at a place, m, and its colour. Light that falls into a jar from the upper left shines through the far
-    /// side of what is in it.
+    /// Its heap, if it is no jar.
     #[must_use]
-    fn at(&self, at: [f64; 2]) -> (f32, [f32; 3]) {
-        let [x, y] = self.offset(at);
-        let is_wall = || x * x + y * y > WALL * WALL;
+    pub fn heap(&self) -> Option<&HeapCells> {
         match &self.shape {
-            WellShape::Heap(heap, colours) => {
-                let thickness_m = heap.thickness_m([x, y]);
-                (thickness_m as f32, colours.at(thickness_m))
-            }
-            WellShape::Jar(_) if is_wall() => (JAR_M[0], GLASS_RGB),
-            WellShape::Jar(rgb) => {
-                let through = 1.0 + 0.45 * (x - y) / WALL;
-                (JAR_M[1], rgb.map(|channel| channel * through as f32))
-            }
+            WellShape::Heap(heap, _) => Some(heap),
+            WellShape::Jar(_) => None,
         }
     }
 
-    /// A place seen from its middle, by its radius.
-    fn offset(&self, at: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|i| (at[i] - self.center[i]) / self.radius)
+    /// Its height in a cell of the surface, m, and its colour. Light that falls into a jar from the upper left shines
+    /// through the far side of what is in it.
+    fn at(&self, cell: [i64; 2]) -> (f32, [f32; 3]) {
+        let rgb = match &self.shape {
+            WellShape::Heap(heap, colours) => {
+                let thickness_m = heap.thickness_m(cell);
+                return (thickness_m, colours.at(thickness_m.into()));
+            }
+            WellShape::Jar(rgb) => rgb,
+        };
+        let [x, y] = [0, 1].map(|i| (cell[i] as f64 + 0.5 - self.center[i]) / self.radius);
+        if x * x + y * y > WALL * WALL {
+            return (JAR_M[0], GLASS_RGB);
+        }
+        let through = 1.0 + 0.45 * (x - y) / WALL;
+        (JAR_M[1], rgb.map(|channel| channel * through as f32))
     }
 }
 
@@ -147,15 +150,20 @@ impl BlankSurface {
         tile.map(|tile| self.shown.films(tile)).unwrap_or_default()
     }
 
+    /// The places in a tile of its cells that lie in a well.
+    pub fn cells_in_wells(&self, id: TileId) -> impl Iterator<Item = usize> {
+        let wells = self.wells.iter();
+        wells.flat_map(move |well| cells_in_circle(well.center, well.radius, id))
+    }
+
     /// The cells of a tile that lie in a well.
     pub fn in_wells(&self, id: TileId) -> impl Iterator<Item = WellCell> {
-        let corner = [f64::from(id.x), f64::from(id.y)].map(|tile| tile * TILE as f64);
+        let corner = [id.x, id.y].map(|tile| i64::from(tile) * TILE as i64);
         let wells = self.wells.iter();
         wells.flat_map(move |well| {
             cells_in_circle(well.center, well.radius, id).map(move |cell| {
-                let middle = [cell % TILE, cell / TILE].map(|at| at as f64 + 0.5);
-                let at = [corner[0] + middle[0], corner[1] + middle[1]];
-                let (height_m, rgb) = well.at(at);
+                let within = [cell % TILE, cell / TILE].map(|at| at as i64);
+                let (height_m, rgb) = well.at([0, 1].map(|i| corner[i] + within[i]));
                 WellCell {
                     cell,
                     hides: matches!(well.shape, WellShape::Jar(_)),

@@ -4,6 +4,7 @@
 //! level, a puddle.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use maulstick_num::{atan2, exp, sin, sin_cos};
 use maulstick_optics::THINNER;
@@ -13,17 +14,17 @@ use maulstick_types::Mixture;
 pub const WELL_M: f64 = 2e-3;
 /// Shares of thinner at which paint begins to run, and runs level.
 const RUNS: [f64; 2] = [0.1, 0.4];
-/// Radius of the heap's outline in the mean, and the depth of its two swings, by the well's radius.
+/// Mean radius of the outline, and amplitudes of its second and third harmonic, in radii of the well.
 const OUTLINE: [f64; 3] = [0.93, 0.035, 0.02];
 /// Least and most turns of a strand from the outline to the middle.
 const TURNS: [f64; 2] = [1.5, 2.4];
-/// Depth of the groove between two turns, by the height of the heap there.
+/// Depth of the groove between two turns, over the height there.
 const GROOVE: f64 = 0.3;
 /// Fall from the middle to the rim, by the height in the middle.
 const FALL: f64 = 0.2;
-/// Distance of the tip from the middle, its radius, by the well's radius, and its height, by that of the heap.
+/// Tip: distance from the middle and radius, in radii of the well; height, in heights of the heap.
 const TIP: [f64; 3] = [0.1, 0.13, 0.16];
-/// Height in the middle without the tip by the height in the mean: of a heap, and of a puddle.
+/// Height in the middle without the tip, over the mean height: of a heap, of a puddle.
 const RISE: [f64; 2] = [1.754, 1.240];
 
 /// A heap in a well.
@@ -38,7 +39,7 @@ pub struct Heap {
 }
 
 impl Heap {
-    /// The heap of a mixture: each lies another way.
+    /// The heap of a mixture: no two paints' look alike.
     #[must_use]
     pub fn of(mixture: &Mixture) -> Self {
         let thinner = mixture.parts.iter().filter(|part| part.paint == THINNER);
@@ -84,6 +85,47 @@ impl Heap {
     }
 }
 
+/// A heap in the cells of a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeapCells {
+    /// The lowest cell that it has a thickness for.
+    corner: [i64; 2],
+    across: usize,
+    thickness_m: Arc<[f32]>,
+}
+
+impl HeapCells {
+    /// The heap of a well whose middle and radius are in cells.
+    #[must_use]
+    pub fn of(heap: &Heap, center: [f64; 2], radius: f64) -> Self {
+        let corner = center.map(|at| (at - radius).floor() as i64);
+        let size = [0, 1].map(|i| ((center[i] + radius).ceil() as i64 - corner[i]).max(0) as usize);
+        let thickness = |at: usize| {
+            let cell = [at % size[0], at / size[0]].map(|at| at as f64 + 0.5);
+            let offset = [0, 1].map(|i| (corner[i] as f64 + cell[i] - center[i]) / radius);
+            heap.thickness_m(offset) as f32
+        };
+        Self {
+            corner,
+            across: size[0],
+            thickness_m: (0..size[0] * size[1]).map(thickness).collect(),
+        }
+    }
+
+    /// Thickness in a cell, m; 0 beside the well.
+    #[must_use]
+    pub fn thickness_m(&self, cell: [i64; 2]) -> f32 {
+        let [x, y] = [0, 1].map(|i| usize::try_from(cell[i] - self.corner[i]));
+        match (x, y) {
+            (Ok(x), Ok(y)) if x < self.across => {
+                let at = self.thickness_m.get(y * self.across + x);
+                at.copied().unwrap_or_default()
+            }
+            _ => 0.0,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -122,6 +164,20 @@ mod tests {
             assert!((mean - 2e-3).abs() < 4e-5, "{parts:?}: {mean}");
             let most = all.iter().copied().fold(0.0, f64::max);
             assert!(most < 4e-3, "{parts:?}: {most}");
+        }
+    }
+
+    #[test]
+    fn its_cells_have_the_thickness_of_their_middles() {
+        let heap = heap(&[("Titanium White", 1.0)]);
+        let cells = HeapCells::of(&heap, [10.25, -3.0], 6.0);
+        for cell in [[10, -3], [6, -5], [13, 1]] {
+            let middle = [0, 1].map(|i| cell[i] as f64 + 0.5 - [10.25, -3.0][i]);
+            let own = heap.thickness_m(middle.map(|at| at / 6.0)) as f32;
+            assert_eq!(cells.thickness_m(cell), own, "{cell:?}");
+        }
+        for beside in [[3, -3], [17, -3], [10, 4], [10, -10]] {
+            assert_eq!(cells.thickness_m(beside), 0.0, "{beside:?}");
         }
     }
 

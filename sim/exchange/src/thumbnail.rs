@@ -58,8 +58,8 @@ struct Blocks {
 
 /// Cells of a block across, at most.
 const BLOCK: usize = 8;
-/// Tiles whose colours are kept besides those of a whole surface.
-const SPARE: usize = 4096;
+/// Colours that are kept besides twice those of a whole surface: 12 MB.
+const SPARE: usize = 1 << 20;
 
 impl HistoryPictures {
     /// A surface with its colours alone, in sRGB, with at most `side` pixels either way; none if there is no such
@@ -75,23 +75,23 @@ impl HistoryPictures {
         self.drawn += 1;
         let size = cells.map(|side| side.div_ceil(block));
         let mut small = Thumbnail::new(size, side.max(1));
-        let (mut bakery, mut tiles) = (Bakery::default(), 0);
+        let (mut bakery, mut shown) = (Bakery::default(), 0);
         for band in 0..drawing.banded().bands() {
             let mut light =
                 vec![[0.0f32; 3]; drawing.banded().rows(band).len().div_ceil(block) * size[0]];
             for (id, tile) in drawing.banded().tiles(band) {
-                tiles += 1;
                 let wet = tile.and_then(Tile::wet_page).map(Page::id);
                 let dry = tile.and_then(Tile::dry).map(|stack| stack.id());
                 let key = (id, wet, dry, print, block);
                 let known = self.tiles.entry(key).or_insert_with(|| {
-                    let shown = drawing.banded().shown(id, tile, &mut bakery);
+                    let look = drawing.banded().shown(id, tile, &mut bakery);
                     Blocks {
-                        light: blocks(&drawing, (id, &shown), block, &small.light),
+                        light: blocks(&drawing, (id, &look), block, &small.light),
                         used: 0,
                     }
                 });
                 known.used = self.drawn;
+                shown += known.light.len();
                 let across = drawing.banded().within(id)[0].div_ceil(block);
                 let left = id.x as usize * TILE / block;
                 for (row, own) in known.light.chunks_exact(across).enumerate() {
@@ -102,7 +102,8 @@ impl HistoryPictures {
                 .chunks_exact(size[0])
                 .for_each(|row| small.add_light(row));
         }
-        if self.tiles.len() > 2 * tiles + SPARE {
+        let kept: usize = self.tiles.values().map(|own| own.light.len()).sum();
+        if kept > 2 * shown + SPARE {
             let drawn = self.drawn;
             self.tiles.retain(|_, own| own.used == drawn);
         }

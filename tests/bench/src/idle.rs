@@ -18,7 +18,7 @@ const SIZE: [u32; 2] = [1280, 800];
 /// Time after the start until all is drawn and settled: nothing signals that a window has no more to draw, and a shorter
 /// time would show in the figures.
 const SETTLES: Duration = Duration::from_secs(8);
-/// Time over which is measured: several of the looks that a window at rest takes.
+/// Time over which is measured: two of the looks that a window at rest takes.
 const MEASURED: Duration = Duration::from_secs(120);
 /// Targets, shares of a core: of the window, and of all processes beside it.
 const WINDOW_SHARE: f64 = 0.01;

@@ -24,8 +24,8 @@ const FREE: [i16; 2] = [600, 400];
 const CANVAS_AREA: [f64; 4] = [440.0, 30.0, 1180.0, 740.0];
 /// Time that a hand takes from one place of its way to the next: its speed, nothing waits for it.
 const STEP: Duration = Duration::from_millis(5);
-/// A place within the panels, pixels.
-const IN_PANELS: [i16; 2] = [1040, 30];
+/// The button that hides the panels, pixels, and where it is in a mirrored view: a drag that begins there moves nothing.
+const IN_PANELS: [[i16; 2]; 2] = [[1171, 25], [383, 25]];
 
 /// What a gesture may do to the steps of undo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +45,8 @@ pub(crate) struct Hand {
     dice: Pcg64Mcg,
     /// True in a gesture whose pointer leaps.
     hurried: bool,
+    /// True while the view is mirrored.
+    mirrored: bool,
     mouse: Receiver<StylusSample>,
     states: Receiver<BrushState>,
     consumed: Receiver<BrushConsumed>,
@@ -89,6 +91,7 @@ impl Hand {
             display,
             bus,
             hurried: false,
+            mirrored: false,
             dice: Pcg64Mcg::seed_from_u64(seed),
             version: 0,
             newest_state: 0,
@@ -305,7 +308,7 @@ impl Hand {
                 self.display.keys(&[TAB]);
                 self.settle();
                 let mut way = self.way([450.0, 60.0, 700.0, 700.0]);
-                way.insert(0, IN_PANELS);
+                way.insert(0, IN_PANELS[usize::from(self.mirrored)]);
                 self.drag(1, &way);
                 self.display.keys(&[ESCAPE]);
                 self.display.keys(&[TAB]);
@@ -318,6 +321,7 @@ impl Hand {
                 let word = keys[self.below(keys.len() as u32) as usize];
                 let shown = word.chars().map(key);
                 let shown: Vec<u32> = shown.collect();
+                self.mirrored ^= word == "m";
                 self.display.keys(&shown);
                 return (format!("key '{word}'"), Effect::Nothing);
             }
@@ -368,8 +372,9 @@ impl Hand {
                 let anew = solve.flags & solve_flags::RESTARTED != 0;
                 assert!(
                     gap_m < GAP_M && !anew,
-                    "{what}: a gap of {:.1} mm, anew: {anew}",
-                    1e3 * gap_m
+                    "{what}: a gap of {:.1} mm, anew: {anew}, mirrored: {}, {last:?} {solve:?}",
+                    1e3 * gap_m,
+                    self.mirrored
                 );
             }
             last = Some(solve);

@@ -314,7 +314,7 @@ fn past_tense(request: &Request) -> Option<&'static str> {
     match edit {
         Edit::Undo(_) => Some(tr!("Undone")),
         Edit::Redo(_) => Some(tr!("Redone")),
-        Edit::GoTo(_) => Some(tr!("Now at")),
+        Edit::GoTo(_) => Some(tr!("Now")),
         Edit::Dry(_) => Some(tr!("Dried")),
         Edit::LoadFrom(_) => Some(tr!("Loaded")),
         Edit::Scrape(_) => Some(tr!("Scraped")),

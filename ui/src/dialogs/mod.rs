@@ -111,8 +111,7 @@ impl Files {
             }
             Action::ChooseTracing => {
                 let known = work.tracing().map(|tracing| &*tracing.path);
-                let choose =
-                    Self::picture(known, tr!("A picture to paint after, on the canvas"), work);
+                let choose = Self::picture(known, tr!("A picture to trace"), work);
                 self.begin(Dialog::Tracing(choose));
             }
             _ => return false,
@@ -249,6 +248,7 @@ impl Files {
         }
         match &outcome.result {
             Ok(detail) => {
+                self.move_tracing(command, work);
                 // Some answers hold nothing but the path, which is shown already.
                 let is_told = done.contains(&paths::shown(Path::new(detail)));
                 let sentence = if is_told {
@@ -277,6 +277,19 @@ impl Files {
             Err(fault) => work.notifications.of(fault),
         }
         true
+    }
+
+    /// The tracing picture goes with a painting that is saved elsewhere, and not with the next sketch.
+    fn move_tracing(&self, done: &Command, work: &mut PanelContext<'_>) {
+        match done {
+            Command::Rig(RigCommand::SaveAs(save_as))
+            | Command::File(FileCommand::SaveAs(save_as)) => {
+                let before = self.open.as_ref().map(|path| path.to_string_lossy());
+                work.carry_tracing(&before.unwrap_or_default(), &save_as.path);
+            }
+            Command::Rig(RigCommand::New { path: None, .. }) => work.forget_sketch(),
+            _ => {}
+        }
     }
 
     /// Remembers which paintings were open.

@@ -11,7 +11,7 @@ use maulstick_types::values::{MaterialName, ValueError, WholePath};
 use crate::dialogs::dialog::{self, Answer, Foot, in_words, line, number};
 use crate::dialogs::discard_prompt::Unkept;
 use crate::dialogs::paths;
-use crate::language::{known, translated};
+use crate::language::{capitalized, known, translated};
 use crate::settings::units::Units;
 
 /// Sizes that are chosen with a click: name, width and height, cm.
@@ -247,10 +247,11 @@ impl NewPainting {
             let tooth = ui.label(tr!("Tooth"));
             let combo = ComboBox::from_id_salt("tooth")
                 .width(120.0)
-                .selected_text(capital(known(&self.tooth)));
+                .selected_text(capitalized(known(&self.tooth)));
             let combo = combo.show_ui(ui, |ui| {
                 for name in Tooth::names() {
-                    ui.selectable_value(&mut self.tooth, name.to_owned(), capital(known(name)));
+                    let words = capitalized(known(name));
+                    ui.selectable_value(&mut self.tooth, name.to_owned(), words);
                 }
             });
             combo.response.labelled_by(tooth.id);
@@ -276,13 +277,6 @@ impl NewPainting {
         }
         entered
     }
-}
-
-fn capital(name: &str) -> String {
-    let mut letters = name.chars();
-    letters.next().map_or_else(String::new, |first| {
-        format!("{}{}", first.to_uppercase(), letters.as_str())
-    })
 }
 
 /// Estimate of size and memory, in words.

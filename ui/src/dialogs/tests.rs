@@ -11,6 +11,7 @@ use maulstick_types::values::WholePath;
 
 use super::*;
 use crate::test_support::overlay_bench::{ctrl, let_go, press, until, window, write};
+use crate::tracing::settings::{Tracing, Tracings};
 
 fn gone() -> Modifiers {
     Modifiers::NONE
@@ -178,6 +179,11 @@ fn saving_is_confirmed_and_what_is_in_no_file_gets_one() {
         )
     };
     assert_eq!(harness.state_mut().asked(), [save(false)]);
+    let sketch = Tracing {
+        path: "/sketch.png".into(),
+        ..Tracing::default()
+    };
+    harness.state_mut().preferences.tracings = Tracings::of(sketch.clone());
     harness
         .state_mut()
         .answer(&save(false), Ok("Painting.maul"));
@@ -186,6 +192,8 @@ fn saving_is_confirmed_and_what_is_in_no_file_gets_one() {
     (node.status.path, node.status.blank) = (text(&path), false);
     harness.run_steps(2);
     assert_eq!(harness.state().preferences.recent[0], path);
+    let traced = harness.state().preferences.tracings.in_file(&text(&path));
+    assert_eq!(traced, Some(&sketch), "it goes with the painting");
     ctrl(&mut harness, Key::S, gone());
     assert!(harness.query_by_label("Save under another name").is_none());
     assert!(harness.state().told().contains("Saved to"));

@@ -11,7 +11,7 @@ use maulstick_types::command::{BrushCommand, Command};
 use maulstick_types::edits::{Edit, Load};
 use maulstick_types::values::{BrushName, BrushToml};
 
-use crate::language::known;
+use crate::language::{capitalized, known};
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
 use crate::rig::state::RigBrush;
@@ -61,10 +61,7 @@ pub(crate) fn resized(file: &BrushFile, width_mm: f64) -> Result<BrushFile, Brus
 /// A kind as a word in a sentence: its first letter large.
 #[must_use]
 pub(crate) fn called(kind: &str) -> String {
-    let mut letters = known(kind).chars();
-    letters.next().map_or(String::new(), |first| {
-        first.to_uppercase().chain(letters).collect()
-    })
+    capitalized(known(kind))
 }
 
 /// Widths that a brush can have, mm: from its file's smallest to its largest size, where all that scales with them stays

@@ -21,7 +21,7 @@ pub enum Action {
     Export,
     /// Show or hide the reference picture beside the canvas.
     Reference,
-    /// Choose a picture to paint after on the canvas.
+    /// Choose a picture to trace on the canvas.
     ChooseTracing,
     /// Show or hide it.
     Tracing,
@@ -340,7 +340,7 @@ pub(crate) fn written(context: &Context, shortcut: &KeyboardShortcut) -> String 
         None => text,
         Some(_) => text
             .split('+')
-            .map(language::known)
+            .map(language::key_name)
             .collect::<Vec<_>>()
             .join("+"),
     }

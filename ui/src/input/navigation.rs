@@ -164,7 +164,10 @@ impl Navigation {
         let share = f64::from(way.y / view.area.height().max(1.0));
         let lie = drag.lie;
         drag.lie = match drag.drag_mode {
-            DragMode::Pan => lie.moved(view.along(way)),
+            DragMode::Pan => {
+                let height_m = view.to_desk(drag.at, around.surfaces).z;
+                lie.moved(view.along(way, height_m))
+            }
             DragMode::Turn => {
                 let [from, to] = [drag.at, at].map(|at| view.on_desk(at));
                 let angle = from.truncate().angle_to(to.truncate());
@@ -221,6 +224,7 @@ impl Navigation {
             return;
         };
         let about = around.view.on_desk(touch.center_pos);
+        let height_m = around.view.to_desk(touch.center_pos, around.surfaces).z;
         let from = self.newest(now, canvas);
         let to = from
             .zoomed(about, f64::from(touch.zoom_delta))
@@ -229,7 +233,7 @@ impl Navigation {
                 DVec3::Z,
                 -around.view.seen_x(touch.rotation_delta.into()),
             )
-            .moved(around.view.along(touch.translation_delta));
+            .moved(around.view.along(touch.translation_delta, height_m));
         self.send(now, canvas.id, from, to, requests);
     }
 

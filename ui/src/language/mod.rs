@@ -6,6 +6,7 @@
 //! | `tr!` | a sentence that is shown, with its places filled in |
 //! | `tr_noop!` | a sentence in a table, for [`translated`] where it is shown |
 //! | [`known`] | a word that another process or a file has, such as the name of a brush |
+//! | [`key_name`] | a key |
 //!
 //! The choice belongs to a thread: the window's, and those of its background tasks.
 
@@ -160,6 +161,22 @@ pub(crate) fn known(english: &str) -> &str {
     text.unwrap_or(english)
 }
 
+/// A part of a shortcut, such as `Ctrl` or `Delete`, as it stands on keyboards of the language.
+#[must_use]
+pub(crate) fn key_name(english: &str) -> &str {
+    let language = CHOSEN.get();
+    let text = language.and_then(|language| language.of(&format!("key|{english}")));
+    text.unwrap_or(english)
+}
+
+/// Words with a capital at the beginning.
+#[must_use]
+pub(crate) fn capitalized(words: &str) -> String {
+    let mut letters = words.chars();
+    let first = letters.next().map(char::to_uppercase);
+    first.into_iter().flatten().chain(letters).collect()
+}
+
 /// The sentence with its places, such as `{file}`, filled in.
 #[must_use]
 pub(crate) fn filled(english: &'static str, parts: &[(&str, &dyn Display)]) -> String {
@@ -199,6 +216,9 @@ pub(crate) fn layer_name(english: &str) -> Cow<'_, str> {
 pub(crate) fn step(english: &str) -> String {
     if CHOSEN.get().is_none() {
         return english.to_owned();
+    }
+    if let Some(kind) = english.strip_suffix(" stroke on the palette") {
+        return tr!("{kind} stroke on the palette", kind = known(kind));
     }
     if let Some(kind) = english.strip_suffix(" stroke") {
         return tr!("{kind} stroke", kind = known(kind));

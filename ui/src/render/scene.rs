@@ -187,7 +187,7 @@ impl SceneRenderer {
         else {
             return Vec::new();
         };
-        let mut laid: Vec<Laid> = Vec::new();
+        let (mut laid, mut projector_on) = (Vec::<Laid>::new(), false);
         for (layer, id) in self.surfaces.iter_mut().zip(SURFACES) {
             let Some(surface) = surfaces.iter().find(|surface| surface.id == id) else {
                 continue;
@@ -207,12 +207,13 @@ impl SceneRenderer {
                 if projector.throw(gpu, slide, surface, (view, pixels_per_point)) {
                     own.changed = PixelRect::EVERYTHING;
                 }
+                projector_on = true;
             }
             laid.extend(own);
         }
         let size = view.pixels(pixels_per_point);
         let (gpu, passes) = (&painter.gpu, &painter.passes);
-        let shown = (&laid[..], Some(&painter.projector));
+        let shown = (&laid[..], projector_on.then_some(&painter.projector));
         painter.backdrop.update_with(gpu, passes, size, shown);
         let mut shapes: Vec<Shape> = painter.backdrop.shape(view).into_iter().collect();
         for held in tracker.held(desk) {

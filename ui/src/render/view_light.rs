@@ -1,4 +1,4 @@
-//! Viewer straight above the desk, and light of the scene's lamp, for drawing a brush.
+//! Viewer over the middle of the desk, and light of the scene's lamp, for drawing a brush.
 
 use std::sync::LazyLock;
 

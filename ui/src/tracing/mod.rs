@@ -63,6 +63,10 @@ impl TracingPicture {
         };
         let (path, strength) = (tracing.path.clone(), tracing.sound_strength());
         if !tracing.shown {
+            if matches!(self.slot, Slot::Failed(_)) {
+                // It may be mended until it is shown again.
+                self.slot = Slot::Empty;
+            }
             return None;
         }
         if self.slot.path() != Some(&path) {

@@ -43,12 +43,7 @@ impl Slide {
                     let (x, y) = (last(2 * x + i % 2, size[0]), last(2 * y + i / 2, size[1]));
                     pixels[y * size[0] + x]
                 });
-                let mean = |c: usize| {
-                    four.iter()
-                        .map(|p| u32::from(p[c]))
-                        .sum::<u32>()
-                        .div_ceil(4)
-                };
+                let mean = |c: usize| (four.iter().map(|p| u32::from(p[c])).sum::<u32>() + 2) / 4;
                 smaller.push([0, 1, 2, 3].map(|c| mean(c) as u8));
             }
             levels.push((size[0], std::mem::replace(&mut pixels, smaller)));

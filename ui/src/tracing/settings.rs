@@ -57,6 +57,11 @@ impl Tracings {
         Self(BTreeMap::from([(String::new(), tracing)]))
     }
 
+    /// That of a painting in a file.
+    pub(crate) fn in_file(&self, painting: &str) -> Option<&Tracing> {
+        self.0.get(painting)
+    }
+
     /// All of them.
     pub(crate) fn iter(&self) -> impl Iterator<Item = &Tracing> {
         self.0.values()
@@ -64,28 +69,30 @@ impl Tracings {
 }
 
 impl PanelContext<'_> {
-    /// File of the painting that is open, as its tracing picture is remembered by.
-    fn painting(&self) -> String {
+    /// File of the painting that is open, by which its tracing picture is remembered; `None` while it is not known.
+    fn painting(&self) -> Option<String> {
         let status = self.rig.paint.as_ref().map(|node| &node.status);
-        status.map_or_else(String::new, |status| status.path.clone())
+        status.map(|status| status.path.clone())
     }
 
     /// The tracing picture of the painting that is open.
     #[must_use]
     pub fn tracing(&self) -> Option<&Tracing> {
-        self.preferences.tracings.0.get(&self.painting())
+        self.preferences.tracings.0.get(&self.painting()?)
     }
 
     /// The same, to be changed.
     pub fn tracing_mut(&mut self) -> Option<&mut Tracing> {
-        let painting = self.painting();
+        let painting = self.painting()?;
         self.preferences.tracings.0.get_mut(&painting)
     }
 
     /// Gives the painting that is open another tracing picture, of the strength of the one before.
     pub fn trace(&mut self, path: &Path) {
         let strength = self.tracing().map_or(STRENGTH, Tracing::sound_strength);
-        let painting = self.painting();
+        let Some(painting) = self.painting() else {
+            return;
+        };
         let tracings = &mut self.preferences.tracings.0;
         if tracings.len() >= MOST && !tracings.contains_key(&painting) {
             // Those of paintings that are no more go first.
@@ -107,7 +114,21 @@ impl PanelContext<'_> {
 
     /// Takes the tracing picture away.
     pub fn untrace(&mut self) {
-        let painting = self.painting();
-        self.preferences.tracings.0.remove(&painting);
+        if let Some(painting) = self.painting() {
+            self.preferences.tracings.0.remove(&painting);
+        }
+    }
+
+    /// A painting goes on in another file: so does its tracing picture.
+    pub fn carry_tracing(&mut self, from: &str, to: &str) {
+        let tracings = &mut self.preferences.tracings.0;
+        if let Some(tracing) = tracings.remove(from) {
+            tracings.insert(to.to_owned(), tracing);
+        }
+    }
+
+    /// Another sketch begins: the picture of the one before is not its own.
+    pub fn forget_sketch(&mut self) {
+        self.preferences.tracings.0.remove("");
     }
 }

@@ -140,6 +140,19 @@ fn each_painting_has_its_own_picture_and_settings_last() {
 }
 
 #[test]
+fn a_sketch_leaves_its_picture_to_no_other_and_an_unknown_painting_has_none() {
+    let mut desk = Desk::new();
+    desk.open("");
+    desk.work().trace(Path::new("/one.png"));
+    desk.rig.paint = None;
+    assert!(desk.work().tracing().is_none(), "which painting is it?");
+    desk.open("");
+    assert!(desk.work().tracing().is_some());
+    desk.work().forget_sketch();
+    assert!(desk.work().tracing().is_none());
+}
+
+#[test]
 fn a_missing_picture_is_told_once() {
     let context = Context::default();
     let (mut desk, mut tracing) = (Desk::new(), TracingPicture::default());

@@ -143,16 +143,16 @@ impl View {
         lie.zoomed(DVec3::ZERO, pixel_m / canvas.cell_m / lie.zoom)
     }
 
-    /// A vector of the window as one along the desk, m.
+    /// A vector of the window as one along the desk, so high over it, m.
     #[must_use]
-    pub fn along(&self, way: Vec2) -> DVec3 {
-        DVec3::new(self.seen_x(way.x.into()), -f64::from(way.y), 0.0) / self.scale
+    pub fn along(&self, way: Vec2, height_m: f64) -> DVec3 {
+        DVec3::new(self.seen_x(way.x.into()), -f64::from(way.y), 0.0) / self.scale_at(height_m)
     }
 
     /// The point of the plane z = 0 under a point of the window, m.
     #[must_use]
     pub fn on_desk(&self, at: Pos2) -> DVec3 {
-        self.middle.extend(0.0) + self.along(at - self.area.center())
+        self.middle.extend(0.0) + self.along(at - self.area.center(), 0.0)
     }
 
     /// Pixels of the view, as the window rounds them.
@@ -171,9 +171,14 @@ impl View {
     /// Window point of a desk point.
     #[must_use]
     pub fn to_window(&self, desk: DVec3) -> Pos2 {
-        let near = self.scale / Quad::depth(desk.z, self.eye_m());
-        let off = (desk.truncate() - self.middle) * near;
+        let off = (desk.truncate() - self.middle) * self.scale_at(desk.z);
         self.area.center() + vec2(self.seen_x(off.x) as f32, -off.y as f32)
+    }
+
+    /// Points a metre so high over the desk.
+    #[must_use]
+    pub fn scale_at(&self, height_m: f64) -> f64 {
+        self.scale / Quad::depth(height_m, self.eye_m())
     }
 
     /// A surface as the eye sees it, points from the view's upper left.

@@ -22,7 +22,7 @@ fn history(painting: &Painting) -> Vec<HistoryStep> {
     let steps = painting.history().around(LISTED);
     let listed = steps.into_iter().map(|step| {
         let mut what: String = step.what.chars().take(LETTERS).collect();
-        if step.what.ends_with(STROKE) && step.surfaces.iter().eq([&PALETTE]) {
+        if step.what.ends_with(STROKE) && step.surface == Some(PALETTE) {
             what.push_str(" on the palette");
         }
         HistoryStep {

@@ -10,7 +10,7 @@ use maulstick_types::stylus::{StylusPose, StylusSample};
 use crate::desk::{Desk, Obstacle, Plane, aim, ferrule};
 use crate::file::BrushFile;
 use crate::follow::stroke_count::StrokeCount;
-use crate::handle_path::{HandlePath, PathSegment, Sampled};
+use crate::handle_path::Sampled;
 use crate::head_solver::{HeadSolver, SolvedHead, settings_of};
 use crate::lead::Lead;
 use crate::mark::{Beside, Mark, point_of};
@@ -19,21 +19,8 @@ use crate::spine_layout::SpineLayout;
 
 /// Longest pause between two samples in contact that is crossed along their path, ns; a longer one begins a stroke.
 pub const BRIDGED_NS: u64 = 300_000_000;
-/// A touching brush is solved each time its handle has moved so far, and again between where a joint in contact
-/// moves [farther](FARTHEST_M), m: about as finely as paint is stepped. In between it is interpolated.
-const SOLVE_M: f64 = 0.175e-3;
-/// See [`SOLVE_M`].
-const FARTHEST_M: f64 = 0.25e-3;
-/// Solves between two samples at most, but of a pointer that leaps.
-const MOST_SOLVES: f64 = 64.0;
-/// Greatest distance between two solves, m of the surface.
-const APART_M: f64 = 1.8e-3;
-/// The time for which so many are enough, ns.
-const MOST_SOLVES_NS: f64 = 1e8;
 /// Trial landings of a pen that find its mark: an upright head may bend otherwise with its handle beside the point.
 const LANDINGS: usize = 2;
-/// Largest number of times that a piece of the path is halved.
-const SPLITS: u32 = 2;
 
 /// A brush in the hand.
 #[derive(Debug)]
@@ -291,73 +278,6 @@ impl BrushModel {
         brush
     }
 
-    /// Solves a touching brush at each step of its path to a sample, and gives a preview of it there.
-    fn go(&mut self, tracked: &mut TrackedBrush, here: Sampled, plane: &Plane) -> Vec<Solve> {
-        let start_ns = tracked.newest.event_ns;
-        let path = HandlePath::new(
-            tracked.before.as_ref(),
-            &tracked.newest,
-            &here,
-            self.file.length_m(),
-        );
-        let motion_m = path.length_m();
-        let pause = (here.event_ns - start_ns) as f64 / MOST_SOLVES_NS;
-        let many_m = motion_m / (MOST_SOLVES * pause.max(1.0));
-        let part_m = many_m.min(APART_M * plane.zoom).max(SOLVE_M);
-        let whole_m = tracked.left_over_m + motion_m;
-        let mut solves = Vec::new();
-        let (mut gone_m, mut at) = (part_m, 0.0);
-        while gone_m <= whole_m {
-            let s = path.after(gone_m - tracked.left_over_m);
-            let segment = PathSegment {
-                path: &path,
-                from: at,
-                to: s,
-                start_ns,
-                end_ns: here.event_ns,
-                length_m: part_m,
-            };
-            self.walk(tracked, &segment, plane, SPLITS, &mut solves);
-            (gone_m, at) = (gone_m + part_m, s);
-        }
-        tracked.left_over_m = whole_m - (gone_m - part_m);
-        let mut seen = tracked.clone();
-        self.stay(&seen, here.event_ns);
-        let mut preview = self.solve(&mut seen, here, plane);
-        tracked.force_n = seen.head.force_n();
-        preview.flags |= solve_flags::PREVIEW;
-        solves.push(preview);
-        solves
-    }
-
-    /// Solves the end of a piece of the path, and first its middle where a joint in contact would move more than a
-    /// cell.
-    fn walk(
-        &mut self,
-        tracked: &mut TrackedBrush,
-        segment: &PathSegment<'_>,
-        plane: &Plane,
-        splits: u32,
-        solves: &mut Vec<Solve>,
-    ) {
-        let mut tried = tracked.clone();
-        let strokes = self.strokes;
-        let end = segment.end();
-        self.stay(&tried, end.event_ns);
-        let solve = self.solve(&mut tried, end, plane);
-        let moved = tried.head.moved_in_contact(&tracked.head);
-        if splits > 0 && moved > FARTHEST_M {
-            self.strokes = strokes;
-            let [first, second] = segment.halves();
-            self.walk(tracked, &first, plane, splits - 1, solves);
-            self.walk(tracked, &second, plane, splits - 1, solves);
-            return;
-        }
-        *tracked = tried;
-        self.lead(tracked, &end, segment.length_m);
-        solves.push(solve);
-    }
-
     /// Leads a pen after a path, so that the mark comes to its point.
     fn lead(&mut self, tracked: &mut TrackedBrush, end: &Sampled, way_m: f64) {
         if !tracked.is_pen {
@@ -470,7 +390,7 @@ impl BrushModel {
     fn stay(&mut self, tracked: &TrackedBrush, until_ns: u64) {
         let presses_on = tracked.is_pressed && tracked.stroke == self.strokes.number();
         if tracked.head.touches() || presses_on && tracked.stroke > 0 {
-            self.strokes.last_to(until_ns);
+            self.strokes.extend(until_ns);
         }
     }
 
@@ -496,5 +416,8 @@ impl BrushModel {
 
 mod force;
 mod height;
+mod path;
+#[cfg(test)]
+mod stroke_tests;
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,4 @@
-//! Which contacts are one stroke.
+//! Numbers of strokes: contacts less than a gap apart have the same.
 
 /// Contacts less than this apart are one stroke, ns.
 const STROKE_GAP_NS: u64 = 150_000_000;
@@ -7,7 +7,7 @@ const STROKE_GAP_NS: u64 = 150_000_000;
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct StrokeCount {
     number: u64,
-    lasts_to_ns: u64,
+    end_ns: u64,
 }
 
 impl StrokeCount {
@@ -18,16 +18,16 @@ impl StrokeCount {
     }
 
     /// The newest stroke lasts until `ns`, whatever touches.
-    pub(crate) const fn last_to(&mut self, ns: u64) {
-        self.lasts_to_ns = ns;
+    pub(crate) const fn extend(&mut self, ns: u64) {
+        self.end_ns = ns;
     }
 
     /// The stroke of a contact at `ns`.
     pub(crate) const fn touch(&mut self, ns: u64) -> u64 {
-        if self.number == 0 || ns.abs_diff(self.lasts_to_ns) >= STROKE_GAP_NS {
+        if self.number == 0 || ns.abs_diff(self.end_ns) >= STROKE_GAP_NS {
             self.number += 1;
         }
-        self.lasts_to_ns = ns;
+        self.end_ns = ns;
         self.number
     }
 }

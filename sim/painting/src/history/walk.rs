@@ -1,30 +1,28 @@
 //! Ways through the history: which steps lead from the present one to another.
 
-use std::collections::BTreeSet;
-
-use super::{History, OpenStep, Step};
+use super::{History, OpenStep, Step, TilePlace};
 
 /// Direction of a step: undo or redo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Way {
-    Back,
-    Forth,
+pub(crate) enum Direction {
+    Undo,
+    Redo,
 }
 
-impl Way {
+impl Direction {
     /// The end that a step is taken from, and the one that it is taken to.
     pub(crate) fn ends(self) -> [usize; 2] {
         match self {
-            Self::Back => [1, 0],
-            Self::Forth => [0, 1],
+            Self::Undo => [1, 0],
+            Self::Redo => [0, 1],
         }
     }
 
     /// Factor on its bookings.
     pub(crate) fn times(self) -> i64 {
         match self {
-            Self::Back => -1,
-            Self::Forth => 1,
+            Self::Undo => -1,
+            Self::Redo => 1,
         }
     }
 }
@@ -38,14 +36,21 @@ pub struct ListedStep {
     pub what: String,
     /// True if it is done; false if it was undone.
     pub done: bool,
-    /// The surfaces that it changed.
-    pub surfaces: BTreeSet<u32>,
+    /// The surface that it changed, if it changed only one.
+    pub surface: Option<u32>,
+}
+
+/// The surface of places in order, if all are on one.
+fn only_surface<'a>(mut places: impl DoubleEndedIterator<Item = &'a TilePlace>) -> Option<u32> {
+    let first = places.next()?.0;
+    let last = places.next_back().map_or(first, |place| place.0);
+    (first == last).then_some(first)
 }
 
 impl History {
     /// The steps to undo or to redo, in order, until the one of this number is the newest that is done, 0 for none;
     /// `None` if there is no such step. Steps that are not finished are left out.
-    pub(crate) fn way_to(&self, id: u64) -> Option<Vec<(Way, &Step)>> {
+    pub(crate) fn way_to(&self, id: u64) -> Option<Vec<(Direction, &Step)>> {
         let target = match id {
             0 => None,
             id => Some(self.steps.get(&id)?),
@@ -53,12 +58,28 @@ impl History {
         if target.is_none_or(|step| step.done) {
             let later = self.steps.range(id + 1..).rev().map(|(_, step)| step);
             let done = later.filter(|step| step.done);
-            return Some(done.map(|step| (Way::Back, step)).collect());
+            return Some(done.map(|step| (Direction::Undo, step)).collect());
         }
         let place = self.undone.iter().position(|other| *other == id)?;
         let undone = self.undone[place..].iter().rev();
         let steps = undone.filter_map(|id| self.steps.get(id));
-        Some(steps.map(|step| (Way::Forth, step)).collect())
+        Some(steps.map(|step| (Direction::Redo, step)).collect())
+    }
+
+    /// How many steps before one are undone: after it the painting is another without them. `None` if there is no such
+    /// step; 0 is the beginning.
+    #[must_use]
+    pub fn undone_before(&self, id: u64) -> Option<u64> {
+        let known = id == 0 || self.steps.contains_key(&id) || self.is_open(id);
+        let before = self.undone.iter().filter(|undone| **undone < id);
+        known.then(|| before.count() as u64)
+    }
+
+    /// True if a step has changed more than what brushes carry.
+    #[must_use]
+    pub(crate) fn changes_surfaces(&self) -> bool {
+        let changes = |step: &Step| !step.tiles.is_empty() || step.effects.materials.is_some();
+        !self.open.is_empty() || self.steps.values().any(changes)
     }
 
     /// True for a step that is not finished.
@@ -75,13 +96,13 @@ impl History {
             id: step.id,
             what: step.what.clone(),
             done: step.done,
-            surfaces: step.tiles.keys().map(|(surface, _)| *surface).collect(),
+            surface: only_surface(step.tiles.keys()),
         };
         let unfinished = |step: &OpenStep| ListedStep {
             id: step.id,
             what: step.what.clone(),
             done: true,
-            surfaces: step.reached.iter().map(|(surface, _)| *surface).collect(),
+            surface: only_surface(step.reached.iter()),
         };
         let undone = self.undone.len().min(most / 2);
         let next = self.undone[self.undone.len() - undone..].iter();
@@ -118,9 +139,9 @@ mod tests {
         let history = history(&all, &[8, 7]);
         let way = |id| {
             let way = history.way_to(id)?;
-            let step = |(way, step): &(Way, &Step)| match way {
-                Way::Back => -(step.id as i64),
-                Way::Forth => step.id as i64,
+            let step = |(way, step): &(Direction, &Step)| match way {
+                Direction::Undo => -(step.id as i64),
+                Direction::Redo => step.id as i64,
             };
             Some(way.iter().map(step).collect::<Vec<i64>>())
         };

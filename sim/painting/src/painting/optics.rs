@@ -7,7 +7,7 @@ use maulstick_appearance::blank_surface::{
     BlankSurface, CLEANER_RGB, HeapColours, MEDIUM_RGB, WellLook, WellShape,
 };
 use maulstick_appearance::ground::Ground;
-use maulstick_appearance::heap::Heap;
+use maulstick_appearance::heap::{Heap, HeapCells};
 use maulstick_appearance::light::{changes_colour, studio_settings};
 use maulstick_canvas::EditError;
 use maulstick_canvas::assets::Assets;
@@ -116,10 +116,11 @@ impl Optics {
                 shares.push((mixed.add(paint), part.share));
             }
             let colours = HeapColours::of(&mixed, &shares, ground.mean());
+            let heap = HeapCells::of(&Heap::of(&mixture), center, radius);
             wells.push(WellLook {
                 center,
                 radius,
-                shape: WellShape::Heap(Heap::of(&mixture), colours),
+                shape: WellShape::Heap(heap, colours),
             });
         }
         Ok(BlankSurface {

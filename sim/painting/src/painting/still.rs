@@ -7,7 +7,7 @@ use super::Painting;
 use super::brushes::Brushes;
 use super::strokes::backend::Backend;
 use crate::clock::Clock;
-use crate::history::{History, Way};
+use crate::history::{Direction, History};
 
 impl Painting {
     /// The painting as it is, with its versions, without brushes and history. Its tiles are shared with
@@ -50,17 +50,17 @@ impl Painting {
     pub fn still_after(&mut self, step: u64) -> Option<Self> {
         let mut still = self.still();
         if self.history.is_open(step) {
-            // It is the newest one.
+            // Of steps that are not finished none counts as newer.
             return Some(still);
         }
         let open = self.open_steps();
         let way = self.history.way_to(step)?;
-        let back = way.first().is_none_or(|(way, _)| *way == Way::Back);
+        let back = way.first().is_none_or(|(way, _)| *way == Direction::Undo);
         let open = open
             .iter()
             .rev()
             .filter(|_| back)
-            .map(|open| (Way::Back, open));
+            .map(|open| (Direction::Undo, open));
         let (mut layers, mut materials) = (None, None);
         for (way, step) in open.chain(way) {
             let to = way.ends()[1];

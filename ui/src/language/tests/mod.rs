@@ -39,6 +39,13 @@ fn places_are_filled_in_the_order_of_the_language() {
     assert_eq!(tr!("theme|Light"), "Hell");
     assert_eq!(step("round stroke"), "Strich: Rund");
     assert_eq!(
+        step("round stroke on the palette"),
+        "Strich auf der Palette: Rund"
+    );
+    assert_eq!(step("the beginning"), "der Anfang");
+    assert_eq!((key_name("Delete"), known("Delete")), ("Entf", "Löschen"));
+    assert_eq!(key_name("F5"), "F5");
+    assert_eq!(
         step("load Cobalt Blue + Ivory Black"),
         "Laden: Cobalt Blue + Ivory Black"
     );

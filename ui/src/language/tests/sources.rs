@@ -13,7 +13,7 @@ use crate::input::keys::{BINDINGS, HELD};
 use crate::language::{FILES, Language, all};
 
 /// Steps of the history as the paint engine names them.
-const STEPS: [&str; 12] = [
+const STEPS: [&str; 14] = [
     "dry",
     "drying",
     "layer opacity",
@@ -26,6 +26,30 @@ const STEPS: [&str; 12] = [
     "fill",
     "ground",
     "tooth",
+    "the beginning",
+    "a stroke that was not painted yet",
+];
+
+/// Keys whose names are not the signs on them.
+const NAMED_KEYS: [&str; 18] = [
+    "Ctrl",
+    "Shift",
+    "Alt",
+    "Space",
+    "Tab",
+    "Backspace",
+    "Escape",
+    "Enter",
+    "Delete",
+    "Insert",
+    "Home",
+    "End",
+    "PageUp",
+    "PageDown",
+    "Up",
+    "Down",
+    "Left",
+    "Right",
 ];
 
 /// Use of a sentence: its English, and the names that the macro is given.
@@ -177,6 +201,7 @@ fn needed() -> BTreeSet<String> {
         .chain(Tooth::names());
     let tables = tables.chain(STEPS).map(str::to_owned);
     tables
+        .chain(NAMED_KEYS.map(|key| format!("key|{key}")))
         .chain(uses().into_iter().map(|used| used.english))
         .collect()
 }
@@ -184,12 +209,12 @@ fn needed() -> BTreeSet<String> {
 /// What a language lacks, and what it has and nobody needs.
 fn gaps(language: &Language, needed: &BTreeSet<String>) -> Vec<String> {
     // Words that are the same in many languages.
-    let keys = Key::ALL.iter().map(|key| key.name());
-    let may: BTreeSet<&str> = keys.chain(["Ctrl", "Shift", "Alt"]).chain(RULES).collect();
+    let keys = Key::ALL.iter().map(|key| format!("key|{}", key.name()));
+    let may: BTreeSet<String> = keys.chain(RULES.map(str::to_owned)).collect();
     let lacks = needed.iter().filter(|text| language.of(text).is_none());
     let lacks = lacks.map(|text| format!("lacks {text:?}"));
     let has = language.by_english.keys();
-    let unused = has.filter(|text| !needed.contains(*text) && !may.contains(text.as_str()));
+    let unused = has.filter(|text| !needed.contains(*text) && !may.contains(*text));
     lacks
         .chain(unused.map(|text| format!("unused: {text:?}")))
         .collect()
@@ -244,6 +269,22 @@ fn the_places_of_translations_are_those_of_their_sentences() {
     assert_eq!(misplaced(&language), ["Delete {name}?"]);
 }
 
+/// Translations into French where a line might break before a sign that belongs to the word.
+fn breakable(language: &Language) -> Vec<&str> {
+    let signs = [" ;", " :", " ?", " !", " »", " %", "« "];
+    let texts = language.by_english.iter();
+    let wrong = texts.filter(|(_, text)| signs.iter().any(|sign| text.contains(sign)));
+    wrong.map(|(english, _)| english.as_str()).collect()
+}
+
+#[test]
+fn in_french_no_line_breaks_before_a_sign() {
+    assert_eq!(breakable(&all()["fr"]), [""; 0]);
+    let faults = "name = \"x\"\n[texts.a]\n\"Done!\" = \"Fini !\"\n\"Yes!\" = \"Oui\u{a0}!\"";
+    let language = Language::read(faults).expect("read");
+    assert_eq!(breakable(&language), ["Done!"]);
+}
+
 #[test]
 fn each_use_fills_the_places_of_its_sentence() {
     for used in uses() {
@@ -259,14 +300,17 @@ fn each_use_fills_the_places_of_its_sentence() {
 #[test]
 fn the_paint_engine_names_its_steps_so() {
     let mut found = BTreeMap::new();
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../sim/painting/src");
-    sources(&folder, &mut found);
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    for folder in ["sim/painting/src", "daemons/paint/src"] {
+        sources(&root.join(folder), &mut found);
+    }
     for step in STEPS {
         let quoted = format!("\"{step}\"");
         assert!(found.values().any(|code| code.contains(&quoted)), "{step}");
     }
     for part in [
         "{} stroke\"",
+        "\" on the palette\"",
         "\"load {}\"",
         "\"return to '{name}'\"",
         "{operations} steps\"",
@@ -275,7 +319,6 @@ fn the_paint_engine_names_its_steps_so() {
     }
 }
 
-/// Calls that show a literal as it is.
 #[test]
 fn no_control_shows_a_sentence_that_is_not_translated() {
     let mut found = BTreeMap::new();
@@ -284,6 +327,7 @@ fn no_control_shows_a_sentence_that_is_not_translated() {
         &mut found,
     );
     let bare = |code: &str| -> Vec<String> {
+        // Calls that show a literal as it is.
         let calls = [
             ".label(\"",
             ".weak(\"",

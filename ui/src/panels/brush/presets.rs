@@ -33,6 +33,14 @@ fn small_width(ui: &Ui, word: &str) -> f32 {
     text.size().x + 2.0 * spacing.button_padding.x + spacing.item_spacing.x
 }
 
+/// Name of a preset in the language of the window; one that a painter gave stays as it is.
+fn shown_name(preset: &Preset) -> &str {
+    match ["Glaze", "Scumble", "Blend", "Dry brush"].contains(&&*preset.name) {
+        true => known(&preset.name),
+        false => &preset.name,
+    }
+}
+
 /// Action on a preset.
 enum Deed {
     Apply,
@@ -50,7 +58,7 @@ impl PresetRows {
                 continue;
             }
             let preset = &work.preferences.presets[place];
-            let name = known(&preset.name).to_owned();
+            let name = shown_name(preset).to_owned();
             let words = preset.words(work.preferences.units);
             let mut take = false;
             let taken = [tr!("Rename"), tr!("Delete")].map(|word| small_width(ui, word));
@@ -100,7 +108,7 @@ impl PresetRows {
             Some((place, Deed::Rename)) => {
                 self.renamed = Some((
                     place,
-                    known(&work.preferences.presets[place].name).to_owned(),
+                    shown_name(&work.preferences.presets[place]).to_owned(),
                 ));
                 self.wrong = None;
             }
@@ -119,7 +127,7 @@ impl PresetRows {
             return;
         };
         let mut back = false;
-        let words = tr!("{name} is deleted.", name = known(&preset.name));
+        let words = tr!("{name} is deleted.", name = shown_name(preset));
         entry(
             ui,
             |ui| drop(ui.label(words)),

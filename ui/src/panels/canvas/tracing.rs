@@ -8,7 +8,7 @@ use crate::widgets::context::PanelContext;
 use crate::widgets::rows::{Number, Sliders, below};
 
 const STRENGTH: Number<'_> = Number {
-    word: tr_noop!("Strength"),
+    word: tr_noop!("picture|Strength"),
     hover: tr_noop!("How much of the tracing picture is seen; it is neither painted nor exported"),
     range: 0.0..=100.0,
     unit: " %",
@@ -17,17 +17,19 @@ const STRENGTH: Number<'_> = Number {
 };
 
 pub(super) fn show(ui: &mut Ui, work: &mut PanelContext<'_>, sliders: &mut Sliders) {
+    let keys = &work.preferences.keys;
     let Some(tracing) = work.tracing().cloned() else {
-        let choose = ui.button(tr!("Tracing picture…")).on_hover_text(tr!(
-            "Throw a picture on the canvas, to paint after: Ctrl+Shift+T"
-        ));
+        let words = tr!("Project a picture onto the canvas to trace it");
+        let hover = keys.hint(ui.ctx(), words, &[Action::ChooseTracing]);
+        let choose = ui.button(tr!("Tracing picture…")).on_hover_text(hover);
         if choose.clicked() {
             work.requests.act(Action::ChooseTracing);
         }
         return;
     };
     let mut shown = tracing.shown;
-    let hover = format!("{}  Ctrl+T", paths::shown(&tracing.path));
+    let path = paths::shown(&tracing.path);
+    let hover = keys.hint(ui.ctx(), &path, &[Action::Tracing]);
     ui.checkbox(&mut shown, tr!("Show tracing picture"))
         .on_hover_text(hover);
     let change = sliders.row(ui, &STRENGTH, 100.0 * f64::from(tracing.sound_strength()));

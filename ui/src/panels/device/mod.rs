@@ -19,6 +19,7 @@ use maulstick_types::haptics::ForceOrder;
 use maulstick_types::stylus::{StylusInfo, StylusStatus, axes};
 
 use crate::input::keys::Action;
+use crate::language::capitalized;
 use crate::panels::Panel;
 use crate::rig::force_history::{self, KEPT_S, size};
 use crate::rig::state::Device;
@@ -85,7 +86,7 @@ impl DevicePanel {
             let (trouble, help) = parted(&status.trouble);
             ui.colored_label(ui.visuals().warn_fg_color, trouble);
             if let Some(help) = help {
-                ui.label(sentence(help));
+                ui.label(capitalized(help));
             }
         }
         if let Some(info) = &device.info
@@ -200,12 +201,6 @@ fn worded(name: &str) -> String {
         "player" => tr!("A take").to_owned(),
         _ => name.to_owned(),
     }
-}
-
-fn sentence(words: &str) -> String {
-    let mut letters = words.chars();
-    let first = letters.next().map(char::to_uppercase);
-    first.into_iter().flatten().chain(letters).collect()
 }
 
 /// Driver, brush and rate.

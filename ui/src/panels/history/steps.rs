@@ -36,7 +36,7 @@ fn rows(work: &PanelContext<'_>) -> Vec<Row> {
     };
     let row = |step: &HistoryStep| Row {
         id: step.id,
-        words: capital(&language::step(&step.what)),
+        words: language::capitalized(&language::step(&step.what)),
         done: step.done,
     };
     let mut rows: Vec<Row> = paint.status.history.iter().map(row).collect();
@@ -55,13 +55,6 @@ fn rows(work: &PanelContext<'_>) -> Vec<Row> {
 pub(super) fn pictured(work: &PanelContext<'_>) -> Vec<Pictured> {
     let rows = rows(work).into_iter();
     rows.map(|row| Pictured::Step(row.id)).collect()
-}
-
-/// Words with a capital at the beginning.
-fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    let first = letters.next().map(|letter| letter.to_uppercase());
-    first.into_iter().flatten().chain(letters).collect()
 }
 
 /// Undo and redo, how many steps there are, and the list.

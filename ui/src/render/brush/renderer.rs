@@ -91,9 +91,11 @@ impl BrushRenderer {
         let mut shapes = self.shadows(gpu, held, (head, &sections), lamp, below);
         let to_window =
             |local: Vec3| -> Pos2 { below.view.to_window(held.on_desk(local.as_dvec3().into())) };
+        let ferrule = held.plane.to_desk.point(held.brush.translation);
+        let scale = below.view.scale_at(ferrule.z);
         let sight = ViewLight {
             to_window: &to_window,
-            scale: below.view.scale as f32,
+            scale: scale as f32,
             up: held.plane.to_desk.inverse().vector(DVec3::Z).as_vec3(),
             toward: Vec3::from_array(lamp.toward),
             light: lamp.intensity,

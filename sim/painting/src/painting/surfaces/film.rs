@@ -150,8 +150,8 @@ impl SurfaceState {
                 *room = 0.0;
             }
         }
-        for well in self.bare.in_wells(id) {
-            room[well.cell] = 0.0;
+        for cell in self.bare.cells_in_wells(id) {
+            room[cell] = 0.0;
         }
         let is_whole = room.iter().all(|room| *room > 0.0);
         (room, is_whole)

@@ -67,7 +67,7 @@ impl SurfaceState {
         if (0..2).any(|i| corner[i] + side <= from[i] || to[i] <= corner[i]) {
             return None;
         }
-        let mut stays: Vec<usize> = self.bare.in_wells(id).map(|well| well.cell).collect();
+        let mut stays: Vec<usize> = self.bare.cells_in_wells(id).collect();
         let cells = self.store.cells();
         // Nothing lies beyond the surface's edge.
         let holds = |i: usize| from[i] <= corner[i] && (corner[i] + side).min(cells[i]) <= to[i];

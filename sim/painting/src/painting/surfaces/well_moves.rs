@@ -60,7 +60,7 @@ impl Disc {
 
 /// A well of before and what became of it: where it is now, and its way there, cells.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Way {
+pub(crate) struct WellMove {
     from: Disc,
     to: Option<(Disc, Cell)>,
 }
@@ -76,7 +76,7 @@ pub(crate) enum WellMoves {
     /// That on wells goes with them.
     Wells {
         /// The wells of before.
-        ways: Vec<Way>,
+        ways: Vec<WellMove>,
         /// Wells that are where none of their kind was.
         come: Vec<Disc>,
     },
@@ -100,9 +100,9 @@ impl WellMoves {
                 across: i64::from(surface.cells[0]),
             };
         }
-        let mut ways: Vec<Way> = before
+        let mut ways: Vec<WellMove> = before
             .iter()
-            .map(|well| Way {
+            .map(|well| WellMove {
                 from: Disc::of(well, cell_m),
                 to: None,
             })
@@ -152,7 +152,11 @@ impl WellMoves {
                     .collect()
             }
             Self::Wells { ways, come } => {
-                let moves = |way: &&Way| way.to.is_none_or(|(_, by)| by != [0, 0]);
+                let moves = |way: &&WellMove| {
+                    let other =
+                        |(to, by): (Disc, [i64; 2])| by != [0, 0] || to.radius != way.from.radius;
+                    way.to.is_none_or(other)
+                };
                 let from = ways.iter().filter(moves).map(|way| way.from);
                 from.chain(come.iter().copied())
                     .flat_map(|disc| disc.tiles().collect::<Vec<_>>())

@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use maulstick_appearance::heap::{Heap, WELL_M};
+use maulstick_appearance::heap::{HeapCells, WELL_M};
 use maulstick_brush::HeadPose;
 use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::{QUANTUM_M, SLOTS};
@@ -108,8 +108,8 @@ impl Painting {
         let bare = Arc::new(self.optics.blank(&changed, relief)?);
         self.close_windows();
         let moved = self.surfaces[on].with_moved_paint(&ways, &self.surfaces.pager);
-        // A palette that is laid out before anything was done is nothing to undo.
-        let is_step = !moved.is_empty() || self.history_depth() != (0, 0);
+        // A palette that is laid out before anything was painted is nothing to undo.
+        let is_step = !moved.is_empty() || self.history.changes_surfaces();
         if !moved.is_empty() {
             self.clock.stop(Some(surface));
         }
@@ -139,7 +139,8 @@ impl Painting {
         let cell_m = self.scene.surfaces[on].cell_m;
         let wells = wells_near(&self.scene.surfaces[on], (from, to));
         let ledger = &mut self.accounts.ledger;
-        for well in wells {
+        for (place, well) in wells {
+            let heap = self.surfaces[on].bare.wells[place].heap().cloned();
             let brush = &mut self.brushes[brush];
             let Some((_, window)) = &mut brush.window else {
                 return;
@@ -155,7 +156,7 @@ impl Painting {
                         continue;
                     };
                     let cells = cells_within(window, &well, cell_m, (from, to));
-                    let thick = thicknesses(window, &cells, &well, &mixture, cell_m);
+                    let thick = thicknesses(window, &cells, heap.as_ref());
                     let mut shares = [0.0; SLOTS];
                     for (slot, share) in slots {
                         shares[slot] += share;
@@ -187,7 +188,7 @@ impl Painting {
         let Some((_, window)) = &mut self.brushes[brush].window else {
             return;
         };
-        for well in wells_near(surface, (from, to)) {
+        for (_, well) in wells_near(surface, (from, to)) {
             if well.kind == WellKind::Medium {
                 let cells = cells_within(window, &well, surface.cell_m, (from, to));
                 renew(window, &cells, NOTHING, &mut self.accounts.ledger);
@@ -196,39 +197,31 @@ impl Painting {
     }
 }
 
-/// The wells of a surface that reach into the cells `from`..`to`.
-fn wells_near(surface: &Surface, (from, to): ([i64; 2], [i64; 2])) -> Vec<Well> {
-    let near = |well: &&Well| {
+/// The wells of a surface that reach into the cells `from`..`to`, by their number.
+fn wells_near(surface: &Surface, (from, to): ([i64; 2], [i64; 2])) -> Vec<(usize, Well)> {
+    let near = |(_, well): &(usize, &Well)| {
         (0..2).all(|i| {
             let low = (well.center_m[i] - well.radius_m) / surface.cell_m;
             let high = (well.center_m[i] + well.radius_m) / surface.cell_m;
             low < to[i] as f64 && high > from[i] as f64
         })
     };
-    surface.wells.iter().filter(near).cloned().collect()
+    let wells = surface.wells.iter().enumerate().filter(near);
+    wells.map(|(place, well)| (place, well.clone())).collect()
 }
 
 /// Quanta of paint in cells of a well: its heap, or a jar filled evenly.
-fn thicknesses(
-    window: &Window,
-    cells: &[usize],
-    well: &Well,
-    mixture: &Mixture,
-    cell_m: f64,
-) -> Vec<f64> {
-    if well.kind == WellKind::Medium {
-        return vec![WELL_M / QUANTUM_M; cells.len()];
-    }
-    let heap = Heap::of(mixture);
+fn thicknesses(window: &Window, cells: &[usize], heap: Option<&HeapCells>) -> Vec<f64> {
     let (origin, width) = (window.origin(), window.width());
-    let offset = |cell: usize| {
-        let place = [cell % width, cell / width].map(|at| at as f64 + 0.5);
-        [0, 1].map(|i| ((origin[i] as f64 + place[i]) * cell_m - well.center_m[i]) / well.radius_m)
+    let quanta = |cell: &usize| {
+        let within = [cell % width, cell / width].map(|at| at as i64);
+        let thickness_m = heap.map_or(WELL_M, |heap| {
+            let cell = [0, 1].map(|i| origin[i] + within[i]);
+            heap.thickness_m(cell).into()
+        });
+        thickness_m / QUANTUM_M
     };
-    let cells = cells.iter();
-    cells
-        .map(|cell| heap.thickness_m(offset(*cell)) / QUANTUM_M)
-        .collect()
+    cells.iter().map(quanta).collect()
 }
 
 /// No paint, for [`renew`].

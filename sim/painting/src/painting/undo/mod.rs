@@ -9,7 +9,7 @@ use maulstick_types::scene::{Layer, Scene};
 
 use super::Painting;
 use crate::apply::{Applied, Apply};
-use crate::history::{History, OpenStep, Step, SurfaceMaterial, Way, same};
+use crate::history::{Direction, History, OpenStep, Step, SurfaceMaterial, same};
 
 /// Materials of the surfaces of a scene.
 pub(crate) fn materials(scene: &Scene) -> Vec<SurfaceMaterial> {
@@ -60,11 +60,11 @@ impl Painting {
                 .history
                 .last_done(brush)
                 .ok_or_else(|| EditError::NothingToUndo(brush.map(str::to_owned)))?;
-            self.check(step, Way::Back)?;
+            self.check(step, Direction::Undo)?;
         }
         self.end_step(|_| true);
         match self.history.last_done(brush).cloned() {
-            Some(step) => Ok(self.walk(&step, Way::Back)),
+            Some(step) => Ok(self.walk(&step, Direction::Undo)),
             None => Ok(String::new()),
         }
     }
@@ -104,9 +104,9 @@ impl Painting {
         self.commit();
         let step = self.history.last_undone(brush).cloned();
         let step = step.ok_or(EditError::NothingToRedo)?;
-        self.check(&step, Way::Forth)?;
+        self.check(&step, Direction::Redo)?;
         self.end_step(|_| true);
-        Ok(self.walk(&step, Way::Forth))
+        Ok(self.walk(&step, Direction::Redo))
     }
 
     /// Undoes or redoes steps until the one of this number is the newest that is done, 0 for none, and returns its
@@ -117,30 +117,30 @@ impl Painting {
     pub fn go_to(&mut self, step: u64) -> Result<String, EditError> {
         let open = self.history.open().find(|open| open.id == step);
         if let Some(what) = open.map(|open| open.what.clone()) {
-            // It is the newest one.
+            // Of steps that are not finished none counts as newer.
             return Ok(what);
         }
         let way = self.history.way_to(step).ok_or(EditError::NoStep)?;
-        let way: Vec<Way> = way.into_iter().map(|(way, _)| way).collect();
-        let way: Vec<Way> = match way.first() {
-            Some(Way::Forth) => way,
+        let way: Vec<Direction> = way.into_iter().map(|(way, _)| way).collect();
+        let way: Vec<Direction> = match way.first() {
+            Some(Direction::Redo) => way,
             _ => {
-                let open = self.history.open().map(|_| Way::Back);
+                let open = self.history.open().map(|_| Direction::Undo);
                 open.chain(way).collect()
             }
         };
         let mut gone = Vec::new();
         for way in way {
             let went = match way {
-                Way::Back => self.undo(None),
-                Way::Forth => self.redo(None),
+                Direction::Undo => self.undo(None),
+                Direction::Redo => self.redo(None),
             };
             if let Err(error) = went {
                 // Back by the way that was just gone, which nothing lies over.
                 for way in gone.into_iter().rev() {
                     drop(match way {
-                        Way::Back => self.redo(None),
-                        Way::Forth => self.undo(None),
+                        Direction::Undo => self.redo(None),
+                        Direction::Redo => self.undo(None),
                     });
                 }
                 return Err(error);
@@ -152,7 +152,7 @@ impl Painting {
     }
 
     /// Sees that all is as the step left it, or found it.
-    fn check(&self, step: &Step, way: Way) -> Result<(), EditError> {
+    fn check(&self, step: &Step, way: Direction) -> Result<(), EditError> {
         let from = way.ends()[0];
         let effects = &step.effects;
         let mut tiles = step.tiles.iter();
@@ -170,8 +170,8 @@ impl Painting {
         let other_books = !self.accounts.ledger.can_book(&effects.booked, way.times());
         // A later step may have led back to what this one left, as a return to a version does.
         let later = match way {
-            Way::Back => self.history.later_on(step),
-            Way::Forth => None,
+            Direction::Undo => self.history.later_on(step),
+            Direction::Redo => None,
         };
         if later.is_none() && !over && !other_load && !other_rest && !other_books {
             return Ok(());
@@ -184,7 +184,7 @@ impl Painting {
     }
 
     /// Takes a step back, or forth; it was checked.
-    fn walk(&mut self, step: &Step, way: Way) -> String {
+    fn walk(&mut self, step: &Step, way: Direction) -> String {
         let to = way.ends()[1];
         let effects = &step.effects;
         // Time would do again what is taken back.
@@ -202,20 +202,20 @@ impl Painting {
         self.turn_non_tile_state(layers.map(|ends| &ends[to]), made.map(|ends| &ends[to]));
         self.turn_tops(step, way);
         match way {
-            Way::Back => self.history.undone(step.id),
-            Way::Forth => self.history.redone(step.id),
+            Direction::Undo => self.history.undone(step.id),
+            Direction::Redo => self.history.redone(step.id),
         }
         step.what.clone()
     }
 
     /// Restores the height of the paint where nothing else was painted meanwhile: then the same motion paints the same
     /// again.
-    fn turn_tops(&mut self, step: &Step, way: Way) {
+    fn turn_tops(&mut self, step: &Step, way: Direction) {
         let newest = self.history.last_done(None).map_or(0, |newest| newest.id);
         let [before, after] = &step.effects.tops;
         let (from, to) = match way {
-            Way::Back if step.id == newest => (after, before),
-            Way::Forth if step.id > newest => (before, after),
+            Direction::Undo if step.id == newest => (after, before),
+            Direction::Redo if step.id > newest => (before, after),
             _ => return,
         };
         for surface in self.surfaces.iter_mut() {
