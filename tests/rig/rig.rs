@@ -324,12 +324,15 @@ fn commands_reach_a_running_rig() {
     assert!(said.contains("no/p.png"), "{said}");
 }
 
-/// Waits until the window shows the wood of a handle to the lower right of a point of it, which is
-/// where a mouse holds a brush; whether it did.
+/// Waits until the window shows the wood of a handle to the lower right of a point of it, which is where a mouse holds a
+/// brush, more or less steeply by where the eye sees it from; whether it did.
 fn shows_brush(display: &Display, window: u32, [x, y]: [i16; 2]) -> bool {
     let wood = |[red, _, blue]: [u8; 3]| red > blue.saturating_add(35);
-    let along = || (40..90).map(|i| display.pixel(window, x + i, y + i));
-    wait_for(PATIENCE, || along().any(wood).then_some(())).is_some()
+    let around = || {
+        let steps = (5..20).flat_map(|i| (8..20).map(move |j| [5 * i, 5 * j]));
+        steps.map(|[right, down]| display.pixel(window, x + right, y + down))
+    };
+    wait_for(PATIENCE, || around().any(wood).then_some(())).is_some()
 }
 
 #[test]
