@@ -13,7 +13,9 @@ const KNOWN_M: f64 = 1.5e-3;
 /// Longest time for which a stroke waits for its direction, ns: a dab has none.
 const WAIT_NS: u64 = 80_000_000;
 /// Length of the string at which the pointer draws the turning point behind it, m.
-const STRING_M: f64 = 4e-3;
+const STRING_M: f64 = 6e-3;
+/// The pointer may be so far beside the way before the brush turns, m: a way drawn in whole pixels has steps.
+const SLACK_M: f64 = 0.4e-3;
 
 /// The turn of the brush over a stroke.
 #[derive(Debug, Default)]
@@ -90,7 +92,12 @@ impl BrushTurn {
             // the brush turns the shorter way, and is not flipped where the stroke goes back.
             let period = if self.waiting.is_some() { TAU } else { PI };
             let turns = ((self.across_rad - across) / period).round();
-            self.across_rad = across + turns * period;
+            let off = across + turns * period - self.across_rad;
+            let slack = match self.waiting.is_some() {
+                true => 0.0,
+                false => SLACK_M / length,
+            };
+            self.across_rad += off.signum() * (off.abs() - slack).max(0.0);
         }
         self.turning_point = Some(at - string * (STRING_M / length.max(STRING_M)));
     }
@@ -167,6 +174,23 @@ mod tests {
                 assert!(off < 1e-9, "{degrees}°: off by {off}");
             }
         }
+    }
+
+    #[test]
+    fn a_way_in_whole_pixels_turns_it_as_little_as_the_way_itself() {
+        // A pixel in ten to the side.
+        let pixel = 0.38e-3;
+        let steps = stroke(&FOLLOWS, |s| [s, pixel * (s / (10.0 * pixel)).floor()]);
+        let turns: Vec<f64> = steps
+            .iter()
+            .filter(|place| place.pressed)
+            .map(|place| place.twist_rad)
+            .collect();
+        let all = turns
+            .windows(2)
+            .map(|two| (two[1] - two[0]).abs())
+            .sum::<f64>();
+        assert!(all < 0.2, "{all}: {turns:?}");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use eframe::egui::ecolor::Hsva;
-use eframe::egui::{Align2, Context, Id, TextEdit, Ui, Window};
+use eframe::egui::{Align2, Context, Id, Key, TextEdit, Ui, Window};
 use maulstick_optics::colour::srgb_decode;
 
 use crate::app::{rack, sides};
@@ -24,6 +24,8 @@ pub(crate) struct ColourWindow {
     shown: bool,
     /// True until it has the keyboard, with which it opens.
     opens: bool,
+    /// True if a control had the keyboard in the last frame.
+    had_keyboard: bool,
     colour: Hsva,
     /// The field, while something else than the colour is written in it.
     typed: Option<String>,
@@ -35,6 +37,7 @@ impl Default for ColourWindow {
         Self {
             shown: false,
             opens: false,
+            had_keyboard: false,
             colour: Hsva::from_srgb([138, 90, 60]),
             typed: None,
             picker: Picker::default(),
@@ -83,6 +86,11 @@ impl ColourWindow {
         let side = sides::rack_side(work.preferences);
         let aside = rack::WIDTH + sides::column_at(work.preferences, side) + ASIDE;
         let mut open = true;
+        // The first Escape leaves the field.
+        let had_keyboard = std::mem::replace(
+            &mut self.had_keyboard,
+            context.memory(|memory| memory.focused().is_some()),
+        );
         Window::new(tr!("A colour in mind"))
             .id(Id::unique("colour"))
             .open(&mut open)
@@ -97,7 +105,11 @@ impl ColourWindow {
                 ui.separator();
                 self.proposals(ui, work);
             });
-        self.shown = open;
+        let nothing_focused = context.memory(|memory| memory.focused().is_none());
+        let leaves = nothing_focused
+            && !had_keyboard
+            && context.input(|input| input.key_pressed(Key::Escape));
+        self.shown = open && !leaves;
     }
 
     /// The square, and the colour as text.
@@ -160,7 +172,7 @@ impl ColourWindow {
 
 #[cfg(test)]
 mod tests {
-    use eframe::egui::{Key, Modifiers};
+    use eframe::egui::Modifiers;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable as _;
     use maulstick_types::command::Command;
@@ -173,6 +185,18 @@ mod tests {
         until(harness, |harness| {
             harness.query_all_by_label_contains("Load ").count() == 3
         });
+    }
+
+    #[test]
+    fn it_opens_with_the_keyboard_and_escape_gives_that_back_and_then_closes_it() {
+        let mut harness = window(None);
+        ctrl(&mut harness, Key::M, Modifiers::NONE);
+        assert!(harness.get_by_label("Hex").is_focused());
+        for stays in [true, false] {
+            harness.key_press(Key::Escape);
+            harness.run_steps(3);
+            assert_eq!(harness.query_by_label("Hex").is_some(), stays);
+        }
     }
 
     #[test]

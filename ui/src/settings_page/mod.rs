@@ -7,8 +7,8 @@
 mod key_rows;
 
 use eframe::egui::{
-    Align, Button, ComboBox, Context, Frame, Grid, Id, Layout, Margin, Modal, Response, RichText,
-    Role, Ui, WidgetInfo, gui_zoom,
+    Align, Button, Context, Frame, Grid, Id, Layout, Margin, Modal, RichText, Role, Ui, WidgetInfo,
+    gui_zoom,
 };
 
 use crate::language;
@@ -80,8 +80,8 @@ fn look(ui: &mut Ui, work: &mut PanelContext<'_>) {
         ui.label(tr!("Text size"));
         ui.horizontal(text_size);
         ui.end_row();
-        let language_name = ui.label(tr!("Language"));
-        language_choice(ui, &mut preferences.language).labelled_by(language_name.id);
+        ui.label(tr!("Language"));
+        ui.horizontal_wrapped(|ui| language_choice(ui, &mut preferences.language));
         ui.end_row();
         ui.label(tr!("Theme"));
         ui.horizontal(|ui| {
@@ -101,31 +101,20 @@ fn look(ui: &mut Ui, work: &mut PanelContext<'_>) {
 }
 
 /// The languages by their own names; the window speaks the chosen one at once.
-fn language_choice(ui: &mut Ui, chosen: &mut Option<String>) -> Response {
-    let system = tr!("As the system");
+fn language_choice(ui: &mut Ui, chosen: &mut Option<String>) {
     let english = (language::ENGLISH, "English");
     let others = language::all().iter();
     let names = std::iter::once(english).chain(others.map(|(code, other)| (*code, &*other.name)));
-    let now = names
-        .clone()
-        .find(|(code, _)| chosen.as_deref() == Some(code));
-    let combo = ComboBox::from_id_salt("language")
-        .width(150.0)
-        .selected_text(now.map_or(system, |(_, name)| name));
-    let shown = combo.show_ui(ui, |ui| {
-        let mut is_changed = ui.selectable_value(chosen, None, system).clicked();
-        for (code, name) in names {
-            is_changed |= ui
-                .selectable_value(chosen, Some(code.to_owned()), name)
-                .clicked();
-        }
-        is_changed
-    });
-    if shown.inner.unwrap_or(false) {
+    let system = tr!("As the system");
+    let mut is_changed = ui.selectable_value(chosen, None, system).clicked();
+    for (code, name) in names {
+        let own = Some(code.to_owned());
+        is_changed |= ui.selectable_value(chosen, own, name).clicked();
+    }
+    if is_changed {
         language::choose(chosen.as_deref());
         ui.ctx().request_repaint();
     }
-    shown.response
 }
 
 fn text_size(ui: &mut Ui) {
