@@ -54,17 +54,31 @@ fn snapshot(place: &Place) -> (Vec<u8>, serde_json::Value) {
     (place.bytes("p.png"), ledger)
 }
 
-fn gestures(count: usize, busy: usize) {
-    let place = Place::new();
+/// A rig with its window, and a hand at it.
+fn sit_down(place: &Place) -> (Launcher, Hand) {
     let display = Display::start();
     let mut command = place.maulstick(&["up", "hand.maul"]);
     command.env("DISPLAY", &display.name);
     let mut launcher = Launcher::start(command);
     launcher.wait_says("is up");
-    let (bus, topics) = support::join(&place);
+    let (bus, topics) = support::join(place);
     display.window("Maulstick");
+    (launcher, Hand::new(display, bus, &topics, SEED))
+}
+
+/// Closes the window, which ends the rig.
+fn get_up(mut launcher: Launcher, hand: Hand) {
+    hand.bus.close();
+    let window = hand.display.window("Maulstick");
+    hand.display.close(window);
+    let ended = launcher.wait(PATIENCE);
+    assert_eq!(ended.code(), Some(0), "{}", launcher.said());
+}
+
+fn gestures(count: usize, busy: usize) {
+    let place = Place::new();
+    let (launcher, mut hand) = sit_down(&place);
     let _busy = Busy::start(busy);
-    let mut hand = Hand::new(display, bus, &topics, SEED);
     let mut steps = hand.settle();
     let (blank, _) = snapshot(&place);
     // The brush is loaded as the rig starts.
@@ -119,15 +133,7 @@ fn gestures(count: usize, busy: usize) {
     let (redone, ledger) = snapshot(&place);
     assert_same(&redone, &end, "all redone");
     assert_eq!(ledger["quanta_missing"], 0);
-    hand.bus.close();
-    let window = hand.display.window("Maulstick");
-    hand.display.close(window);
-    assert_eq!(
-        launcher.wait(PATIENCE).code(),
-        Some(0),
-        "{}",
-        launcher.said()
-    );
+    get_up(launcher, hand);
 }
 
 #[test]
@@ -151,21 +157,14 @@ fn resident(pid: u32) -> u64 {
 
 /// A thousand strokes are more than an hour of a painter.
 #[test]
-#[ignore = "takes several minutes"]
+#[ignore = "takes ten minutes: `./test --long`"]
 fn a_thousand_strokes_leave_memory_and_file_within_their_bounds() {
     /// The window may hold so much more after the last stroke than after the first two hundred.
     const MORE: u64 = 24 << 20;
     /// The painting's bound, as rigs have it.
     const BOUND: u64 = 1 << 30;
     let place = Place::new();
-    let display = Display::start();
-    let mut command = place.maulstick(&["up", "hand.maul"]);
-    command.env("DISPLAY", &display.name);
-    let mut launcher = Launcher::start(command);
-    launcher.wait_says("is up");
-    let (bus, topics) = support::join(&place);
-    display.window("Maulstick");
-    let mut hand = Hand::new(display, bus, &topics, SEED);
+    let (launcher, mut hand) = sit_down(&place);
     let window = place.pid("maulstick-ui").expect("a window");
     let mut held = Vec::new();
     for number in 1..=1000 {
@@ -186,15 +185,7 @@ fn a_thousand_strokes_leave_memory_and_file_within_their_bounds() {
         grown <= MORE,
         "the window has grown by {grown} bytes: {held:?}"
     );
-    hand.bus.close();
-    let window = hand.display.window("Maulstick");
-    hand.display.close(window);
-    assert_eq!(
-        launcher.wait(PATIENCE).code(),
-        Some(0),
-        "{}",
-        launcher.said()
-    );
+    get_up(launcher, hand);
     let kept = place.bytes("hand.maul").len();
     place.done(&["painting", "pack", "hand.maul"]);
     let packed = place.bytes("hand.maul").len();
