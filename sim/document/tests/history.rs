@@ -23,6 +23,34 @@ fn is_done(outcome: &Outcome) -> bool {
     matches!(outcome, Outcome::Done { .. })
 }
 
+/// Paints with so many bytes of history, and undoes all of it.
+fn goes_back(seed: u64, acts: usize, quota: u64) -> Result<(), TestCaseError> {
+    let mut painter = Painter::new(seed);
+    let mut sequencer = sequencer(Arc::default());
+    equip(&mut sequencer);
+    sequencer.painting_mut().set_quota(quota);
+    for _ in 0..acts {
+        let act = painter.next();
+        painter.act(&mut sequencer, &act);
+        seen(&mut sequencer);
+    }
+    while is_done(&painter.command(&mut sequencer, Undo { brush: None })) {
+        seen(&mut sequencer);
+    }
+    let store = sequencer.painting().store(0).expect("a canvas");
+    prop_assert_eq!(store.counts(), [0; SLOTS], "all is undone");
+    let steps = sequencer.painting().history().steps();
+    let apart = steps.skip(1).all(|step| step.operations == 1);
+    prop_assert!(apart, "only the oldest are merged");
+    Ok(())
+}
+
+/// One of two who paint at once does so between the tiles that the other's stroke has reached, where its paint relaxes.
+#[test]
+fn two_who_paint_at_once_do_not_cover_each_other() {
+    goes_back(9_554_720_162_090_198_157, 36, 1).expect("undone");
+}
+
 proptest! {
     #![proptest_config(studio::cases(24))]
 
@@ -55,23 +83,7 @@ proptest! {
     /// beginning, and the newest steps stay apart.
     #[test]
     fn a_short_history_goes_back_as_far(seed in any::<u64>(), acts in 20usize..60, quota in 1u64..2_000_000) {
-        let mut painter = Painter::new(seed);
-        let mut sequencer = sequencer(Arc::default());
-        equip(&mut sequencer);
-        sequencer.painting_mut().set_quota(quota);
-        for _ in 0..acts {
-            let act = painter.next();
-            painter.act(&mut sequencer, &act);
-            seen(&mut sequencer);
-        }
-        while is_done(&painter.command(&mut sequencer, Undo { brush: None })) {
-            seen(&mut sequencer);
-        }
-        let store = sequencer.painting().store(0).expect("a canvas");
-        prop_assert_eq!(store.counts(), [0; SLOTS], "all is undone");
-        let steps = sequencer.painting().history().steps();
-        let apart = steps.skip(1).all(|step| step.operations == 1);
-        prop_assert!(apart, "only the oldest are merged");
+        goes_back(seed, acts, quota)?;
     }
 
     /// A painting in a document, with little memory, closed, killed and opened again, beside one that

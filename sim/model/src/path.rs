@@ -48,6 +48,20 @@ impl PathStepper {
         }
     }
 
+    /// A path of a brush that comes down: its first step is the last of the way to `at`, straight onto the surface, and
+    /// `step` is called for it. So a brush that is only set down prints, loads and is cleaned.
+    pub fn landing(
+        head: &Head,
+        at: Waypoint,
+        scale: Scale,
+        mut step: impl FnMut(Sweep<'_>, u32),
+    ) -> Self {
+        let way_m = scale.step_cells(head.is_fine()) * scale.cell_m * scale.zoom;
+        let mut path = Self::begin(head, at.raised(way_m), scale);
+        path.step_to(head, at, &mut step);
+        path
+    }
+
     /// A saved path: position of its last step, and the position since.
     #[must_use]
     pub fn going_on(head: &Head, (at, ahead): (Waypoint, Option<Waypoint>), scale: Scale) -> Self {

@@ -132,6 +132,40 @@ fn a_brush_loads_by_touching_paints_and_is_cleaned_by_touching() {
     assert!(cleaned.accounts_m3["cleaner"] > 0.0);
 }
 
+/// A press that does not move does what one does that moves a little.
+#[test]
+fn a_brush_that_is_set_down_loads_prints_and_is_cleaned() {
+    let mut hand = Hand::new();
+    let blue = hand.well(Some("Ultramarine Blue"));
+    hand.stroke(blue, blue);
+    let loaded = hand.report();
+    assert!(loaded.accounts_m3["brush"] > 1e-9, "{loaded:?}");
+    hand.stroke([0.0, 0.0], [0.0, 0.0]);
+    let printed = hand.report();
+    assert!(printed.accounts_m3["canvas"] > 1e-11, "{printed:?}");
+    let cleaner = hand.well(None);
+    hand.stroke(cleaner, cleaner);
+    assert_eq!(hand.report().accounts_m3["brush"], 0.0);
+}
+
+#[test]
+fn a_medium_thins_what_the_brush_carries() {
+    let mut hand = Hand::new();
+    let blue = hand.well(Some("Ultramarine Blue"));
+    let medium = hand.well(Some("Thinner"));
+    hand.drag_through(blue);
+    for _ in 0..5 {
+        let report = hand.report();
+        println!("{:?} {:?}", report.accounts_m3["brush"], report.paints_m3);
+        hand.stroke(medium, medium);
+    }
+    for _ in 0..5 {
+        let report = hand.report();
+        println!("{:?} {:?}", report.accounts_m3["brush"], report.paints_m3);
+        hand.drag_through(medium);
+    }
+}
+
 #[test]
 fn a_well_never_runs_out_and_never_gets_dirty() {
     let mut hand = Hand::new();

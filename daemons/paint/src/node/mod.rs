@@ -65,6 +65,8 @@ pub struct PaintNode {
     consumed: Sender<PaintConsumed>,
     scene: Announcer<Scene>,
     status: Sender<PaintStatus>,
+    /// The status that was sent last, and when.
+    told_status: Option<(PaintStatus, u64)>,
     feed: Feed,
     fed_version: u64,
     fed_scene: u64,
@@ -153,6 +155,7 @@ impl PaintNode {
             fed_ns: 0,
             fed_brushes_ns: 0,
             status_ns: 0,
+            told_status: None,
             told: BTreeMap::new(),
             tell_again: false,
             refused: 0,

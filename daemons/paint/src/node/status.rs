@@ -9,6 +9,8 @@ use maulstick_types::scene::{CANVAS, PALETTE};
 use super::{PaintNode, STATUS_PERIOD_NS};
 use maulstick_session::Autosave;
 
+/// Time between two statuses that say the same, ns: each one wakes all that listen.
+const AT_REST_NS: u64 = 5 * STATUS_PERIOD_NS;
 /// Steps that a status lists.
 const LISTED: usize = 30;
 /// Letters of the description of a step.
@@ -108,6 +110,12 @@ impl PaintNode {
                 + self.reader.refused()
                 + self.sequencer.ignored(),
         };
-        self.status.send(now_ns, now_ns, &status)
+        let told = self.told_status.as_ref();
+        if told.is_some_and(|(told, told_ns)| *told == status && now_ns < told_ns + AT_REST_NS) {
+            return Ok(());
+        }
+        self.status.send(now_ns, now_ns, &status)?;
+        self.told_status = Some((status, now_ns));
+        Ok(())
     }
 }

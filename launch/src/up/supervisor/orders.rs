@@ -27,23 +27,19 @@ pub(super) struct Orders {
     pub(super) replies: ReplyCache,
     statuses: Receiver<PaintStatus>,
     status: Option<PaintStatus>,
-    /// Statuses heard so far.
-    heard: u64,
+    /// Time of that status, rig clock, ns.
+    status_ns: u64,
     leaving: Leaving,
 }
 
-/// Number of the paint node's statuses after which a painting is left: the first may have been in flight when the
-/// request was made.
-const STATUSES: u64 = 2;
-
-/// Clients that want to leave the painting, with the number of statuses received when they first asked.
+/// Clients that want to leave the painting, with the time at which they first asked, ns.
 #[derive(Debug, Default)]
 struct Leaving(BTreeMap<(u64, u64), u64>);
 
 impl Leaving {
-    /// True if enough of `heard` statuses have arrived since an asker was first there.
-    fn has_heard(&mut self, asker: (u64, u64), heard: u64) -> bool {
-        heard >= *self.0.entry(asker).or_insert(heard) + STATUSES
+    /// True if the paint node's newest status is of later than when an asker was first there.
+    fn has_heard(&mut self, asker: (u64, u64), now_ns: u64, status_ns: u64) -> bool {
+        status_ns > *self.0.entry(asker).or_insert(now_ns)
     }
 }
 
@@ -64,7 +60,7 @@ impl Orders {
             replies: ReplyCache::default(),
             statuses: Receiver::new(bus, &topic, Qos::Background, Queue::Ring(4), wake)?,
             status: None,
-            heard: 0,
+            status_ns: 0,
             leaving: Leaving::default(),
         })
     }
@@ -82,11 +78,11 @@ impl Orders {
     }
 
     /// True if the paint node has reported its status since this was first requested, where that matters.
-    fn has_heard(&mut self, asked: &CommandRequest) -> bool {
+    fn has_heard(&mut self, asked: &CommandRequest, now_ns: u64) -> bool {
         let asker = (asked.client, asked.number);
         match asked.command {
             Command::Rig(RigCommand::Open { .. } | RigCommand::New { .. }) => {
-                self.leaving.has_heard(asker, self.heard)
+                self.leaving.has_heard(asker, now_ns, self.status_ns)
             }
             Command::Rig(RigCommand::SaveAs(_))
             | Command::Edit(_)
@@ -145,7 +141,7 @@ impl Supervisor {
         while let Some(status) = self.orders.statuses.try_recv() {
             self.follow_painting(&status.message.path);
             self.orders.status = Some(status.message);
-            self.orders.heard += 1;
+            self.orders.status_ns = status.header.event_ns;
             self.has_spoken();
         }
         while let Some(request) = self.orders.server.try_recv() {
@@ -162,7 +158,7 @@ impl Supervisor {
             let outcome = match orders.replies.find(&asked) {
                 Some(outcome) => outcome,
                 // It is asked again, and done when its turn comes.
-                None if self.switch.is_some() || !orders.has_heard(&asked) => Outcome::Waiting,
+                None if self.switch.is_some() || !orders.has_heard(&asked, bus.now_ns()) => Outcome::Waiting,
                 None => {
                     orders.leaving.0.clear();
                     let outcome = self.order(&asked).unwrap_or_else(refusal);
@@ -264,8 +260,8 @@ mod tests {
     #[test]
     fn two_who_want_to_leave_do_not_hold_each_other_up() {
         let mut leaving = Leaving::default();
-        assert!(!leaving.has_heard((1, 1), 5) && !leaving.has_heard((2, 1), 6));
-        assert!(!leaving.has_heard((1, 1), 6) && !leaving.has_heard((2, 1), 7));
-        assert!(leaving.has_heard((1, 1), 7) && leaving.has_heard((2, 1), 8));
+        assert!(!leaving.has_heard((1, 1), 50, 45) && !leaving.has_heard((2, 1), 60, 45));
+        assert!(leaving.has_heard((1, 1), 70, 55) && !leaving.has_heard((2, 1), 70, 55));
+        assert!(leaving.has_heard((2, 1), 80, 65));
     }
 }

@@ -64,6 +64,14 @@ impl Waypoint {
         }
     }
 
+    /// The same pose so many m of the brush higher.
+    #[must_use]
+    pub fn raised(&self, by_m: f64) -> Self {
+        let mut raised = self.clone();
+        raised.brush.translation.z += by_m;
+        raised
+    }
+
     /// A pose between this one and `other`, at `t` in 0..1.
     #[must_use]
     pub fn toward(&self, other: &Self, t: f64) -> Self {

@@ -19,6 +19,8 @@ const LIST: f32 = 264.0;
 const ROW: f32 = 24.0;
 /// Width of what puts a tube onto the palette, points.
 const PLUS: f32 = 26.0;
+/// Width of the bar that scrolls the list, points: beside what puts a tube onto the palette.
+const BAR: f32 = 7.0;
 
 /// A tube of the list.
 struct Tube {
@@ -48,6 +50,7 @@ pub(super) fn show(panel: &mut PaintsPanel, ui: &mut Ui, work: &mut PanelContext
         return;
     }
     let mut asked = None;
+    ui.spacing_mut().scroll.bar_width = BAR;
     ScrollArea::vertical()
         .id_salt("tubes")
         .max_height(LIST)
@@ -186,7 +189,7 @@ fn tube_row(ui: &mut Ui, work: &PanelContext<'_>, tube: &Tube) -> Option<Deed> {
 }
 
 fn tube_button(ui: &mut Ui, tube: &Tube) -> Response {
-    let size = vec2(ui.available_width() - PLUS - 10.0, ROW);
+    let size = vec2(ui.available_width() - PLUS - 2.0 - BAR - 1.0, ROW);
     let (area, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &tube.name));
     if !ui.is_rect_visible(area) {

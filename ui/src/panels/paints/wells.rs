@@ -182,24 +182,13 @@ fn well(
                     deed = Some(asked);
                 }
             };
-            tool(
-                ui,
-                tr!("Remove"),
-                true,
-                tr!("Remove from the palette: {name}", name),
-                Deed::Remove,
-            );
-            tool(
-                ui,
-                tr!("Down"),
-                !is_last,
-                tr!("Down: {name}", name),
-                Deed::Down,
-            );
-            tool(ui, tr!("Up"), place > 0, tr!("Up: {name}", name), Deed::Up);
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            let remove = tr!("Remove from the palette: {name}", name);
+            tool(ui, "✖", true, remove, Deed::Remove);
+            tool(ui, "⬇", !is_last, tr!("Down: {name}", name), Deed::Down);
+            tool(ui, "⬆", place > 0, tr!("Up: {name}", name), Deed::Up);
+            ui.with_layout(Layout::top_down_justified(Align::Min), |ui| {
                 let button = Button::selectable(is_chosen, &name).truncate();
-                let shown: Response = ui.add(button.min_size(vec2(ui.available_width(), 0.0)));
+                let shown: Response = ui.add(button);
                 let hover = tr!(
                     "Well {number}: {name}\nClick, then choose a tube to replace this paint.",
                     number = place + 1,

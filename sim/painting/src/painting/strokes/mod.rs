@@ -56,6 +56,7 @@ impl Painting {
             return Ok(());
         }
         let restarted = solve.flags & solve_flags::RESTARTED != 0;
+        let lands = self.brushes[brush].path.is_none();
         if self.brushes[brush].stroke != Some((epoch, solve.stroke)) {
             // A brush that rested and never left keeps its bristles as they lie.
             let rested = restarted && self.brushes[brush].path.is_some();
@@ -76,10 +77,15 @@ impl Painting {
         }
         let traits = BrushTraits::of(&self.brushes[brush].thinned, scale.cell_m, scale.zoom);
         let waypoint = Waypoint::of(solve, scale, self.seen_fullness(brush, on, &traits));
-        let own = &mut self.brushes[brush];
-        let head = Arc::clone(&own.head);
+        let head = Arc::clone(&self.brushes[brush].head);
         let Some((_, mut path)) = running else {
-            own.path = Some((on, PathStepper::begin(&head, waypoint, scale)));
+            let path = match lands {
+                true => PathStepper::landing(&head, waypoint, scale, |sweep, doublings| {
+                    self.step((brush, on), scale, (sweep, doublings));
+                }),
+                false => PathStepper::begin(&head, waypoint, scale),
+            };
+            self.brushes[brush].path = Some((on, path));
             return Ok(());
         };
         path.advance(&head, (waypoint, solve.doublings()), |sweep, doublings| {

@@ -33,6 +33,8 @@ impl Painting {
         let cells = |tiles: [u32; 2]| tiles.map(|tile| i64::from(tile) * TILE as i64);
         let (from, to) = (cells(low), cells(high));
         self.settle();
+        // Tiles between those that it reached may be another brush's.
+        self.claim((brush, on), from, to);
         // With what the model looks at beside it, whatever the window held before.
         let halo = halo as i64;
         let (outer_from, outer_to) = (from.map(|cell| cell - halo), to.map(|cell| cell + halo));

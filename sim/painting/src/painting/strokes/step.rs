@@ -104,7 +104,7 @@ impl Painting {
 
     /// Notes which tiles a brush's step reaches, and ends the open steps of other brushes that have
     /// reached one of them: no two steps change a tile at the same time.
-    fn claim(&mut self, (brush, on): (usize, usize), from: [i64; 2], to: [i64; 2]) {
+    pub(super) fn claim(&mut self, (brush, on): (usize, usize), from: [i64; 2], to: [i64; 2]) {
         let surface = self.surfaces[on].id;
         let Some(rect) = self.surfaces[on].store.around(from, to) else {
             return;
