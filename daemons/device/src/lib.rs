@@ -14,6 +14,8 @@
 //! | [`registration`] | a device's frame on the desk |
 //! | [`corner_calibration`] | corners of the canvas, as a hand shows them |
 //! | [`actions`] | actions of a stylus's switches |
+//! | [`pen`] | presence of a pen: away, hovering, touching |
+//! | [`pen_stream`] | samples of a pen on the bus |
 //! | [`hid_collections`] | application collections of a HID report descriptor |
 
 pub mod actions;
@@ -22,6 +24,8 @@ pub mod canvas_mover;
 pub mod corner_calibration;
 pub mod device_missing;
 pub mod hid_collections;
+pub mod pen;
+pub mod pen_stream;
 mod performance;
 pub mod registration;
 mod takes;

@@ -13,7 +13,6 @@
 //! | [`units`] | the units in them |
 //! | [`layout`] | the pen in the reports of a tablet |
 //! | [`wacom`] | tablets that do not describe themselves |
-//! | [`pen`] | presence of a pen: away, hovering, touching |
 //! | [`spacemouse`] | 6-DOF mice |
 //! | [`tablet`] | a tablet on the desk |
 //! | [`open`] | the device that `rig.toml` asks for |
@@ -25,7 +24,6 @@
 
 pub mod daemon;
 pub mod open;
-pub mod pen;
 pub mod probe;
 mod reports;
 pub mod spacemouse;

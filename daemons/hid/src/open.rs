@@ -6,9 +6,9 @@ use maulstick_rig::UserError;
 use crate::descriptor::{self, describe};
 use crate::device_source::{Found, HidSource, Identity, Ports};
 use crate::layout::Layout;
-use crate::pen::Reading;
 use crate::spacemouse::{LIGHT, SpaceMouse, VENDORS};
 use crate::wacom::Wacom;
+use maulstick_device::pen::Reading;
 
 /// Kinds of devices that `maulstick-hid` drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

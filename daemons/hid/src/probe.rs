@@ -10,8 +10,8 @@ use maulstick_rig::config::DeviceSection;
 
 use crate::device_source::{HidSource, Identity, Ports};
 use crate::open::{self, Address, Decoder, Kind, Means};
-use crate::pen::{Pen, Presence, Reading};
 use crate::recording::{self, Event, LONGEST_REPORT};
+use maulstick_device::pen::{Pen, Presence, Reading};
 
 /// Time without a report after which the last reading is repeated.
 const SILENCE: Duration = Duration::from_millis(50);
@@ -130,7 +130,7 @@ fn hand_reading(reading: &Reading, time_s: f64) -> HandReading {
         Presence::Hovering => Touch::Up,
         Presence::Touching => Touch::Down,
     };
-    let [x, y] = reading.point_m;
+    let [x, y] = reading.point;
     HandReading::Sample(HandSample {
         point: DVec3::new(x, y, 0.0),
         handle: Some(DVec3::Z),

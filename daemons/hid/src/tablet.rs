@@ -14,7 +14,7 @@ use maulstick_rig::config::{CanvasSection, DeviceSection};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, FARTHEST_M, StylusPose, StylusSample, switch};
 
 use crate::layout::{STEEPEST_RAD, wrapped};
-use crate::pen::{End, Presence, Reading};
+use maulstick_device::pen::{End, Presence, Reading};
 
 /// A tablet fitted to the desk.
 #[derive(Clone, Debug)]
@@ -92,7 +92,7 @@ impl Tablet {
     /// The sample of a reading.
     #[must_use]
     pub fn sample(&self, reading: &Reading) -> StylusSample {
-        let [x, y] = self.place(reading.point_m);
+        let [x, y] = self.place(reading.point);
         let eraser = match reading.end {
             End::Tip => 0,
             End::Eraser => switch::ERASER,

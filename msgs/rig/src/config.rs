@@ -30,11 +30,14 @@ pub const SPACES: [&str; 2] = ["srgb", "display-p3"];
 pub const GAMUTS: [&str; 2] = ["soft", "clamp"];
 /// Priority of the mouse over the window.
 pub const MOUSE_PRIORITY: i32 = -100;
+/// Priority of a pen over the window.
+pub const PEN_PRIORITY: i32 = -50;
 /// Priority of a device that `rig.toml` does not name.
 pub const FOREIGN_PRIORITY: i32 = 0;
-/// Names in a rig that are no device's: the launcher's and the nodes' sockets, the mouse, a take.
+/// Names in a rig that are no device's: the launcher's and the nodes' sockets, the mouse and the pen over
+/// the window, a take.
 /// Those of brush nodes begin with [`BRUSH_NODE`].
-pub const RESERVED: [&str; 5] = ["hub", "paint", "ui", "player", "mouse"];
+pub const RESERVED: [&str; 6] = ["hub", "paint", "ui", "player", "mouse", "pen"];
 /// Prefix of the names of brush nodes.
 pub const BRUSH_NODE: &str = "brush-";
 /// Priority of a played take.

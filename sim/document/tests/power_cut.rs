@@ -132,8 +132,7 @@ impl Session {
             return Err("not all could be undone".to_owned());
         }
         print(&mut easel.sequencer);
-        easel.close();
-        Ok(())
+        easel.try_close()
     }
 
     /// What was wrong after power cuts at so many random points.

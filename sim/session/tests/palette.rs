@@ -148,22 +148,30 @@ fn a_brush_that_is_set_down_loads_prints_and_is_cleaned() {
     assert_eq!(hand.report().accounts_m3["brush"], 0.0);
 }
 
+/// A dip into the medium thins, more of them thin more, and no scrubbing in it washes the paint out.
 #[test]
-fn a_medium_thins_what_the_brush_carries() {
+fn a_brush_soaks_medium_up_and_keeps_its_paint() {
     let mut hand = Hand::new();
-    let blue = hand.well(Some("Ultramarine Blue"));
-    let medium = hand.well(Some("Thinner"));
+    let [blue, medium] = ["Ultramarine Blue", "Thinner"].map(|paint| hand.well(Some(paint)));
     hand.drag_through(blue);
-    for _ in 0..5 {
+    let paint = |hand: &mut Hand| hand.report().paints_m3["Ultramarine Blue"]["brush"];
+    let share = |hand: &mut Hand| {
         let report = hand.report();
-        println!("{:?} {:?}", report.accounts_m3["brush"], report.paints_m3);
-        hand.stroke(medium, medium);
-    }
-    for _ in 0..5 {
-        let report = hand.report();
-        println!("{:?} {:?}", report.accounts_m3["brush"], report.paints_m3);
+        report.paints_m3["Thinner"]["brush"] / report.accounts_m3["brush"]
+    };
+    let whole = paint(&mut hand);
+    hand.stroke(medium, medium);
+    let dipped = share(&mut hand);
+    assert!((0.2..0.4).contains(&dipped), "{dipped}");
+    hand.stroke(medium, medium);
+    let again = share(&mut hand);
+    assert!((dipped + 0.05..0.6).contains(&again), "{again}");
+    for _ in 0..6 {
         hand.drag_through(medium);
     }
+    let scrubbed = share(&mut hand);
+    assert!((0.5..0.65).contains(&scrubbed), "{scrubbed}");
+    assert!(paint(&mut hand) > 0.7 * whole);
 }
 
 #[test]

@@ -22,8 +22,8 @@ use maulstick_num::{atan2, sin_cos};
 use maulstick_types::stylus::axes;
 
 use crate::descriptor::{lies_in, page, pair};
-use crate::pen::{End, Presence, Reading};
 use crate::units::{metres, radians};
+use maulstick_device::pen::{End, Presence, Reading};
 
 /// Counts a metre of a tablet that does not say, 5080 an inch.
 const COUNTS_M: f64 = 200_000.0;
@@ -358,7 +358,7 @@ impl PenReport {
                 true => End::Eraser,
                 false => End::Tip,
             },
-            point_m: [
+            point: [
                 share(Role::X).unwrap_or(0.0) * area_m[0],
                 // A tablet counts toward the hand.
                 (1.0 - share(Role::Y).unwrap_or(0.0)) * area_m[1],

@@ -8,7 +8,7 @@ use maulstick_types::stylus::axes;
 
 use crate::descriptor::input_bytes;
 use crate::layout::STEEPEST_RAD;
-use crate::pen::{End, Presence, Reading};
+use maulstick_device::pen::{End, Presence, Reading};
 
 /// Counts a metre.
 const COUNTS_M: f64 = 200_000.0;
@@ -210,7 +210,7 @@ impl Wacom {
                 false => Presence::Hovering,
             },
             end,
-            point_m: [at(0), self.area_m()[1] - at(1)],
+            point: [at(0), self.area_m()[1] - at(1)],
             height_m: 0.01 * distance.min(1.0),
             pressure: pressure.min(1.0),
             tilt_rad: Some([tilt(tilt_x), tilt(-tilt_y)]),

@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
+use maulstick_device::pen::{End, Presence, Reading};
 use maulstick_hid::descriptor;
 use maulstick_hid::layout::Layout;
-use maulstick_hid::pen::{End, Presence, Reading};
 use maulstick_hid::tablet::Tablet;
 use maulstick_hid::wacom::Wacom;
 use maulstick_rig::config::{CanvasSection, DeviceSection};
@@ -30,7 +30,7 @@ fn layout(descriptor: &Descriptor) -> Layout {
 struct Wanted {
     presence: Presence,
     end: End,
-    point_m: [f64; 2],
+    point: [f64; 2],
     pressure: f64,
     tilt_rad: Option<[f64; 2]>,
     twist_rad: Option<f64>,
@@ -69,7 +69,7 @@ fn wanted(which: usize, values: &[((u16, u16), i64)]) -> Wanted {
         } else {
             End::Tip
         },
-        point_m: [x / counts[0] * area[0], (1.0 - y / counts[1]) * area[1]],
+        point: [x / counts[0] * area[0], (1.0 - y / counts[1]) * area[1]],
         pressure: dig(0x30).expect("pressure") / most,
         tilt_rad: lean(0x3D, 1.0).zip(lean(0x3E, -1.0)).map(|(x, y)| [x, y]),
         // -900..899 stands for -180..179 degrees, clockwise.
@@ -88,8 +88,8 @@ fn off(got: &Reading, wanted: &Wanted) -> Option<f64> {
     // −π and π are one angle.
     let turn = (got.twist_rad.unwrap_or(0.0) - wanted.twist_rad.unwrap_or(0.0)).abs();
     let pairs = [
-        (got.point_m[0], wanted.point_m[0]),
-        (got.point_m[1], wanted.point_m[1]),
+        (got.point[0], wanted.point[0]),
+        (got.point[1], wanted.point[1]),
         (got.pressure, wanted.pressure),
         (tilt(got.tilt_rad)[0], tilt(wanted.tilt_rad)[0]),
         (tilt(got.tilt_rad)[1], tilt(wanted.tilt_rad)[1]),

@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec3;
-use maulstick_hid::pen::{End, Presence, Reading};
+use maulstick_device::pen::{End, Presence, Reading};
 use maulstick_hid::tablet::Tablet;
 use maulstick_num::geometry::rotation;
 use maulstick_rig::config::{CanvasSection, DeviceSection};
@@ -191,7 +191,7 @@ proptest! {
             device.orientation = rotation(DVec3::Z, angle).to_array();
         });
         let reading = Reading {
-            point_m: [at[0] * area[0], at[1] * area[1]],
+            point: [at[0] * area[0], at[1] * area[1]],
             tilt_rad: Some(tilt),
             twist_rad: Some(twist),
             height_m: 0.01,

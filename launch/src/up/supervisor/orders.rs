@@ -158,7 +158,9 @@ impl Supervisor {
             let outcome = match orders.replies.find(&asked) {
                 Some(outcome) => outcome,
                 // It is asked again, and done when its turn comes.
-                None if self.switch.is_some() || !orders.has_heard(&asked, bus.now_ns()) => Outcome::Waiting,
+                None if self.switch.is_some() || !orders.has_heard(&asked, bus.now_ns()) => {
+                    Outcome::Waiting
+                }
                 None => {
                     orders.leaving.0.clear();
                     let outcome = self.order(&asked).unwrap_or_else(refusal);

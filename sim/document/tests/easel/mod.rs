@@ -92,10 +92,18 @@ impl Easel {
     }
 
     /// Writes all as a checkpoint and closes the file.
-    pub fn close(mut self) {
-        self.flush();
+    pub fn close(self) {
+        self.try_close().expect("closed");
+    }
+
+    /// The same; the fault of a file that cannot be written.
+    pub fn try_close(mut self) -> Result<(), String> {
+        self.document.flush();
         self.hand_over();
-        self.flush();
-        self.document.close().expect("closed");
+        self.document.flush();
+        match self.document.fault() {
+            Some((what, _)) => Err(what),
+            None => self.document.close().map_err(|error| error.to_string()),
+        }
     }
 }

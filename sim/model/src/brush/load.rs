@@ -229,6 +229,48 @@ impl BrushLoad {
         self.count_films();
     }
 
+    /// Soaks what the brush carries with a thinner, by a part of what it lacks to be a share of it; returns how much of it
+    /// that took.
+    pub fn soak(&mut self, thinner: usize, share: f64, part: f64) -> u64 {
+        let mut paint = [vec![0u64; self.texels], vec![0u64; self.texels]];
+        for (_, held) in self
+            .held
+            .iter()
+            .enumerate()
+            .filter(|(slot, _)| *slot != thinner)
+        {
+            for (sums, counts) in paint
+                .iter_mut()
+                .zip(held.iter().flat_map(|held| [&held.film, &held.inside]))
+            {
+                sums.iter_mut()
+                    .zip(counts)
+                    .for_each(|(sum, count)| *sum += u64::from(*count));
+            }
+        }
+        let held = self.held_mut(thinner);
+        let mut taken = 0;
+        for (sums, counts) in paint.iter().zip([&mut held.film, &mut held.inside]) {
+            for (paint, count) in sums.iter().zip(counts) {
+                let wanted = *paint as f64 * share / (1.0 - share);
+                let lacks = ((wanted - f64::from(*count)) * part).max(0.0) as u32;
+                *count += lacks;
+                taken += u64::from(lacks);
+            }
+        }
+        self.count_films();
+        taken
+    }
+
+    /// Share of a slot in all that it carries; 0 of a clean brush.
+    #[must_use]
+    pub fn share(&self, slot: usize) -> f64 {
+        match self.total() {
+            0 => 0.0,
+            total => self.counts()[slot] as f64 / total as f64,
+        }
+    }
+
     /// A brush of other strips that carries the same paint, spread evenly inside them.
     #[must_use]
     pub fn spread(strips: usize, counts: &Counts) -> Self {

@@ -183,9 +183,9 @@ fn well(
                 }
             };
             let remove = tr!("Remove from the palette: {name}", name);
-            tool(ui, "✖", true, remove, Deed::Remove);
-            tool(ui, "⬇", !is_last, tr!("Down: {name}", name), Deed::Down);
-            tool(ui, "⬆", place > 0, tr!("Up: {name}", name), Deed::Up);
+            tool(ui, "×", true, remove, Deed::Remove);
+            tool(ui, "↓", !is_last, tr!("Down: {name}", name), Deed::Down);
+            tool(ui, "↑", place > 0, tr!("Up: {name}", name), Deed::Up);
             ui.with_layout(Layout::top_down_justified(Align::Min), |ui| {
                 let button = Button::selectable(is_chosen, &name).truncate();
                 let shown: Response = ui.add(button);

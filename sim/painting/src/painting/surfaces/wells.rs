@@ -25,6 +25,10 @@ use crate::painting::surfaces::well_moves::WellMoves;
 
 /// Wells may reach beyond the edge of their surface by what rounding makes of it, m.
 const EDGE_M: f64 = 1e-6;
+/// A brush in a jar of medium soaks it up until it is this share of what it carries; more would drip off.
+const SOAKED: f64 = 0.6;
+/// The part of what it lacks to that, soaked up in a step.
+const SOAKS: f64 = 0.06;
 /// A strip is down within this of the surface, cells.
 const DIPS: f32 = 1.0;
 
@@ -156,10 +160,21 @@ impl Painting {
                         continue;
                     };
                     let cells = cells_within(window, &well, cell_m, (from, to));
-                    let thick = thicknesses(window, &cells, heap.as_ref());
+                    let mut thick = thicknesses(window, &cells, heap.as_ref());
                     let mut shares = [0.0; SLOTS];
-                    for (slot, share) in slots {
-                        shares[slot] += share;
+                    for (slot, share) in &slots {
+                        shares[*slot] += share;
+                    }
+                    if let (WellKind::Medium, [(thinner, _)]) = (&well.kind, &slots[..])
+                        && is_in(head, &well, cell_m)
+                    {
+                        let load = Arc::make_mut(&mut brush.load);
+                        let mut soaked = [0; SLOTS];
+                        soaked[*thinner] = load.soak(*thinner, SOAKED, SOAKS);
+                        ledger.from_tube(&soaked);
+                        if (SOAKED..1.0).contains(&load.share(*thinner)) {
+                            thick.fill(0.0);
+                        }
                     }
                     renew(window, &cells, (&shares, &thick), ledger);
                     window.note_top(thick.iter().copied().fold(0.0, f64::max) as f32);

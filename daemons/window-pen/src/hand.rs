@@ -1,0 +1,284 @@
+//! The pen on the desk: touches, samples, what the window hears of it.
+
+use std::sync::Arc;
+
+use maulstick_bus::typed::Sender;
+use maulstick_bus::{Bus, BusError, CreditSender, Qos, Wake};
+use maulstick_device::pen::{End, Presence, Reading};
+use maulstick_device::pen_stream::{OnDesk, PenStream};
+use maulstick_rig::config::PEN_PRIORITY;
+use maulstick_types::Origin;
+use maulstick_types::stylus::{
+    DEFAULT_TILT_RAD, FARTHEST_M, StylusInfo, StylusPose, StylusSample, axes, switch,
+};
+use maulstick_types::wire::topics::Topics;
+
+use crate::clock::WindowClock;
+use crate::reading::{Axes, PenReading, Tool};
+use crate::window::{PointerNews, Shared};
+
+/// Steepest tilt of a sample, rad.
+const STEEPEST_RAD: f64 = 1.483;
+/// Samples a second of most pens, which do not say.
+const RATE_HZ: f64 = 200.0;
+
+/// What a touching pen touches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Touched {
+    Desk,
+    Panel,
+}
+
+/// The pens of a window, as one stylus: the first that is near is followed until it leaves.
+pub struct Hand {
+    bus: Arc<dyn Bus>,
+    shared: Shared,
+    stream: PenStream,
+    desk: Desk,
+    info: Sender<StylusInfo>,
+    told: StylusInfo,
+    clock: WindowClock,
+    tool: Option<Tool>,
+    touched: Option<Touched>,
+}
+
+/// Where a reading lies on the desk.
+#[derive(Debug)]
+struct Desk {
+    axes: Axes,
+    /// Newest point of the desk, m.
+    point_m: [f64; 3],
+    mirrored: bool,
+}
+
+impl OnDesk for Desk {
+    fn sample(&mut self, reading: &Reading) -> StylusSample {
+        let side = if self.mirrored { -1.0 } else { 1.0 };
+        let steep = |tilt: f64| match tilt.is_finite() {
+            true => tilt.clamp(-STEEPEST_RAD, STEEPEST_RAD),
+            false => 0.0,
+        };
+        let tilt_rad = reading.tilt_rad.filter(|_| self.axes.tilt);
+        let twist_rad = reading
+            .twist_rad
+            .filter(|twist| self.axes.twist && twist.is_finite());
+        let eraser = match reading.end {
+            End::Tip => 0,
+            End::Eraser => switch::ERASER,
+        };
+        StylusSample {
+            senses: self.axes.bits(),
+            pose: StylusPose::Contact {
+                point_m: self.point_m.map(|at| at.clamp(-FARTHEST_M, FARTHEST_M)),
+                tilt_rad: tilt_rad.map_or(DEFAULT_TILT_RAD, |[x, y]| [side * steep(x), steep(y)]),
+                twist_rad: side * twist_rad.unwrap_or(0.0),
+                pressure: match reading.presence {
+                    Presence::Touching => reading.pressure.clamp(0.0, 1.0),
+                    _ => 0.0,
+                },
+            },
+            switches: reading.switches | eraser,
+            in_range: reading.presence != Presence::Away,
+            ..StylusSample::away()
+        }
+    }
+}
+
+impl Hand {
+    /// A hand that is called `name` on the bus.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    pub fn new(
+        bus: Arc<dyn Bus>,
+        topics: &Topics,
+        (name, me): (&str, Origin),
+        shared: Shared,
+    ) -> Result<Self, BusError> {
+        let wake = Wake::new();
+        let samples = CreditSender::new(&*bus, topics, &topics.sample(name), me, &wake)?;
+        let told = StylusInfo {
+            device: name.to_owned(),
+            driver: "window".into(),
+            brush: String::new(),
+            priority: PEN_PRIORITY,
+            senses: axes::POSITION,
+            drives: 0,
+            rate_hz: RATE_HZ,
+            max_force_n: 0.0,
+            max_stiffness_n_m: 0.0,
+            workspace_m: [-0.5, -0.5, 0.0, 0.5, 0.5, 0.0],
+        };
+        Ok(Self {
+            info: Sender::new(&*bus, &topics.stylus_info(name), Qos::Cached, me)?,
+            bus,
+            shared,
+            stream: PenStream::new(samples),
+            desk: Desk {
+                axes: Axes::default(),
+                point_m: [0.0; 3],
+                mirrored: false,
+            },
+            told,
+            clock: WindowClock::default(),
+            tool: None,
+            touched: None,
+        })
+    }
+
+    /// What window and pen know of each other.
+    #[must_use]
+    pub fn shared(&self) -> &Shared {
+        &self.shared
+    }
+
+    /// Samples sent.
+    #[must_use]
+    pub fn sent(&self) -> u64 {
+        self.stream.sent()
+    }
+
+    /// A reading.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn read(&mut self, read: &PenReading) -> Result<(), BusError> {
+        let now_ns = self.bus.now_ns();
+        let event_ns = self.clock.event_ns(read.time_ms, now_ns);
+        if !read.reading.point.iter().all(|at| at.is_finite()) {
+            return Ok(());
+        }
+        let other = self.tool.is_some_and(|tool| tool != read.tool);
+        if other && self.touched.is_some() {
+            // Another pen waits until this one is lifted.
+            return Ok(());
+        }
+        if other {
+            self.away(event_ns, now_ns)?;
+        }
+        self.tool = match read.reading.presence {
+            Presence::Away => None,
+            _ => Some(read.tool),
+        };
+        self.introduce(read.axes, now_ns)?;
+        let reading = self.place(read.reading);
+        let paints = reading.presence == Presence::Touching;
+        self.shared.tell(now_ns, read.reading.presence, paints);
+        self.stream.tells_range(read.axes.range);
+        self.stream
+            .read(reading, (event_ns, now_ns), &mut self.desk)
+    }
+
+    /// The pen and its brush, where the window or another tool has changed them.
+    fn introduce(&mut self, axes: Axes, now_ns: u64) -> Result<(), BusError> {
+        let brush = self.shared.brush();
+        let senses = axes.bits();
+        self.desk.axes = axes;
+        if self.told.brush == brush && self.told.senses == senses {
+            return Ok(());
+        }
+        if self.told.brush != brush {
+            // The brush that was in the hand is lifted first.
+            self.stream.leave(now_ns, now_ns, &mut self.desk)?;
+            self.touched = None;
+        }
+        (self.told.brush, self.told.senses) = (brush, senses);
+        self.info.send(now_ns, now_ns, &self.told)
+    }
+
+    /// Finds a reading on the desk: over a panel, and while it operates one, the brush is away.
+    fn place(&mut self, reading: Reading) -> Reading {
+        let seen = self.shared.desk(reading.point);
+        let is_desk = seen.is_some_and(|(_, _, is_desk)| is_desk);
+        if let Some((point_m, mirrored, _)) = seen {
+            (self.desk.point_m, self.desk.mirrored) = (point_m, mirrored);
+        }
+        let before = self.touched;
+        self.touched = match (reading.presence, before) {
+            (Presence::Touching, Some(touched)) => Some(touched),
+            (Presence::Touching, None) if is_desk => Some(Touched::Desk),
+            (Presence::Touching, None) => Some(Touched::Panel),
+            _ => None,
+        };
+        self.point(&reading, before);
+        let on_desk = match self.touched {
+            Some(touched) => touched == Touched::Desk,
+            None => is_desk || before == Some(Touched::Desk),
+        };
+        match on_desk && seen.is_some() {
+            true => reading,
+            false => Reading {
+                presence: Presence::Away,
+                ..reading
+            },
+        }
+    }
+
+    /// Tells the window what the pen's pointer does: on the desk it presses nothing.
+    fn point(&self, reading: &Reading, before: Option<Touched>) {
+        let panel = Some(Touched::Panel);
+        if reading.presence == Presence::Away {
+            if before == panel {
+                self.shared
+                    .point(PointerNews::Pressed(reading.point, false));
+            }
+            self.shared.point(PointerNews::Gone);
+            return;
+        }
+        self.shared.point(PointerNews::Moved(reading.point));
+        if (before == panel) != (self.touched == panel) {
+            let presses = self.touched == panel;
+            self.shared
+                .point(PointerNews::Pressed(reading.point, presses));
+        }
+    }
+
+    /// The tool is gone, or another is there.
+    fn away(&mut self, event_ns: u64, now_ns: u64) -> Result<(), BusError> {
+        (self.tool, self.touched) = (None, None);
+        self.shared.tell(now_ns, Presence::Away, false);
+        self.stream.leave(event_ns, now_ns, &mut self.desk)
+    }
+
+    /// All tools are gone: their window or its system is.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn end(&mut self) -> Result<(), BusError> {
+        let now_ns = self.bus.now_ns();
+        self.away(now_ns, now_ns)
+    }
+
+    /// Nothing came until now.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn rest(&mut self) -> Result<(), BusError> {
+        let now_ns = self.bus.now_ns();
+        let was_in_range = self.stream.newest().in_range;
+        self.stream.silent(now_ns, now_ns, &mut self.desk)?;
+        if was_in_range && !self.stream.newest().in_range {
+            // It hovered in silence for so long that it counts as away.
+            (self.tool, self.touched) = (None, None);
+            self.shared.tell(now_ns, Presence::Away, false);
+        }
+        self.stream.serve(now_ns)
+    }
+
+    /// Time until [`rest`](Self::rest) is due, ns; `None` while no pen is near.
+    #[must_use]
+    pub fn due_in_ns(&self) -> Option<u64> {
+        let due_ns = self.stream.due_ns()?;
+        Some(due_ns.saturating_sub(self.bus.now_ns()))
+    }
+}
+
+impl std::fmt::Debug for Hand {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Hand")
+            .field("told", &self.told)
+            .field("tool", &self.tool)
+            .field("touched", &self.touched)
+            .finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,28 @@
+//! Pens in a window, by its window system.
+//!
+//! A thread of its own reads each sample at its own time, whatever the window draws meanwhile, finds it on the desk as
+//! the window shows it, and sends it. What a pen touches decides: on the desk it paints, on a panel it is the pointer,
+//! and nothing is both.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`reading`] | what a window system says of a pen |
+//! | [`clock`] | times of a window system on the rig's clock |
+//! | [`hand`] | the pen on the desk: touches, samples, what the window hears of it |
+//! | [`window`] | the window as a pen finds it, and the pen as the window finds it |
+//! | [`wayland`] | tablet-v2 of Wayland |
+//! | [`xinput`] | XInput 2 of X11 |
+//! | [`thread`](mod@thread) | the thread that reads |
+
+pub mod clock;
+pub mod hand;
+pub mod reading;
+pub mod thread;
+pub mod wayland;
+pub mod window;
+pub mod xinput;
+
+pub use hand::Hand;
+pub use reading::{Axes, PenReading, Tool};
+pub use thread::PenThread;
+pub use window::{DeskView, PenNews, Shared};

@@ -1,0 +1,49 @@
+//! What a window system says of a pen.
+
+use maulstick_device::pen::Reading;
+use maulstick_types::stylus::axes;
+
+/// A tool, told apart from all others of a window system.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Tool(pub u64);
+
+/// What a tool senses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Axes {
+    /// Pressure of its tip.
+    pub pressure: bool,
+    /// Its tilt.
+    pub tilt: bool,
+    /// Its rotation about its axis.
+    pub twist: bool,
+    /// True if the window system says when it is away.
+    pub range: bool,
+}
+
+impl Axes {
+    /// The same as bits of [`axes`].
+    #[must_use]
+    pub fn bits(self) -> u32 {
+        let each = [
+            (self.pressure, axes::PRESSURE),
+            (self.tilt, axes::TILT),
+            (self.twist, axes::TWIST),
+            (self.range, axes::PROXIMITY),
+        ];
+        let sensed = each.into_iter().filter(|(senses, _)| *senses);
+        sensed.fold(axes::POSITION | axes::SWITCHES, |all, (_, bit)| all | bit)
+    }
+}
+
+/// One reading of a tool. Its point is in pixels of the window, y **down** from the upper left corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PenReading {
+    /// The tool.
+    pub tool: Tool,
+    /// What it senses.
+    pub axes: Axes,
+    /// Time of the window system, ms, from any beginning; it wraps.
+    pub time_ms: u32,
+    /// The pen then.
+    pub reading: Reading,
+}

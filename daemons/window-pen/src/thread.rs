@@ -1,0 +1,154 @@
+//! The thread that reads the pens of a window.
+
+use std::os::fd::{AsFd, BorrowedFd};
+use std::sync::Arc;
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use maulstick_rig::UserError;
+use nix::errno::Errno;
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
+use nix::sys::eventfd::{EfdFlags, EventFd};
+use raw_window_handle::{RawDisplayHandle, RawWindowHandle};
+
+use crate::hand::Hand;
+use crate::reading::PenReading;
+use crate::wayland::{WaylandPens, unsafe_connection};
+use crate::xinput::XinputPens;
+
+/// Pens of a window system.
+pub trait Source {
+    /// Waits until the window system has something to say, `stop` does, or the time is over, and appends the readings
+    /// that came.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the connection is gone.
+    fn wait(
+        &mut self,
+        stop: BorrowedFd<'_>,
+        timeout: Option<Duration>,
+        readings: &mut Vec<PenReading>,
+    ) -> Result<(), UserError>;
+
+    /// True where the window system moves the pointer with a pen.
+    fn moves_pointer(&self) -> bool;
+}
+
+/// Waits until one of two descriptors can be read, or the time is over; true if the first can.
+pub(crate) fn readable(
+    own: BorrowedFd<'_>,
+    stop: BorrowedFd<'_>,
+    timeout: Option<Duration>,
+) -> Result<bool, UserError> {
+    let mut both = [own, stop].map(|fd| PollFd::new(fd, PollFlags::POLLIN));
+    let timeout = timeout.map_or(PollTimeout::NONE, |timeout| {
+        // A time that is not over is not waited for in a loop.
+        let ms =
+            timeout.as_millis() + u128::from(!timeout.subsec_nanos().is_multiple_of(1_000_000));
+        PollTimeout::try_from(ms).unwrap_or(PollTimeout::MAX)
+    });
+    match poll(&mut both, timeout) {
+        Ok(_) => Ok(both[0].any().unwrap_or(false)),
+        Err(Errno::EINTR) => Ok(false),
+        Err(error) => Err(gone(&error)),
+    }
+}
+
+/// The connection to the window system is gone.
+pub(crate) fn gone(why: &dyn std::fmt::Display) -> UserError {
+    UserError::failure(format!("the window's pens are lost: {why}"))
+        .help("open the window again; until then the pen paints as a mouse")
+}
+
+/// The pens of a window, read until this is dropped.
+#[derive(Debug)]
+pub struct PenThread {
+    stop: Arc<EventFd>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl PenThread {
+    /// Reads the pens of the window of these handles, which must outlive this.
+    ///
+    /// # Errors
+    /// A [`UserError`] where its window system has none, with what to do.
+    pub fn of_window(
+        display: RawDisplayHandle,
+        window: RawWindowHandle,
+        hand: Hand,
+    ) -> Result<Self, UserError> {
+        let source: Box<dyn Source + Send> = match (display, window) {
+            (RawDisplayHandle::Wayland(display), RawWindowHandle::Wayland(window)) => {
+                let connection = unsafe_connection(display);
+                let surface = window.surface.as_ptr() as usize;
+                Box::new(WaylandPens::new(&connection, Some(surface))?)
+            }
+            (_, RawWindowHandle::Xcb(window)) => Box::new(XinputPens::new(window.window.get())?),
+            (_, RawWindowHandle::Xlib(window)) => {
+                Box::new(XinputPens::new(u32::try_from(window.window).unwrap_or(0))?)
+            }
+            _ => {
+                let what = "this window system's pens are not known";
+                return Err(UserError::failure(what).help("run it on Wayland or X11"));
+            }
+        };
+        Self::of(source, hand)
+    }
+
+    /// Reads the pens of a source.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the system refuses a thread.
+    pub fn of(mut source: Box<dyn Source + Send>, mut hand: Hand) -> Result<Self, UserError> {
+        let refused = |error: &dyn std::fmt::Display| {
+            UserError::failure(format!("the window's pens cannot be read: {error}"))
+        };
+        let flags = EfdFlags::EFD_CLOEXEC | EfdFlags::EFD_NONBLOCK;
+        let stop = EventFd::from_value_and_flags(0, flags).map_err(|error| refused(&error))?;
+        let stop = Arc::new(stop);
+        let stopped = Arc::clone(&stop);
+        if !source.moves_pointer() {
+            hand.shared().moves_no_pointer();
+        }
+        let run = move || {
+            if let Err(fault) = follow(&mut *source, &stopped, &mut hand) {
+                tracing::warn!("{}: {}", fault.what, fault.help.unwrap_or_default());
+            }
+            if let Err(error) = hand.end() {
+                tracing::debug!("the pen is not lifted: {error}");
+            }
+        };
+        let thread = std::thread::Builder::new()
+            .name("pens".into())
+            .spawn(run)
+            .map_err(|error| refused(&error))?;
+        Ok(Self {
+            stop,
+            thread: Some(thread),
+        })
+    }
+}
+
+/// Reads and sends until `stop` is told.
+fn follow(source: &mut dyn Source, stop: &EventFd, hand: &mut Hand) -> Result<(), UserError> {
+    let mut readings = Vec::new();
+    while stop.read().is_err() {
+        let timeout = hand.due_in_ns().map(Duration::from_nanos);
+        source.wait(stop.as_fd(), timeout, &mut readings)?;
+        let sent: Result<(), _> = readings.drain(..).try_for_each(|read| hand.read(&read));
+        sent.and_then(|()| hand.rest())
+            .map_err(|error| gone(&error))?;
+    }
+    Ok(())
+}
+
+impl Drop for PenThread {
+    fn drop(&mut self) {
+        if let Err(error) = self.stop.write(1) {
+            tracing::debug!("the pens are not told to end: {error}");
+        }
+        if let Some(thread) = self.thread.take() {
+            thread.join().ok();
+        }
+    }
+}

@@ -1,0 +1,378 @@
+//! Pens of Wayland: the protocol tablet-unstable-v2.
+//!
+//! A compositor that speaks it to a window moves no pointer there with a pen: the window does.
+
+use std::collections::BTreeMap;
+use std::os::fd::{AsFd, BorrowedFd};
+use std::time::Duration;
+
+use maulstick_device::pen::{End, Presence, Reading};
+use maulstick_rig::UserError;
+use raw_window_handle::WaylandDisplayHandle;
+use wayland_backend::client::{Backend, ObjectId, WaylandError};
+use wayland_client::globals::{GlobalListContents, registry_queue_init};
+use wayland_client::protocol::{wl_registry, wl_seat};
+use wayland_client::{Connection, Dispatch, EventQueue, Proxy, QueueHandle, event_created_child};
+use wayland_protocols::wp::tablet::zv2::client::{
+    zwp_tablet_manager_v2::ZwpTabletManagerV2,
+    zwp_tablet_pad_dial_v2::ZwpTabletPadDialV2,
+    zwp_tablet_pad_group_v2::{self, ZwpTabletPadGroupV2},
+    zwp_tablet_pad_ring_v2::ZwpTabletPadRingV2,
+    zwp_tablet_pad_strip_v2::ZwpTabletPadStripV2,
+    zwp_tablet_pad_v2::{self, ZwpTabletPadV2},
+    zwp_tablet_seat_v2::{self, ZwpTabletSeatV2},
+    zwp_tablet_tool_v2::{self, ZwpTabletToolV2},
+    zwp_tablet_v2::ZwpTabletV2,
+};
+
+use crate::reading::{Axes, PenReading, Tool};
+use crate::thread::{Source, gone, readable};
+
+/// Full pressure.
+const PRESSURE: f64 = 65_535.0;
+/// Buttons of a pen, that nearest to the tip first: `BTN_STYLUS`, `BTN_STYLUS2` and `BTN_STYLUS3` of Linux' input event
+/// codes.
+const BUTTONS: [u32; 3] = [0x14b, 0x14c, 0x149];
+
+/// The connection of a window.
+#[must_use]
+#[expect(
+    unsafe_code,
+    reason = "the window's library hands out its connection as a pointer"
+)]
+pub(crate) fn unsafe_connection(display: WaylandDisplayHandle) -> Connection {
+    // SAFETY: the display of a living window is connected, and `PenThread` is dropped before the window.
+    let backend = unsafe { Backend::from_foreign_display(display.display.as_ptr().cast()) };
+    Connection::from_backend(backend)
+}
+
+/// A tool as its events have told so far.
+#[derive(Debug, Default)]
+struct KnownTool {
+    tool: Tool,
+    axes: Axes,
+    eraser: bool,
+    is_near: bool,
+    is_down: bool,
+    point: [f64; 2],
+    pressure: f64,
+    tilt_rad: [f64; 2],
+    twist_rad: f64,
+    switches: u32,
+    /// It was near since the last frame of events.
+    tells: bool,
+    /// Time of that, ms.
+    time_ms: u32,
+}
+
+impl KnownTool {
+    fn read(&self) -> PenReading {
+        PenReading {
+            tool: self.tool,
+            axes: self.axes,
+            time_ms: self.time_ms,
+            reading: self.reading(),
+        }
+    }
+
+    fn reading(&self) -> Reading {
+        Reading {
+            presence: match (self.is_near, self.is_down) {
+                (false, _) => Presence::Away,
+                (true, false) => Presence::Hovering,
+                (true, true) => Presence::Touching,
+            },
+            end: match self.eraser {
+                true => End::Eraser,
+                false => End::Tip,
+            },
+            point: self.point,
+            height_m: 0.0,
+            pressure: match self.axes.pressure {
+                true => self.pressure,
+                false => 0.5,
+            },
+            tilt_rad: self.axes.tilt.then_some(self.tilt_rad),
+            twist_rad: self.axes.twist.then_some(self.twist_rad),
+            switches: self.switches,
+        }
+    }
+}
+
+/// What the events of the connection are told to.
+#[derive(Debug, Default)]
+struct Listener {
+    /// The window's surface; others' are not its own.
+    surface: Option<usize>,
+    tools: BTreeMap<u32, KnownTool>,
+    /// Tools met so far.
+    met: u64,
+    readings: Vec<PenReading>,
+}
+
+/// Pens of a Wayland connection.
+pub struct WaylandPens {
+    connection: Connection,
+    queue: EventQueue<Listener>,
+    listener: Listener,
+    _seats: Vec<ZwpTabletSeatV2>,
+}
+
+impl WaylandPens {
+    /// The pens of a connection over `surface`, the address of its proxy; over any surface without.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the compositor does not speak the protocol.
+    pub fn new(connection: &Connection, surface: Option<usize>) -> Result<Self, UserError> {
+        let (globals, queue) =
+            registry_queue_init::<Listener>(connection).map_err(|error| gone(&error))?;
+        let handle = queue.handle();
+        let manager = globals.bind::<ZwpTabletManagerV2, _, _>(&handle, 1..=1, ());
+        let manager = manager.map_err(|_| {
+            UserError::failure("this compositor tells nothing of pens (zwp_tablet_manager_v2)").help(
+                "the pen paints as a mouse; for its pressure give it to the rig with `maulstick devices`",
+            )
+        })?;
+        let seats = globals.contents().with_list(|list| {
+            let seats = list.iter().filter(|global| global.interface == "wl_seat");
+            let bind = |global: &wayland_client::globals::Global| {
+                let seat =
+                    globals
+                        .registry()
+                        .bind::<wl_seat::WlSeat, _, _>(global.name, 1, &handle, ());
+                manager.get_tablet_seat(&seat, &handle, ())
+            };
+            seats.map(bind).collect()
+        });
+        connection.flush().map_err(|error| gone(&error))?;
+        Ok(Self {
+            connection: connection.clone(),
+            queue,
+            listener: Listener {
+                surface,
+                ..Listener::default()
+            },
+            _seats: seats,
+        })
+    }
+}
+
+impl std::fmt::Debug for WaylandPens {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("WaylandPens")
+            .field("listener", &self.listener)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Source for WaylandPens {
+    fn wait(
+        &mut self,
+        stop: BorrowedFd<'_>,
+        timeout: Option<Duration>,
+        readings: &mut Vec<PenReading>,
+    ) -> Result<(), UserError> {
+        self.connection.flush().map_err(|error| gone(&error))?;
+        // Where events wait already they are told first.
+        if let Some(guard) = self.queue.prepare_read() {
+            match readable(guard.connection_fd(), stop, timeout)? {
+                true => match guard.read() {
+                    Ok(_) => {}
+                    // The window's own thread has read them.
+                    Err(WaylandError::Io(error))
+                        if error.kind() == std::io::ErrorKind::WouldBlock => {}
+                    Err(error) => return Err(gone(&error)),
+                },
+                false => drop(guard),
+            }
+        }
+        self.queue
+            .dispatch_pending(&mut self.listener)
+            .map_err(|error| gone(&error))?;
+        readings.append(&mut self.listener.readings);
+        Ok(())
+    }
+
+    fn moves_pointer(&self) -> bool {
+        false
+    }
+}
+
+impl Listener {
+    fn is_own(&self, surface: &ObjectId) -> bool {
+        let address = surface.as_ptr() as usize;
+        self.surface.is_none_or(|own| own == address)
+    }
+}
+
+impl Dispatch<ZwpTabletToolV2, ()> for Listener {
+    fn event(
+        listener: &mut Self,
+        proxy: &ZwpTabletToolV2,
+        event: zwp_tablet_tool_v2::Event,
+        (): &(),
+        _: &Connection,
+        _: &QueueHandle<Self>,
+    ) {
+        use zwp_tablet_tool_v2::{ButtonState, Capability, Event, Type};
+        let id = proxy.id().protocol_id();
+        let near = match &event {
+            Event::ProximityIn { surface, .. } => listener.is_own(&surface.id()),
+            _ => false,
+        };
+        let met = &mut listener.met;
+        let tool = listener.tools.entry(id).or_insert_with(|| {
+            *met += 1;
+            KnownTool {
+                tool: Tool(*met),
+                axes: Axes {
+                    range: true,
+                    ..Axes::default()
+                },
+                ..KnownTool::default()
+            }
+        });
+        match event {
+            Event::Type { tool_type } => {
+                tool.eraser = tool_type.into_result().is_ok_and(|own| own == Type::Eraser);
+            }
+            Event::Capability { capability } => match capability.into_result() {
+                Ok(Capability::Pressure) => tool.axes.pressure = true,
+                Ok(Capability::Tilt) => tool.axes.tilt = true,
+                Ok(Capability::Rotation) => tool.axes.twist = true,
+                _ => {}
+            },
+            Event::HardwareSerial {
+                hardware_serial_hi,
+                hardware_serial_lo,
+            } => {
+                let serial = u64::from(hardware_serial_hi) << 32 | u64::from(hardware_serial_lo);
+                // Pens without one are told apart by the connection.
+                if serial != 0 {
+                    tool.tool = Tool(serial << 1 | u64::from(tool.eraser));
+                }
+            }
+            Event::ProximityIn { serial, .. } => {
+                tool.is_near = near;
+                // The window draws the brush itself.
+                proxy.set_cursor(serial, None, 0, 0);
+            }
+            Event::ProximityOut => {
+                tool.tells = tool.is_near;
+                (tool.is_near, tool.is_down) = (false, false);
+            }
+            Event::Down { .. } => tool.is_down = true,
+            Event::Up => tool.is_down = false,
+            Event::Motion { x, y } => tool.point = [x, y],
+            Event::Pressure { pressure } => tool.pressure = f64::from(pressure) / PRESSURE,
+            Event::Tilt { tilt_x, tilt_y } => {
+                // Theirs leans toward the hand with y.
+                tool.tilt_rad = [tilt_x.to_radians(), -tilt_y.to_radians()];
+            }
+            // Theirs turns clockwise, seen from above.
+            Event::Rotation { degrees } => tool.twist_rad = -degrees.to_radians(),
+            Event::Button { button, state, .. } => {
+                if let Some(place) = BUTTONS.iter().position(|own| *own == button) {
+                    let bit = 1 << place;
+                    match state.into_result() {
+                        Ok(ButtonState::Pressed) => tool.switches |= bit,
+                        _ => tool.switches &= !bit,
+                    }
+                }
+            }
+            Event::Frame { time } => {
+                tool.time_ms = time;
+                if std::mem::take(&mut tool.tells) || tool.is_near {
+                    listener.readings.push(tool.read());
+                }
+            }
+            Event::Removed => {
+                if std::mem::take(&mut tool.is_near) {
+                    listener.readings.push(tool.read());
+                }
+                listener.tools.remove(&id);
+                proxy.destroy();
+            }
+            _ => {}
+        }
+    }
+}
+
+impl Dispatch<ZwpTabletSeatV2, ()> for Listener {
+    fn event(
+        _: &mut Self,
+        _: &ZwpTabletSeatV2,
+        _: zwp_tablet_seat_v2::Event,
+        (): &(),
+        _: &Connection,
+        _: &QueueHandle<Self>,
+    ) {
+    }
+
+    event_created_child!(Self, ZwpTabletSeatV2, [
+        zwp_tablet_seat_v2::EVT_TABLET_ADDED_OPCODE => (ZwpTabletV2, ()),
+        zwp_tablet_seat_v2::EVT_TOOL_ADDED_OPCODE => (ZwpTabletToolV2, ()),
+        zwp_tablet_seat_v2::EVT_PAD_ADDED_OPCODE => (ZwpTabletPadV2, ()),
+    ]);
+}
+
+impl Dispatch<ZwpTabletPadV2, ()> for Listener {
+    fn event(
+        _: &mut Self,
+        _: &ZwpTabletPadV2,
+        _: zwp_tablet_pad_v2::Event,
+        (): &(),
+        _: &Connection,
+        _: &QueueHandle<Self>,
+    ) {
+    }
+
+    event_created_child!(Self, ZwpTabletPadV2, [
+        zwp_tablet_pad_v2::EVT_GROUP_OPCODE => (ZwpTabletPadGroupV2, ()),
+    ]);
+}
+
+impl Dispatch<ZwpTabletPadGroupV2, ()> for Listener {
+    fn event(
+        _: &mut Self,
+        _: &ZwpTabletPadGroupV2,
+        _: zwp_tablet_pad_group_v2::Event,
+        (): &(),
+        _: &Connection,
+        _: &QueueHandle<Self>,
+    ) {
+    }
+
+    event_created_child!(Self, ZwpTabletPadGroupV2, [
+        zwp_tablet_pad_group_v2::EVT_RING_OPCODE => (ZwpTabletPadRingV2, ()),
+        zwp_tablet_pad_group_v2::EVT_STRIP_OPCODE => (ZwpTabletPadStripV2, ()),
+        zwp_tablet_pad_group_v2::EVT_DIAL_OPCODE => (ZwpTabletPadDialV2, ()),
+    ]);
+}
+
+/// Objects whose events tell nothing of pens.
+macro_rules! silent {
+    ($($proxy:ty, $data:ty);+ $(;)?) => {$(
+        impl Dispatch<$proxy, $data> for Listener {
+            fn event(
+                _: &mut Self,
+                _: &$proxy,
+                _: <$proxy as Proxy>::Event,
+                _: &$data,
+                _: &Connection,
+                _: &QueueHandle<Self>,
+            ) {
+            }
+        }
+    )+};
+}
+
+silent! {
+    wl_registry::WlRegistry, GlobalListContents;
+    wl_seat::WlSeat, ();
+    ZwpTabletManagerV2, ();
+    ZwpTabletV2, ();
+    ZwpTabletPadRingV2, ();
+    ZwpTabletPadStripV2, ();
+    ZwpTabletPadDialV2, ();
+}

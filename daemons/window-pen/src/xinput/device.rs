@@ -1,0 +1,222 @@
+//! A pen of an X server, from its valuators and buttons.
+
+use maulstick_device::pen::{End, Presence, Reading};
+use x11rb::protocol::xinput::{
+    ButtonPressEvent, DeviceClassData, DeviceClassDataValuator, Fp3232, ValuatorMode, XIDeviceInfo,
+};
+use x11rb::protocol::xproto::Atom;
+
+use super::tool;
+use crate::reading::{Axes, PenReading};
+
+/// Units of a tilt per radian at least and at most, where its resolution says so: drivers give a degree a unit.
+const PER_RADIAN: std::ops::RangeInclusive<u32> = 20..=10_000;
+/// Tilt at the ends of a range that says no more, degrees.
+const STEEPEST_DEGREES: f64 = 64.0;
+/// The button of the tip, and of the switches on the handle, that nearest to the tip first.
+const TIP: u32 = 1;
+const SWITCHES: [u32; 3] = [2, 3, 8];
+
+/// Names of valuators, as atoms of the server.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Labels {
+    /// Of pressure.
+    pub pressure: Atom,
+    /// Of tilt, toward the right and toward the hand.
+    pub tilt: [Atom; 2],
+    /// Of rotation: of these a pen has one, or an airbrush its wheel.
+    pub twist: [Atom; 2],
+}
+
+/// A valuator: its place among those of the device, and its range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Valuator {
+    place: usize,
+    least: f64,
+    most: f64,
+    per_radian: u32,
+    value: f64,
+}
+
+fn number(fixed: Fp3232) -> f64 {
+    f64::from(fixed.integral) + f64::from(fixed.frac) / 4_294_967_296.0
+}
+
+impl Valuator {
+    fn of(told: &DeviceClassDataValuator) -> Option<Self> {
+        let valuator = Self {
+            place: told.number.into(),
+            least: number(told.min),
+            most: number(told.max),
+            per_radian: told.resolution,
+            value: number(told.value),
+        };
+        let absolute = told.mode == ValuatorMode::ABSOLUTE;
+        (absolute && valuator.most > valuator.least).then_some(valuator)
+    }
+
+    /// Its share of its range.
+    fn share(&self) -> f64 {
+        ((self.value - self.least) / (self.most - self.least)).clamp(0.0, 1.0)
+    }
+
+    /// A tilt, rad.
+    fn tilt_rad(&self) -> f64 {
+        match PER_RADIAN.contains(&self.per_radian) {
+            true => self.value / f64::from(self.per_radian),
+            false => {
+                let middle = 0.5 * (self.least + self.most);
+                let steepest = STEEPEST_DEGREES.to_radians();
+                (self.value - middle) / (self.most - middle) * steepest
+            }
+        }
+    }
+
+    /// A rotation, rad: its range is a whole turn, clockwise.
+    fn twist_rad(&self) -> f64 {
+        -(self.value / (self.most - self.least)) * std::f64::consts::TAU
+    }
+}
+
+/// A pen of an X server.
+#[derive(Clone, Debug, PartialEq)]
+pub struct XinputDevice {
+    id: u16,
+    pressure: Valuator,
+    tilt: Option<[Valuator; 2]>,
+    twist: Option<Valuator>,
+    eraser: bool,
+    /// Serial of the tool that is near, 0 for none, where the driver says so.
+    serial: Option<u32>,
+    newest: Option<PenReading>,
+}
+
+impl XinputDevice {
+    /// A device of the server, if it is a pen.
+    #[must_use]
+    pub fn of(info: &XIDeviceInfo, labels: &Labels) -> Option<Self> {
+        let valuators = info.classes.iter().filter_map(|class| match &class.data {
+            DeviceClassData::Valuator(told) => Some(told),
+            _ => None,
+        });
+        let find = |label: Atom| {
+            let mut all = valuators.clone();
+            let found = all.find(|told| label != 0 && told.label == label);
+            found.and_then(Valuator::of)
+        };
+        // A rotation goes both ways from its neutral place; an airbrush's wheel does not.
+        let mut twists = labels.twist.into_iter().filter_map(find);
+        let name = String::from_utf8_lossy(&info.name).to_lowercase();
+        Some(Self {
+            id: info.deviceid,
+            pressure: find(labels.pressure)?,
+            tilt: match labels.tilt.map(find) {
+                [Some(x), Some(y)] => Some([x, y]),
+                _ => None,
+            },
+            twist: twists.find(|twist| twist.least < 0.0),
+            eraser: name.contains("eraser"),
+            serial: None,
+            newest: None,
+        })
+    }
+
+    /// What it senses.
+    #[must_use]
+    pub fn axes(&self) -> Axes {
+        Axes {
+            pressure: true,
+            tilt: self.tilt.is_some(),
+            twist: self.twist.is_some(),
+            range: self.serial.is_some(),
+        }
+    }
+
+    /// Its driver says which tool is near: its serial, 0 for none.
+    pub fn tell_serial(&mut self, serial: Option<u32>) {
+        self.serial = serial;
+    }
+
+    /// Its reading at an event; `None` where the event is not of its own.
+    pub fn read(&mut self, event: &ButtonPressEvent) -> Option<PenReading> {
+        if event.deviceid != self.id {
+            return None;
+        }
+        self.take_values(&event.valuator_mask, &event.axisvalues);
+        let is_down = |button: u32| {
+            let word = event.button_mask.get(button as usize / 32);
+            word.is_some_and(|word| word >> (button % 32) & 1 == 1)
+        };
+        // The mask is that of before the event.
+        let down = |button: u32| match (event.event_type, event.detail == button) {
+            (PRESS, true) => true,
+            (RELEASE, true) => false,
+            _ => is_down(button),
+        };
+        let switches = SWITCHES
+            .iter()
+            .enumerate()
+            .filter(|(_, button)| down(**button));
+        let [x, y] = [event.event_x, event.event_y].map(|at| f64::from(at) / 65_536.0);
+        let reading = Reading {
+            presence: match down(TIP) {
+                true => Presence::Touching,
+                false => Presence::Hovering,
+            },
+            end: match self.eraser {
+                true => End::Eraser,
+                false => End::Tip,
+            },
+            point: [x, y],
+            height_m: 0.0,
+            pressure: self.pressure.share(),
+            // Theirs leans toward the hand with y.
+            tilt_rad: self.tilt.map(|[x, y]| [x.tilt_rad(), -y.tilt_rad()]),
+            twist_rad: self.twist.map(|twist| twist.twist_rad()),
+            switches: switches.fold(0, |all, (place, _)| all | 1 << place),
+        };
+        let read = PenReading {
+            tool: tool(self.id, self.serial.unwrap_or(0), self.eraser),
+            axes: self.axes(),
+            time_ms: event.time,
+            reading,
+        };
+        self.newest = Some(read);
+        Some(read)
+    }
+
+    /// Its tool has left, if its driver says that none is near.
+    pub fn left(&mut self, time_ms: u32) -> Option<PenReading> {
+        if self.serial != Some(0) {
+            return None;
+        }
+        let newest = self.newest.take()?;
+        Some(PenReading {
+            time_ms,
+            reading: Reading {
+                presence: Presence::Away,
+                ..newest.reading
+            },
+            ..newest
+        })
+    }
+
+    /// Takes the values of those valuators that an event tells of.
+    fn take_values(&mut self, mask: &[u32], values: &[Fp3232]) {
+        let told = (0..32 * mask.len()).filter(|place| mask[place / 32] >> (place % 32) & 1 == 1);
+        for (place, value) in told.zip(values) {
+            let tilts = self.tilt.iter_mut().flatten();
+            let own = [&mut self.pressure]
+                .into_iter()
+                .chain(tilts)
+                .chain(&mut self.twist);
+            for valuator in own.filter(|valuator| valuator.place == place) {
+                valuator.value = number(*value);
+            }
+        }
+    }
+}
+
+/// Types of events.
+const PRESS: u16 = 4;
+const RELEASE: u16 = 5;

@@ -1,0 +1,231 @@
+//! Pens of X11: the valuators of XInput 2.
+//!
+//! A pen is a slave pointer with a valuator called *Abs Pressure*, as the drivers `wacom` and `libinput` name it. Its own
+//! events come beside those of the pointer that it moves, each with the server's time.
+
+mod device;
+
+use std::collections::BTreeMap;
+use std::os::fd::{AsFd, BorrowedFd};
+use std::time::Duration;
+
+use maulstick_rig::UserError;
+use x11rb::connection::Connection as _;
+use x11rb::errors::{ConnectionError, ReplyError};
+use x11rb::protocol::Event;
+use x11rb::protocol::xinput::{
+    ConnectionExt as _, DeviceType, EventMask, XIDeviceInfo, XIEventMask, XIGetPropertyItems,
+};
+use x11rb::protocol::xproto::{Atom, AtomEnum, ConnectionExt as _, Window};
+use x11rb::rust_connection::RustConnection;
+
+pub use self::device::{Labels, XinputDevice};
+use crate::reading::{PenReading, Tool};
+use crate::thread::{Source, gone, readable};
+
+/// All devices, in a selection of events.
+const ALL: u16 = 0;
+/// The `wacom` driver's property of tools: five numbers, of which the fourth is the serial of the tool that is near, 0 for
+/// none.
+const SERIALS: &str = "Wacom Serial IDs";
+/// Place of that serial.
+const NEAR: usize = 3;
+
+/// Pens of an X server over a window.
+pub struct XinputPens {
+    connection: RustConnection,
+    window: Window,
+    labels: Labels,
+    serials: Atom,
+    devices: BTreeMap<u16, XinputDevice>,
+}
+
+fn lost(error: &dyn std::fmt::Display) -> UserError {
+    gone(error)
+}
+
+impl XinputPens {
+    /// The pens over a window of the server that `DISPLAY` names.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the server is away or lacks XInput 2.2.
+    pub fn new(window: Window) -> Result<Self, UserError> {
+        let (connection, screen) = x11rb::connect(None).map_err(|error| lost(&error))?;
+        let old = || {
+            UserError::failure("this X server tells nothing of pens (XInput 2.2)").help(
+                "the pen paints as a mouse; for its pressure give it to the rig with `maulstick devices`",
+            )
+        };
+        let version = connection
+            .xinput_xi_query_version(2, 2)
+            .map_err(|error| lost(&error))?
+            .reply()
+            .map_err(|_| old())?;
+        if (version.major_version, version.minor_version) < (2, 2) {
+            return Err(old());
+        }
+        let atom = |name: &str| -> Result<Atom, ReplyError> {
+            Ok(connection
+                .intern_atom(false, name.as_bytes())?
+                .reply()?
+                .atom)
+        };
+        let labels = Labels {
+            pressure: atom("Abs Pressure").map_err(|error| lost(&error))?,
+            tilt: [
+                atom("Abs Tilt X").map_err(|error| lost(&error))?,
+                atom("Abs Tilt Y").map_err(|error| lost(&error))?,
+            ],
+            twist: [
+                atom("Abs Wheel").map_err(|error| lost(&error))?,
+                atom("Abs Rotary Z").map_err(|error| lost(&error))?,
+            ],
+        };
+        let serials = atom(SERIALS).map_err(|error| lost(&error))?;
+        let root = connection.setup().roots[screen].root;
+        let mut pens = Self {
+            connection,
+            window,
+            labels,
+            serials,
+            devices: BTreeMap::new(),
+        };
+        pens.select(
+            root,
+            ALL,
+            XIEventMask::HIERARCHY | XIEventMask::DEVICE_CHANGED,
+        )
+        .and_then(|()| pens.find())
+        .map_err(|error| lost(&error))?;
+        Ok(pens)
+    }
+
+    fn select(&self, window: Window, device: u16, mask: XIEventMask) -> Result<(), ReplyError> {
+        let mask = EventMask {
+            deviceid: device,
+            mask: vec![mask],
+        };
+        let selected = self.connection.xinput_xi_select_events(window, &[mask])?;
+        selected.check()
+    }
+
+    /// Finds the pens that are attached, and asks for their events.
+    fn find(&mut self) -> Result<(), ReplyError> {
+        let found = self.connection.xinput_xi_query_device(ALL)?.reply()?.infos;
+        let pens = found
+            .iter()
+            .filter(|info| info.type_ == DeviceType::SLAVE_POINTER);
+        let mut devices = BTreeMap::new();
+        for info in pens {
+            let Some(mut device) = XinputDevice::of(info, &self.labels) else {
+                continue;
+            };
+            let mask = XIEventMask::MOTION
+                | XIEventMask::BUTTON_PRESS
+                | XIEventMask::BUTTON_RELEASE
+                | XIEventMask::PROPERTY;
+            // One that goes just now is told of again.
+            if self.select(self.window, info.deviceid, mask).is_err() {
+                continue;
+            }
+            device.tell_serial(self.near(info.deviceid)?);
+            tracing::debug!("the pen '{}'", String::from_utf8_lossy(&info.name));
+            devices.insert(info.deviceid, device);
+        }
+        self.devices = devices;
+        Ok(())
+    }
+
+    /// Serial of the tool that is near a device, 0 for none; `None` where its driver does not say.
+    fn near(&self, device: u16) -> Result<Option<u32>, ReplyError> {
+        let any = AtomEnum::ANY.into();
+        let asked =
+            self.connection
+                .xinput_xi_get_property(device, false, self.serials, any, 0, 5)?;
+        let items = match asked.reply() {
+            Ok(reply) => reply.items,
+            Err(ReplyError::X11Error(_)) => return Ok(None),
+            Err(error) => return Err(error),
+        };
+        Ok(match items {
+            XIGetPropertyItems::Data32(serials) => serials.get(NEAR).copied(),
+            _ => None,
+        })
+    }
+
+    /// Takes in an event; readings are appended.
+    fn take(&mut self, event: &Event, readings: &mut Vec<PenReading>) -> Result<(), ReplyError> {
+        match event {
+            Event::XinputMotion(event)
+            | Event::XinputButtonPress(event)
+            | Event::XinputButtonRelease(event) => {
+                let device = self.devices.get_mut(&event.deviceid);
+                readings.extend(device.and_then(|device| device.read(event)));
+            }
+            Event::XinputProperty(event) if event.property == self.serials => {
+                let near = self.near(event.deviceid)?;
+                if let Some(device) = self.devices.get_mut(&event.deviceid) {
+                    device.tell_serial(near);
+                    readings.extend(device.left(event.time));
+                }
+            }
+            Event::XinputHierarchy(event) => {
+                for (_, mut device) in std::mem::take(&mut self.devices) {
+                    device.tell_serial(Some(0));
+                    readings.extend(device.left(event.time));
+                }
+                self.find()?;
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+impl Source for XinputPens {
+    fn wait(
+        &mut self,
+        stop: BorrowedFd<'_>,
+        timeout: Option<Duration>,
+        readings: &mut Vec<PenReading>,
+    ) -> Result<(), UserError> {
+        let mut next = self.poll()?;
+        if next.is_none() {
+            readable(self.connection.stream().as_fd(), stop, timeout)?;
+            next = self.poll()?;
+        }
+        while let Some(event) = next {
+            self.take(&event, readings).map_err(|error| lost(&error))?;
+            next = self.poll()?;
+        }
+        Ok(())
+    }
+
+    fn moves_pointer(&self) -> bool {
+        true
+    }
+}
+
+impl XinputPens {
+    fn poll(&self) -> Result<Option<Event>, UserError> {
+        let polled: Result<_, ConnectionError> = self.connection.poll_for_event();
+        polled.map_err(|error| lost(&error))
+    }
+}
+
+impl std::fmt::Debug for XinputPens {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("XinputPens")
+            .field("devices", &self.devices)
+            .finish_non_exhaustive()
+    }
+}
+
+/// The tool of a device, told apart from all others of the server.
+fn tool(device: u16, serial: u32, eraser: bool) -> Tool {
+    let number = match serial {
+        0 => 1 << 40 | u64::from(device),
+        serial => u64::from(serial),
+    };
+    Tool(number << 1 | u64::from(eraser))
+}
