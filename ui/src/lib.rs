@@ -44,19 +44,19 @@ use maulstick_appearance::picture::Export;
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::{NodeHandle, UserError};
 
-/// Shows the window until it is closed; `mouse` is the name of the mouse as a device, `export` says
+/// Shows the window until it is closed; `pointers` are the names of its mouse and its pen as devices, `export` says
 /// what the display is, `library` what paints there are.
 ///
 /// # Errors
 /// A [`UserError`] where there is no display or no GPU driver.
 pub fn run(
     mut member: NodeHandle,
-    mouse: &str,
+    pointers: [&str; 2],
     export: &Export,
     library: PaintLibrary,
 ) -> Result<(), UserError> {
     language::follow_system();
-    let mut app = app::App::new(&member, mouse, library)?;
+    let mut app = app::App::new(&member, pointers, library)?;
     let export = export.clone();
     let viewport = eframe::egui::ViewportBuilder::default()
         .with_title("Maulstick")
@@ -78,6 +78,7 @@ pub fn run(
                 .as_ref()
                 .ok_or("no graphics device")?;
             app.begin(&creation.egui_ctx, state, &export);
+            app.follow_pens(creation);
             member.ready()?;
             Ok(Box::new(app.with_member(member)))
         }),

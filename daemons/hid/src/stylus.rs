@@ -20,7 +20,6 @@ use crate::tablet::Tablet;
 const RATE_HZ: f64 = 200.0;
 
 /// A pen, from its reports to its samples.
-#[derive(Debug)]
 pub struct Stylus {
     pen: PenStream,
     /// Decoder of the reports; `None` while there is no tablet.
@@ -148,5 +147,13 @@ impl Stylus {
     #[must_use]
     pub fn sent(&self) -> u64 {
         self.pen.sent()
+    }
+}
+
+impl std::fmt::Debug for Stylus {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Stylus")
+            .field("pen", &self.pen)
+            .finish_non_exhaustive()
     }
 }

@@ -25,4 +25,4 @@ pub mod xinput;
 pub use hand::Hand;
 pub use reading::{Axes, PenReading, Tool};
 pub use thread::PenThread;
-pub use window::{DeskView, PenNews, Shared};
+pub use window::{DeskView, PenNews, PointerNews, Shared};

@@ -3,7 +3,7 @@
 //! A compositor that speaks it to a window moves no pointer there with a pen: the window does.
 
 use std::collections::BTreeMap;
-use std::os::fd::{AsFd, BorrowedFd};
+use std::os::fd::BorrowedFd;
 use std::time::Duration;
 
 use maulstick_device::pen::{End, Presence, Reading};

@@ -54,6 +54,7 @@ struct Known {
     view: Option<Box<dyn DeskView>>,
     brush: String,
     news: PenNews,
+    on_news: Option<Box<dyn Fn() + Send>>,
 }
 
 impl Shared {
@@ -68,6 +69,11 @@ impl Shared {
         if known.brush != brush {
             brush.clone_into(&mut known.brush);
         }
+    }
+
+    /// Calls `ring` when a pointer that only the window moves has moved.
+    pub fn on_news(&self, ring: impl Fn() + Send + 'static) {
+        self.lock().on_news = Some(Box::new(ring));
     }
 
     /// The pen since the last call.
@@ -111,12 +117,20 @@ impl Shared {
 
     /// Its pointer did so.
     pub(crate) fn point(&self, what: PointerNews) {
-        let pointer = &mut self.lock().news.pointer;
+        let known = &mut *self.lock();
+        let pointer = &mut known.news.pointer;
         if let (PointerNews::Moved(_), Some(PointerNews::Moved(_))) = (what, pointer.last()) {
             pointer.pop();
         }
         if pointer.len() < WAITING {
             pointer.push(what);
+        }
+        if let Some(ring) = known
+            .on_news
+            .as_ref()
+            .filter(|_| known.news.moves_no_pointer)
+        {
+            ring();
         }
     }
 }

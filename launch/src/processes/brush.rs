@@ -7,10 +7,12 @@ use maulstick_brush_node::contact_model::ForceKind;
 use maulstick_brush_node::{BrushNode, BrushSettings};
 use maulstick_bus::typed::random_epoch;
 use maulstick_rig::UserError;
-use maulstick_rig::config::{FOREIGN_PRIORITY, MOUSE_PRIORITY, PLAYER_PRIORITY, RigConfig};
+use maulstick_rig::config::{
+    FOREIGN_PRIORITY, MOUSE_PRIORITY, PEN_PRIORITY, PLAYER_PRIORITY, RigConfig,
+};
 use nix::sys::signal::Signal;
 
-use super::{MOUSE, NodeOptions, PLAYER, brush_node_name};
+use super::{MOUSE, NodeOptions, PEN, PLAYER, brush_node_name};
 use crate::performance::brush_file;
 
 /// Options of a brush node.
@@ -36,6 +38,7 @@ fn brush_settings(config: &RigConfig, brush: &str) -> Result<BrushSettings, User
     let mut devices = BTreeMap::from([(PLAYER.to_owned(), PLAYER_PRIORITY)]);
     if first {
         devices.insert(MOUSE.to_owned(), MOUSE_PRIORITY);
+        devices.insert(PEN.to_owned(), PEN_PRIORITY);
     }
     let (mut others, mut laws) = (Vec::new(), BTreeMap::new());
     for device in &config.device {

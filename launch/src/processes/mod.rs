@@ -20,6 +20,8 @@ use nix::sys::signal::Signal;
 
 /// Device name of the mouse over the window.
 pub const MOUSE: &str = "mouse";
+/// The pen over the window, as a device.
+pub const PEN: &str = "pen";
 /// Device name of the player.
 pub const PLAYER: &str = "player";
 

@@ -3,7 +3,7 @@
 use maulstick_rig::UserError;
 use nix::sys::signal::Signal;
 
-use super::{MOUSE, NodeOptions};
+use super::{MOUSE, NodeOptions, PEN};
 use crate::destination::{VIEW, export};
 use crate::performance::library_from;
 
@@ -19,7 +19,7 @@ pub(super) fn run(options: &UiOptions) -> Result<i32, UserError> {
     let by_signal = member.stop.clone();
     let export = export(&member.config.view, VIEW)?;
     let library = library_from(member.config.paint.paints.as_deref())?;
-    maulstick_ui::run(member, MOUSE, &export, library)?;
+    maulstick_ui::run(member, [MOUSE, PEN], &export, library)?;
     // Ended by a signal it has not been closed by the painter.
     Ok(i32::from(by_signal.by_signal()))
 }

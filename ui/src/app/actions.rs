@@ -28,7 +28,8 @@ impl App {
         };
         // Two fingers move the canvas.
         let fingers = context.input(|input| input.multi_touch().is_some());
-        if fingers || self.navigation.holds() {
+        let pen = self.pen.has_pointer(self.bus.now_ns());
+        if fingers || pen || self.navigation.holds() {
             self.pointer_path.lift();
             return Vec::new();
         }
@@ -109,7 +110,7 @@ impl App {
         let around = Around {
             view,
             surfaces: surfaces.unwrap_or_default(),
-            free: self.mouse.is_free(now_ns),
+            free: self.mouse.is_free(now_ns) && !self.pen.has_pointer(now_ns),
             over_panel: over_panel(context),
             keys: &self.preferences.keys,
         };

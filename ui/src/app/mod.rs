@@ -25,6 +25,7 @@ use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
 use maulstick_types::scene::{PALETTE, Surface};
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
+use raw_window_handle::{HasDisplayHandle as _, HasWindowHandle as _};
 
 use crate::app::overlay::Overlay;
 use crate::dialogs::paths;
@@ -33,6 +34,7 @@ use crate::input::clean_key::CleanKey;
 use crate::input::mouse_stylus::Mouse;
 use crate::input::navigation::Navigation;
 use crate::input::palette_gesture::PaletteGesture;
+use crate::input::pen::WindowPen;
 use crate::input::pointer_path::PointerPath;
 use crate::input::presses;
 use crate::language;
@@ -97,6 +99,7 @@ pub struct App {
     progress: Progress,
     watch: HealthMonitor,
     mouse: Mouse,
+    pen: WindowPen,
     brush_turn: BrushTurn,
     view: Option<View>,
     pointer_path: PointerPath,
@@ -127,14 +130,18 @@ impl App {
     ///
     /// # Errors
     /// A [`UserError`] where the bus is closed.
-    pub fn new(member: &NodeHandle, mouse: &str, library: PaintLibrary) -> Result<Self, UserError> {
+    pub fn new(
+        member: &NodeHandle,
+        [mouse, pen]: [&str; 2],
+        library: PaintLibrary,
+    ) -> Result<Self, UserError> {
         let (bus, topics, brushes) = (&member.bus, &member.topics, &member.config.brush);
         let names: Vec<String> = brushes.iter().map(|brush| brush.name.clone()).collect();
         let brush = names.first().map_or("main", String::as_str);
         let depth_shares = brushes
             .iter()
             .map(|brush| (brush.name.clone(), brush.depth_share));
-        let me = member.origin(mouse);
+        let (me, pen_origin) = (member.origin(mouse), member.origin(pen));
         let mut notifications = Notifications::default();
         let place = Preferences::place();
         let read = place
@@ -159,7 +166,8 @@ impl App {
             );
         }
         Ok(Self {
-            mouse: Mouse::new(&**bus, topics, mouse, brush, me)?,
+            mouse: Mouse::new(&**bus, topics, (mouse, pen_origin.source), brush, me)?,
+            pen: WindowPen::new(bus, topics, pen, pen_origin)?,
             tracker: BrushTracker::new(
                 &**bus,
                 topics,
@@ -241,6 +249,18 @@ impl App {
         self.rig.tint = Arc::new(DisplayTransform::new(export));
         self.scene_renderer.begin(context, state, export, source);
         self.lost.follow(&state.device, context);
+    }
+
+    /// Starts to read the pens over the window.
+    pub fn follow_pens(&mut self, window: &eframe::CreationContext<'_>) {
+        let handles = window
+            .display_handle()
+            .ok()
+            .zip(window.window_handle().ok());
+        if let Some((display, own)) = handles {
+            self.pen
+                .begin(&window.egui_ctx, display.as_raw(), own.as_raw());
+        }
     }
 
     fn take_in(&mut self, now_ns: u64) {
@@ -363,6 +383,10 @@ fn fetcher(member: &NodeHandle) -> ThumbnailFetcher {
 }
 
 impl eframe::App for App {
+    fn raw_input_hook(&mut self, context: &Context, input: &mut egui::RawInput) {
+        self.pen.take_in(context, input);
+    }
+
     fn logic(&mut self, context: &Context, _frame: &mut eframe::Frame) {
         if self.stop.requested() || self.lost.is_lost() {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
@@ -412,6 +436,10 @@ impl eframe::App for App {
             if self.preferences.mirrored {
                 self.view = self.view.map(View::mirrored);
             }
+            let scene = self.rig.scene.as_ref();
+            let surfaces = scene.map_or(&[][..], |scene| &scene.surfaces);
+            let brush = self.rig.brush_name();
+            self.pen.show(ui.ctx(), self.view.as_ref(), surfaces, brush);
             let Some(view) = self.view else {
                 ui.centered_and_justified(|ui| ui.label(tr!("waiting for the paint …")));
                 return;
@@ -484,6 +512,7 @@ impl eframe::App for App {
     }
 
     fn on_exit(&mut self) {
+        self.pen.end();
         self.stop.request();
         self.wake.ring();
         self.scene_renderer.end();

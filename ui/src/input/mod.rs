@@ -9,6 +9,7 @@
 //! | [`ruler`] | straight strokes |
 //! | [`size_drag`] | width of the brush by dragging |
 //! | [`mouse_stylus`] | the mouse as a stylus |
+//! | [`pen`] | the pen over the window |
 //! | [`brush_turn`] | turn of the brush that the mouse moves |
 //! | [`navigation`] | wheel, drag and touch: moves the surfaces |
 //! | [`clean_key`] | the key that cleans the brush, or lifts paint while it is held |
@@ -25,6 +26,7 @@ pub(crate) mod mouse_stylus;
 pub(crate) mod navigation;
 pub(crate) mod palette_gesture;
 pub(crate) mod palette_wells;
+pub(crate) mod pen;
 pub(crate) mod pointer_path;
 pub(crate) mod presses;
 pub(crate) mod ruler;

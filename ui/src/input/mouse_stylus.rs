@@ -34,7 +34,8 @@ pub(crate) struct Mouse {
     others: Receiver<StylusSample>,
     info: Sender<StylusInfo>,
     told: StylusInfo,
-    me: Origin,
+    /// Mouse and pen of this window.
+    own: [u32; 2],
     silent_until_ns: u64,
     sent_ns: u64,
     was_in_range: bool,
@@ -45,14 +46,14 @@ pub(crate) struct Mouse {
 }
 
 impl Mouse {
-    /// A mouse called `name` that moves `brush`.
+    /// A mouse called `name` that moves `brush`, beside the pen of its window.
     ///
     /// # Errors
     /// [`BusError::Topic`].
     pub(crate) fn new(
         bus: &dyn Bus,
         topics: &Topics,
-        name: &str,
+        (name, pen): (&str, u32),
         brush: &str,
         me: Origin,
     ) -> Result<Self, BusError> {
@@ -78,7 +79,7 @@ impl Mouse {
             others: Receiver::new(bus, &others, Qos::RealTime, Queue::Ring(256), &wake)?,
             info,
             told,
-            me,
+            own: [me.source, pen],
             silent_until_ns: 0,
             sent_ns: 0,
             was_in_range: false,
@@ -119,7 +120,7 @@ impl Mouse {
         pressure: f64,
     ) -> Result<(), BusError> {
         while let Some(other) = self.others.try_recv() {
-            if other.header.source != self.me.source && other.message.in_range {
+            if !self.own.contains(&other.header.source) && other.message.in_range {
                 self.silent_until_ns = now_ns + SILENCE_NS;
             }
         }
@@ -241,7 +242,7 @@ mod tests {
                 source: 1,
                 epoch: 1,
             };
-            let mouse = Mouse::new(&bus, &topics, "mouse", "main", me).expect("a mouse");
+            let mouse = Mouse::new(&bus, &topics, ("mouse", 7), "main", me).expect("a mouse");
             let (topic, ring) = (topics.sample("mouse"), Queue::Ring(64));
             let samples = Receiver::new(&bus, &topic, Qos::RealTime, ring, &wake);
             let (topic, ring) = (topics.stylus_info("mouse"), Queue::Ring(8));

@@ -2,7 +2,8 @@
 
 use maulstick_device::pen::{End, Presence, Reading};
 use x11rb::protocol::xinput::{
-    ButtonPressEvent, DeviceClassData, DeviceClassDataValuator, Fp3232, ValuatorMode, XIDeviceInfo,
+    BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ButtonPressEvent, DeviceClassData,
+    DeviceClassDataValuator, Fp3232, ValuatorMode, XIDeviceInfo,
 };
 use x11rb::protocol::xproto::Atom;
 
@@ -149,8 +150,8 @@ impl XinputDevice {
         };
         // The mask is that of before the event.
         let down = |button: u32| match (event.event_type, event.detail == button) {
-            (PRESS, true) => true,
-            (RELEASE, true) => false,
+            (BUTTON_PRESS_EVENT, true) => true,
+            (BUTTON_RELEASE_EVENT, true) => false,
             _ => is_down(button),
         };
         let switches = SWITCHES
@@ -216,7 +217,3 @@ impl XinputDevice {
         }
     }
 }
-
-/// Types of events.
-const PRESS: u16 = 4;
-const RELEASE: u16 = 5;

@@ -14,7 +14,7 @@ use x11rb::connection::Connection as _;
 use x11rb::errors::{ConnectionError, ReplyError};
 use x11rb::protocol::Event;
 use x11rb::protocol::xinput::{
-    ConnectionExt as _, DeviceType, EventMask, XIDeviceInfo, XIEventMask, XIGetPropertyItems,
+    ConnectionExt as _, DeviceType, EventMask, XIEventMask, XIGetPropertyItems,
 };
 use x11rb::protocol::xproto::{Atom, AtomEnum, ConnectionExt as _, Window};
 use x11rb::rust_connection::RustConnection;
