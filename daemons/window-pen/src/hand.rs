@@ -6,10 +6,11 @@ use maulstick_bus::typed::Sender;
 use maulstick_bus::{Bus, BusError, CreditSender, Qos, Wake};
 use maulstick_device::pen::{End, Presence, Reading};
 use maulstick_device::pen_stream::{OnDesk, PenStream};
+use maulstick_rig::UserError;
 use maulstick_rig::config::PEN_PRIORITY;
 use maulstick_types::Origin;
 use maulstick_types::stylus::{
-    DEFAULT_TILT_RAD, FARTHEST_M, StylusInfo, StylusPose, StylusSample, axes, switch,
+    DEFAULT_TILT_RAD, FARTHEST_M, StylusInfo, StylusPose, StylusSample, StylusStatus, axes, switch,
 };
 use maulstick_types::wire::topics::Topics;
 
@@ -36,6 +37,7 @@ pub struct Hand {
     stream: PenStream,
     desk: Desk,
     info: Sender<StylusInfo>,
+    status: Sender<StylusStatus>,
     told: StylusInfo,
     clock: WindowClock,
     tool: Option<Tool>,
@@ -111,6 +113,7 @@ impl Hand {
         };
         Ok(Self {
             info: Sender::new(&*bus, &topics.stylus_info(name), Qos::Cached, me)?,
+            status: Sender::new(&*bus, &topics.stylus_status(name), Qos::Background, me)?,
             bus,
             shared,
             stream: PenStream::new(samples),
@@ -183,6 +186,7 @@ impl Hand {
             self.touched = None;
         }
         (self.told.brush, self.told.senses) = (brush, senses);
+        self.shared.senses(senses);
         self.info.send(now_ns, now_ns, &self.told)
     }
 
@@ -247,6 +251,22 @@ impl Hand {
     pub fn end(&mut self) -> Result<(), BusError> {
         let now_ns = self.bus.now_ns();
         self.away(now_ns, now_ns)
+    }
+
+    /// Tells why no pen is read, and what to do.
+    pub fn fail(&mut self, fault: &UserError) {
+        let help = fault.help.as_deref().unwrap_or_default();
+        let trouble = format!("{}; {help}", fault.what);
+        tracing::warn!("{trouble}");
+        let status = StylusStatus {
+            trouble,
+            samples: self.sent(),
+            ..StylusStatus::fresh(0)
+        };
+        let now_ns = self.bus.now_ns();
+        if let Err(error) = self.status.send(now_ns, now_ns, &status) {
+            tracing::debug!("its status is not sent: {error}");
+        }
     }
 
     /// Nothing came until now.

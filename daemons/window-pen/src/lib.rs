@@ -24,5 +24,5 @@ pub mod xinput;
 
 pub use hand::Hand;
 pub use reading::{Axes, PenReading, Tool};
-pub use thread::PenThread;
+pub use thread::{PenThread, pens_of};
 pub use window::{DeskView, PenNews, PointerNews, Shared};

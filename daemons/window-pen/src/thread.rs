@@ -57,7 +57,32 @@ pub(crate) fn readable(
 /// The connection to the window system is gone.
 pub(crate) fn gone(why: &dyn std::fmt::Display) -> UserError {
     UserError::failure(format!("the window's pens are lost: {why}"))
-        .help("open the window again; until then the pen paints as a mouse")
+        .help("open the window again: until then the pen paints as a mouse")
+}
+
+/// The pens of the window of these handles, which must outlive them.
+///
+/// # Errors
+/// A [`UserError`] where its window system has none, with what to do.
+pub fn pens_of(
+    display: RawDisplayHandle,
+    window: RawWindowHandle,
+) -> Result<Box<dyn Source + Send>, UserError> {
+    Ok(match (display, window) {
+        (RawDisplayHandle::Wayland(display), RawWindowHandle::Wayland(window)) => {
+            let connection = unsafe_connection(display);
+            let surface = window.surface.as_ptr() as usize;
+            Box::new(WaylandPens::new(&connection, Some(surface))?)
+        }
+        (_, RawWindowHandle::Xcb(window)) => Box::new(XinputPens::new(window.window.get())?),
+        (_, RawWindowHandle::Xlib(window)) => {
+            Box::new(XinputPens::new(u32::try_from(window.window).unwrap_or(0))?)
+        }
+        _ => {
+            let what = "this window system's pens are not known";
+            return Err(UserError::failure(what).help("run it on Wayland or X11"));
+        }
+    })
 }
 
 /// The pens of a window, read until this is dropped.
@@ -68,33 +93,6 @@ pub struct PenThread {
 }
 
 impl PenThread {
-    /// Reads the pens of the window of these handles, which must outlive this.
-    ///
-    /// # Errors
-    /// A [`UserError`] where its window system has none, with what to do.
-    pub fn of_window(
-        display: RawDisplayHandle,
-        window: RawWindowHandle,
-        hand: Hand,
-    ) -> Result<Self, UserError> {
-        let source: Box<dyn Source + Send> = match (display, window) {
-            (RawDisplayHandle::Wayland(display), RawWindowHandle::Wayland(window)) => {
-                let connection = unsafe_connection(display);
-                let surface = window.surface.as_ptr() as usize;
-                Box::new(WaylandPens::new(&connection, Some(surface))?)
-            }
-            (_, RawWindowHandle::Xcb(window)) => Box::new(XinputPens::new(window.window.get())?),
-            (_, RawWindowHandle::Xlib(window)) => {
-                Box::new(XinputPens::new(u32::try_from(window.window).unwrap_or(0))?)
-            }
-            _ => {
-                let what = "this window system's pens are not known";
-                return Err(UserError::failure(what).help("run it on Wayland or X11"));
-            }
-        };
-        Self::of(source, hand)
-    }
-
     /// Reads the pens of a source.
     ///
     /// # Errors
@@ -111,11 +109,12 @@ impl PenThread {
             hand.shared().moves_no_pointer();
         }
         let run = move || {
-            if let Err(fault) = follow(&mut *source, &stopped, &mut hand) {
-                tracing::warn!("{}: {}", fault.what, fault.help.unwrap_or_default());
-            }
+            let fault = follow(&mut *source, &stopped, &mut hand).err();
             if let Err(error) = hand.end() {
                 tracing::debug!("the pen is not lifted: {error}");
+            }
+            if let Some(fault) = fault {
+                hand.fail(&fault);
             }
         };
         let thread = std::thread::Builder::new()

@@ -39,6 +39,8 @@ pub struct PenNews {
     pub is_near: bool,
     /// True while it touches the desk.
     pub paints: bool,
+    /// What it senses, bits of [`axes`](maulstick_types::stylus::axes); 0 before one was near.
+    pub senses: u32,
     /// What its pointer did since the last call, in order.
     pub pointer: Vec<PointerNews>,
     /// True if the window system moves no pointer with it: the window does by `pointer`.
@@ -105,7 +107,12 @@ impl Shared {
         self.lock().news.moves_no_pointer = true;
     }
 
-    /// A pen is there.
+    /// A pen that senses this is there.
+    pub(crate) fn senses(&self, senses: u32) {
+        self.lock().news.senses = senses;
+    }
+
+    /// Where it is, and whether it touches the desk.
     pub(crate) fn tell(&self, now_ns: u64, presence: Presence, paints: bool) {
         let news = &mut self.lock().news;
         let near = presence != Presence::Away;

@@ -152,6 +152,13 @@ impl Net {
                 bytes,
                 answers,
             } => {
+                if !self
+                    .servers
+                    .values()
+                    .any(|(served, _)| matches(served, &key))
+                {
+                    answers.push(Answer::Ended);
+                }
                 for (expression, inbox) in self.servers.values() {
                     if matches(expression, &key) {
                         let net = Arc::downgrade(this);

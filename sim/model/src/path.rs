@@ -17,8 +17,6 @@ const LEAP_M: f64 = 2.0;
 const DOUBLED_FROM: f64 = 1.5;
 /// Largest excess of a path over the long step across it, cells.
 const DETOUR: f64 = 0.25;
-/// Steps of the way down of a brush that is set down.
-const LANDING_STEPS: f64 = 4.0;
 /// Doublings of a step at most.
 const MOST_DOUBLINGS: u32 = 2;
 /// A motion short of a step by less than this share is one.
@@ -50,15 +48,15 @@ impl PathStepper {
         }
     }
 
-    /// A path of a brush that comes down to `at`, straight onto the surface: `step` is called for each step of the last of
-    /// its way. So a brush that is only set down prints, loads and is cleaned.
+    /// A path of a brush that comes down to `at`, straight onto the surface: `step` is called for each of the last
+    /// `steps` of its way. So a brush that is only set down prints, loads and is cleaned.
     pub fn landing(
         head: &Head,
-        at: Waypoint,
+        (at, steps): (Waypoint, u32),
         scale: Scale,
         mut step: impl FnMut(Sweep<'_>, u32),
     ) -> Self {
-        let way_m = LANDING_STEPS * scale.step_cells(head.is_fine()) * scale.cell_m * scale.zoom;
+        let way_m = f64::from(steps) * scale.step_cells(head.is_fine()) * scale.cell_m * scale.zoom;
         let mut path = Self::begin(head, at.raised(way_m), scale);
         path.advance(head, (at, 0), &mut step);
         path.end(head, step);

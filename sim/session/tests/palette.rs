@@ -148,7 +148,7 @@ fn a_brush_that_is_set_down_loads_prints_and_is_cleaned() {
     assert_eq!(hand.report().accounts_m3["brush"], 0.0);
 }
 
-/// A dip into the medium thins, more of them thin more, and no scrubbing in it washes the paint out.
+/// A dip into the medium thins, more of them thin more, and scrubbing in it makes a glaze and no clean brush.
 #[test]
 fn a_brush_soaks_medium_up_and_keeps_its_paint() {
     let mut hand = Hand::new();
@@ -170,8 +170,8 @@ fn a_brush_soaks_medium_up_and_keeps_its_paint() {
         hand.drag_through(medium);
     }
     let scrubbed = share(&mut hand);
-    assert!((0.5..0.65).contains(&scrubbed), "{scrubbed}");
-    assert!(paint(&mut hand) > 0.7 * whole);
+    assert!((0.75..0.86).contains(&scrubbed), "{scrubbed}");
+    assert!(paint(&mut hand) > 0.1 * whole);
 }
 
 #[test]
@@ -331,13 +331,13 @@ fn the_jar_of_medium_thins_what_the_brush_carries() {
         of("Thinner") / report.accounts_m3["brush"]
     };
     let (mut hands, mut shares) = (Vec::new(), Vec::new());
-    for dips in 0..3 {
+    for dips in [0, 3, 6] {
         let mut hand = Hand::new();
         let blue = hand.well(Some("Ultramarine Blue"));
         hand.drag_through(blue);
         let jar = hand.well(Some("Thinner"));
         for _ in 0..dips {
-            hand.drag_through(jar);
+            hand.stroke(jar, jar);
         }
         shares.push(share(&mut hand));
         hand.stroke([-0.012, 0.0], [0.012, 0.003]);

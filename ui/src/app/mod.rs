@@ -38,6 +38,7 @@ use crate::input::pen::WindowPen;
 use crate::input::pointer_path::PointerPath;
 use crate::input::presses;
 use crate::language;
+use crate::panels::device;
 use crate::render::device_loss::DeviceLoss;
 use crate::render::display_transform::DisplayTransform;
 use crate::render::frame_reports::Presenter;
@@ -263,6 +264,17 @@ impl App {
         }
     }
 
+    /// Tells once what a pen senses.
+    fn greet_pen(&mut self) {
+        let senses = self.pen.senses();
+        if senses != 0 && senses != self.preferences.pen_senses {
+            self.preferences.pen_senses = senses;
+            let list = device::senses(senses);
+            self.notifications
+                .note(tr!("Your pen paints. It senses {list}.", list));
+        }
+    }
+
     fn take_in(&mut self, now_ns: u64) {
         self.listener.take_in(now_ns, &mut self.rig);
         self.tracker.take_in(now_ns);
@@ -401,6 +413,7 @@ impl eframe::App for App {
         if let Err(error) = taken.and_then(|()| self.mouse.send(now_ns, &places, grip.pressure)) {
             tracing::warn!("the mouse: {error}");
         }
+        self.greet_pen();
         // After the mouse has sent its position: its brush is drawn there.
         self.take_in(now_ns);
         self.barrier.take_in(now_ns);

@@ -7,7 +7,7 @@ use maulstick_bus::{Bus, BusError};
 use maulstick_types::Origin;
 use maulstick_types::scene::Surface;
 use maulstick_types::wire::topics::Topics;
-use maulstick_window_pen::{DeskView, Hand, PenNews, PenThread, PointerNews, Shared};
+use maulstick_window_pen::{DeskView, Hand, PenNews, PenThread, PointerNews, Shared, pens_of};
 use raw_window_handle::{RawDisplayHandle, RawWindowHandle};
 
 use crate::input::navigation::is_panel;
@@ -83,14 +83,17 @@ impl WindowPen {
         display: RawDisplayHandle,
         window: RawWindowHandle,
     ) {
-        let Some(hand) = self.hand.take() else { return };
+        let Some(mut hand) = self.hand.take() else {
+            return;
+        };
         let context = context.clone();
         self.shared.on_news(move || context.request_repaint());
-        match PenThread::of_window(display, window, hand) {
-            Ok(thread) => self.thread = Some(thread),
-            Err(fault) => {
-                tracing::info!("{}: {}", fault.what, fault.help.unwrap_or_default());
-            }
+        match pens_of(display, window) {
+            Ok(source) => match PenThread::of(source, hand) {
+                Ok(thread) => self.thread = Some(thread),
+                Err(fault) => tracing::warn!("{}", fault.what),
+            },
+            Err(fault) => hand.fail(&fault),
         }
     }
 
@@ -120,6 +123,12 @@ impl WindowPen {
             })
         });
         self.shared.show(view, brush);
+    }
+
+    /// What the newest pen senses, bits of `axes`; 0 before one was near.
+    #[must_use]
+    pub(crate) fn senses(&self) -> u32 {
+        self.news.senses
     }
 
     /// True while the pointer is a pen's: on the desk it does nothing then.

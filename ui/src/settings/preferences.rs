@@ -45,6 +45,8 @@ pub struct Preferences {
     pub mirrored: bool,
     /// True once the painter has painted here: the first line of help is no longer needed.
     pub has_painted: bool,
+    /// What the pen over the window sensed that was told of last, bits of `axes`; 0 for none.
+    pub pen_senses: u32,
     /// Width and height of the window, points.
     pub size: [f32; 2],
     /// Factor on the size of texts and controls.
@@ -90,6 +92,7 @@ impl Default for Preferences {
             left_handed: false,
             mirrored: false,
             has_painted: false,
+            pen_senses: 0,
             size: [1280.0, 800.0],
             text_size: 1.0,
             theme: Theme::default(),

@@ -53,7 +53,7 @@ impl XinputPens {
         let (connection, screen) = x11rb::connect(None).map_err(|error| lost(&error))?;
         let old = || {
             UserError::failure("this X server tells nothing of pens (XInput 2.2)").help(
-                "the pen paints as a mouse; for its pressure give it to the rig with `maulstick devices`",
+                "the pen paints as a mouse: for its pressure give its tablet to the rig, `maulstick devices` says how",
             )
         };
         let version = connection

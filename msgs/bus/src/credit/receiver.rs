@@ -1,7 +1,7 @@
 //! The receiving end of a stream with credit.
 //!
-//! A live gap is given up after a while, for a painter does not wait; a replayed one never, for a
-//! painting with a hole is another painting.
+//! A live gap is given up after a while, for a painter does not wait, and at once where its sender answers for none; a
+//! replayed one never, for a painting with a hole is another painting.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -220,7 +220,7 @@ impl<M: Message> CreditReceiver<M> {
 
     /// Follows up on a stream's gap.
     fn chase(&mut self, bus: &dyn Bus, key: &StreamKey, now_ns: u64) -> Result<(), BusError> {
-        let answered = self.take_answers(key, now_ns);
+        let (answered, unserved) = self.take_answers(key, now_ns);
         let Some(stream) = self.streams.get_mut(key) else {
             return Ok(());
         };
@@ -233,7 +233,8 @@ impl<M: Message> CreditReceiver<M> {
         if waits && answered == 0 {
             return Ok(());
         }
-        if stream.askings >= PATIENCE && !stream.is_replayed() {
+        let patient = stream.askings < PATIENCE && !unserved;
+        if !patient && !stream.is_replayed() {
             self.counts.lost += stream.give_up(gap, &mut self.ordered);
             tracing::warn!(
                 "{}: messages {} to {} are lost",
@@ -246,21 +247,27 @@ impl<M: Message> CreditReceiver<M> {
         self.ask(bus, key, gap, now_ns)
     }
 
-    /// Takes in what came for a stream's gap; how many answers there were.
-    fn take_answers(&mut self, key: &StreamKey, now_ns: u64) -> usize {
+    /// Takes in what came for a stream's gap: how many answers there were, and whether the newest question ended at once
+    /// without any, for its sender answers none.
+    fn take_answers(&mut self, key: &StreamKey, now_ns: u64) -> (usize, bool) {
         let Some(stream) = self.streams.get(key) else {
-            return 0;
+            return (0, false);
         };
-        let mut answers = Vec::new();
+        let (mut answers, mut ended) = (Vec::new(), false);
         for pending in &stream.asked {
-            while let Some(Answer::Bytes(bytes)) = pending.try_recv() {
-                answers.push(bytes);
+            ended = false;
+            while let Some(answer) = pending.try_recv() {
+                match answer {
+                    Answer::Bytes(bytes) => answers.push(bytes),
+                    Answer::Ended => ended = true,
+                }
             }
         }
+        let unserved = ended && answers.is_empty() && now_ns < stream.asked_ns + RETRY_NS;
         for message in answers.iter().flat_map(|answer| split_messages(answer)) {
             self.take_in(&key.0, now_ns, message, Delivery::AskedFor);
         }
-        answers.len()
+        (answers.len(), unserved)
     }
 
     /// Asks a stream's sender for what is missing.

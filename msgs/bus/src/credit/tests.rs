@@ -158,6 +158,23 @@ fn a_live_gap_that_nobody_can_fill_is_given_up_and_counted() {
     assert_eq!(stream.receiver.counts().lost, 1);
 }
 
+/// A live stream goes on within three looks; one that is replayed waits, for a painting with a hole is another.
+#[test]
+fn a_device_that_answers_for_no_gap_is_not_waited_for() {
+    for (flags, expected) in [(Flags::NONE, vec![0, 2]), (Flags::REPLAY, vec![0])] {
+        let mut stream = stream();
+        for seq in [0, 2] {
+            stream.put("foreign", ORIGIN, flags, seq, 0);
+        }
+        for _ in 0..3 {
+            stream.receiver.poll(&stream.bus).expect("polled");
+            stream.net.advance(STEP_NS);
+        }
+        assert_eq!(stream.got(), expected, "{flags:?}");
+        assert_eq!(stream.receiver.counts().lost, expected.len() as u64 - 1);
+    }
+}
+
 #[test]
 fn two_devices_of_one_source_do_not_disturb_each_other() {
     let mut stream = stream();

@@ -229,37 +229,38 @@ impl BrushLoad {
         self.count_films();
     }
 
-    /// Soaks what the brush carries with a thinner, by a part of what it lacks to be a share of it; returns how much of it
-    /// that took.
-    pub fn soak(&mut self, thinner: usize, share: f64, part: f64) -> u64 {
-        let mut paint = [vec![0u64; self.texels], vec![0u64; self.texels]];
-        for (_, held) in self
-            .held
-            .iter()
-            .enumerate()
-            .filter(|(slot, _)| *slot != thinner)
-        {
-            for (sums, counts) in paint
-                .iter_mut()
-                .zip(held.iter().flat_map(|held| [&held.film, &held.inside]))
+    /// Soaks what the brush carries with a thinner, by a part of what it lacks to be a share of it. The thinner takes the
+    /// place of paint, which goes; returns how much of each paint that was.
+    pub fn soak(&mut self, thinner: usize, share: f64, part: f64) -> Counts {
+        let held = self.share(thinner);
+        let washed = ((share - held) * part / (1.0 - held)).clamp(0.0, 1.0);
+        let mut gone = [0; SLOTS];
+        if held >= 1.0 || washed <= 0.0 {
+            return gone;
+        }
+        let mut places = [vec![0u32; self.texels], vec![0u32; self.texels]];
+        let paints = self.held.iter_mut().enumerate();
+        for (slot, paint) in paints.filter(|(slot, _)| *slot != thinner) {
+            let Some(paint) = paint else { continue };
+            for (counts, places) in [&mut paint.film, &mut paint.inside]
+                .into_iter()
+                .zip(&mut places)
             {
-                sums.iter_mut()
-                    .zip(counts)
-                    .for_each(|(sum, count)| *sum += u64::from(*count));
+                for (count, place) in counts.iter_mut().zip(places) {
+                    let goes = (f64::from(*count) * washed) as u32;
+                    (*count, *place) = (*count - goes, *place + goes);
+                    gone[slot] += u64::from(goes);
+                }
             }
         }
-        let held = self.held_mut(thinner);
-        let mut taken = 0;
-        for (sums, counts) in paint.iter().zip([&mut held.film, &mut held.inside]) {
-            for (paint, count) in sums.iter().zip(counts) {
-                let wanted = *paint as f64 * share / (1.0 - share);
-                let lacks = ((wanted - f64::from(*count)) * part).max(0.0) as u32;
-                *count += lacks;
-                taken += u64::from(lacks);
-            }
+        let own = self.held_mut(thinner);
+        for (counts, places) in [&mut own.film, &mut own.inside].into_iter().zip(&places) {
+            counts
+                .iter_mut()
+                .zip(places)
+                .for_each(|(count, place)| *count += place);
         }
-        self.count_films();
-        taken
+        gone
     }
 
     /// Share of a slot in all that it carries; 0 of a clean brush.

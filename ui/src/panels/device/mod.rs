@@ -218,7 +218,9 @@ fn what(info: &StylusInfo) -> String {
 }
 
 /// Sensors of a device, in words.
-fn senses(bits: u32) -> String {
+/// The axes of a device, in words.
+#[must_use]
+pub(crate) fn senses(bits: u32) -> String {
     let all = [
         (axes::POSITION, tr!("position")),
         (axes::ORIENTATION, tr!("orientation")),

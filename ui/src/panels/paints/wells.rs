@@ -1,8 +1,8 @@
 //! Wells of the palette from the top: remove, replace, reorder.
 
 use eframe::egui::{
-    Align, Button, Color32, Key, Layout, Rect, Response, Role, Sense, TextEdit, Ui, WidgetInfo,
-    vec2,
+    Align, Button, Color32, Key, Layout, Rect, Response, Role, Sense, Stroke, TextEdit, Ui,
+    WidgetInfo, vec2,
 };
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_rig::UserError;
@@ -17,6 +17,8 @@ use crate::widgets::swatches::{Swatches, draw};
 
 /// Names that are proposed at most.
 const PROPOSED: usize = 4;
+/// Width and height of a button with a sign, points.
+const SIGN: f32 = 20.0;
 
 /// The rows.
 #[derive(Debug, Default)]
@@ -34,6 +36,40 @@ enum Deed {
     Down,
     Remove,
     Drop(String),
+}
+
+/// Sign on a button: the window's font has none of them.
+#[derive(Clone, Copy)]
+enum Sign {
+    Up,
+    Down,
+    Cross,
+}
+
+impl Sign {
+    fn draw(self, ui: &Ui, on: &Response) {
+        let colour = match on.enabled() {
+            true => ui.style().interact(on).text_color(),
+            false => ui.visuals().weak_text_color(),
+        };
+        let at = |x: f32, y: f32| on.rect.center() + vec2(x, y);
+        let line = |from, to| {
+            ui.painter()
+                .line_segment([from, to], Stroke::new(1.3, colour));
+        };
+        let way = match self {
+            Self::Up => -1.0,
+            Self::Down => 1.0,
+            Self::Cross => {
+                line(at(-3.5, -3.5), at(3.5, 3.5));
+                line(at(-3.5, 3.5), at(3.5, -3.5));
+                return;
+            }
+        };
+        line(at(0.0, -4.5 * way), at(0.0, 4.5 * way));
+        line(at(-3.5, way), at(0.0, 4.5 * way));
+        line(at(3.5, way), at(0.0, 4.5 * way));
+    }
 }
 
 impl WellRows {
@@ -175,17 +211,25 @@ fn well(
         let (area, _) = ui.allocate_exact_size(size, Sense::hover());
         draw(ui, Rect::from_center_size(area.center(), size), [colour; 2]);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let mut tool = |ui: &mut Ui, sign: &str, enabled: bool, said: String, asked: Deed| {
-                let button = ui.add_enabled(enabled, Button::new(sign).small());
+            let mut tool = |ui: &mut Ui, sign: Sign, enabled: bool, said: String, asked: Deed| {
+                let blank = Button::new("").min_size(vec2(SIGN, SIGN)).small();
+                let button = ui.add_enabled(enabled, blank);
+                sign.draw(ui, &button);
                 button.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, &said));
                 if button.on_hover_text(&said).clicked() {
                     deed = Some(asked);
                 }
             };
             let remove = tr!("Remove from the palette: {name}", name);
-            tool(ui, "×", true, remove, Deed::Remove);
-            tool(ui, "↓", !is_last, tr!("Down: {name}", name), Deed::Down);
-            tool(ui, "↑", place > 0, tr!("Up: {name}", name), Deed::Up);
+            tool(ui, Sign::Cross, true, remove, Deed::Remove);
+            tool(
+                ui,
+                Sign::Down,
+                !is_last,
+                tr!("Down: {name}", name),
+                Deed::Down,
+            );
+            tool(ui, Sign::Up, place > 0, tr!("Up: {name}", name), Deed::Up);
             ui.with_layout(Layout::top_down_justified(Align::Min), |ui| {
                 let button = Button::selectable(is_chosen, &name).truncate();
                 let shown: Response = ui.add(button);

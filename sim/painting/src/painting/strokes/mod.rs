@@ -19,6 +19,9 @@ use maulstick_types::scene::CANVAS;
 use super::Painting;
 use backend::Deferral;
 
+/// Steps in which a brush dips into the heaps of a palette: they are as high.
+const DIP: u32 = 4;
+
 impl Painting {
     /// Paints what a brush did in its epoch: strokes are numbered from 1 in each.
     ///
@@ -79,11 +82,14 @@ impl Painting {
         let waypoint = Waypoint::of(solve, scale, self.seen_fullness(brush, on, &traits));
         let head = Arc::clone(&self.brushes[brush].head);
         let Some((_, mut path)) = running else {
-            let path = match lands {
-                true => PathStepper::landing(&head, waypoint, scale, |sweep, doublings| {
+            let path = if lands {
+                let dips = !self.scene.surfaces[on].wells.is_empty();
+                let landed = (waypoint, if dips { DIP } else { 1 });
+                PathStepper::landing(&head, landed, scale, |sweep, doublings| {
                     self.step((brush, on), scale, (sweep, doublings));
-                }),
-                false => PathStepper::begin(&head, waypoint, scale),
+                })
+            } else {
+                PathStepper::begin(&head, waypoint, scale)
             };
             self.brushes[brush].path = Some((on, path));
             return Ok(());

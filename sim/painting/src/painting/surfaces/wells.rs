@@ -25,10 +25,10 @@ use crate::painting::surfaces::well_moves::WellMoves;
 
 /// Wells may reach beyond the edge of their surface by what rounding makes of it, m.
 const EDGE_M: f64 = 1e-6;
-/// A brush in a jar of medium soaks it up until it is this share of what it carries; more would drip off.
-const SOAKED: f64 = 0.6;
+/// A brush in a jar of medium soaks it up until it is this share of what it carries.
+const SOAKED: f64 = 0.85;
 /// The part of what it lacks to that, soaked up in a step.
-const SOAKS: f64 = 0.06;
+const SOAKS: f64 = 0.1;
 /// A strip is down within this of the surface, cells.
 const DIPS: f32 = 1.0;
 
@@ -160,7 +160,7 @@ impl Painting {
                         continue;
                     };
                     let cells = cells_within(window, &well, cell_m, (from, to));
-                    let mut thick = thicknesses(window, &cells, heap.as_ref());
+                    let thick = thicknesses(window, &cells, heap.as_ref());
                     let mut shares = [0.0; SLOTS];
                     for (slot, share) in &slots {
                         shares[*slot] += share;
@@ -169,11 +169,15 @@ impl Painting {
                         && is_in(head, &well, cell_m)
                     {
                         let load = Arc::make_mut(&mut brush.load);
+                        let washed = load.soak(*thinner, SOAKED, SOAKS);
                         let mut soaked = [0; SLOTS];
-                        soaked[*thinner] = load.soak(*thinner, SOAKED, SOAKS);
+                        soaked[*thinner] = washed.iter().sum();
                         ledger.from_tube(&soaked);
-                        if (SOAKED..1.0).contains(&load.share(*thinner)) {
-                            thick.fill(0.0);
+                        ledger.to_cleaner(&washed);
+                        let (counts, total) = (load.counts(), load.total());
+                        if counts[*thinner] < total {
+                            // What it meets is what it carries: it loses no more than that.
+                            shares = counts.map(|count| count as f64 / total as f64);
                         }
                     }
                     renew(window, &cells, (&shares, &thick), ledger);
