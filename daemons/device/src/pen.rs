@@ -28,16 +28,16 @@ pub enum End {
     Eraser,
 }
 
-/// Reading of a pen at a time, in the frame of its tablet: x right, y up (away from the hand), z out of it, the origin at
-/// the lower left corner of its active area. The tablet may be a window, measured in pixels from its upper left corner.
+/// Reading of a pen at a time, in the tablet's frame: origin at the lower left corner of its active area, x right, y up
+/// (away from the hand), z out of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
     /// Presence.
     pub presence: Presence,
     /// The end that is down.
     pub end: End,
-    /// The point under it: m of a tablet, pixels of a window.
-    pub point: [f64; 2],
+    /// The point under it, m.
+    pub point_m: [f64; 2],
     /// Hover height, m; 0 if the tablet does not say, and while it touches.
     pub height_m: f64,
     /// 0 to 1; while it touches at least [`LIGHTEST`], else 0.
@@ -56,7 +56,7 @@ impl Reading {
     pub const AWAY: Self = Self {
         presence: Presence::Away,
         end: End::Tip,
-        point: [0.0; 2],
+        point_m: [0.0; 2],
         height_m: 0.0,
         pressure: 0.0,
         tilt_rad: None,

@@ -21,7 +21,7 @@ pub const SPACING_NS: u64 = 500_000;
 const LONGEST_NS: u64 = 60_000_000_000;
 
 /// What becomes of a reading of a pen on the desk.
-pub trait OnDesk {
+pub trait DeskFit {
     /// Its sample.
     fn sample(&mut self, reading: &Reading) -> StylusSample;
 
@@ -57,9 +57,9 @@ impl PenStream {
         }
     }
 
-    /// Says whether the tablet tells when its pen is away.
-    pub fn tells_range(&mut self, tells: bool) {
-        self.tells_range = tells;
+    /// Whether the tablet reports that its pen is away.
+    pub fn set_reports_range(&mut self, reports: bool) {
+        self.tells_range = reports;
     }
 
     /// The newest sample that was sent.
@@ -82,7 +82,7 @@ impl PenStream {
         &mut self,
         reading: Reading,
         (event_ns, now_ns): (u64, u64),
-        desk: &mut dyn OnDesk,
+        desk: &mut dyn DeskFit,
     ) -> Result<(), BusError> {
         // A reading at the same time needs no fill-in.
         self.silent(event_ns.saturating_sub(1), now_ns, desk)?;
@@ -100,7 +100,7 @@ impl PenStream {
         &mut self,
         until_ns: u64,
         now_ns: u64,
-        desk: &mut dyn OnDesk,
+        desk: &mut dyn DeskFit,
     ) -> Result<(), BusError> {
         if self.newest.in_range && until_ns.saturating_sub(self.event_ns) > LONGEST_NS {
             self.event_ns = until_ns;
@@ -131,7 +131,7 @@ impl PenStream {
         &mut self,
         event_ns: u64,
         now_ns: u64,
-        desk: &mut dyn OnDesk,
+        desk: &mut dyn DeskFit,
     ) -> Result<(), BusError> {
         let mut readings = Vec::with_capacity(2);
         self.pen.leave(&mut |told| readings.push(told));
@@ -157,7 +157,7 @@ impl PenStream {
         &mut self,
         readings: &[Reading],
         at: (u64, u64),
-        desk: &mut dyn OnDesk,
+        desk: &mut dyn DeskFit,
     ) -> Result<(), BusError> {
         for reading in readings {
             let sample = desk.sample(reading);
@@ -170,7 +170,7 @@ impl PenStream {
         &mut self,
         sample: StylusSample,
         (event_ns, now_ns): (u64, u64),
-        desk: &mut dyn OnDesk,
+        desk: &mut dyn DeskFit,
     ) -> Result<(), BusError> {
         self.event_ns = event_ns.max(self.event_ns + SPACING_NS);
         let stamp = Stamp {

@@ -130,7 +130,7 @@ fn hand_reading(reading: &Reading, time_s: f64) -> HandReading {
         Presence::Hovering => Touch::Up,
         Presence::Touching => Touch::Down,
     };
-    let [x, y] = reading.point;
+    let [x, y] = reading.point_m;
     HandReading::Sample(HandSample {
         point: DVec3::new(x, y, 0.0),
         handle: Some(DVec3::Z),

@@ -6,7 +6,7 @@ use maulstick_bus::typed::Sender;
 use maulstick_bus::{Bus, BusError, CreditSender, Qos, Wake};
 use maulstick_device::actions::{Actions, Actor};
 use maulstick_device::pen::Reading;
-use maulstick_device::pen_stream::{OnDesk, PenStream};
+use maulstick_device::pen_stream::{DeskFit, PenStream};
 use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::Origin;
@@ -34,7 +34,7 @@ struct Desk {
     actor: Actor,
 }
 
-impl OnDesk for Desk {
+impl DeskFit for Desk {
     fn sample(&mut self, reading: &Reading) -> StylusSample {
         let tablet = self.tablet.as_ref();
         tablet.map_or_else(StylusSample::away, |tablet| tablet.sample(reading))
@@ -94,7 +94,7 @@ impl Stylus {
             max_stiffness_n_m: 0.0,
             workspace_m: tablet.workspace_m(),
         };
-        self.pen.tells_range(decoder.tells_range());
+        self.pen.set_reports_range(decoder.tells_range());
         (self.decoder, self.desk.tablet) = (Some(decoder), Some(tablet));
         self.info.send(now_ns, now_ns, &told)
     }

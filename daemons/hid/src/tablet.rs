@@ -92,7 +92,7 @@ impl Tablet {
     /// The sample of a reading.
     #[must_use]
     pub fn sample(&self, reading: &Reading) -> StylusSample {
-        let [x, y] = self.place(reading.point);
+        let [x, y] = self.place(reading.point_m);
         let eraser = match reading.end {
             End::Tip => 0,
             End::Eraser => switch::ERASER,

@@ -2,7 +2,7 @@
 
 /// Time between two readings that is believed, ms: after a longer one another clock may have begun.
 const BELIEVED_MS: u32 = 3_600_000;
-/// By so much of the time that passes the delay may be found longer: clocks drift.
+/// Largest drift of the two clocks, s per s.
 const DRIFT: f64 = 1e-4;
 
 /// Finds the rig's time of events that have the window system's, in whole milliseconds from any beginning.
@@ -17,7 +17,7 @@ pub struct WindowClock {
 #[derive(Clone, Copy, Debug)]
 struct Heard {
     time_ms: u32,
-    /// Its time on the rig's clock, ns, and when that was found.
+    /// Its time on the rig's clock, ns.
     event_ns: u64,
 }
 

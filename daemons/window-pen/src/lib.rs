@@ -8,21 +8,21 @@
 //! | --- | --- |
 //! | [`reading`] | what a window system says of a pen |
 //! | [`clock`] | times of a window system on the rig's clock |
-//! | [`hand`] | the pen on the desk: touches, samples, what the window hears of it |
+//! | [`stylus`] | the pen on the desk: touches, samples, what the window hears of it |
 //! | [`window`] | the window as a pen finds it, and the pen as the window finds it |
 //! | [`wayland`] | tablet-v2 of Wayland |
 //! | [`xinput`] | XInput 2 of X11 |
 //! | [`thread`](mod@thread) | the thread that reads |
 
 pub mod clock;
-pub mod hand;
 pub mod reading;
+pub mod stylus;
 pub mod thread;
 pub mod wayland;
 pub mod window;
 pub mod xinput;
 
-pub use hand::Hand;
 pub use reading::{Axes, PenReading, Tool};
+pub use stylus::WindowStylus;
 pub use thread::{PenThread, pens_of};
-pub use window::{DeskView, PenNews, PointerNews, Shared};
+pub use window::{DeskView, PenLink, PenState, PointerEvent};

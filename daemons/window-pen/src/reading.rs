@@ -35,7 +35,7 @@ impl Axes {
     }
 }
 
-/// One reading of a tool. Its point is in pixels of the window, y **down** from the upper left corner.
+/// One reading of a tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PenReading {
     /// The tool.
@@ -44,6 +44,8 @@ pub struct PenReading {
     pub axes: Axes,
     /// Time of the window system, ms, from any beginning; it wraps.
     pub time_ms: u32,
-    /// The pen then.
+    /// The point under it: pixels of the window, from its upper left corner, y **down**.
+    pub point_px: [f64; 2],
+    /// The pen then; its `point_m` is found by the window.
     pub reading: Reading,
 }

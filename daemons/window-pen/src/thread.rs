@@ -11,9 +11,9 @@ use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::eventfd::{EfdFlags, EventFd};
 use raw_window_handle::{RawDisplayHandle, RawWindowHandle};
 
-use crate::hand::Hand;
 use crate::reading::PenReading;
-use crate::wayland::{WaylandPens, unsafe_connection};
+use crate::stylus::WindowStylus;
+use crate::wayland::{WaylandPens, foreign_connection};
 use crate::xinput::XinputPens;
 
 /// Pens of a window system.
@@ -57,20 +57,28 @@ pub(crate) fn readable(
 /// The connection to the window system is gone.
 pub(crate) fn gone(why: &dyn std::fmt::Display) -> UserError {
     UserError::failure(format!("the window's pens are lost: {why}"))
-        .help("open the window again: until then the pen paints as a mouse")
+        .help("close the window and open it again")
 }
 
-/// The pens of the window of these handles, which must outlive them.
+/// The pens of the window of these handles.
 ///
 /// # Errors
 /// A [`UserError`] where its window system has none, with what to do.
-pub fn pens_of(
+///
+/// # Safety
+/// The handles are those of a living window, which outlives the pens.
+#[expect(
+    unsafe_code,
+    reason = "a window's library hands out its connection as a pointer"
+)]
+pub unsafe fn pens_of(
     display: RawDisplayHandle,
     window: RawWindowHandle,
 ) -> Result<Box<dyn Source + Send>, UserError> {
     Ok(match (display, window) {
         (RawDisplayHandle::Wayland(display), RawWindowHandle::Wayland(window)) => {
-            let connection = unsafe_connection(display);
+            // SAFETY: as the caller promises.
+            let connection = unsafe { foreign_connection(display) };
             let surface = window.surface.as_ptr() as usize;
             Box::new(WaylandPens::new(&connection, Some(surface))?)
         }
@@ -97,7 +105,10 @@ impl PenThread {
     ///
     /// # Errors
     /// A [`UserError`] where the system refuses a thread.
-    pub fn of(mut source: Box<dyn Source + Send>, mut hand: Hand) -> Result<Self, UserError> {
+    pub fn of(
+        mut source: Box<dyn Source + Send>,
+        mut hand: WindowStylus,
+    ) -> Result<Self, UserError> {
         let refused = |error: &dyn std::fmt::Display| {
             UserError::failure(format!("the window's pens cannot be read: {error}"))
         };
@@ -106,7 +117,7 @@ impl PenThread {
         let stop = Arc::new(stop);
         let stopped = Arc::clone(&stop);
         if !source.moves_pointer() {
-            hand.shared().moves_no_pointer();
+            hand.link().set_moves_no_pointer();
         }
         let run = move || {
             let fault = follow(&mut *source, &stopped, &mut hand).err();
@@ -129,7 +140,11 @@ impl PenThread {
 }
 
 /// Reads and sends until `stop` is told.
-fn follow(source: &mut dyn Source, stop: &EventFd, hand: &mut Hand) -> Result<(), UserError> {
+fn follow(
+    source: &mut dyn Source,
+    stop: &EventFd,
+    hand: &mut WindowStylus,
+) -> Result<(), UserError> {
     let mut readings = Vec::new();
     while stop.read().is_err() {
         let timeout = hand.due_in_ns().map(Duration::from_nanos);

@@ -3,6 +3,7 @@
 //! A compositor that speaks it to a window moves no pointer there with a pen: the window does.
 
 use std::collections::BTreeMap;
+use std::io::ErrorKind;
 use std::os::fd::BorrowedFd;
 use std::time::Duration;
 
@@ -35,13 +36,16 @@ const PRESSURE: f64 = 65_535.0;
 const BUTTONS: [u32; 3] = [0x14b, 0x14c, 0x149];
 
 /// The connection of a window.
+///
+/// # Safety
+/// The display is that of a living window, which outlives the connection.
 #[must_use]
 #[expect(
     unsafe_code,
     reason = "the window's library hands out its connection as a pointer"
 )]
-pub(crate) fn unsafe_connection(display: WaylandDisplayHandle) -> Connection {
-    // SAFETY: the display of a living window is connected, and `PenThread` is dropped before the window.
+pub(crate) unsafe fn foreign_connection(display: WaylandDisplayHandle) -> Connection {
+    // SAFETY: as the caller promises.
     let backend = unsafe { Backend::from_foreign_display(display.display.as_ptr().cast()) };
     Connection::from_backend(backend)
 }
@@ -54,14 +58,14 @@ struct KnownTool {
     eraser: bool,
     is_near: bool,
     is_down: bool,
-    point: [f64; 2],
+    point_px: [f64; 2],
     pressure: f64,
     tilt_rad: [f64; 2],
     twist_rad: f64,
     switches: u32,
-    /// It was near since the last frame of events.
-    tells: bool,
-    /// Time of that, ms.
+    /// It was near at the last frame of events, and has left since.
+    has_left: bool,
+    /// Time of that frame, ms.
     time_ms: u32,
 }
 
@@ -71,6 +75,7 @@ impl KnownTool {
             tool: self.tool,
             axes: self.axes,
             time_ms: self.time_ms,
+            point_px: self.point_px,
             reading: self.reading(),
         }
     }
@@ -86,7 +91,7 @@ impl KnownTool {
                 true => End::Eraser,
                 false => End::Tip,
             },
-            point: self.point,
+            point_m: [0.0; 2],
             height_m: 0.0,
             pressure: match self.axes.pressure {
                 true => self.pressure,
@@ -105,8 +110,8 @@ struct Listener {
     /// The window's surface; others' are not its own.
     surface: Option<usize>,
     tools: BTreeMap<u32, KnownTool>,
-    /// Tools met so far.
-    met: u64,
+    /// Tools seen so far.
+    tools_seen: u64,
     readings: Vec<PenReading>,
 }
 
@@ -144,7 +149,7 @@ impl WaylandPens {
             };
             seats.map(bind).collect()
         });
-        connection.flush().map_err(|error| gone(&error))?;
+        flush(connection)?;
         Ok(Self {
             connection: connection.clone(),
             queue,
@@ -165,6 +170,14 @@ impl std::fmt::Debug for WaylandPens {
     }
 }
 
+/// Sends what waits; what the compositor does not take yet is sent the next time.
+fn flush(connection: &Connection) -> Result<(), UserError> {
+    match connection.flush() {
+        Err(WaylandError::Io(error)) if error.kind() == ErrorKind::WouldBlock => Ok(()),
+        flushed => flushed.map_err(|error| gone(&error)),
+    }
+}
+
 impl Source for WaylandPens {
     fn wait(
         &mut self,
@@ -172,15 +185,14 @@ impl Source for WaylandPens {
         timeout: Option<Duration>,
         readings: &mut Vec<PenReading>,
     ) -> Result<(), UserError> {
-        self.connection.flush().map_err(|error| gone(&error))?;
+        flush(&self.connection)?;
         // Where events wait already they are told first.
         if let Some(guard) = self.queue.prepare_read() {
             match readable(guard.connection_fd(), stop, timeout)? {
                 true => match guard.read() {
                     Ok(_) => {}
                     // The window's own thread has read them.
-                    Err(WaylandError::Io(error))
-                        if error.kind() == std::io::ErrorKind::WouldBlock => {}
+                    Err(WaylandError::Io(error)) if error.kind() == ErrorKind::WouldBlock => {}
                     Err(error) => return Err(gone(&error)),
                 },
                 false => drop(guard),
@@ -220,11 +232,11 @@ impl Dispatch<ZwpTabletToolV2, ()> for Listener {
             Event::ProximityIn { surface, .. } => listener.is_own(&surface.id()),
             _ => false,
         };
-        let met = &mut listener.met;
+        let tools_seen = &mut listener.tools_seen;
         let tool = listener.tools.entry(id).or_insert_with(|| {
-            *met += 1;
+            *tools_seen += 1;
             KnownTool {
-                tool: Tool(*met),
+                tool: Tool(*tools_seen),
                 axes: Axes {
                     range: true,
                     ..Axes::default()
@@ -254,16 +266,18 @@ impl Dispatch<ZwpTabletToolV2, ()> for Listener {
             }
             Event::ProximityIn { serial, .. } => {
                 tool.is_near = near;
-                // The window draws the brush itself.
-                proxy.set_cursor(serial, None, 0, 0);
+                if near {
+                    // The window draws brush and pointer itself.
+                    proxy.set_cursor(serial, None, 0, 0);
+                }
             }
             Event::ProximityOut => {
-                tool.tells = tool.is_near;
+                tool.has_left = tool.is_near;
                 (tool.is_near, tool.is_down) = (false, false);
             }
             Event::Down { .. } => tool.is_down = true,
             Event::Up => tool.is_down = false,
-            Event::Motion { x, y } => tool.point = [x, y],
+            Event::Motion { x, y } => tool.point_px = [x, y],
             Event::Pressure { pressure } => tool.pressure = f64::from(pressure) / PRESSURE,
             Event::Tilt { tilt_x, tilt_y } => {
                 // Theirs leans toward the hand with y.
@@ -282,12 +296,13 @@ impl Dispatch<ZwpTabletToolV2, ()> for Listener {
             }
             Event::Frame { time } => {
                 tool.time_ms = time;
-                if std::mem::take(&mut tool.tells) || tool.is_near {
+                if std::mem::take(&mut tool.has_left) || tool.is_near {
                     listener.readings.push(tool.read());
                 }
             }
             Event::Removed => {
-                if std::mem::take(&mut tool.is_near) {
+                let was_near = std::mem::take(&mut tool.is_near);
+                if std::mem::take(&mut tool.has_left) || was_near {
                     listener.readings.push(tool.read());
                 }
                 listener.tools.remove(&id);

@@ -4,11 +4,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use maulstick_device::pen::Presence;
 
-/// Pointer events that wait for the window at most: one that is not drawn takes none.
-const WAITING: usize = 4096;
-
 /// The desk as a window shows it; points are the window's pixels, y down from its upper left corner.
-pub trait DeskView: Send {
+pub trait DeskView: Send + Sync {
     /// True where the desk lies open: no panel, no control is there.
     fn is_desk(&self, point: [f64; 2]) -> bool;
 
@@ -21,7 +18,7 @@ pub trait DeskView: Send {
 
 /// What happened with a pen, for a window whose system moves no pointer with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PointerNews {
+pub enum PointerEvent {
     /// It is there, pixels.
     Moved([f64; 2]),
     /// It was pressed onto a control, or lifted from it.
@@ -32,40 +29,38 @@ pub enum PointerNews {
 
 /// The pen as a window finds it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct PenNews {
+pub struct PenState {
     /// When it was last near, rig clock, ns; 0 for never.
     pub near_ns: u64,
     /// True while it is near.
     pub is_near: bool,
-    /// True while it touches the desk.
-    pub paints: bool,
     /// What it senses, bits of [`axes`](maulstick_types::stylus::axes); 0 before one was near.
     pub senses: u32,
     /// What its pointer did since the last call, in order.
-    pub pointer: Vec<PointerNews>,
+    pub pointer: Vec<PointerEvent>,
     /// True if the window system moves no pointer with it: the window does by `pointer`.
     pub moves_no_pointer: bool,
 }
 
-/// What window and pen know of each other.
+/// The link between a window and its pens.
 #[derive(Clone, Default)]
-pub struct Shared(Arc<Mutex<Known>>);
+pub struct PenLink(Arc<Mutex<LinkState>>);
 
 #[derive(Default)]
-struct Known {
-    view: Option<Box<dyn DeskView>>,
+struct LinkState {
+    view: Option<Arc<dyn DeskView>>,
     brush: String,
-    news: PenNews,
-    on_news: Option<Box<dyn Fn() + Send>>,
+    state: PenState,
+    wake: Option<Arc<dyn Fn() + Send + Sync>>,
 }
 
-impl Shared {
-    fn lock(&self) -> MutexGuard<'_, Known> {
+impl PenLink {
+    fn lock(&self) -> MutexGuard<'_, LinkState> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The window shows the desk so, from now on; `brush` is in the hand.
-    pub fn show(&self, view: Option<Box<dyn DeskView>>, brush: &str) {
+    /// Sets the view and the brush in the hand.
+    pub fn show(&self, view: Option<Arc<dyn DeskView>>, brush: &str) {
         let mut known = self.lock();
         known.view = view;
         if known.brush != brush {
@@ -73,27 +68,27 @@ impl Shared {
         }
     }
 
-    /// Calls `ring` when a pointer that only the window moves has moved.
-    pub fn on_news(&self, ring: impl Fn() + Send + 'static) {
-        self.lock().on_news = Some(Box::new(ring));
+    /// Calls `wake` when a pointer that only the window moves has moved.
+    pub fn on_pointer(&self, wake: impl Fn() + Send + Sync + 'static) {
+        self.lock().wake = Some(Arc::new(wake));
     }
 
     /// The pen since the last call.
     #[must_use]
-    pub fn news(&self) -> PenNews {
+    pub fn state(&self) -> PenState {
         let mut known = self.lock();
-        let pointer = std::mem::take(&mut known.news.pointer);
-        PenNews {
+        let pointer = std::mem::take(&mut known.state.pointer);
+        PenState {
             pointer,
-            ..known.news.clone()
+            ..known.state.clone()
         }
     }
 
     /// What the desk is at a point: its place, m, whether it is mirrored, and whether it lies open there; `None` while no
     /// desk is shown.
     pub(crate) fn desk(&self, point: [f64; 2]) -> Option<([f64; 3], bool, bool)> {
-        let known = self.lock();
-        let view = known.view.as_ref()?;
+        // The view asks the window, whose lock is not waited for with this one.
+        let view = Arc::clone(self.lock().view.as_ref()?);
         Some((view.to_desk(point), view.is_mirrored(), view.is_desk(point)))
     }
 
@@ -103,47 +98,47 @@ impl Shared {
     }
 
     /// The window system moves no pointer with a pen.
-    pub(crate) fn moves_no_pointer(&self) {
-        self.lock().news.moves_no_pointer = true;
+    pub fn set_moves_no_pointer(&self) {
+        self.lock().state.moves_no_pointer = true;
     }
 
     /// A pen that senses this is there.
     pub(crate) fn senses(&self, senses: u32) {
-        self.lock().news.senses = senses;
+        self.lock().state.senses = senses;
     }
 
-    /// Where it is, and whether it touches the desk.
-    pub(crate) fn tell(&self, now_ns: u64, presence: Presence, paints: bool) {
-        let news = &mut self.lock().news;
+    /// It is near, or away.
+    pub(crate) fn tell(&self, now_ns: u64, presence: Presence) {
+        let state = &mut self.lock().state;
         let near = presence != Presence::Away;
-        if near || news.is_near {
-            news.near_ns = now_ns;
+        if near || state.is_near {
+            state.near_ns = now_ns;
         }
-        (news.is_near, news.paints) = (near, paints);
+        state.is_near = near;
     }
 
-    /// Its pointer did so.
-    pub(crate) fn point(&self, what: PointerNews) {
-        let known = &mut *self.lock();
-        let pointer = &mut known.news.pointer;
-        if let (PointerNews::Moved(_), Some(PointerNews::Moved(_))) = (what, pointer.last()) {
+    /// Its pointer did so, where only the window moves it.
+    pub(crate) fn point(&self, what: PointerEvent) {
+        let mut known = self.lock();
+        if !known.state.moves_no_pointer {
+            return;
+        }
+        let pointer = &mut known.state.pointer;
+        if let (PointerEvent::Moved(_), Some(PointerEvent::Moved(_))) = (what, pointer.last()) {
             pointer.pop();
         }
-        if pointer.len() < WAITING {
-            pointer.push(what);
-        }
-        if let Some(ring) = known
-            .on_news
-            .as_ref()
-            .filter(|_| known.news.moves_no_pointer)
-        {
-            ring();
+        // Moves are merged: only presses add to it.
+        pointer.push(what);
+        let wake = known.wake.clone();
+        drop(known);
+        if let Some(wake) = wake {
+            wake();
         }
     }
 }
 
-impl std::fmt::Debug for Shared {
+impl std::fmt::Debug for PenLink {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Shared").finish_non_exhaustive()
+        f.debug_struct("PenLink").finish_non_exhaustive()
     }
 }

@@ -48,8 +48,8 @@ impl PathStepper {
         }
     }
 
-    /// A path of a brush that comes down to `at`, straight onto the surface: `step` is called for each of the last
-    /// `steps` of its way. So a brush that is only set down prints, loads and is cleaned.
+    /// Path of a brush that is lowered onto `at`; `step` is called for its last `steps` steps down. So a brush that is
+    /// only set down prints, loads and is cleaned.
     pub fn landing(
         head: &Head,
         (at, steps): (Waypoint, u32),

@@ -264,11 +264,11 @@ impl App {
         }
     }
 
-    /// Tells once what a pen senses.
+    /// Tells once what pens sense.
     fn greet_pen(&mut self) {
         let senses = self.pen.senses();
-        if senses != 0 && senses != self.preferences.pen_senses {
-            self.preferences.pen_senses = senses;
+        if senses & !self.preferences.pen_senses != 0 {
+            self.preferences.pen_senses |= senses;
             let list = device::senses(senses);
             self.notifications
                 .note(tr!("Your pen paints. It senses {list}.", list));
@@ -449,10 +449,12 @@ impl eframe::App for App {
             if self.preferences.mirrored {
                 self.view = self.view.map(View::mirrored);
             }
-            let scene = self.rig.scene.as_ref();
-            let surfaces = scene.map_or(&[][..], |scene| &scene.surfaces);
+            let surfaces = self.rig.scene.as_ref().map(|scene| &scene.surfaces[..]);
+            let shown = self.view.as_ref().zip(surfaces);
             let brush = self.rig.brush_name();
-            self.pen.show(ui.ctx(), self.view.as_ref(), surfaces, brush);
+            self.pen
+                .show(ui.ctx(), shown, brush, &self.preferences.keys);
+            self.pen.draw(ui.ctx());
             let Some(view) = self.view else {
                 ui.centered_and_justified(|ui| ui.label(tr!("waiting for the paint …")));
                 return;

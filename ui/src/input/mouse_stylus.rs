@@ -34,7 +34,7 @@ pub(crate) struct Mouse {
     others: Receiver<StylusSample>,
     info: Sender<StylusInfo>,
     told: StylusInfo,
-    /// Mouse and pen of this window.
+    /// Sources of this window's mouse and pen on the bus.
     own: [u32; 2],
     silent_until_ns: u64,
     sent_ns: u64,

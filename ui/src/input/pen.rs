@@ -2,15 +2,23 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{Context, Event, PointerButton, Pos2, RawInput, pos2};
+use eframe::egui::{
+    Color32, Context, Event, Id, LayerId, Order, PointerButton, Pos2, RawInput, Stroke, TouchPhase,
+    pos2,
+};
 use maulstick_bus::{Bus, BusError};
 use maulstick_types::Origin;
 use maulstick_types::scene::Surface;
 use maulstick_types::wire::topics::Topics;
-use maulstick_window_pen::{DeskView, Hand, PenNews, PenThread, PointerNews, Shared, pens_of};
+use maulstick_window_pen::{
+    DeskView, PenLink, PenState, PenThread, PointerEvent, WindowStylus, pens_of,
+};
 use raw_window_handle::{RawDisplayHandle, RawWindowHandle};
 
+use crate::input::keymap::Keymap;
+use crate::input::keys::Action;
 use crate::input::navigation::is_panel;
+use crate::input::presses;
 use crate::view::camera::View;
 
 /// The pointer that a pen has moved is still its own so long after it has left, ns: the window hears of the two apart.
@@ -23,6 +31,8 @@ struct ShownDesk {
     surfaces: Vec<Surface>,
     /// Units of the window system a point.
     per_point: f64,
+    /// False while a key is held that makes something else of a drag than a stroke.
+    paints: bool,
 }
 
 impl ShownDesk {
@@ -35,7 +45,7 @@ impl ShownDesk {
 impl DeskView for ShownDesk {
     fn is_desk(&self, point: [f64; 2]) -> bool {
         let at = self.at(point);
-        self.view.area.contains(at) && !is_panel(&self.context, at)
+        self.paints && self.view.area.contains(at) && !is_panel(&self.context, at)
     }
 
     fn to_desk(&self, point: [f64; 2]) -> [f64; 3] {
@@ -49,10 +59,10 @@ impl DeskView for ShownDesk {
 
 /// The pens of the window.
 pub(crate) struct WindowPen {
-    hand: Option<Hand>,
-    shared: Shared,
+    hand: Option<WindowStylus>,
+    link: PenLink,
     thread: Option<PenThread>,
-    news: PenNews,
+    state: PenState,
 }
 
 impl WindowPen {
@@ -66,17 +76,18 @@ impl WindowPen {
         name: &str,
         me: Origin,
     ) -> Result<Self, BusError> {
-        let shared = Shared::default();
-        let hand = Hand::new(Arc::clone(bus), topics, (name, me), shared.clone())?;
+        let link = PenLink::default();
+        let hand = WindowStylus::new(Arc::clone(bus), topics, (name, me), link.clone())?;
         Ok(Self {
             hand: Some(hand),
-            shared,
+            link,
             thread: None,
-            news: PenNews::default(),
+            state: PenState::default(),
         })
     }
 
     /// Reads the pens of a window, which must outlive this or its [`end`](Self::end).
+    #[expect(unsafe_code, reason = "a window's handles are pointers of its library")]
     pub(crate) fn begin(
         &mut self,
         context: &Context,
@@ -87,8 +98,10 @@ impl WindowPen {
             return;
         };
         let context = context.clone();
-        self.shared.on_news(move || context.request_repaint());
-        match pens_of(display, window) {
+        self.link.on_pointer(move || context.request_repaint());
+        // SAFETY: the window's application ends this before the window closes.
+        let source = unsafe { pens_of(display, window) };
+        match source {
             Ok(source) => match PenThread::of(source, hand) {
                 Ok(thread) => self.thread = Some(thread),
                 Err(fault) => tracing::warn!("{}", fault.what),
@@ -102,50 +115,69 @@ impl WindowPen {
         self.thread = None;
     }
 
-    /// The window shows the desk so; `brush` is in the hand.
+    /// Sets what the window shows of the desk, and the brush in the hand.
     pub(crate) fn show(
         &self,
         context: &Context,
-        view: Option<&View>,
-        surfaces: &[Surface],
+        view: Option<(&View, &[Surface])>,
         brush: &str,
+        keymap: &Keymap,
     ) {
-        let per_point = match self.news.moves_no_pointer {
+        let paints = context.input(|input| {
+            let held = [Action::Size, Action::Zoom];
+            let held = held.iter().any(|act| presses::is_down(input, keymap, *act));
+            let modifiers = input.modifiers;
+            (modifiers.is_none() || modifiers.shift_only()) && !held
+        });
+        let per_point = match self.state.moves_no_pointer {
             true => context.zoom_factor(),
             false => context.pixels_per_point(),
         };
-        let view = view.map(|view| -> Box<dyn DeskView> {
-            Box::new(ShownDesk {
+        let view = view.map(|(view, surfaces)| -> Arc<dyn DeskView> {
+            Arc::new(ShownDesk {
                 context: context.clone(),
                 view: *view,
                 surfaces: surfaces.to_vec(),
                 per_point: per_point.into(),
+                paints,
             })
         });
-        self.shared.show(view, brush);
+        self.link.show(view, brush);
+    }
+
+    /// Draws the pointer of a pen over a panel, where the window system draws none.
+    pub(crate) fn draw(&self, context: &Context) {
+        let at = context.input(|input| input.pointer.latest_pos());
+        let shows = self.state.moves_no_pointer && self.state.is_near;
+        if let Some(at) = at.filter(|at| shows && is_panel(context, *at)) {
+            let layer = LayerId::new(Order::Tooltip, Id::unique("pen"));
+            let painter = context.layer_painter(layer);
+            painter.circle_stroke(at, 4.0, Stroke::new(3.0, Color32::BLACK));
+            painter.circle_stroke(at, 4.0, Stroke::new(1.5, Color32::WHITE));
+        }
     }
 
     /// What the newest pen senses, bits of `axes`; 0 before one was near.
     #[must_use]
     pub(crate) fn senses(&self) -> u32 {
-        self.news.senses
+        self.state.senses
     }
 
     /// True while the pointer is a pen's: on the desk it does nothing then.
     #[must_use]
     pub(crate) fn has_pointer(&self, now_ns: u64) -> bool {
-        let news = &self.news;
-        news.is_near || news.near_ns > 0 && now_ns < news.near_ns + LINGERS_NS
+        let state = &self.state;
+        state.is_near || state.near_ns > 0 && now_ns < state.near_ns + LINGERS_NS
     }
 
     /// Takes in what pens did: where the window system moves no pointer with them, this does, and while one is near no
     /// finger counts, for it is a palm.
     pub(crate) fn take_in(&mut self, context: &Context, input: &mut RawInput) {
-        self.news = self.shared.news();
-        if self.news.is_near {
+        self.state = self.link.state();
+        if self.state.is_near {
             refuse_palms(&mut input.events);
         }
-        if !self.news.moves_no_pointer {
+        if !self.state.moves_no_pointer {
             return;
         }
         let per_point = f64::from(context.zoom_factor());
@@ -154,39 +186,42 @@ impl WindowPen {
             pos2(x, y)
         };
         let modifiers = context.input(|input| input.modifiers);
-        let events = std::mem::take(&mut self.news.pointer).into_iter();
-        input.events.extend(events.map(|news| match news {
-            PointerNews::Moved(point) => Event::PointerMoved(at(point)),
-            PointerNews::Pressed(point, pressed) => Event::PointerButton {
+        let events = std::mem::take(&mut self.state.pointer).into_iter();
+        input.events.extend(events.map(|event| match event {
+            PointerEvent::Moved(point) => Event::PointerMoved(at(point)),
+            PointerEvent::Pressed(point, pressed) => Event::PointerButton {
                 pos: at(point),
                 button: PointerButton::Primary,
                 pressed,
                 modifiers,
             },
-            PointerNews::Gone => Event::PointerGone,
+            PointerEvent::Gone => Event::PointerGone,
         }));
     }
 }
 
-/// Takes fingers out of events, with the pointer that the first of them moves: its events follow the finger's own.
+/// Takes fingers out of events that come down or move, with the pointer that the first of them moves. What lifts stays: a
+/// palm may have come before the pen.
 fn refuse_palms(events: &mut Vec<Event>) {
-    let mut finger = false;
+    let mut finger = None;
     events.retain(|event| match event {
-        Event::Touch { .. } => {
-            finger = true;
-            false
+        Event::Touch { phase, pos, .. } => {
+            finger = Some(*pos);
+            matches!(phase, TouchPhase::End | TouchPhase::Cancel)
         }
-        Event::PointerMoved(_) | Event::PointerButton { .. } | Event::PointerGone => !finger,
-        _ => {
-            finger = false;
-            true
-        }
+        Event::PointerMoved(at)
+        | Event::PointerButton {
+            pos: at,
+            pressed: true,
+            ..
+        } => finger != Some(*at),
+        _ => true,
     });
 }
 
 #[cfg(test)]
 mod tests {
-    use eframe::egui::{Key, Modifiers, TouchDeviceId, TouchId, TouchPhase};
+    use eframe::egui::{Key, Modifiers, TouchDeviceId, TouchId};
 
     use super::*;
 
@@ -223,5 +258,23 @@ mod tests {
         ];
         refuse_palms(&mut events);
         assert_eq!(events, [mouse, key]);
+        // One that lay there before the pen came is lifted, and a mouse's button, too.
+        let lifted = |phase| Event::Touch {
+            device_id: TouchDeviceId(1),
+            id: TouchId(1),
+            phase,
+            pos: at,
+            force: None,
+        };
+        let release = Event::PointerButton {
+            pos: at,
+            button: PointerButton::Primary,
+            pressed: false,
+            modifiers: Modifiers::NONE,
+        };
+        let whole = vec![lifted(TouchPhase::End), release, Event::PointerGone];
+        let mut events = whole.clone();
+        refuse_palms(&mut events);
+        assert_eq!(events, whole);
     }
 }

@@ -45,7 +45,7 @@ pub struct Preferences {
     pub mirrored: bool,
     /// True once the painter has painted here: the first line of help is no longer needed.
     pub has_painted: bool,
-    /// What the pen over the window sensed that was told of last, bits of `axes`; 0 for none.
+    /// All that pens over the window have sensed, bits of `axes`: it was told of.
     pub pen_senses: u32,
     /// Width and height of the window, points.
     pub size: [f32; 2],

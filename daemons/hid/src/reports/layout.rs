@@ -358,7 +358,7 @@ impl PenReport {
                 true => End::Eraser,
                 false => End::Tip,
             },
-            point: [
+            point_m: [
                 share(Role::X).unwrap_or(0.0) * area_m[0],
                 // A tablet counts toward the hand.
                 (1.0 - share(Role::Y).unwrap_or(0.0)) * area_m[1],

@@ -210,7 +210,7 @@ impl Wacom {
                 false => Presence::Hovering,
             },
             end,
-            point: [at(0), self.area_m()[1] - at(1)],
+            point_m: [at(0), self.area_m()[1] - at(1)],
             height_m: 0.01 * distance.min(1.0),
             pressure: pressure.min(1.0),
             tilt_rad: Some([tilt(tilt_x), tilt(-tilt_y)]),

@@ -30,7 +30,7 @@ fn layout(descriptor: &Descriptor) -> Layout {
 struct Wanted {
     presence: Presence,
     end: End,
-    point: [f64; 2],
+    point_m: [f64; 2],
     pressure: f64,
     tilt_rad: Option<[f64; 2]>,
     twist_rad: Option<f64>,
@@ -69,7 +69,7 @@ fn wanted(which: usize, values: &[((u16, u16), i64)]) -> Wanted {
         } else {
             End::Tip
         },
-        point: [x / counts[0] * area[0], (1.0 - y / counts[1]) * area[1]],
+        point_m: [x / counts[0] * area[0], (1.0 - y / counts[1]) * area[1]],
         pressure: dig(0x30).expect("pressure") / most,
         tilt_rad: lean(0x3D, 1.0).zip(lean(0x3E, -1.0)).map(|(x, y)| [x, y]),
         // -900..899 stands for -180..179 degrees, clockwise.
@@ -88,8 +88,8 @@ fn off(got: &Reading, wanted: &Wanted) -> Option<f64> {
     // −π and π are one angle.
     let turn = (got.twist_rad.unwrap_or(0.0) - wanted.twist_rad.unwrap_or(0.0)).abs();
     let pairs = [
-        (got.point[0], wanted.point[0]),
-        (got.point[1], wanted.point[1]),
+        (got.point_m[0], wanted.point_m[0]),
+        (got.point_m[1], wanted.point_m[1]),
         (got.pressure, wanted.pressure),
         (tilt(got.tilt_rad)[0], tilt(wanted.tilt_rad)[0]),
         (tilt(got.tilt_rad)[1], tilt(wanted.tilt_rad)[1]),
@@ -248,7 +248,7 @@ fn wacoms_own_page_is_read_and_the_standard_one_beside_it_is_not() {
     let standard = tablet.pack(6, &[((DIGITIZER, 0x32), 1), ((DESKTOP, 0x30), 13_150)]);
     assert_eq!(layout.decode(&standard), None);
     let own = tablet.pack(30, &[((WACOM, 0x32), 1), ((WACOM, 0x130), 26_300)]);
-    let middle = layout.decode(&own).expect("a pen's").point[0];
+    let middle = layout.decode(&own).expect("a pen's").point_m[0];
     assert!((middle - 0.1315).abs() < 1e-12, "{middle}");
     assert_ne!(layout.senses() & axes::TWIST, 0);
 }
@@ -278,9 +278,9 @@ fn a_tablet_of_the_standard_page_alone_is_read_by_it() {
         (Presence::Hovering, End::Eraser)
     );
     let tilt = reading.tilt_rad.expect("tilts");
-    assert!((reading.point[0] - 0.263).abs() < 1e-12);
+    assert!((reading.point_m[0] - 0.263).abs() < 1e-12);
     assert!(
-        (reading.point[1] - 0.148).abs() < 1e-12,
+        (reading.point_m[1] - 0.148).abs() < 1e-12,
         "y counts toward the hand"
     );
     assert!(
@@ -359,7 +359,7 @@ fn a_greatest_value_without_room_for_a_sign_is_read_all_the_same() {
     ];
     let reading = layout.decode(&tablet.pack(1, &values)).expect("a pen's");
     assert!(
-        (reading.point[0] - 0.8 * 0.508).abs() < 1e-12,
+        (reading.point_m[0] - 0.8 * 0.508).abs() < 1e-12,
         "{reading:?}"
     );
     assert!((reading.pressure - 1.0).abs() < 1e-12, "{reading:?}");

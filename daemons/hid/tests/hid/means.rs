@@ -48,8 +48,8 @@ fn intuos_of_wacoms_tables_are_read_by_them() {
         (reading.presence, reading.switches),
         (Presence::Touching, 1)
     );
-    assert!((reading.point[0] - 0.112).abs() < 1e-12, "{reading:?}");
-    assert!(reading.point[1].abs() < 1e-12 && (reading.pressure - 1.0).abs() < 1e-12);
+    assert!((reading.point_m[0] - 0.112).abs() < 1e-12, "{reading:?}");
+    assert!(reading.point_m[1].abs() < 1e-12 && (reading.pressure - 1.0).abs() < 1e-12);
     let tilt = reading.tilt_rad.expect("tilts");
     assert!((tilt[0] - PI / 6.0).abs() < 1e-12 && (tilt[1] + PI / 3.0).abs() < 1e-12);
     report[1] = 0x30;
@@ -81,8 +81,8 @@ fn intuos_of_wacoms_tables_are_read_by_them() {
         "{}",
         reading.pressure
     );
-    assert!((reading.point[0] - 0.223_52).abs() < 1e-12, "{reading:?}");
-    assert!(reading.point[1].abs() < 1e-12, "{reading:?}");
+    assert!((reading.point_m[0] - 0.223_52).abs() < 1e-12, "{reading:?}");
+    assert!(reading.point_m[1].abs() < 1e-12, "{reading:?}");
     let tilt = reading.tilt_rad.expect("tilts");
     assert!(tilt[0].abs() < 1e-12 && tilt[1].abs() < 1e-12, "{tilt:?}");
     // Gone, or about to go.

@@ -20,7 +20,7 @@ fn reading(presence: Presence, end: End, pressure: f64) -> Reading {
     Reading {
         presence,
         end,
-        point: [0.1, 0.05],
+        point_m: [0.1, 0.05],
         pressure,
         ..Reading::AWAY
     }
@@ -87,7 +87,7 @@ fn what_is_passed_on_as_it_was_said_is_found_impossible() {
 #[test]
 fn a_pen_that_is_snatched_away_is_lifted_where_it_was() {
     let gone = Reading {
-        point: [0.0; 2],
+        point_m: [0.0; 2],
         ..reading(Away, End::Tip, 0.0)
     };
     let told = followed(&[reading(Touching, End::Tip, 0.5), gone]);
@@ -96,7 +96,7 @@ fn a_pen_that_is_snatched_away_is_lifted_where_it_was() {
         .map(|told| (told.presence, told.pressure))
         .collect();
     assert_eq!(states, [(Touching, 0.5), (Hovering, 0.0), (Away, 0.0)]);
-    assert!(told.iter().all(|told| told.point == [0.1, 0.05]));
+    assert!(told.iter().all(|told| told.point_m == [0.1, 0.05]));
 }
 
 #[test]

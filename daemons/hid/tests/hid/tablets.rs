@@ -191,7 +191,7 @@ proptest! {
             device.orientation = rotation(DVec3::Z, angle).to_array();
         });
         let reading = Reading {
-            point: [at[0] * area[0], at[1] * area[1]],
+            point_m: [at[0] * area[0], at[1] * area[1]],
             tilt_rad: Some(tilt),
             twist_rad: Some(twist),
             height_m: 0.01,

@@ -65,7 +65,7 @@ pub struct PaintNode {
     consumed: Sender<PaintConsumed>,
     scene: Announcer<Scene>,
     status: Sender<PaintStatus>,
-    /// The status that was sent last, and when.
+    /// The status that was sent last, and its time, ns.
     told_status: Option<(PaintStatus, u64)>,
     feed: Feed,
     fed_version: u64,

@@ -14,6 +14,10 @@ use crate::reading::{Axes, PenReading};
 const PER_RADIAN: std::ops::RangeInclusive<u32> = 20..=10_000;
 /// Tilt at the ends of a range that says no more, degrees.
 const STEEPEST_DEGREES: f64 = 64.0;
+/// Words in the names of devices that have a pressure and are no pens.
+const NO_PENS: [&str; 5] = ["pad", "touch", "finger", "cursor", "mouse"];
+/// Kinds of tools that sense their rotation: the Art Pens of Wacom. All others send the wheel's least value.
+const ROTATES: [u32; 3] = [0x804, 0x885, 0x10_0804];
 /// The button of the tip, and of the switches on the handle, that nearest to the tip first.
 const TIP: u32 = 1;
 const SWITCHES: [u32; 3] = [2, 3, 8];
@@ -25,8 +29,17 @@ pub struct Labels {
     pub pressure: Atom,
     /// Of tilt, toward the right and toward the hand.
     pub tilt: [Atom; 2],
-    /// Of rotation: of these a pen has one, or an airbrush its wheel.
-    pub twist: [Atom; 2],
+    /// Of rotation, or of an airbrush's wheel.
+    pub wheel: Atom,
+}
+
+/// The tool that is near a device, as the driver `wacom` names it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct NearTool {
+    /// Its serial number; 0 if none is near.
+    pub serial: u32,
+    /// Its kind.
+    pub kind: u32,
 }
 
 /// A valuator: its place among those of the device, and its range.
@@ -85,10 +98,10 @@ pub struct XinputDevice {
     id: u16,
     pressure: Valuator,
     tilt: Option<[Valuator; 2]>,
-    twist: Option<Valuator>,
+    wheel: Option<Valuator>,
     eraser: bool,
-    /// Serial of the tool that is near, 0 for none, where the driver says so.
-    serial: Option<u32>,
+    /// The tool that is near, where the driver says so.
+    near: Option<NearTool>,
     newest: Option<PenReading>,
 }
 
@@ -102,12 +115,14 @@ impl XinputDevice {
         });
         let find = |label: Atom| {
             let mut all = valuators.clone();
-            let found = all.find(|told| label != 0 && told.label == label);
+            let found = all.find(|told| told.label == label);
             found.and_then(Valuator::of)
         };
-        // A rotation goes both ways from its neutral place; an airbrush's wheel does not.
-        let mut twists = labels.twist.into_iter().filter_map(find);
         let name = String::from_utf8_lossy(&info.name).to_lowercase();
+        let mut words = name.split(|letter: char| !letter.is_alphanumeric());
+        if words.any(|word| NO_PENS.contains(&word)) {
+            return None;
+        }
         Some(Self {
             id: info.deviceid,
             pressure: find(labels.pressure)?,
@@ -115,9 +130,9 @@ impl XinputDevice {
                 [Some(x), Some(y)] => Some([x, y]),
                 _ => None,
             },
-            twist: twists.find(|twist| twist.least < 0.0),
+            wheel: find(labels.wheel),
             eraser: name.contains("eraser"),
-            serial: None,
+            near: None,
             newest: None,
         })
     }
@@ -128,14 +143,35 @@ impl XinputDevice {
         Axes {
             pressure: true,
             tilt: self.tilt.is_some(),
-            twist: self.twist.is_some(),
-            range: self.serial.is_some(),
+            twist: self.rotation().is_some(),
+            range: self.near.is_some(),
         }
     }
 
-    /// Its driver says which tool is near: its serial, 0 for none.
-    pub fn tell_serial(&mut self, serial: Option<u32>) {
-        self.serial = serial;
+    /// Its wheel, where that is the rotation of its tool.
+    fn rotation(&self) -> Option<&Valuator> {
+        let rotates = self.near.is_some_and(|near| ROTATES.contains(&near.kind));
+        self.wheel.as_ref().filter(|_| rotates)
+    }
+
+    /// Sets the tool that is near it, where its driver says so.
+    pub fn set_near(&mut self, near: Option<NearTool>) {
+        self.near = near;
+    }
+
+    /// True if the server describes both in the same way.
+    #[must_use]
+    pub fn is_same(&self, other: &Self) -> bool {
+        let ranges = |device: &Self| {
+            let tilts = device.tilt.iter().flatten();
+            let all = [&device.pressure]
+                .into_iter()
+                .chain(tilts)
+                .chain(&device.wheel);
+            all.map(|it| (it.place, it.least, it.most, it.per_radian))
+                .collect::<Vec<_>>()
+        };
+        (self.id, self.eraser) == (other.id, other.eraser) && ranges(self) == ranges(other)
     }
 
     /// Its reading at an event; `None` where the event is not of its own.
@@ -168,18 +204,22 @@ impl XinputDevice {
                 true => End::Eraser,
                 false => End::Tip,
             },
-            point: [x, y],
+            point_m: [0.0; 2],
             height_m: 0.0,
             pressure: self.pressure.share(),
             // Theirs leans toward the hand with y.
             tilt_rad: self.tilt.map(|[x, y]| [x.tilt_rad(), -y.tilt_rad()]),
-            twist_rad: self.twist.map(|twist| twist.twist_rad()),
+            twist_rad: self.rotation().map(Valuator::twist_rad),
             switches: switches.fold(0, |all, (place, _)| all | 1 << place),
         };
+        // The driver names the tool a little after its first events: until it leaves it stays the one that it began as.
+        let serial = self.near.map_or(0, |near| near.serial);
+        let began = self.newest.map(|newest| newest.tool);
         let read = PenReading {
-            tool: tool(self.id, self.serial.unwrap_or(0), self.eraser),
+            tool: began.unwrap_or_else(|| tool(self.id, serial, self.eraser)),
             axes: self.axes(),
             time_ms: event.time,
+            point_px: [x, y],
             reading,
         };
         self.newest = Some(read);
@@ -188,7 +228,7 @@ impl XinputDevice {
 
     /// Its tool has left, if its driver says that none is near.
     pub fn left(&mut self, time_ms: u32) -> Option<PenReading> {
-        if self.serial != Some(0) {
+        if self.near.is_none_or(|near| near.serial != 0) {
             return None;
         }
         let newest = self.newest.take()?;
@@ -210,7 +250,7 @@ impl XinputDevice {
             let own = [&mut self.pressure]
                 .into_iter()
                 .chain(tilts)
-                .chain(&mut self.twist);
+                .chain(&mut self.wheel);
             for valuator in own.filter(|valuator| valuator.place == place) {
                 valuator.value = number(*value);
             }

@@ -12,24 +12,22 @@ use std::time::Duration;
 use maulstick_rig::UserError;
 use x11rb::connection::Connection as _;
 use x11rb::errors::{ConnectionError, ReplyError};
-use x11rb::protocol::Event;
 use x11rb::protocol::xinput::{
-    ConnectionExt as _, DeviceType, EventMask, XIEventMask, XIGetPropertyItems,
+    ChangeReason, ConnectionExt as _, DeviceType, EventMask, XIEventMask, XIGetPropertyItems,
 };
 use x11rb::protocol::xproto::{Atom, AtomEnum, ConnectionExt as _, Window};
+use x11rb::protocol::{ErrorKind, Event};
 use x11rb::rust_connection::RustConnection;
 
-pub use self::device::{Labels, XinputDevice};
+pub use self::device::{Labels, NearTool, XinputDevice};
 use crate::reading::{PenReading, Tool};
 use crate::thread::{Source, gone, readable};
 
 /// All devices, in a selection of events.
 const ALL: u16 = 0;
-/// The `wacom` driver's property of tools: five numbers, of which the fourth is the serial of the tool that is near, 0 for
-/// none.
+/// The `wacom` driver's property of tools: five numbers, of which the fourth and the fifth are serial and kind of the tool
+/// that is near, 0 for none.
 const SERIALS: &str = "Wacom Serial IDs";
-/// Place of that serial.
-const NEAR: usize = 3;
 
 /// Pens of an X server over a window.
 pub struct XinputPens {
@@ -40,17 +38,13 @@ pub struct XinputPens {
     devices: BTreeMap<u16, XinputDevice>,
 }
 
-fn lost(error: &dyn std::fmt::Display) -> UserError {
-    gone(error)
-}
-
 impl XinputPens {
     /// The pens over a window of the server that `DISPLAY` names.
     ///
     /// # Errors
     /// A [`UserError`] where the server is away or lacks XInput 2.2.
     pub fn new(window: Window) -> Result<Self, UserError> {
-        let (connection, screen) = x11rb::connect(None).map_err(|error| lost(&error))?;
+        let (connection, screen) = x11rb::connect(None).map_err(|error| gone(&error))?;
         let old = || {
             UserError::failure("this X server tells nothing of pens (XInput 2.2)").help(
                 "the pen paints as a mouse: for its pressure give its tablet to the rig, `maulstick devices` says how",
@@ -58,7 +52,7 @@ impl XinputPens {
         };
         let version = connection
             .xinput_xi_query_version(2, 2)
-            .map_err(|error| lost(&error))?
+            .map_err(|error| gone(&error))?
             .reply()
             .map_err(|_| old())?;
         if (version.major_version, version.minor_version) < (2, 2) {
@@ -71,17 +65,14 @@ impl XinputPens {
                 .atom)
         };
         let labels = Labels {
-            pressure: atom("Abs Pressure").map_err(|error| lost(&error))?,
+            pressure: atom("Abs Pressure").map_err(|error| gone(&error))?,
             tilt: [
-                atom("Abs Tilt X").map_err(|error| lost(&error))?,
-                atom("Abs Tilt Y").map_err(|error| lost(&error))?,
+                atom("Abs Tilt X").map_err(|error| gone(&error))?,
+                atom("Abs Tilt Y").map_err(|error| gone(&error))?,
             ],
-            twist: [
-                atom("Abs Wheel").map_err(|error| lost(&error))?,
-                atom("Abs Rotary Z").map_err(|error| lost(&error))?,
-            ],
+            wheel: atom("Abs Wheel").map_err(|error| gone(&error))?,
         };
-        let serials = atom(SERIALS).map_err(|error| lost(&error))?;
+        let serials = atom(SERIALS).map_err(|error| gone(&error))?;
         let root = connection.setup().roots[screen].root;
         let mut pens = Self {
             connection,
@@ -95,8 +86,8 @@ impl XinputPens {
             ALL,
             XIEventMask::HIERARCHY | XIEventMask::DEVICE_CHANGED,
         )
-        .and_then(|()| pens.find())
-        .map_err(|error| lost(&error))?;
+        .and_then(|()| pens.find(0, &mut Vec::new()))
+        .map_err(|error| gone(&error))?;
         Ok(pens)
     }
 
@@ -109,35 +100,50 @@ impl XinputPens {
         selected.check()
     }
 
-    /// Finds the pens that are attached, and asks for their events.
-    fn find(&mut self) -> Result<(), ReplyError> {
+    /// Finds the pens that are attached, and asks for their events. Those that are known stay as they are; what has gone
+    /// has left.
+    fn find(&mut self, time_ms: u32, readings: &mut Vec<PenReading>) -> Result<(), ReplyError> {
         let found = self.connection.xinput_xi_query_device(ALL)?.reply()?.infos;
         let pens = found
             .iter()
             .filter(|info| info.type_ == DeviceType::SLAVE_POINTER);
-        let mut devices = BTreeMap::new();
+        let mut before = std::mem::take(&mut self.devices);
         for info in pens {
             let Some(mut device) = XinputDevice::of(info, &self.labels) else {
                 continue;
             };
+            if let Some(known) = before.remove(&info.deviceid) {
+                if known.is_same(&device) {
+                    self.devices.insert(info.deviceid, known);
+                    continue;
+                }
+                before.insert(info.deviceid, known);
+            }
             let mask = XIEventMask::MOTION
                 | XIEventMask::BUTTON_PRESS
                 | XIEventMask::BUTTON_RELEASE
                 | XIEventMask::PROPERTY;
-            // One that goes just now is told of again.
-            if self.select(self.window, info.deviceid, mask).is_err() {
-                continue;
+            match self.select(self.window, info.deviceid, mask) {
+                Ok(()) => {}
+                // One that goes just now is told of again.
+                Err(ReplyError::X11Error(error)) if error.error_kind == ErrorKind::XinputDevice => {
+                    continue;
+                }
+                Err(error) => return Err(error),
             }
-            device.tell_serial(self.near(info.deviceid)?);
+            device.set_near(self.near(info.deviceid)?);
             tracing::debug!("the pen '{}'", String::from_utf8_lossy(&info.name));
-            devices.insert(info.deviceid, device);
+            self.devices.insert(info.deviceid, device);
         }
-        self.devices = devices;
+        for (_, mut gone) in before {
+            gone.set_near(Some(NearTool::default()));
+            readings.extend(gone.left(time_ms));
+        }
         Ok(())
     }
 
-    /// Serial of the tool that is near a device, 0 for none; `None` where its driver does not say.
-    fn near(&self, device: u16) -> Result<Option<u32>, ReplyError> {
+    /// The tool that is near a device; `None` where its driver does not say.
+    fn near(&self, device: u16) -> Result<Option<NearTool>, ReplyError> {
         let any = AtomEnum::ANY.into();
         let asked =
             self.connection
@@ -148,7 +154,10 @@ impl XinputPens {
             Err(error) => return Err(error),
         };
         Ok(match items {
-            XIGetPropertyItems::Data32(serials) => serials.get(NEAR).copied(),
+            XIGetPropertyItems::Data32(numbers) => match numbers[..] {
+                [_, _, _, serial, kind, ..] => Some(NearTool { serial, kind }),
+                _ => None,
+            },
             _ => None,
         })
     }
@@ -165,16 +174,13 @@ impl XinputPens {
             Event::XinputProperty(event) if event.property == self.serials => {
                 let near = self.near(event.deviceid)?;
                 if let Some(device) = self.devices.get_mut(&event.deviceid) {
-                    device.tell_serial(near);
+                    device.set_near(near);
                     readings.extend(device.left(event.time));
                 }
             }
-            Event::XinputHierarchy(event) => {
-                for (_, mut device) in std::mem::take(&mut self.devices) {
-                    device.tell_serial(Some(0));
-                    readings.extend(device.left(event.time));
-                }
-                self.find()?;
+            Event::XinputHierarchy(event) => self.find(event.time, readings)?,
+            Event::XinputDeviceChanged(event) if event.reason == ChangeReason::DEVICE_CHANGE => {
+                self.find(event.time, readings)?;
             }
             _ => {}
         }
@@ -195,7 +201,7 @@ impl Source for XinputPens {
             next = self.poll()?;
         }
         while let Some(event) = next {
-            self.take(&event, readings).map_err(|error| lost(&error))?;
+            self.take(&event, readings).map_err(|error| gone(&error))?;
             next = self.poll()?;
         }
         Ok(())
@@ -209,7 +215,7 @@ impl Source for XinputPens {
 impl XinputPens {
     fn poll(&self) -> Result<Option<Event>, UserError> {
         let polled: Result<_, ConnectionError> = self.connection.poll_for_event();
-        polled.map_err(|error| lost(&error))
+        polled.map_err(|error| gone(&error))
     }
 }
 

@@ -7,7 +7,7 @@ use maulstick_bus::{Bus, Faults, MemoryNet, Qos, Queue, Wake};
 use maulstick_types::Origin;
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample};
 use maulstick_types::wire::topics::Topics;
-use maulstick_window_pen::{DeskView, Hand, Shared};
+use maulstick_window_pen::{DeskView, PenLink, WindowStylus};
 
 /// The panel lies to the right of this, pixels.
 pub(crate) const PANEL: f64 = 500.0;
@@ -36,7 +36,7 @@ impl DeskView for Window {
 /// A bus, and who hears the pen.
 pub(crate) struct Desk {
     pub(crate) net: MemoryNet,
-    pub(crate) shared: Shared,
+    pub(crate) link: PenLink,
     pub(crate) samples: Receiver<StylusSample>,
     pub(crate) infos: Receiver<StylusInfo>,
 }
@@ -45,23 +45,24 @@ pub(crate) struct Desk {
 pub(crate) type Heard = ([f64; 2], f64, bool);
 
 impl Desk {
-    pub(crate) fn new() -> (Self, Hand) {
+    pub(crate) fn new() -> (Self, WindowStylus) {
         let net = MemoryNet::new(1, 1_000_000_000, Faults::default());
         let (bus, topics, wake) = (net.bus(), Topics::new("t"), Wake::new());
         let me = Origin {
             source: 1,
             epoch: 1,
         };
-        let shared = Shared::default();
-        shared.show(Some(Box::new(Window { mirrored: false })), "main");
+        let link = PenLink::default();
+        link.show(Some(Arc::new(Window { mirrored: false })), "main");
+        link.set_moves_no_pointer();
         let bus: Arc<dyn Bus> = Arc::new(bus);
-        let hand = Hand::new(Arc::clone(&bus), &topics, ("pen", me), shared.clone());
+        let hand = WindowStylus::new(Arc::clone(&bus), &topics, ("pen", me), link.clone());
         let all = Queue::Ring(100_000);
         let samples = Receiver::new(&*bus, &topics.sample("pen"), Qos::RealTime, all, &wake);
         let infos = Receiver::new(&*bus, &topics.stylus_info("pen"), Qos::Cached, all, &wake);
         let desk = Self {
             net,
-            shared,
+            link,
             samples: samples.expect("a receiver"),
             infos: infos.expect("a receiver"),
         };

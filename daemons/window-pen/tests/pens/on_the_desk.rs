@@ -1,8 +1,10 @@
 //! What the pen touches decides.
 
+use std::sync::Arc;
+
 use maulstick_device::pen::{End, Presence, Reading};
 use maulstick_types::stylus::{StylusSample, switch};
-use maulstick_window_pen::window::PointerNews;
+use maulstick_window_pen::window::PointerEvent;
 use maulstick_window_pen::{Axes, PenReading, Tool};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng as _;
@@ -21,9 +23,9 @@ fn read(time_ms: u32, x: f64, presence: Presence) -> PenReading {
         tool: Tool(1),
         axes: ALL,
         time_ms,
+        point_px: [x, 100.0],
         reading: Reading {
             presence,
-            point: [x, 100.0],
             pressure: 0.5,
             tilt_rad: Some([0.2, 0.1]),
             twist_rad: Some(0.3),
@@ -43,8 +45,8 @@ fn a_touch_belongs_to_what_lies_where_it_began() {
         }
         let heard = desk.heard();
         let samples = heard.iter().map(|(_, sample)| words(sample));
-        let presses = desk.shared.news().pointer.into_iter();
-        let presses = presses.filter(|news| matches!(news, PointerNews::Pressed(..)));
+        let presses = desk.link.state().pointer.into_iter();
+        let presses = presses.filter(|news| matches!(news, PointerEvent::Pressed(..)));
         (
             samples
                 .map(|([x, _], pressure, near)| ((x / PIXEL_M).round(), pressure, near))
@@ -77,7 +79,7 @@ fn a_touch_belongs_to_what_lies_where_it_began() {
         [(400.0, 0.0, true)],
         "a panel's touch is no stroke"
     );
-    let at = |x: f64, down| PointerNews::Pressed([x, 100.0], down);
+    let at = |x: f64, down| PointerEvent::Pressed([x, 100.0], down);
     assert_eq!(presses, [at(600.0, true), at(400.0, false)]);
 }
 
@@ -96,8 +98,7 @@ fn a_brush_over_a_panel_is_away() {
 fn tilt_and_twist_are_the_desk_s_also_in_a_mirror() {
     let of = |mirrored: bool| {
         let (mut desk, mut hand) = Desk::new();
-        desk.shared
-            .show(Some(Box::new(Window { mirrored })), "main");
+        desk.link.show(Some(Arc::new(Window { mirrored })), "main");
         let mut touch = read(1, 100.0, Presence::Touching);
         touch.reading.end = End::Eraser;
         hand.read(&touch).expect("sent");
@@ -170,7 +171,56 @@ fn a_resting_pen_goes_on_and_one_that_nobody_hears_of_leaves() {
         hand.rest().expect("sent");
     }
     let last = desk.heard().pop().expect("samples").1;
-    assert!(!last.in_range && !desk.shared.news().is_near);
+    assert!(!last.in_range && !desk.link.state().is_near);
+}
+
+/// Also over a panel, where nothing is sent: mouse and fingers would be refused until it came back.
+#[test]
+fn a_pen_that_nobody_hears_of_over_a_panel_leaves() {
+    let (desk, mut stylus) = Desk::new();
+    let mut hover = read(1, 600.0, Presence::Hovering);
+    hover.axes.range = false;
+    stylus.read(&hover).expect("sent");
+    assert!(desk.link.state().is_near);
+    let mut waited_ns = 0;
+    while let Some(due_ns) = stylus.due_in_ns() {
+        desk.net.advance(due_ns.max(1));
+        waited_ns += due_ns.max(1);
+        stylus.rest().expect("sent");
+        assert!(waited_ns < 3_000_000_000, "it stays");
+    }
+    assert!(!desk.link.state().is_near && waited_ns >= 1_000_000_000);
+}
+
+/// The brush in the hand changes while a panel is pressed, or the window system goes: the panel is let go.
+#[test]
+fn a_pressed_panel_is_always_let_go() {
+    let presses = |desk: &Desk| {
+        let pointer = desk.link.state().pointer.into_iter();
+        let presses = pointer.filter_map(|event| match event {
+            PointerEvent::Pressed(_, down) => Some(down),
+            _ => None,
+        });
+        presses.collect::<Vec<bool>>()
+    };
+    let (desk, mut stylus) = Desk::new();
+    stylus
+        .read(&read(1, 600.0, Presence::Touching))
+        .expect("sent");
+    desk.link
+        .show(Some(Arc::new(Window { mirrored: false })), "second");
+    stylus
+        .read(&read(2, 400.0, Presence::Touching))
+        .expect("sent");
+    stylus
+        .read(&read(3, 400.0, Presence::Hovering))
+        .expect("sent");
+    assert_eq!(presses(&desk), [true, false]);
+    stylus
+        .read(&read(4, 600.0, Presence::Touching))
+        .expect("sent");
+    stylus.end().expect("sent");
+    assert_eq!(presses(&desk), [true, false]);
 }
 
 #[test]
@@ -178,8 +228,8 @@ fn another_brush_is_taken_after_the_first_was_lifted() {
     let (mut desk, mut hand) = Desk::new();
     hand.read(&read(1, 100.0, Presence::Touching))
         .expect("sent");
-    desk.shared
-        .show(Some(Box::new(Window { mirrored: false })), "second");
+    desk.link
+        .show(Some(Arc::new(Window { mirrored: false })), "second");
     hand.read(&read(2, 110.0, Presence::Touching))
         .expect("sent");
     let told: Vec<bool> = desk
@@ -199,11 +249,11 @@ fn another_brush_is_taken_after_the_first_was_lifted() {
 }
 
 #[test]
-fn numbers_that_are_none_are_left_out() {
+fn nan_and_infinite_readings_are_rejected() {
     let (mut desk, mut hand) = Desk::new();
     let mut odd = read(1, f64::NAN, Presence::Touching);
     hand.read(&odd).expect("refused in silence");
-    odd.reading.point = [100.0, 1e300];
+    odd.point_px = [100.0, 1e300];
     odd.reading.tilt_rad = Some([f64::NAN, 9.0]);
     odd.reading.twist_rad = Some(f64::INFINITY);
     odd.reading.pressure = 7.0;
@@ -244,10 +294,9 @@ fn no_gesture_paints_and_presses() {
             !heard.last().is_some_and(|(_, sample)| paints(sample)),
             "lifted at its end"
         );
-        let news = desk.shared.news();
-        assert!(!news.paints);
+        let news = desk.link.state();
         let presses = news.pointer.iter().filter_map(|news| match news {
-            PointerNews::Pressed(_, down) => Some(*down),
+            PointerEvent::Pressed(_, down) => Some(*down),
             _ => None,
         });
         let presses: Vec<bool> = presses.collect();

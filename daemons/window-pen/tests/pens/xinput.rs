@@ -2,7 +2,7 @@
 //! radian, wheel of -900 to 899) and of servers that name no resolution.
 
 use maulstick_device::pen::{End, Presence};
-use maulstick_window_pen::xinput::{Labels, XinputDevice};
+use maulstick_window_pen::xinput::{Labels, NearTool, XinputDevice};
 use x11rb::protocol::xinput::{
     BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ButtonPressEvent, DeviceClass, DeviceClassData,
     DeviceClassDataValuator, DeviceType, Fp3232, MOTION_EVENT, ValuatorMode, XIDeviceInfo,
@@ -11,7 +11,7 @@ use x11rb::protocol::xinput::{
 const LABELS: Labels = Labels {
     pressure: 301,
     tilt: [302, 303],
-    twist: [304, 305],
+    wheel: 304,
 };
 const ID: u16 = 11;
 
@@ -92,9 +92,20 @@ fn event((kind, detail): (u16, u32), buttons: u32, values: &[(u16, f64)]) -> But
 
 const MOVES: (u16, u32) = (MOTION_EVENT, 0);
 
+/// The tools of two pens: one that senses its rotation, one that does not.
+const ART_PEN: NearTool = NearTool {
+    serial: 0x0815,
+    kind: 0x804,
+};
+const GRIP_PEN: NearTool = NearTool {
+    serial: 0x4711,
+    kind: 0x802,
+};
+
 #[test]
 fn valuators_are_read_by_their_labels() {
     let mut pen = device("Wacom Intuos Pro M Pen stylus", &WACOM).expect("a pen");
+    pen.set_near(Some(ART_PEN));
     let values = [(2, 32_768.0), (3, 28.5), (4, -57.0), (5, 449.75)];
     let read = pen.read(&event(MOVES, 0b10, &values)).expect("its own");
     assert_eq!(read.time_ms, 7000);
@@ -103,7 +114,7 @@ fn valuators_are_read_by_their_labels() {
         (reading.presence, reading.end),
         (Presence::Touching, End::Tip)
     );
-    assert_eq!(reading.point, [100.5, 50.25]);
+    assert_eq!(read.point_px, [100.5, 50.25]);
     assert!((reading.pressure - 0.5).abs() < 1e-9);
     // Half a radian to the right, one away from the hand; a quarter turn clockwise.
     let [x, y] = reading.tilt_rad.expect("tilt");
@@ -152,10 +163,25 @@ fn a_device_without_pressure_is_no_pen_and_a_pen_may_lack_the_rest() {
         (None, None)
     );
     assert!(!read.axes.tilt && !read.axes.twist && read.axes.pressure && !read.axes.range);
-    let airbrush = (5, 304, [0.0, 1023.0], 1);
-    let mut axes = WACOM;
-    axes[5] = airbrush;
-    assert!(!device("airbrush", &axes).expect("a pen").axes().twist);
+    // Pens that cannot turn send the least value of the wheel.
+    let mut grip = device("a grip pen", &WACOM).expect("a pen");
+    grip.set_near(Some(GRIP_PEN));
+    let read = grip
+        .read(&event(MOVES, 0, &[(5, -900.0)]))
+        .expect("its own");
+    assert_eq!((read.reading.twist_rad, read.axes.twist), (None, false));
+    for other in [
+        "Pad pad",
+        "Finger touch",
+        "Intuos Pro M Cursor",
+        "Tablet Mouse",
+    ] {
+        assert_eq!(
+            device(other, &WACOM),
+            None,
+            "{other} has a pressure and is no pen"
+        );
+    }
 }
 
 #[test]
@@ -178,17 +204,27 @@ fn a_pen_leaves_where_its_driver_says_so() {
     let tip = pen.read(&event(MOVES, 0, &[])).expect("its own");
     assert_eq!((tip.reading.end, tip.axes.range), (End::Eraser, false));
     assert_eq!(pen.left(7001), None, "nothing is said");
-    pen.tell_serial(Some(0x0815));
+    // The driver names the tool after its first events: it stays the one that it began as, until it leaves.
+    pen.set_near(Some(GRIP_PEN));
     let read = pen.read(&event(MOVES, 0, &[])).expect("its own");
-    assert!(read.axes.range && read.tool != tip.tool);
+    assert!(read.axes.range && read.tool == tip.tool);
     assert_eq!(pen.left(7002), None, "it is near");
-    pen.tell_serial(Some(0));
+    pen.set_near(Some(NearTool::default()));
     let left = pen.left(7003).expect("gone");
     assert_eq!(
-        (left.reading.presence, left.time_ms, left.tool),
-        (Presence::Away, 7003, read.tool)
+        (left.reading.presence, left.time_ms),
+        (Presence::Away, 7003)
     );
+    assert_eq!(left.tool, tip.tool);
     assert_eq!(pen.left(7004), None, "once");
+    let mut by = |tool: NearTool| {
+        pen.set_near(Some(tool));
+        let read = pen.read(&event(MOVES, 0, &[])).expect("its own");
+        pen.set_near(Some(NearTool::default()));
+        pen.left(7005).expect("gone");
+        read.tool
+    };
+    assert_ne!(by(GRIP_PEN), by(ART_PEN), "told apart by their serials");
     let mut other = event(MOVES, 0, &[]);
     other.deviceid = 12;
     assert_eq!(pen.read(&other), None);

@@ -37,7 +37,7 @@ pub(super) struct Orders {
 struct Leaving(BTreeMap<(u64, u64), u64>);
 
 impl Leaving {
-    /// True if the paint node's newest status is of later than when an asker was first there.
+    /// True if the paint node's newest status is later than the client's first request.
     fn has_heard(&mut self, asker: (u64, u64), now_ns: u64, status_ns: u64) -> bool {
         status_ns > *self.0.entry(asker).or_insert(now_ns)
     }

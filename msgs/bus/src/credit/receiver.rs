@@ -230,7 +230,7 @@ impl<M: Message> CreditReceiver<M> {
             return Ok(());
         };
         let waits = !stream.asked.is_empty() && now_ns < stream.asked_ns + RETRY_NS;
-        if waits && answered == 0 {
+        if waits && answered == 0 && !unserved {
             return Ok(());
         }
         let patient = stream.askings < PATIENCE && !unserved;
@@ -248,7 +248,7 @@ impl<M: Message> CreditReceiver<M> {
     }
 
     /// Takes in what came for a stream's gap: how many answers there were, and whether the newest question ended at once
-    /// without any, for its sender answers none.
+    /// without any, because nobody serves its gaps.
     fn take_answers(&mut self, key: &StreamKey, now_ns: u64) -> (usize, bool) {
         let Some(stream) = self.streams.get(key) else {
             return (0, false);

@@ -229,8 +229,8 @@ impl BrushLoad {
         self.count_films();
     }
 
-    /// Soaks what the brush carries with a thinner, by a part of what it lacks to be a share of it. The thinner takes the
-    /// place of paint, which goes; returns how much of each paint that was.
+    /// Puts thinner in the place of paint: moves the thinner's share of what the brush carries a `part` of the way to
+    /// `share`. Returns the paint that went, by slot.
     pub fn soak(&mut self, thinner: usize, share: f64, part: f64) -> Counts {
         let held = self.share(thinner);
         let washed = ((share - held) * part / (1.0 - held)).clamp(0.0, 1.0);

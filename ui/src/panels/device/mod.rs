@@ -198,6 +198,7 @@ fn wide(ui: &mut Ui, button: Button<'_>) -> Response {
 fn worded(name: &str) -> String {
     match name {
         "mouse" => tr!("The mouse").to_owned(),
+        "pen" => tr!("The pen").to_owned(),
         "player" => tr!("A take").to_owned(),
         _ => name.to_owned(),
     }
@@ -218,7 +219,6 @@ fn what(info: &StylusInfo) -> String {
 }
 
 /// Sensors of a device, in words.
-/// The axes of a device, in words.
 #[must_use]
 pub(crate) fn senses(bits: u32) -> String {
     let all = [

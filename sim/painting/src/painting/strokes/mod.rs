@@ -19,7 +19,7 @@ use maulstick_types::scene::CANVAS;
 use super::Painting;
 use backend::Deferral;
 
-/// Steps in which a brush dips into the heaps of a palette: they are as high.
+/// Steps of a landing on a palette, about as high as its heaps.
 const DIP: u32 = 4;
 
 impl Painting {

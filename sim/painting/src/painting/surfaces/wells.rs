@@ -26,9 +26,9 @@ use crate::painting::surfaces::well_moves::WellMoves;
 /// Wells may reach beyond the edge of their surface by what rounding makes of it, m.
 const EDGE_M: f64 = 1e-6;
 /// A brush in a jar of medium soaks it up until it is this share of what it carries.
-const SOAKED: f64 = 0.85;
-/// The part of what it lacks to that, soaked up in a step.
-const SOAKS: f64 = 0.1;
+const SOAK_LIMIT: f64 = 0.85;
+/// Share of the missing medium that is soaked up in a step.
+const SOAK_RATE: f64 = 0.1;
 /// A strip is down within this of the surface, cells.
 const DIPS: f32 = 1.0;
 
@@ -169,7 +169,7 @@ impl Painting {
                         && is_in(head, &well, cell_m)
                     {
                         let load = Arc::make_mut(&mut brush.load);
-                        let washed = load.soak(*thinner, SOAKED, SOAKS);
+                        let washed = load.soak(*thinner, SOAK_LIMIT, SOAK_RATE);
                         let mut soaked = [0; SLOTS];
                         soaked[*thinner] = washed.iter().sum();
                         ledger.from_tube(&soaked);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{Bus, BusError, CreditSender, Qos, Wake};
 use maulstick_device::pen::{End, Presence, Reading};
-use maulstick_device::pen_stream::{OnDesk, PenStream};
+use maulstick_device::pen_stream::{DeskFit, GONE_NS, PenStream};
 use maulstick_rig::UserError;
 use maulstick_rig::config::PEN_PRIORITY;
 use maulstick_types::Origin;
@@ -16,24 +16,26 @@ use maulstick_types::wire::topics::Topics;
 
 use crate::clock::WindowClock;
 use crate::reading::{Axes, PenReading, Tool};
-use crate::window::{PointerNews, Shared};
+use crate::window::{PenLink, PointerEvent};
 
-/// Steepest tilt of a sample, rad.
+/// Steepest tilt of a sample, a little less than 85°, rad.
 const STEEPEST_RAD: f64 = 1.483;
+/// Interval at which lost samples are answered for, ns, for [`GONE_NS`] after the last reading.
+const SERVE_NS: u64 = 50_000_000;
 /// Samples a second of most pens, which do not say.
 const RATE_HZ: f64 = 200.0;
 
 /// What a touching pen touches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Touched {
+enum TouchTarget {
     Desk,
     Panel,
 }
 
 /// The pens of a window, as one stylus: the first that is near is followed until it leaves.
-pub struct Hand {
+pub struct WindowStylus {
     bus: Arc<dyn Bus>,
-    shared: Shared,
+    link: PenLink,
     stream: PenStream,
     desk: Desk,
     info: Sender<StylusInfo>,
@@ -41,7 +43,9 @@ pub struct Hand {
     told: StylusInfo,
     clock: WindowClock,
     tool: Option<Tool>,
-    touched: Option<Touched>,
+    touched: Option<TouchTarget>,
+    /// The newest reading, and when it was read, ns.
+    newest: Option<(PenReading, u64)>,
 }
 
 /// Where a reading lies on the desk.
@@ -53,7 +57,7 @@ struct Desk {
     mirrored: bool,
 }
 
-impl OnDesk for Desk {
+impl DeskFit for Desk {
     fn sample(&mut self, reading: &Reading) -> StylusSample {
         let side = if self.mirrored { -1.0 } else { 1.0 };
         let steep = |tilt: f64| match tilt.is_finite() {
@@ -86,7 +90,7 @@ impl OnDesk for Desk {
     }
 }
 
-impl Hand {
+impl WindowStylus {
     /// A hand that is called `name` on the bus.
     ///
     /// # Errors
@@ -95,7 +99,7 @@ impl Hand {
         bus: Arc<dyn Bus>,
         topics: &Topics,
         (name, me): (&str, Origin),
-        shared: Shared,
+        link: PenLink,
     ) -> Result<Self, BusError> {
         let wake = Wake::new();
         let samples = CreditSender::new(&*bus, topics, &topics.sample(name), me, &wake)?;
@@ -115,7 +119,7 @@ impl Hand {
             info: Sender::new(&*bus, &topics.stylus_info(name), Qos::Cached, me)?,
             status: Sender::new(&*bus, &topics.stylus_status(name), Qos::Background, me)?,
             bus,
-            shared,
+            link,
             stream: PenStream::new(samples),
             desk: Desk {
                 axes: Axes::default(),
@@ -126,19 +130,14 @@ impl Hand {
             clock: WindowClock::default(),
             tool: None,
             touched: None,
+            newest: None,
         })
     }
 
-    /// What window and pen know of each other.
+    /// Its link to the window.
     #[must_use]
-    pub fn shared(&self) -> &Shared {
-        &self.shared
-    }
-
-    /// Samples sent.
-    #[must_use]
-    pub fn sent(&self) -> u64 {
-        self.stream.sent()
+    pub fn link(&self) -> &PenLink {
+        &self.link
     }
 
     /// A reading.
@@ -148,7 +147,7 @@ impl Hand {
     pub fn read(&mut self, read: &PenReading) -> Result<(), BusError> {
         let now_ns = self.bus.now_ns();
         let event_ns = self.clock.event_ns(read.time_ms, now_ns);
-        if !read.reading.point.iter().all(|at| at.is_finite()) {
+        if !read.point_px.iter().all(|at| at.is_finite()) {
             return Ok(());
         }
         let other = self.tool.is_some_and(|tool| tool != read.tool);
@@ -164,17 +163,17 @@ impl Hand {
             _ => Some(read.tool),
         };
         self.introduce(read.axes, now_ns)?;
-        let reading = self.place(read.reading);
-        let paints = reading.presence == Presence::Touching;
-        self.shared.tell(now_ns, read.reading.presence, paints);
-        self.stream.tells_range(read.axes.range);
+        let reading = self.place(read);
+        self.newest = Some((*read, now_ns));
+        self.link.tell(now_ns, read.reading.presence);
+        self.stream.set_reports_range(read.axes.range);
         self.stream
             .read(reading, (event_ns, now_ns), &mut self.desk)
     }
 
     /// The pen and its brush, where the window or another tool has changed them.
     fn introduce(&mut self, axes: Axes, now_ns: u64) -> Result<(), BusError> {
-        let brush = self.shared.brush();
+        let brush = self.link.brush();
         let senses = axes.bits();
         self.desk.axes = axes;
         if self.told.brush == brush && self.told.senses == senses {
@@ -183,16 +182,16 @@ impl Hand {
         if self.told.brush != brush {
             // The brush that was in the hand is lifted first.
             self.stream.leave(now_ns, now_ns, &mut self.desk)?;
-            self.touched = None;
         }
         (self.told.brush, self.told.senses) = (brush, senses);
-        self.shared.senses(senses);
+        self.link.senses(senses);
         self.info.send(now_ns, now_ns, &self.told)
     }
 
     /// Finds a reading on the desk: over a panel, and while it operates one, the brush is away.
-    fn place(&mut self, reading: Reading) -> Reading {
-        let seen = self.shared.desk(reading.point);
+    fn place(&mut self, read: &PenReading) -> Reading {
+        let reading = read.reading;
+        let seen = self.link.desk(read.point_px);
         let is_desk = seen.is_some_and(|(_, _, is_desk)| is_desk);
         if let Some((point_m, mirrored, _)) = seen {
             (self.desk.point_m, self.desk.mirrored) = (point_m, mirrored);
@@ -200,14 +199,14 @@ impl Hand {
         let before = self.touched;
         self.touched = match (reading.presence, before) {
             (Presence::Touching, Some(touched)) => Some(touched),
-            (Presence::Touching, None) if is_desk => Some(Touched::Desk),
-            (Presence::Touching, None) => Some(Touched::Panel),
+            (Presence::Touching, None) if is_desk => Some(TouchTarget::Desk),
+            (Presence::Touching, None) => Some(TouchTarget::Panel),
             _ => None,
         };
-        self.point(&reading, before);
+        self.point(read, before);
         let on_desk = match self.touched {
-            Some(touched) => touched == Touched::Desk,
-            None => is_desk || before == Some(Touched::Desk),
+            Some(touched) => touched == TouchTarget::Desk,
+            None => is_desk || before == Some(TouchTarget::Desk),
         };
         match on_desk && seen.is_some() {
             true => reading,
@@ -219,28 +218,30 @@ impl Hand {
     }
 
     /// Tells the window what the pen's pointer does: on the desk it presses nothing.
-    fn point(&self, reading: &Reading, before: Option<Touched>) {
-        let panel = Some(Touched::Panel);
-        if reading.presence == Presence::Away {
-            if before == panel {
-                self.shared
-                    .point(PointerNews::Pressed(reading.point, false));
-            }
-            self.shared.point(PointerNews::Gone);
-            return;
+    fn point(&self, read: &PenReading, before: Option<TouchTarget>) {
+        let panel = Some(TouchTarget::Panel);
+        if read.reading.presence != Presence::Away {
+            self.link.point(PointerEvent::Moved(read.point_px));
         }
-        self.shared.point(PointerNews::Moved(reading.point));
         if (before == panel) != (self.touched == panel) {
             let presses = self.touched == panel;
-            self.shared
-                .point(PointerNews::Pressed(reading.point, presses));
+            self.link
+                .point(PointerEvent::Pressed(read.point_px, presses));
+        }
+        if read.reading.presence == Presence::Away {
+            self.link.point(PointerEvent::Gone);
         }
     }
 
     /// The tool is gone, or another is there.
     fn away(&mut self, event_ns: u64, now_ns: u64) -> Result<(), BusError> {
-        (self.tool, self.touched) = (None, None);
-        self.shared.tell(now_ns, Presence::Away, false);
+        let touched = self.touched.take();
+        if let (Some(_), Some((newest, _))) = (self.tool.take(), self.newest) {
+            let mut gone = newest;
+            gone.reading.presence = Presence::Away;
+            self.point(&gone, touched);
+        }
+        self.link.tell(now_ns, Presence::Away);
         self.stream.leave(event_ns, now_ns, &mut self.desk)
     }
 
@@ -260,7 +261,7 @@ impl Hand {
         tracing::warn!("{trouble}");
         let status = StylusStatus {
             trouble,
-            samples: self.sent(),
+            samples: self.stream.sent(),
             ..StylusStatus::fresh(0)
         };
         let now_ns = self.bus.now_ns();
@@ -275,27 +276,39 @@ impl Hand {
     /// [`BusError`].
     pub fn rest(&mut self) -> Result<(), BusError> {
         let now_ns = self.bus.now_ns();
-        let was_in_range = self.stream.newest().in_range;
         self.stream.silent(now_ns, now_ns, &mut self.desk)?;
-        if was_in_range && !self.stream.newest().in_range {
-            // It hovered in silence for so long that it counts as away.
-            (self.tool, self.touched) = (None, None);
-            self.shared.tell(now_ns, Presence::Away, false);
+        if self.gone_ns().is_some_and(|gone_ns| gone_ns <= now_ns) {
+            self.away(now_ns, now_ns)?;
         }
         self.stream.serve(now_ns)
     }
 
-    /// Time until [`rest`](Self::rest) is due, ns; `None` while no pen is near.
+    /// Time at which a pen that hovers in silence counts as away, also over a panel, ns; `None` if that will be said.
+    fn gone_ns(&self) -> Option<u64> {
+        let (newest, read_ns) = self.newest?;
+        let hovers = self.tool.is_some() && newest.reading.presence == Presence::Hovering;
+        (hovers && !newest.axes.range).then_some(read_ns + GONE_NS)
+    }
+
+    /// Time until [`rest`](Self::rest) is due, ns; `None` while no pen is near and no sample may be asked for.
     #[must_use]
     pub fn due_in_ns(&self) -> Option<u64> {
-        let due_ns = self.stream.due_ns()?;
-        Some(due_ns.saturating_sub(self.bus.now_ns()))
+        let now_ns = self.bus.now_ns();
+        let read_ns = self.newest.map(|(_, read_ns)| read_ns);
+        let serves = read_ns.is_some_and(|read_ns| now_ns < read_ns + GONE_NS);
+        let due_ns = [
+            self.stream.due_ns(),
+            self.gone_ns(),
+            serves.then_some(now_ns + SERVE_NS),
+        ];
+        let due_ns = due_ns.into_iter().flatten().min()?;
+        Some(due_ns.saturating_sub(now_ns))
     }
 }
 
-impl std::fmt::Debug for Hand {
+impl std::fmt::Debug for WindowStylus {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Hand")
+        f.debug_struct("WindowStylus")
             .field("told", &self.told)
             .field("tool", &self.tool)
             .field("touched", &self.touched)
