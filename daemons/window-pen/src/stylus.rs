@@ -280,7 +280,15 @@ impl WindowStylus {
         if self.gone_ns().is_some_and(|gone_ns| gone_ns <= now_ns) {
             self.away(now_ns, now_ns)?;
         }
-        self.stream.serve(now_ns)
+        Ok(())
+    }
+
+    /// Answers for lost samples.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn serve(&mut self) -> Result<(), BusError> {
+        self.stream.serve(self.bus.now_ns())
     }
 
     /// Time at which a pen that hovers in silence counts as away, also over a panel, ns; `None` if that will be said.

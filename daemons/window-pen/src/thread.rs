@@ -149,8 +149,11 @@ fn follow(
     while stop.read().is_err() {
         let timeout = hand.due_in_ns().map(Duration::from_nanos);
         source.wait(stop.as_fd(), timeout, &mut readings)?;
-        let sent: Result<(), _> = readings.drain(..).try_for_each(|read| hand.read(&read));
-        sent.and_then(|()| hand.rest())
+        let sent = match readings.is_empty() {
+            true => hand.rest(),
+            false => readings.drain(..).try_for_each(|read| hand.read(&read)),
+        };
+        sent.and_then(|()| hand.serve())
             .map_err(|error| gone(&error))?;
     }
     Ok(())
