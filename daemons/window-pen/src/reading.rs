@@ -9,6 +9,10 @@ pub struct Tool(pub u64);
 
 /// What a tool senses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each axis is there or not, whatever the others"
+)]
 pub struct Axes {
     /// Pressure of its tip.
     pub pressure: bool,

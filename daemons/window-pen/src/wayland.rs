@@ -52,6 +52,10 @@ pub(crate) unsafe fn foreign_connection(display: WaylandDisplayHandle) -> Connec
 
 /// A tool as its events have told so far.
 #[derive(Debug, Default)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "events of the protocol change them one by one"
+)]
 struct KnownTool {
     tool: Tool,
     axes: Axes,

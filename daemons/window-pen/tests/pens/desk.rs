@@ -88,7 +88,7 @@ pub(crate) fn contact(sample: &StylusSample) -> ([f64; 3], [f64; 2], f64, f64) {
             twist_rad,
             pressure,
         } => (point_m, tilt_rad, twist_rad, pressure),
-        StylusPose::Ferrule { .. } => panic!("a pen has no ferrule"),
+        StylusPose::Ferrule { .. } => unreachable!("a pen has no ferrule"),
     }
 }
 
