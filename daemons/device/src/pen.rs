@@ -5,6 +5,8 @@
 //! out: a pen that touched is lifted before it goes, and one that was turned round has been away. A silent tablet means
 //! that nothing has changed.
 
+/// Steepest tilt of a sample, rad.
+pub const STEEPEST_RAD: f64 = 85.0 * std::f64::consts::PI / 180.0;
 /// Pressure of a tip that touches without any, a step of the finest pens: pressure 0 is a pen in the air.
 pub const LIGHTEST: f64 = 1.0 / 8192.0;
 

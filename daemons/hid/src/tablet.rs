@@ -13,8 +13,8 @@ use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, DeviceSection};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, FARTHEST_M, StylusPose, StylusSample, switch};
 
-use crate::layout::{STEEPEST_RAD, wrapped};
-use maulstick_device::pen::{End, Presence, Reading};
+use crate::layout::wrapped;
+use maulstick_device::pen::{End, Presence, Reading, STEEPEST_RAD};
 
 /// A tablet fitted to the desk.
 #[derive(Clone, Debug)]

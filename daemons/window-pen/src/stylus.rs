@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{Bus, BusError, CreditSender, Qos, Wake};
-use maulstick_device::pen::{End, Presence, Reading};
+use maulstick_device::pen::{End, Presence, Reading, STEEPEST_RAD};
 use maulstick_device::pen_stream::{DeskFit, GONE_NS, PenStream};
 use maulstick_rig::UserError;
 use maulstick_rig::config::PEN_PRIORITY;
@@ -18,8 +18,6 @@ use crate::clock::WindowClock;
 use crate::reading::{Axes, PenReading, Tool};
 use crate::window::{PenLink, PointerEvent};
 
-/// Steepest tilt of a sample, a little less than 85°, rad.
-const STEEPEST_RAD: f64 = 1.483;
 /// Interval at which lost samples are answered for, ns, for [`GONE_NS`] after the last reading.
 const SERVE_NS: u64 = 50_000_000;
 /// Samples a second of most pens, which do not say.
@@ -40,7 +38,7 @@ pub struct WindowStylus {
     desk: Desk,
     info: Sender<StylusInfo>,
     status: Sender<StylusStatus>,
-    told: StylusInfo,
+    sent_info: StylusInfo,
     clock: WindowClock,
     tool: Option<Tool>,
     touched: Option<TouchTarget>,
@@ -91,7 +89,7 @@ impl DeskFit for Desk {
 }
 
 impl WindowStylus {
-    /// A hand that is called `name` on the bus.
+    /// A stylus that is called `name` on the bus.
     ///
     /// # Errors
     /// [`BusError::Topic`].
@@ -103,7 +101,7 @@ impl WindowStylus {
     ) -> Result<Self, BusError> {
         let wake = Wake::new();
         let samples = CreditSender::new(&*bus, topics, &topics.sample(name), me, &wake)?;
-        let told = StylusInfo {
+        let sent_info = StylusInfo {
             device: name.to_owned(),
             driver: "window".into(),
             brush: String::new(),
@@ -126,7 +124,7 @@ impl WindowStylus {
                 point_m: [0.0; 3],
                 mirrored: false,
             },
-            told,
+            sent_info,
             clock: WindowClock::default(),
             tool: None,
             touched: None,
@@ -166,7 +164,6 @@ impl WindowStylus {
         let reading = self.place(read);
         self.newest = Some((*read, now_ns));
         self.link.tell(now_ns, read.reading.presence);
-        self.stream.set_reports_range(read.axes.range);
         self.stream
             .read(reading, (event_ns, now_ns), &mut self.desk)
     }
@@ -176,30 +173,32 @@ impl WindowStylus {
         let brush = self.link.brush();
         let senses = axes.bits();
         self.desk.axes = axes;
-        if self.told.brush == brush && self.told.senses == senses {
+        if self.sent_info.brush == brush && self.sent_info.senses == senses {
             return Ok(());
         }
-        if self.told.brush != brush {
+        if self.sent_info.brush != brush {
             // The brush that was in the hand is lifted first.
             self.stream.leave(now_ns, now_ns, &mut self.desk)?;
         }
-        (self.told.brush, self.told.senses) = (brush, senses);
+        (self.sent_info.brush, self.sent_info.senses) = (brush, senses);
         self.link.senses(senses);
-        self.info.send(now_ns, now_ns, &self.told)
+        self.info.send(now_ns, now_ns, &self.sent_info)
     }
 
     /// Finds a reading on the desk: over a panel, and while it operates one, the brush is away.
     fn place(&mut self, read: &PenReading) -> Reading {
         let reading = read.reading;
         let seen = self.link.desk(read.point_px);
-        let is_desk = seen.is_some_and(|(_, _, is_desk)| is_desk);
-        if let Some((point_m, mirrored, _)) = seen {
-            (self.desk.point_m, self.desk.mirrored) = (point_m, mirrored);
+        let is_desk = seen.is_some_and(|seen| seen.is_desk);
+        if let Some(seen) = seen {
+            (self.desk.point_m, self.desk.mirrored) = (seen.point_m, seen.is_mirrored);
         }
         let before = self.touched;
         self.touched = match (reading.presence, before) {
             (Presence::Touching, Some(touched)) => Some(touched),
-            (Presence::Touching, None) if is_desk => Some(TouchTarget::Desk),
+            (Presence::Touching, None) if seen.is_some_and(|seen| seen.takes_strokes) => {
+                Some(TouchTarget::Desk)
+            }
             (Presence::Touching, None) => Some(TouchTarget::Panel),
             _ => None,
         };
@@ -317,7 +316,7 @@ impl WindowStylus {
 impl std::fmt::Debug for WindowStylus {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("WindowStylus")
-            .field("told", &self.told)
+            .field("sent_info", &self.sent_info)
             .field("tool", &self.tool)
             .field("touched", &self.touched)
             .finish_non_exhaustive()

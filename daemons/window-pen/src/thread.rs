@@ -107,7 +107,7 @@ impl PenThread {
     /// A [`UserError`] where the system refuses a thread.
     pub fn of(
         mut source: Box<dyn Source + Send>,
-        mut hand: WindowStylus,
+        mut stylus: WindowStylus,
     ) -> Result<Self, UserError> {
         let refused = |error: &dyn std::fmt::Display| {
             UserError::failure(format!("the window's pens cannot be read: {error}"))
@@ -117,15 +117,15 @@ impl PenThread {
         let stop = Arc::new(stop);
         let stopped = Arc::clone(&stop);
         if !source.moves_pointer() {
-            hand.link().set_moves_no_pointer();
+            stylus.link().set_moves_no_pointer();
         }
         let run = move || {
-            let fault = follow(&mut *source, &stopped, &mut hand).err();
-            if let Err(error) = hand.end() {
+            let fault = follow(&mut *source, &stopped, &mut stylus).err();
+            if let Err(error) = stylus.end() {
                 tracing::debug!("the pen is not lifted: {error}");
             }
             if let Some(fault) = fault {
-                hand.fail(&fault);
+                stylus.fail(&fault);
             }
         };
         let thread = std::thread::Builder::new()
@@ -143,17 +143,17 @@ impl PenThread {
 fn follow(
     source: &mut dyn Source,
     stop: &EventFd,
-    hand: &mut WindowStylus,
+    stylus: &mut WindowStylus,
 ) -> Result<(), UserError> {
     let mut readings = Vec::new();
     while stop.read().is_err() {
-        let timeout = hand.due_in_ns().map(Duration::from_nanos);
+        let timeout = stylus.due_in_ns().map(Duration::from_nanos);
         source.wait(stop.as_fd(), timeout, &mut readings)?;
         let sent = match readings.is_empty() {
-            true => hand.rest(),
-            false => readings.drain(..).try_for_each(|read| hand.read(&read)),
+            true => stylus.rest(),
+            false => readings.drain(..).try_for_each(|read| stylus.read(&read)),
         };
-        sent.and_then(|()| hand.serve())
+        sent.and_then(|()| stylus.serve())
             .map_err(|error| gone(&error))?;
     }
     Ok(())

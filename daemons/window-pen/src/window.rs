@@ -12,8 +12,24 @@ pub trait DeskView: Send + Sync {
     /// The point of the desk that is seen there, m.
     fn to_desk(&self, point: [f64; 2]) -> [f64; 3];
 
+    /// True if a touch of the open desk paints: no key is held that makes something else of it.
+    fn takes_strokes(&self) -> bool;
+
     /// True if the window shows the desk as in a mirror.
     fn is_mirrored(&self) -> bool;
+}
+
+/// What a pen finds at a point of a window.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SeenDesk {
+    /// The point of the desk, m.
+    pub point_m: [f64; 3],
+    /// True if it is seen in a mirror.
+    pub is_mirrored: bool,
+    /// True where the desk lies open.
+    pub is_desk: bool,
+    /// True if a touch there paints.
+    pub takes_strokes: bool,
 }
 
 /// What happened with a pen, for a window whose system moves no pointer with it.
@@ -84,12 +100,17 @@ impl PenLink {
         }
     }
 
-    /// What the desk is at a point: its place, m, whether it is mirrored, and whether it lies open there; `None` while no
-    /// desk is shown.
-    pub(crate) fn desk(&self, point: [f64; 2]) -> Option<([f64; 3], bool, bool)> {
+    /// The desk at a point; `None` while none is shown.
+    pub(crate) fn desk(&self, point: [f64; 2]) -> Option<SeenDesk> {
         // The view asks the window, whose lock is not waited for with this one.
         let view = Arc::clone(self.lock().view.as_ref()?);
-        Some((view.to_desk(point), view.is_mirrored(), view.is_desk(point)))
+        let is_desk = view.is_desk(point);
+        Some(SeenDesk {
+            point_m: view.to_desk(point),
+            is_mirrored: view.is_mirrored(),
+            is_desk,
+            takes_strokes: is_desk && view.takes_strokes(),
+        })
     }
 
     /// The brush in the hand.

@@ -17,15 +17,13 @@ use eframe::egui::{self, CentralPanel, Context, CursorIcon, Frame, Visuals};
 use eframe::egui_wgpu::RenderState;
 use maulstick_appearance::picture::Export;
 use maulstick_brush::palette_place::Side;
-use maulstick_bus::typed::{ask, random_epoch};
-use maulstick_bus::{Bus, Qos, Wake};
+use maulstick_bus::typed::random_epoch;
+use maulstick_bus::{Bus, Wake};
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::{NodeHandle, Stop, UserError};
-use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
 use maulstick_types::scene::{PALETTE, Surface};
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
-use raw_window_handle::{HasDisplayHandle as _, HasWindowHandle as _};
 
 use crate::app::overlay::Overlay;
 use crate::dialogs::paths;
@@ -38,7 +36,6 @@ use crate::input::pen::WindowPen;
 use crate::input::pointer_path::PointerPath;
 use crate::input::presses;
 use crate::language;
-use crate::panels::device;
 use crate::render::device_loss::DeviceLoss;
 use crate::render::display_transform::DisplayTransform;
 use crate::render::frame_reports::Presenter;
@@ -50,7 +47,7 @@ use crate::rig::listener::RigListener;
 use crate::rig::requests::Requests;
 use crate::rig::state::RigState;
 use crate::rig::stroke_barrier::StrokeBarrier;
-use crate::rig::thumbnails::{Picture, Pictured, ThumbnailFetcher};
+use crate::rig::thumbnails::ThumbnailFetcher;
 use crate::settings::look::Look;
 use crate::settings::preferences::Preferences;
 use crate::tracing::TracingPicture;
@@ -70,9 +67,6 @@ pub(crate) mod sides;
 #[cfg(test)]
 mod tests;
 
-/// Longer side of a version's small picture, pixels, and how long one may take.
-const THUMBNAIL: u32 = 128;
-const FETCH: Duration = Duration::from_secs(1);
 /// Interval at which a pressed pointer that stands still is sent: a longer silence would lift the brush.
 const STILL: Duration = Duration::from_millis(30);
 
@@ -181,7 +175,7 @@ impl App {
             listener: RigListener::new(&**bus, topics, &member.wake)?,
             rig: RigState::new(&member.config.rig.name, &names, Arc::new(library)),
             dispatcher: CommandDispatcher::new(Arc::clone(bus), topics, &member.wake),
-            fetcher: fetcher(member),
+            fetcher: ThumbnailFetcher::of_rig(member),
             bus: Arc::clone(bus),
             stop: member.stop.clone(),
             wake: member.wake.clone(),
@@ -254,25 +248,7 @@ impl App {
 
     /// Starts to read the pens over the window.
     pub fn follow_pens(&mut self, window: &eframe::CreationContext<'_>) {
-        let handles = window
-            .display_handle()
-            .ok()
-            .zip(window.window_handle().ok());
-        if let Some((display, own)) = handles {
-            self.pen
-                .begin(&window.egui_ctx, display.as_raw(), own.as_raw());
-        }
-    }
-
-    /// Tells once what pens sense.
-    fn greet_pen(&mut self) {
-        let senses = self.pen.senses();
-        if senses & !self.preferences.pen_senses != 0 {
-            self.preferences.pen_senses |= senses;
-            let list = device::senses(senses);
-            self.notifications
-                .note(tr!("Your pen paints. It senses {list}.", list));
-        }
+        self.pen.begin(window);
     }
 
     fn take_in(&mut self, now_ns: u64) {
@@ -371,29 +347,6 @@ impl App {
     }
 }
 
-/// Fetches small pictures of versions and steps from the paint node.
-fn fetcher(member: &NodeHandle) -> ThumbnailFetcher {
-    let (bus, topic) = (Arc::clone(&member.bus), member.topics.thumbnail());
-    let me = member.origin("ui");
-    let fetch = move |what: &Pictured| {
-        let (version, step) = match what {
-            Pictured::Version(name) => (name.clone(), None),
-            Pictured::Step(step) => (String::new(), Some(*step)),
-        };
-        let request = ThumbnailRequest {
-            version,
-            side: THUMBNAIL,
-            step,
-        };
-        let reply = ask(&*bus, &topic, Qos::Data, me, &request, FETCH).ok()?;
-        let ThumbnailReply {
-            width, height, rgb, ..
-        } = reply;
-        Picture::new([width as usize, height as usize], rgb.into_vec())
-    };
-    ThumbnailFetcher::new(fetch, &member.wake)
-}
-
 impl eframe::App for App {
     fn raw_input_hook(&mut self, context: &Context, input: &mut egui::RawInput) {
         self.pen.take_in(context, input);
@@ -413,7 +366,8 @@ impl eframe::App for App {
         if let Err(error) = taken.and_then(|()| self.mouse.send(now_ns, &places, grip.pressure)) {
             tracing::warn!("the mouse: {error}");
         }
-        self.greet_pen();
+        self.pen
+            .greet(&mut self.preferences, &mut self.notifications);
         // After the mouse has sent its position: its brush is drawn there.
         self.take_in(now_ns);
         self.barrier.take_in(now_ns);

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use eframe::CreationContext;
 use eframe::egui::{
     Color32, Context, Event, Id, LayerId, Order, PointerButton, Pos2, RawInput, Stroke, TouchPhase,
     pos2,
@@ -13,13 +14,16 @@ use maulstick_types::wire::topics::Topics;
 use maulstick_window_pen::{
     DeskView, PenLink, PenState, PenThread, PointerEvent, WindowStylus, pens_of,
 };
-use raw_window_handle::{RawDisplayHandle, RawWindowHandle};
+use raw_window_handle::{HasDisplayHandle as _, HasWindowHandle as _};
 
 use crate::input::keymap::Keymap;
 use crate::input::keys::Action;
 use crate::input::navigation::is_panel;
 use crate::input::presses;
+use crate::panels::device;
+use crate::settings::preferences::Preferences;
 use crate::view::camera::View;
+use crate::widgets::notifications::Notifications;
 
 /// The pointer that a pen has moved is still its own so long after it has left, ns: the window hears of the two apart.
 const LINGERS_NS: u64 = 200_000_000;
@@ -45,11 +49,15 @@ impl ShownDesk {
 impl DeskView for ShownDesk {
     fn is_desk(&self, point: [f64; 2]) -> bool {
         let at = self.at(point);
-        self.paints && self.view.area.contains(at) && !is_panel(&self.context, at)
+        self.view.area.contains(at) && !is_panel(&self.context, at)
     }
 
     fn to_desk(&self, point: [f64; 2]) -> [f64; 3] {
         self.view.to_desk(self.at(point), &self.surfaces).to_array()
+    }
+
+    fn takes_strokes(&self) -> bool {
+        self.paints
     }
 
     fn is_mirrored(&self) -> bool {
@@ -59,7 +67,7 @@ impl DeskView for ShownDesk {
 
 /// The pens of the window.
 pub(crate) struct WindowPen {
-    hand: Option<WindowStylus>,
+    stylus: Option<WindowStylus>,
     link: PenLink,
     thread: Option<PenThread>,
     state: PenState,
@@ -77,9 +85,9 @@ impl WindowPen {
         me: Origin,
     ) -> Result<Self, BusError> {
         let link = PenLink::default();
-        let hand = WindowStylus::new(Arc::clone(bus), topics, (name, me), link.clone())?;
+        let stylus = WindowStylus::new(Arc::clone(bus), topics, (name, me), link.clone())?;
         Ok(Self {
-            hand: Some(hand),
+            stylus: Some(stylus),
             link,
             thread: None,
             state: PenState::default(),
@@ -88,25 +96,27 @@ impl WindowPen {
 
     /// Reads the pens of a window, which must outlive this or its [`end`](Self::end).
     #[expect(unsafe_code, reason = "a window's handles are pointers of its library")]
-    pub(crate) fn begin(
-        &mut self,
-        context: &Context,
-        display: RawDisplayHandle,
-        window: RawWindowHandle,
-    ) {
-        let Some(mut hand) = self.hand.take() else {
+    pub(crate) fn begin(&mut self, window: &CreationContext<'_>) {
+        let handles = window
+            .display_handle()
+            .ok()
+            .zip(window.window_handle().ok());
+        let Some((display, own)) = handles else {
             return;
         };
-        let context = context.clone();
+        let Some(mut stylus) = self.stylus.take() else {
+            return;
+        };
+        let context = window.egui_ctx.clone();
         self.link.on_pointer(move || context.request_repaint());
         // SAFETY: the window's application ends this before the window closes.
-        let source = unsafe { pens_of(display, window) };
+        let source = unsafe { pens_of(display.as_raw(), own.as_raw()) };
         match source {
-            Ok(source) => match PenThread::of(source, hand) {
+            Ok(source) => match PenThread::of(source, stylus) {
                 Ok(thread) => self.thread = Some(thread),
                 Err(fault) => tracing::warn!("{}", fault.what),
             },
-            Err(fault) => hand.fail(&fault),
+            Err(fault) => stylus.fail(&fault),
         }
     }
 
@@ -157,10 +167,14 @@ impl WindowPen {
         }
     }
 
-    /// What the newest pen senses, bits of `axes`; 0 before one was near.
-    #[must_use]
-    pub(crate) fn senses(&self) -> u32 {
-        self.state.senses
+    /// Tells once what pens sense.
+    pub(crate) fn greet(&self, preferences: &mut Preferences, notifications: &mut Notifications) {
+        let senses = self.state.senses;
+        if senses & !preferences.pen_senses != 0 {
+            preferences.pen_senses |= senses;
+            let list = device::senses(senses);
+            notifications.note(tr!("Your pen paints. It senses {list}.", list));
+        }
     }
 
     /// True while the pointer is a pen's: on the desk it does nothing then.

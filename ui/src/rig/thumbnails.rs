@@ -4,9 +4,16 @@ use std::collections::BTreeMap;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
-use maulstick_bus::Wake;
+use maulstick_bus::typed::ask;
+use maulstick_bus::{Qos, Wake};
+use maulstick_rig::NodeHandle;
+use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
 
+/// Longer side of a version's small picture, pixels, and how long one may take.
+const THUMBNAIL: u32 = 128;
+const FETCH: Duration = Duration::from_secs(1);
 /// Delay before a picture that could not be fetched is requested again, ns.
 const AGAIN_NS: u64 = 5_000_000_000;
 
@@ -121,6 +128,30 @@ pub(crate) struct ThumbnailFetcher {
 }
 
 impl ThumbnailFetcher {
+    /// A fetcher of versions and steps from the paint node.
+    #[must_use]
+    pub(crate) fn of_rig(member: &NodeHandle) -> Self {
+        let (bus, topic) = (Arc::clone(&member.bus), member.topics.thumbnail());
+        let me = member.origin("ui");
+        let fetch = move |what: &Pictured| {
+            let (version, step) = match what {
+                Pictured::Version(name) => (name.clone(), None),
+                Pictured::Step(step) => (String::new(), Some(*step)),
+            };
+            let request = ThumbnailRequest {
+                version,
+                side: THUMBNAIL,
+                step,
+            };
+            let reply = ask(&*bus, &topic, Qos::Data, me, &request, FETCH).ok()?;
+            let ThumbnailReply {
+                width, height, rgb, ..
+            } = reply;
+            Picture::new([width as usize, height as usize], rgb.into_vec())
+        };
+        Self::new(fetch, &member.wake)
+    }
+
     /// A fetcher that asks by `fetch`, which may take its time, and rings `wake` at each answer.
     #[must_use]
     pub(crate) fn new(
@@ -177,8 +208,6 @@ impl Drop for ThumbnailFetcher {
 
 #[cfg(test)]
 mod tests {
-    use std::time::Duration;
-
     use super::*;
 
     const PATIENCE: Duration = Duration::from_secs(20);

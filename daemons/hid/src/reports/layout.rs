@@ -23,7 +23,7 @@ use maulstick_types::stylus::axes;
 
 use crate::descriptor::{lies_in, page, pair};
 use crate::units::{metres, radians};
-use maulstick_device::pen::{End, Presence, Reading};
+use maulstick_device::pen::{End, Presence, Reading, STEEPEST_RAD};
 
 /// Counts a metre of a tablet that does not say, 5080 an inch.
 const COUNTS_M: f64 = 200_000.0;
@@ -35,8 +35,6 @@ const LONGER_M: f64 = 0.25;
 const HIGHEST_M: f64 = 0.01;
 /// Pressure of a touch without a pressure field.
 const PRESSED: f64 = 0.5;
-/// No tilt is farther from upright, rad: 85°.
-pub const STEEPEST_RAD: f64 = 85.0 * PI / 180.0;
 
 /// Role of a report's field for a pen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

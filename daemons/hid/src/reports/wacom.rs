@@ -7,8 +7,7 @@
 use maulstick_types::stylus::axes;
 
 use crate::descriptor::input_bytes;
-use crate::layout::STEEPEST_RAD;
-use maulstick_device::pen::{End, Presence, Reading};
+use maulstick_device::pen::{End, Presence, Reading, STEEPEST_RAD};
 
 /// Counts a metre.
 const COUNTS_M: f64 = 200_000.0;

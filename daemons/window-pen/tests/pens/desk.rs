@@ -15,8 +15,11 @@ pub(crate) const PANEL: f64 = 500.0;
 pub(crate) const PIXEL_M: f64 = 1e-3;
 
 /// A window of 1,000 pixels: desk to the left, panel to the right.
+#[derive(Default)]
 pub(crate) struct Window {
     pub(crate) mirrored: bool,
+    /// A key is held that makes something else of a touch.
+    pub(crate) key: bool,
 }
 
 impl DeskView for Window {
@@ -26,6 +29,10 @@ impl DeskView for Window {
 
     fn to_desk(&self, [x, y]: [f64; 2]) -> [f64; 3] {
         [PIXEL_M * x, -PIXEL_M * y, 0.0]
+    }
+
+    fn takes_strokes(&self) -> bool {
+        !self.key
     }
 
     fn is_mirrored(&self) -> bool {
@@ -53,7 +60,7 @@ impl Desk {
             epoch: 1,
         };
         let link = PenLink::default();
-        link.show(Some(Arc::new(Window { mirrored: false })), "main");
+        link.show(Some(Arc::new(Window::default())), "main");
         link.set_moves_no_pointer();
         let bus: Arc<dyn Bus> = Arc::new(bus);
         let hand = WindowStylus::new(Arc::clone(&bus), &topics, ("pen", me), link.clone());

@@ -94,11 +94,40 @@ fn a_brush_over_a_panel_is_away() {
     assert_eq!(near, [true, false, true]);
 }
 
+/// With Ctrl, say, a touch of the desk is the window's; the brush still hovers there.
+#[test]
+fn with_a_key_a_touch_of_the_desk_is_the_pointer_s() {
+    let (mut desk, mut stylus) = Desk::new();
+    let key = Window {
+        key: true,
+        ..Window::default()
+    };
+    desk.link.show(Some(Arc::new(key)), "main");
+    for (ms, presence) in [(1, Presence::Hovering), (2, Presence::Touching)] {
+        desk.net.advance(1_000_000);
+        stylus.read(&read(ms, 100.0, presence)).expect("sent");
+    }
+    let heard = desk.heard();
+    let told: Vec<_> = heard
+        .iter()
+        .map(|(_, sample)| (words(sample).1, sample.in_range))
+        .collect();
+    assert_eq!(told, [(0.0, true), (0.0, false)]);
+    let pressed = PointerEvent::Pressed([100.0, 100.0], true);
+    assert_eq!(desk.link.state().pointer.last(), Some(&pressed));
+}
+
 #[test]
 fn tilt_and_twist_are_the_desk_s_also_in_a_mirror() {
     let of = |mirrored: bool| {
         let (mut desk, mut hand) = Desk::new();
-        desk.link.show(Some(Arc::new(Window { mirrored })), "main");
+        desk.link.show(
+            Some(Arc::new(Window {
+                mirrored,
+                ..Window::default()
+            })),
+            "main",
+        );
         let mut touch = read(1, 100.0, Presence::Touching);
         touch.reading.end = End::Eraser;
         hand.read(&touch).expect("sent");
@@ -207,8 +236,7 @@ fn a_pressed_panel_is_always_let_go() {
     stylus
         .read(&read(1, 600.0, Presence::Touching))
         .expect("sent");
-    desk.link
-        .show(Some(Arc::new(Window { mirrored: false })), "second");
+    desk.link.show(Some(Arc::new(Window::default())), "second");
     stylus
         .read(&read(2, 400.0, Presence::Touching))
         .expect("sent");
@@ -228,8 +256,7 @@ fn another_brush_is_taken_after_the_first_was_lifted() {
     let (mut desk, mut hand) = Desk::new();
     hand.read(&read(1, 100.0, Presence::Touching))
         .expect("sent");
-    desk.link
-        .show(Some(Arc::new(Window { mirrored: false })), "second");
+    desk.link.show(Some(Arc::new(Window::default())), "second");
     hand.read(&read(2, 110.0, Presence::Touching))
         .expect("sent");
     let told: Vec<bool> = desk
