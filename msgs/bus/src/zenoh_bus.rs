@@ -38,8 +38,10 @@ pub struct Dial {
 
 /// The largest message that a receiver accepts, bytes: a full-screen frame and some.
 const MAX_MESSAGE_BYTES: usize = 96 << 20;
-/// A peer that says nothing for this long is gone, ms.
-const LEASE_MS: u32 = 3000;
+/// A peer that says nothing for this long is gone, ms. A process that died closes its sockets and is gone at once; one
+/// that stood still goes on, and must be believed for so long: zenoh makes a link between two peers that both stay known
+/// to a third only once.
+const LEASE_MS: u32 = 20_000;
 
 /// A zenoh session with the rig's clock.
 #[derive(Debug)]

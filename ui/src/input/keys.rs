@@ -127,7 +127,7 @@ const fn key(act: Action, modifiers: Modifiers, key: Key, words: &'static str) -
 }
 
 /// The keys of a new painter.
-pub(crate) const BINDINGS: [Binding; 37] = [
+pub(crate) const BINDINGS: [Binding; 38] = [
     key(
         Action::Palette,
         Modifiers::NONE,
@@ -228,6 +228,7 @@ pub(crate) const BINDINGS: [Binding; 37] = [
         Key::Z,
         "Redo",
     ),
+    key(Action::Redo, Modifiers::COMMAND, Key::Y, "Redo"),
     key(Action::Undo, Modifiers::COMMAND, Key::Z, "Undo"),
     key(Action::New, Modifiers::COMMAND, Key::N, "New painting"),
     key(Action::Open, Modifiers::COMMAND, Key::O, "Open a painting"),

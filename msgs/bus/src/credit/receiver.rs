@@ -230,11 +230,12 @@ impl<M: Message> CreditReceiver<M> {
             return Ok(());
         };
         let waits = !stream.asked.is_empty() && now_ns < stream.asked_ns + RETRY_NS;
+        let live = !stream.is_replayed();
+        let unserved = unserved && live;
         if waits && answered == 0 && !unserved {
             return Ok(());
         }
-        let patient = stream.askings < PATIENCE && !unserved;
-        if !patient && !stream.is_replayed() {
+        if unserved || (live && stream.askings >= PATIENCE) {
             self.counts.lost += stream.give_up(gap, &mut self.ordered);
             tracing::warn!(
                 "{}: messages {} to {} are lost",

@@ -4,7 +4,7 @@
 //! model keeps of its own and 0 without; then, for each slot of the mask from the lowest, the plane's difference to the same plane of an older page, or without one to
 //! the count at its left (the first of a row to the one below it), each as a zigzag number of 32 bits;
 //! of a plane first the low bytes of all differences, then the next ones. Most of these bytes are 0. The model's own
-//! planes follow ([`own`]).
+//! planes follow.
 
 mod own;
 
