@@ -15,12 +15,13 @@ use maulstick_types::{DecodeError, Flags, FrameView, Origin, encode};
 use crate::render::tile_planner::{Asked, AtlasState, Part, TilePlanner};
 use crate::view::visible_tiles::Wanted;
 
-/// A frame that does not arrive within this time is requested again.
+/// A frame that does not arrive within this time, and what the paint node may wait, is requested again.
 const LIMIT: Duration = Duration::from_millis(500);
 /// Pause between two queries that nobody answers.
 const PAUSE: Duration = Duration::from_millis(50);
-/// Longest time the paint node may wait for a change, ms.
+/// Longest time the paint node may wait for a change, ms: after one, and at rest.
 const WAIT_MS: u32 = 200;
+const REST_MS: u32 = 1600;
 /// So many frames in a row that came only through the socket: shared memory does not work.
 const STRIKES: u32 = 3;
 /// Bytes of a plane of half floats.
@@ -97,8 +98,13 @@ impl FrameInbox {
     /// Requests this from the next frame on; nothing is requested before.
     pub fn want(&self, wanted: Wanted) {
         if locked(&self.wanted).replace(wanted) != Some(wanted) {
-            self.asking.ring();
+            self.wake();
         }
+    }
+
+    /// Wakes the thread that pulls, so that it sees whether it is to stop.
+    pub fn wake(&self) {
+        self.asking.ring();
     }
 
     /// The error, while the replies of the paint node cannot be read.
@@ -135,13 +141,22 @@ pub fn pull(source: &FrameSource, inbox: &FrameInbox, wake: &Wake, stop: &Stop) 
         strikes: 0,
         told: BTreeSet::new(),
         newest: (0, Vec::new()),
+        wait_ms: WAIT_MS,
     };
+    let mut before = None;
     while !stop.requested() {
         match inbox.wanted() {
             Some(wanted) => {
-                if let Some(shown) = puller.turn(&wanted) {
-                    locked(&inbox.replies).push(shown);
-                    wake.ring();
+                if before.replace(wanted) != Some(wanted) {
+                    puller.wait_ms = WAIT_MS;
+                }
+                match puller.turn(&wanted) {
+                    Some(shown) => {
+                        locked(&inbox.replies).push(shown);
+                        wake.ring();
+                        puller.wait_ms = WAIT_MS;
+                    }
+                    None => puller.wait_ms = (2 * puller.wait_ms).min(REST_MS),
                 }
             }
             None => {
@@ -160,6 +175,8 @@ struct Puller<'a> {
     told: BTreeSet<String>,
     /// The journal state last passed to the window.
     newest: (u64, Vec<FrameHolds>),
+    /// Time that the paint node may wait for a change, ms.
+    wait_ms: u32,
 }
 
 /// Outcome of a query.
@@ -251,13 +268,17 @@ impl Puller<'_> {
             surface,
         } = self.source;
         let (epoch, look) = self.plan.of();
+        let wait_ms = match asked.part {
+            Part::Base => 0,
+            Part::Detail => self.wait_ms,
+        };
         let request = FrameRequest {
             surface: *surface,
             since: asked.since,
             epoch,
             tiles: asked.tiles.to_request(),
             level: asked.level,
-            wait_ms: if asked.part == Part::Base { 0 } else { WAIT_MS },
+            wait_ms,
             look,
             shared,
         };
@@ -269,8 +290,9 @@ impl Puller<'_> {
             }
         })?;
         let asking = &self.inbox.asking;
-        let pending = bus.ask(topic, Qos::Data, bytes, LIMIT, asking)?;
-        let give_up = Instant::now() + LIMIT + PAUSE;
+        let limit = LIMIT + Duration::from_millis(wait_ms.into());
+        let pending = bus.ask(topic, Qos::Data, bytes, limit, asking)?;
+        let give_up = Instant::now() + limit + PAUSE;
         while !self.stop.requested() {
             match pending.try_recv() {
                 Some(Answer::Bytes(answer)) => return Ok(Told::Answer(answer)),
@@ -281,10 +303,11 @@ impl Puller<'_> {
             if wanted.is_some_and(|wanted| self.plan.is_late(asked, &wanted)) {
                 return Ok(Told::Late);
             }
-            if Instant::now() > give_up {
+            let left = give_up.saturating_duration_since(Instant::now());
+            if left.is_zero() {
                 break;
             }
-            asking.wait(PAUSE);
+            asking.wait(left);
         }
         Ok(Told::Nothing)
     }

@@ -240,6 +240,9 @@ impl SceneRenderer {
 
     /// Waits for the threads, which end when they are asked to stop.
     pub(crate) fn end(&mut self) {
+        for layer in &self.surfaces {
+            layer.inbox.wake();
+        }
         for thread in self.threads.drain(..) {
             thread.join().ok();
         }

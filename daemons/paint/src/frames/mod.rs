@@ -31,12 +31,14 @@ use pyramid::{BARE_VERSIONS, Pyramid, coarsest, grid};
 /// A reply holds at most this much; the rest comes with the next one, bytes.
 const REPLY_BYTES: usize = 12 << 20;
 /// Longest wait for a change, ms.
-const LONGEST_WAIT_MS: u32 = 400;
+const LONGEST_WAIT_MS: u32 = 2000;
 /// Tiles of a reply that are computed together, and tiles of full detail of those at most.
 const BATCH: usize = 16;
 const MOST_TILES: usize = 64;
 /// A view waits this long for tiles that take their time; the rest comes with the next reply.
 const REPLY_WORK: Duration = Duration::from_millis(100);
+/// Longest time between two looks at the requests.
+const LOOK: Duration = Duration::from_millis(100);
 /// Time for baking dry layers ahead between two looks at the requests.
 const AHEAD: Duration = Duration::from_millis(10);
 
@@ -132,7 +134,7 @@ struct Waiting {
     deadline_ns: u64,
 }
 
-/// ReplyCache views.
+/// Answers views.
 pub struct FrameServer {
     bus: Arc<dyn Bus>,
     server: Server,
@@ -192,7 +194,7 @@ impl FrameServer {
         self
     }
 
-    /// ReplyCache who can be answered and returns how long to wait at most.
+    /// Answers who can be answered, and returns how long to wait at most.
     pub fn turn(&mut self) -> Duration {
         let now_ns = self.bus.now_ns();
         while let Some(request) = self.server.try_recv() {
@@ -228,14 +230,24 @@ impl FrameServer {
                 tracing::error!("a frame cannot be sent: {error}");
             }
         }
-        if !self.waiting.is_empty() {
-            self.feed.lock().wanted = true;
-            self.stepper.ring();
-        }
+        let deadlines = self.waiting.iter().map(|waiting| waiting.deadline_ns);
+        let soonest_ns = deadlines.min().map_or(u64::MAX, |deadline_ns| {
+            self.want(now_ns);
+            deadline_ns - now_ns
+        });
         if self.bake_ahead(&fed) {
             return Duration::ZERO;
         }
-        Duration::from_millis(if self.waiting.is_empty() { 100 } else { 20 })
+        LOOK.min(Duration::from_nanos(soonest_ns))
+    }
+
+    /// Has the stepper hand over what changes: a view watches.
+    fn want(&self, now_ns: u64) {
+        let mut fed = self.feed.lock();
+        fed.watched_ns = now_ns;
+        if !std::mem::replace(&mut fed.wanted, true) {
+            self.stepper.ring();
+        }
     }
 
     /// Sends a reply, in shared memory where the view asks for it.

@@ -75,6 +75,7 @@ impl Pulled {
 impl Drop for Pulled {
     fn drop(&mut self) {
         self.stop.request();
+        self.inbox.wake();
         if let Some(thread) = self.thread.take() {
             thread.join().expect("it ends");
         }
