@@ -9,8 +9,8 @@ use maulstick_types::edits::commands;
 
 use crate::advice;
 use crate::commands::{
-    begin, bench, brush, calibrate, demo, devices, edit, endpoint, export, fit, force, import,
-    light, matching, mix, open, painting, paints, render, save_as, schema, snapshot, take,
+    begin, bench, brush, demo, device, edit, endpoint, export, fit, force, import, light, matching,
+    mix, open, painting, paints, render, save_as, schema, snapshot, take,
 };
 use crate::processes::{self, NodeCommand};
 use crate::up;
@@ -54,8 +54,9 @@ enum Command {
     SaveAs(save_as::SaveAsOptions),
     /// Export the painting for other programs
     Export(export::ExportOptions),
-    /// List attached devices and how to use them
-    Devices(devices::DevicesOptions),
+    /// List, add, choose, fit and remove devices, also while painting
+    #[command(subcommand)]
+    Device(device::DeviceCommand),
     /// Run one process of a rig by hand
     #[command(subcommand)]
     Node(NodeCommand),
@@ -79,8 +80,6 @@ enum Command {
     Fit(fit::FitCommand),
     /// Run benchmarks against reference programs
     Bench(bench::BenchOptions),
-    /// Fit a device to the canvas by touching three corners
-    Calibrate(calibrate::CalibrateOptions),
     /// Show the force of a brush on the hand, by depth and angle
     Force(force::ForceOptions),
 }
@@ -98,7 +97,7 @@ const GROUPS: &[(&str, &[&str])] = &[
     ("Brush", &["brush"]),
     ("Colour", &["paints", "mix", "match", "fit"]),
     ("Takes", &["demo", "import", "render", "take"]),
-    ("Devices", &["devices", "calibrate", "force"]),
+    ("Devices", &["device", "force"]),
     ("Measure", &["bench"]),
 ];
 
@@ -142,10 +141,12 @@ pub fn run() -> Result<i32, UserError> {
         allow_overwriting();
     }
     // A rig ends its processes first, a node its work, a calibration its device.
-    if !matches!(
-        command,
-        Command::Up(_) | Command::Calibrate(_) | Command::Node(_)
-    ) {
+    let minds_signals = match &command {
+        Command::Up(_) | Command::Node(_) => true,
+        Command::Device(command) => command.minds_signals(),
+        _ => false,
+    };
+    if !minds_signals {
         clear_on_signals(crate::EXIT_INTERRUPTED)
             .map_err(|error| UserError::failure(format!("cannot watch for signals: {error}")))?;
     }
@@ -167,7 +168,7 @@ fn carry_out(command: Command) -> Result<i32, UserError> {
         Command::New(options) => begin::run(&options),
         Command::SaveAs(options) => save_as::run(&options),
         Command::Export(options) => export::run(&options),
-        Command::Devices(options) => devices::run(&options),
+        Command::Device(command) => device::run(&command),
         Command::Endpoint(options) => endpoint::run(&options),
         Command::Schema(options) => schema::run(&options),
         Command::Brush(command) => brush::run(&command),
@@ -177,7 +178,6 @@ fn carry_out(command: Command) -> Result<i32, UserError> {
         Command::Match(options) => matching::run(&options),
         Command::Fit(options) => fit::run(&options),
         Command::Bench(options) => bench::run(&options),
-        Command::Calibrate(options) => calibrate::run(&options),
         Command::Force(options) => force::run(&options),
     }
 }

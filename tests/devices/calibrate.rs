@@ -1,4 +1,4 @@
-//! `maulstick calibrate`: a simulated hand shows the corners of the canvas, and the device fits it then.
+//! `maulstick device fit`: a simulated hand shows the corners of the canvas, and the device fits it then.
 
 #[path = "../support/mod.rs"]
 mod support;
@@ -92,7 +92,7 @@ fn settings(place: &Place, places: &[[f64; 2]]) -> String {
     text
 }
 
-const CALIBRATE: [&str; 4] = ["calibrate", "phantom", "--rig", "rig.toml"];
+const CALIBRATE: [&str; 5] = ["device", "fit", "phantom", "--rig", "rig.toml"];
 
 #[test]
 fn a_hand_that_shows_three_corners_fits_its_device_to_the_canvas() {
@@ -173,18 +173,22 @@ fn what_cannot_be_calibrated_says_what_to_do() {
     let place = Place::new();
     let text = settings(&place, &CORNERS);
     has(
-        &fault(&place, &["calibrate", "phantom"], 2),
-        &["no settings", "maulstick up --print-config > rig.toml"],
+        &fault(&place, &["device", "fit", "phantom"], 2),
+        &["you have no device yet", "maulstick device add"],
     );
     has(
-        &fault(&place, &["calibrate", "phantm", "--rig", "rig.toml"], 2),
+        &fault(&place, &["device", "fit", "phantm", "--rig", "rig.toml"], 2),
         &["no [[device]] called 'phantm'", "rig.toml", "'phantom'"],
     );
     let mouse = text.replace("driver = \"simulated\"", "driver = \"spacemouse\"");
     let mouse = mouse.replace("hand = \"corners.mcap\"", "");
     std::fs::write(place.path("mouse.toml"), mouse).expect("written");
     has(
-        &fault(&place, &["calibrate", "phantom", "--rig", "mouse.toml"], 2),
+        &fault(
+            &place,
+            &["device", "fit", "phantom", "--rig", "mouse.toml"],
+            2,
+        ),
         &["'phantom' moves the canvas itself"],
     );
 }

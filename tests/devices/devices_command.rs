@@ -1,5 +1,5 @@
-//! `maulstick devices` as its users call it: beside the devices of this machine, whatever they are,
-//! those of a rig.
+//! `maulstick device` as its users call it: beside the devices of this machine, whatever they are, those of a rig, which come
+//! and go while it runs.
 
 #[path = "../support/mod.rs"]
 mod support;
@@ -9,7 +9,7 @@ use support::{Launcher, PATIENCE, Place, has, wait_for};
 
 /// What it prints as JSON.
 fn devices(place: &Place) -> Value {
-    let said = place.done(&["devices", "--json"]).stdout;
+    let said = place.done(&["device", "list", "--json"]).stdout;
     serde_json::from_slice(&said).expect("JSON")
 }
 
@@ -38,14 +38,14 @@ fn the_devices_of_a_rig_are_listed_while_it_runs() {
         (&10.into(), &"".into())
     );
     let text = wait_for(PATIENCE, || {
-        let text = String::from_utf8(place.done(&["devices"]).stdout).expect("UTF-8");
+        let text = String::from_utf8(place.done(&["device", "list"]).stdout).expect("UTF-8");
         text.contains("simulated").then_some(text)
     });
     let text = text.unwrap_or_else(|| panic!("no phantom: {}", launcher.said()));
     has(&text, &["in the rig", "phantom", "in use"]);
     // Another rig has none of it.
-    let text =
-        String::from_utf8(place.done(&["devices", "--name", "other"]).stdout).expect("UTF-8");
+    let text = String::from_utf8(place.done(&["device", "list", "--name", "other"]).stdout)
+        .expect("UTF-8");
     has(&text, &["does not run"]);
     assert!(!text.contains("phantom"), "{text}");
 }
@@ -53,7 +53,7 @@ fn the_devices_of_a_rig_are_listed_while_it_runs() {
 #[test]
 fn the_rule_for_udev_is_printed_by_itself() {
     let place = Place::new();
-    let rule = String::from_utf8(place.done(&["devices", "--udev"]).stdout).expect("UTF-8");
+    let rule = String::from_utf8(place.done(&["device", "list", "--udev"]).stdout).expect("UTF-8");
     has(
         &rule,
         &["\"*:056A:*\"", "\"*:256F:*\"", "16c0", "TAG+=\"uaccess\""],
@@ -62,6 +62,134 @@ fn the_rule_for_udev_is_printed_by_itself() {
         let is_rule = line.starts_with("SUBSYSTEM==") || line.starts_with('#');
         assert!(is_rule, "udev would stumble over: {line}");
     }
-    let output = place.run(&["devices", "--udev", "--json"]);
+    let output = place.run(&["device", "list", "--udev", "--json"]);
     assert_eq!(output.status.code(), Some(2));
+}
+
+/// The row of a device of the rig, once it describes itself so.
+fn row(place: &Place, name: &str, is_so: impl Fn(&Value) -> bool) -> Value {
+    let found = wait_for(PATIENCE, || {
+        let rig = devices(place)["rig"].clone();
+        let row = rig.as_array()?.iter().find(|row| row["name"] == name)?;
+        is_so(row).then(|| row.clone())
+    });
+    assert!(found.is_some(), "no such {name}: {}", devices(place)["rig"]);
+    found.unwrap_or_default()
+}
+
+fn refused(place: &Place, args: &[&str]) -> String {
+    let output = place.run(args);
+    assert_ne!(output.status.code(), Some(0), "{args:?}");
+    String::from_utf8(output.stderr).expect("UTF-8")
+}
+
+#[test]
+fn devices_come_change_and_go_while_the_rig_runs() {
+    let place = Place::new();
+    let said = |args: &[&str]| String::from_utf8(place.done(args).stdout).expect("UTF-8");
+    let kept = said(&["device", "add", "puck", "--driver", "simulated"]);
+    has(
+        &kept,
+        &[
+            "'puck' (simulated) is kept in",
+            "devices.toml",
+            "maulstick up",
+        ],
+    );
+    let launcher = Launcher::up(&place, &[]);
+    row(&place, "puck", |row| {
+        row["driver"] == "simulated" && row["priority"] == 0
+    });
+    // Another one beside it, which nobody plugged in.
+    let args = [
+        "device",
+        "add",
+        "arm",
+        "--driver",
+        "polhem",
+        "--address",
+        "/dev/none",
+    ];
+    has(&said(&args), &["'arm' (polhem)", "device 'arm' is started"]);
+    row(&place, "arm", |row| {
+        row["trouble"]
+            .as_str()
+            .is_some_and(|told| told.contains("/dev/none"))
+    });
+    // With another law of force, and before all others.
+    let used = said(&["device", "use", "puck", "--force", "rigid"]);
+    has(
+        &used,
+        &["'puck' moves 'main' with priority 1; its force is rigid"],
+    );
+    row(&place, "puck", |row| row["priority"] == 1);
+    has(
+        &said(&["device", "remove", "arm"]),
+        &["kept no more", "has left the rig"],
+    );
+    has(&said(&["device", "remove", "puck"]), &["has left the rig"]);
+    let gone = wait_for(PATIENCE, || {
+        place.pid("maulstick-haptic").is_none().then_some(())
+    });
+    assert!(gone.is_some(), "{}", launcher.said());
+    has(
+        &said(&[
+            "device",
+            "add",
+            "puck",
+            "--driver",
+            "simulated",
+            "--priority",
+            "-3",
+        ]),
+        &["device 'puck' is started"],
+    );
+    row(&place, "puck", |row| row["priority"] == -3);
+}
+
+#[test]
+fn what_does_not_fit_changes_nothing() {
+    let place = Place::new();
+    place.done(&["device", "add", "puck", "--driver", "simulated"]);
+    for (args, what) in [
+        (
+            vec!["device", "add", "puck", "--driver", "pen"],
+            vec!["a device called 'puck' already"],
+        ),
+        (
+            vec!["device", "add", "x", "--driver", "simulted"],
+            vec!["'simulted'", "did you mean 'simulated'"],
+        ),
+        (
+            vec![
+                "device",
+                "add",
+                "x",
+                "--driver",
+                "simulated",
+                "--brush",
+                "mian",
+            ],
+            vec!["'mian'", "'main'"],
+        ),
+        (
+            vec!["device", "add", "pen", "--driver", "pen"],
+            vec!["something called 'pen'"],
+        ),
+        (
+            vec!["device", "use", "puk"],
+            vec!["no device called 'puk'", "'puck'"],
+        ),
+        (
+            vec!["device", "use", "puck", "--force", "soft"],
+            vec!["soft", "rigid"],
+        ),
+        (
+            vec!["device", "remove", "puk"],
+            vec!["no device called 'puk'", "'puck'"],
+        ),
+    ] {
+        has(&refused(&place, &args), &what);
+    }
+    place.done(&["device", "remove", "puck"]);
 }

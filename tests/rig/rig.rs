@@ -131,7 +131,11 @@ fn a_node_that_runs_by_fits_and_starts_changes_nothing() {
             signal(pid, Signal::SIGSTOP);
             stops += 1;
             // Another node says meanwhile how it fares: the first time for as long as a loaded machine stands still.
-            let still_ns = if stops == 1 { 3_500_000_000 } else { 300_000_000 };
+            let still_ns = if stops == 1 {
+                3_500_000_000
+            } else {
+                300_000_000
+            };
             drain(&mut take);
             drain(&mut paint);
             let alive = if program == "maulstick-paint" {

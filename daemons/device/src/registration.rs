@@ -198,7 +198,7 @@ pub fn check_side(places: &[DVec3; 3], handle: DVec3) -> Result<(), UserError> {
 /// # Errors
 /// A [`UserError`] for places that span no plane, or that differ from the canvas in size too much.
 pub fn by_corners(places: &[DVec3; 3], size: DVec2) -> Result<(Similarity, CornerFit), UserError> {
-    let again = "touch them again: `maulstick calibrate`";
+    let again = "touch them again: `maulstick device fit`";
     let (right, up) = (places[1] - places[0], places[2] - places[0]);
     let normal = right.cross(up);
     let sine = normal.length() / (right.length() * up.length());

@@ -93,7 +93,7 @@ impl Daemon {
         let registration = Registration::of(device, &member.config.canvas)?;
         if let Some(warning) = registration.warning() {
             let name = &device.name;
-            tracing::warn!("{name}: {warning}; touch them again: `maulstick calibrate {name}`");
+            tracing::warn!("{name}: {warning}; touch them again: `maulstick device fit {name}`");
         }
         let actions = Actions::of(device);
         let actor = Actor::start(member.bus.clone(), topics, &device.brush, actions)?;

@@ -16,7 +16,6 @@ use maulstick_types::stylus::StylusStatus;
 use maulstick_types::wire::topics::Topics;
 
 use crate::device_source::{Identity, Ports};
-use crate::hidraw::Hidraw;
 use crate::open::{self, Address, Kind, Means};
 use crate::recorder::Recorder;
 use crate::recording::{self, Recorded};
@@ -61,7 +60,7 @@ pub fn run(member: &mut NodeHandle, settings: &HidSettings) -> Result<(), UserEr
         &member.wake,
         origin,
         settings,
-        Box::new(Hidraw),
+        Kind::of_section(&settings.device)?.ports(),
     )?;
     member.ready()?;
     let result = member.run(|| daemon.turn());
@@ -130,9 +129,7 @@ impl Daemon {
         ports: Box<dyn Ports>,
     ) -> Result<Self, UserError> {
         let device = &settings.device;
-        let kind = Kind::of(&device.driver).ok_or_else(|| {
-            UserError::usage(format!("this daemon has no driver '{}'", device.driver))
-        })?;
+        let kind = Kind::of_section(device)?;
         let replay = settings.replay.as_ref().or(device.replay.as_ref());
         let replay = match replay {
             Some(path) => Some(
@@ -142,7 +139,7 @@ impl Daemon {
             None => None,
         };
         let output = match kind {
-            Kind::Pen => {
+            Kind::Pen | Kind::EventPen => {
                 let stylus = Stylus::new(&bus, topics, device, origin, wake)?;
                 Output::Stylus(Box::new(stylus))
             }
@@ -153,7 +150,7 @@ impl Daemon {
         };
         let node = topics.node(&format!("{BRUSH_NODE}{}", device.brush));
         let brush = match (kind, &replay) {
-            (Kind::Pen, Some(_)) => Some(bus.watch(&node, wake)?),
+            (Kind::Pen | Kind::EventPen, Some(_)) => Some(bus.watch(&node, wake)?),
             _ => None,
         };
         let topic = topics.stylus_status(&device.name);

@@ -1,4 +1,4 @@
-//! Pens and 6-DOF mice over HID.
+//! Pens and 6-DOF mice over HID, and pens through the kernel's event devices.
 //!
 //! A report descriptor gives the layout of a device's reports; only a few devices need tables. Everything
 //! below the daemon is pure, and a recording plays like the device.
@@ -14,6 +14,7 @@
 //! | [`layout`] | the pen in the reports of a tablet |
 //! | [`wacom`] | tablets that do not describe themselves |
 //! | [`spacemouse`] | 6-DOF mice |
+//! | [`evdev`] | tablets through the kernel's event devices |
 //! | [`tablet`] | a tablet on the desk |
 //! | [`open`] | the device that `rig.toml` asks for |
 //! | [`probe`] | readings of a pen without a rig, for calibration |
@@ -23,6 +24,7 @@
 //! | [`daemon`] | the daemon |
 
 pub mod daemon;
+pub mod evdev;
 pub mod open;
 pub mod probe;
 mod reports;

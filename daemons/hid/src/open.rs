@@ -2,9 +2,14 @@
 
 use maulstick_device::hid_collections::Collection;
 use maulstick_rig::UserError;
+use maulstick_rig::config::DeviceSection;
 
 use crate::descriptor::{self, describe};
 use crate::device_source::{Found, HidSource, Identity, Ports};
+use crate::evdev::capabilities::Capabilities;
+use crate::evdev::pen::EvdevPen;
+use crate::evdev::ports::EventDevices;
+use crate::hidraw::Hidraw;
 use crate::layout::Layout;
 use crate::spacemouse::{LIGHT, SpaceMouse, VENDORS};
 use crate::wacom::Wacom;
@@ -15,25 +20,41 @@ use maulstick_device::pen::Reading;
 pub enum Kind {
     /// A tablet with a pen.
     Pen,
+    /// The same through the kernel's event devices.
+    EventPen,
     /// A 6-DOF mouse.
     SpaceMouse,
 }
 
 impl Kind {
-    /// The kind of a driver of `rig.toml`; `None` if it is another daemon's.
-    #[must_use]
-    pub fn of(driver: &str) -> Option<Self> {
-        match driver {
-            "pen" => Some(Self::Pen),
-            "spacemouse" => Some(Self::SpaceMouse),
-            _ => None,
+    /// The kind of a section of `rig.toml`.
+    ///
+    /// # Errors
+    /// A [`UserError`] where its driver is another daemon's.
+    pub fn of_section(device: &DeviceSection) -> Result<Self, UserError> {
+        match device.driver.as_str() {
+            "pen" => Ok(Self::Pen),
+            "evdev" => Ok(Self::EventPen),
+            "spacemouse" => Ok(Self::SpaceMouse),
+            other => Err(UserError::usage(format!(
+                "this daemon has no driver '{other}'"
+            ))),
         }
     }
 
     fn word(self) -> &'static str {
         match self {
-            Self::Pen => "pen tablet",
+            Self::Pen | Self::EventPen => "pen tablet",
             Self::SpaceMouse => "6-DOF mouse",
+        }
+    }
+
+    /// Where devices of this kind are.
+    #[must_use]
+    pub fn ports(self) -> Box<dyn Ports> {
+        match self {
+            Self::EventPen => Box::new(EventDevices::here()),
+            Self::Pen | Self::SpaceMouse => Box::new(Hidraw),
         }
     }
 
@@ -45,6 +66,7 @@ impl Kind {
         let usages = found.usages.iter();
         let mut collections = usages.map(|&(page, usage)| Collection { page, usage });
         match self {
+            Self::EventPen => collections.any(|one| one.is_pen()),
             Self::Pen => {
                 collections.any(|one| one.is_pen()) || Wacom::of(vendor, product).is_some()
             }
@@ -84,7 +106,7 @@ impl Address {
         });
         numbers.ok_or_else(|| {
             UserError::usage(format!("'{text}' is no address of a HID device")).help(
-                "write vendor:product in hexadecimal as in 056a:0357, or a path as /dev/hidraw3",
+                "write vendor:product in hexadecimal as in 056a:0357, or a path as /dev/hidraw3 or /dev/input/event7",
             )
         })
     }
@@ -96,7 +118,10 @@ impl Address {
             Self::Numbers(vendor, product) => {
                 (identity.vendor, identity.product) == (*vendor, *product)
             }
-            Self::Path(path) => identity.place == *path,
+            Self::Path(path) => {
+                let real = std::fs::canonicalize(path);
+                identity.place == *path || real.is_ok_and(|real| *real == *identity.place)
+            }
         }
     }
 }
@@ -108,6 +133,8 @@ pub enum Decoder {
     Described(Layout),
     /// By a table.
     Wacom(Wacom),
+    /// By the kernel's events.
+    Events(Box<EvdevPen>),
 }
 
 impl Decoder {
@@ -117,6 +144,7 @@ impl Decoder {
         match self {
             Self::Described(layout) => layout.area_m(),
             Self::Wacom(table) => table.area_m(),
+            Self::Events(pen) => pen.area_m(),
         }
     }
 
@@ -126,6 +154,7 @@ impl Decoder {
         match self {
             Self::Described(layout) => layout.senses(),
             Self::Wacom(table) => table.senses(),
+            Self::Events(pen) => pen.senses(),
         }
     }
 
@@ -134,7 +163,7 @@ impl Decoder {
     pub fn tells_range(&self) -> bool {
         match self {
             Self::Described(layout) => layout.tells_range(),
-            Self::Wacom(_) => true,
+            Self::Wacom(_) | Self::Events(_) => true,
         }
     }
 
@@ -143,6 +172,7 @@ impl Decoder {
         match self {
             Self::Described(layout) => layout.decode(report),
             Self::Wacom(table) => table.decode(report),
+            Self::Events(pen) => pen.decode(report),
         }
     }
 }
@@ -161,6 +191,9 @@ pub enum Means {
 /// # Errors
 /// A [`UserError`] that says what the device is instead.
 pub fn means(kind: Kind, identity: &Identity, bytes: &[u8]) -> Result<Means, UserError> {
+    if kind == Kind::EventPen {
+        return event_pen(identity, bytes);
+    }
     let table = Wacom::of(identity.vendor, identity.product);
     if let (Kind::Pen, Some(table)) = (kind, table.filter(|table| table.fits(bytes))) {
         return Ok(Means::Pen(Decoder::Wacom(table)));
@@ -170,19 +203,21 @@ pub fn means(kind: Kind, identity: &Identity, bytes: &[u8]) -> Result<Means, Use
             .help("choose another device by `address` in rig.toml")
     })?;
     let seems = match kind {
-        Kind::Pen => lies_anywhere(&descriptor, is_pen),
+        Kind::Pen | Kind::EventPen => lies_anywhere(&descriptor, is_pen),
         Kind::SpaceMouse => lies_anywhere(&descriptor, has_six_axes),
     };
     let other = |help: &str| {
         let what = match (seems, kind) {
-            (true, Kind::Pen) => "is a pen whose reports do not say where it is".to_owned(),
+            (true, Kind::Pen | Kind::EventPen) => {
+                "is a pen whose reports do not say where it is".to_owned()
+            }
             (true, Kind::SpaceMouse) => "is a 6-DOF mouse of an unknown maker".to_owned(),
             (false, _) => format!("is {}, no {}", describe(&descriptor), kind.word()),
         };
         UserError::failure(format!("{identity} {what}")).help(help)
     };
     match kind {
-        Kind::Pen => {
+        Kind::Pen | Kind::EventPen => {
             let layout = Layout::of(&descriptor).ok_or_else(|| {
                 other(
                     "choose another device by `address`; if it is a tablet, its reports are in a format \
@@ -196,6 +231,21 @@ pub fn means(kind: Kind, identity: &Identity, bytes: &[u8]) -> Result<Means, Use
             false => Err(other("choose another device by `address` in rig.toml")),
         },
     }
+}
+
+/// The pen of an event device.
+fn event_pen(identity: &Identity, bytes: &[u8]) -> Result<Means, UserError> {
+    let fault = |what: &str| {
+        UserError::failure(format!("{identity} {what}")).help(
+            "choose another device by `address` in rig.toml: `maulstick device list` lists those with a pen",
+        )
+    };
+    let capabilities = Capabilities::from_bytes(bytes)
+        .ok_or_else(|| fault("is no event device: its driver is `pen`"))?;
+    let pen = EvdevPen::of(&capabilities).ok_or_else(|| {
+        fault("has no pen with X and Y axes of more than one value, as its events go")
+    })?;
+    Ok(Means::Pen(Decoder::Events(Box::new(pen))))
 }
 
 fn is_pen((page, usage): (u16, u16)) -> bool {
@@ -276,7 +326,13 @@ pub fn open(ports: &mut dyn Ports, kind: Kind, address: &Address) -> Result<Open
 /// Tells a device what it waits for. That it refuses is no reason not to listen.
 fn begin(kind: Kind, opened: &mut Opened) {
     let numbers = (opened.identity.vendor, opened.identity.product);
+    if kind == Kind::Pen
+        && let Err(fault) = opened.source.grab()
+    {
+        tracing::warn!("{}: {fault}", opened.identity);
+    }
     let order = match kind {
+        Kind::EventPen => None,
         Kind::SpaceMouse => Some(&LIGHT[..]),
         Kind::Pen => BEGINNINGS
             .iter()

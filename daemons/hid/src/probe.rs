@@ -36,6 +36,7 @@ enum Reports {
 /// # Errors
 /// [`UserError`] if it is missing, may not be read, or is not a pen.
 pub fn open(ports: &mut dyn Ports, device: &DeviceSection) -> Result<ProbedPen, UserError> {
+    let kind = Kind::of_section(device)?;
     let pen = |identity: &Identity, means: Means, reports| {
         let what = open::description(identity, &means);
         match means {
@@ -49,16 +50,16 @@ pub fn open(ports: &mut dyn Ports, device: &DeviceSection) -> Result<ProbedPen, 
     };
     let Some(path) = &device.replay else {
         let address = Address::parse(device.address.as_deref())?;
-        let opened = open::open(ports, Kind::Pen, &address)?;
+        let opened = open::open(ports, kind, &address)?;
         return pen(
             &opened.identity,
             opened.means?,
             Reports::Live(opened.source),
         );
     };
-    let recorded = recording::playable(Kind::Pen, recording::read(path)?)
+    let recorded = recording::playable(kind, recording::read(path)?)
         .map_err(|fault| fault.at(path.display().to_string()))?;
-    let means = open::means(Kind::Pen, &recorded.identity, &recorded.descriptor)?;
+    let means = open::means(kind, &recorded.identity, &recorded.descriptor)?;
     pen(&recorded.identity, means, Reports::Played(recorded.events))
 }
 

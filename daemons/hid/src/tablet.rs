@@ -131,7 +131,7 @@ fn by_corners(corners: &[[f64; 3]; 3], size: DVec2) -> Result<(DMat2, DVec2), Us
         return Err(UserError::usage(
             "corners_m are no corners of a canvas that lies on the tablet",
         )
-        .help("touch lower left, lower right and upper left again with `maulstick calibrate`"));
+        .help("touch lower left, lower right and upper left again with `maulstick device fit`"));
     }
     let linear = DMat2::from_diagonal(size) * sides.inverse();
     Ok((linear, -0.5 * size - linear * origin))

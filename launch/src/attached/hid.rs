@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use maulstick_device::hid_collections::{Collection, collections};
 
-use super::{Attached, Permission, Places, printable};
+use super::{Attached, Places, printable};
 
 /// The drivers of HID devices.
 pub(super) const DRIVERS: [&str; 2] = ["pen", "spacemouse"];
@@ -23,7 +23,9 @@ pub fn devices(places: &Places<'_>) -> Vec<Attached> {
         let driver = told.driver();
         let permission = (places.permission)(&path);
         Some(Attached {
-            missing: driver.and_then(|driver| missing(driver, permission)),
+            missing: driver
+                .filter(|driver| DRIVERS.contains(driver))
+                .and_then(|_| permission.missing()),
             name: told.name,
             id: format!("{:04x}:{:04x}", told.vendor, told.product),
             path,
@@ -33,18 +35,6 @@ pub fn devices(places: &Places<'_>) -> Vec<Attached> {
     };
     let nodes = places.class("hidraw").into_iter();
     nodes.filter_map(device).collect()
-}
-
-fn missing(driver: &str, permission: Permission) -> Option<String> {
-    let what = match permission {
-        _ if !DRIVERS.contains(&driver) => return None,
-        Permission::Granted => return None,
-        Permission::Denied => {
-            "no permission: `maulstick devices --udev` prints the rule that gives it"
-        }
-        Permission::Absent => "its node is not there: is /dev that of the machine?",
-    };
-    Some(what.to_owned())
 }
 
 /// Entry of the kernel for a HID device.

@@ -4,9 +4,11 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`hid`] | HID devices, `/sys/class/hidraw` |
+//! | [`events`] | tablets that only an event device makes a pen of, `/sys/class/input` |
 //! | [`serial`] | serial ports of USB devices, `/sys/class/tty` |
 //! | [`vendors`] | OpenHaptics' library, Haply's service |
 
+pub mod events;
 pub mod hid;
 pub mod serial;
 pub mod vendors;
@@ -37,6 +39,17 @@ pub struct Attached {
     pub missing: Option<String>,
 }
 
+impl Attached {
+    /// Its address in `[[device]]`: of a serial port its node, of any other what it is, wherever it is plugged in.
+    #[must_use]
+    pub fn address(&self) -> String {
+        match self.driver {
+            Some("polhem") => self.path.display().to_string(),
+            _ => self.id.clone(),
+        }
+    }
+}
+
 /// Permission for a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -47,6 +60,20 @@ pub enum Permission {
     Denied,
     /// The node is not there.
     Absent,
+}
+
+impl Permission {
+    /// What is missing for a driver that reads the node, with advice.
+    fn missing(self) -> Option<String> {
+        let what = match self {
+            Self::Granted => return None,
+            Self::Denied => {
+                "no permission: `maulstick device list --udev` prints the rule that gives it"
+            }
+            Self::Absent => "its node is not there: is /dev that of the machine?",
+        };
+        Some(what.to_owned())
+    }
 }
 
 /// Permission of this user for a node.

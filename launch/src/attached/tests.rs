@@ -43,6 +43,25 @@ impl Machine {
         symlink(&node, class.join(format!("hidraw{number}"))).expect("linked");
     }
 
+    fn event(&self, number: usize, id: (&str, &str), name: &str, keys: &str) {
+        let device = self
+            .folder
+            .path()
+            .join(format!("class/input/event{number}/device"));
+        for (file, text) in [
+            ("name", name),
+            ("id/bustype", "0003"),
+            ("id/vendor", id.0),
+            ("id/product", id.1),
+            ("capabilities/key", keys),
+            ("capabilities/abs", "1000003"),
+        ] {
+            let path = device.join(file);
+            create_dir_all(path.parent().expect("a folder")).expect("made");
+            write(path, format!("{text}\n")).expect("written");
+        }
+    }
+
     fn serial(&self, node: &str, usb: Option<(&str, &str, &str)>) {
         let root = self.folder.path();
         let device = root.join(format!("devices/{node}-usb"));
@@ -73,6 +92,28 @@ impl Machine {
             permission: &|_| self.allowed.get(),
         })
     }
+}
+
+/// Bit 0x140, a pen, is in the sixth word.
+const PEN_KEYS: &str = "1 0 0 0 0 0";
+
+#[test]
+fn a_tablet_is_listed_by_its_events_where_its_reports_say_no_pen() {
+    let machine = Machine::new();
+    machine.hid(1, "0000056A:00000374", "Wacom Intuos S", &PEN);
+    machine.hid(2, "00005543:00000081", "UC-Logic", &KEYBOARD);
+    machine.event(5, ("056a", "0374"), "Wacom Intuos S Pen", PEN_KEYS);
+    machine.event(6, ("5543", "0081"), "UC-Logic Tablet", PEN_KEYS);
+    machine.event(7, ("046d", "c31c"), "Keyboard", "fffe");
+    machine.allowed.set(Permission::Denied);
+    let found = machine.found(|places| events::devices(places, &hid::devices(places)));
+    let brief: Vec<_> = found.iter().map(brief).collect();
+    assert_eq!(brief, [("UC-Logic Tablet", "5543:0081", Some("evdev"))]);
+    let missing = found[0].missing.as_deref();
+    assert!(
+        missing.is_some_and(|missing| missing.contains("--udev")),
+        "{missing:?}"
+    );
 }
 
 fn brief(device: &Attached) -> (&str, &str, Option<&str>) {

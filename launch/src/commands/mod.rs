@@ -3,7 +3,7 @@
 pub mod bench;
 pub mod brush;
 mod colour;
-mod device;
+pub mod device;
 pub mod edit;
 pub mod export;
 pub mod mode;
@@ -12,7 +12,7 @@ mod rig;
 mod takes;
 
 pub use colour::{fit, light, matching, mix, paints};
-pub use device::{calibrate, devices, force, force_order};
+pub use device::{force, force_order};
 pub use rig::{begin, endpoint, open, save_as, schema, session, snapshot};
 pub use takes::{demo, import, render, take};
 

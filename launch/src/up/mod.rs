@@ -20,10 +20,10 @@ use maulstick_device::Take;
 use maulstick_device::player::Rate;
 use maulstick_document::scene;
 use maulstick_optics::PaintLibrary;
-use maulstick_rig::UserError;
 use maulstick_rig::config::{DEFAULT, DeviceSection, RigConfig, is_path};
 use maulstick_rig::files::Kind;
 use maulstick_rig::log::log_to_stderr;
+use maulstick_rig::{UserError, user_devices};
 use maulstick_types::Mixture;
 
 use crate::cells::picture_settings;
@@ -124,7 +124,7 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
     let mut config = match &options.rig {
         Some(path) => RigConfig::read(path)?,
         None if options.play.is_some() => picture_settings(),
-        None => unattended(RigConfig::default()),
+        None => with_own_devices(unattended(RigConfig::default())),
     };
     if let Some(name) = &options.name {
         config.rig.name.clone_from(name);
@@ -219,6 +219,22 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
 fn unattended(mut config: RigConfig) -> RigConfig {
     let moves = |device: &DeviceSection| device.driver != "simulated" || device.hand.is_some();
     config.device.retain(moves);
+    config
+}
+
+/// The same rig with the devices of this user. What is wrong with one is said, and the rig starts without it.
+fn with_own_devices(mut config: RigConfig) -> RigConfig {
+    let own = user_devices::path().and_then(|path| user_devices::read(&path));
+    for device in own.unwrap_or_else(|fault| {
+        tracing::error!("{fault}; the rig starts without your devices");
+        Vec::new()
+    }) {
+        let name = device.name.clone();
+        match config.with_device(device) {
+            Ok(with) => config = with,
+            Err(fault) => tracing::error!("the rig starts without '{name}': {fault}"),
+        }
+    }
     config
 }
 

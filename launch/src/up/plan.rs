@@ -1,6 +1,6 @@
 //! The processes of a rig.
 
-use maulstick_rig::config::{Restart, RigConfig};
+use maulstick_rig::config::{DeviceSection, Restart, RigConfig};
 
 use crate::processes::{Program, brush_node_name};
 
@@ -56,6 +56,17 @@ pub fn node(
     }
 }
 
+/// The daemon of a device.
+#[must_use]
+pub fn device(config: &RigConfig, device: &DeviceSection) -> NodeSpec {
+    let args = vec!["--device".to_owned(), device.name.clone()];
+    let program = match device.is_hid() {
+        true => Program::Hid,
+        false => Program::Haptic,
+    };
+    node(config, &device.name, Role::Device, program, args)
+}
+
 /// Presence of a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Window {
@@ -90,14 +101,7 @@ pub fn nodes(config: &RigConfig, window: Window, hands: Hands) -> Vec<NodeSpec> 
         nodes.push(node(config, &name, Role::Brush, Program::Brush, args));
     }
     if hands == Hands::Devices {
-        for device in &config.device {
-            let args = vec!["--device".to_owned(), device.name.clone()];
-            let program = match device.is_hid() {
-                true => Program::Hid,
-                false => Program::Haptic,
-            };
-            nodes.push(node(config, &device.name, Role::Device, program, args));
-        }
+        nodes.extend(config.device.iter().map(|own| device(config, own)));
     }
     if window == Window::Shown {
         nodes.push(node(config, "ui", Role::Window, Program::Ui, Vec::new()));

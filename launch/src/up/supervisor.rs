@@ -1,5 +1,6 @@
 //! All processes of the rig: their tokens, their restarts, the table, the end.
 
+mod devices;
 mod folder;
 mod loads;
 mod orders;

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use crate::size::parse_bytes;
 use crate::user_error::UserError;
 
-pub use device::{ACTIONS, DRIVERS, DeviceSection, FORCES, HID_DRIVERS};
+pub use device::{ACTIONS, DRIVERS, DeviceSection, FORCES, HID_DRIVERS, PEN_DRIVERS};
 pub use light::LightSection;
 pub use palette::{PILES, PaletteSection};
 
@@ -360,6 +360,32 @@ impl RigConfig {
     /// A [`UserError`] where a value cannot be written as TOML.
     pub fn to_toml(&self) -> Result<String, UserError> {
         toml::to_string(self).map_err(|error| UserError::failure(error.to_string()))
+    }
+
+    /// The same rig with a device, in the place of the one with its name if there is one.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the device does not fit into the rig.
+    pub fn with_device(&self, device: DeviceSection) -> Result<Self, UserError> {
+        let mut config = self.clone();
+        match config.device.iter_mut().find(|own| own.name == device.name) {
+            Some(own) => *own = device,
+            None => config.device.push(device),
+        }
+        // The line would be one that nobody wrote.
+        Self::parse(&config.to_toml()?, "").map_err(|fault| UserError {
+            place: None,
+            ..fault
+        })
+    }
+
+    /// The same rig without a device, and without what is said of its node.
+    #[must_use]
+    pub fn without_device(&self, name: &str) -> Self {
+        let mut config = self.clone();
+        config.device.retain(|device| device.name != name);
+        config.node.remove(name);
+        config
     }
 
     /// The brush called `name`.

@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | [`command_client`] | commands to a node, repeated until answered |
 //! | [`config`] | the settings of a rig |
+//! | [`user_devices`] | the devices of a user, for any rig |
 //! | [`user_error`] | an error as the user sees it: what, where, advice |
 //! | [`files`] | files: whole under their name, of one's own kind, open here |
 //! | [`log`] | log lines |
@@ -16,6 +17,7 @@ pub mod log;
 pub mod node_handle;
 pub mod size;
 pub mod stop;
+pub mod user_devices;
 pub mod user_error;
 
 pub use config::RigConfig;

@@ -371,7 +371,10 @@ fn ask(command: Command, work: &mut PanelContext<'_>) -> Request {
 
 /// True for a command that opens another painting, for which nodes are restarted.
 fn switches(command: &Command) -> bool {
-    matches!(command, Command::Rig(_))
+    matches!(
+        command,
+        Command::Rig(RigCommand::Open { .. } | RigCommand::New { .. } | RigCommand::SaveAs(_))
+    )
 }
 
 /// Result of a file command in words; `None` for any other command.
@@ -392,7 +395,10 @@ fn done(command: &Command) -> Option<String> {
         Command::File(FileCommand::StopExport) => {
             tr!("The export has ended without a file.").to_owned()
         }
-        Command::Edit(_) | Command::Take(_) | Command::Brush(_) => return None,
+        Command::Rig(RigCommand::PutDevice { .. } | RigCommand::RemoveDevice { .. })
+        | Command::Edit(_)
+        | Command::Take(_)
+        | Command::Brush(_) => return None,
     })
 }
 

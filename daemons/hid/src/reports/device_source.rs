@@ -44,6 +44,13 @@ pub trait HidSource: Send {
     /// # Errors
     /// [`UserError`] if the device refuses it.
     fn write(&mut self, report: &[u8]) -> Result<(), UserError>;
+    /// Takes the device out of the system's hands while it is open: no pointer follows it.
+    ///
+    /// # Errors
+    /// [`UserError`] if that is not allowed; the device can be read all the same.
+    fn grab(&mut self) -> Result<(), UserError> {
+        Ok(())
+    }
 }
 
 /// A device that is plugged in.

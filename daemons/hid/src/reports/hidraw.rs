@@ -2,6 +2,7 @@
 
 use std::ffi::CString;
 use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use hidapi::{BusType, HidApi, HidDevice, HidError};
@@ -9,6 +10,7 @@ use maulstick_rig::UserError;
 
 use crate::descriptor::LONGEST;
 use crate::device_source::{Found, HidSource, Identity, Ports};
+use crate::evdev::grab::{Grab, event_nodes};
 
 /// The machine's own ports.
 #[derive(Debug, Default)]
@@ -16,6 +18,8 @@ pub struct Hidraw;
 
 struct Device {
     device: HidDevice,
+    place: PathBuf,
+    grab: Grab,
     descriptor: Vec<u8>,
     name: String,
 }
@@ -90,6 +94,8 @@ impl Ports for Hidraw {
         descriptor.truncate(length);
         Ok(Box::new(Device {
             device,
+            place: place.into(),
+            grab: Grab::default(),
             descriptor,
             name,
         }))
@@ -103,7 +109,7 @@ pub fn closed(device: &Identity, error: &std::io::Error) -> UserError {
     let (what, help) = match error.kind() {
         ErrorKind::PermissionDenied => (
             format!("you may not read {name}"),
-            "`maulstick devices --udev` prints the rule to install",
+            "`maulstick device list --udev` prints the rule to install",
         ),
         ErrorKind::ResourceBusy => (
             format!("{name} is in use"),
@@ -119,6 +125,12 @@ pub fn closed(device: &Identity, error: &std::io::Error) -> UserError {
 }
 
 impl HidSource for Device {
+    fn grab(&mut self) -> Result<(), UserError> {
+        let nodes = event_nodes(Path::new("/sys"), Path::new("/dev"), &self.place);
+        self.grab = Grab::all(&nodes)?;
+        Ok(())
+    }
+
     fn descriptor(&self) -> &[u8] {
         &self.descriptor
     }

@@ -26,15 +26,15 @@ use crate::units::{metres, radians};
 use maulstick_device::pen::{End, Presence, Reading, STEEPEST_RAD};
 
 /// Counts a metre of a tablet that does not say, 5080 an inch.
-const COUNTS_M: f64 = 200_000.0;
+pub(crate) const COUNTS_M: f64 = 200_000.0;
 /// Sides of a tablet, m; beyond them its descriptor is wrong.
 const SIDES_M: [f64; 2] = [0.01, 2.0];
 /// Longer side of a tablet whose descriptor is wrong, m.
 const LONGER_M: f64 = 0.25;
 /// Hover height at the end of a range without units, m.
-const HIGHEST_M: f64 = 0.01;
+pub(crate) const HIGHEST_M: f64 = 0.01;
 /// Pressure of a touch without a pressure field.
-const PRESSED: f64 = 0.5;
+pub(crate) const PRESSED: f64 = 0.5;
 
 /// Role of a report's field for a pen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -187,6 +187,16 @@ fn greatest(least: i32, most: i32, bits: usize) -> f64 {
     f64::from(most) + above as f64
 }
 
+/// The sides of a tablet of so many counts, m: as it says, unless that is no tablet's.
+pub(crate) fn plausible_m(sides_m: [f64; 2], counts: [f64; 2]) -> [f64; 2] {
+    let [least, most] = SIDES_M;
+    if sides_m.iter().all(|side| (least..=most).contains(side)) {
+        return sides_m;
+    }
+    let longer = counts[0].max(counts[1]);
+    counts.map(|count| (count / longer * LONGER_M).max(least))
+}
+
 /// The reports of one pen.
 #[derive(Clone, Debug)]
 pub struct Layout {
@@ -320,12 +330,7 @@ impl PenReport {
         // One axis may say what both are.
         let known = counts[0].1.or(counts[1].1).unwrap_or(1.0 / COUNTS_M);
         let sides = counts.map(|(count, metres)| count * metres.unwrap_or(known));
-        let [least, most] = SIDES_M;
-        if sides.iter().all(|side| (least..=most).contains(side)) {
-            return sides;
-        }
-        let longer = counts[0].0.max(counts[1].0);
-        counts.map(|(count, _)| (count / longer * LONGER_M).max(least))
+        plausible_m(sides, counts.map(|(count, _)| count))
     }
 
     /// State of a switch; `None` if there is no such switch.

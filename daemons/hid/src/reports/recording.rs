@@ -1,4 +1,4 @@
-//! Recordings of HID devices as text, as `hid-recorder` writes them:
+//! Recordings of devices as text, as `hid-recorder` writes them; those of [`evemu`] are read too.
 //!
 //! ```text
 //! D: 0                                   # a device begins; may be left out for a single one
@@ -16,6 +16,7 @@ use maulstick_rig::UserError;
 
 use crate::descriptor::LONGEST;
 use crate::device_source::Identity;
+use crate::evdev::evemu;
 use crate::open::{self, Kind};
 
 /// A report is no longer than this, bytes: the kernel's limit.
@@ -51,7 +52,11 @@ pub struct Recorded {
 /// A [`UserError`] that names the line.
 pub fn read(path: &Path) -> Result<Vec<Recorded>, UserError> {
     let text = std::fs::read_to_string(path).map_err(|error| UserError::reading(path, &error))?;
-    parse(&text).map_err(|(line, what)| {
+    let parsed = match text.starts_with(evemu::MARK) {
+        true => evemu::parse(&text).map(|device| vec![device]),
+        false => parse(&text),
+    };
+    parsed.map_err(|(line, what)| {
         UserError::usage(what)
             .at(format!("{}:{line}", path.display()))
             .help(HELP)
@@ -239,7 +244,8 @@ fn bytes(text: &str, most: usize) -> Result<Vec<u8>, String> {
     }
 }
 
-fn time_ns(text: &str) -> Result<u64, String> {
+/// Time of a line, ns.
+pub(crate) fn time_ns(text: &str) -> Result<u64, String> {
     let wrong = || format!("'{}' is no time in seconds", start(text));
     let (seconds, micros) = text.split_once('.').ok_or_else(wrong)?;
     if micros.len() != 6 {

@@ -34,6 +34,11 @@ pub(crate) struct Rig {
 /// Nothing is plugged in.
 struct Bare;
 
+/// Ports at which there is nothing.
+pub(crate) fn nothing_plugged_in() -> Box<dyn Ports> {
+    Box::new(Bare)
+}
+
 impl Ports for Bare {
     fn list(&mut self) -> Result<Vec<Found>, UserError> {
         Ok(Vec::new())
@@ -166,7 +171,7 @@ fn played(step_ns: u64) -> Rig {
     write(&path, &stroke());
     let mut settings = settings("pen");
     settings.replay = Some(path);
-    let mut rig = Rig::new(&settings, Box::new(Bare)).expect("a daemon");
+    let mut rig = Rig::new(&settings, nothing_plugged_in()).expect("a daemon");
     rig.run(700_000_000, step_ns);
     rig
 }
@@ -265,7 +270,7 @@ fn a_recording_waits_for_its_brush() {
     let mut settings = settings("pen");
     settings.replay = Some(path);
     settings.device.brush = "other".into();
-    let mut rig = Rig::new(&settings, Box::new(Bare)).expect("a daemon");
+    let mut rig = Rig::new(&settings, nothing_plugged_in()).expect("a daemon");
     rig.run(2_000_000_000, 10_000_000);
     assert!(rig.samples().is_empty());
     let topic = Topics::new("studio").node("brush-other");
@@ -283,7 +288,7 @@ fn a_brush_that_came_and_went_is_none_to_begin_for() {
     write(&path, &stroke());
     let mut settings = settings("pen");
     settings.replay = Some(path);
-    let mut rig = Rig::new(&settings, Box::new(Bare)).expect("a daemon");
+    let mut rig = Rig::new(&settings, nothing_plugged_in()).expect("a daemon");
     // Both tokens wait when the daemon takes its first turn.
     rig.brush = None;
     rig.net.advance(1_000_000);
@@ -314,7 +319,7 @@ fn a_pen_whose_tablet_never_says_that_it_is_away_is_after_a_second_of_silence() 
     let mut settings = settings("pen");
     settings.replay = Some(path);
     let run = |step_ns| {
-        let mut rig = Rig::new(&settings, Box::new(Bare)).expect("a daemon");
+        let mut rig = Rig::new(&settings, nothing_plugged_in()).expect("a daemon");
         rig.run(9_000_000_000, step_ns);
         let told = rig.samples().into_iter();
         told.map(|told| ((told.header.event_ns - START_NS) / 1_000_000, told.message))
@@ -338,7 +343,7 @@ fn the_example_in_the_documents_has_a_hover_a_stroke_and_an_eraser() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/examples/pen.hid");
     let mut settings = settings("pen");
     settings.device.replay = Some(path);
-    let mut rig = Rig::new(&settings, Box::new(Bare)).expect("a daemon");
+    let mut rig = Rig::new(&settings, nothing_plugged_in()).expect("a daemon");
     rig.run(3_000_000_000, 4_000_000);
     let samples = rig.samples();
     let count = |wanted: fn(&StylusSample) -> bool| {
@@ -376,7 +381,7 @@ fn a_recording_of_something_else_is_refused_at_once() {
     write(&path, &recorded);
     let mut pen = settings("pen");
     pen.replay = Some(path.clone());
-    let fault = Rig::new(&pen, Box::new(Bare))
+    let fault = Rig::new(&pen, nothing_plugged_in())
         .err()
         .expect("refused")
         .to_string();
@@ -386,7 +391,7 @@ fn a_recording_of_something_else_is_refused_at_once() {
     );
     let mut mouse = settings("spacemouse");
     mouse.replay = Some(path);
-    let mut rig = Rig::new(&mouse, Box::new(Bare)).expect("a daemon");
+    let mut rig = Rig::new(&mouse, nothing_plugged_in()).expect("a daemon");
     rig.run(10_000_000, 1_000_000);
     // One that says nothing is over when it begins, not before the rig did.
     let told = rig.controls();
@@ -415,7 +420,7 @@ fn a_recorded_mouse_pushes_and_comes_to_rest() {
     write(&path, &recorded);
     let mut settings = settings("spacemouse");
     settings.replay = Some(path);
-    let mut rig = Rig::new(&settings, Box::new(Bare)).expect("a daemon");
+    let mut rig = Rig::new(&settings, nothing_plugged_in()).expect("a daemon");
     rig.run(900_000_000, 5_000_000);
     let told = rig.controls();
     let at = |millis: u64| {

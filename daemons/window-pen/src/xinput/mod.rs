@@ -47,7 +47,7 @@ impl XinputPens {
         let (connection, screen) = x11rb::connect(None).map_err(|error| gone(&error))?;
         let old = || {
             UserError::failure("this X server tells nothing of pens (XInput 2.2)").help(
-                "the pen paints as a mouse: for its pressure give its tablet to the rig, `maulstick devices` says how",
+                "the pen paints as a mouse: for its pressure give its tablet to the rig, `maulstick device list` says how",
             )
         };
         let version = connection

@@ -1,6 +1,50 @@
-//! Commands of devices: what is attached, calibration, force.
+//! Commands of devices: what is attached, which of it paints, fitting, force.
 
-pub mod calibrate;
-pub mod devices;
+mod add;
+mod choose;
+mod fit;
 pub mod force;
 pub mod force_order;
+mod list;
+mod remove;
+mod user_file;
+
+use clap::Subcommand;
+use maulstick_rig::UserError;
+
+/// `maulstick device`.
+#[derive(Clone, Debug, Subcommand)]
+pub enum DeviceCommand {
+    /// List attached devices, the drivers that fit, and what is missing
+    List(list::ListOptions),
+    /// Paint with a device from now on: it is kept for this user, and starts in the running rig
+    Add(add::AddOptions),
+    /// Paint with a device no more
+    Remove(remove::RemoveOptions),
+    /// Choose the device that paints, its brush and its law of force, while painting
+    Use(choose::UseOptions),
+    /// Fit a device to the canvas by touching three corners
+    Fit(fit::FitOptions),
+}
+
+impl DeviceCommand {
+    /// True for one that ends its own work at a signal.
+    #[must_use]
+    pub fn minds_signals(&self) -> bool {
+        matches!(self, Self::Fit(_))
+    }
+}
+
+/// Runs one of these commands.
+///
+/// # Errors
+/// The [`UserError`] of the command.
+pub fn run(command: &DeviceCommand) -> Result<i32, UserError> {
+    match command {
+        DeviceCommand::List(options) => list::run(options),
+        DeviceCommand::Add(options) => add::run(options),
+        DeviceCommand::Remove(options) => remove::run(options),
+        DeviceCommand::Use(options) => choose::run(options),
+        DeviceCommand::Fit(options) => fit::run(options),
+    }
+}

@@ -22,6 +22,16 @@ pub struct Target {
     name: String,
 }
 
+impl Target {
+    /// The rig called `name`.
+    #[must_use]
+    pub fn named(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+        }
+    }
+}
+
 /// Longest wait for the answer of a node.
 const PATIENCE: Duration = Duration::from_secs(10);
 

@@ -84,7 +84,11 @@ impl Orders {
             Command::Rig(RigCommand::Open { .. } | RigCommand::New { .. }) => {
                 self.leaving.has_heard(asker, now_ns, self.status_ns)
             }
-            Command::Rig(RigCommand::SaveAs(_))
+            Command::Rig(
+                RigCommand::SaveAs(_)
+                | RigCommand::PutDevice { .. }
+                | RigCommand::RemoveDevice { .. },
+            )
             | Command::Edit(_)
             | Command::Take(_)
             | Command::File(_)
@@ -135,7 +139,7 @@ impl Supervisor {
         }
     }
 
-    /// ReplyCache what is asked of the rig.
+    /// Answers what is asked of the rig.
     pub(super) fn take_orders(&mut self) {
         let bus = Arc::clone(&self.bus);
         while let Some(status) = self.orders.statuses.try_recv() {
@@ -155,14 +159,15 @@ impl Supervisor {
                     continue;
                 }
             };
-            let outcome = match orders.replies.find(&asked) {
+            let outcome = match self.orders.replies.find(&asked) {
                 Some(outcome) => outcome,
                 // It is asked again, and done when its turn comes.
-                None if self.switch.is_some() || !orders.has_heard(&asked, bus.now_ns()) => {
+                None if self.switch.is_some() || !self.orders.has_heard(&asked, bus.now_ns()) => {
                     Outcome::Waiting
                 }
+                None if self.lets_go(&asked.command) => Outcome::Waiting,
                 None => {
-                    orders.leaving.0.clear();
+                    self.orders.leaving.0.clear();
                     let outcome = self.order(&asked).unwrap_or_else(refusal);
                     let replies = &mut self.orders.replies;
                     replies.keep(asked.client, asked.number, outcome.clone());
@@ -209,6 +214,8 @@ impl Supervisor {
                 let path = path.as_ref().map(|path| PathBuf::from(path.as_str()));
                 Ask::New(path, canvas.clone(), *forget)
             }
+            RigCommand::PutDevice { toml } => return self.put_device(toml.as_str()),
+            RigCommand::RemoveDevice { name } => return self.removed_device(name.as_str()),
             RigCommand::SaveAs(save_as) => {
                 if !self.paint_runs() {
                     return Ok(starts_again());

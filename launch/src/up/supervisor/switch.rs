@@ -337,8 +337,10 @@ impl Supervisor {
     /// # Errors
     /// A [`UserError`] where a process cannot be started.
     pub(super) fn has_left(&mut self, place: usize, ended: Ended) -> Result<(), UserError> {
-        if self.nodes[place].spec.role != Role::Paint {
-            return self.start_node(place);
+        match self.nodes[place].spec.role {
+            Role::Paint => {}
+            Role::Device => return self.device_has_left(place),
+            Role::Brush | Role::Window | Role::Player => return self.start_node(place),
         }
         match self.switch.take() {
             Some(Switch {

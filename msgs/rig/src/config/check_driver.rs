@@ -1,7 +1,7 @@
 //! Keys of a `[[device]]` that its driver would ignore.
 
 use super::check::Wrong;
-use super::device::DeviceSection;
+use super::device::{DeviceSection, PEN_DRIVERS};
 
 /// Refuses what the driver of a device would ignore.
 pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
@@ -42,7 +42,7 @@ pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
         ),
         (
             "pressure_curve",
-            device.pressure_curve != usual.pressure_curve && driver != "pen",
+            device.pressure_curve != usual.pressure_curve && !PEN_DRIVERS.contains(&driver),
             "take it out: only a pen senses pressure",
         ),
         (

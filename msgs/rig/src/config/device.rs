@@ -4,17 +4,23 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use super::toml_fault;
+use crate::user_error::UserError;
+
 /// Drivers of devices.
-pub const DRIVERS: [&str; 6] = [
+pub const DRIVERS: [&str; 7] = [
     "simulated",
     "openhaptics",
     "polhem",
     "inverse3",
     "pen",
+    "evdev",
     "spacemouse",
 ];
 /// Those of them that `maulstick-hid` serves; the others are `maulstick-haptic`'s.
-pub const HID_DRIVERS: [&str; 2] = ["pen", "spacemouse"];
+pub const HID_DRIVERS: [&str; 3] = ["pen", "evdev", "spacemouse"];
+/// Those of them that read a tablet.
+pub const PEN_DRIVERS: [&str; 2] = ["pen", "evdev"];
 /// Force laws of a brush.
 pub const FORCES: [&str; 5] = ["linear", "hermite", "local", "rigid", "none"];
 /// Actions of a switch on a stylus.
@@ -29,14 +35,15 @@ pub struct DeviceSection {
     /// One of [`DRIVERS`].
     pub driver: String,
     /// Address among several devices: the name that OpenHaptics gives it; a serial port; a WebSocket's URL with
-    /// `#device+grip`; `vendor:product` of a HID device in hexadecimal, or its path below /dev. The first that fits if
-    /// absent.
+    /// `#device+grip`; `vendor:product` of a HID device or of an event device in hexadecimal, or its path below /dev. The
+    /// first that fits if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub address: Option<String>,
     /// The vendor's library of `openhaptics`, where it is not in the system's folders.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub library: Option<PathBuf>,
-    /// A recording of a HID device that is played in its place, in hid-recorder's text format.
+    /// A recording that is played in the place of a HID device or an event device, in the text format of hid-recorder or
+    /// evemu.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub replay: Option<PathBuf>,
     /// Of devices in range the highest paints.
@@ -53,7 +60,7 @@ pub struct DeviceSection {
     /// Desk lengths per device length. If absent 1; for a pen such that its tablet covers the canvas.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<f64>,
-    /// Canvas's lower left, lower right and upper left corners in the device frame, m, as `maulstick calibrate` finds
+    /// Canvas's lower left, lower right and upper left corners in the device frame, m, as `maulstick device fit` finds
     /// them; then position, orientation and scale follow from these.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub corners_m: Option<[[f64; 3]; 3]>,
@@ -102,6 +109,17 @@ impl DeviceSection {
         }
     }
 
+    /// Reads a section without its head.
+    ///
+    /// # Errors
+    /// A [`UserError`] that says what is wrong.
+    pub fn parse(text: &str) -> Result<Self, UserError> {
+        toml::from_str(text).map_err(|error| UserError {
+            place: None,
+            ..toml_fault(text, "", &error)
+        })
+    }
+
     /// True if `maulstick-hid` serves it.
     #[must_use]
     pub fn is_hid(&self) -> bool {
@@ -113,7 +131,7 @@ impl DeviceSection {
     pub fn actions(&self) -> Vec<&str> {
         match (&self.switches, self.driver.as_str()) {
             (Some(actions), _) => actions.iter().map(String::as_str).collect(),
-            (None, "pen") => vec!["pick", "undo"],
+            (None, driver) if PEN_DRIVERS.contains(&driver) => vec!["pick", "undo"],
             (None, "openhaptics" | "polhem" | "inverse3") => vec!["clutch", "undo"],
             (None, _) => Vec::new(),
         }

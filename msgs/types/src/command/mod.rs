@@ -9,7 +9,9 @@ use crate::command::advice::Advice;
 use crate::edits::Edit;
 use crate::mixture::Mixture;
 use crate::scene::{CANVAS, STAINS_M};
-use crate::values::{BrushName, BrushToml, MaterialName, ValueError, WholePath};
+use crate::values::{
+    BrushName, BrushToml, DeviceName, DeviceToml, MaterialName, ValueError, WholePath,
+};
 use crate::wire::define::{message, wire_enum, wire_struct};
 
 /// The node that has the painting.
@@ -31,6 +33,10 @@ pub const VERSION_NAME_MAX: usize = 128;
 pub const FILM_M: std::ops::RangeInclusive<f64> = 1e-6..=5e-3;
 /// A brush file has at most this many bytes.
 pub const BRUSH_FILE_MAX: usize = 1_000_000;
+/// The name of a device has at most this many bytes.
+pub const DEVICE_NAME_MAX: usize = 128;
+/// The settings of a device have at most this many bytes.
+pub const DEVICE_MAX: usize = 1 << 16;
 /// A spectrum of a command has at most this many bytes.
 pub const SPECTRUM_MAX: usize = 1 << 18;
 /// How long a drying may take, in sixtieths of a second: up to a year.
@@ -305,6 +311,16 @@ wire_enum! {
         },
         /// As [`FileCommand::SaveAs`], so that the rig starts with that file again.
         SaveAs(SaveAs),
+        /// Starts a device, in the place of the one with its name if there is one.
+        PutDevice {
+            /// Its section of `rig.toml`, without the head.
+            toml: DeviceToml,
+        },
+        /// Ends a device.
+        RemoveDevice {
+            /// Its name.
+            name: DeviceName,
+        },
     }
 }
 

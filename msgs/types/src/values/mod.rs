@@ -15,7 +15,8 @@ pub use numbers::{
     Zoom,
 };
 pub use texts::{
-    BrushName, BrushToml, LayerName, MaterialName, SpectrumText, VersionName, WholePath,
+    BrushName, BrushToml, DeviceName, DeviceToml, LayerName, MaterialName, SpectrumText,
+    VersionName, WholePath,
 };
 pub use ticks::{TICKS_A_SECOND, Ticks, ticks_in};
 

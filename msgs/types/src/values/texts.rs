@@ -8,7 +8,8 @@ use serde::de::{Deserialize, Deserializer, Error, Visitor};
 
 use super::ValueError;
 use crate::command::{
-    BRUSH_FILE_MAX, LAYER_NAME_MAX, PAINT_NAME_MAX, PATH_MAX, SPECTRUM_MAX, VERSION_NAME_MAX,
+    BRUSH_FILE_MAX, DEVICE_MAX, DEVICE_NAME_MAX, LAYER_NAME_MAX, PAINT_NAME_MAX, PATH_MAX,
+    SPECTRUM_MAX, VERSION_NAME_MAX,
 };
 use crate::wire::schema::{TypeTable, Wire};
 use crate::wire::topics::check_name;
@@ -180,6 +181,14 @@ text! {
 text! {
     /// A brush file, TOML.
     BrushToml: |toml| bounded("brush file", toml, BRUSH_FILE_MAX)
+}
+text! {
+    /// Name of a device of the rig.
+    DeviceName: |name| readable("device's name", name, DEVICE_NAME_MAX)
+}
+text! {
+    /// The settings of a device, TOML.
+    DeviceToml: |toml| bounded("settings of the device", toml, DEVICE_MAX)
 }
 text! {
     /// A path that begins at the root.

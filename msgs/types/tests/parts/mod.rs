@@ -11,7 +11,9 @@ use maulstick_types::paint::{
 };
 use maulstick_types::scene::{BrushHandling, BrushMode, Light};
 use maulstick_types::stylus::StylusStatus;
-use maulstick_types::values::{BrushName, BrushToml, MaterialName, WholePath};
+use maulstick_types::values::{
+    BrushName, BrushToml, DeviceName, DeviceToml, MaterialName, WholePath,
+};
 use maulstick_types::window::Presented;
 use maulstick_types::{Mixture, Pose};
 
@@ -152,7 +154,7 @@ pub(crate) fn takes() -> [TakeCommand; 3] {
 }
 
 /// The commands about files, and those of other nodes.
-pub(crate) fn files() -> [Command; 7] {
+pub(crate) fn files() -> [Command; 9] {
     let material = |name: &str| MaterialName::new(name).expect("a name");
     let canvas = NewCanvas {
         width_m: 0.3,
@@ -195,6 +197,14 @@ pub(crate) fn files() -> [Command; 7] {
         }
         .into(),
         RigCommand::SaveAs(save_as).into(),
+        RigCommand::PutDevice {
+            toml: DeviceToml::new("name").expect("short"),
+        }
+        .into(),
+        RigCommand::RemoveDevice {
+            name: DeviceName::new("pen").expect("short"),
+        }
+        .into(),
     ]
 }
 

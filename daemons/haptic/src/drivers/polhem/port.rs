@@ -154,7 +154,7 @@ fn refused(path: &str, error: &serialport::Error) -> UserError {
             .help("plug the stylus in, or leave `address` out: its port is found by itself"),
         ErrorKind::Io(Io::PermissionDenied) => {
             UserError::failure(format!("{path} may not be opened by you")).help(
-                "install the rules that `maulstick devices --udev` prints, or join the group \
+                "install the rules that `maulstick device list --udev` prints, or join the group \
                  dialout and log in anew",
             )
         }

@@ -1,4 +1,4 @@
-//! `maulstick devices`: attached devices, the drivers that fit, and their missing requirements.
+//! `maulstick device list`: attached devices, the drivers that fit, and their missing requirements.
 
 use std::time::{Duration, Instant};
 
@@ -10,19 +10,19 @@ use serde::Serialize;
 use serde_json::json;
 
 use crate::attached::vendors::{INVERSE_SERVICE, library_folders, listens, open_haptics};
-use crate::attached::{Attached, Places, hid, rules, serial};
+use crate::attached::{Attached, Places, events, hid, rules, serial};
 use crate::commands::session::{Feed, Session, Target};
 use crate::commands::{print_json, print_text};
 
-/// Options of `maulstick devices`.
+/// Options of `maulstick device list`.
 #[derive(Args, Clone, Debug)]
-pub struct DevicesOptions {
+pub struct ListOptions {
     /// Print JSON
     #[arg(long)]
     json: bool,
     /// Print a udev rule that lets the user at this machine use its devices
     ///
-    /// Install it: maulstick devices --udev | sudo tee /etc/udev/rules.d/70-maulstick.rules &&
+    /// Install it: maulstick device list --udev | sudo tee /etc/udev/rules.d/70-maulstick.rules &&
     /// sudo udevadm control --reload && sudo udevadm trigger
     #[arg(long, conflicts_with = "json")]
     udev: bool,
@@ -39,6 +39,7 @@ const TOGETHER: Duration = Duration::from_millis(300);
 #[derive(Clone, Debug, Serialize)]
 struct Findings {
     hid: Vec<Attached>,
+    events: Vec<Attached>,
     serial: Vec<Attached>,
     openhaptics: Library,
     inverse_service: Service,
@@ -83,15 +84,17 @@ struct Told {
 ///
 /// # Errors
 /// A [`UserError`] where it cannot be printed.
-pub fn run(options: &DevicesOptions) -> Result<i32, UserError> {
+pub(super) fn run(options: &ListOptions) -> Result<i32, UserError> {
     let places = Places::here();
     if options.udev {
         print_text(&rules(&hid::devices(&places)))?;
         return Ok(0);
     }
     let looked_in = library_folders();
+    let hid = hid::devices(&places);
     let findings = Findings {
-        hid: hid::devices(&places),
+        events: events::devices(&places, &hid),
+        hid,
         serial: serial::ports(&places),
         openhaptics: Library {
             path: open_haptics(&looked_in),
@@ -162,7 +165,13 @@ type Row = [String; 5];
 /// Table of the findings, for people.
 fn table(findings: &Findings) -> String {
     let mut rows: Vec<Row> = Vec::new();
-    let all = || findings.hid.iter().chain(&findings.serial);
+    let all = || {
+        findings
+            .hid
+            .iter()
+            .chain(&findings.events)
+            .chain(&findings.serial)
+    };
     for fits in [true, false] {
         let these = all().filter(|device| device.driver.is_some() == fits);
         rows.extend(these.map(row));
@@ -251,9 +260,10 @@ fn nothing(findings: &Findings) -> String {
         .collect();
     format!(
         "Nothing attached that a driver fits; the mouse paints, and so does `driver = \"simulated\"`.\n\
-         Shown would be pens (pen) and 6-DOF mice (spacemouse) at /dev/hidraw*, Polhem and\n\
-         WoodenHaptics (polhem) at serial ports, an Inverse3 (inverse3) with Haply's service at\n\
-         {}, and a Touch (openhaptics) with libHD.so in\n\
+         Shown would be pens (pen) and 6-DOF mice (spacemouse) at /dev/hidraw*, other tablets (evdev)\n\
+         at /dev/input/event*, Polhem and WoodenHaptics (polhem) at serial ports, an Inverse3\n\
+         (inverse3) with Haply's service at {}, and a Touch (openhaptics)\n\
+         with libHD.so in\n\
          {}.\n",
         findings.inverse_service.address,
         folders.join(", ")
@@ -263,19 +273,12 @@ fn nothing(findings: &Findings) -> String {
 /// Advice on the use of a device.
 fn advice(device: &Attached) -> String {
     let driver = device.driver.unwrap_or_default();
-    // A serial port is asked for by its node, a HID device by what it is, wherever it is plugged in.
-    let address = match driver {
-        "polhem" => device.path.display().to_string(),
-        _ => device.id.clone(),
-    };
     let purpose = match driver {
         "spacemouse" => "To move the canvas with it",
         _ => "To paint with it",
     };
-    format!(
-        "\n{purpose}, in rig.toml:\n\n[[device]]\nname = \"{driver}\"\ndriver = \"{driver}\"\n\
-         address = \"{address}\"\nbrush = \"main\"\n"
-    )
+    let address = device.address();
+    format!("\n{purpose}:\n\n  maulstick device add --address {address}\n")
 }
 
 fn in_rig(used: Option<&[Used]>) -> String {

@@ -1,4 +1,4 @@
-//! `maulstick calibrate`: the corners of the canvas, as a hand shows them with its device, written into `rig.toml`.
+//! `maulstick device fit`: the corners of the canvas, as a hand shows them with its device, written into the settings.
 
 use std::io::Write as _;
 use std::ops::ControlFlow;
@@ -6,48 +6,54 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::DVec3;
-use maulstick_bus::{RigFolder, Wake};
+use maulstick_bus::Wake;
 use maulstick_device::corner_calibration::{CornerCalibration, HandReading, Progress};
 use maulstick_device::registration::{by_corners, canvas_m, check_side};
 use maulstick_haptic::device::open::{HapticSettings, open};
 use maulstick_haptic::device::probe::probe;
-use maulstick_hid::hidraw::Hidraw;
+use maulstick_hid::open::Kind as DeviceKind;
 use maulstick_hid::tablet::Tablet;
 use maulstick_rig::config::DeviceSection;
 use maulstick_rig::files::{Kind, check_writable, write_whole};
-use maulstick_rig::{RigConfig, Stop, UserError};
+use maulstick_rig::{RigConfig, Stop, UserError, user_devices};
 use toml_edit::{Array, DocumentMut, Item, TableLike, Value};
 
+use super::user_file::{put_in_rig, remove_from_rig};
 use crate::EXIT_INTERRUPTED;
 use crate::commands::say;
+use crate::commands::session::{Session, Target};
 
-/// Options of `maulstick calibrate`.
+/// Options of `maulstick device fit`.
 #[derive(Args, Clone, Debug)]
-pub struct CalibrateOptions {
-    /// Device of rig.toml
+pub struct FitOptions {
+    /// The device
     device: String,
-    /// Settings of the rig; the corners are written to this file
+    /// Settings of a rig, into which the corners are written [default: your own devices]
     #[arg(long, value_name = "FILE")]
     rig: Option<PathBuf>,
+    #[command(flatten)]
+    target: Target,
 }
 
-/// Has a hand show the corners and writes them.
+/// Has a hand show the corners and writes them; a rig that runs lets go of the device meanwhile.
 ///
 /// # Errors
 /// A [`UserError`] for a device that is not there, corners that do not fit the canvas, or settings that
 /// cannot be written.
-pub fn run(options: &CalibrateOptions) -> Result<i32, UserError> {
-    let Some(path) = &options.rig else {
-        let help = "make them with `maulstick up --print-config > rig.toml`, and name them: --rig rig.toml";
-        return Err(UserError::usage("there are no settings to write the corners into").help(help));
+pub(super) fn run(options: &FitOptions) -> Result<i32, UserError> {
+    let (path, config, target) = match &options.rig {
+        Some(path) => {
+            let config = RigConfig::read(path)?;
+            let target = Target::named(&config.rig.name);
+            (path.clone(), config, target)
+        }
+        None => own_settings(&options.target)?,
     };
-    let config = RigConfig::read(path)?;
     let place = path.display().to_string();
-    let names = || config.device.iter().map(|device| device.name.as_str());
-    let device = config.device.iter().find(|d| d.name == options.device);
-    let device = device.cloned().ok_or_else(|| {
+    let device = named(&config, &options.device).ok_or_else(|| {
+        let names = config.device.iter().map(|device| device.name.as_str());
         let what = format!("there is no [[device]] called '{}'", options.device);
-        UserError::unknown(what, &options.device, names()).at(place.clone())
+        UserError::unknown(what, &options.device, names).at(place.clone())
     })?;
     if device.driver == "spacemouse" {
         let what = format!(
@@ -56,10 +62,38 @@ pub fn run(options: &CalibrateOptions) -> Result<i32, UserError> {
         );
         return Err(UserError::usage(what).at(place));
     }
-    if RigFolder::join(&config.rig.name).is_ok() {
-        let what = format!("the rig '{}' runs and has the device", config.rig.name);
-        return Err(UserError::usage(what).help("end it first: Ctrl-C where `maulstick up` runs"));
+    let is_in_rig = remove_from_rig(&target, &device.name)?;
+    let fitted = fit(&path, &config, device.clone());
+    if is_in_rig {
+        let now = RigConfig::read(&path).ok();
+        let now = now.and_then(|config| named(&config, &device.name));
+        put_in_rig(&target, &now.unwrap_or(device))?;
     }
+    fitted
+}
+
+fn named(config: &RigConfig, name: &str) -> Option<DeviceSection> {
+    let mut devices = config.device.iter();
+    devices.find(|device| device.name == name).cloned()
+}
+
+/// The user's own devices, to be fitted to the canvas of the rig that runs.
+fn own_settings(target: &Target) -> Result<(PathBuf, RigConfig, Target), UserError> {
+    let path = user_devices::path()?;
+    if !path.exists() {
+        return Err(UserError::usage("you have no device yet").help(
+            "`maulstick device add` adds one that is attached; `--rig` names the settings of a rig",
+        ));
+    }
+    let mut config = RigConfig::read(&path)?;
+    if let Ok(session) = Session::open(target) {
+        config.canvas = session.config()?.canvas;
+    }
+    Ok((path, config, target.clone()))
+}
+
+/// Fits a device that nobody else has open.
+fn fit(path: &Path, config: &RigConfig, device: DeviceSection) -> Result<i32, UserError> {
     check_writable(path, Kind::Own).map_err(|error| UserError::writing(path, &error))?;
     let stop = Stop::on_signals(&Wake::new())
         .map_err(|error| UserError::failure(format!("cannot watch for signals: {error}")))?;
@@ -79,7 +113,7 @@ pub fn run(options: &CalibrateOptions) -> Result<i32, UserError> {
     };
     match device.is_hid() {
         true => watch_pen(&device, look)?,
-        false => watch_ferrule(&config, &device, look)?,
+        false => watch_ferrule(config, &device, look)?,
     }
     if let Some(fault) = broken {
         return Err(fault);
@@ -89,11 +123,12 @@ pub fn run(options: &CalibrateOptions) -> Result<i32, UserError> {
         return Ok(EXIT_INTERRUPTED);
     };
     check_side(&corners, showing.corners.handle())?;
+    let name = device.name.clone();
     match device.is_hid() {
-        true => fit_tablet(&config, device, &corners)?,
-        false => fit_ferrule(&config, &corners)?,
+        true => fit_tablet(config, device, &corners)?,
+        false => fit_ferrule(config, &corners)?,
     }
-    write(path, &options.device, &corners)?;
+    write(path, &name, &corners)?;
     say!("written into {}", path.display());
     Ok(0)
 }
@@ -139,7 +174,7 @@ fn watch_pen(
     device: &DeviceSection,
     look: impl FnMut(HandReading) -> ControlFlow<()>,
 ) -> Result<(), UserError> {
-    let shown = maulstick_hid::probe::open(&mut Hidraw, device)?;
+    let shown = maulstick_hid::probe::open(&mut *DeviceKind::of_section(device)?.ports(), device)?;
     say!("{}: {}", device.name, shown.what);
     Showing::of(device).ask()?;
     shown.probe(look)

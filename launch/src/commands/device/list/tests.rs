@@ -19,6 +19,7 @@ fn attached(name: &str, id: &str, node: &str, driver: Option<&'static str>) -> A
 fn findings(hid: Vec<Attached>, serial: Vec<Attached>) -> Findings {
     Findings {
         hid,
+        events: Vec::new(),
         serial,
         openhaptics: Library {
             path: None,
@@ -78,7 +79,7 @@ Haply Inverse Service  -          localhost:10001    inverse3     found
     assert!(text.starts_with(expected), "{text}");
     // The one that is ready, by its port.
     assert!(
-        text.contains("driver = \"polhem\"\naddress = \"/dev/ttyACM0\""),
+        text.contains("maulstick device add --address /dev/ttyACM0"),
         "{text}"
     );
 }
