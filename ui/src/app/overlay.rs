@@ -1,6 +1,7 @@
 //! Everything over the desk: rack, panels, dialogs, notifications, the line of help; and the keys for them.
 
 use eframe::egui::{self, Align2, Context, Rect, Ui};
+use maulstick_types::Mixture;
 use maulstick_types::command::Command;
 use maulstick_types::edits::{Clean, Dry, Edit, Redo, Scrape, Undo};
 use maulstick_types::scene::{CANVAS, PALETTE};
@@ -22,6 +23,7 @@ use crate::panels;
 use crate::reference::Reference;
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
+use crate::settings::brush_load;
 use crate::settings::brush_memory::BrushMemory;
 use crate::settings::preferences::Preferences;
 use crate::settings_page::SettingsPage;
@@ -151,7 +153,7 @@ impl Overlay {
                 if let Some(done) = past_tense(&outcome.request) {
                     let what = match detail.is_empty() {
                         true => done.to_owned(),
-                        false => format!("{done}: {}", step(detail)),
+                        false => format!("{done}: {}", told(detail)),
                     };
                     work.notifications.note(what);
                 }
@@ -300,6 +302,14 @@ fn fills_screen(context: &Context) -> bool {
 
 fn fill_screen(context: &Context, fills: bool) {
     context.send_viewport_cmd(egui::ViewportCommand::Fullscreen(fills));
+}
+
+/// What an edit was about, as a painter reads it: a step, or a mixture.
+fn told(detail: &str) -> String {
+    match detail.parse::<Mixture>() {
+        Ok(mixture) if mixture.parts.len() > 1 => brush_load::words(&mixture),
+        _ => step(detail),
+    }
 }
 
 /// The deed of an edit whose effect may be out of view.

@@ -8,7 +8,8 @@ use maulstick_brush::file::library::LIBRARY;
 use maulstick_brush::{BrushError, BrushFile};
 use maulstick_rig::UserError;
 use maulstick_types::command::{BrushCommand, Command};
-use maulstick_types::edits::{Edit, Load};
+use maulstick_types::edits::{Edit, Handle, Load};
+use maulstick_types::scene::BrushHandling;
 use maulstick_types::values::{BrushName, BrushToml};
 
 use crate::language::{capitalized, known};
@@ -224,6 +225,25 @@ impl PanelContext<'_> {
         }
     }
 
+    /// Ends a limit to the thickness of what the brush lays, and the thinner of its next load.
+    fn lay_full_paint(&mut self) {
+        let handling = self.rig.handling();
+        let is_limited = handling.most_m > 0.0;
+        if !is_limited && self.preferences.loading.thinner == 0.0 {
+            return;
+        }
+        self.preferences.loading.thinner = 0.0;
+        let unlimited = BrushHandling {
+            most_m: 0.0,
+            ..handling
+        };
+        if let (true, Ok(handle)) = (is_limited, Handle::try_from(&unlimited)) {
+            self.requests.send(handle);
+        }
+        self.notifications
+            .note(tr!("This brush lays full paint: no limit, no thinner."));
+    }
+
     /// Sends a command to the paint node once the brush in the hand has its requested file.
     pub fn then(&mut self, command: Command) {
         let in_hand = self.rig.in_hand;
@@ -233,8 +253,10 @@ impl PanelContext<'_> {
         }
     }
 
-    /// Takes a brush at the width that it was last used at, or at its own.
+    /// Takes a brush at the width that it was last used at, or at its own. What a preset made of the one before ends with
+    /// it: another brush lays full paint.
     pub fn choose(&mut self, file: &BrushFile) {
+        self.lay_full_paint();
         let width_mm = self.preferences.widths_mm.get(&file.kind);
         let scaled = width_mm.and_then(|width_mm| file.scaled_to(*width_mm).ok());
         self.take_up(scaled.unwrap_or_else(|| file.clone()));

@@ -151,10 +151,12 @@ impl BrushTracker {
         while let Some(def) = self.defs.try_recv() {
             match BrushFile::parse(&def.message.toml) {
                 Ok(file) => {
+                    // It is in the hand that had the one before, which may keep still.
+                    let before = self.known.get(&def.message.brush);
                     let known = TrackedBrush {
                         head: Head::of(&file),
                         file,
-                        device: None,
+                        device: before.and_then(|before| before.device),
                         angles: Vec::new(),
                         led: None,
                         touches: None,

@@ -240,17 +240,22 @@ impl BrushLoad {
         }
     }
 
-    /// A brush of other strips that carries the same paint, spread evenly inside them.
+    /// A brush of other strips that carries the same paint, spread evenly: in films of `film_full` quanta a texel at most,
+    /// and inside.
     #[must_use]
-    pub fn spread(strips: usize, counts: &Counts) -> Self {
+    pub fn spread(strips: usize, counts: &Counts, film_full: f64) -> Self {
         let mut load = Self::clean(strips);
         let texels = load.texels as u64;
+        let all = counts.iter().sum::<u64>().max(1) as f64;
         for (slot, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
             let held = load.held_mut(slot);
             let each = count / texels;
-            held.inside.fill(each as u32);
+            let film = each.min((film_full * *count as f64 / all) as u64);
+            held.film.fill(film as u32);
+            held.inside.fill((each - film) as u32);
             held.inside[0] += (count - each * texels) as u32;
         }
+        load.count_films();
         load
     }
 
@@ -264,7 +269,7 @@ impl BrushLoad {
             return self.clone();
         }
         if own == 0 || finer.strips() != own.max(strips) {
-            return Self::spread(strips, &self.counts());
+            return Self::spread(strips, &self.counts(), 0.0);
         }
         let mut load = Self::clean(strips);
         load.steps = self.steps;
@@ -449,7 +454,7 @@ mod tests {
             right < whole / 1000
         };
         assert!(is_left(&load) && is_left(&on_few) && is_left(&again));
-        let evenly = BrushLoad::spread(112, &load.counts());
+        let evenly = BrushLoad::spread(112, &load.counts(), 0.0);
         assert!(!is_left(&evenly), "a fault passes: spread evenly");
     }
 
@@ -466,9 +471,11 @@ mod tests {
     fn what_is_spread_over_other_strips_is_all_there() {
         let mut counts = [0; SLOTS];
         (counts[0], counts[7]) = (1_000_003, 17);
-        let load = BrushLoad::spread(24, &counts);
+        let load = BrushLoad::spread(24, &counts, 0.0);
         assert_eq!(load.counts(), counts);
-        let mut load = BrushLoad::spread(300, &load.counts());
+        let mut load = BrushLoad::spread(300, &load.counts(), 40.0);
+        // It shows: its films are as full as they may be, of which so little blue is less than a quantum.
+        assert!(load.films().iter().all(|film| *film == 39));
         assert_eq!(load.take_all(), counts);
         assert_eq!(load.total(), 0);
     }

@@ -20,7 +20,7 @@ pub(super) fn show(ui: &mut Ui, ball: TextureId, direction: [f64; 3]) -> Option<
     response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, tr!("Lamp")));
     let mut moved = None;
     if let Some(at) = response.interact_pointer_pos()
-        && (response.dragged() || response.clicked())
+        && (response.dragged() || response.drag_stopped() || response.clicked())
     {
         response.request_focus();
         moved = Some(from_pad(place, at));

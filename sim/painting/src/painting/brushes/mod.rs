@@ -84,7 +84,9 @@ impl PaintingBrush {
         let thinned = file.thinned(cell_m);
         let head = Arc::new(Head::of(&thinned));
         if head.strips() != self.head.strips() {
-            self.load = BrushLoad::spread(head.strips(), &self.load.counts()).into();
+            let film_full = BrushTraits::of(&thinned, cell_m, 1.0).film_full;
+            let counts = self.load.counts();
+            self.load = BrushLoad::spread(head.strips(), &counts, film_full).into();
         }
         (self.file, self.thinned, self.path) = (file, thinned, None);
         self.tidy = head;
