@@ -140,13 +140,13 @@ pub fn run() -> Result<i32, UserError> {
     if overwrite {
         allow_overwriting();
     }
-    // A rig ends its processes first, a node its work, a calibration its device.
-    let minds_signals = match &command {
+    // A rig ends its processes first, a node its work, a fitting its device.
+    let handles_signals = match &command {
         Command::Up(_) | Command::Node(_) => true,
-        Command::Device(command) => command.minds_signals(),
+        Command::Device(command) => command.handles_signals(),
         _ => false,
     };
-    if !minds_signals {
+    if !handles_signals {
         clear_on_signals(crate::EXIT_INTERRUPTED)
             .map_err(|error| UserError::failure(format!("cannot watch for signals: {error}")))?;
     }

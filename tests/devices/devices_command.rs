@@ -161,18 +161,6 @@ fn what_does_not_fit_changes_nothing() {
             vec!["'simulted'", "did you mean 'simulated'"],
         ),
         (
-            vec![
-                "device",
-                "add",
-                "x",
-                "--driver",
-                "simulated",
-                "--brush",
-                "mian",
-            ],
-            vec!["'mian'", "'main'"],
-        ),
-        (
             vec!["device", "add", "pen", "--driver", "pen"],
             vec!["something called 'pen'"],
         ),

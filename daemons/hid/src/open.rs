@@ -220,8 +220,9 @@ pub fn means(kind: Kind, identity: &Identity, bytes: &[u8]) -> Result<Means, Use
         Kind::Pen | Kind::EventPen => {
             let layout = Layout::of(&descriptor).ok_or_else(|| {
                 other(
-                    "choose another device by `address`; if it is a tablet, its reports are in a format \
-                     of its maker's own: record it with `maulstick node hid --record` and send us that",
+                    "choose another device by `address`; if it is a tablet, its reports are in a format of its \
+                     maker's own, which the kernel may know: take `driver = \"evdev\"`; or record it with \
+                     `maulstick node hid --record` and send us that",
                 )
             })?;
             Ok(Means::Pen(Decoder::Described(layout)))
@@ -329,7 +330,8 @@ fn begin(kind: Kind, opened: &mut Opened) {
     if kind == Kind::Pen
         && let Err(fault) = opened.source.grab()
     {
-        tracing::warn!("{}: {fault}", opened.identity);
+        let place = fault.place.unwrap_or_default();
+        tracing::warn!("{}: {place}: {}", opened.identity, fault.what);
     }
     let order = match kind {
         Kind::EventPen => None,

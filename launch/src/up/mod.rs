@@ -226,13 +226,17 @@ fn unattended(mut config: RigConfig) -> RigConfig {
 fn with_own_devices(mut config: RigConfig) -> RigConfig {
     let own = user_devices::path().and_then(|path| user_devices::read(&path));
     for device in own.unwrap_or_else(|fault| {
-        tracing::error!("{fault}; the rig starts without your devices");
+        let place = fault.place.unwrap_or_default();
+        tracing::error!(
+            "the rig starts without your devices: {place}: {}",
+            fault.what
+        );
         Vec::new()
     }) {
         let name = device.name.clone();
         match config.with_device(device) {
             Ok(with) => config = with,
-            Err(fault) => tracing::error!("the rig starts without '{name}': {fault}"),
+            Err(fault) => tracing::error!("the rig starts without '{name}': {}", fault.what),
         }
     }
     config

@@ -297,7 +297,7 @@ impl RigConfig {
     }
 
     /// Resolves the paths of settings relative to the folder of the settings.
-    fn resolve(&mut self, folder: &Path) {
+    pub(crate) fn resolve(&mut self, folder: &Path) {
         let whole = |path: &mut PathBuf| *path = folder.join(&*path);
         self.paint.paints.iter_mut().for_each(whole);
         self.paint.document.iter_mut().for_each(whole);
@@ -379,12 +379,14 @@ impl RigConfig {
         })
     }
 
-    /// The same rig without a device, and without what is said of its node.
+    /// The same rig without a device, and without the sections of nodes that are nobody's then.
     #[must_use]
     pub fn without_device(&self, name: &str) -> Self {
         let mut config = self.clone();
         config.device.retain(|device| device.name != name);
-        config.node.remove(name);
+        while let Err((_, _, node)) = config.check_nodes() {
+            config.node.remove(&node);
+        }
         config
     }
 
@@ -493,6 +495,32 @@ mod tests {
         ] {
             assert_eq!(parse(path), Ok(Some(PathBuf::from(path))));
         }
+    }
+
+    #[test]
+    fn devices_come_and_go_with_the_sections_that_are_theirs_alone() {
+        let text = DEFAULT.replace(
+            "[node.paint]",
+            "[node.arm]\nrestart = \"never\"\n[node.paint]",
+        );
+        let arm = |name: &str| DeviceSection::new(name, "polhem", "main");
+        assert!(RigConfig::parse(&text, "rig.toml").is_err(), "no arm");
+        let config = RigConfig::default()
+            .with_device(arm("arm-left"))
+            .expect("it fits");
+        let mut config = config.with_device(arm("arm-right")).expect("it fits");
+        config.node.insert("arm".into(), NodeSection::default());
+        let fewer = config.without_device("arm-left");
+        assert!(fewer.node.contains_key("arm") && fewer.device.len() == 2);
+        let none = fewer.without_device("arm-right");
+        assert!(!none.node.contains_key("arm") && none.node.contains_key("paint"));
+        let again = RigConfig::parse(&none.to_toml().expect("text"), "rig.toml");
+        assert_eq!(again, Ok(RigConfig::default()));
+        let other = DeviceSection::new("arm", "polhem", "mian");
+        let fault = RigConfig::default()
+            .with_device(other)
+            .expect_err("no such brush");
+        assert!(fault.what.contains("'mian'") && fault.place.is_none());
     }
 
     #[test]

@@ -136,6 +136,8 @@ impl Reader {
         };
         if event.kind != kind::SYN {
             frame::push(&mut self.frame, event);
+        }
+        if (event.kind, event.code) != (kind::SYN, 0) {
             return Ok(());
         }
         let events = &mut self.recorded.events;

@@ -1,5 +1,5 @@
-//! The pen in a tablet's events. A rotation's range is once round, clockwise for who looks from above, from the switches'
-//! pointing to the right on, as libinput has it. Where a driver gives no resolution:
+//! The pen in a tablet's events. The range of its rotation is one turn, clockwise seen from above, which begins where the
+//! switches point to the right (libinput). Where a driver gives no resolution:
 //!
 //! | axis | is taken for |
 //! | --- | --- |
@@ -62,7 +62,8 @@ impl Tracked {
         Some(Self {
             axis,
             counts: axis.counts()?,
-            value: axis.range[0].into(),
+            // As the kernel begins: a recording has only what changes.
+            value: 0.clamp(axis.range[0], axis.range[1]).into(),
         })
     }
 

@@ -5,7 +5,8 @@ use std::os::fd::AsFd as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use evdev::{AbsoluteAxisCode, Device, KeyCode};
+use evdev::raw_stream::RawDevice;
+use evdev::{AbsoluteAxisCode, KeyCode};
 use maulstick_rig::UserError;
 use nix::errno::Errno;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
@@ -16,6 +17,9 @@ use super::pen::EvdevPen;
 use crate::device_source::{Found, HidSource, Identity, Ports};
 use crate::hidraw::closed;
 
+/// Events of the type SYN: the end of a frame, and the loss of events.
+const SYN_REPORT: u16 = 0;
+const SYN_DROPPED: u16 = 3;
 /// What a pen is called among the collections of HID: digitizer, pen.
 const PEN: (u16, u16) = (0x0D, 0x02);
 
@@ -80,7 +84,7 @@ fn movable(code: u16) -> Axis {
 }
 
 /// The numbers of the bits that are set: hexadecimal words of 64 bits, the highest first.
-fn bits(text: &str) -> Vec<u16> {
+pub(super) fn bits(text: &str) -> Vec<u16> {
     let words = text.split_whitespace().rev().enumerate();
     let of = |(place, word): (usize, &str)| {
         let word = u64::from_str_radix(word, 16).unwrap_or(0);
@@ -108,7 +112,7 @@ impl Ports for EventDevices {
 
     fn open(&mut self, found: &Found) -> Result<Box<dyn HidSource>, UserError> {
         let identity = &found.identity;
-        let opened = Device::open(&identity.place).and_then(|mut device| {
+        let opened = RawDevice::open(&identity.place).and_then(|mut device| {
             // Of a device that another program has grabbed nothing would ever come.
             device.grab()?;
             EventSource::new(device, identity.to_string())
@@ -122,56 +126,43 @@ impl Ports for EventDevices {
 
 /// An open event device that nobody else hears.
 struct EventSource {
-    device: Device,
+    device: RawDevice,
     capabilities: Vec<u8>,
     name: String,
     /// What has come and is not read, one time after the other, and what came of the newest.
     frames: VecDeque<Vec<u8>>,
     begun: Vec<u8>,
+    /// Events were lost: what comes until the next end of a frame is of no use.
+    is_behind: bool,
 }
 
 impl EventSource {
     /// The first frame is what the device holds now: a pen may be near already.
-    fn new(device: Device, name: String) -> std::io::Result<Self> {
-        let (axes, keys) = (device.get_abs_state()?, device.get_key_state()?);
-        let supported = device.supported_absolute_axes();
-        let codes = supported.into_iter().flat_map(|all| all.iter());
-        let known = device.supported_keys();
-        let mut capabilities = Capabilities {
-            axes: Vec::new(),
-            keys: known
-                .into_iter()
-                .flat_map(|all| all.iter())
-                .map(|key| key.0)
-                .collect(),
-        };
-        let mut now = Vec::new();
-        for AbsoluteAxisCode(code) in codes {
-            let Some(told) = axes.get(usize::from(code)) else {
-                continue;
-            };
-            capabilities.axes.push(Axis {
+    fn new(device: RawDevice, name: String) -> std::io::Result<Self> {
+        let values = device.get_abs_state()?;
+        let axes = axis_codes(&device).filter_map(|code| {
+            let axis = values.get(usize::from(code))?;
+            Some(Axis {
                 code,
-                range: [told.minimum, told.maximum],
-                resolution: told.resolution,
-            });
-            let (kind, value) = (kind::ABS, told.value);
-            frame::push(&mut now, frame::Event { kind, code, value });
-        }
-        for KeyCode(code) in keys.iter() {
-            let (kind, value) = (kind::KEY, 1);
-            frame::push(&mut now, frame::Event { kind, code, value });
-        }
+                range: [axis.minimum, axis.maximum],
+                resolution: axis.resolution,
+            })
+        });
+        let capabilities = Capabilities {
+            axes: axes.collect(),
+            keys: key_codes(&device).collect(),
+        };
         Ok(Self {
             capabilities: capabilities.to_bytes(),
+            frames: VecDeque::from([snapshot(&device)?]),
             device,
             name,
-            frames: VecDeque::from([now]),
             begun: Vec::new(),
+            is_behind: false,
         })
     }
 
-    /// Takes in what has come; whether anything could.
+    /// Reads pending events into frames.
     fn take_in(&mut self, limit: Duration) -> std::io::Result<()> {
         let timeout = PollTimeout::try_from(limit).unwrap_or(PollTimeout::MAX);
         let mut waiting = [PollFd::new(self.device.as_fd(), PollFlags::POLLIN)];
@@ -180,20 +171,54 @@ impl EventSource {
             Ok(_) => {}
             Err(error) => return Err(error.into()),
         }
-        for event in self.device.fetch_events()? {
-            let (kind, code) = (event.event_type().0, event.code());
-            if kind == kind::SYN {
-                let whole = std::mem::take(&mut self.begun);
-                if !whole.is_empty() {
-                    self.frames.push_back(whole);
+        let events: Vec<_> = self.device.fetch_events()?.collect();
+        for event in events {
+            let (kind, code, value) = (event.event_type().0, event.code(), event.value());
+            match (kind, code) {
+                (kind::SYN, SYN_DROPPED) => self.is_behind = true,
+                (kind::SYN, SYN_REPORT) => {
+                    let mut whole = std::mem::take(&mut self.begun);
+                    if std::mem::take(&mut self.is_behind) {
+                        whole = snapshot(&self.device)?;
+                    }
+                    if !whole.is_empty() {
+                        self.frames.push_back(whole);
+                    }
                 }
-                continue;
+                (kind::SYN, _) => {}
+                _ => frame::push(&mut self.begun, frame::Event { kind, code, value }),
             }
-            let value = event.value();
-            frame::push(&mut self.begun, frame::Event { kind, code, value });
         }
         Ok(())
     }
+}
+
+fn axis_codes(device: &RawDevice) -> impl Iterator<Item = u16> {
+    let axes = device.supported_absolute_axes().into_iter();
+    axes.flat_map(|all| all.iter())
+        .map(|AbsoluteAxisCode(code)| code)
+}
+
+fn key_codes(device: &RawDevice) -> impl Iterator<Item = u16> {
+    let keys = device.supported_keys().into_iter();
+    keys.flat_map(|all| all.iter()).map(|KeyCode(code)| code)
+}
+
+/// A frame of all that a device holds: its axes, and its keys, down or up.
+fn snapshot(device: &RawDevice) -> std::io::Result<Vec<u8>> {
+    let (axes, keys) = (device.get_abs_state()?, device.get_key_state()?);
+    let mut frame = Vec::new();
+    for code in axis_codes(device) {
+        if let Some(axis) = axes.get(usize::from(code)) {
+            let (kind, value) = (kind::ABS, axis.value);
+            frame::push(&mut frame, frame::Event { kind, code, value });
+        }
+    }
+    for code in key_codes(device) {
+        let (kind, value) = (kind::KEY, i32::from(keys.contains(KeyCode(code))));
+        frame::push(&mut frame, frame::Event { kind, code, value });
+    }
+    Ok(frame)
 }
 
 impl HidSource for EventSource {

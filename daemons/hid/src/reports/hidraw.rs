@@ -127,8 +127,9 @@ pub fn closed(device: &Identity, error: &std::io::Error) -> UserError {
 impl HidSource for Device {
     fn grab(&mut self) -> Result<(), UserError> {
         let nodes = event_nodes(Path::new("/sys"), Path::new("/dev"), &self.place);
-        self.grab = Grab::all(&nodes)?;
-        Ok(())
+        let (grab, fault) = Grab::all(&nodes);
+        self.grab = grab;
+        fault.map_or(Ok(()), Err)
     }
 
     fn descriptor(&self) -> &[u8] {

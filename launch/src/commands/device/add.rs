@@ -8,13 +8,13 @@ use maulstick_types::plain;
 use super::user_file::{UserFile, put_in_rig};
 use crate::attached::{Attached, Places, events, hid, serial};
 use crate::commands::say;
-use crate::commands::session::Target;
+use crate::commands::session::{Session, Target};
 
 /// Options of `maulstick device add`.
 #[derive(Args, Clone, Debug)]
 pub struct AddOptions {
     /// Name for the device [default: by what it is]
-    name: Option<String>,
+    device: Option<String>,
     /// Its driver [default: the one that fits what is attached]
     #[arg(long)]
     driver: Option<String>,
@@ -45,10 +45,18 @@ pub(super) fn run(options: &AddOptions) -> Result<i32, UserError> {
             (driver, Some(address))
         }
     };
-    let name = match &options.name {
+    let name = match &options.device {
         Some(name) => name.clone(),
         None => free_name(&driver, &file.devices),
     };
+    let in_rig = Session::open(&options.target).and_then(|session| session.config());
+    let in_rig = in_rig.map(|config| config.device).unwrap_or_default();
+    if in_rig.iter().any(|device| device.name == name) {
+        return Err(
+            UserError::usage(format!("the rig has a device called '{name}' already"))
+                .help("give this one another name"),
+        );
+    }
     if file.devices.iter().any(|device| device.name == name) {
         return Err(
             UserError::usage(format!("you have a device called '{name}' already"))
@@ -84,13 +92,19 @@ fn chosen(
     address: Option<&str>,
     known: &[DeviceSection],
 ) -> Result<(String, String), UserError> {
-    let is_meant = |device: &&Attached| match address {
-        Some(address) => device.id == address || device.path.display().to_string() == address,
-        None => !known
-            .iter()
-            .any(|own| own.address.as_ref() == Some(&device.address())),
+    let is_known = |device: &Attached| {
+        let mut addresses = known.iter().filter_map(|own| own.address.as_ref());
+        addresses.any(|own| *own == device.address())
     };
-    let meant: Vec<&Attached> = found.iter().filter(is_meant).collect();
+    let is_meant = |device: &&Attached| match address {
+        Some(address) => {
+            device.id.eq_ignore_ascii_case(address) || device.path.as_os_str() == address
+        }
+        None => !is_known(device),
+    };
+    let mut meant: Vec<&Attached> = found.iter().filter(is_meant).collect();
+    // A tablet may have several interfaces.
+    meant.dedup_by_key(|device| (device.driver, device.address()));
     match meant.as_slice() {
         [one] => {
             if let Some(missing) = &one.missing {
@@ -98,6 +112,10 @@ fn chosen(
             }
             let driver = one.driver.unwrap_or_default().to_owned();
             Ok((driver, address.map_or_else(|| one.address(), str::to_owned)))
+        }
+        [] if address.is_none() && found.iter().any(is_known) => {
+            Err(UserError::usage("what is attached is yours already")
+                .help("`maulstick device use` has it paint"))
         }
         [] => Err(UserError::usage("no device is attached that a driver fits")
             .help("`maulstick device list` shows what is; `--driver` names one that shows nowhere, as `openhaptics` or `inverse3`")),
@@ -165,6 +183,19 @@ mod tests {
                 .expect_err("none")
                 .contains("no device is attached")
         );
+        let both = [
+            known.clone(),
+            DeviceSection {
+                address: Some("28bd:0935".into()),
+                ..known.clone()
+            },
+        ];
+        assert!(
+            told(None, &both)
+                .expect_err("known")
+                .contains("yours already")
+        );
+        assert_eq!(told(Some("28BD:0935"), &[]), of("28BD:0935"));
         assert_eq!(free_name("pen", &[known]), "tablet-2");
         assert_eq!(free_name("polhem", &[]), "polhem");
     }

@@ -2,9 +2,9 @@
 
 use clap::Args;
 use maulstick_rig::UserError;
-use maulstick_rig::config::{DeviceSection, FORCES, MOUSE_PRIORITY};
+use maulstick_rig::config::{DeviceSection, FORCES, PEN_PRIORITY};
 
-use super::user_file::{UserFile, put_in_rig};
+use super::user_file::{UserFile, is_same, put_in_rig};
 use crate::commands::say;
 use crate::commands::session::{Session, Target};
 
@@ -12,7 +12,7 @@ use crate::commands::session::{Session, Target};
 #[derive(Args, Clone, Debug)]
 pub struct UseOptions {
     /// Name of the device
-    name: String,
+    device: String,
     /// Brush that it moves from now on
     #[arg(long)]
     brush: Option<String>,
@@ -32,16 +32,17 @@ pub struct UseOptions {
 /// A [`UserError`] where there is no such device, or the change does not fit.
 pub(super) fn run(options: &UseOptions) -> Result<i32, UserError> {
     let mut file = UserFile::read()?;
-    let name = &options.name;
+    let name = &options.device;
     let in_rig = match Session::open(&options.target) {
         Ok(session) => session.config()?.device,
         Err(_) => Vec::new(),
     };
     let own = file.device(name).cloned();
-    let is_kept = own.is_ok();
+    let is_own = own.is_ok();
     // A studio's device is one of the rig alone.
     let running = in_rig.iter().find(|device| device.name == *name);
     let device = own.or_else(|fault| running.cloned().ok_or(fault))?;
+    is_same(&device, running)?;
     let brush = options
         .brush
         .clone()
@@ -61,25 +62,25 @@ pub(super) fn run(options: &UseOptions) -> Result<i32, UserError> {
         brush,
         ..device
     };
-    if is_kept {
+    let answer = put_in_rig(&options.target, &changed)?;
+    if is_own {
         file.put(&changed)?;
     }
-    let said = put_in_rig(&options.target, &changed)?;
     say!(
         "'{name}' moves '{}' with priority {priority}; its force is {}",
         changed.brush,
         changed.force
     );
-    if said.is_none() {
+    if answer.is_none() {
         say!("the rig does not run: `maulstick up` starts it so");
     }
     Ok(0)
 }
 
-/// The least priority above the others' that is not below the device's own, nor the mouse's.
+/// The least priority above the others', the window's pen's among them, that is not below the device's own.
 fn above(highest: Option<i32>, own: i32) -> i32 {
-    let least = highest.unwrap_or(MOUSE_PRIORITY).saturating_add(1);
-    own.max(least)
+    let others = highest.unwrap_or(PEN_PRIORITY).max(PEN_PRIORITY);
+    own.max(others.saturating_add(1))
 }
 
 #[cfg(test)]
@@ -92,6 +93,6 @@ mod tests {
         assert_eq!(above(Some(10), 0), 11);
         assert_eq!(above(Some(10), 20), 20);
         assert_eq!(above(Some(10), 10), 11);
-        assert_eq!(above(Some(i32::MAX), 0), i32::MAX);
+        assert_eq!(above(Some(-90), -80), PEN_PRIORITY + 1);
     }
 }

@@ -18,7 +18,7 @@ use maulstick_rig::files::{Kind, check_writable, write_whole};
 use maulstick_rig::{RigConfig, Stop, UserError, user_devices};
 use toml_edit::{Array, DocumentMut, Item, TableLike, Value};
 
-use super::user_file::{put_in_rig, remove_from_rig};
+use super::user_file::{is_same, put_in_rig, remove_from_rig};
 use crate::EXIT_INTERRUPTED;
 use crate::commands::say;
 use crate::commands::session::{Session, Target};
@@ -50,7 +50,7 @@ pub(super) fn run(options: &FitOptions) -> Result<i32, UserError> {
         None => own_settings(&options.target)?,
     };
     let place = path.display().to_string();
-    let device = named(&config, &options.device).ok_or_else(|| {
+    let device = section(&config, &options.device).ok_or_else(|| {
         let names = config.device.iter().map(|device| device.name.as_str());
         let what = format!("there is no [[device]] called '{}'", options.device);
         UserError::unknown(what, &options.device, names).at(place.clone())
@@ -62,17 +62,38 @@ pub(super) fn run(options: &FitOptions) -> Result<i32, UserError> {
         );
         return Err(UserError::usage(what).at(place));
     }
-    let is_in_rig = remove_from_rig(&target, &device.name)?;
-    let fitted = fit(&path, &config, device.clone());
-    if is_in_rig {
-        let now = RigConfig::read(&path).ok();
-        let now = now.and_then(|config| named(&config, &device.name));
-        put_in_rig(&target, &now.unwrap_or(device))?;
+    // From here on a signal ends the fit, which puts the device back.
+    let stop = Stop::on_signals(&Wake::new())
+        .map_err(|error| UserError::failure(format!("cannot watch for signals: {error}")))?;
+    let running = match Session::open(&target) {
+        Ok(session) => section(&session.config()?, &device.name),
+        Err(_) => None,
+    };
+    is_same(&device, running.as_ref())?;
+    let fitted = remove_from_rig(&target, &device.name)
+        .and_then(|_| fit(&path, &config, device.clone(), &stop));
+    if let Some(running) = running {
+        let written = fitted.as_ref().is_ok_and(|code| *code == 0);
+        let now = written.then(|| corners(&path, &device.name)).flatten();
+        let back = DeviceSection {
+            corners_m: now.or(running.corners_m),
+            ..running
+        };
+        if let Err(fault) = put_in_rig(&target, &back) {
+            say!("the rig does not take '{}' back: {}", back.name, fault.what);
+        }
     }
     fitted
 }
 
-fn named(config: &RigConfig, name: &str) -> Option<DeviceSection> {
+/// The corners of a device in settings, whichever they are.
+fn corners(path: &Path, name: &str) -> Option<[[f64; 3]; 3]> {
+    let own = user_devices::read(path).ok();
+    let devices = own.or_else(|| Some(RigConfig::read(path).ok()?.device))?;
+    devices.iter().find(|device| device.name == name)?.corners_m
+}
+
+fn section(config: &RigConfig, name: &str) -> Option<DeviceSection> {
     let mut devices = config.device.iter();
     devices.find(|device| device.name == name).cloned()
 }
@@ -85,18 +106,31 @@ fn own_settings(target: &Target) -> Result<(PathBuf, RigConfig, Target), UserErr
             "`maulstick device add` adds one that is attached; `--rig` names the settings of a rig",
         ));
     }
-    let mut config = RigConfig::read(&path)?;
-    if let Ok(session) = Session::open(target) {
-        config.canvas = session.config()?.canvas;
-    }
-    Ok((path, config, target.clone()))
+    let config = match Session::open(target) {
+        Ok(session) => session.config()?,
+        Err(_) => {
+            let config = RigConfig::default();
+            let canvas = &config.canvas;
+            say!(
+                "no rig runs: this is for a canvas of {} x {} mm",
+                canvas.width_mm,
+                canvas.height_mm
+            );
+            config
+        }
+    };
+    let device = user_devices::read(&path)?;
+    Ok((path, RigConfig { device, ..config }, target.clone()))
 }
 
 /// Fits a device that nobody else has open.
-fn fit(path: &Path, config: &RigConfig, device: DeviceSection) -> Result<i32, UserError> {
+fn fit(
+    path: &Path,
+    config: &RigConfig,
+    device: DeviceSection,
+    stop: &Stop,
+) -> Result<i32, UserError> {
     check_writable(path, Kind::Own).map_err(|error| UserError::writing(path, &error))?;
-    let stop = Stop::on_signals(&Wake::new())
-        .map_err(|error| UserError::failure(format!("cannot watch for signals: {error}")))?;
     let mut showing = Showing::of(&device);
     let mut broken = None;
     let look = |reading| {
@@ -255,7 +289,9 @@ fn write(path: &Path, device: &str, corners: &[DVec3; 3]) -> Result<(), UserErro
             .at(place.clone())
             .help("see what was changed in the file")
     })?;
-    RigConfig::parse(&text, &place)?;
+    if user_devices::parse(&text, path).is_err() {
+        RigConfig::parse(&text, &place)?;
+    }
     write_whole(path, Kind::Own, |file| file.write_all(text.as_bytes()))
         .map_err(|error| UserError::writing(path, &error))
 }

@@ -30,7 +30,7 @@ pub enum DeviceCommand {
 impl DeviceCommand {
     /// True for one that ends its own work at a signal.
     #[must_use]
-    pub fn minds_signals(&self) -> bool {
+    pub fn handles_signals(&self) -> bool {
         matches!(self, Self::Fit(_))
     }
 }

@@ -11,7 +11,7 @@ use crate::commands::session::Target;
 #[derive(Args, Clone, Debug)]
 pub struct RemoveOptions {
     /// Name of the device
-    name: String,
+    device: String,
     #[command(flatten)]
     target: Target,
 }
@@ -22,7 +22,7 @@ pub struct RemoveOptions {
 /// A [`UserError`] where neither the user nor the rig has it.
 pub(super) fn run(options: &RemoveOptions) -> Result<i32, UserError> {
     let mut file = UserFile::read()?;
-    let name = &options.name;
+    let name = &options.device;
     let was_in_rig = remove_from_rig(&options.target, name)?;
     match file.device(name).map(drop) {
         Ok(()) => {

@@ -1,14 +1,16 @@
 //! The file of a user's devices, changed without touching what else is written in it, and the running rig told of it.
 
-use std::io::Write as _;
+use std::fs::DirBuilder;
+use std::io::{ErrorKind, Write as _};
+use std::os::unix::fs::DirBuilderExt as _;
 use std::path::{Path, PathBuf};
 
-use maulstick_rig::config::DeviceSection;
+use maulstick_rig::config::{BrushSection, DeviceSection};
 use maulstick_rig::files::{Kind, write_whole};
 use maulstick_rig::{RigConfig, UserError, user_devices};
 use maulstick_types::command::RigCommand;
 use maulstick_types::values::{DeviceName, DeviceToml};
-use toml_edit::{ArrayOfTables, DocumentMut, Item, Table};
+use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, Value};
 
 use crate::commands::session::{Session, Target};
 
@@ -28,13 +30,16 @@ impl UserFile {
     /// A [`UserError`] where it cannot be read, with the line.
     pub(super) fn read() -> Result<Self, UserError> {
         let path = user_devices::path()?;
-        let devices = user_devices::read(&path)?;
-        let text = match path.exists() {
-            true => {
-                std::fs::read_to_string(&path).map_err(|error| UserError::reading(&path, &error))?
-            }
-            false => String::new(),
+        let text = match std::fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == ErrorKind::NotFound => String::new(),
+            Err(error) => return Err(UserError::reading(&path, &error)),
         };
+        Self::parse(path, &text)
+    }
+
+    fn parse(path: PathBuf, text: &str) -> Result<Self, UserError> {
+        let devices = user_devices::parse(text, &path)?;
         let text = text
             .parse()
             .map_err(|error| UserError::usage(format!("{error}")).at(path.display().to_string()))?;
@@ -68,17 +73,18 @@ impl UserFile {
     /// # Errors
     /// A [`UserError`] where the device is wrong, or the file cannot be written.
     pub(super) fn put(&mut self, device: &DeviceSection) -> Result<(), UserError> {
-        let (wanted, usual) = (
-            table(device)?,
-            table(&DeviceSection::new(
-                &device.name,
-                &device.driver,
-                &device.brush,
-            ))?,
-        );
+        self.change(device)?;
+        self.write()
+    }
+
+    fn change(&mut self, device: &DeviceSection) -> Result<(), UserError> {
+        check(device)?;
+        let usual = DeviceSection::new(&device.name, &device.driver, &device.brush);
+        let (wanted, usual) = (table(device)?, table(&usual)?);
         let tables = self.tables()?;
-        let is_meant = |table: &Table| named(table) == Some(&device.name);
-        let known = tables.iter().position(is_meant);
+        let known = tables
+            .iter()
+            .position(|table| name_of(table) == Some(&device.name));
         let place = match known {
             Some(place) => place,
             None => {
@@ -89,20 +95,26 @@ impl UserFile {
         let Some(own) = tables.get_mut(place) else {
             return Ok(());
         };
-        for (key, value) in &wanted {
-            let text = |item: &Item| item.to_string().trim().to_owned();
-            let is_usual = usual.get(key).map(text) == Some(text(value));
-            let is_named = ["name", "driver", "brush"].contains(&key);
-            match own.get(key) {
-                Some(before) if text(before) == text(value) => {}
-                None if is_usual && !is_named => {}
-                _ => {
-                    own.insert(key, value.clone());
+        for (key, item) in &wanted {
+            let Some(value) = item.as_value() else {
+                continue;
+            };
+            let is_usual = usual.get(key).and_then(Item::as_value).map(bare) == Some(bare(value));
+            match own.get_mut(key).and_then(Item::as_value_mut) {
+                Some(before) if bare(before) == bare(value) => {}
+                Some(before) => {
+                    let decor = before.decor().clone();
+                    *before = value.clone();
+                    *before.decor_mut() = decor;
+                }
+                None if is_usual && !["name", "driver", "brush"].contains(&key) => {}
+                None => {
+                    own.insert(key, item.clone());
                 }
             }
         }
         own.retain(|key, _| wanted.contains_key(key));
-        self.write()
+        Ok(())
     }
 
     /// Takes a device out of the file.
@@ -110,7 +122,7 @@ impl UserFile {
     /// # Errors
     /// A [`UserError`] where the file cannot be written.
     pub(super) fn remove(&mut self, name: &str) -> Result<(), UserError> {
-        self.tables()?.retain(|table| named(table) != Some(name));
+        self.tables()?.retain(|table| name_of(table) != Some(name));
         self.write()
     }
 
@@ -129,11 +141,12 @@ impl UserFile {
 
     fn write(&mut self) -> Result<(), UserError> {
         let text = self.text.to_string();
-        let place = self.path.display().to_string();
-        self.devices = RigConfig::parse(&text, &place)?.device;
+        self.devices = user_devices::parse(&text, &self.path)?;
         let failed = |error| UserError::writing(&self.path, &error);
         if let Some(folder) = self.path.parent() {
-            std::fs::create_dir_all(folder).map_err(failed)?;
+            let mut folders = DirBuilder::new();
+            folders.recursive(true).mode(0o700);
+            folders.create(folder).map_err(failed)?;
         }
         write_whole(&self.path, Kind::Own, |file| {
             file.write_all(text.as_bytes())
@@ -142,7 +155,30 @@ impl UserFile {
     }
 }
 
-fn named(table: &Table) -> Option<&str> {
+/// Checks a device in a rig that has its brush.
+fn check(device: &DeviceSection) -> Result<(), UserError> {
+    let usual = RigConfig::default();
+    let brush = usual.brush.iter().map(|brush| BrushSection {
+        name: device.brush.clone(),
+        ..brush.clone()
+    });
+    let rig = RigConfig {
+        brush: brush.collect(),
+        device: Vec::new(),
+        ..usual.clone()
+    };
+    rig.with_device(device.clone()).map(drop)
+}
+
+/// A value without the blanks and comments beside it, and whichever quotes it has.
+fn bare(value: &Value) -> String {
+    match value.as_str() {
+        Some(text) => text.to_owned(),
+        None => value.clone().decorated("", "").to_string(),
+    }
+}
+
+fn name_of(table: &Table) -> Option<&str> {
     table.get("name").and_then(Item::as_str)
 }
 
@@ -187,4 +223,66 @@ pub(super) fn remove_from_rig(target: &Target, name: &str) -> Result<bool, UserE
         session.send(RigCommand::RemoveDevice { name })?;
     }
     Ok(has)
+}
+
+/// Checks that the device of that name in the rig is the same as the user's.
+///
+/// # Errors
+/// A [`UserError`] where it is another one.
+pub(super) fn is_same(
+    own: &DeviceSection,
+    running: Option<&DeviceSection>,
+) -> Result<(), UserError> {
+    match running {
+        Some(other) if (&other.driver, &other.address) != (&own.driver, &own.address) => {
+            let what = format!("the rig has another device called '{}'", own.name);
+            Err(UserError::usage(what).help("give yours another name: remove it and add it anew"))
+        }
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "\
+# mine
+[[device]]
+# the old one
+name = 'arm' # left
+driver = \"polhem\"
+brush = \"second\"
+priority = 3 # for now
+
+[[device]]
+name = \"puck\"
+driver = \"simulated\"
+brush = \"main\"
+";
+
+    #[test]
+    fn a_change_leaves_comments_and_all_else_as_they_were() {
+        let mut file = UserFile::parse("/x/devices.toml".into(), TEXT).expect("valid");
+        let arm = file.devices[0].clone();
+        file.change(&arm).expect("it fits");
+        assert_eq!(file.text.to_string(), TEXT, "nothing has changed");
+        let used = DeviceSection {
+            priority: 7,
+            force: "rigid".into(),
+            ..arm
+        };
+        file.change(&used).expect("it fits");
+        let changed = TEXT.replace(
+            "priority = 3 # for now\n",
+            "priority = 7 # for now\nforce = \"rigid\"\n",
+        );
+        assert_eq!(file.text.to_string(), changed);
+        let wrong = DeviceSection {
+            driver: "simulted".into(),
+            ..used
+        };
+        assert!(file.change(&wrong).is_err());
+        assert_eq!(file.text.to_string(), changed, "it is as it was");
+    }
 }

@@ -2,7 +2,7 @@
 
 use maulstick_rig::UserError;
 use maulstick_rig::config::{DeviceSection, RigConfig};
-use maulstick_types::command::{Command, Outcome, RigCommand};
+use maulstick_types::command::Outcome;
 
 use super::Supervisor;
 use crate::up::child::{Node, State};
@@ -11,63 +11,61 @@ use crate::up::plan::{Role, device};
 impl Supervisor {
     /// Starts a device with other settings, or one that was not there.
     pub(super) fn put_device(&mut self, toml: &str) -> Result<Outcome, UserError> {
-        if self.conductor.is_some() {
-            return Err(UserError::usage("a take is played in the place of devices")
-                .help("wait for its end, and ask again"));
-        }
+        self.has_devices()?;
         let section = DeviceSection::parse(toml)?;
+        let before = self.config.clone();
         self.set_config(self.config.with_device(section.clone())?)?;
         let spec = device(&self.config, &section);
-        let name = section.name;
-        match self.device_node(&name) {
+        let place = match self.device_node(&section.name) {
+            Some(place) => {
+                self.nodes[place].spec = spec;
+                place
+            }
             None => {
                 self.nodes.push(Node::new(spec));
-                self.start_node(self.nodes.len() - 1)?;
+                self.nodes.len() - 1
             }
-            Some(place) => {
-                let node = &mut self.nodes[place];
-                node.spec = spec;
-                // One that was about to be started again is started with these settings.
-                self.due.retain(|(due, _)| *due != name);
-                if !node.renew() {
-                    self.start_node(place)?;
-                }
-            }
+        };
+        // One that was about to be started again is started with these settings.
+        self.due.retain(|(due, _)| *due != section.name);
+        if !self.nodes[place].renew()
+            && let Err(fault) = self.start_node(place)
+        {
+            self.nodes[place].state = State::Failed;
+            self.set_config(before)?;
+            return Err(fault);
         }
-        Ok(Outcome::done(format!("device '{name}' is started")))
+        Ok(Outcome::done(format!("device '{}' starts", section.name)))
     }
 
-    /// Ends the device that a command removes; true while its process still runs.
-    pub(super) fn lets_go(&mut self, command: &Command) -> bool {
-        let Command::Rig(RigCommand::RemoveDevice { name }) = command else {
-            return false;
-        };
-        let name = name.as_str();
+    /// Ends a device. While its process still runs the answer is [`Outcome::Waiting`], and the order is given again.
+    pub(super) fn remove_device(&mut self, name: &str) -> Result<Outcome, UserError> {
+        self.has_devices()?;
+        let names = self.config.device.iter().map(|own| own.name.as_str());
+        let is_known = names.clone().any(|own| own == name);
         let Some(place) = self.device_node(name) else {
-            return false;
+            let what = format!("the rig has no device called '{name}'");
+            return Err(UserError::unknown(what, name, names));
         };
-        let is_known = self.config.device.iter().any(|own| own.name == name);
         if is_known {
-            if let Err(fault) = self.set_config(self.config.without_device(name)) {
-                tracing::warn!("{fault}");
-            }
+            self.set_config(self.config.without_device(name))?;
             self.due.retain(|(due, _)| due != name);
             if !self.nodes[place].renew() {
                 self.nodes[place].state = State::Ended;
             }
         }
-        self.nodes[place].pid().is_some()
+        Ok(match self.nodes[place].pid() {
+            Some(_) => Outcome::Waiting,
+            None => Outcome::done(format!("device '{name}' has left")),
+        })
     }
 
-    /// The answer when a device is gone.
-    pub(super) fn removed_device(&self, name: &str) -> Result<Outcome, UserError> {
-        match self.device_node(name) {
-            Some(_) => Ok(Outcome::done(format!("device '{name}' has left"))),
-            None => {
-                let names = self.config.device.iter().map(|own| own.name.as_str());
-                let what = format!("the rig has no device called '{name}'");
-                Err(UserError::unknown(what, name, names))
-            }
+    /// Checks that devices move the brushes.
+    fn has_devices(&self) -> Result<(), UserError> {
+        match self.conductor {
+            Some(_) => Err(UserError::usage("a take is played in the place of devices")
+                .help("wait for its end, and ask again")),
+            None => Ok(()),
         }
     }
 

@@ -165,12 +165,14 @@ impl Supervisor {
                 None if self.switch.is_some() || !self.orders.has_heard(&asked, bus.now_ns()) => {
                     Outcome::Waiting
                 }
-                None if self.lets_go(&asked.command) => Outcome::Waiting,
                 None => {
                     self.orders.leaving.0.clear();
                     let outcome = self.order(&asked).unwrap_or_else(refusal);
-                    let replies = &mut self.orders.replies;
-                    replies.keep(asked.client, asked.number, outcome.clone());
+                    // The rig itself says when a switch is done; a removal is looked at each time.
+                    if self.switch.is_some() || outcome != Outcome::Waiting {
+                        let replies = &mut self.orders.replies;
+                        replies.keep(asked.client, asked.number, outcome.clone());
+                    }
                     outcome
                 }
             };
@@ -215,7 +217,7 @@ impl Supervisor {
                 Ask::New(path, canvas.clone(), *forget)
             }
             RigCommand::PutDevice { toml } => return self.put_device(toml.as_str()),
-            RigCommand::RemoveDevice { name } => return self.removed_device(name.as_str()),
+            RigCommand::RemoveDevice { name } => return self.remove_device(name.as_str()),
             RigCommand::SaveAs(save_as) => {
                 if !self.paint_runs() {
                     return Ok(starts_again());

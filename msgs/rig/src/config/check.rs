@@ -87,7 +87,7 @@ impl RigConfig {
     }
 
     /// Settings are those of a node of this rig, or of all whose names begin with one word.
-    fn check_nodes(&self) -> Result<(), (String, String, String)> {
+    pub(super) fn check_nodes(&self) -> Result<(), (String, String, String)> {
         let brushes = self.brush.iter();
         let brushes = brushes.map(|brush| format!("{BRUSH_NODE}{}", brush.name));
         let devices = self.device.iter().map(|device| device.name.clone());

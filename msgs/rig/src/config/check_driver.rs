@@ -32,7 +32,7 @@ pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
         (
             "replay",
             device.replay.is_some() && !device.is_hid(),
-            "take it out: it is played in the place of a pen or a spacemouse; \
+            "take it out: it is played in the place of a tablet or a spacemouse; \
              a take is the `hand` of a simulated device",
         ),
         (

@@ -181,7 +181,7 @@ mod tests {
         };
         let (what, help) = told(ErrorKind::Io(PermissionDenied));
         assert_eq!(what, "/dev/ttyACM0 may not be opened by you");
-        assert!(help.contains("devices --udev") && help.contains("dialout"));
+        assert!(help.contains("device list --udev") && help.contains("dialout"));
         assert_eq!(told(ErrorKind::Io(NotFound)).0, "there is no /dev/ttyACM0");
         assert!(
             told(ErrorKind::NoDevice)
