@@ -110,7 +110,7 @@ fn devices_come_change_and_go_while_the_rig_runs() {
         "--address",
         "/dev/none",
     ];
-    has(&said(&args), &["'arm' (polhem)", "device 'arm' is started"]);
+    has(&said(&args), &["'arm' (polhem)", "device 'arm' starts"]);
     row(&place, "arm", |row| {
         row["trouble"]
             .as_str()
@@ -142,7 +142,7 @@ fn devices_come_change_and_go_while_the_rig_runs() {
             "--priority",
             "-3",
         ]),
-        &["device 'puck' is started"],
+        &["device 'puck' starts"],
     );
     row(&place, "puck", |row| row["priority"] == -3);
 }
