@@ -99,8 +99,7 @@ fn a_stopped_window_holds_nothing_up() {
 fn hears_for<M: Message>(heard: &mut Receiver<M>, length_ns: u64) -> bool {
     let mut first_ns = None;
     let passed = || {
-        let told = heard.try_recv()?;
-        let sent_ns = told.header.sent_ns;
+        let sent_ns = heard.try_recv()?.header.sent_ns;
         (sent_ns >= *first_ns.get_or_insert(sent_ns) + length_ns).then_some(())
     };
     wait_for(PATIENCE, passed).is_some()
@@ -130,7 +129,7 @@ fn a_node_that_runs_by_fits_and_starts_changes_nothing() {
             }
             signal(pid, Signal::SIGSTOP);
             stops += 1;
-            // Another node says meanwhile how it fares: the first time for as long as a loaded machine stands still.
+            // The first time for as long as a loaded machine stands still.
             let still_ns = if stops == 1 {
                 3_500_000_000
             } else {

@@ -362,34 +362,6 @@ impl RigConfig {
         toml::to_string(self).map_err(|error| UserError::failure(error.to_string()))
     }
 
-    /// The same rig with a device, in the place of the one with its name if there is one.
-    ///
-    /// # Errors
-    /// A [`UserError`] where the device does not fit into the rig.
-    pub fn with_device(&self, device: DeviceSection) -> Result<Self, UserError> {
-        let mut config = self.clone();
-        match config.device.iter_mut().find(|own| own.name == device.name) {
-            Some(own) => *own = device,
-            None => config.device.push(device),
-        }
-        // The line would be one that nobody wrote.
-        Self::parse(&config.to_toml()?, "").map_err(|fault| UserError {
-            place: None,
-            ..fault
-        })
-    }
-
-    /// The same rig without a device, and without the sections of nodes that are nobody's then.
-    #[must_use]
-    pub fn without_device(&self, name: &str) -> Self {
-        let mut config = self.clone();
-        config.device.retain(|device| device.name != name);
-        while let Err((_, _, node)) = config.check_nodes() {
-            config.node.remove(&node);
-        }
-        config
-    }
-
     /// The brush called `name`.
     #[must_use]
     pub fn brush_named(&self, name: &str) -> Option<&BrushSection> {
@@ -495,32 +467,6 @@ mod tests {
         ] {
             assert_eq!(parse(path), Ok(Some(PathBuf::from(path))));
         }
-    }
-
-    #[test]
-    fn devices_come_and_go_with_the_sections_that_are_theirs_alone() {
-        let text = DEFAULT.replace(
-            "[node.paint]",
-            "[node.arm]\nrestart = \"never\"\n[node.paint]",
-        );
-        let arm = |name: &str| DeviceSection::new(name, "polhem", "main");
-        assert!(RigConfig::parse(&text, "rig.toml").is_err(), "no arm");
-        let config = RigConfig::default()
-            .with_device(arm("arm-left"))
-            .expect("it fits");
-        let mut config = config.with_device(arm("arm-right")).expect("it fits");
-        config.node.insert("arm".into(), NodeSection::default());
-        let fewer = config.without_device("arm-left");
-        assert!(fewer.node.contains_key("arm") && fewer.device.len() == 2);
-        let none = fewer.without_device("arm-right");
-        assert!(!none.node.contains_key("arm") && none.node.contains_key("paint"));
-        let again = RigConfig::parse(&none.to_toml().expect("text"), "rig.toml");
-        assert_eq!(again, Ok(RigConfig::default()));
-        let other = DeviceSection::new("arm", "polhem", "mian");
-        let fault = RigConfig::default()
-            .with_device(other)
-            .expect_err("no such brush");
-        assert!(fault.what.contains("'mian'") && fault.place.is_none());
     }
 
     #[test]

@@ -6,6 +6,7 @@
 mod daemon;
 mod decoding;
 mod evdev;
+mod evemu;
 mod live;
 mod means;
 mod ports;

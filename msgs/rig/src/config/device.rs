@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::toml_fault;
+use super::{RigConfig, toml_fault};
 use crate::user_error::UserError;
 
 /// Drivers of devices.
@@ -138,6 +138,36 @@ impl DeviceSection {
     }
 }
 
+impl RigConfig {
+    /// The same rig with a device, in the place of the one with its name if there is one.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the device does not fit into the rig.
+    pub fn with_device(&self, device: DeviceSection) -> Result<Self, UserError> {
+        let mut config = self.clone();
+        match config.device.iter_mut().find(|own| own.name == device.name) {
+            Some(own) => *own = device,
+            None => config.device.push(device),
+        }
+        // The line would be one that nobody wrote.
+        Self::parse(&config.to_toml()?, "").map_err(|fault| UserError {
+            place: None,
+            ..fault
+        })
+    }
+
+    /// The same rig without a device, and without the sections of nodes that are nobody's then.
+    #[must_use]
+    pub fn without_device(&self, name: &str) -> Self {
+        let mut config = self.clone();
+        config.device.retain(|device| device.name != name);
+        while let Err((_, _, node)) = config.check_nodes() {
+            config.node.remove(&node);
+        }
+        config
+    }
+}
+
 fn no_turn() -> [f64; 4] {
     [0.0, 0.0, 0.0, 1.0]
 }
@@ -152,4 +182,36 @@ fn default_law() -> String {
 
 fn straight() -> Vec<[f64; 2]> {
     vec![[0.0, 0.0], [1.0, 1.0]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{DEFAULT, NodeSection};
+
+    #[test]
+    fn devices_come_and_go_with_the_sections_that_are_theirs_alone() {
+        let text = DEFAULT.replace(
+            "[node.paint]",
+            "[node.arm]\nrestart = \"never\"\n[node.paint]",
+        );
+        let arm = |name: &str| DeviceSection::new(name, "polhem", "main");
+        assert!(RigConfig::parse(&text, "rig.toml").is_err(), "no arm");
+        let config = RigConfig::default()
+            .with_device(arm("arm-left"))
+            .expect("it fits");
+        let mut config = config.with_device(arm("arm-right")).expect("it fits");
+        config.node.insert("arm".into(), NodeSection::default());
+        let fewer = config.without_device("arm-left");
+        assert!(fewer.node.contains_key("arm") && fewer.device.len() == 2);
+        let none = fewer.without_device("arm-right");
+        assert!(!none.node.contains_key("arm") && none.node.contains_key("paint"));
+        let again = RigConfig::parse(&none.to_toml().expect("text"), "rig.toml");
+        assert_eq!(again, Ok(RigConfig::default()));
+        let other = DeviceSection::new("arm", "polhem", "mian");
+        let fault = RigConfig::default()
+            .with_device(other)
+            .expect_err("no such brush");
+        assert!(fault.what.contains("'mian'") && fault.place.is_none());
+    }
 }
