@@ -191,47 +191,55 @@ pub enum Means {
 /// # Errors
 /// A [`UserError`] that says what the device is instead.
 pub fn means(kind: Kind, identity: &Identity, bytes: &[u8]) -> Result<Means, UserError> {
-    if kind == Kind::EventPen {
-        return event_pen(identity, bytes);
+    match kind {
+        Kind::Pen => hid_pen(identity, bytes),
+        Kind::EventPen => event_pen(identity, bytes),
+        Kind::SpaceMouse => space_mouse(identity, bytes),
     }
+}
+
+/// Advice on a device that is of another kind.
+const OTHER: &str = "choose another device by `address` in rig.toml";
+
+/// The pen of a HID device.
+fn hid_pen(identity: &Identity, bytes: &[u8]) -> Result<Means, UserError> {
     let table = Wacom::of(identity.vendor, identity.product);
-    if let (Kind::Pen, Some(table)) = (kind, table.filter(|table| table.fits(bytes))) {
+    if let Some(table) = table.filter(|table| table.fits(bytes)) {
         return Ok(Means::Pen(Decoder::Wacom(table)));
     }
-    let descriptor = descriptor::read(bytes).map_err(|what| {
-        UserError::failure(format!("{identity} describes itself wrongly: {what}"))
-            .help("choose another device by `address` in rig.toml")
-    })?;
-    let seems = match kind {
-        Kind::Pen | Kind::EventPen => lies_anywhere(&descriptor, is_pen),
-        Kind::SpaceMouse => lies_anywhere(&descriptor, has_six_axes),
-    };
-    let other = |help: &str| {
-        let what = match (seems, kind) {
-            (true, Kind::Pen | Kind::EventPen) => {
-                "is a pen whose reports do not say where it is".to_owned()
-            }
-            (true, Kind::SpaceMouse) => "is a 6-DOF mouse of an unknown maker".to_owned(),
-            (false, _) => format!("is {}, no {}", describe(&descriptor), kind.word()),
+    let descriptor = described(identity, bytes)?;
+    let layout = Layout::of(&descriptor).ok_or_else(|| {
+        let what = match lies_anywhere(&descriptor, is_pen) {
+            true => "is a pen whose reports do not say where it is".to_owned(),
+            false => format!("is {}, no {}", describe(&descriptor), Kind::Pen.word()),
         };
-        UserError::failure(format!("{identity} {what}")).help(help)
-    };
-    match kind {
-        Kind::Pen | Kind::EventPen => {
-            let layout = Layout::of(&descriptor).ok_or_else(|| {
-                other(
-                    "choose another device by `address`; if it is a tablet, its reports are in a format of its \
-                     maker's own, which the kernel may know: take `driver = \"evdev\"`; or record it with \
-                     `maulstick node hid --record` and send us that",
-                )
-            })?;
-            Ok(Means::Pen(Decoder::Described(layout)))
+        UserError::failure(format!("{identity} {what}")).help(
+            "choose another device by `address`; if it is a tablet, its reports are in a format of its \
+             maker's own, which the kernel may know: take `driver = \"evdev\"`; or record it with \
+             `maulstick node hid --record` and send us that",
+        )
+    })?;
+    Ok(Means::Pen(Decoder::Described(layout)))
+}
+
+/// A 6-DOF mouse.
+fn space_mouse(identity: &Identity, bytes: &[u8]) -> Result<Means, UserError> {
+    let descriptor = described(identity, bytes)?;
+    let what = match lies_anywhere(&descriptor, has_six_axes) {
+        true if VENDORS.contains(&identity.vendor) => return Ok(Means::SpaceMouse),
+        true => "is a 6-DOF mouse of an unknown maker".to_owned(),
+        false => {
+            let word = Kind::SpaceMouse.word();
+            format!("is {}, no {word}", describe(&descriptor))
         }
-        Kind::SpaceMouse => match VENDORS.contains(&identity.vendor) && seems {
-            true => Ok(Means::SpaceMouse),
-            false => Err(other("choose another device by `address` in rig.toml")),
-        },
-    }
+    };
+    Err(UserError::failure(format!("{identity} {what}")).help(OTHER))
+}
+
+fn described(identity: &Identity, bytes: &[u8]) -> Result<hidreport::ReportDescriptor, UserError> {
+    descriptor::read(bytes).map_err(|what| {
+        UserError::failure(format!("{identity} describes itself wrongly: {what}")).help(OTHER)
+    })
 }
 
 /// The pen of an event device.

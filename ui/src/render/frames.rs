@@ -19,8 +19,9 @@ use crate::view::visible_tiles::Wanted;
 const LIMIT: Duration = Duration::from_millis(500);
 /// Pause between two queries that nobody answers.
 const PAUSE: Duration = Duration::from_millis(50);
-/// Longest time the paint node may wait for a change, ms: after one, and at rest.
+/// Longest time the paint node may wait for a change after the last one, ms; it doubles with each wait in vain.
 const WAIT_MS: u32 = 200;
+/// The same at rest, ms.
 const REST_MS: u32 = 1600;
 /// So many frames in a row that came only through the socket: shared memory does not work.
 const STRIKES: u32 = 3;

@@ -62,7 +62,7 @@ impl Reader {
             "A" => self.axis(rest)?,
             "B" => self.bits(rest)?,
             "E" => self.event(rest)?,
-            // Properties, lights, switches and what else evemu knows.
+            // Properties, lights and switches say nothing of a pen.
             _ => {}
         }
         Ok(())

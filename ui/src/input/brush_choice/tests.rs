@@ -98,6 +98,30 @@ fn a_brush_comes_back_at_the_width_it_was_used_at() {
 }
 
 #[test]
+fn another_brush_lays_full_paint_and_another_width_what_the_preset_says() {
+    let mut bench = Bench::new();
+    let limited = BrushHandling {
+        most_m: 15e-6,
+        ..BrushHandling::normal("main")
+    };
+    bench.rig.scene.as_mut().expect("a scene").handlings = vec![limited];
+    bench.preferences.loading.thinner = 0.7;
+    bench.work().step_width(true);
+    assert_eq!(defined(&mut bench).len(), 1, "nothing but a width");
+    assert_eq!(bench.preferences.loading.thinner, 0.7);
+    bench.work().next_brush();
+    let handled = bench
+        .commands()
+        .into_iter()
+        .find_map(|command| match command {
+            Command::Edit(Edit::Handle(handle)) => Some(BrushHandling::from(handle)),
+            _ => None,
+        });
+    assert_eq!(handled, Some(BrushHandling::normal("main")));
+    assert_eq!(bench.preferences.loading.thinner, 0.0);
+}
+
+#[test]
 fn a_brush_that_refuses_keeps_what_it_has_and_one_that_does_takes_up_its_paint() {
     let refused = || Err(UserError::failure("the brush is painting"));
     let load = || {

@@ -145,6 +145,24 @@ fn the_window_is_told_what_the_picture_holds_even_where_no_tile_changed() {
 }
 
 #[test]
+fn a_view_at_rest_asks_less_and_less_often_until_something_changes() {
+    let pulled = Pulled::new();
+    let mut waits = Vec::new();
+    let mut answer = |version, tiles: &[u32]| {
+        let (request, asked) = pulled.asked();
+        waits.push(asked.wait_ms);
+        pulled.answer(request, &reply(version, tiles));
+    };
+    answer(1, &[0, 1]);
+    for _ in 0..5 {
+        answer(1, &[]);
+    }
+    answer(2, &[1]);
+    answer(2, &[]);
+    assert_eq!(waits, [200, 200, 400, 800, 1600, 1600, 1600, 200]);
+}
+
+#[test]
 fn a_paint_node_of_another_version_is_a_fault_until_it_is_gone() {
     let pulled = Pulled::new();
     let (request, _) = pulled.asked();

@@ -24,7 +24,7 @@ struct Rig {
     bus: MemoryBus,
     pen: Sender<StylusSample>,
     states: Sender<BrushState>,
-    _def: Sender<BrushDef>,
+    def: Sender<BrushDef>,
     model: BrushModel,
     tracker: BrushTracker,
     desk: Desk,
@@ -57,7 +57,7 @@ impl Rig {
                 .expect("states"),
             tracker: BrushTracker::new(&bus, &topics, &Wake::new(), shares, quiet)
                 .expect("a follower"),
-            _def: def,
+            def,
             desk: Desk::of(&scene),
             sampled_ns: 0,
             model,
@@ -128,6 +128,25 @@ fn the_pose_is_that_of_the_newest_sample_and_the_bend_that_of_the_newest_state()
     let (_, _, angles) = rig.turn().expect("a brush");
     assert_eq!(angles, solved.angles_rad);
     assert_ne!(angles, old.angles_rad);
+}
+
+#[test]
+fn another_brush_is_where_the_hand_rests() {
+    let mut rig = Rig::new(PEN.source);
+    rig.sample(&pen(0.0, 0.0));
+    rig.turn();
+    rig.solve(0, &pen(0.0, 0.0));
+    let (round, ..) = rig.turn().expect("a brush");
+    let told = BrushDef {
+        brush: "main".into(),
+        toml: BrushFile::library_text("fan").expect("text").into(),
+        hash: 1,
+    };
+    let now = rig.bus.now_ns();
+    rig.def.send(now, now, &told).expect("sent");
+    let (fan, ..) = rig.turn().expect("it is there though the hand keeps still");
+    assert_ne!(round, fan, "it has its own length");
+    assert!(rig.tracker.aim("main").is_some());
 }
 
 #[test]

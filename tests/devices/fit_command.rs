@@ -92,13 +92,13 @@ fn settings(place: &Place, places: &[[f64; 2]]) -> String {
     text
 }
 
-const CALIBRATE: [&str; 5] = ["device", "fit", "phantom", "--rig", "rig.toml"];
+const FIT: [&str; 5] = ["device", "fit", "phantom", "--rig", "rig.toml"];
 
 #[test]
 fn a_hand_that_shows_three_corners_fits_its_device_to_the_canvas() {
     let place = Place::new();
     let before = settings(&place, &CORNERS);
-    let said = String::from_utf8(place.done(&CALIBRATE).stdout).expect("UTF-8");
+    let said = String::from_utf8(place.done(&FIT).stdout).expect("UTF-8");
     has(
         &said,
         &[
@@ -138,7 +138,7 @@ fn a_hand_that_shows_three_corners_fits_its_device_to_the_canvas() {
 fn places_that_are_no_corners_of_the_canvas_are_refused() {
     let place = Place::new();
     let before = settings(&place, &[CORNERS[0], [0.128, -0.128], [-0.128, 0.05]]);
-    let said = fault(&place, &CALIBRATE, 1);
+    let said = fault(&place, &FIT, 1);
     has(&said, &["no corners of the canvas", "help: "]);
     assert_eq!(place.bytes("rig.toml"), before.into_bytes());
 }
@@ -157,7 +157,7 @@ fn ctrl_c_leaves_the_settings_as_they_are() {
     let place = Place::new();
     // It shows one corner and goes.
     let before = settings(&place, &CORNERS[..1]);
-    let mut command = place.maulstick(&CALIBRATE);
+    let mut command = place.maulstick(&FIT);
     let mut child = command.stdout(Stdio::piped()).spawn().expect("started");
     let out = BufReader::new(child.stdout.take().expect("piped"));
     let asked = out.lines().map_while(Result::ok);
@@ -169,7 +169,7 @@ fn ctrl_c_leaves_the_settings_as_they_are() {
 }
 
 #[test]
-fn what_cannot_be_calibrated_says_what_to_do() {
+fn what_cannot_be_fitted_says_what_to_do() {
     let place = Place::new();
     let text = settings(&place, &CORNERS);
     has(
