@@ -153,11 +153,12 @@ impl BrushTracker {
                 Ok(file) => {
                     // It is in the hand that had the one before, which may keep still.
                     let before = self.known.get(&def.message.brush);
+                    let head = Head::of(&file);
                     let known = TrackedBrush {
-                        head: Head::of(&file),
+                        angles: vec![[0.0; 2]; head.joints()],
+                        head,
                         file,
                         device: before.and_then(|before| before.device),
-                        angles: Vec::new(),
                         led: None,
                         touches: None,
                         wetness: 0.0,

@@ -76,8 +76,15 @@ impl HealthMonitor {
             }
             if state.switching {
                 self.expected.insert(node.clone());
-            } else if let Some((who, help)) = who(node, state) {
-                notifications.fault(stopped(&who), help);
+                continue;
+            }
+            match who(node, state) {
+                Some((who, Some(help))) => notifications.fault(stopped(&who), help),
+                Some((who, None)) => notifications.note(tr!(
+                    "{who} has left. Any other stylus and the mouse go on painting.",
+                    who
+                )),
+                None => {}
             }
         }
         for node in &present {
@@ -172,19 +179,20 @@ impl HealthMonitor {
     }
 }
 
-/// Description of a node, and advice while it is away; `None` for a process that comes and goes.
-fn who(node: &str, state: &RigState) -> Option<(String, &'static str)> {
+/// Description of a node, and advice while it is away, which a device that may have been removed has not; `None` for a
+/// process that comes and goes.
+fn who(node: &str, state: &RigState) -> Option<(String, Option<&'static str>)> {
     if node == PAINT {
         let help = tr!("The canvas stays as it is shown, and goes on when it is back.");
-        return Some((tr!("The painting engine").to_owned(), help));
+        return Some((tr!("The painting engine").to_owned(), Some(help)));
     }
     if let Some(brush) = node.strip_prefix(BRUSH) {
         let help = tr!("Lift the stylus; the brush follows again when it is back.");
-        return Some((tr!("The node of the brush '{brush}'", brush), help));
+        return Some((tr!("The node of the brush '{brush}'", brush), Some(help)));
     }
     let is_device = node != PLAYER && state.devices.contains_key(node);
-    let help = tr!("Any other stylus and the mouse go on painting.");
-    is_device.then(|| (tr!("The driver of '{node}'", node), help))
+    let device = node;
+    is_device.then(|| (tr!("The device '{device}'", device), None))
 }
 
 /// Tells of a decision that the painter ought to know.
@@ -286,7 +294,6 @@ mod tests {
         for (node, who) in [
             ("paint", "The painting engine"),
             ("brush-main", "The node of the brush 'main'"),
-            ("arm", "The driver of 'arm'"),
         ] {
             let mut rig = Rig::new();
             for _ in 0..2 {
@@ -300,6 +307,18 @@ mod tests {
         let mut rig = Rig::new();
         rig.state.nodes.retain(|other| other != "player");
         assert_eq!(rig.look(), [], "its take is over");
+    }
+
+    #[test]
+    fn a_device_that_leaves_is_no_fault() {
+        let mut rig = Rig::new();
+        for _ in 0..2 {
+            rig.state.nodes.retain(|other| other != "arm");
+            let left = "The device 'arm' has left. Any other stylus and the mouse go on painting.";
+            assert_eq!(rig.look(), note(left));
+            rig.state.nodes.push("arm".to_owned());
+            assert_eq!(rig.look(), note("The device 'arm' is back."));
+        }
     }
 
     #[test]

@@ -199,6 +199,12 @@ impl Head {
         }
     }
 
+    /// Number of joints of all spines: the length of [`Hold::angles`].
+    #[must_use]
+    pub fn joints(&self) -> usize {
+        self.joints
+    }
+
     /// Number of strips.
     #[must_use]
     pub fn strips(&self) -> usize {

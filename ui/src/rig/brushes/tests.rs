@@ -146,6 +146,11 @@ fn another_brush_is_where_the_hand_rests() {
     rig.def.send(now, now, &told).expect("sent");
     let (fan, ..) = rig.turn().expect("it is there though the hand keeps still");
     assert_ne!(round, fan, "it has its own length");
+    let held = rig.tracker.held(&rig.desk).next().expect("a brush");
+    assert!(
+        Head::of(held.file).fits(held.angles.len()),
+        "its bristles stand"
+    );
     assert!(rig.tracker.aim("main").is_some());
 }
 
