@@ -16,7 +16,7 @@ use maulstick_num::geometry::{canonical, rotation};
 use maulstick_types::command::{CommandRequest, TakeCommand};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
-use maulstick_types::{Flags, Origin, Pose, encode};
+use maulstick_types::{Flags, HEADER_BYTES, Origin, Pose, encode};
 use support::{Launcher, PATIENCE, Place, hear, join, listen, on_canvas, wait_for};
 
 /// A pen that presses at `x`.
@@ -101,6 +101,39 @@ fn a_device_in_python_paints() {
         String::from_utf8_lossy(&ended.stderr)
     );
     let painted = wait_for(PATIENCE, || (on_canvas(&place) > 0.0).then_some(()));
+    assert!(painted.is_some(), "{}", launcher.said());
+}
+
+/// A message as a program of the next version of its contract sends it: with a field more at its end.
+fn of_next_version(mut bytes: Vec<u8>) -> Vec<u8> {
+    bytes.extend(1.5f64.to_le_bytes());
+    bytes[2] += 1;
+    let length = u32::try_from(bytes.len() - HEADER_BYTES).expect("short");
+    bytes[20..24].copy_from_slice(&length.to_le_bytes());
+    bytes
+}
+
+#[test]
+fn a_device_of_a_later_version_paints() {
+    let place = Place::new();
+    let launcher = Launcher::up(&place, &["--headless"]);
+    place.done(&["load", "Bone Black"]);
+    let (bus, topics) = join(&place);
+    let origin = Origin {
+        source: 11,
+        epoch: 11,
+    };
+    let topic = topics.sample("newer");
+    let publisher = bus.publisher(&topic, Qos::RealTime).expect("declared");
+    let mut number = 0;
+    let painted = wait_for(PATIENCE, || {
+        let now_ns = bus.now_ns();
+        let sample = pressing(1e-4 * (number % 400) as f64);
+        let bytes = encode(&origin, Flags::NONE, number, now_ns, now_ns, &sample).expect("encoded");
+        publisher.put(of_next_version(bytes)).expect("sent");
+        number += 1;
+        (number % 50 == 0 && on_canvas(&place) > 0.0).then_some(())
+    });
     assert!(painted.is_some(), "{}", launcher.said());
 }
 

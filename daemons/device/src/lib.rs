@@ -15,6 +15,7 @@
 //! | [`corner_calibration`] | corners of the canvas, as a hand shows them |
 //! | [`actions`] | actions of a stylus's switches |
 //! | [`pen`] | presence of a pen: away, hovering, touching |
+//! | [`pressure_curve`] | pressure of a pen as it is sensed and given |
 //! | [`pen_stream`] | samples of a pen on the bus |
 //! | [`hid_collections`] | application collections of a HID report descriptor |
 
@@ -27,6 +28,7 @@ pub mod hid_collections;
 pub mod pen;
 pub mod pen_stream;
 mod performance;
+pub mod pressure_curve;
 pub mod registration;
 mod takes;
 

@@ -15,6 +15,7 @@ use maulstick_types::stylus::{DEFAULT_TILT_RAD, FARTHEST_M, StylusPose, StylusSa
 
 use crate::layout::wrapped;
 use maulstick_device::pen::{End, Presence, Reading, STEEPEST_RAD};
+use maulstick_device::pressure_curve::given;
 
 /// A tablet fitted to the desk.
 #[derive(Clone, Debug)]
@@ -98,7 +99,7 @@ impl Tablet {
             End::Eraser => switch::ERASER,
         };
         let pressure = match reading.presence {
-            Presence::Touching => along(&self.curve, reading.pressure),
+            Presence::Touching => given(&self.curve, reading.pressure),
             _ => 0.0,
         };
         let z = (self.lifted_m + reading.height_m).clamp(-FARTHEST_M, FARTHEST_M);
@@ -163,16 +164,4 @@ fn turned(tilt_rad: [f64; 2], turn: f64) -> [f64; 2] {
     let (sin, cos) = sin_cos(turn);
     [cos * x - sin * y, sin * x + cos * y]
         .map(|tangent| atan2(tangent, 1.0).clamp(-STEEPEST_RAD, STEEPEST_RAD))
-}
-
-/// The value of a curve of straight lines from (0, 0) to (1, 1).
-fn along(curve: &[[f64; 2]], sensed: f64) -> f64 {
-    for pair in curve.windows(2) {
-        let ([x0, y0], [x1, y1]) = (pair[0], pair[1]);
-        if sensed <= x1 {
-            let share = ((sensed - x0) / (x1 - x0)).clamp(0.0, 1.0);
-            return (y0 + share * (y1 - y0)).clamp(0.0, 1.0);
-        }
-    }
-    sensed.clamp(0.0, 1.0)
 }

@@ -208,7 +208,10 @@ impl WindowStylus {
             None => is_desk || before == Some(TouchTarget::Desk),
         };
         match on_desk && seen.is_some() {
-            true => reading,
+            true => Reading {
+                pressure: self.link.given(reading.pressure),
+                ..reading
+            },
             false => Reading {
                 presence: Presence::Away,
                 ..reading

@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use maulstick_device::pen::Presence;
+use maulstick_device::pressure_curve::given;
 
 /// The desk as a window shows it; points are the window's pixels, y down from its upper left corner.
 pub trait DeskView: Send + Sync {
@@ -66,6 +67,7 @@ pub struct PenLink(Arc<Mutex<LinkState>>);
 struct LinkState {
     view: Option<Arc<dyn DeskView>>,
     brush: String,
+    pressure_curve: Vec<[f64; 2]>,
     state: PenState,
     wake: Option<Arc<dyn Fn() + Send + Sync>>,
 }
@@ -82,6 +84,19 @@ impl PenLink {
         if known.brush != brush {
             brush.clone_into(&mut known.brush);
         }
+    }
+
+    /// Sets the points (sensed, given) between which pressure goes in straight lines; none for the pressure as it is.
+    pub fn bend_pressure(&self, curve: &[[f64; 2]]) {
+        let mut known = self.lock();
+        if known.pressure_curve != curve {
+            known.pressure_curve = curve.to_vec();
+        }
+    }
+
+    /// The pressure to give where this is sensed.
+    pub(crate) fn given(&self, sensed: f64) -> f64 {
+        given(&self.lock().pressure_curve, sensed)
     }
 
     /// Calls `wake` when a pointer that only the window moves has moved.

@@ -67,9 +67,7 @@ impl Permission {
     fn missing(self) -> Option<String> {
         let what = match self {
             Self::Granted => return None,
-            Self::Denied => {
-                "no permission: `maulstick device list --udev` prints the rule that gives it"
-            }
+            Self::Denied => "no permission: `maulstick device allow` gives it",
             Self::Absent => "its node is not there: is /dev that of the machine?",
         };
         Some(what.to_owned())

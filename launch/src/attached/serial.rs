@@ -51,7 +51,7 @@ fn missing(driver: &str, permission: Permission) -> Option<String> {
     let what = match (permission, driver) {
         (Permission::Granted, _) => return None,
         (Permission::Denied, "polhem") => {
-            "no permission: `maulstick device list --udev` prints the rule that gives it, or join the \
+            "no permission: `maulstick device allow` gives it, or join the \
              group of serial ports: sudo usermod -aG dialout $USER, then log in again"
         }
         (Permission::Denied, _) => {

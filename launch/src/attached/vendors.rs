@@ -1,11 +1,13 @@
-//! Software of vendors between a device and a program: OpenHaptics' library, Haply's service.
+//! Software of vendors between a device and a program: libraries of OpenHaptics and of Force Dimension, Haply's service.
 
 use std::net::{TcpStream, ToSocketAddrs as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Names of OpenHaptics' library.
-const LIBRARY: [&str; 3] = ["libHD.so", "libHD.so.3.4", "libHD.so.3.0"];
+pub const OPEN_HAPTICS: [&str; 3] = ["libHD.so", "libHD.so.3.4", "libHD.so.3.0"];
+/// Names of Force Dimension's library.
+pub const FORCE_DIMENSION: [&str; 3] = ["libdhd.so.3", "libdhd.so", "libdrd.so.3"];
 /// The folders of libraries, besides those that LD_LIBRARY_PATH names.
 const FOLDERS: [&str; 5] = [
     "/usr/lib",
@@ -19,7 +21,7 @@ pub const INVERSE_SERVICE: &str = "localhost:10001";
 /// Longest wait for a connection to a service of this machine.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// The folders in which OpenHaptics' library is looked for.
+/// The folders in which vendors' libraries are looked for.
 #[must_use]
 pub fn library_folders() -> Vec<PathBuf> {
     let named = std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
@@ -27,13 +29,13 @@ pub fn library_folders() -> Vec<PathBuf> {
     named.chain(FOLDERS.map(PathBuf::from)).collect()
 }
 
-/// OpenHaptics' library in the first of `folders` that has it. It is not loaded: its driver may ask
-/// for the device, and bears no second loading.
+/// A library of one of these names in the first of `folders` that has it. It is not loaded: OpenHaptics' may ask for the
+/// device, and bears no second loading.
 #[must_use]
-pub fn open_haptics(folders: &[impl AsRef<Path>]) -> Option<PathBuf> {
+pub fn library(names: [&str; 3], folders: &[impl AsRef<Path>]) -> Option<PathBuf> {
     let in_folder = |folder: &Path| {
-        let names = LIBRARY.map(|name| folder.join(name));
-        names.into_iter().find(|path| path.exists())
+        let paths = names.map(|name| folder.join(name));
+        paths.into_iter().find(|path| path.exists())
     };
     folders.iter().find_map(|folder| in_folder(folder.as_ref()))
 }

@@ -8,6 +8,11 @@ use serde::Deserialize;
 use crate::config::{DeviceSection, RigConfig, toml_fault};
 use crate::user_error::UserError;
 
+/// Command line that lets the user at a machine use its devices, where `maulstick device allow` cannot ask for the
+/// password.
+pub const ALLOW_BY_HAND: &str = "maulstick device list --udev | sudo tee /etc/udev/rules.d/70-maulstick.rules && sudo \
+                                 udevadm control --reload && sudo udevadm trigger";
+
 /// The file.
 ///
 /// # Errors

@@ -4,7 +4,7 @@ use crate::wire::define::message;
 
 message! {
     /// One sample of a device for the free hand; `event_ns` of its header is the time of sampling.
-    pub struct ControlSample [version 1, at most 256 bytes] {
+    pub struct ControlSample [contract of hash 0x089e_d1b8, version 1, at most 256 bytes] {
         /// Push along each axis, from -1 to 1: right, up along the desk, out of it.
         pub push: [f64; 3],
         /// Turn about each of those axes, right-handed, from -1 to 1.

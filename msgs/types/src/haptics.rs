@@ -63,7 +63,7 @@ wire_enum! {
 
 message! {
     /// Contact force on the handle until the next model, evaluated at the device's own rate; in the desk frame.
-    pub struct ContactModel [version 1, at most 4096 bytes] {
+    pub struct ContactModel [contract of hash 0xf3eb_8772, version 1, at most 4096 bytes] {
         /// The device that it is for: the source of its samples.
         pub device: u32,
         /// The device's epoch; another one is dropped.
@@ -144,7 +144,7 @@ wire_enum! {
 
 message! {
     /// Request to a device to change its force; asking again is safe.
-    pub struct ForceRequest [version 1, at most 256 bytes] {
+    pub struct ForceRequest [contract of hash 0xf795_6c2b, version 1, at most 256 bytes] {
         /// The change.
         pub order: ForceOrder,
     }
@@ -152,7 +152,7 @@ message! {
 
 message! {
     /// State of a device's force after a request.
-    pub struct ForceReply [version 1, at most 1024 bytes] {
+    pub struct ForceReply [contract of hash 0x203e_0860, version 1, at most 1024 bytes] {
         /// True if it is switched on.
         pub is_on: bool,
         /// Share of the models' force, 0 to 1.
@@ -164,7 +164,7 @@ message! {
 
 message! {
     /// A force from the paint's fields with all that makes it a model.
-    pub struct FluidForce [version 1, at most 2048 bytes] {
+    pub struct FluidForce [contract of hash 0x04fc_9dd5, version 1, at most 2048 bytes] {
         /// The device that it is for.
         pub device: u32,
         /// The device's epoch.

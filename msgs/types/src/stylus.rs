@@ -67,7 +67,7 @@ wire_enum! {
 
 message! {
     /// One sample of an input device; `event_ns` of its header is the time of sampling.
-    pub struct StylusSample [version 1, at most 512 bytes] {
+    pub struct StylusSample [contract of hash 0xf567_2178, version 1, at most 512 bytes] {
         /// Axes that the device senses, see [`axes`].
         pub senses: u32,
         /// Pose of the brush.
@@ -173,7 +173,7 @@ impl StylusSample {
 
 message! {
     /// Properties of a device; cached for late joiners.
-    pub struct StylusInfo [version 1, at most 1024 bytes] {
+    pub struct StylusInfo [contract of hash 0x9885_0be2, version 1, at most 1024 bytes] {
         /// Name of the device as in its topics.
         pub device: String,
         /// The driver that serves it.
@@ -199,7 +199,7 @@ message! {
 
 message! {
     /// Status of a device, ten times a second.
-    pub struct StylusStatus [version 2, at most 4096 bytes] {
+    pub struct StylusStatus [contract of hash 0x06b9_def3, version 2, at most 4096 bytes] {
         /// Samples published since the start.
         pub samples: u64,
         /// Samples that did not fit into the ring to the publisher.

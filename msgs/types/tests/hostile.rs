@@ -7,7 +7,9 @@ proptest! {
     #[test]
     fn no_bytes_make_a_decoder_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
         for entry in CATALOGUE {
-            drop((entry.show)(&bytes));
+            for version in [0, entry.version, u16::MAX] {
+                drop((entry.show)(version, &bytes));
+            }
         }
     }
 
@@ -30,7 +32,9 @@ proptest! {
         }
         bytes.truncate(cut.index(bytes.len() + 1).max(bytes.len() / 2));
         for entry in CATALOGUE {
-            drop((entry.show)(&bytes));
+            for version in [0, entry.version, u16::MAX] {
+                drop((entry.show)(version, &bytes));
+            }
         }
     }
 }
@@ -39,6 +43,10 @@ proptest! {
 fn nine_hostile_bytes_do_not_claim_all_memory() {
     let hostile = [0xff; 9];
     for entry in CATALOGUE {
-        assert!((entry.show)(&hostile).is_err(), "{}", entry.name);
+        assert!(
+            (entry.show)(entry.version, &hostile).is_err(),
+            "{}",
+            entry.name
+        );
     }
 }

@@ -105,6 +105,10 @@ fn filled(share: f32) -> f32 {
 /// Depth of the films that are swapped, units: 100 µm.
 pub const SWAP_FILM: f32 = 0.004;
 
+/// A brush that lays no more than a film leaves up to so many times as much besides in the hollows under its bristles: thin
+/// paint is dragged off the ridges and gathers there.
+pub const POOL: f32 = 1.0;
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;

@@ -1,6 +1,7 @@
 //! The palette: a brush loads by touching a well, leaves paint in the mixing area, and is cleaned.
 
 use maulstick_brush::BrushFile;
+use maulstick_brush::file::library::LIBRARY;
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::tile::TileId;
 use maulstick_optics::PaintLibrary;
@@ -10,10 +11,11 @@ use maulstick_painting::setup::wells_of;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_session::Offline;
 use maulstick_types::Mixture;
-use maulstick_types::edits::Wells;
+use maulstick_types::edits::{Load, Wells};
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::{CANVAS, PALETTE, Scene, Surface, Well, WellKind};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
+use maulstick_types::values::BrushName;
 
 /// A brush over a canvas and its palette.
 struct Hand {
@@ -23,13 +25,18 @@ struct Hand {
 
 impl Hand {
     fn new() -> Self {
+        Self::with("round")
+    }
+
+    /// With a brush of the library.
+    fn with(kind: &str) -> Self {
         let setup = PaintingSetup {
             cells: [128, 128],
             ..PaintingSetup::default()
         };
         let library = PaintLibrary::measured().expect("whole");
         let painting = Painting::new(&setup, library).expect("a painting");
-        let file = BrushFile::library("round").expect("round");
+        let file = BrushFile::library(kind).expect(kind);
         Self {
             offline: Offline::new(painting, "main", file, 0.5, Vec::new()).expect("set up"),
             time_ns: 1_000_000_000,
@@ -130,6 +137,26 @@ fn a_brush_loads_by_touching_paints_and_is_cleaned_by_touching() {
     let cleaned = hand.report();
     assert_eq!(cleaned.accounts_m3["brush"], 0.0);
     assert!(cleaned.accounts_m3["cleaner"] > 0.0);
+}
+
+#[test]
+fn every_brush_that_is_set_down_prints_as_if_it_moved_a_little() {
+    for (kind, _) in LIBRARY {
+        let canvas = |way_m: f64| {
+            let mut hand = Hand::with(kind);
+            let load = Load {
+                mixture: Mixture::pure("Ultramarine Blue"),
+                beside: None,
+                brush: BrushName::new("main").expect("valid"),
+            };
+            hand.offline.edit(load).expect("loaded");
+            hand.stroke([0.0, 0.0], [way_m, 0.0]);
+            hand.report().accounts_m3["canvas"]
+        };
+        let (printed, moved) = (canvas(0.0), canvas(1e-3));
+        println!("{kind}: {:.3}", printed / moved);
+        assert!(printed > 0.25 * moved, "{kind}: {printed} of {moved}");
+    }
 }
 
 /// A press that does not move does what one does that moves a little.

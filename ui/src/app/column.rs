@@ -11,6 +11,9 @@ use crate::panels::{self, Panel};
 use crate::settings::window_side::WindowSide;
 use crate::widgets::context::PanelContext;
 
+/// Room at the right for the scroll bar, points.
+const BAR: f32 = 10.0;
+
 /// The column.
 pub(super) struct Column {
     panels: Vec<Box<dyn Panel>>,
@@ -50,7 +53,11 @@ impl Column {
                     ScrollArea::vertical()
                         .max_height(height)
                         .min_scrolled_height(height)
-                        .show(ui, |ui| self.panels(ui, work));
+                        .show(ui, |ui| {
+                            // The bar lies over what is at the edge.
+                            ui.set_max_width(ui.available_width() - BAR);
+                            self.panels(ui, work);
+                        });
                 });
             });
     }

@@ -1,4 +1,4 @@
-//! A line of help for a new painter. It disappears with the first paint that is deposited, and returns
+//! A line of help for a new painter, and a picture of the keys. It disappears with the first paint that is deposited, and returns
 //! briefly when this painter begins another painting.
 
 use std::time::Duration;
@@ -6,42 +6,25 @@ use std::time::Duration;
 use eframe::egui::{Area, Color32, Context, Frame, Id, Margin, Order, Rect, RichText, Stroke};
 
 use crate::app::{rack, sides};
-use crate::input::keymap::Keymap;
-use crate::input::keys::Action;
 use crate::language::translated;
 use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 use crate::settings::window_side::WindowSide;
+use crate::widgets::key_picture;
 
-/// The line of help, before its keys.
+/// The line of help.
 pub(super) const HELP: &str =
     tr_noop!("Drag the brush through a paint of the palette, then over the canvas.");
-/// Its keys.
-const KEYS: [(Action, &str); 3] = [
-    (Action::Palette, tr_noop!("palette")),
-    (Action::Panels, tr_noop!("panels")),
-    (Action::Keys, tr_noop!("keys")),
-];
-
-/// The line of help with its keys.
-fn words(context: &Context, keymap: &Keymap) -> String {
-    let mut words = translated(HELP).to_owned();
-    for (act, what) in KEYS {
-        let key = keymap.written(context, act);
-        if !key.is_empty() {
-            words += &format!("   {key}: {}", translated(what));
-        }
-    }
-    words
-}
 /// Duration of the line over another painting, s.
 const AGAIN_S: f64 = 10.0;
 
 /// Space between the line and the rack, points.
 const BESIDE: f32 = 24.0;
+/// Width of the picture beside the rack, where an ordinary window has no canvas, points.
+const WIDTH: f32 = 320.0;
 /// Height of the line over the window's edge where it stands over the bar, and its width there, points.
 const ABOVE_BAR: f32 = 56.0;
-const LEAST_WIDTH: f32 = 300.0;
+const LEAST_WIDTH: f32 = 280.0;
 
 /// State of the line of help.
 #[derive(Debug, Default)]
@@ -97,7 +80,7 @@ fn line(context: &Context, palette: Option<Rect>, preferences: &Preferences) {
         WindowSide::Left => palette.left() < middle,
     };
     let (side, aside, above, most) = match palette.is_some_and(is_out) {
-        false => (rack, rack::WIDTH + BESIDE, 32.0, f32::INFINITY),
+        false => (rack, rack::WIDTH + BESIDE, 32.0, WIDTH),
         true => (rack.other(), BESIDE, ABOVE_BAR, LEAST_WIDTH),
     };
     let (_, corner, inward) = side.anchors();
@@ -114,11 +97,10 @@ fn line(context: &Context, palette: Option<Rect>, preferences: &Preferences) {
                 .inner_margin(Margin::symmetric(14, 8))
                 .show(ui, |ui| {
                     ui.set_max_width(most);
-                    ui.label(
-                        RichText::new(words(context, &preferences.keys))
-                            .color(Color32::from_gray(240))
-                            .size(15.0),
-                    );
+                    let light = Color32::from_gray(240);
+                    ui.label(RichText::new(translated(HELP)).color(light).size(15.0));
+                    ui.add_space(6.0);
+                    key_picture::show(ui, &preferences.keys, most, light);
                 });
         });
 }

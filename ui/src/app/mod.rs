@@ -41,6 +41,7 @@ use crate::render::display_transform::DisplayTransform;
 use crate::render::frame_reports::Presenter;
 use crate::render::scene::{SceneRenderer, Seen, Source};
 use crate::rig::brushes::{BrushTracker, SILENCE_NS};
+use crate::rig::device_commands::DeviceCommands;
 use crate::rig::dispatcher::CommandDispatcher;
 use crate::rig::health::HealthMonitor;
 use crate::rig::listener::RigListener;
@@ -109,6 +110,7 @@ pub struct App {
     requests: Requests,
     barrier: StrokeBarrier,
     dispatcher: CommandDispatcher,
+    device_commands: DeviceCommands,
     fetcher: ThumbnailFetcher,
     notifications: Notifications,
     preferences: Preferences,
@@ -175,6 +177,7 @@ impl App {
             listener: RigListener::new(&**bus, topics, &member.wake)?,
             rig: RigState::new(&member.config.rig.name, &names, Arc::new(library)),
             dispatcher: CommandDispatcher::new(Arc::clone(bus), topics, &member.wake),
+            device_commands: DeviceCommands::own(),
             fetcher: ThumbnailFetcher::of_rig(member),
             bus: Arc::clone(bus),
             stop: member.stop.clone(),
@@ -277,6 +280,10 @@ impl App {
     /// Sends the requests whose preceding strokes are painted.
     fn send(&mut self, context: &Context) {
         let now_ns = self.bus.now_ns();
+        let is_shown = self.shows_devices();
+        let orders = self.requests.take_device_orders();
+        let told = (&mut self.rig, &mut self.notifications);
+        self.device_commands.turn(context, orders, is_shown, told);
         for request in self.requests.take() {
             self.barrier
                 .push(now_ns, request, self.tracker.newest(now_ns));
@@ -287,6 +294,11 @@ impl App {
         if self.barrier.is_waiting() {
             context.request_repaint_after(BARRIER_LOOK);
         }
+    }
+
+    /// True while the panel of the devices is open.
+    fn shows_devices(&self) -> bool {
+        self.preferences.panels && self.preferences.is_open("Device")
     }
 
     /// Time until statuses, and devices that fall silent, are looked at again: nothing signals them.
@@ -300,8 +312,7 @@ impl App {
                 // A sketch without a file is never saved.
                 || !status.path.is_empty() && !status.all_committed
         });
-        let device = self.preferences.panels && self.preferences.is_open("Device");
-        match works || device || !self.dispatcher.waits().is_empty() {
+        match works || self.shows_devices() || !self.dispatcher.waits().is_empty() {
             true => STATUS_LOOK,
             false if self.preferences.panels || self.tracker.hears_another() => SILENCE,
             false => IDLE_LOOK,
@@ -406,8 +417,7 @@ impl eframe::App for App {
             let surfaces = self.rig.scene.as_ref().map(|scene| &scene.surfaces[..]);
             let shown = self.view.as_ref().zip(surfaces);
             let brush = self.rig.brush_name();
-            self.pen
-                .show(ui.ctx(), shown, brush, &self.preferences.keys);
+            self.pen.show(ui.ctx(), shown, brush, &self.preferences);
             self.pen.draw(ui.ctx());
             let Some(view) = self.view else {
                 ui.centered_and_justified(|ui| ui.label(tr!("waiting for the paint …")));

@@ -28,6 +28,7 @@ use crate::settings::brush_memory::BrushMemory;
 use crate::settings::preferences::Preferences;
 use crate::settings_page::SettingsPage;
 use crate::widgets::context::PanelContext;
+use crate::widgets::key_picture;
 use crate::widgets::rows::ask;
 
 /// Turn of the mouse's brush by one press of a key, degrees.
@@ -35,8 +36,9 @@ const TURN_DEG: f64 = 15.0;
 /// Change of the mouse's pressure by one press of a key.
 const PRESS: f64 = 0.05;
 
-/// Height of the table of keys beyond its list, points.
+/// Height of the table of keys beyond its list, points, and width of the picture over it.
 const HEAD: f32 = 80.0;
+const PICTURE: f32 = 480.0;
 
 /// Rack, panels, dialogs and notifications over the desk.
 #[derive(Default)]
@@ -200,10 +202,11 @@ impl Overlay {
                 let by = if act == Action::Harder { PRESS } else { -PRESS };
                 work.preferences.mouse.press(by);
                 let percent = 100.0 * work.preferences.mouse.pressure;
-                work.notifications.note(tr!(
+                let words = tr!(
                     "Mouse presses with {percent} %",
                     percent = format_args!("{percent:.0}")
-                ));
+                );
+                work.notifications.value("pressure", words);
             }
             Action::Mirror => {
                 let mirrored = &mut work.preferences.mirrored;
@@ -272,6 +275,9 @@ impl Overlay {
                     .max_height(height)
                     .min_scrolled_height(height);
                 list.show(ui, |ui| {
+                    let colour = ui.visuals().text_color();
+                    key_picture::show(ui, keymap, PICTURE, colour);
+                    ui.separator();
                     egui::Grid::new("keys")
                         .num_columns(2)
                         .striped(true)

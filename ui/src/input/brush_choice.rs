@@ -8,8 +8,8 @@ use maulstick_brush::file::library::LIBRARY;
 use maulstick_brush::{BrushError, BrushFile};
 use maulstick_rig::UserError;
 use maulstick_types::command::{BrushCommand, Command};
-use maulstick_types::edits::{Edit, Handle, Load};
-use maulstick_types::scene::BrushHandling;
+use maulstick_types::edits::{Edit, Handle, Load, Tune};
+use maulstick_types::scene::{BrushHandling, Tuning};
 use maulstick_types::values::{BrushName, BrushToml};
 
 use crate::language::{capitalized, known};
@@ -225,14 +225,28 @@ impl PanelContext<'_> {
         }
     }
 
-    /// Ends a limit to the thickness of what the brush lays, and the thinner of its next load.
+    /// Ends a limit to the thickness of what the brush lays, the thinner of its next load, and how a preset presses and
+    /// tunes it.
     fn lay_full_paint(&mut self) {
         let handling = self.rig.handling();
         let is_limited = handling.most_m > 0.0;
-        if !is_limited && self.preferences.loading.thinner == 0.0 {
+        let before = self.preferences.before_preset.take();
+        if !is_limited && self.preferences.loading.thinner == 0.0 && before.is_none() {
             return;
         }
         self.preferences.loading.thinner = 0.0;
+        if let Some(before) = before {
+            self.preferences.mouse.pressure = before.pressure;
+            self.preferences.mouse = self.preferences.mouse.sane();
+            let tuning = Tuning {
+                brush: self.rig.brush_name().to_owned(),
+                stiffness: before.stiffness,
+                wetness: before.wetness,
+            };
+            if let Ok(tune) = Tune::try_from(&tuning) {
+                self.requests.send(tune);
+            }
+        }
         let unlimited = BrushHandling {
             most_m: 0.0,
             ..handling
@@ -240,8 +254,9 @@ impl PanelContext<'_> {
         if let (true, Ok(handle)) = (is_limited, Handle::try_from(&unlimited)) {
             self.requests.send(handle);
         }
-        self.notifications
-            .note(tr!("This brush lays full paint: no limit, no thinner."));
+        self.notifications.note(tr!(
+            "This brush lays full paint: no limit, no thinner, pressed as before the preset."
+        ));
     }
 
     /// Sends a command to the paint node once the brush in the hand has its requested file.
@@ -288,17 +303,18 @@ impl PanelContext<'_> {
         };
         match file {
             Some(file) => {
-                self.notifications
-                    .note(format!("{} {}", called(&file.kind), units.width(next_mm)));
+                let words = format!("{} {}", called(&file.kind), units.width(next_mm));
+                self.notifications.value("width", words);
                 self.take_up(file);
             }
             None => {
                 let kind = called(&file_kind(self));
                 let width = units.width(now_mm);
-                self.notifications.note(match up {
+                let words = match up {
                     true => tr!("{kind} {width} is the widest", kind, width),
                     false => tr!("{kind} {width} is the narrowest", kind, width),
-                });
+                };
+                self.notifications.value("width", words);
             }
         }
     }

@@ -10,8 +10,11 @@ use crate::settings::grip::Grip;
 
 /// Travel of the pointer after which the direction of a stroke is known, m.
 const KNOWN_M: f64 = 1.5e-3;
-/// Longest time for which a stroke waits for its direction, ns: a dab has none.
+/// Time for which a stroke waits for its direction, ns: then any way is enough, of which this much tells one, m.
 const WAIT_NS: u64 = 80_000_000;
+const TELLING_M: f64 = 0.4e-3;
+/// Longest time for which it waits, ns: a hand is slow to start, and a dab has no direction.
+const LONGEST_NS: u64 = 250_000_000;
 /// Length of the string at which the pointer draws the turning point behind it, m.
 const STRING_M: f64 = 6e-3;
 /// The pointer may be so far beside the way before the brush turns, m: a way drawn in whole pixels has steps.
@@ -56,14 +59,16 @@ impl BrushTurn {
             }
         }
         if let Some((since_ns, waiting)) = &self.waiting {
-            let known = waiting
-                .first()
-                .zip(waiting.last())
-                .is_some_and(|(first, last)| {
-                    let way = [0, 1].map(|i| last.at[i] - first.at[i]);
-                    DVec2::from_array(way).length() >= KNOWN_M
-                });
-            if known || now_ns.saturating_sub(*since_ns) > WAIT_NS {
+            let ends = waiting.first().zip(waiting.last());
+            let way = ends.map_or(DVec2::ZERO, |(first, last)| {
+                DVec2::from_array([0, 1].map(|i| last.at[i] - first.at[i]))
+            });
+            let waits_ns = now_ns.saturating_sub(*since_ns);
+            let tells = waits_ns > WAIT_NS && way.length() >= TELLING_M;
+            if tells && way.length() < KNOWN_M {
+                self.across_rad = atan2(way.y, way.x) + FRAC_PI_2;
+            }
+            if way.length() >= KNOWN_M || tells || waits_ns > LONGEST_NS {
                 self.release(&mut turned, grip);
             } else if let Some(first) = waiting.first() {
                 let hovers = Pointer {
@@ -177,6 +182,17 @@ mod tests {
     }
 
     #[test]
+    fn a_hand_that_is_slow_to_start_sets_it_down_across_too() {
+        // 6 mm/s.
+        let all = stroke(&FOLLOWS, |way| [0.0, 0.1 * way]);
+        let places = pressed(&all);
+        assert_eq!(places.len(), 40, "no place is lost");
+        for place in places {
+            assert!(between(place.twist_rad, 0.0) < 1e-9, "{}", place.twist_rad);
+        }
+    }
+
+    #[test]
     fn a_way_in_whole_pixels_turns_it_as_little_as_the_way_itself() {
         // A pixel in ten to the side.
         let pixel = 0.38e-3;
@@ -215,7 +231,7 @@ mod tests {
         let first = turn.turned(0, &[at(0.0, 0.0, true)], &FOLLOWS);
         assert_eq!(first, [at(0.0, 0.0, false)], "it hovers meanwhile");
         assert!(turn.is_waiting());
-        let later = turn.turned(WAIT_NS + 1, &[at(0.0, 0.0, true)], &FOLLOWS);
+        let later = turn.turned(LONGEST_NS + 1, &[at(0.0, 0.0, true)], &FOLLOWS);
         assert_eq!(later, [at(0.0, 0.0, true); 2]);
         let click = [at(0.0, 0.0, true), at(0.0, 0.0, false)];
         let mut turn = BrushTurn::default();

@@ -16,7 +16,6 @@ use maulstick_window_pen::{
 };
 use raw_window_handle::{HasDisplayHandle as _, HasWindowHandle as _};
 
-use crate::input::keymap::Keymap;
 use crate::input::keys::Action;
 use crate::input::navigation::is_panel;
 use crate::input::presses;
@@ -131,8 +130,10 @@ impl WindowPen {
         context: &Context,
         view: Option<(&View, &[Surface])>,
         brush: &str,
-        keymap: &Keymap,
+        preferences: &Preferences,
     ) {
+        let keymap = &preferences.keys;
+        self.link.bend_pressure(&preferences.pen_curve);
         let paints = context.input(|input| {
             let held = [Action::Size, Action::Zoom];
             let held = held.iter().any(|act| presses::is_down(input, keymap, *act));

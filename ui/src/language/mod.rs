@@ -220,6 +220,12 @@ pub(crate) fn step(english: &str) -> String {
     if let Some(kind) = english.strip_suffix(" stroke on the palette") {
         return tr!("{kind} stroke on the palette", kind = known(kind));
     }
+    if let Some(kind) = english.strip_suffix(" wipe on the palette") {
+        return tr!("{kind} wipe on the palette", kind = known(kind));
+    }
+    if let Some(kind) = english.strip_suffix(" wipe") {
+        return tr!("{kind} wipe", kind = known(kind));
+    }
     if let Some(kind) = english.strip_suffix(" stroke") {
         return tr!("{kind} stroke", kind = known(kind));
     }

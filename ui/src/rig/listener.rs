@@ -132,6 +132,7 @@ impl RigListener {
             };
             let device = rig.devices.entry(name.to_owned()).or_default();
             device.forces.hear(sample.arrived_ns, &sample.message);
+            device.samples.hear(sample.header.event_ns, &sample.message);
         }
         while let Some(entry) = self.journal.try_recv() {
             if let Entry::Decision { what } = entry.message.entry {

@@ -6,6 +6,7 @@ use maulstick_types::edits::Edit;
 use maulstick_types::haptics::ForceOrder;
 
 use crate::input::keys::Action;
+use crate::rig::device_commands::DeviceOrder;
 
 pub(crate) use maulstick_types::command::PAINT_NODE as PAINT;
 
@@ -65,6 +66,7 @@ impl Request {
 pub struct Requests {
     waiting: Vec<Request>,
     acts: Vec<Action>,
+    devices: Vec<DeviceOrder>,
 }
 
 impl Requests {
@@ -79,6 +81,23 @@ impl Requests {
             device: device.to_owned(),
             order,
         });
+    }
+
+    /// Runs `maulstick device` with these words.
+    pub fn device<'a>(&mut self, words: impl IntoIterator<Item = &'a str>) {
+        let words = words.into_iter().map(str::to_owned).collect();
+        self.devices.push(DeviceOrder::Run(words));
+    }
+
+    /// As [`device`](Self::device), for what is no single command.
+    pub fn order_device(&mut self, order: DeviceOrder) {
+        self.devices.push(order);
+    }
+
+    /// Takes the orders of devices, the oldest first.
+    #[must_use]
+    pub fn take_device_orders(&mut self) -> Vec<DeviceOrder> {
+        std::mem::take(&mut self.devices)
     }
 
     /// Does what a key would do.

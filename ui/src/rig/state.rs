@@ -14,8 +14,11 @@ use maulstick_types::stylus::{StylusInfo, StylusStatus};
 
 use crate::render::display_transform::DisplayTransform;
 use crate::rig::carried_paint::CarriedPaint;
+use crate::rig::device_commands::FitProgress;
+use crate::rig::device_listing::DeviceListing;
 use crate::rig::force_history::ForceHistory;
 use crate::rig::health::RigEvent;
+use crate::rig::sample_history::SampleHistory;
 use crate::rig::thumbnails::Thumbnails;
 
 /// A brush of the rig.
@@ -46,6 +49,8 @@ pub struct Device {
     pub heard_ns: u64,
     /// Its newest samples.
     pub forces: ForceHistory,
+    /// What they sensed.
+    pub samples: SampleHistory,
 }
 
 /// Last known state of a paint node.
@@ -82,6 +87,12 @@ pub struct RigState {
     pub switching: bool,
     /// The nodes that are alive, by name.
     pub nodes: Vec<String>,
+    /// What is attached; `None` until it was looked for.
+    pub listing: Option<DeviceListing>,
+    /// A fit of a device to the canvas in progress.
+    pub fit: Option<FitProgress>,
+    /// True while a change of a device is not in the listing yet.
+    pub changes_devices: bool,
     /// The paints of the rig.
     pub library: Arc<PaintLibrary>,
     /// True if the wet paint of the canvas is tinted.
@@ -114,6 +125,9 @@ impl RigState {
             starts: 0,
             switching: false,
             nodes: Vec::new(),
+            listing: None,
+            fit: None,
+            changes_devices: false,
             library,
             show_wet: false,
             thumbnails: Thumbnails::default(),

@@ -104,8 +104,15 @@ pub(crate) fn words(mixture: &Mixture) -> String {
     if let [part] = &mixture.parts[..] {
         return part.paint.clone();
     }
-    let parts = mixture.parts.iter();
-    let words = parts.map(|part| format!("{} {} %", part.paint, (part.share * 100.0).round()));
+    let mut said = 0.0;
+    let mut share = 0.0;
+    // Each is rounded with what the ones before it left over, so that they make 100.
+    let words = mixture.parts.iter().map(|part| {
+        share += part.share;
+        let percent = (share * 100.0).round() - said;
+        said += percent;
+        format!("{} {percent} %", part.paint)
+    });
     words.collect::<Vec<_>>().join(", ")
 }
 

@@ -15,7 +15,7 @@ use crate::settings::brush_load::BrushLoad;
 use crate::settings::grip::Grip;
 use crate::settings::look::{TEXT_SIZES, Theme};
 use crate::settings::paint_sets::PaintSet;
-use crate::settings::presets::{Preset, classic};
+use crate::settings::presets::{BeforePreset, Preset, classic};
 use crate::settings::units::Units;
 use crate::settings::window_side::WindowSide;
 use crate::tracing::settings::Tracings;
@@ -73,6 +73,10 @@ pub struct Preferences {
     pub in_hand: BTreeMap<String, Preset>,
     /// How the mouse holds the brush.
     pub mouse: Grip,
+    /// Pressure of the mouse and tuning of the brush before a preset set them, which end with its brush.
+    pub before_preset: Option<BeforePreset>,
+    /// Points (sensed, given) of the pressure of pens over the window; none for the pressure as it is.
+    pub pen_curve: Vec<[f64; 2]>,
     /// Widths at which brushes were last used, by their kind, mm.
     pub widths_mm: BTreeMap<String, f64>,
     /// Brushes that are ready with their paint.
@@ -105,6 +109,8 @@ impl Default for Preferences {
             loading: BrushLoad::default(),
             in_hand: BTreeMap::new(),
             mouse: Grip::default(),
+            before_preset: None,
+            pen_curve: Vec::new(),
             widths_mm: BTreeMap::new(),
             presets: classic(),
             paint_sets: Vec::new(),

@@ -67,6 +67,17 @@ impl Default for Preset {
     }
 }
 
+/// How a brush was pressed and tuned before a preset.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BeforePreset {
+    /// Pressure of the mouse, 0 to 1.
+    pub pressure: f64,
+    /// Factor on the stiffness.
+    pub stiffness: f64,
+    /// Wetness, 0 to 1.
+    pub wetness: f64,
+}
+
 /// The presets of a new painter: four classic ways to lay oil over oil.
 #[must_use]
 pub(crate) fn classic() -> Vec<Preset> {
@@ -80,9 +91,9 @@ pub(crate) fn classic() -> Vec<Preset> {
     vec![
         // Thin and transparent over what is dry.
         Preset {
-            most_m: 15e-6,
+            most_m: 12e-6,
             loading: BrushLoad {
-                thinner: 0.7,
+                thinner: 0.88,
                 ..BrushLoad::default()
             },
             ..of(tr_noop!("Glaze"), "flat", 20.0, 0.3)
@@ -199,6 +210,12 @@ impl Preset {
             true => None,
             false => Some(loading.edit(&brush, &work.rig.library)?.into()),
         };
+        let (tuning, pressure) = (work.rig.tuning(), work.preferences.mouse.pressure);
+        work.preferences.before_preset.get_or_insert(BeforePreset {
+            pressure,
+            stiffness: tuning.stiffness,
+            wetness: tuning.wetness,
+        });
         work.take_up(file);
         work.requests.send(tune);
         work.requests.send(handle);

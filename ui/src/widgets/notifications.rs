@@ -30,6 +30,8 @@ pub struct Notification {
     pub what: String,
     /// Advice; empty if there is none.
     pub help: String,
+    /// The value that it tells; the next one takes its place.
+    topic: Option<&'static str>,
     /// Time of its end by the window's clock, s; `None` before it was first shown.
     until_s: Option<f64>,
 }
@@ -44,6 +46,15 @@ impl Notifications {
     /// Tells that something was done.
     pub fn note(&mut self, what: impl Into<String>) {
         self.tell(Weight::Note, what.into(), String::new());
+    }
+
+    /// Tells a value that keys change, in the place of the one before.
+    pub fn value(&mut self, topic: &'static str, what: impl Into<String>) {
+        self.told.retain(|toast| toast.topic != Some(topic));
+        self.note(what);
+        if let Some(newest) = self.told.last_mut() {
+            newest.topic = Some(topic);
+        }
     }
 
     /// Tells that something was not done, and what to do.
@@ -76,6 +87,7 @@ impl Notifications {
             weight,
             what,
             help,
+            topic: None,
             until_s: None,
         });
     }
@@ -152,6 +164,17 @@ mod tests {
             .map(|t| t.what.as_str())
             .collect();
         assert_eq!(told, ["c", "a", "d", "e"]);
+    }
+
+    #[test]
+    fn a_value_takes_the_place_of_the_one_before() {
+        let mut notifications = Notifications::default();
+        notifications.value("width", "10 mm");
+        notifications.note("saved");
+        notifications.value("pressure", "50 %");
+        notifications.value("width", "12 mm");
+        let told = notifications.told().iter().map(|toast| &*toast.what);
+        assert_eq!(told.collect::<Vec<_>>(), ["saved", "50 %", "12 mm"]);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Drivers, one module for each family of devices.
 
+pub mod force_dimension;
 pub mod inverse3;
 pub mod openhaptics;
 pub mod polhem;

@@ -41,7 +41,7 @@ impl Grab {
 
 fn refused(node: &Path, error: &std::io::Error) -> UserError {
     let help = match error.kind() {
-        ErrorKind::PermissionDenied => "`maulstick device list --udev` prints the rule to install",
+        ErrorKind::PermissionDenied => "`maulstick device allow` installs the rule that permits it",
         _ => "plug the tablet in again",
     };
     UserError::failure(format!("the pen moves the system's pointer too: {error}"))

@@ -109,7 +109,7 @@ pub fn closed(device: &Identity, error: &std::io::Error) -> UserError {
     let (what, help) = match error.kind() {
         ErrorKind::PermissionDenied => (
             format!("you may not read {name}"),
-            "`maulstick device list --udev` prints the rule to install",
+            "`maulstick device allow` installs the rule that permits it",
         ),
         ErrorKind::ResourceBusy => (
             format!("{name} is in use"),

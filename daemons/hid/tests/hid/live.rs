@@ -215,7 +215,7 @@ fn a_device_that_is_not_there_is_looked_for_each_second() {
     let plugs = Plugs::default();
     plugs.plug(identity(0x28BD, 0x0935, "Deco L"), &deco_l(), PEN);
     let denied = UserError::failure("you may not read it")
-        .help("`maulstick device list --udev` prints the rule");
+        .help("`maulstick device allow` installs the rule");
     plugs.with(|desk| desk.closed = Some(denied));
     let mut rig = Rig::new(&settings("pen"), Box::new(plugs.clone())).expect("a daemon");
     rig.run(5_500_000_000, 10_000_000);

@@ -4,7 +4,7 @@ use maulstick_bus::BusError;
 use maulstick_document::Document;
 use maulstick_painting::Painting;
 use maulstick_types::paint::{DryingStatus, HistoryStep, PaintStatus};
-use maulstick_types::scene::{CANVAS, PALETTE};
+use maulstick_types::scene::CANVAS;
 
 use super::{PaintNode, STATUS_PERIOD_NS};
 use maulstick_session::Autosave;
@@ -16,22 +16,13 @@ const LISTED: usize = 30;
 /// Letters of the description of a step.
 const LETTERS: usize = 80;
 
-/// How the description of a stroke ends.
-const STROKE: &str = " stroke";
-
 /// The steps around the present one.
 fn history(painting: &Painting) -> Vec<HistoryStep> {
     let steps = painting.history().around(LISTED);
-    let listed = steps.into_iter().map(|step| {
-        let mut what: String = step.what.chars().take(LETTERS).collect();
-        if step.what.ends_with(STROKE) && step.surface == Some(PALETTE) {
-            what.push_str(" on the palette");
-        }
-        HistoryStep {
-            id: step.id,
-            what,
-            done: step.done,
-        }
+    let listed = steps.into_iter().map(|step| HistoryStep {
+        id: step.id,
+        what: step.what.chars().take(LETTERS).collect(),
+        done: step.done,
     });
     listed.collect()
 }

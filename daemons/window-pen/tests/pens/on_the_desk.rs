@@ -84,6 +84,19 @@ fn a_touch_belongs_to_what_lies_where_it_began() {
 }
 
 #[test]
+fn pressure_is_bent_as_the_window_says() {
+    let (mut desk, mut hand) = Desk::new();
+    desk.link
+        .bend_pressure(&[[0.0, 0.0], [0.5, 0.2], [1.0, 1.0]]);
+    desk.net.advance(1_000_000);
+    hand.read(&read(1, 400.0, Presence::Touching))
+        .expect("sent");
+    let heard = desk.heard();
+    let pressure: Vec<f64> = heard.iter().map(|(_, sample)| words(sample).1).collect();
+    assert_eq!(pressure, [0.2]);
+}
+
+#[test]
 fn a_brush_over_a_panel_is_away() {
     let (mut desk, mut hand) = Desk::new();
     for (ms, x) in [(1, 400.0), (2, 600.0), (3, 700.0), (4, 300.0)] {

@@ -1,8 +1,10 @@
 //! `maulstick device use`: which device paints, with what brush and what law of force, changed while painting.
 
+use std::str::FromStr;
+
 use clap::Args;
 use maulstick_rig::UserError;
-use maulstick_rig::config::{DeviceSection, FORCES, PEN_PRIORITY};
+use maulstick_rig::config::{ACTIONS, DeviceSection, FORCES, PEN_PRIORITY};
 
 use super::user_file::{UserFile, is_same, put_in_rig};
 use crate::commands::say;
@@ -22,8 +24,39 @@ pub struct UseOptions {
     /// Priority [default: above all others that move its brush]
     #[arg(long, allow_negative_numbers = true)]
     priority: Option<i32>,
+    /// Points (sensed, given) of a pen's pressure between which it goes in straight lines: "0,0 0.5,0.3 1,1"
+    #[arg(long, value_name = "POINTS")]
+    pressure_curve: Option<PressureCurve>,
+    /// What each switch does, the first switch first: "pick,undo"
+    #[arg(long, value_name = "ACTIONS", value_delimiter = ',', value_parser = ACTIONS)]
+    switches: Option<Vec<String>>,
+    /// Largest force, N
+    #[arg(long, value_name = "N")]
+    max_force: Option<f64>,
     #[command(flatten)]
     target: Target,
+}
+
+/// A pressure curve as it is typed.
+#[derive(Clone, Debug, PartialEq)]
+struct PressureCurve(Vec<[f64; 2]>);
+
+impl FromStr for PressureCurve {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let point = |word: &str| {
+            let (sensed, given) = word.split_once(',')?;
+            Some([sensed.parse().ok()?, given.parse().ok()?])
+        };
+        let point = |word| {
+            point(word).ok_or_else(|| format!("'{word}' is no point as in \"0,0 0.5,0.3 1,1\""))
+        };
+        text.split_whitespace()
+            .map(point)
+            .collect::<Result<_, _>>()
+            .map(Self)
+    }
 }
 
 /// Changes a device.
@@ -60,6 +93,12 @@ pub(super) fn run(options: &UseOptions) -> Result<i32, UserError> {
             .clone()
             .unwrap_or_else(|| device.force.clone()),
         brush,
+        pressure_curve: match &options.pressure_curve {
+            Some(PressureCurve(points)) => points.clone(),
+            None => device.pressure_curve.clone(),
+        },
+        switches: options.switches.clone().or(device.switches.clone()),
+        max_force_n: options.max_force.unwrap_or(device.max_force_n),
         ..device
     };
     let answer = put_in_rig(&options.target, &changed)?;
@@ -94,5 +133,15 @@ mod tests {
         assert_eq!(above(Some(10), 20), 20);
         assert_eq!(above(Some(10), 10), 11);
         assert_eq!(above(Some(-90), -80), PEN_PRIORITY + 1);
+    }
+
+    #[test]
+    fn a_pressure_curve_is_typed_point_by_point() {
+        let curve = |text: &str| text.parse::<PressureCurve>().map(|curve| curve.0);
+        let points = vec![[0.0, 0.0], [0.5, 0.3], [1.0, 1.0]];
+        assert_eq!(curve("0,0 0.5,.3  1,1"), Ok(points));
+        for wrong in ["0,0 1", "0,0 a,1", "0;0"] {
+            assert!(curve(wrong).expect_err(wrong).contains("is no point"));
+        }
     }
 }

@@ -4,12 +4,15 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use maulstick_bus::Qos;
-use maulstick_rig::UserError;
+use maulstick_rig::config::DeviceSection;
+use maulstick_rig::{UserError, user_devices};
 use maulstick_types::stylus::{StylusInfo, StylusStatus};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use serde_json::json;
 
-use crate::attached::vendors::{INVERSE_SERVICE, library_folders, listens, open_haptics};
+use crate::attached::vendors::{
+    FORCE_DIMENSION, INVERSE_SERVICE, OPEN_HAPTICS, library, library_folders, listens,
+};
 use crate::attached::{Attached, Places, events, hid, rules, serial};
 use crate::commands::session::{Feed, Session, Target};
 use crate::commands::{print_json, print_text};
@@ -22,8 +25,7 @@ pub struct ListOptions {
     json: bool,
     /// Print a udev rule that lets the user at this machine use its devices
     ///
-    /// Install it: maulstick device list --udev | sudo tee /etc/udev/rules.d/70-maulstick.rules &&
-    /// sudo udevadm control --reload && sudo udevadm trigger
+    /// `maulstick device allow` installs it
     #[arg(long, conflicts_with = "json")]
     udev: bool,
     #[command(flatten)]
@@ -38,16 +40,34 @@ const TOGETHER: Duration = Duration::from_millis(300);
 /// All that is found.
 #[derive(Clone, Debug, Serialize)]
 struct Findings {
+    #[serde(serialize_with = "with_addresses")]
     hid: Vec<Attached>,
+    #[serde(serialize_with = "with_addresses")]
     events: Vec<Attached>,
+    #[serde(serialize_with = "with_addresses")]
     serial: Vec<Attached>,
     openhaptics: Library,
+    forcedimension: Library,
     inverse_service: Service,
     /// The devices of the rig; `None` if it does not run.
     rig: Option<Vec<Used>>,
 }
 
-/// OpenHaptics' library.
+/// Devices with their addresses in `[[device]]`.
+fn with_addresses<S: Serializer>(devices: &[Attached], to: S) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Addressed<'a> {
+        #[serde(flatten)]
+        device: &'a Attached,
+        address: String,
+    }
+    to.collect_seq(devices.iter().map(|device| Addressed {
+        device,
+        address: device.address(),
+    }))
+}
+
+/// A vendor's library.
 #[derive(Clone, Debug, Serialize)]
 struct Library {
     path: Option<std::path::PathBuf>,
@@ -64,20 +84,15 @@ struct Service {
 /// A device of a running rig.
 #[derive(Clone, Debug, Serialize)]
 struct Used {
-    name: String,
-    /// Its description of itself once it is there.
+    /// Its settings.
     #[serde(flatten)]
-    told: Option<Told>,
+    section: DeviceSection,
+    /// True if it is kept for this user.
+    is_own: bool,
+    /// True if it has shown itself.
+    is_there: bool,
     /// The reason why it gives nothing now; empty if it does.
     trouble: String,
-}
-
-/// Description of a device of a rig by itself.
-#[derive(Clone, Debug, Serialize)]
-struct Told {
-    driver: String,
-    brush: String,
-    priority: i32,
 }
 
 /// Lists what is attached.
@@ -97,7 +112,11 @@ pub(super) fn run(options: &ListOptions) -> Result<i32, UserError> {
         hid,
         serial: serial::ports(&places),
         openhaptics: Library {
-            path: open_haptics(&looked_in),
+            path: library(OPEN_HAPTICS, &looked_in),
+            looked_in: looked_in.clone(),
+        },
+        forcedimension: Library {
+            path: library(FORCE_DIMENSION, &looked_in),
             looked_in,
         },
         inverse_service: Service {
@@ -116,25 +135,37 @@ pub(super) fn run(options: &ListOptions) -> Result<i32, UserError> {
 /// The devices of a rig, if it runs.
 fn used(target: &Target) -> Option<Vec<Used>> {
     let session = Session::open(target).ok()?;
+    let own = user_devices::path().and_then(|path| user_devices::read(&path));
+    let own = own.unwrap_or_default();
+    let row = |section: DeviceSection, is_there| Used {
+        is_own: own.iter().any(|own| own.name == section.name),
+        section,
+        is_there,
+        trouble: String::new(),
+    };
+    let sections = session.config().ok()?.device.into_iter();
+    let mut found: Vec<Used> = sections.map(|section| row(section, false)).collect();
     let topics = session.topics();
     let mut infos: Feed<StylusInfo> = session.follow(&topics.stylus_info("*"), Qos::Cached).ok()?;
     let mut statuses: Feed<StylusStatus> = session
         .follow(&topics.stylus_status("*"), Qos::Background)
         .ok()?;
-    let mut found: Vec<Used> = Vec::new();
     let mut until = Instant::now() + PATIENCE;
     while let Some(info) = infos.next_before(until) {
         until = until.min(Instant::now() + TOGETHER);
-        found.retain(|other| other.name != info.device);
-        found.push(Used {
-            name: info.device,
-            told: Some(Told {
-                driver: info.driver,
-                brush: info.brush,
-                priority: info.priority,
-            }),
-            trouble: String::new(),
-        });
+        match found
+            .iter_mut()
+            .find(|used| used.section.name == info.device)
+        {
+            Some(used) => used.is_there = true,
+            None => {
+                let section = DeviceSection {
+                    priority: info.priority,
+                    ..DeviceSection::new(&info.device, &info.driver, &info.brush)
+                };
+                found.push(row(section, true));
+            }
+        }
     }
     // Heard while the devices showed themselves; one that has never been there has nothing else.
     while let Some(received) = statuses.received_before(Instant::now()) {
@@ -144,18 +175,15 @@ fn used(target: &Target) -> Option<Vec<Used>> {
             true => status.trouble,
             false => status.faults.join("; "),
         };
-        match found.iter_mut().find(|used| used.name == device) {
-            Some(used) => used.trouble = trouble,
-            None => found.push(Used {
-                name: device.to_owned(),
-                told: None,
-                trouble,
-            }),
+        if let Some(used) = found.iter_mut().find(|used| used.section.name == device) {
+            used.trouble = trouble;
         }
     }
     // The highest priority first.
-    let rank = |used: &Used| used.told.as_ref().map_or(i32::MIN, |told| told.priority);
-    found.sort_by(|a, b| rank(b).cmp(&rank(a)).then(a.name.cmp(&b.name)));
+    found.sort_by(|a, b| {
+        let (a, b) = (&a.section, &b.section);
+        b.priority.cmp(&a.priority).then(a.name.cmp(&b.name))
+    });
     Some(found)
 }
 
@@ -177,12 +205,16 @@ fn table(findings: &Findings) -> String {
         rows.extend(these.map(row));
     }
     let service = &findings.inverse_service;
-    if let Some(path) = &findings.openhaptics.path {
-        rows.push(program(
-            "OpenHaptics",
-            "openhaptics",
-            &path.display().to_string(),
-        ));
+    for (name, driver, library) in [
+        ("OpenHaptics", "openhaptics", &findings.openhaptics),
+        (
+            "Force Dimension SDK",
+            "forcedimension",
+            &findings.forcedimension,
+        ),
+    ] {
+        let path = library.path.as_ref();
+        rows.extend(path.map(|path| program(name, driver, &path.display().to_string())));
     }
     if service.listens {
         rows.push(program(
@@ -198,6 +230,7 @@ fn table(findings: &Findings) -> String {
     }
     if !all().any(|device| device.driver.is_some())
         && findings.openhaptics.path.is_none()
+        && findings.forcedimension.path.is_none()
         && !service.listens
     {
         text += &nothing(findings);
@@ -262,8 +295,8 @@ fn nothing(findings: &Findings) -> String {
         "Nothing attached that a driver fits; the mouse paints, and so does `driver = \"simulated\"`.\n\
          Shown would be pens (pen) and 6-DOF mice (spacemouse) at /dev/hidraw*, other tablets (evdev)\n\
          at /dev/input/event*, Polhem and WoodenHaptics (polhem) at serial ports, an Inverse3\n\
-         (inverse3) with Haply's service at {}, and a Touch (openhaptics)\n\
-         with libHD.so in\n\
+         (inverse3) with Haply's service at {}, a Touch (openhaptics) with libHD.so\n\
+         and an omega (forcedimension) with libdhd.so in\n\
          {}.\n",
         findings.inverse_service.address,
         folders.join(", ")
@@ -289,15 +322,14 @@ fn in_rig(used: Option<&[Used]>) -> String {
         return "\nThe rig that runs has no device.\n".into();
     }
     let row = |used: &Used| -> Row {
-        let state = match used.trouble.as_str() {
-            "" => "in use",
-            trouble => trouble,
+        let state = match (used.trouble.as_str(), used.is_there) {
+            ("", true) => "in use",
+            ("", false) => "does not run: the rig's terminal says why",
+            (trouble, _) => trouble,
         };
-        let [driver, brush, priority] = match &used.told {
-            Some(told) => [&told.driver, &told.brush, &told.priority.to_string()].map(Clone::clone),
-            None => ["-"; 3].map(str::to_owned),
-        };
-        [used.name.clone(), driver, brush, priority, state.to_owned()]
+        let own = &used.section;
+        let priority = own.priority.to_string();
+        [&own.name, &own.driver, &own.brush, &priority, state].map(Into::into)
     };
     let heads = ["in the rig", "driver", "brush", "priority", ""].map(str::to_owned);
     let rows: Vec<Row> = [heads].into_iter().chain(used.iter().map(row)).collect();

@@ -1,6 +1,7 @@
 //! Commands of devices: what is attached, which of it paints, fitting, force.
 
 mod add;
+mod allow;
 mod choose;
 mod fit;
 pub mod force;
@@ -17,6 +18,8 @@ use maulstick_rig::UserError;
 pub enum DeviceCommand {
     /// List attached devices, the drivers that fit, and what is missing
     List(list::ListOptions),
+    /// Let the user at this machine use its devices: installs the rule for udev, asking for the password
+    Allow(allow::AllowOptions),
     /// Paint with a device from now on: it is kept for this user, and starts in the running rig
     Add(add::AddOptions),
     /// Paint with a device no more
@@ -42,6 +45,7 @@ impl DeviceCommand {
 pub fn run(command: &DeviceCommand) -> Result<i32, UserError> {
     match command {
         DeviceCommand::List(options) => list::run(options),
+        DeviceCommand::Allow(options) => allow::run(options),
         DeviceCommand::Add(options) => add::run(options),
         DeviceCommand::Remove(options) => remove::run(options),
         DeviceCommand::Use(options) => choose::run(options),

@@ -3,6 +3,7 @@
 use clap::Args;
 use maulstick_bus::RigFolder;
 use maulstick_rig::UserError;
+use maulstick_types::STYLUS_CONTRACT;
 use serde_json::json;
 
 use crate::commands::print_json;
@@ -28,6 +29,7 @@ pub fn run(options: &EndpointOptions) -> Result<i32, UserError> {
     if options.json {
         print_json(&json!({
             "rig": info.rig,
+            "contract": STYLUS_CONTRACT,
             "endpoint": info.endpoint,
             "prefix": info.prefix,
             "clock_offset_ns": info.clock_offset_ns,

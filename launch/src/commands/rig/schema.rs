@@ -2,8 +2,8 @@
 
 use clap::Args;
 use maulstick_rig::UserError;
-use maulstick_types::CATALOGUE;
 use maulstick_types::wire::schema::{ENCODING, Field, Shape, header_fields};
+use maulstick_types::{CATALOGUE, STYLUS_CONTRACT};
 use serde_json::json;
 
 use crate::commands::{print_json, print_text, say};
@@ -48,6 +48,7 @@ pub fn run(options: &SchemaOptions) -> Result<i32, UserError> {
                     "version": entry.version,
                     "hash": schema.hash,
                     "max_bytes": entry.max_bytes,
+                    "contract": entry.in_contract.then_some(STYLUS_CONTRACT),
                     "topics": entry.topics,
                     "types": schema.types,
                 })
@@ -63,9 +64,13 @@ pub fn run(options: &SchemaOptions) -> Result<i32, UserError> {
     for entry in entries {
         let schema = (entry.schema)();
         say!(
-            "{}  version {}, hash {:#010x}, at most {} bytes, on {}",
+            "{}  version {}{}, hash {:#010x}, at most {} bytes, on {}",
             entry.name,
             entry.version,
+            match entry.in_contract {
+                true => format!(" of {STYLUS_CONTRACT}"),
+                false => String::new(),
+            },
             schema.hash,
             entry.max_bytes,
             entry.topics.join(", ")

@@ -26,8 +26,8 @@ pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
         ),
         (
             "library",
-            device.library.is_some() && driver != "openhaptics",
-            "take it out: it is the library of openhaptics",
+            device.library.is_some() && !["openhaptics", "forcedimension"].contains(&driver),
+            "take it out: it is the library of openhaptics or forcedimension",
         ),
         (
             "replay",

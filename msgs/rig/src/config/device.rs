@@ -8,9 +8,10 @@ use super::{RigConfig, toml_fault};
 use crate::user_error::UserError;
 
 /// Drivers of devices.
-pub const DRIVERS: [&str; 7] = [
+pub const DRIVERS: [&str; 8] = [
     "simulated",
     "openhaptics",
+    "forcedimension",
     "polhem",
     "inverse3",
     "pen",
@@ -34,12 +35,13 @@ pub struct DeviceSection {
     pub name: String,
     /// One of [`DRIVERS`].
     pub driver: String,
-    /// Address among several devices: the name that OpenHaptics gives it; a serial port; a WebSocket's URL with
+    /// Address among several devices: the name that OpenHaptics gives it; the serial number of one of Force Dimension's; a
+    /// serial port; a WebSocket's URL with
     /// `#device+grip`; `vendor:product` of a HID device or of an event device in hexadecimal, or its path below /dev. The
     /// first that fits if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub address: Option<String>,
-    /// The vendor's library of `openhaptics`, where it is not in the system's folders.
+    /// The vendor's library of `openhaptics` or `forcedimension`, where it is not in the system's folders.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub library: Option<PathBuf>,
     /// A recording that is played in the place of a HID device or an event device, in the text format of hid-recorder or
@@ -132,7 +134,9 @@ impl DeviceSection {
         match (&self.switches, self.driver.as_str()) {
             (Some(actions), _) => actions.iter().map(String::as_str).collect(),
             (None, driver) if PEN_DRIVERS.contains(&driver) => vec!["pick", "undo"],
-            (None, "openhaptics" | "polhem" | "inverse3") => vec!["clutch", "undo"],
+            (None, "openhaptics" | "forcedimension" | "polhem" | "inverse3") => {
+                vec!["clutch", "undo"]
+            }
             (None, _) => Vec::new(),
         }
     }

@@ -437,7 +437,7 @@ message! {
 
 message! {
     /// Asks a sender for messages that were lost on the way.
-    pub struct GapRequest [version 1, at most 64 bytes] {
+    pub struct GapRequest [contract of hash 0x8a08_7b74, version 1, at most 64 bytes] {
         /// The sender's epoch.
         pub epoch: u32,
         /// First number.

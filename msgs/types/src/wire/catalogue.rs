@@ -14,16 +14,18 @@ pub struct CatalogueEntry {
     pub version: u16,
     /// Largest body, bytes.
     pub max_bytes: usize,
+    /// True for a message of the [contract](crate::STYLUS_CONTRACT).
+    pub in_contract: bool,
     /// Topics below `maulstick/<rig>/` that carry it.
     pub topics: &'static [&'static str],
     /// Its field table.
     pub schema: fn() -> &'static Schema,
-    /// Decodes a body and says what is in it, for `echo` and for tests.
-    pub show: fn(&[u8]) -> Result<String, DecodeError>,
+    /// Decodes a body of a version and says what is in it, for `echo` and for tests.
+    pub show: fn(u16, &[u8]) -> Result<String, DecodeError>,
 }
 
-fn show<M: Message + std::fmt::Debug>(body: &[u8]) -> Result<String, DecodeError> {
-    M::decode_body(body).map(|message| format!("{message:#?}"))
+fn show<M: Message + std::fmt::Debug>(version: u16, body: &[u8]) -> Result<String, DecodeError> {
+    M::decode_body(version, body).map(|message| format!("{message:#?}"))
 }
 
 macro_rules! entry {
@@ -32,6 +34,7 @@ macro_rules! entry {
             name: <$message as Message>::NAME,
             version: <$message as Message>::VERSION,
             max_bytes: <$message as Message>::MAX_BYTES,
+            in_contract: <$message as Message>::IN_CONTRACT,
             topics: &[$($topic),*],
             schema: <$message as Message>::schema,
             show: show::<$message>,

@@ -16,16 +16,18 @@ pub trait Message: Wire + Send + Sync + 'static {
     const VERSION: u16;
     /// The largest body that is encoded or decoded, bytes.
     const MAX_BYTES: usize;
+    /// True for a message of the [contract](crate::STYLUS_CONTRACT): programs of other versions read it.
+    const IN_CONTRACT: bool;
 
     /// The field table with its hash.
     fn schema() -> &'static Schema;
 
-    /// Reads a body that has passed the header's checks.
+    /// Reads a body of that version that has passed the header's checks.
     ///
     /// # Errors
     /// [`DecodeError::Body`] where the bytes do not hold the fields, [`DecodeError::Trailing`]
-    /// where they hold more.
-    fn decode_body(body: &[u8]) -> Result<Self, DecodeError>;
+    /// where they hold more than a message of that version does.
+    fn decode_body(version: u16, body: &[u8]) -> Result<Self, DecodeError>;
 }
 
 /// Encodes header and body; `sent_ns` is the rig clock's time of sending.
@@ -154,7 +156,7 @@ fn header<M: Message>(
 /// the message's limit.
 pub fn decode<M: Message>(bytes: &[u8]) -> Result<(Header, M), DecodeError> {
     let (header, body) = body_of::<M>(bytes)?;
-    Ok((header, M::decode_body(body)?))
+    Ok((header, M::decode_body(header.version, body)?))
 }
 
 /// Header and body of a message, whose schema and length are right.
@@ -196,13 +198,15 @@ where
             reason: error.to_string(),
         },
     )?;
-    if used != body.len() {
-        return Err(DecodeError::Trailing {
-            name,
-            left: body.len() - used,
-        });
-    }
+    nothing_left(name, body.len() - used)?;
     Ok(message)
+}
+
+fn nothing_left(name: &'static str, left: usize) -> Result<(), DecodeError> {
+    match left {
+        0 => Ok(()),
+        left => Err(DecodeError::Trailing { name, left }),
+    }
 }
 
 /// Decodes a body with an upper bound on what the codec may claim.
@@ -213,19 +217,137 @@ pub(crate) fn decode_limited<M, const LIMIT: usize>(
 where
     M: DeserializeOwned + Serialize,
 {
+    let (message, used) = decode_first::<M, LIMIT>(name, body)?;
+    nothing_left(name, body.len() - used)?;
+    Ok(message)
+}
+
+/// Decodes a body of a contract. A newer one may hold more fields than `version` has: they are left alone. An older one
+/// lacks the last ones: they are 0, none or empty.
+pub(crate) fn decode_contract<M, const LIMIT: usize>(
+    name: &'static str,
+    version: u16,
+    sent: u16,
+    body: &[u8],
+) -> Result<M, DecodeError>
+where
+    M: DeserializeOwned + Serialize,
+{
+    if sent >= version {
+        let (message, used) = decode_first::<M, LIMIT>(name, body)?;
+        if sent == version {
+            nothing_left(name, body.len() - used)?;
+        }
+        return Ok(message);
+    }
+    let filled = [body, &vec![0; LIMIT.saturating_sub(body.len())]].concat();
+    let (message, used) = decode_first::<M, LIMIT>(name, &filled)?;
+    nothing_left(name, body.len().saturating_sub(used))?;
+    Ok(message)
+}
+
+/// Decodes the first bytes of a body, and counts them.
+fn decode_first<M, const LIMIT: usize>(
+    name: &'static str,
+    body: &[u8],
+) -> Result<(M, usize), DecodeError>
+where
+    M: DeserializeOwned,
+{
     let config = bincode::config::standard()
         .with_fixed_int_encoding()
         .with_limit::<LIMIT>();
-    let (message, used) =
-        bincode::serde::decode_from_slice(body, config).map_err(|error| DecodeError::Body {
-            name,
-            reason: error.to_string(),
-        })?;
-    if used != body.len() {
-        return Err(DecodeError::Trailing {
-            name,
-            left: body.len() - used,
-        });
+    bincode::serde::decode_from_slice(body, config).map_err(|error| DecodeError::Body {
+        name,
+        reason: error.to_string(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[expect(unreachable_pub, reason = "messages are public")]
+    mod before {
+        crate::wire::define::message! {
+            /// A message as its contract began.
+            pub struct Sample [contract of hash 0x0102_0304, version 1, at most 64 bytes] {
+                /// A number.
+                pub number: u32,
+                /// A word.
+                pub word: String,
+            }
+        }
     }
-    Ok(message)
+
+    #[expect(unreachable_pub, reason = "messages are public")]
+    mod after {
+        crate::wire::define::message! {
+            /// The same with more at its end.
+            pub struct Sample [contract of hash 0x0102_0304, version 2, at most 64 bytes] {
+                /// A number.
+                pub number: u32,
+                /// A word.
+                pub word: String,
+                /// Added.
+                pub share: f64,
+                /// Added.
+                pub flag: Option<u8>,
+            }
+        }
+    }
+
+    fn sent<M: Message>(message: &M) -> Vec<u8> {
+        let origin = Origin {
+            source: 1,
+            epoch: 2,
+        };
+        encode(&origin, Flags::NONE, 0, 0, 0, message).expect("within its limit")
+    }
+
+    #[test]
+    fn a_message_of_a_contract_is_read_by_older_and_by_newer_programs() {
+        let old = before::Sample {
+            number: 7,
+            word: "pen".into(),
+        };
+        let new = after::Sample {
+            number: 7,
+            word: "pen".into(),
+            share: 0.5,
+            flag: Some(3),
+        };
+        let filled = after::Sample {
+            share: 0.0,
+            flag: None,
+            ..new.clone()
+        };
+        assert_eq!(decode(&sent(&new)).map(|(_, read)| read), Ok(old.clone()));
+        assert_eq!(decode(&sent(&old)).map(|(_, read)| read), Ok(filled));
+        assert_eq!(decode(&sent(&new)).map(|(_, read)| read), Ok(new));
+    }
+
+    #[test]
+    fn bytes_that_no_version_has_are_refused() {
+        let old = sent(&before::Sample {
+            number: 7,
+            word: "pen".into(),
+        });
+        let body = &old[HEADER_BYTES..];
+        let longer = [body, &[0]].concat();
+        let cut = &body[..body.len() - 1];
+        assert!(before::Sample::decode_body(1, &longer).is_err());
+        assert!(before::Sample::decode_body(2, &longer).is_ok());
+        assert!(before::Sample::decode_body(1, cut).is_err());
+        assert!(before::Sample::decode_body(2, cut).is_err());
+        // An older one holds no more than this one.
+        let newer = after::Sample {
+            number: 7,
+            word: "pen".into(),
+            share: 0.5,
+            flag: None,
+        };
+        let whole = [&sent(&newer)[HEADER_BYTES..], &[0]].concat();
+        assert!(after::Sample::decode_body(1, &whole).is_err());
+    }
 }

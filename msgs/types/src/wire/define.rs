@@ -80,14 +80,39 @@ macro_rules! wire_enum {
     };
 }
 
-/// Defines a message: a [`wire_struct!`] with a version and a size limit of its body.
+/// Defines a message: a [`wire_struct!`] with a version and a size limit of its body. One of a contract keeps the hash of
+/// its first field table: fields are only appended, and programs of other versions read it.
 macro_rules! message {
     (
         $(#[$meta:meta])*
         pub struct $name:ident [version $version:literal, at most $max:literal bytes] { $($body:tt)* }
     ) => {
+        $crate::wire::define::message! {
+            @define [$(#[$meta])*] $name $version $max false { $($body)* }
+            $crate::wire::schema::Schema::of::<$name>,
+            |_, body| $crate::wire::codec::decode_limited::<$name, $max>(stringify!($name), body)
+        }
+    };
+    (
+        $(#[$meta:meta])*
+        pub struct $name:ident
+        [contract of hash $hash:literal, version $version:literal, at most $max:literal bytes]
+        { $($body:tt)* }
+    ) => {
+        $crate::wire::define::message! {
+            @define [$(#[$meta])*] $name $version $max true { $($body)* }
+            || $crate::wire::schema::Schema::frozen::<$name>($hash),
+            |sent, body| $crate::wire::codec::decode_contract::<$name, $max>(
+                stringify!($name), $version, sent, body,
+            )
+        }
+    };
+    (
+        @define [$($meta:tt)*] $name:ident $version:literal $max:literal $frozen:literal { $($body:tt)* }
+        $schema:expr, $decode:expr
+    ) => {
         $crate::wire::define::wire_struct! {
-            $(#[$meta])*
+            $($meta)*
             pub struct $name { $($body)* }
         }
 
@@ -95,15 +120,17 @@ macro_rules! message {
             const NAME: &'static str = stringify!($name);
             const VERSION: u16 = $version;
             const MAX_BYTES: usize = $max;
+            const IN_CONTRACT: bool = $frozen;
 
             fn schema() -> &'static $crate::wire::schema::Schema {
                 static SCHEMA: std::sync::OnceLock<$crate::wire::schema::Schema> =
                     std::sync::OnceLock::new();
-                SCHEMA.get_or_init($crate::wire::schema::Schema::of::<$name>)
+                SCHEMA.get_or_init($schema)
             }
 
-            fn decode_body(body: &[u8]) -> Result<Self, $crate::DecodeError> {
-                $crate::wire::codec::decode_limited::<$name, $max>(stringify!($name), body)
+            fn decode_body(version: u16, body: &[u8]) -> Result<Self, $crate::DecodeError> {
+                let decode: fn(u16, &[u8]) -> Result<Self, $crate::DecodeError> = $decode;
+                decode(version, body)
             }
         }
     };

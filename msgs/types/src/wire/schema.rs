@@ -83,7 +83,7 @@ impl TypeTable {
 pub struct Schema {
     /// Name of the message.
     pub name: String,
-    /// FNV-1a of [`Schema::canonical`].
+    /// FNV-1a of [`Schema::canonical`]; of a message of a contract, of its first version.
     pub hash: u32,
     /// All types, the message itself among them.
     pub types: TypeTable,
@@ -124,6 +124,15 @@ impl Schema {
         let name = T::type_name();
         let hash = fnv1a(canonical(&name, &types).as_bytes());
         Self { name, hash, types }
+    }
+
+    /// The schema of `T`, a message of a contract: its hash stays that of its first version.
+    #[must_use]
+    pub fn frozen<T: Wire>(hash: u32) -> Self {
+        Self {
+            hash,
+            ..Self::of::<T>()
+        }
     }
 
     /// The text that is hashed: the message's name, then every type in order of name.

@@ -2,7 +2,7 @@
 
 use maulstick_impasto::stages::velocity::{EASE, SLIP, SQUISH, STABLE};
 use maulstick_model::brush::traits::BrushTraits;
-use maulstick_model::transfer::SWAP_FILM;
+use maulstick_model::transfer::{POOL, SWAP_FILM};
 
 use crate::device::Device;
 
@@ -166,7 +166,7 @@ pub(crate) static KERNELS: [Kernel; 14] = [
     Kernel {
         name: "exchange_ask",
         source: source!("exchange_ask"),
-        constants: &[("SWAP_FILM", SWAP_FILM as f64)],
+        constants: &[("SWAP_FILM", SWAP_FILM as f64), ("POOL", POOL as f64)],
         bindings: &[B::Load, B::Asks, B::Contacts, B::Totals, B::Wants],
         groups: Groups::Planned(0),
     },

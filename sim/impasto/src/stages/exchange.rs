@@ -17,7 +17,7 @@ use maulstick_model::footprint::Footprint;
 use maulstick_model::footprint::contact::Contact;
 use maulstick_model::footprint::shares_of;
 use maulstick_model::interface::{Handling, Step, Transfer};
-use maulstick_model::transfer::Exchanging;
+use maulstick_model::transfer::{Exchanging, POOL};
 
 /// Room for a step. Of the brush's many texels few touch at a time: these are numbered afresh in each
 /// step, so that the others cost nothing.
@@ -142,7 +142,9 @@ pub(crate) fn wanted(meeting: &Meeting, rule: &Exchanging, handling: &Handling) 
             (net, rule.swapped(meeting.on_brush, on_canvas, share))
         }
     };
-    let most = smaller(handling.most, CELL_MAX as f32);
+    let hollow = larger(meeting.gap, 0.0) * QUANTA_PER_UNIT as f32;
+    let pool = smaller(hollow, POOL * handling.most);
+    let most = smaller(handling.most + pool, CELL_MAX as f32);
     let room = larger(most - meeting.lying, 0.0);
     // Swapped paint has room on both sides, or stays on both.
     let swap = smaller(swap * quanta, room);

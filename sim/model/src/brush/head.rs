@@ -1,5 +1,6 @@
 //! The head of a brush on a surface: its position and its extent.
 
+use glam::DVec3;
 use maulstick_brush::head::STATIONS;
 use maulstick_brush::{Head, HeadPose, Hold};
 use maulstick_num::geometry::{Rigid, nlerp};
@@ -64,12 +65,12 @@ impl Waypoint {
         }
     }
 
-    /// The same pose so many m of the brush higher.
+    /// The same pose so many m of the brush back along its handle.
     #[must_use]
-    pub fn raised(&self, by_m: f64) -> Self {
-        let mut raised = self.clone();
-        raised.brush.translation.z += by_m;
-        raised
+    pub fn withdrawn(&self, by_m: f64) -> Self {
+        let mut withdrawn = self.clone();
+        withdrawn.brush.translation += self.brush.rotation * DVec3::Z * by_m;
+        withdrawn
     }
 
     /// A pose between this one and `other`, at `t` in 0..1.

@@ -11,8 +11,8 @@ pub(crate) use step::OpenStep;
 pub use step::{
     Change, NonTileState, Step, StepEffects, SurfaceMaterial, TilePlace, TileRef, same,
 };
-pub(crate) use walk::Direction;
 pub use walk::ListedStep;
+pub(crate) use walk::{Direction, placed};
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;

@@ -1,5 +1,7 @@
 //! Ways through the history: which steps lead from the present one to another.
 
+use maulstick_types::scene::PALETTE;
+
 use super::{History, OpenStep, Step, TilePlace};
 
 /// Direction of a step: undo or redo.
@@ -36,15 +38,15 @@ pub struct ListedStep {
     pub what: String,
     /// True if it is done; false if it was undone.
     pub done: bool,
-    /// The surface that it changed, if it changed only one.
-    pub surface: Option<u32>,
 }
 
-/// The surface of places in order, if all are on one.
-fn only_surface<'a>(mut places: impl DoubleEndedIterator<Item = &'a TilePlace>) -> Option<u32> {
-    let first = places.next()?.0;
-    let last = places.next_back().map_or(first, |place| place.0);
-    (first == last).then_some(first)
+/// Description of what a brush did at these places: on the palette it changes no picture.
+pub(crate) fn placed<'a>(what: &str, places: impl Iterator<Item = &'a TilePlace>) -> String {
+    let mut surfaces = places.map(|place| place.0).peekable();
+    match surfaces.peek().is_some() && surfaces.all(|surface| surface == PALETTE) {
+        true => format!("{what} on the palette"),
+        false => what.to_owned(),
+    }
 }
 
 impl History {
@@ -96,13 +98,14 @@ impl History {
             id: step.id,
             what: step.what.clone(),
             done: step.done,
-            surface: only_surface(step.tiles.keys()),
         };
         let unfinished = |step: &OpenStep| ListedStep {
             id: step.id,
-            what: step.what.clone(),
+            what: match step.brush {
+                Some(_) => placed(&step.what, step.reached.iter()),
+                None => step.what.clone(),
+            },
             done: true,
-            surface: only_surface(step.reached.iter()),
         };
         let undone = self.undone.len().min(most / 2);
         let next = self.undone[self.undone.len() - undone..].iter();

@@ -6,6 +6,7 @@ use maulstick_types::values::BrushName;
 
 use super::*;
 use crate::rig::requests::PAINT;
+use crate::settings::presets::BeforePreset;
 use crate::test_support::context_bench::Bench;
 
 fn defined(bench: &mut Bench) -> Vec<(String, BrushFile)> {
@@ -106,19 +107,29 @@ fn another_brush_lays_full_paint_and_another_width_what_the_preset_says() {
     };
     bench.rig.scene.as_mut().expect("a scene").handlings = vec![limited];
     bench.preferences.loading.thinner = 0.7;
+    bench.preferences.mouse.pressure = 0.08;
+    bench.preferences.before_preset = Some(BeforePreset {
+        pressure: 0.5,
+        stiffness: 1.0,
+        wetness: 0.0,
+    });
     bench.work().step_width(true);
     assert_eq!(defined(&mut bench).len(), 1, "nothing but a width");
     assert_eq!(bench.preferences.loading.thinner, 0.7);
     bench.work().next_brush();
-    let handled = bench
-        .commands()
-        .into_iter()
-        .find_map(|command| match command {
-            Command::Edit(Edit::Handle(handle)) => Some(BrushHandling::from(handle)),
-            _ => None,
-        });
+    let commands = bench.commands();
+    let handled = commands.iter().find_map(|command| match command {
+        Command::Edit(Edit::Handle(handle)) => Some(BrushHandling::from(handle.clone())),
+        _ => None,
+    });
     assert_eq!(handled, Some(BrushHandling::normal("main")));
+    let tuned = |command: &Command| matches!(command, Command::Edit(Edit::Tune(_)));
+    assert!(commands.iter().any(tuned), "it is as stiff as before");
     assert_eq!(bench.preferences.loading.thinner, 0.0);
+    assert_eq!(
+        bench.preferences.mouse.pressure, 0.5,
+        "and pressed as before"
+    );
 }
 
 #[test]

@@ -12,8 +12,8 @@ use crate::input::brush_choice::library;
 use crate::input::keys::{BINDINGS, HELD};
 use crate::language::{FILES, Language, all};
 
-/// Steps of the history as the paint engine names them.
-const STEPS: [&str; 14] = [
+/// Steps of the history as the paint engine names them, and words of settings.
+const OTHERS_WORDS: [&str; 22] = [
     "dry",
     "drying",
     "layer opacity",
@@ -28,6 +28,14 @@ const STEPS: [&str; 14] = [
     "tooth",
     "the beginning",
     "a stroke that was not painted yet",
+    "linear",
+    "hermite",
+    "local",
+    "rigid",
+    "clutch",
+    "pick",
+    "undo",
+    "clean",
 ];
 
 /// Keys whose names are not the signs on them.
@@ -199,7 +207,7 @@ fn needed() -> BTreeSet<String> {
         .chain(brushes)
         .chain(grounds)
         .chain(Tooth::names());
-    let tables = tables.chain(STEPS).map(str::to_owned);
+    let tables = tables.chain(OTHERS_WORDS).map(str::to_owned);
     tables
         .chain(NAMED_KEYS.map(|key| format!("key|{key}")))
         .chain(uses().into_iter().map(|used| used.english))
@@ -304,7 +312,7 @@ fn the_paint_engine_names_its_steps_so() {
     for folder in ["sim/painting/src", "daemons/paint/src"] {
         sources(&root.join(folder), &mut found);
     }
-    for step in STEPS {
+    for step in OTHERS_WORDS {
         let quoted = format!("\"{step}\"");
         assert!(found.values().any(|code| code.contains(&quoted)), "{step}");
     }

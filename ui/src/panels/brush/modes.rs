@@ -110,11 +110,13 @@ fn most(ui: &mut Ui, handling: &BrushHandling, wanted: &mut BrushHandling) {
     if check.on_hover_text(hover).changed() {
         wanted.most_m = if bounded { PROPOSED_M } else { 0.0 };
     }
-    if handling.most_m > 0.0 {
-        let mut um = (handling.most_m * 1e9).round() * 1e-3;
+    // Always there, so that nothing below it moves as a preset is clicked.
+    ui.add_enabled_ui(bounded, |ui| {
+        let shown_m = if bounded { wanted.most_m } else { PROPOSED_M };
+        let mut um = (shown_m * 1e9).round() * 1e-3;
         let slider = labelled::slider(&mut um, MOST_UM, " µm").max_decimals(0);
         if labelled::named(ui, tr!("Thickness"), hover, slider).changed() {
             wanted.most_m = um * 1e-6;
         }
-    }
+    });
 }

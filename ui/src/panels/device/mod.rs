@@ -1,10 +1,18 @@
-//! Device panel: styluses and their force.
+//! Device panel: styluses, their settings and their force; what else is attached.
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | `attached` | what is attached and not in the rig |
+//! | `settings` | brush, force, switches and pressure of a device; its fit to the canvas |
+//! | `pressure_curve` | a curve drawn by hand |
+//! | `test_page` | what a device senses, and how evenly |
 //! | `health` | timing of the force loop |
 
+mod attached;
 mod health;
+mod pressure_curve;
+mod settings;
+mod test_page;
 
 #[cfg(test)]
 pub(crate) mod tests;
@@ -22,8 +30,9 @@ use crate::input::keys::Action;
 use crate::language::capitalized;
 use crate::panels::Panel;
 use crate::rig::force_history::{self, KEPT_S, size};
-use crate::rig::state::Device;
+use crate::rig::state::{Device, RigState};
 use crate::widgets::context::PanelContext;
+use pressure_curve::CurveEditor;
 
 /// Of the button that switches force off, and of a trouble.
 const RED: Color32 = Color32::from_rgb(178, 34, 34);
@@ -31,6 +40,10 @@ const RED: Color32 = Color32::from_rgb(178, 34, 34);
 const GRAPH: f32 = 84.0;
 /// Side of the dial, points.
 const DIAL: f32 = 64.0;
+/// Drivers of the window's own mouse and pens.
+const OF_THE_WINDOW: [&str; 2] = ["pointer", "window"];
+/// A device of which nothing is heard for so long has left, ns.
+const PRESENT_NS: u64 = 3_000_000_000;
 /// A changed strength is shown for this long until the device has it, ns.
 const PATIENCE_NS: u64 = 700_000_000;
 
@@ -39,6 +52,9 @@ const PATIENCE_NS: u64 = 700_000_000;
 pub(crate) struct DevicePanel {
     /// The device whose strength is being changed, the requested percentage, and the time until which it is shown, ns.
     asked: Option<(String, f64, u64)>,
+    curve: CurveEditor,
+    /// The device whose test page is open.
+    tested: Option<String>,
 }
 
 impl Panel for DevicePanel {
@@ -54,7 +70,9 @@ impl Panel for DevicePanel {
             }
             None => ui.label(tr!("No pen in range. You are painting with the mouse.")),
         };
-        let mut devices: Vec<(&String, &Device)> = work.rig.devices.iter().collect();
+        let is_there = |(name, device): &(&String, &Device)| is_there(work.rig, name, device);
+        let mut devices: Vec<(&String, &Device)> =
+            work.rig.devices.iter().filter(is_there).collect();
         let priority = |device: &Device| device.info.as_ref().map_or(i32::MIN, |it| it.priority);
         devices.sort_by_key(|(name, device)| (-i64::from(priority(device)), (*name).clone()));
         let devices: Vec<(String, Device)> = devices
@@ -67,6 +85,9 @@ impl Panel for DevicePanel {
                 ui.push_id(&name, |ui| self.device(ui, &name, &device, work));
             });
         }
+        attached::show(ui, work);
+        let tested = self.tested.take();
+        self.tested = tested.filter(|name| test_page::show(ui.ctx(), name, work.rig));
     }
 }
 
@@ -79,6 +100,7 @@ impl DevicePanel {
                 ui.small(tr!("Senses {list}", list = senses(info.senses)));
             }
         }
+        self.own_settings(ui, name, device, work);
         let Some(status) = &device.status else {
             return;
         };
@@ -93,6 +115,34 @@ impl DevicePanel {
             && info.drives & axes::FORCE != 0
         {
             self.force(ui, name, (device, info, status), work);
+        }
+    }
+
+    /// What the painter may change of a device, and its test page.
+    fn own_settings(
+        &mut self,
+        ui: &mut Ui,
+        name: &str,
+        device: &Device,
+        work: &mut PanelContext<'_>,
+    ) {
+        let known = work.rig.listing.as_ref();
+        let section = known.and_then(|listing| listing.device(name));
+        let section = section.map(|known| known.section.clone());
+        let driver = device.info.as_ref().map(|info| info.driver.as_str());
+        match section.filter(|section| !OF_THE_WINDOW.contains(&&*section.driver)) {
+            Some(section) => {
+                settings::deeds(ui, &section, work);
+                settings::show(ui, &section, device, &mut self.curve, work);
+            }
+            None if driver == Some("window") => {
+                settings::window_pen(ui, device, &mut self.curve, work);
+            }
+            None => {}
+        }
+        let hint = tr!("Place, pressure and tilt as they are sensed, and how evenly they come");
+        if driver != Some("pointer") && ui.button(tr!("Test…")).on_hover_text(hint).clicked() {
+            self.tested = Some(name.to_owned());
         }
     }
 
@@ -187,6 +237,14 @@ pub(crate) fn force_off(work: &mut PanelContext<'_>) {
             work.requests.force(name, ForceOrder::Off);
         }
     }
+}
+
+/// False for a device that was there and has left: a driver is known by its process, another program by its messages.
+fn is_there(rig: &RigState, name: &str, device: &Device) -> bool {
+    let driver = device.info.as_ref().map(|info| info.driver.as_str());
+    let is_own = driver.is_some_and(|driver| OF_THE_WINDOW.contains(&driver));
+    let heard = rig.now_ns < device.heard_ns.saturating_add(PRESENT_NS);
+    is_own || heard || rig.nodes.iter().any(|node| node == name)
 }
 
 /// A button as wide as the panel.

@@ -6,6 +6,8 @@ use maulstick_types::haptics::ForceOrder;
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus, axes};
 
 use super::*;
+use crate::rig::device_commands::{DeviceOrder, FitProgress};
+use crate::rig::device_listing::DeviceListing;
 use crate::rig::requests::Request;
 use crate::rig::state::RigState;
 use crate::test_support::panel_bench::{Bench, harness, picture, rig};
@@ -36,6 +38,7 @@ pub(crate) fn devices() -> RigState {
         info("tablet", "pen", 5, pen, 0),
         info("phantom", "openhaptics", 10, arm, axes::FORCE),
     ] {
+        rig.nodes.push(info.device.clone());
         let device = rig.devices.entry(info.device.clone()).or_default();
         device.info = Some(info);
     }
@@ -102,6 +105,137 @@ fn who_paints_and_what_is_wrong_stand_in_words() {
     harness.run();
     harness.get_by_label("No pen in range. You are painting with the mouse.");
     harness.get_by_label("silent");
+}
+
+const LISTING: &str = r#"{
+    "hid": [
+        {"name": "Wacom Intuos S", "address": "056a:0374", "driver": "pen", "permission": "granted",
+         "missing": null},
+        {"name": "Deco L", "address": "28bd:0935", "driver": "pen", "permission": "denied",
+         "missing": "no permission"}
+    ],
+    "events": [], "serial": [], "openhaptics": {"path": null}, "inverse_service": {"listens": false},
+    "rig": [
+        {"name": "tablet", "driver": "pen", "brush": "main", "priority": 5, "address": "1:2", "is_own": true},
+        {"name": "phantom", "driver": "openhaptics", "brush": "main", "priority": 10, "is_own": false}
+    ]
+}"#;
+
+/// The same with what is attached.
+fn listed() -> RigState {
+    let mut rig = devices();
+    rig.listing = Some(DeviceListing::parse(LISTING.as_bytes()).expect("a listing"));
+    rig
+}
+
+fn orders(harness: &mut Harness<'_, Bench<DevicePanel>>) -> Vec<String> {
+    let orders = harness.state_mut().requests.take_device_orders();
+    let words = |order: DeviceOrder| match order {
+        DeviceOrder::Run(words) => words.join(" "),
+        other => format!("{other:?}"),
+    };
+    orders.into_iter().map(words).collect()
+}
+
+#[test]
+fn what_is_attached_is_added_with_a_click_or_first_allowed() {
+    let mut harness = harness::<DevicePanel>(listed());
+    for (button, command) in [
+        ("Add Wacom Intuos S", "add --address 056a:0374"),
+        ("Allow…", "allow"),
+    ] {
+        harness.get_by_label(button).click();
+        harness.run();
+        assert_eq!(orders(&mut harness), [command]);
+    }
+    assert!(
+        harness.query_by_label("Add Deco L").is_none(),
+        "it may not be used"
+    );
+    harness.state_mut().rig.listing = Some(DeviceListing::default());
+    harness.run();
+    harness.get_by_label_contains("No other tablet");
+}
+
+#[test]
+fn a_device_is_preferred_fitted_and_removed() {
+    let mut harness = harness::<DevicePanel>(listed());
+    for (button, command) in [
+        ("Paint with it", "use tablet"),
+        ("Fit to the canvas…", "Fit(\"tablet\")"),
+        ("Remove", "remove tablet"),
+    ] {
+        // The phantom's, which paints already, come first.
+        harness
+            .get_all_by_label(button)
+            .nth(1)
+            .expect(button)
+            .click();
+        harness.run();
+        assert_eq!(orders(&mut harness), [command]);
+    }
+    harness.state_mut().rig.fit = Some(FitProgress {
+        device: "tablet".into(),
+        said: vec!["touch the lower left corner".into()],
+    });
+    harness.run();
+    harness.get_by_label("Touch the lower left corner");
+    harness.get_by_label("Stop fitting").click();
+    harness.run();
+    assert_eq!(orders(&mut harness), ["StopFit"]);
+}
+
+#[test]
+fn a_law_a_switch_and_a_curve_are_chosen_with_the_priority_as_it_is() {
+    let mut harness = harness::<DevicePanel>(listed());
+    harness
+        .get_all_by_label("Settings")
+        .next()
+        .expect("the phantom's")
+        .click();
+    harness.run_steps(20);
+    harness
+        .get_by_role_and_label(Role::ComboBox, "Force")
+        .click();
+    harness.run();
+    harness.get_by_label("rigid").click();
+    harness.run();
+    assert_eq!(
+        orders(&mut harness),
+        ["use phantom --priority 10 --force rigid"]
+    );
+    harness
+        .get_by_role_and_label(Role::ComboBox, "Switch 1")
+        .click();
+    harness.run();
+    harness.get_by_label("palette").click();
+    harness.run();
+    assert_eq!(
+        orders(&mut harness),
+        ["use phantom --priority 10 --switches palette,undo"]
+    );
+    harness
+        .get_all_by_label("Settings")
+        .nth(1)
+        .expect("the tablet's")
+        .click();
+    harness.run_steps(20);
+    harness.get_by_label("Soft").click();
+    harness.run();
+    let soft = "use tablet --priority 5 --pressure-curve 0,0 0.3,0.5 0.6,0.8 1,1";
+    assert_eq!(orders(&mut harness), [soft]);
+}
+
+#[test]
+fn a_device_that_left_is_shown_no_more() {
+    let mut harness = harness::<DevicePanel>(listed());
+    harness
+        .state_mut()
+        .rig
+        .nodes
+        .retain(|node| node != "tablet");
+    harness.run();
+    assert!(harness.query_by_label("no pen (/dev/hidraw0)").is_none());
 }
 
 #[test]
@@ -186,5 +320,24 @@ fn it_looks_like_its_picture() {
     picture::<DevicePanel>("device", &rig, open, |rig| {
         let phantom = rig.devices.get_mut("phantom").expect("a phantom");
         phantom.forces = crate::rig::force_history::ForceHistory::default();
+    });
+}
+
+#[test]
+fn what_is_attached_and_a_pens_settings_look_like_their_picture() {
+    let open = |harness: &mut Harness<'static, Bench<DevicePanel>>| {
+        harness.get_by_label("Settings").click();
+        harness.run_steps(20);
+    };
+    let mut rig = listed();
+    rig.devices.retain(|name, _| name == "tablet");
+    let tablet = rig.devices.get_mut("tablet").expect("a tablet");
+    let mut pen = StylusSample::away();
+    if let StylusPose::Contact { pressure, .. } = &mut pen.pose {
+        *pressure = 0.4;
+    }
+    tablet.samples.hear(9_990_000_000, &pen);
+    picture::<DevicePanel>("device_settings", &rig, open, |rig| {
+        rig.listing = None;
     });
 }

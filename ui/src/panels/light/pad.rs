@@ -22,7 +22,6 @@ pub(super) fn show(ui: &mut Ui, ball: TextureId, direction: [f64; 3]) -> Option<
     if let Some(at) = response.interact_pointer_pos()
         && (response.dragged() || response.drag_stopped() || response.clicked())
     {
-        response.request_focus();
         moved = Some(from_pad(place, at));
     }
     let step = arrow_steps(ui, &response);
@@ -47,9 +46,11 @@ pub(super) fn show(ui: &mut Ui, ball: TextureId, direction: [f64; 3]) -> Option<
         gold,
         Stroke::new(1.5, Color32::from_black_alpha(200)),
     );
-    response.on_hover_text(tr!(
-        "Drag the lamp over the canvas, or move it by the arrow keys"
-    ));
+    if !response.dragged() {
+        response.on_hover_text(tr!(
+            "Drag the lamp over the canvas, or move it by the arrow keys"
+        ));
+    }
     moved
 }
 

@@ -154,7 +154,7 @@ fn refused(path: &str, error: &serialport::Error) -> UserError {
             .help("plug the stylus in, or leave `address` out: its port is found by itself"),
         ErrorKind::Io(Io::PermissionDenied) => {
             UserError::failure(format!("{path} may not be opened by you")).help(
-                "install the rules that `maulstick device list --udev` prints, or join the group \
+                "have `maulstick device allow` install the rule, or join the group \
                  dialout and log in anew",
             )
         }
@@ -181,7 +181,7 @@ mod tests {
         };
         let (what, help) = told(ErrorKind::Io(PermissionDenied));
         assert_eq!(what, "/dev/ttyACM0 may not be opened by you");
-        assert!(help.contains("device list --udev") && help.contains("dialout"));
+        assert!(help.contains("device allow") && help.contains("dialout"));
         assert_eq!(told(ErrorKind::Io(NotFound)).0, "there is no /dev/ttyACM0");
         assert!(
             told(ErrorKind::NoDevice)

@@ -25,6 +25,10 @@ fn findings(hid: Vec<Attached>, serial: Vec<Attached>) -> Findings {
             path: None,
             looked_in: vec!["/usr/lib".into()],
         },
+        forcedimension: Library {
+            path: None,
+            looked_in: Vec::new(),
+        },
         inverse_service: Service {
             address: INVERSE_SERVICE,
             listens: false,
@@ -87,22 +91,24 @@ Haply Inverse Service  -          localhost:10001    inverse3     found
 #[test]
 fn the_devices_of_a_rig_are_listed_with_their_trouble() {
     let used = |name: &str, trouble: &str| Used {
-        name: name.into(),
-        told: Some(Told {
-            driver: "pen".into(),
-            brush: "main".into(),
-            priority: 0,
-        }),
+        section: DeviceSection::new(name, "pen", "main"),
+        is_own: true,
+        is_there: true,
         trouble: trouble.into(),
     };
     let never = Used {
-        told: None,
+        is_there: false,
         ..used("arm", "there is no libHD.so")
+    };
+    let ended = Used {
+        is_there: false,
+        ..used("cup", "")
     };
     let text = in_rig(Some(&[
         used("left", ""),
         used("right", "it is unplugged"),
         never,
+        ended,
     ]));
     let rows: Vec<&str> = text.trim().lines().collect();
     assert_eq!(
@@ -111,7 +117,8 @@ fn the_devices_of_a_rig_are_listed_with_their_trouble() {
             "in the rig  driver  brush  priority",
             "left        pen     main   0         in use",
             "right       pen     main   0         it is unplugged",
-            "arm         -       -      -         there is no libHD.so",
+            "arm         pen     main   0         there is no libHD.so",
+            "cup         pen     main   0         does not run: the rig's terminal says why",
         ]
     );
     assert!(in_rig(Some(&[])).contains("no device"));

@@ -3,6 +3,7 @@
 
 // Constants of transfer.rs in maulstick-impasto.
 override SWAP_FILM: f32;
+override POOL: f32;
 
 // Share of a gap that fills where `share` of a difference evens out: 1 − (1 − share)¹⁶.
 fn filled(share: f32) -> f32 {
@@ -47,7 +48,9 @@ fn exchange_ask(@builtin(global_invocation_id) id: vec3<u32>) {
         swap = step.swap * share * min(min(on_brush, on_canvas), SWAP_FILM);
     }
     let quanta = contact.cover * QUANTA_PER_UNIT;
-    let room = max(step.most - lying, 0.0);
+    let pool = min(gap * QUANTA_PER_UNIT, POOL * step.most);
+    let most = min(step.most + pool, step.cell_max);
+    let room = max(most - lying, 0.0);
     // What changes places has room on both sides, or stays on both.
     swap = min(swap * quanta, room);
     let to_canvas = trunc(min(max(net, 0.0) * quanta + swap, room));

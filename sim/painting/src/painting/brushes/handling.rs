@@ -4,7 +4,7 @@ use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::{CELL_MAX, QUANTUM_M, REFERENCE_CELL_M, UNIT_M};
 use maulstick_model::interface::{Handling, StepReport, Transfer};
 use maulstick_types::edits::{Handle, Tune};
-use maulstick_types::scene::{BrushHandling, BrushMode, Scene};
+use maulstick_types::scene::{BrushHandling, BrushMode, PALETTE, Scene};
 
 use crate::apply::{Applied, Apply};
 use crate::painting::Painting;
@@ -41,8 +41,9 @@ impl UnderBrush {
     }
 }
 
-/// Handling of a brush in a scene, as a step takes it.
-pub(crate) fn handling_of(scene: &Scene, brush: &str) -> Handling {
+/// Handling of a brush on a surface of a scene, as a step takes it. On the palette a brush is not bound: there paints are
+/// mixed.
+pub(crate) fn handling_of(scene: &Scene, brush: &str, surface: u32) -> Handling {
     let mut handlings = scene.handlings.iter();
     let Some(handling) = handlings.find(|handling| handling.brush == brush) else {
         return Handling::default();
@@ -57,7 +58,7 @@ pub(crate) fn handling_of(scene: &Scene, brush: &str) -> Handling {
         BrushMode::Sampler => (false, Transfer::Sampler),
         BrushMode::Vacuum => (false, Transfer::Vacuum),
     };
-    let most = match handling.most_m > 0.0 {
+    let most = match handling.most_m > 0.0 && surface != PALETTE {
         true => (handling.most_m / QUANTUM_M) as f32,
         false => CELL_MAX as f32,
     };

@@ -64,7 +64,7 @@ impl Painting {
         let Some((_, window)) = &mut own.window else {
             return;
         };
-        let handling = handling_of(&self.scene, &own.name);
+        let handling = handling_of(&self.scene, &own.name, self.scene.surfaces[on].id);
         let preparation = Preparation::of(&self.scene.surfaces[on]);
         let surface = &mut self.surfaces[on];
         // Below this the head may touch.

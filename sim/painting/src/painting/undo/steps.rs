@@ -2,9 +2,15 @@
 
 use std::sync::Arc;
 
+use maulstick_model::interface::Transfer;
+use maulstick_types::scene::CANVAS;
+
 use super::materials;
-use crate::history::{Change, NonTileState, OpenStep, Step, StepEffects, TilePlace, TileRef};
+use crate::history::{
+    Change, NonTileState, OpenStep, Step, StepEffects, TilePlace, TileRef, placed,
+};
 use crate::painting::Painting;
+use crate::painting::brushes::handling::handling_of;
 
 impl Painting {
     /// State besides the tiles.
@@ -30,7 +36,12 @@ impl Painting {
 
     /// Begins a step that is a stroke of a brush.
     pub(crate) fn begin_stroke_step(&mut self, brush: usize) {
-        let what = format!("{} stroke", self.brushes[brush].file.kind);
+        let own = &self.brushes[brush];
+        let deed = match handling_of(&self.scene, &own.name, CANVAS).transfer {
+            Transfer::Vacuum => "wipe",
+            _ => "stroke",
+        };
+        let what = format!("{} {deed}", own.file.kind);
         self.begin_step(&what, Some(brush));
     }
 
@@ -91,7 +102,10 @@ impl Painting {
         }
         Step {
             id: open.id,
-            what: open.what.clone(),
+            what: match open.brush {
+                Some(_) => placed(&open.what, open.tiles.keys()),
+                None => open.what.clone(),
+            },
             brush: open.brush.clone(),
             operations: 1,
             done: true,

@@ -1,0 +1,69 @@
+//! What devices of the contract's first version send is understood for ever.
+
+use std::collections::BTreeSet;
+
+use maulstick_types::{CATALOGUE, HEADER_BYTES, STYLUS_CONTRACT};
+
+/// Messages as they were when the contract began, each followed by what it said. No line is ever changed.
+const FIRST: &str = include_str!("contract.txt");
+
+/// Name, version, hash, bytes and words of each.
+fn messages() -> Vec<(&'static str, u16, u32, Vec<u8>, &'static str)> {
+    let blocks = FIRST.split("\n\n").filter(|block| !block.is_empty());
+    let read = |block: &'static str| {
+        let (head, words) = block.split_once('\n').expect("a line of bytes, then words");
+        let mut head = head.split([' ', '/']);
+        let mut next = || head.next().expect("name/version hash bytes");
+        let (name, version, hash, hex) = (next(), next(), next(), next());
+        let byte = |at: usize| u8::from_str_radix(&hex[at..at + 2], 16).expect("hexadecimal");
+        let bytes = (0..hex.len()).step_by(2).map(byte).collect();
+        let hash = u32::from_str_radix(hash, 16).expect("hexadecimal");
+        (
+            name,
+            version.parse().expect("a number"),
+            hash,
+            bytes,
+            words.trim_end(),
+        )
+    };
+    blocks.map(read).collect()
+}
+
+#[test]
+fn what_the_first_version_said_is_still_understood() {
+    assert_eq!(STYLUS_CONTRACT, "stylus/1");
+    for (name, version, hash, bytes, words) in messages() {
+        let entry = CATALOGUE
+            .iter()
+            .find(|entry| entry.name == name)
+            .expect(name);
+        assert!(entry.in_contract && entry.version >= version, "{name}");
+        assert_eq!(
+            (entry.schema)().hash,
+            hash,
+            "{name}: devices out there carry this hash"
+        );
+        let read = (entry.show)(version, &bytes[HEADER_BYTES..]).expect(name);
+        // What was appended stands at the end.
+        let words = words.strip_suffix('}').unwrap_or(words);
+        assert!(
+            read.starts_with(words),
+            "{name} said\n{words}\nand is read as\n{read}"
+        );
+        // And what a later version will append is left alone.
+        let longer = [&bytes[HEADER_BYTES..], &[1; 16]].concat();
+        assert_eq!((entry.show)(u16::MAX, &longer), Ok(read), "{name}");
+    }
+}
+
+#[test]
+fn every_message_of_the_contract_has_its_first_bytes() {
+    let first: BTreeSet<&str> = messages().into_iter().map(|message| message.0).collect();
+    let of = |entry: &&maulstick_types::CatalogueEntry| entry.in_contract;
+    let now: BTreeSet<&str> = CATALOGUE
+        .iter()
+        .filter(of)
+        .map(|entry| entry.name)
+        .collect();
+    assert_eq!(first, now);
+}

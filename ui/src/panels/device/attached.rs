@@ -1,0 +1,77 @@
+//! What is attached and not in the rig: added with a click, or what is missing for that.
+
+use eframe::egui::{Frame, RichText, Ui};
+use maulstick_rig::user_devices::ALLOW_BY_HAND;
+
+use crate::rig::device_listing::AttachedDevice;
+use crate::widgets::context::PanelContext;
+use crate::widgets::rows::note;
+
+/// Shows it.
+pub(super) fn show(ui: &mut Ui, work: &mut PanelContext<'_>) {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(tr!("Attached")).strong());
+        if work.rig.listing.is_none() || work.rig.changes_devices {
+            ui.spinner();
+        }
+    });
+    let unused = work.rig.listing.as_ref().map(|listing| listing.unused());
+    let Some(unused) = unused else {
+        return;
+    };
+    if unused.is_empty() {
+        note(
+            ui,
+            tr!(
+                "No other tablet, 6-DOF mouse or arm is attached. A pen that the system knows paints without any of this."
+            ),
+        );
+    }
+    for device in unused {
+        Frame::group(ui.style()).show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            ui.push_id((&device.address, &device.driver), |ui| {
+                row(ui, &device, work)
+            });
+        });
+    }
+}
+
+fn row(ui: &mut Ui, device: &AttachedDevice, work: &mut PanelContext<'_>) {
+    let driver = device.driver.as_deref().unwrap_or_default();
+    ui.label(RichText::new(&device.name).strong());
+    ui.small(tr!("driver {driver}", driver));
+    if device.permission == "denied" {
+        ui.colored_label(
+            ui.visuals().warn_fg_color,
+            tr!("The system keeps it for root: it has to be allowed once."),
+        );
+        ui.horizontal(|ui| {
+            let hint = tr!("Installs the rule for udev; the system asks for your password");
+            if ui.button(tr!("Allow…")).on_hover_text(hint).clicked() {
+                work.requests.device(["allow"]);
+            }
+            let hint = tr!("For a terminal, where the button cannot ask");
+            let copy = ui.button(tr!("Copy the command")).on_hover_text(hint);
+            if copy.clicked() {
+                ui.ctx().copy_text(ALLOW_BY_HAND.to_owned());
+            }
+        });
+        return;
+    }
+    if let Some(missing) = &device.missing {
+        ui.colored_label(ui.visuals().warn_fg_color, missing);
+    }
+    let name = &device.name;
+    let hint = tr!("It moves the brush from now on, and is kept for you");
+    if ui
+        .button(tr!("Add {name}", name))
+        .on_hover_text(hint)
+        .clicked()
+    {
+        match device.address.is_empty() {
+            true => work.requests.device(["add", "--driver", driver]),
+            false => work.requests.device(["add", "--address", &device.address]),
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Settings of a device of the rig, changed while it paints: its brush, its force, its pressure, its switches, its place.
+
+use eframe::egui::{CollapsingHeader, RichText, Ui};
+use maulstick_rig::config::{ACTIONS, DeviceSection, FORCES, PEN_DRIVERS};
+
+use super::pressure_curve::CurveEditor;
+use crate::language::{capitalized, translated};
+use crate::rig::device_commands::DeviceOrder;
+use crate::rig::state::Device;
+use crate::widgets::context::PanelContext;
+use crate::widgets::rows::{choice, note};
+
+/// Shows them, folded until they are wanted.
+pub(super) fn show(
+    ui: &mut Ui,
+    section: &DeviceSection,
+    device: &Device,
+    curve: &mut CurveEditor,
+    work: &mut PanelContext<'_>,
+) {
+    let name = section.name.clone();
+    CollapsingHeader::new(tr!("Settings"))
+        .id_salt("settings")
+        .show(ui, |ui| {
+            let brushes: Vec<String> = work
+                .rig
+                .brushes
+                .iter()
+                .map(|brush| brush.name.clone())
+                .collect();
+            let mut change = None;
+            if brushes.len() > 1 {
+                let names = brushes.iter().map(String::as_str);
+                change = choice(ui, tr!("Brush"), &section.brush, names)
+                    .map(|brush| ["--brush".to_owned(), brush]);
+            }
+            if !PEN_DRIVERS.contains(&&*section.driver) && section.driver != "spacemouse" {
+                let law = choice(ui, tr!("Force"), &section.force, FORCES);
+                change = law.map(|law| ["--force".to_owned(), law]).or(change);
+            }
+            change = switches(ui, section).or(change);
+            if PEN_DRIVERS.contains(&&*section.driver) {
+                ui.label(tr!("Pressure"));
+                let newest = device.samples.newest(work.rig.now_ns);
+                let pressure = newest.and_then(|sample| sample.pen).map(|(given, _)| given);
+                let drawn = curve.show(ui, &name, &section.pressure_curve, pressure);
+                change = drawn
+                    .map(|points| ["--pressure-curve".to_owned(), written(&points)])
+                    .or(change);
+            }
+            if let Some([option, value]) = change {
+                let priority = section.priority.to_string();
+                let words = ["use", &name, "--priority", &priority, &option, &value];
+                work.requests.device(words);
+            }
+        });
+}
+
+/// What each switch does.
+fn switches(ui: &mut Ui, section: &DeviceSection) -> Option<[String; 2]> {
+    let actions = section.actions();
+    let mut chosen = None;
+    for (place, action) in actions.iter().enumerate() {
+        let number = place + 1;
+        let word = tr!("Switch {number}", number);
+        if let Some(other) = choice(ui, &word, action, ACTIONS) {
+            let mut changed: Vec<&str> = actions.clone();
+            changed[place] = &other;
+            chosen = Some(["--switches".to_owned(), changed.join(",")]);
+        }
+    }
+    chosen
+}
+
+/// Points as the command line takes them.
+fn written(points: &[[f64; 2]]) -> String {
+    let points = points
+        .iter()
+        .map(|[sensed, given]| format!("{sensed},{given}"));
+    points.collect::<Vec<_>>().join(" ")
+}
+
+/// Buttons of a device: that it paints, its fit, its end; and the fit in progress.
+pub(super) fn deeds(ui: &mut Ui, section: &DeviceSection, work: &mut PanelContext<'_>) {
+    let name = &section.name;
+    if let Some(fit) = work.rig.fit.as_ref().filter(|fit| fit.device == *name) {
+        for (place, line) in fit.said.iter().enumerate() {
+            let line = capitalized(line);
+            match place + 1 == fit.said.len() {
+                true => ui.label(RichText::new(line).strong()),
+                false => ui.label(line),
+            };
+        }
+        if fit.said.is_empty() {
+            ui.spinner();
+        }
+        if ui.button(tr!("Stop fitting")).clicked() {
+            work.requests.order_device(DeviceOrder::StopFit);
+        }
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        let others = work.rig.devices.iter().filter(|(other, _)| *other != name);
+        let infos = others.filter_map(|(_, other)| other.info.as_ref());
+        let rivals = infos.filter(|info| info.brush == section.brush);
+        let highest = rivals.map(|info| info.priority).max();
+        let is_first = highest.is_none_or(|highest| section.priority > highest);
+        let hint = tr!("Where several are in range, this one paints");
+        let first = ui.add_enabled(!is_first, eframe::egui::Button::new(tr!("Paint with it")));
+        if first.on_hover_text(hint).clicked() {
+            work.requests.device(["use", name]);
+        }
+        let idle = work.rig.fit.is_none();
+        if section.driver != "spacemouse" {
+            let fit = ui.add_enabled(idle, eframe::egui::Button::new(tr!("Fit to the canvas…")));
+            let hint = tr!("Touch three corners of the canvas with it");
+            if fit.on_hover_text(hint).clicked() {
+                work.requests.order_device(DeviceOrder::Fit(name.clone()));
+            }
+        }
+        let hint = tr!("It moves the brush no more");
+        let remove = ui.add_enabled(idle, eframe::egui::Button::new(tr!("Remove")));
+        if remove.on_hover_text(hint).clicked() {
+            work.requests.device(["remove", name]);
+        }
+    });
+}
+
+/// The pressure curve of pens over the window.
+pub(super) fn window_pen(
+    ui: &mut Ui,
+    device: &Device,
+    curve: &mut CurveEditor,
+    work: &mut PanelContext<'_>,
+) {
+    CollapsingHeader::new(tr!("Settings"))
+        .id_salt("settings")
+        .show(ui, |ui| {
+            ui.label(tr!("Pressure"));
+            const STRAIGHT: &[[f64; 2]] = &[[0.0, 0.0], [1.0, 1.0]];
+            let own = work.preferences.pen_curve.clone();
+            let actual = if own.is_empty() { STRAIGHT } else { &own };
+            let newest = device.samples.newest(work.rig.now_ns);
+            let pressure = newest.and_then(|sample| sample.pen).map(|(given, _)| given);
+            if let Some(drawn) = curve.show(ui, "pen", actual, pressure) {
+                work.preferences.pen_curve = drawn;
+            }
+            note(
+                ui,
+                translated(tr_noop!("Press here: over a panel the pen paints nothing.")),
+            );
+        });
+}

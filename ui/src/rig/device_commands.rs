@@ -1,0 +1,285 @@
+//! `maulstick device …`, run by the window as a user at a terminal would, one after the other.
+
+use std::collections::VecDeque;
+use std::io::{BufRead as _, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::task::Poll;
+use std::time::SystemTime;
+
+use eframe::egui::Context;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+
+use crate::background_task::BackgroundTask;
+use crate::rig::device_listing::DeviceListing;
+use crate::rig::state::RigState;
+use crate::widgets::notifications::Notifications;
+
+/// Folders that change where a device is plugged in or out.
+const NODES: [&str; 2] = ["/dev", "/dev/input"];
+
+/// A request to this runner.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum DeviceOrder {
+    /// A command, without `maulstick device`.
+    Run(Vec<String>),
+    /// Fits a device to the canvas, by the hand's touches.
+    Fit(String),
+    /// Ends the fit in progress: nothing is written.
+    StopFit,
+}
+
+/// A fit in progress.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FitProgress {
+    /// The device.
+    pub device: String,
+    /// What was said so far, line by line.
+    pub said: Vec<String>,
+}
+
+/// What the newest listing shows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Seen {
+    nodes: Vec<String>,
+    plugged: [Option<SystemTime>; 2],
+    done: u64,
+}
+
+/// The process of a fit.
+#[derive(Debug)]
+struct Fit {
+    child: Child,
+    lines: Receiver<String>,
+}
+
+impl Drop for Fit {
+    fn drop(&mut self) {
+        interrupt(&self.child);
+        self.child.wait().ok();
+    }
+}
+
+/// Runs the commands, and lists the devices whenever something has changed.
+#[derive(Debug)]
+pub(crate) struct DeviceCommands {
+    program: PathBuf,
+    waiting: VecDeque<Vec<String>>,
+    running: Option<BackgroundTask<Result<String, Refused>>>,
+    listing: Option<BackgroundTask<Result<DeviceListing, Refused>>>,
+    seen: Option<Seen>,
+    done: u64,
+    fit: Option<Fit>,
+}
+
+/// A command's complaint, with advice.
+#[derive(Debug, PartialEq, Eq)]
+struct Refused {
+    what: String,
+    help: String,
+}
+
+impl DeviceCommands {
+    /// Runs `program`.
+    pub(crate) fn new(program: PathBuf) -> Self {
+        Self {
+            program,
+            waiting: VecDeque::new(),
+            running: None,
+            listing: None,
+            seen: None,
+            done: 0,
+            fit: None,
+        }
+    }
+
+    /// The program of this process.
+    pub(crate) fn own() -> Self {
+        Self::new(std::env::current_exe().unwrap_or_else(|_| "maulstick".into()))
+    }
+
+    /// Takes orders, and what has ended. `is_shown` says whether anybody looks at the listing.
+    pub(crate) fn turn(
+        &mut self,
+        context: &Context,
+        orders: Vec<DeviceOrder>,
+        is_shown: bool,
+        (rig, notifications): (&mut RigState, &mut Notifications),
+    ) {
+        for order in orders {
+            match order {
+                DeviceOrder::Run(words) => self.waiting.push_back(words),
+                DeviceOrder::Fit(device) => self.begin_fit(context, device, rig, notifications),
+                DeviceOrder::StopFit => self.fit.iter().for_each(|fit| interrupt(&fit.child)),
+            }
+        }
+        if let Some(Poll::Ready(ended)) = self.running.as_ref().map(BackgroundTask::poll) {
+            (self.running, self.done) = (None, self.done + 1);
+            match ended {
+                Some(Ok(said)) => notifications.note(said),
+                Some(Err(Refused { what, help })) => notifications.fault(what, help),
+                None => {}
+            }
+        }
+        if self.running.is_none()
+            && let Some(words) = self.waiting.pop_front()
+        {
+            let command = self.command(&words, &rig.rig);
+            let run = move || run(command).map(|output| last_line(&output.stdout));
+            self.running = Some(BackgroundTask::start(context, "device", run));
+        }
+        self.follow_fit(rig, notifications);
+        if let Some(Poll::Ready(listed)) = self.listing.as_ref().map(BackgroundTask::poll) {
+            self.listing = None;
+            match listed {
+                Some(Ok(listing)) => rig.listing = Some(listing),
+                Some(Err(refused)) => tracing::warn!("the devices: {}", refused.what),
+                None => {}
+            }
+        }
+        if is_shown && self.listing.is_none() {
+            self.list(context, rig);
+        }
+        rig.changes_devices =
+            self.running.is_some() || !self.waiting.is_empty() || self.listing.is_some();
+    }
+
+    /// Lists the devices where something has changed.
+    fn list(&mut self, context: &Context, rig: &RigState) {
+        let mut nodes = rig.nodes.clone();
+        nodes.sort_unstable();
+        let seen = Seen {
+            nodes,
+            plugged: NODES.map(changed),
+            done: self.done,
+        };
+        if self.seen.as_ref() == Some(&seen) {
+            return;
+        }
+        self.seen = Some(seen);
+        let command = self.command(&["list".to_owned(), "--json".to_owned()], &rig.rig);
+        let list = move || {
+            let output = run(command)?;
+            DeviceListing::parse(&output.stdout).map_err(|what| Refused {
+                what,
+                help: String::new(),
+            })
+        };
+        self.listing = Some(BackgroundTask::start(context, "devices", list));
+    }
+
+    fn command(&self, words: &[String], rig: &str) -> Command {
+        let mut command = Command::new(&self.program);
+        command.arg("device").args(words);
+        if words.first().is_none_or(|word| word != "allow") {
+            command.args(["--name", rig]);
+        }
+        command.stdin(Stdio::null());
+        command
+    }
+
+    fn begin_fit(
+        &mut self,
+        context: &Context,
+        device: String,
+        rig: &mut RigState,
+        notifications: &mut Notifications,
+    ) {
+        let mut command = self.command(&["fit".to_owned(), device.clone()], &rig.rig);
+        let started = command
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn();
+        let mut child = match started {
+            Ok(child) => child,
+            Err(error) => return notifications.fault(error.to_string(), ""),
+        };
+        let (to_window, lines) = channel();
+        if let Some(stdout) = child.stdout.take() {
+            let context = context.clone();
+            let read = move || {
+                for line in BufReader::new(stdout).lines().map_while(Result::ok) {
+                    to_window.send(line).ok();
+                    context.request_repaint();
+                }
+            };
+            let thread = std::thread::Builder::new().name("fit".into()).spawn(read);
+            if let Err(error) = thread {
+                tracing::error!("no thread for the fit: {error}");
+            }
+        }
+        self.fit = Some(Fit { child, lines });
+        rig.fit = Some(FitProgress {
+            device,
+            said: Vec::new(),
+        });
+    }
+
+    fn follow_fit(&mut self, rig: &mut RigState, notifications: &mut Notifications) {
+        let (Some(fit), Some(progress)) = (&mut self.fit, &mut rig.fit) else {
+            return;
+        };
+        progress.said.extend(fit.lines.try_iter());
+        let ended = match fit.child.try_wait() {
+            Ok(None) => return,
+            Ok(Some(status)) => status.success(),
+            Err(_) => false,
+        };
+        progress.said.extend(fit.lines.try_iter());
+        let said = progress.said.pop().unwrap_or_default();
+        let complaint = fit.child.stderr.take().map(|stderr| {
+            let lines = BufReader::new(stderr).lines().map_while(Result::ok);
+            complaint(&lines.collect::<Vec<_>>().join("\n"))
+        });
+        match complaint.filter(|complaint| !ended && !complaint.what.is_empty()) {
+            Some(Refused { what, help }) => notifications.fault(what, help),
+            None => notifications.note(said),
+        }
+        self.done += 1;
+        (self.fit, rig.fit) = (None, None);
+    }
+}
+
+/// Time at which a folder's entries last changed.
+fn changed(folder: &str) -> Option<SystemTime> {
+    Path::new(folder).metadata().ok()?.modified().ok()
+}
+
+fn interrupt(child: &Child) {
+    if let Ok(pid) = i32::try_from(child.id()) {
+        kill(Pid::from_raw(pid), Signal::SIGINT).ok();
+    }
+}
+
+/// What a command prints where it succeeds.
+fn run(mut command: Command) -> Result<Output, Refused> {
+    let output = command.output().map_err(|error| Refused {
+        what: error.to_string(),
+        help: String::new(),
+    })?;
+    match output.status.success() {
+        true => Ok(output),
+        false => Err(complaint(&String::from_utf8_lossy(&output.stderr))),
+    }
+}
+
+/// A complaint as the command line writes it: `error: what`, where, and ` help: advice`.
+fn complaint(text: &str) -> Refused {
+    let text = text.trim();
+    let (first, help) = text.split_once("\n help: ").unwrap_or((text, ""));
+    let first = first.lines().next().unwrap_or_default();
+    Refused {
+        what: first.trim_start_matches("error: ").to_owned(),
+        help: help.trim().to_owned(),
+    }
+}
+
+fn last_line(said: &[u8]) -> String {
+    let said = String::from_utf8_lossy(said);
+    said.trim().lines().last().unwrap_or_default().to_owned()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,113 @@
+//! With a program in the place of `maulstick` that answers by what it is asked.
+
+use std::os::unix::fs::PermissionsExt as _;
+use std::time::{Duration, Instant};
+
+use super::*;
+use crate::test_support::panel_bench::rig;
+use crate::widgets::notifications::Weight;
+
+const PROGRAM: &str = r#"#!/bin/sh
+case "$2" in
+list) echo '{"hid": [], "events": [], "serial": [], "openhaptics": {"path": null},
+ "inverse_service": {"listens": false}, "rig": [{"name": "arm", "driver": "polhem", "brush": "main",
+ "is_own": true}]}';;
+use) echo "first"; echo "$*";;
+fit) trap 'echo "nothing is written"; exit 130' INT; echo "touch the lower left corner"
+ while :; do sleep 0.01; done;;
+*) printf 'error: no such device\n  --> /x\n help: plug it in\n' >&2; exit 1;;
+esac
+"#;
+
+struct Desk {
+    commands: DeviceCommands,
+    rig: RigState,
+    told: Vec<(Weight, String)>,
+    _folder: tempfile::TempDir,
+}
+
+impl Desk {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let program = folder.path().join("program");
+        std::fs::write(&program, PROGRAM).expect("written");
+        let all = std::fs::Permissions::from_mode(0o755);
+        std::fs::set_permissions(&program, all).expect("set");
+        Self {
+            commands: DeviceCommands::new(program),
+            rig: rig(),
+            told: Vec::new(),
+            _folder: folder,
+        }
+    }
+
+    fn turn(&mut self, orders: Vec<DeviceOrder>, is_shown: bool) {
+        let mut notifications = Notifications::default();
+        let target = (&mut self.rig, &mut notifications);
+        self.commands
+            .turn(&Context::default(), orders, is_shown, target);
+        let told = notifications.told().iter();
+        self.told
+            .extend(told.map(|toast| (toast.weight, toast.what.clone())));
+    }
+
+    fn until(&mut self, is_so: impl Fn(&Self) -> bool) {
+        let give_up = Instant::now() + Duration::from_secs(30);
+        while !is_so(self) {
+            assert!(Instant::now() < give_up, "{:?}", self.told);
+            self.turn(Vec::new(), false);
+            std::thread::yield_now();
+        }
+    }
+}
+
+#[test]
+fn commands_run_one_after_the_other_and_are_told() {
+    let mut desk = Desk::new();
+    let run = |words: &[&str]| DeviceOrder::Run(words.iter().map(|&word| word.into()).collect());
+    desk.turn(vec![run(&["use", "arm"]), run(&["remove", "cup"])], false);
+    desk.until(|desk| desk.told.len() == 2);
+    let told = [
+        (Weight::Note, "device use arm --name default".to_owned()),
+        (Weight::Fault, "no such device".to_owned()),
+    ];
+    assert_eq!(desk.told, told);
+}
+
+#[test]
+fn devices_are_listed_where_somebody_looks_and_something_has_changed() {
+    let mut desk = Desk::new();
+    desk.turn(Vec::new(), false);
+    assert!(desk.commands.listing.is_none(), "nobody looks");
+    desk.turn(Vec::new(), true);
+    desk.until(|desk| desk.rig.listing.is_some());
+    assert!(
+        desk.rig
+            .listing
+            .as_ref()
+            .expect("listed")
+            .device("arm")
+            .is_some()
+    );
+    desk.rig.nodes.push("arm".into());
+    desk.turn(Vec::new(), true);
+    assert!(desk.commands.listing.is_some(), "a device came");
+}
+
+#[test]
+fn a_fit_says_what_to_touch_until_it_is_stopped() {
+    let mut desk = Desk::new();
+    desk.turn(vec![DeviceOrder::Fit("arm".into())], false);
+    let said = |desk: &Desk| desk.rig.fit.as_ref().map_or(0, |fit| fit.said.len());
+    desk.until(|desk| said(desk) == 1);
+    desk.turn(vec![DeviceOrder::StopFit], false);
+    desk.until(|desk| desk.rig.fit.is_none());
+    assert_eq!(desk.told, [(Weight::Note, "nothing is written".to_owned())]);
+}
+
+#[test]
+fn a_complaint_is_parted_into_fault_and_advice() {
+    let refused = complaint("error: no permission\n  --> /dev/hidraw0\n help: ask\n");
+    assert_eq!((&*refused.what, &*refused.help), ("no permission", "ask"));
+    assert_eq!(complaint("it broke").what, "it broke");
+}
