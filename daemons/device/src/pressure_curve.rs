@@ -12,6 +12,15 @@ pub fn sensed(curve: &[[f64; 2]], given: f64) -> f64 {
     between(curve, given, [1, 0])
 }
 
+/// True if points rise from (0, 0) to (1, 1), as those of a curve do.
+#[must_use]
+pub fn rises(points: &[[f64; 2]]) -> bool {
+    let rise = |pair: &[[f64; 2]]| pair[0][0] < pair[1][0] && pair[0][1] <= pair[1][1];
+    points.first() == Some(&[0.0, 0.0])
+        && points.last() == Some(&[1.0, 1.0])
+        && points.windows(2).all(rise)
+}
+
 /// Along one axis of the curve to the other.
 fn between(curve: &[[f64; 2]], at: f64, [from, to]: [usize; 2]) -> f64 {
     for pair in curve.windows(2) {
@@ -48,5 +57,14 @@ mod tests {
         }
         assert_eq!((given(&curve, -1.0), given(&curve, 2.0)), (0.0, 1.0));
         assert_eq!(given(&[], 0.3), 0.3);
+        assert!(rises(&curve));
+        for wrong in [
+            &[[0.0, 0.0], [0.5, 0.6], [0.7, 0.5], [1.0, 1.0]][..],
+            &[[0.0, 0.0], [0.5, f64::NAN], [1.0, 1.0]],
+            &[[0.0, 0.0]],
+            &[],
+        ] {
+            assert!(!rises(wrong), "{wrong:?}");
+        }
     }
 }

@@ -163,7 +163,8 @@ impl WindowStylus {
         self.introduce(read.axes, now_ns)?;
         let reading = self.place(read);
         self.newest = Some((*read, now_ns));
-        self.link.tell(now_ns, read.reading.presence);
+        let pressure = read.reading.pressure;
+        self.link.tell(now_ns, read.reading.presence, pressure);
         self.stream
             .read(reading, (event_ns, now_ns), &mut self.desk)
     }
@@ -243,7 +244,7 @@ impl WindowStylus {
             gone.reading.presence = Presence::Away;
             self.point(&gone, touched);
         }
-        self.link.tell(now_ns, Presence::Away);
+        self.link.tell(now_ns, Presence::Away, 0.0);
         self.stream.leave(event_ns, now_ns, &mut self.desk)
     }
 

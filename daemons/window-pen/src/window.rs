@@ -51,6 +51,8 @@ pub struct PenState {
     pub near_ns: u64,
     /// True while it is near.
     pub is_near: bool,
+    /// Pressure that it senses, 0 to 1, whatever lies below it.
+    pub pressure: f64,
     /// What it senses, bits of [`axes`](maulstick_types::stylus::axes); 0 before one was near.
     pub senses: u32,
     /// What its pointer did since the last call, in order.
@@ -144,8 +146,12 @@ impl PenLink {
     }
 
     /// It is near, or away.
-    pub(crate) fn tell(&self, now_ns: u64, presence: Presence) {
+    pub(crate) fn tell(&self, now_ns: u64, presence: Presence, pressure: f64) {
         let state = &mut self.lock().state;
+        state.pressure = match presence {
+            Presence::Touching => pressure.clamp(0.0, 1.0),
+            _ => 0.0,
+        };
         let near = presence != Presence::Away;
         if near || state.is_near {
             state.near_ns = now_ns;

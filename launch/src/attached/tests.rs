@@ -4,7 +4,9 @@ use std::cell::Cell;
 use std::fs::{create_dir_all, write};
 use std::os::unix::fs::symlink;
 
-use super::vendors::{OPEN_HAPTICS, library, listens};
+use maulstick_haptic::drivers::openhaptics::library::HD;
+
+use super::vendors::{library, listens};
 use super::*;
 
 /// A pen's descriptor, a keyboard's, a 6-DOF mouse's: each the collection alone.
@@ -234,11 +236,11 @@ fn the_rule_has_every_vendor_that_a_driver_fits() {
 #[test]
 fn the_vendors_library_and_service_are_found_where_they_are() {
     let folder = tempfile::tempdir().expect("a folder");
-    assert_eq!(library(OPEN_HAPTICS, &[folder.path()]), None);
+    assert_eq!(library(&HD, &[folder.path()]), None);
     let own = folder.path().join("libHD.so.3.4");
     write(&own, "").expect("written");
     let folders = [Path::new("/nowhere"), folder.path()];
-    assert_eq!(library(OPEN_HAPTICS, &folders), Some(own));
+    assert_eq!(library(&HD, &folders), Some(own));
     let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
     let address = listener.local_addr().expect("an address").to_string();
     assert!(listens(&address));

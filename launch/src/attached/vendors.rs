@@ -4,10 +4,8 @@ use std::net::{TcpStream, ToSocketAddrs as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Names of OpenHaptics' library.
-pub const OPEN_HAPTICS: [&str; 3] = ["libHD.so", "libHD.so.3.4", "libHD.so.3.0"];
-/// Names of Force Dimension's library.
-pub const FORCE_DIMENSION: [&str; 3] = ["libdhd.so.3", "libdhd.so", "libdrd.so.3"];
+use maulstick_haptic::drivers::vendor_library::VendorLibrary;
+
 /// The folders of libraries, besides those that LD_LIBRARY_PATH names.
 const FOLDERS: [&str; 5] = [
     "/usr/lib",
@@ -29,12 +27,12 @@ pub fn library_folders() -> Vec<PathBuf> {
     named.chain(FOLDERS.map(PathBuf::from)).collect()
 }
 
-/// A library of one of these names in the first of `folders` that has it. It is not loaded: OpenHaptics' may ask for the
+/// A vendor's library in the first of `folders` that has it. It is not loaded: OpenHaptics' may ask for the
 /// device, and bears no second loading.
 #[must_use]
-pub fn library(names: [&str; 3], folders: &[impl AsRef<Path>]) -> Option<PathBuf> {
+pub fn library(vendor: &VendorLibrary, folders: &[impl AsRef<Path>]) -> Option<PathBuf> {
     let in_folder = |folder: &Path| {
-        let paths = names.map(|name| folder.join(name));
+        let paths = vendor.names.map(|name| folder.join(name));
         paths.into_iter().find(|path| path.exists())
     };
     folders.iter().find_map(|folder| in_folder(folder.as_ref()))

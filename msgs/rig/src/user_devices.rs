@@ -11,7 +11,7 @@ use crate::user_error::UserError;
 /// Command line that lets the user at a machine use its devices, where `maulstick device allow` cannot ask for the
 /// password.
 pub const ALLOW_BY_HAND: &str = "maulstick device list --udev | sudo tee /etc/udev/rules.d/70-maulstick.rules && sudo \
-                                 udevadm control --reload && sudo udevadm trigger";
+                                 udevadm control --reload && sudo udevadm trigger && sudo udevadm settle --timeout=5";
 
 /// The file.
 ///

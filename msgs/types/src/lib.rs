@@ -37,8 +37,9 @@ pub use wire::codec::{Message, decode, encode, encode_into, encoded_bytes};
 pub use wire::header::{DecodeError, Flags, HEADER_BYTES, Header, Origin};
 pub use wire::plain::plain;
 
-/// The contract of devices with a rig: its messages keep the hashes of their first versions, fields are only appended,
-/// and programs of all later versions read each other's. What appended fields an older message lacks is 0, none or empty.
+/// The contract of devices with a rig: its messages keep the hashes of their first versions, and programs of all later
+/// versions read each other's. Fields are only appended, and to the messages themselves: the types inside them, their
+/// variants and the size limits stay. What appended fields an older message lacks is 0, none or empty.
 pub const STYLUS_CONTRACT: &str = "stylus/1";
 
 /// The FNV-1a hash of `text`, by which sources, schemas and files are named.

@@ -7,6 +7,19 @@ use maulstick_types::{CATALOGUE, HEADER_BYTES, STYLUS_CONTRACT};
 /// Messages as they were when the contract began, each followed by what it said. No line is ever changed.
 const FIRST: &str = include_str!("contract.txt");
 
+/// Size limits of the messages, which stay.
+const LIMITS: [(&str, usize); 9] = [
+    ("StylusSample", 512),
+    ("StylusInfo", 1024),
+    ("StylusStatus", 4096),
+    ("ControlSample", 256),
+    ("ContactModel", 4096),
+    ("FluidForce", 2048),
+    ("ForceRequest", 256),
+    ("ForceReply", 1024),
+    ("GapRequest", 64),
+];
+
 /// Name, version, hash, bytes and words of each.
 fn messages() -> Vec<(&'static str, u16, u32, Vec<u8>, &'static str)> {
     let blocks = FIRST.split("\n\n").filter(|block| !block.is_empty());
@@ -66,4 +79,13 @@ fn every_message_of_the_contract_has_its_first_bytes() {
         .map(|entry| entry.name)
         .collect();
     assert_eq!(first, now);
+    for entry in CATALOGUE.iter().filter(of) {
+        let limit = LIMITS.iter().find(|(name, _)| *name == entry.name);
+        assert_eq!(
+            limit.map(|(_, bytes)| *bytes),
+            Some(entry.max_bytes),
+            "{}",
+            entry.name
+        );
+    }
 }

@@ -48,16 +48,16 @@ impl PathStepper {
         }
     }
 
-    /// Path of a brush that comes onto `at` along its handle; `step` is called for its last `steps` steps. So a brush that
+    /// Path of a brush that comes onto `at` from where its handle lies; `step` is called for its last `steps` steps. So a brush that
     /// is only set down prints, loads and is cleaned, however its bristles stand: paint goes over by the way along the
     /// surface.
     pub fn landing(
         head: &Head,
-        (at, steps): (Waypoint, u32),
+        (at, steps): (Waypoint, f64),
         scale: Scale,
         mut step: impl FnMut(Sweep<'_>, u32),
     ) -> Self {
-        let way_m = f64::from(steps) * scale.step_cells(head.is_fine()) * scale.cell_m * scale.zoom;
+        let way_m = steps * scale.step_cells(head.is_fine()) * scale.cell_m * scale.zoom;
         let mut path = Self::begin(head, at.withdrawn(way_m), scale);
         path.advance(head, (at, 0), &mut step);
         path.end(head, step);

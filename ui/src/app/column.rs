@@ -12,7 +12,7 @@ use crate::settings::window_side::WindowSide;
 use crate::widgets::context::PanelContext;
 
 /// Room at the right for the scroll bar, points.
-const BAR: f32 = 10.0;
+const BAR: f32 = 14.0;
 
 /// The column.
 pub(super) struct Column {

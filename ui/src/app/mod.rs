@@ -379,6 +379,7 @@ impl eframe::App for App {
         }
         self.pen
             .greet(&mut self.preferences, &mut self.notifications);
+        self.rig.pen_pressure = self.pen.pressure();
         // After the mouse has sent its position: its brush is drawn there.
         self.take_in(now_ns);
         self.barrier.take_in(now_ns);

@@ -230,16 +230,28 @@ impl PanelContext<'_> {
     fn lay_full_paint(&mut self) {
         let handling = self.rig.handling();
         let is_limited = handling.most_m > 0.0;
-        let before = self.preferences.before_preset.take();
+        let brush = self.rig.brush_name().to_owned();
+        let before = self
+            .preferences
+            .before_preset
+            .take_if(|before| before.brush == brush);
         if !is_limited && self.preferences.loading.thinner == 0.0 && before.is_none() {
             return;
         }
         self.preferences.loading.thinner = 0.0;
+        let words = match before {
+            Some(_) => {
+                tr!(
+                    "This brush lays full paint: no limit, no thinner, pressed as before the preset."
+                )
+            }
+            None => tr!("This brush lays full paint: no limit, no thinner."),
+        };
         if let Some(before) = before {
             self.preferences.mouse.pressure = before.pressure;
             self.preferences.mouse = self.preferences.mouse.sane();
             let tuning = Tuning {
-                brush: self.rig.brush_name().to_owned(),
+                brush,
                 stiffness: before.stiffness,
                 wetness: before.wetness,
             };
@@ -254,9 +266,7 @@ impl PanelContext<'_> {
         if let (true, Ok(handle)) = (is_limited, Handle::try_from(&unlimited)) {
             self.requests.send(handle);
         }
-        self.notifications.note(tr!(
-            "This brush lays full paint: no limit, no thinner, pressed as before the preset."
-        ));
+        self.notifications.note(words);
     }
 
     /// Sends a command to the paint node once the brush in the hand has its requested file.

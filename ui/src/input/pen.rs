@@ -119,6 +119,11 @@ impl WindowPen {
         }
     }
 
+    /// Pressure that a pen senses now, 0 to 1; `None` while none is near.
+    pub(crate) fn pressure(&self) -> Option<f64> {
+        self.state.is_near.then_some(self.state.pressure)
+    }
+
     /// The window is about to close.
     pub(crate) fn end(&mut self) {
         self.thread = None;

@@ -19,6 +19,8 @@ use crate::widgets::notifications::Notifications;
 
 /// Folders that change where a device is plugged in or out.
 const NODES: [&str; 2] = ["/dev", "/dev/input"];
+/// Time between two looks while a device lacks a permission, s.
+const LOOK_S: f64 = 3.0;
 
 /// A request to this runner.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,6 +48,8 @@ struct Seen {
     nodes: Vec<String>,
     plugged: [Option<SystemTime>; 2],
     done: u64,
+    /// Counts while a permission is waited for.
+    looks: u64,
 }
 
 /// The process of a fit.
@@ -57,8 +61,10 @@ struct Fit {
 
 impl Drop for Fit {
     fn drop(&mut self) {
-        interrupt(&self.child);
-        self.child.wait().ok();
+        if matches!(self.child.try_wait(), Ok(None)) {
+            interrupt(&self.child);
+            self.child.wait().ok();
+        }
     }
 }
 
@@ -110,7 +116,11 @@ impl DeviceCommands {
     ) {
         for order in orders {
             match order {
-                DeviceOrder::Run(words) => self.waiting.push_back(words),
+                DeviceOrder::Run(words) => {
+                    // What waits and sets the same is not done first.
+                    self.waiting.retain(|waits| !sets_the_same(waits, &words));
+                    self.waiting.push_back(words);
+                }
                 DeviceOrder::Fit(device) => self.begin_fit(context, device, rig, notifications),
                 DeviceOrder::StopFit => self.fit.iter().for_each(|fit| interrupt(&fit.child)),
             }
@@ -135,7 +145,7 @@ impl DeviceCommands {
             self.listing = None;
             match listed {
                 Some(Ok(listing)) => rig.listing = Some(listing),
-                Some(Err(refused)) => tracing::warn!("the devices: {}", refused.what),
+                Some(Err(Refused { what, help })) => notifications.fault(what, help),
                 None => {}
             }
         }
@@ -150,10 +160,19 @@ impl DeviceCommands {
     fn list(&mut self, context: &Context, rig: &RigState) {
         let mut nodes = rig.nodes.clone();
         nodes.sort_unstable();
+        // A permission changes no folder.
+        let waits = rig
+            .listing
+            .as_ref()
+            .is_some_and(DeviceListing::lacks_permission);
         let seen = Seen {
             nodes,
             plugged: NODES.map(changed),
             done: self.done,
+            looks: match waits {
+                true => context.input(|input| input.time / LOOK_S) as u64,
+                false => 0,
+            },
         };
         if self.seen.as_ref() == Some(&seen) {
             return;
@@ -204,6 +223,8 @@ impl DeviceCommands {
                     to_window.send(line).ok();
                     context.request_repaint();
                 }
+                drop(to_window);
+                context.request_repaint();
             };
             let thread = std::thread::Builder::new().name("fit".into()).spawn(read);
             if let Err(error) = thread {
@@ -227,7 +248,8 @@ impl DeviceCommands {
             Ok(Some(status)) => status.success(),
             Err(_) => false,
         };
-        progress.said.extend(fit.lines.try_iter());
+        // Until the reader has come to the end.
+        progress.said.extend(fit.lines.iter());
         let said = progress.said.pop().unwrap_or_default();
         let complaint = fit.child.stderr.take().map(|stderr| {
             let lines = BufReader::new(stderr).lines().map_while(Result::ok);
@@ -235,11 +257,20 @@ impl DeviceCommands {
         });
         match complaint.filter(|complaint| !ended && !complaint.what.is_empty()) {
             Some(Refused { what, help }) => notifications.fault(what, help),
+            None if said.is_empty() => {}
             None => notifications.note(said),
         }
         self.done += 1;
         (self.fit, rig.fit) = (None, None);
     }
+}
+
+/// True if two commands differ in the value that they end in alone.
+fn sets_the_same(one: &[String], other: &[String]) -> bool {
+    let (Some((_, one)), Some((_, other))) = (one.split_last(), other.split_last()) else {
+        return false;
+    };
+    one == other && one.len() > 2
 }
 
 /// Time at which a folder's entries last changed.
@@ -269,9 +300,10 @@ fn run(mut command: Command) -> Result<Output, Refused> {
 fn complaint(text: &str) -> Refused {
     let text = text.trim();
     let (first, help) = text.split_once("\n help: ").unwrap_or((text, ""));
-    let first = first.lines().next().unwrap_or_default();
+    let mut lines = first.lines();
+    let what = lines.find_map(|line| line.strip_prefix("error: "));
     Refused {
-        what: first.trim_start_matches("error: ").to_owned(),
+        what: what.or(first.lines().next()).unwrap_or_default().to_owned(),
         help: help.trim().to_owned(),
     }
 }

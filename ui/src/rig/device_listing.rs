@@ -39,6 +39,8 @@ pub struct RigDevice {
     /// Its settings.
     #[serde(flatten)]
     pub section: DeviceSection,
+    /// True if it is in the rig's settings.
+    pub is_in_rig: bool,
     /// True if it is kept for this user.
     pub is_own: bool,
 }
@@ -67,6 +69,13 @@ impl DeviceListing {
     pub fn device(&self, name: &str) -> Option<&RigDevice> {
         let mut devices = self.rig.iter().flatten();
         devices.find(|device| device.section.name == name)
+    }
+
+    /// True if a device may not be used yet.
+    #[must_use]
+    pub fn lacks_permission(&self) -> bool {
+        let unused = self.unused();
+        unused.iter().any(|device| device.permission == "denied")
     }
 
     /// The attached devices that a driver fits and that the rig does not have: each once, however many interfaces it
@@ -138,7 +147,7 @@ mod tests {
         "inverse_service": {"address": "localhost:10001", "listens": true},
         "rig": [
             {"name": "tablet", "driver": "pen", "brush": "main", "address": "28BD:0935", "priority": 1,
-             "is_own": true, "is_there": true, "trouble": ""}
+             "is_in_rig": true, "is_own": true, "is_there": true, "trouble": ""}
         ]
     }"#;
 

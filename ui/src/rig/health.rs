@@ -74,7 +74,8 @@ impl HealthMonitor {
             if !self.gone.insert(node.clone()) {
                 continue;
             }
-            if state.switching {
+            let changes = state.changes_devices || state.fit.is_some();
+            if state.switching || changes && state.devices.contains_key(node) {
                 self.expected.insert(node.clone());
                 continue;
             }
@@ -333,6 +334,18 @@ mod tests {
         assert_eq!(rig.look(), []);
         rig.state.nodes.retain(|node| node != "arm");
         assert_eq!(rig.look().len(), 1, "it is told where nothing is switched");
+    }
+
+    #[test]
+    fn a_device_that_is_changed_here_is_not_told() {
+        let mut rig = Rig::new();
+        rig.state.changes_devices = true;
+        for node in ["arm", "paint"] {
+            rig.state.nodes.retain(|other| other != node);
+        }
+        assert_eq!(rig.look().len(), 1, "the paint is");
+        rig.state.nodes.push("arm".to_owned());
+        assert_eq!(rig.look(), []);
     }
 
     #[test]

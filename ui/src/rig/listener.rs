@@ -132,7 +132,8 @@ impl RigListener {
             };
             let device = rig.devices.entry(name.to_owned()).or_default();
             device.forces.hear(sample.arrived_ns, &sample.message);
-            device.samples.hear(sample.header.event_ns, &sample.message);
+            let event_ns = sample.header.event_ns;
+            device.samples.hear(now_ns, event_ns, &sample.message);
         }
         while let Some(entry) = self.journal.try_recv() {
             if let Entry::Decision { what } = entry.message.entry {

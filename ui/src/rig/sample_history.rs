@@ -42,10 +42,12 @@ pub(crate) struct SampleTiming {
 pub struct SampleHistory(VecDeque<SensedSample>);
 
 impl SampleHistory {
-    /// Takes in a sample. One that says the same as the newest at the same time is a repetition.
-    pub fn hear(&mut self, event_ns: u64, sample: &StylusSample) {
+    /// Takes in a sample that came at `now_ns`. One of the time of the newest is a repetition, and one of a time to come is
+    /// of another clock.
+    pub fn hear(&mut self, now_ns: u64, event_ns: u64, sample: &StylusSample) {
         let newest_ns = self.0.back().map(|newest| newest.event_ns);
-        if sample.fault().is_some() || newest_ns.is_some_and(|newest_ns| event_ns <= newest_ns) {
+        let is_old = newest_ns.is_some_and(|newest_ns| event_ns <= newest_ns);
+        if sample.fault().is_some() || is_old || event_ns > now_ns.saturating_add(RATED_NS) {
             return;
         }
         let (place_m, pen) = match &sample.pose {
@@ -84,8 +86,9 @@ impl SampleHistory {
         value: impl Fn(&SensedSample) -> Option<f64>,
     ) -> Vec<[f64; 2]> {
         let at = |sample: &SensedSample| {
+            let is_kept = sample.event_ns.saturating_add(KEPT_NS) >= now_ns;
             let ago_s = (sample.event_ns as f64 - now_ns as f64) * 1e-9;
-            Some([ago_s, value(sample)?])
+            Some([ago_s, value(sample).filter(|_| is_kept)?])
         };
         self.0.iter().filter_map(at).collect()
     }
@@ -129,13 +132,17 @@ mod tests {
             } else {
                 6_000_000
             };
-            history.hear(event_ns, &StylusSample::away());
+            history.hear(event_ns, event_ns, &StylusSample::away());
         }
         let timing = history.timing().expect("samples");
         assert!((timing.rate_hz - 200.0).abs() < 1.0, "{timing:?}");
         assert!((timing.jitter_ms - 1.0).abs() < 0.01, "{timing:?}");
         assert!((timing.longest_ms - 6.0).abs() < 1e-9, "{timing:?}");
-        history.hear(event_ns + 30_000_000, &StylusSample::away());
+        history.hear(
+            event_ns + 30_000_000,
+            event_ns + 30_000_000,
+            &StylusSample::away(),
+        );
         let late = history.timing().expect("samples");
         assert!((late.longest_ms - 30.0).abs() < 1e-9, "{late:?}");
     }
@@ -144,13 +151,19 @@ mod tests {
     fn a_kilohertz_for_a_minute_is_kept_for_five_seconds() {
         let mut history = SampleHistory::default();
         for ms in 1..60_000u64 {
-            history.hear(ms * 1_000_000, &StylusSample::away());
-            history.hear(ms * 1_000_000, &StylusSample::away());
+            for _ in 0..2 {
+                history.hear(ms * 1_000_000, ms * 1_000_000, &StylusSample::away());
+            }
         }
         assert!(history.0.len() <= MOST);
         let line = history.line(60_000_000_000, |sample| Some(sample.place_m[0]));
         assert!(line.iter().all(|at| (-5.01..0.0).contains(&at[0])));
         assert!(history.newest(60_000_000_000).is_some());
         assert!(history.newest(66_000_000_000).is_none(), "it is silent");
+        let line = history.line(66_000_000_000, |sample| Some(sample.place_m[0]));
+        assert_eq!(line, [[0.0; 2]; 0], "and long ago");
+        let before = history.0.len();
+        history.hear(60_000_000_000, 90_000_000_000, &StylusSample::away());
+        assert_eq!(history.0.len(), before, "of another clock");
     }
 }

@@ -91,6 +91,8 @@ pub struct RigState {
     pub listing: Option<DeviceListing>,
     /// A fit of a device to the canvas in progress.
     pub fit: Option<FitProgress>,
+    /// Pressure that a pen over the window senses now, 0 to 1; `None` while none is near.
+    pub pen_pressure: Option<f64>,
     /// True while a change of a device is not in the listing yet.
     pub changes_devices: bool,
     /// The paints of the rig.
@@ -127,6 +129,7 @@ impl RigState {
             nodes: Vec::new(),
             listing: None,
             fit: None,
+            pen_pressure: None,
             changes_devices: false,
             library,
             show_wet: false,

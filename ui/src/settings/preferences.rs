@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use maulstick_device::pressure_curve::rises;
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, write_whole};
 
@@ -154,6 +155,9 @@ impl Preferences {
             preferences.text_size = 1.0;
         }
         preferences.mouse = preferences.mouse.sane();
+        if !rises(&preferences.pen_curve) {
+            preferences.pen_curve.clear();
+        }
         Ok(preferences)
     }
 

@@ -68,8 +68,10 @@ impl Default for Preset {
 }
 
 /// How a brush was pressed and tuned before a preset.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BeforePreset {
+    /// The brush of the rig.
+    pub brush: String,
     /// Pressure of the mouse, 0 to 1.
     pub pressure: f64,
     /// Factor on the stiffness.
@@ -211,7 +213,10 @@ impl Preset {
             false => Some(loading.edit(&brush, &work.rig.library)?.into()),
         };
         let (tuning, pressure) = (work.rig.tuning(), work.preferences.mouse.pressure);
-        work.preferences.before_preset.get_or_insert(BeforePreset {
+        let before = &mut work.preferences.before_preset;
+        before.take_if(|before| before.brush != brush);
+        before.get_or_insert(BeforePreset {
+            brush: brush.clone(),
             pressure,
             stiffness: tuning.stiffness,
             wetness: tuning.wetness,

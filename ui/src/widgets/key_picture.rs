@@ -10,7 +10,7 @@ use crate::input::keys::Action;
 use crate::language::translated;
 
 /// Size of a key with its word, points.
-const CELL: [f32; 2] = [80.0, 46.0];
+const CELL: [f32; 2] = [92.0, 46.0];
 /// Height of a cap, points.
 const CAP: f32 = 24.0;
 /// Room at either side of a sign on its cap, points.

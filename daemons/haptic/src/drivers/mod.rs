@@ -5,3 +5,4 @@ pub mod inverse3;
 pub mod openhaptics;
 pub mod polhem;
 pub mod simulated;
+pub mod vendor_library;

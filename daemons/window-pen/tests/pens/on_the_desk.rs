@@ -94,6 +94,11 @@ fn pressure_is_bent_as_the_window_says() {
     let heard = desk.heard();
     let pressure: Vec<f64> = heard.iter().map(|(_, sample)| words(sample).1).collect();
     assert_eq!(pressure, [0.2]);
+    assert_eq!(
+        desk.link.state().pressure,
+        0.5,
+        "the window shows what is sensed"
+    );
 }
 
 #[test]

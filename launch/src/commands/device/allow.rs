@@ -11,12 +11,11 @@ use nix::unistd::geteuid;
 use crate::attached::{Places, hid, rules};
 use crate::commands::say;
 
-/// Where udev reads the rule, and who makes it hold at once.
+/// Where udev reads the rule.
 const RULE: &str = "/etc/udev/rules.d/70-maulstick.rules";
-/// What may be written there only by root.
+/// Shell command that installs the rule and has it hold for what is attached, before it returns.
 const INSTALL: &str = "umask 022 && cat > /etc/udev/rules.d/70-maulstick.rules && udevadm control --reload && \
-                       udevadm trigger --action=change --subsystem-match=hidraw --subsystem-match=input \
-                       --subsystem-match=tty";
+                       udevadm trigger && udevadm settle --timeout=5";
 
 /// Options of `maulstick device allow`.
 #[derive(Args, Clone, Debug)]

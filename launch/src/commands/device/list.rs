@@ -4,15 +4,15 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use maulstick_bus::Qos;
+use maulstick_haptic::drivers::force_dimension::library::DHD;
+use maulstick_haptic::drivers::openhaptics::library::HD;
 use maulstick_rig::config::DeviceSection;
 use maulstick_rig::{UserError, user_devices};
 use maulstick_types::stylus::{StylusInfo, StylusStatus};
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
-use crate::attached::vendors::{
-    FORCE_DIMENSION, INVERSE_SERVICE, OPEN_HAPTICS, library, library_folders, listens,
-};
+use crate::attached::vendors::{INVERSE_SERVICE, library, library_folders, listens};
 use crate::attached::{Attached, Places, events, hid, rules, serial};
 use crate::commands::session::{Feed, Session, Target};
 use crate::commands::{print_json, print_text};
@@ -87,6 +87,8 @@ struct Used {
     /// Its settings.
     #[serde(flatten)]
     section: DeviceSection,
+    /// True if it is in the rig's settings; other programs show themselves by their messages alone.
+    is_in_rig: bool,
     /// True if it is kept for this user.
     is_own: bool,
     /// True if it has shown itself.
@@ -112,11 +114,11 @@ pub(super) fn run(options: &ListOptions) -> Result<i32, UserError> {
         hid,
         serial: serial::ports(&places),
         openhaptics: Library {
-            path: library(OPEN_HAPTICS, &looked_in),
+            path: library(&HD, &looked_in),
             looked_in: looked_in.clone(),
         },
         forcedimension: Library {
-            path: library(FORCE_DIMENSION, &looked_in),
+            path: library(&DHD, &looked_in),
             looked_in,
         },
         inverse_service: Service {
@@ -137,7 +139,8 @@ fn used(target: &Target) -> Option<Vec<Used>> {
     let session = Session::open(target).ok()?;
     let own = user_devices::path().and_then(|path| user_devices::read(&path));
     let own = own.unwrap_or_default();
-    let row = |section: DeviceSection, is_there| Used {
+    let row = |section: DeviceSection, is_there: bool| Used {
+        is_in_rig: !is_there,
         is_own: own.iter().any(|own| own.name == section.name),
         section,
         is_there,

@@ -127,7 +127,7 @@ wire_struct! {
         pub mode: BrushMode,
         /// Flow of the marker: thickness that it leaves along a metre of its way, m/m.
         pub flow: f64,
-        /// It adds no paint where as much is wet, m; 0 for no such bound.
+        /// On the canvas it adds no paint where as much is wet, in hollows twice as much, m; 0 for no such bound.
         pub most_m: f64,
     }
 }

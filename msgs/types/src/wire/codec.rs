@@ -223,7 +223,7 @@ where
 }
 
 /// Decodes a body of a contract. A newer one may hold more fields than `version` has: they are left alone. An older one
-/// lacks the last ones: they are 0, none or empty.
+/// lacks the last ones: they are 0, none or empty. A body that was cut is known by the header's length alone.
 pub(crate) fn decode_contract<M, const LIMIT: usize>(
     name: &'static str,
     version: u16,

@@ -65,11 +65,16 @@ impl Waypoint {
         }
     }
 
-    /// The same pose so many m of the brush back along its handle.
+    /// The same pose so many m of the brush higher, and back toward its handle: where a hand has it before it sets it down,
+    /// which it does more steeply than the handle lies.
     #[must_use]
     pub fn withdrawn(&self, by_m: f64) -> Self {
+        const ASIDE: f64 = 0.7;
+        const FLATTEST: f64 = 0.5;
+        let handle = self.brush.rotation * DVec3::Z;
+        let aside = ASIDE * handle.truncate() / handle.z.max(FLATTEST);
         let mut withdrawn = self.clone();
-        withdrawn.brush.translation += self.brush.rotation * DVec3::Z * by_m;
+        withdrawn.brush.translation += by_m * aside.extend(1.0);
         withdrawn
     }
 

@@ -248,6 +248,27 @@ fn a_brush_adds_no_more_than_its_most() {
 }
 
 #[test]
+fn a_bound_film_gathers_in_hollows_and_is_none_on_the_palette() {
+    let bound = |most_m: f64| {
+        let mut easel = Easel::new();
+        easel.load(BLUE);
+        easel.use_as(BrushMode::NoPush, |handling| handling.most_m = most_m);
+        easel
+    };
+    let mut easel = bound(5e-6);
+    easel.middle();
+    let deep = easel.films().into_iter().filter(|film| *film > 5e-6 + 2e-9);
+    assert!(deep.count() > 20, "the tooth has hollows");
+    let mixed = |most_m: f64| {
+        let mut easel = bound(most_m);
+        easel.stroke(PALETTE, [8.0, 12.0]);
+        total(&easel.on(PALETTE))
+    };
+    assert!(mixed(5e-6) > 0);
+    assert_eq!(mixed(5e-6), mixed(0.0));
+}
+
+#[test]
 fn a_fill_with_the_brush_has_its_colour_and_costs_it_nothing() {
     let mut easel = Easel::new();
     assert!(

@@ -109,6 +109,7 @@ fn another_brush_lays_full_paint_and_another_width_what_the_preset_says() {
     bench.preferences.loading.thinner = 0.7;
     bench.preferences.mouse.pressure = 0.08;
     bench.preferences.before_preset = Some(BeforePreset {
+        brush: "main".into(),
         pressure: 0.5,
         stiffness: 1.0,
         wetness: 0.0,

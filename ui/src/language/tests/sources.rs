@@ -6,14 +6,15 @@ use std::path::Path;
 use eframe::egui::Key;
 use maulstick_appearance::ground::GROUNDS;
 use maulstick_canvas::relief::tooth::Tooth;
+use maulstick_rig::config::{ACTIONS, FORCES};
 use maulstick_types::scene::RULES;
 
 use crate::input::brush_choice::library;
 use crate::input::keys::{BINDINGS, HELD};
 use crate::language::{FILES, Language, all};
 
-/// Steps of the history as the paint engine names them, and words of settings.
-const OTHERS_WORDS: [&str; 22] = [
+/// Steps of the history as the paint engine names them.
+const STEPS: [&str; 14] = [
     "dry",
     "drying",
     "layer opacity",
@@ -28,14 +29,6 @@ const OTHERS_WORDS: [&str; 22] = [
     "tooth",
     "the beginning",
     "a stroke that was not painted yet",
-    "linear",
-    "hermite",
-    "local",
-    "rigid",
-    "clutch",
-    "pick",
-    "undo",
-    "clean",
 ];
 
 /// Keys whose names are not the signs on them.
@@ -207,7 +200,8 @@ fn needed() -> BTreeSet<String> {
         .chain(brushes)
         .chain(grounds)
         .chain(Tooth::names());
-    let tables = tables.chain(OTHERS_WORDS).map(str::to_owned);
+    let settings = FORCES.into_iter().chain(ACTIONS);
+    let tables = tables.chain(STEPS).chain(settings).map(str::to_owned);
     tables
         .chain(NAMED_KEYS.map(|key| format!("key|{key}")))
         .chain(uses().into_iter().map(|used| used.english))
@@ -312,13 +306,15 @@ fn the_paint_engine_names_its_steps_so() {
     for folder in ["sim/painting/src", "daemons/paint/src"] {
         sources(&root.join(folder), &mut found);
     }
-    for step in OTHERS_WORDS {
+    for step in STEPS {
         let quoted = format!("\"{step}\"");
         assert!(found.values().any(|code| code.contains(&quoted)), "{step}");
     }
     for part in [
-        "{} stroke\"",
-        "\" on the palette\"",
+        "\"{} {deed}\"",
+        "\"stroke\"",
+        "\"wipe\"",
+        "on the palette\"",
         "\"load {}\"",
         "\"return to '{name}'\"",
         "{operations} steps\"",

@@ -104,7 +104,9 @@ pub(super) fn show(
 }
 
 fn most(ui: &mut Ui, handling: &BrushHandling, wanted: &mut BrushHandling) {
-    let hover = tr!("The brush adds no paint where as much lies wet already.");
+    let hover = tr!(
+        "On the canvas the brush adds no paint where as much lies wet already; in hollows up to twice as much."
+    );
     let mut bounded = handling.most_m > 0.0;
     let check = ui.checkbox(&mut bounded, tr!("Limit the thickness"));
     if check.on_hover_text(hover).changed() {

@@ -11,8 +11,8 @@ use crate::widgets::rows::note;
 pub(super) fn show(ui: &mut Ui, work: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         ui.label(RichText::new(tr!("Attached")).strong());
-        if work.rig.listing.is_none() || work.rig.changes_devices {
-            ui.spinner();
+        if work.rig.changes_devices {
+            ui.weak(tr!("looking…"));
         }
     });
     let unused = work.rig.listing.as_ref().map(|listing| listing.unused());

@@ -70,20 +70,23 @@ impl Panel for DevicePanel {
             }
             None => ui.label(tr!("No pen in range. You are painting with the mouse.")),
         };
+        settings::fit(ui, work);
         let is_there = |(name, device): &(&String, &Device)| is_there(work.rig, name, device);
         let mut devices: Vec<(&String, &Device)> =
             work.rig.devices.iter().filter(is_there).collect();
         let priority = |device: &Device| device.info.as_ref().map_or(i32::MIN, |it| it.priority);
         devices.sort_by_key(|(name, device)| (-i64::from(priority(device)), (*name).clone()));
-        let devices: Vec<(String, Device)> = devices
-            .into_iter()
-            .map(|(name, device)| (name.clone(), device.clone()))
-            .collect();
-        for (name, device) in devices {
+        let names: Vec<String> = devices.into_iter().map(|(name, _)| name.clone()).collect();
+        for name in names {
+            // What it sensed is long.
+            let Some(device) = work.rig.devices.remove(&name) else {
+                continue;
+            };
             Frame::group(ui.style()).show(ui, |ui| {
                 ui.set_width(ui.available_width());
                 ui.push_id(&name, |ui| self.device(ui, &name, &device, work));
             });
+            work.rig.devices.insert(name, device);
         }
         attached::show(ui, work);
         let tested = self.tested.take();
@@ -126,17 +129,19 @@ impl DevicePanel {
         device: &Device,
         work: &mut PanelContext<'_>,
     ) {
-        let known = work.rig.listing.as_ref();
-        let section = known.and_then(|listing| listing.device(name));
-        let section = section.map(|known| known.section.clone());
+        let listing = work.rig.listing.as_ref();
+        let known = listing.and_then(|listing| listing.device(name)).cloned();
         let driver = device.info.as_ref().map(|info| info.driver.as_str());
-        match section.filter(|section| !OF_THE_WINDOW.contains(&&*section.driver)) {
-            Some(section) => {
-                settings::deeds(ui, &section, work);
-                settings::show(ui, &section, device, &mut self.curve, work);
+        match known.filter(|known| known.is_in_rig) {
+            Some(known) => {
+                // A change begins with the settings as they were listed.
+                ui.add_enabled_ui(!work.rig.changes_devices, |ui| {
+                    settings::buttons(ui, &known, work);
+                    settings::show(ui, &known.section, device, &mut self.curve, work);
+                });
             }
             None if driver == Some("window") => {
-                settings::window_pen(ui, device, &mut self.curve, work);
+                settings::window_pen(ui, &mut self.curve, work);
             }
             None => {}
         }
@@ -243,8 +248,9 @@ pub(crate) fn force_off(work: &mut PanelContext<'_>) {
 fn is_there(rig: &RigState, name: &str, device: &Device) -> bool {
     let driver = device.info.as_ref().map(|info| info.driver.as_str());
     let is_own = driver.is_some_and(|driver| OF_THE_WINDOW.contains(&driver));
+    let is_fitted = rig.fit.as_ref().is_some_and(|fit| fit.device == name);
     let heard = rig.now_ns < device.heard_ns.saturating_add(PRESENT_NS);
-    is_own || heard || rig.nodes.iter().any(|node| node == name)
+    !is_fitted && (is_own || heard || rig.nodes.iter().any(|node| node == name))
 }
 
 /// A button as wide as the panel.

@@ -4,26 +4,27 @@ use eframe::egui::{
     Color32, CornerRadius, Id, Key, Modifiers, Pos2, Rect, Response, Role, Sense, Stroke,
     StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
-use maulstick_device::pressure_curve::{given, sensed};
+use maulstick_device::pressure_curve::given;
 
+use crate::language::translated;
 use crate::widgets::arrow_keys::arrow_steps;
 
 /// Height of the field, points.
 const HEIGHT: f32 = 120.0;
 /// Radius of a point, and of where it is caught, points.
 const POINT: f32 = 4.0;
-const CATCH: f32 = 10.0;
+const CATCH_RADIUS: f32 = 10.0;
 /// Least way between two points along what is sensed.
-const APART: f64 = 0.02;
+const MIN_GAP: f64 = 0.02;
 /// Points are on a grid of this width, and an arrow key moves one so far.
 const GRID: f64 = 0.01;
 /// Most points of a curve.
-const MOST: usize = 32;
+const MAX_POINTS: usize = 32;
 /// A drawn curve is shown for so long until the pen has it, s.
 const ANSWER_S: f64 = 6.0;
 
 /// Curves that are often wanted, by name.
-const READY: [(&str, &[[f64; 2]]); 3] = [
+const PRESETS: [(&str, &[[f64; 2]]); 3] = [
     (
         tr_noop!("Soft"),
         &[[0.0, 0.0], [0.3, 0.5], [0.6, 0.8], [1.0, 1.0]],
@@ -43,13 +44,13 @@ pub(super) struct CurveEditor {
 }
 
 impl CurveEditor {
-    /// Shows the curve of a pen that gives `pressure` now; a new one once it is drawn.
+    /// Shows the curve of a pen that senses this pressure now; a new one once it is drawn.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
         pen: &str,
         actual: &[[f64; 2]],
-        pressure: Option<f64>,
+        sensed: Option<f64>,
     ) -> Option<Vec<[f64; 2]>> {
         let now_s = ui.input(|input| input.time);
         self.drawn
@@ -57,19 +58,16 @@ impl CurveEditor {
         let drawn = self.drawn.as_ref().filter(|(own, ..)| own == pen);
         let mut curve = drawn.map_or_else(|| actual.to_vec(), |(_, curve, _)| curve.clone());
         let before = curve.clone();
-        let done = field(ui, &mut curve, pressure.map(|given| sensed(actual, given)));
-        let ready = ui.horizontal(|ui| {
-            let mut buttons = READY.iter().map(|(name, points)| {
-                let is_it = curve == *points;
-                let name = crate::language::translated(name);
-                ui.selectable_label(is_it, name)
-                    .clicked()
-                    .then_some(points.to_vec())
-            });
-            buttons.find_map(|chosen| chosen)
+        let mut done = field(ui, &mut curve, sensed);
+        ui.horizontal(|ui| {
+            for (name, points) in PRESETS {
+                let is_it = curve == points;
+                if ui.selectable_label(is_it, translated(name)).clicked() {
+                    curve = points.to_vec();
+                    done = true;
+                }
+            }
         });
-        let done = done || ready.inner.is_some();
-        let curve = ready.inner.unwrap_or(curve);
         if curve != before || done {
             self.drawn = Some((pen.to_owned(), curve.clone(), now_s + ANSWER_S));
         }
@@ -87,10 +85,12 @@ fn field(ui: &mut Ui, curve: &mut Vec<[f64; 2]>, sensed_now: Option<f64>) -> boo
     let back = back.on_hover_text(tr!(
         "Across: what the pen senses. Up: what the brush gets. Click adds a point, a double click takes it out."
     ));
-    if back.clicked()
-        && let Some(at) = back.interact_pointer_pos()
-    {
-        done |= insert(curve, from_screen(inner, at));
+    if back.clicked() {
+        let at = back.interact_pointer_pos();
+        done |= insert(
+            curve,
+            at.map_or_else(|| widest(curve), |at| from_screen(inner, at)),
+        );
     }
     let id = back.id;
     let mut gone = None;
@@ -126,7 +126,7 @@ fn field(ui: &mut Ui, curve: &mut Vec<[f64; 2]>, sensed_now: Option<f64>) -> boo
 /// A point that can be dragged and led by the arrow keys: its response, and where it is to be.
 fn point(ui: &Ui, id: Id, inner: Rect, at: [f64; 2]) -> (Response, Option<[f64; 2]>) {
     let place = to_screen(inner, at);
-    let catch = Rect::from_center_size(place, vec2(2.0 * CATCH, 2.0 * CATCH));
+    let catch = Rect::from_center_size(place, vec2(2.0 * CATCH_RADIUS, 2.0 * CATCH_RADIUS));
     let response = ui.interact(catch, id, Sense::click_and_drag());
     let steps = arrow_steps(ui, &response);
     let to = match response.dragged() {
@@ -165,21 +165,29 @@ fn on_grid(share: f64) -> f64 {
 /// Moves a point as far as its neighbours let it: what is given never falls as more is sensed.
 fn move_to(curve: &mut [[f64; 2]], place: usize, [sensed, given]: [f64; 2]) {
     let (before, after) = (curve[place - 1], curve[place + 1]);
-    let room = [before[0] + APART, after[0] - APART];
+    let room = [before[0] + MIN_GAP, after[0] - MIN_GAP];
     if room[0] <= room[1] {
         curve[place][0] = on_grid(sensed.clamp(room[0], room[1]));
     }
-    curve[place][1] = on_grid(given.clamp(before[1], after[1]));
+    curve[place][1] = on_grid(given).clamp(before[1], after[1].max(before[1]));
+}
+
+/// The middle of the widest gap, where a click by the keyboard adds a point.
+fn widest(curve: &[[f64; 2]]) -> [f64; 2] {
+    let gaps = curve.windows(2).map(|pair| (pair[0], pair[1]));
+    let gap = gaps.max_by(|(a, b), (c, d)| (b[0] - a[0]).total_cmp(&(d[0] - c[0])));
+    let (a, b) = gap.unwrap_or(([0.0; 2], [1.0; 2]));
+    [0, 1].map(|i| 0.5 * (a[i] + b[i]))
 }
 
 /// Adds a point where there is room for it; true if so.
 fn insert(curve: &mut Vec<[f64; 2]>, [sensed, at]: [f64; 2]) -> bool {
     let sensed = on_grid(sensed);
     let place = curve.iter().position(|point| point[0] > sensed);
-    let Some(place) = place.filter(|place| *place > 0 && curve.len() < MOST) else {
+    let Some(place) = place.filter(|place| *place > 0 && curve.len() < MAX_POINTS) else {
         return false;
     };
-    let has_room = sensed - curve[place - 1][0] >= APART && curve[place][0] - sensed >= APART;
+    let has_room = sensed - curve[place - 1][0] >= MIN_GAP && curve[place][0] - sensed >= MIN_GAP;
     if has_room {
         curve.insert(place, [sensed, given(curve, sensed)]);
         move_to(curve, place, [sensed, at]);
@@ -234,5 +242,10 @@ mod tests {
         assert_eq!(curve[1], [0.68, 0.2]);
         move_to(&mut curve, 1, [-3.0, -3.0]);
         assert_eq!(curve[1], [0.02, 0.0]);
+        // Beside one that is not on the grid it does not fall either.
+        let mut curve = vec![[0.0, 0.0], [0.3, 0.333], [0.5, 0.5], [1.0, 1.0]];
+        move_to(&mut curve, 2, [0.5, 0.1]);
+        assert_eq!(curve[2], [0.5, 0.333]);
+        assert_eq!(widest(&curve), [0.75, 0.6665]);
     }
 }

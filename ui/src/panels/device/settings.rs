@@ -1,11 +1,13 @@
 //! Settings of a device of the rig, changed while it paints: its brush, its force, its pressure, its switches, its place.
 
-use eframe::egui::{CollapsingHeader, RichText, Ui};
+use eframe::egui::{CollapsingHeader, Frame, RichText, Ui};
+use maulstick_device::pressure_curve::sensed;
 use maulstick_rig::config::{ACTIONS, DeviceSection, FORCES, PEN_DRIVERS};
 
 use super::pressure_curve::CurveEditor;
-use crate::language::{capitalized, translated};
+use crate::language::capitalized;
 use crate::rig::device_commands::DeviceOrder;
+use crate::rig::device_listing::RigDevice;
 use crate::rig::state::Device;
 use crate::widgets::context::PanelContext;
 use crate::widgets::rows::{choice, note};
@@ -42,8 +44,9 @@ pub(super) fn show(
             if PEN_DRIVERS.contains(&&*section.driver) {
                 ui.label(tr!("Pressure"));
                 let newest = device.samples.newest(work.rig.now_ns);
-                let pressure = newest.and_then(|sample| sample.pen).map(|(given, _)| given);
-                let drawn = curve.show(ui, &name, &section.pressure_curve, pressure);
+                let given = newest.and_then(|sample| sample.pen).map(|(given, _)| given);
+                let sensed = given.map(|given| sensed(&section.pressure_curve, given));
+                let drawn = curve.show(ui, &name, &section.pressure_curve, sensed);
                 change = drawn
                     .map(|points| ["--pressure-curve".to_owned(), written(&points)])
                     .or(change);
@@ -80,10 +83,15 @@ fn written(points: &[[f64; 2]]) -> String {
     points.collect::<Vec<_>>().join(" ")
 }
 
-/// Buttons of a device: that it paints, its fit, its end; and the fit in progress.
-pub(super) fn deeds(ui: &mut Ui, section: &DeviceSection, work: &mut PanelContext<'_>) {
-    let name = &section.name;
-    if let Some(fit) = work.rig.fit.as_ref().filter(|fit| fit.device == *name) {
+/// The fit in progress: the rig has let go of its device meanwhile.
+pub(super) fn fit(ui: &mut Ui, work: &mut PanelContext<'_>) {
+    let Some(fit) = work.rig.fit.clone() else {
+        return;
+    };
+    Frame::group(ui.style()).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        let device = &fit.device;
+        ui.label(RichText::new(tr!("Fitting '{device}' to the canvas", device)).strong());
         for (place, line) in fit.said.iter().enumerate() {
             let line = capitalized(line);
             match place + 1 == fit.said.len() {
@@ -91,14 +99,16 @@ pub(super) fn deeds(ui: &mut Ui, section: &DeviceSection, work: &mut PanelContex
                 false => ui.label(line),
             };
         }
-        if fit.said.is_empty() {
-            ui.spinner();
-        }
         if ui.button(tr!("Stop fitting")).clicked() {
             work.requests.order_device(DeviceOrder::StopFit);
         }
-        return;
-    }
+    });
+}
+
+/// Buttons of a device: that it paints, its fit, its end.
+pub(super) fn buttons(ui: &mut Ui, known: &RigDevice, work: &mut PanelContext<'_>) {
+    let section = &known.section;
+    let name = &section.name;
     ui.horizontal_wrapped(|ui| {
         let others = work.rig.devices.iter().filter(|(other, _)| *other != name);
         let infos = others.filter_map(|(_, other)| other.info.as_ref());
@@ -111,7 +121,7 @@ pub(super) fn deeds(ui: &mut Ui, section: &DeviceSection, work: &mut PanelContex
             work.requests.device(["use", name]);
         }
         let idle = work.rig.fit.is_none();
-        if section.driver != "spacemouse" {
+        if known.is_own && section.driver != "spacemouse" {
             let fit = ui.add_enabled(idle, eframe::egui::Button::new(tr!("Fit to the canvas…")));
             let hint = tr!("Touch three corners of the canvas with it");
             if fit.on_hover_text(hint).clicked() {
@@ -127,27 +137,18 @@ pub(super) fn deeds(ui: &mut Ui, section: &DeviceSection, work: &mut PanelContex
 }
 
 /// The pressure curve of pens over the window.
-pub(super) fn window_pen(
-    ui: &mut Ui,
-    device: &Device,
-    curve: &mut CurveEditor,
-    work: &mut PanelContext<'_>,
-) {
+pub(super) fn window_pen(ui: &mut Ui, curve: &mut CurveEditor, work: &mut PanelContext<'_>) {
     CollapsingHeader::new(tr!("Settings"))
         .id_salt("settings")
         .show(ui, |ui| {
             ui.label(tr!("Pressure"));
             const STRAIGHT: &[[f64; 2]] = &[[0.0, 0.0], [1.0, 1.0]];
             let own = work.preferences.pen_curve.clone();
+            let sensed = work.rig.pen_pressure;
             let actual = if own.is_empty() { STRAIGHT } else { &own };
-            let newest = device.samples.newest(work.rig.now_ns);
-            let pressure = newest.and_then(|sample| sample.pen).map(|(given, _)| given);
-            if let Some(drawn) = curve.show(ui, "pen", actual, pressure) {
+            if let Some(drawn) = curve.show(ui, "pen", actual, sensed) {
                 work.preferences.pen_curve = drawn;
             }
-            note(
-                ui,
-                translated(tr_noop!("Press here: over a panel the pen paints nothing.")),
-            );
+            note(ui, tr!("Press here: over a panel the pen paints nothing."));
         });
 }

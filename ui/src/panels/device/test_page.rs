@@ -90,6 +90,14 @@ fn page(ui: &mut Ui, device: &Device, now_ns: u64) {
         ui.end_row();
     });
     for (title, quantities) in PLOTS {
+        let lines = quantities
+            .iter()
+            .map(|(name, value)| (*name, samples.line(now_ns, value)));
+        let lines: Vec<_> = lines.filter(|(_, line)| !line.is_empty()).collect();
+        if lines.is_empty() {
+            // It senses nothing of the kind.
+            continue;
+        }
         ui.small(crate::language::translated(title));
         still(ui, Plot::new(title))
             .height(HEIGHT)
@@ -99,9 +107,8 @@ fn page(ui: &mut Ui, device: &Device, now_ns: u64) {
             .show_axes([false, true])
             .legend(Legend::default())
             .show(ui, |plot| {
-                for (name, value) in quantities {
-                    let line = PlotPoints::from(samples.line(now_ns, value));
-                    plot.line(Line::new(*name, line));
+                for (name, line) in lines {
+                    plot.line(Line::new(name, PlotPoints::from(line)));
                 }
             });
     }

@@ -116,8 +116,8 @@ const LISTING: &str = r#"{
     ],
     "events": [], "serial": [], "openhaptics": {"path": null}, "inverse_service": {"listens": false},
     "rig": [
-        {"name": "tablet", "driver": "pen", "brush": "main", "priority": 5, "address": "1:2", "is_own": true},
-        {"name": "phantom", "driver": "openhaptics", "brush": "main", "priority": 10, "is_own": false}
+        {"name": "tablet", "driver": "pen", "brush": "main", "priority": 5, "address": "1:2", "is_in_rig": true, "is_own": true},
+        {"name": "phantom", "driver": "openhaptics", "brush": "main", "priority": 10, "is_in_rig": true, "is_own": false}
     ]
 }"#;
 
@@ -336,7 +336,7 @@ fn what_is_attached_and_a_pens_settings_look_like_their_picture() {
     if let StylusPose::Contact { pressure, .. } = &mut pen.pose {
         *pressure = 0.4;
     }
-    tablet.samples.hear(9_990_000_000, &pen);
+    tablet.samples.hear(10_000_000_000, 9_990_000_000, &pen);
     picture::<DevicePanel>("device_settings", &rig, open, |rig| {
         rig.listing = None;
     });

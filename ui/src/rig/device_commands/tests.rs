@@ -11,7 +11,7 @@ const PROGRAM: &str = r#"#!/bin/sh
 case "$2" in
 list) echo '{"hid": [], "events": [], "serial": [], "openhaptics": {"path": null},
  "inverse_service": {"listens": false}, "rig": [{"name": "arm", "driver": "polhem", "brush": "main",
- "is_own": true}]}';;
+ "is_in_rig": true, "is_own": true}]}';;
 use) echo "first"; echo "$*";;
 fit) trap 'echo "nothing is written"; exit 130' INT; echo "touch the lower left corner"
  while :; do sleep 0.01; done;;
@@ -72,6 +72,21 @@ fn commands_run_one_after_the_other_and_are_told() {
         (Weight::Fault, "no such device".to_owned()),
     ];
     assert_eq!(desk.told, told);
+}
+
+#[test]
+fn of_two_values_that_wait_the_newer_is_set() {
+    let words = |text: &str| text.split(' ').map(str::to_owned).collect::<Vec<_>>();
+    let curve = words("use pen --pressure-curve a");
+    assert!(sets_the_same(&curve, &words("use pen --pressure-curve b")));
+    assert!(!sets_the_same(&curve, &words("use arm --pressure-curve b")));
+    assert!(!sets_the_same(&words("remove a"), &words("remove b")));
+    let mut desk = Desk::new();
+    let run = |text: &str| DeviceOrder::Run(words(text));
+    let orders = ["use x 0 first", "use pen c a", "use pen c b"].map(run);
+    desk.turn(orders.to_vec(), false);
+    desk.until(|desk| desk.told.len() == 2);
+    assert!(desk.told[1].1.contains("use pen c b"), "{:?}", desk.told);
 }
 
 #[test]

@@ -14,18 +14,23 @@ use glam::{DMat3, DVec3};
 use maulstick_rig::UserError;
 
 use crate::device::driver::DeviceError;
+use crate::drivers::vendor_library::{Unusable, VendorLibrary, load};
 
 /// Number by which the library knows an open device.
 type DhdId = c_char;
 
-/// Names by which the system may have it.
-pub const NAMES: [&str; 3] = ["libdhd.so.3", "libdhd.so", "libdrd.so.3"];
+/// As its vendor calls it.
+pub const DHD: VendorLibrary = VendorLibrary {
+    product: "Force Dimension's SDK",
+    kind: "libdhd of SDK 3.16",
+    names: ["libdhd.so.3", "libdhd.so", "libdrd.so.3"],
+    install: "install Force Dimension's SDK (3.16 or newer), or say where libdhd.so is by `library` in rig.toml",
+    correct: "`library` in rig.toml is to name libdhd.so, of SDK 3.16 or newer",
+};
 
 /// Nothing new was to be read, though no more time was asked for.
 const TIME_GUARD: c_int = 1;
 
-/// Advice on its installation.
-const INSTALL: &str = "install Force Dimension's SDK (3.16 or newer), or say where libdhd.so is by `library` in rig.toml";
 /// Advice on a device that does not answer.
 const RECONNECT: &str =
     "see that it is switched on and calibrated, and unplug it and plug it in again";
@@ -42,9 +47,9 @@ pub const SILENT: DeviceError = DeviceError {
     code: 0,
     help: RECONNECT,
 };
-/// Its numbers are none.
-pub const NONSENSE: DeviceError = DeviceError {
-    what: "the device reports numbers that are none",
+/// It reports values that are not finite.
+pub const NOT_FINITE: DeviceError = DeviceError {
+    what: "the device reports values that are not finite",
     code: 0,
     help: RECONNECT,
 };
@@ -106,7 +111,7 @@ pub struct DhdPose {
 }
 
 impl DhdPose {
-    /// True if all of its numbers are some.
+    /// True if all of its values are finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.position.is_finite() && self.frame.is_finite()
@@ -119,37 +124,16 @@ impl Library {
     /// # Errors
     /// A [`UserError`]: it is missing, it cannot be loaded, or it is not the vendor's.
     pub fn find(asked: Option<&Path>) -> Result<&'static Self, UserError> {
-        if let Some(path) = asked {
-            return Self::load(path).map_err(|what| {
-                UserError::usage(what)
-                    .at(path.display().to_string())
-                    .help("correct `library` in rig.toml, or leave it out")
-            });
-        }
-        let mut broken = None;
-        for name in NAMES.map(Path::new) {
-            match Self::load(name) {
-                Ok(library) => return Ok(library),
-                Err(what) if !what.contains("cannot open shared object file") => {
-                    broken = broken.or(Some(what));
-                }
-                Err(_) => {}
-            }
-        }
-        let missing = "Force Dimension's SDK is not installed: the system has no libdhd.so";
-        Err(UserError::failure(broken.unwrap_or_else(|| missing.to_owned())).help(INSTALL))
+        DHD.find(asked, Self::open_file)
     }
 
-    fn load(name: &Path) -> Result<&'static Self, String> {
+    fn open_file(name: &Path) -> Result<&'static Self, Unusable> {
         let mut opened = OPENED.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(library) = opened.iter().find(|library| library.name == name) {
             return Ok(library);
         }
-        // SAFETY: the user names the vendor's library, whose initialisers any of its users runs.
-        let loaded =
-            unsafe { libloading::Library::new(name) }.map_err(|error| error.to_string())?;
-        let functions = Functions::of(&loaded)
-            .map_err(|lacks| format!("it has no function {lacks}: it is no libdhd of SDK 3.16"))?;
+        let loaded = load(name)?;
+        let functions = Functions::of(&loaded).map_err(Unusable::Lacks)?;
         std::mem::forget(loaded);
         let library = Box::leak(Box::new(Self {
             functions,

@@ -102,7 +102,7 @@ impl Driver for ForceDimension {
         let velocity = self.dhd.velocity()?;
         let switches = self.dhd.buttons();
         if !(pose.is_finite() && velocity.is_finite()) {
-            return Err(library::NONSENSE);
+            return Err(library::NOT_FINITE);
         }
         self.empty = 0;
         Ok(Some(Reading {

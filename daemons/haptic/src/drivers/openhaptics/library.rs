@@ -13,6 +13,8 @@ use std::sync::{Mutex, PoisonError};
 
 use maulstick_rig::UserError;
 
+use crate::drivers::vendor_library::{Unusable, VendorLibrary, load};
+
 use super::abi::{
     Boolean, Capability, Doubles, ErrorInfo, Handle, Integer, MOST_DOUBLES, Text, error,
 };
@@ -24,11 +26,14 @@ pub type Callback = unsafe extern "C" fn(*mut c_void) -> u32;
 #[derive(Clone, Copy, Debug)]
 pub struct Scheduled(c_ulong);
 
-/// Names by which the system may have it.
-pub const NAMES: [&str; 3] = ["libHD.so", "libHD.so.3.4", "libHD.so.3.0"];
-
-/// Advice on its installation.
-const INSTALL: &str = "install OpenHaptics and the driver of the device, or say where libHD.so is by `library` in rig.toml";
+/// As its vendor calls it.
+pub const HD: VendorLibrary = VendorLibrary {
+    product: "OpenHaptics",
+    kind: "HD library of OpenHaptics",
+    names: ["libHD.so", "libHD.so.3.4", "libHD.so.3.0"],
+    install: "install OpenHaptics and the driver of the device, or say where libHD.so is by `library` in rig.toml",
+    correct: "`library` in rig.toml is to name libHD.so, of OpenHaptics 3.0 or newer",
+};
 
 macro_rules! functions {
     ($($field:ident = $name:literal: fn($($argument:ty),*) $(-> $result:ty)?;)*) => {
@@ -94,27 +99,7 @@ impl Library {
     /// # Errors
     /// A [`UserError`]: it is missing, it cannot be loaded, or it is not OpenHaptics'.
     pub fn find(asked: Option<&Path>) -> Result<&'static Self, UserError> {
-        if let Some(path) = asked {
-            if path.components().count() > 1 && !path.exists() {
-                return Err(UserError::usage("there is no such library")
-                    .at(path.display().to_string())
-                    .help("correct `library` in rig.toml, or leave it out"));
-            }
-            return Self::open(path).map_err(|why| why.fault(path));
-        }
-        let mut broken = None;
-        for name in NAMES.map(Path::new) {
-            match Self::open(name) {
-                Ok(library) => return Ok(library),
-                Err(Unusable::Missing) => {}
-                Err(why) => broken = broken.or(Some((name, why))),
-            }
-        }
-        Err(match broken {
-            Some((name, why)) => why.fault(name),
-            None => UserError::failure("OpenHaptics is not installed: the system has no libHD.so")
-                .help(INSTALL),
-        })
+        HD.find(asked, Self::open)
     }
 
     fn open(name: &Path) -> Result<&'static Self, Unusable> {
@@ -122,9 +107,7 @@ impl Library {
         if let Some(library) = opened.iter().find(|library| library.name == name) {
             return Ok(library);
         }
-        // SAFETY: the user names the vendor's library, whose initialisers any of its users runs.
-        let loaded = unsafe { libloading::Library::new(name) }
-            .map_err(|error| Unusable::of(name, &said(&error)))?;
+        let loaded = load(name)?;
         let functions = Functions::of(&loaded);
         std::mem::forget(loaded);
         let library = Box::leak(Box::new(Self {
@@ -312,70 +295,6 @@ pub type SafeCallback = extern "C" fn(*mut c_void) -> u32;
 /// Errors that are looked at at a time.
 pub const MOST_ERRORS: usize = 64;
 
-/// The reason why a library cannot be used.
-enum Unusable {
-    /// No library of this name.
-    Missing,
-    /// It needs another one that is not there.
-    Needs(String),
-    /// It is for another machine, or no library.
-    Foreign(String),
-    /// It has no function of this name.
-    Lacks(&'static str),
-    /// Error of the system.
-    Other(String),
-}
-
-impl Unusable {
-    /// By what the system's loader says of the library of this name.
-    fn of(name: &Path, said: &str) -> Self {
-        let name = name.display().to_string();
-        let absent = "cannot open shared object file: No such file";
-        let foreign = [
-            "wrong ELF class",
-            "invalid ELF header",
-            "file too short",
-            "ELF file",
-        ];
-        match said.split_once(": ") {
-            Some((which, rest)) if rest.starts_with(absent) && which == name => Self::Missing,
-            Some((which, rest)) if rest.starts_with(absent) => Self::Needs(which.to_owned()),
-            _ if foreign.iter().any(|sign| said.contains(sign)) => Self::Foreign(said.to_owned()),
-            _ => Self::Other(said.to_owned()),
-        }
-    }
-
-    fn fault(self, name: &Path) -> UserError {
-        let place = name.display().to_string();
-        match self {
-            Self::Missing => UserError::failure("there is no such library").help(INSTALL),
-            Self::Needs(other) => UserError::failure(format!(
-                "OpenHaptics' library cannot be loaded: it needs {other}, which is not installed"
-            ))
-            .help(format!("install the package that has {other}")),
-            Self::Foreign(said) => {
-                UserError::failure(format!("this is no library for this machine ({said})")).help(
-                    format!("install OpenHaptics for 64-bit {}", std::env::consts::ARCH),
-                )
-            }
-            Self::Lacks(function) => UserError::failure(format!(
-                "this is no HD library of OpenHaptics: it has no function {function}"
-            ))
-            .help("`library` in rig.toml is to name libHD.so, of OpenHaptics 3.0 or newer"),
-            Self::Other(said) => UserError::failure(format!(
-                "OpenHaptics' library cannot be loaded: {said}"
-            ))
-            .help("see that OpenHaptics and the driver of the device are installed completely"),
-        }
-        .at(place)
-    }
-}
-
-/// Text of the system loader's error.
-fn said(error: &libloading::Error) -> String {
-    std::error::Error::source(error).map_or_else(|| error.to_string(), ToString::to_string)
-}
-
 /// A text of the library's.
 fn words(at: *const c_char) -> String {
     if at.is_null() {
@@ -384,34 +303,4 @@ fn words(at: *const c_char) -> String {
     // SAFETY: the library's texts end with a zero and live as long as it does, which is for ever.
     let text: CString = unsafe { CStr::from_ptr(at) }.to_owned();
     text.to_string_lossy().into_owned()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_the_loader_says_becomes_what_to_do() {
-        let says =
-            |said: &str| Unusable::of(Path::new("libHD.so"), said).fault(Path::new("libHD.so"));
-        let tail = "cannot open shared object file: No such file or directory";
-        assert_eq!(
-            says(&format!("libHD.so: {tail}")).what,
-            "there is no such library"
-        );
-        let needs = says(&format!("libncurses.so.5: {tail}"));
-        assert!(needs.what.contains("needs libncurses.so.5"), "{needs}");
-        let help = needs.help.expect("help");
-        assert!(help.contains("libncurses.so.5"), "{help}");
-        let narrow = says("libHD.so: wrong ELF class: ELFCLASS32");
-        assert!(
-            narrow.what.contains("no library for this machine"),
-            "{narrow}"
-        );
-        let other = says("libHD.so: undefined symbol: something");
-        assert!(
-            other.what.contains("undefined symbol: something"),
-            "{other}"
-        );
-    }
 }

@@ -92,6 +92,7 @@ Haply Inverse Service  -          localhost:10001    inverse3     found
 fn the_devices_of_a_rig_are_listed_with_their_trouble() {
     let used = |name: &str, trouble: &str| Used {
         section: DeviceSection::new(name, "pen", "main"),
+        is_in_rig: true,
         is_own: true,
         is_there: true,
         trouble: trouble.into(),

@@ -20,7 +20,7 @@ use super::Painting;
 use backend::Deferral;
 
 /// Steps of a landing on a palette, about as high as its heaps.
-const DIP: u32 = 4;
+const DIP: f64 = 4.0;
 
 impl Painting {
     /// Paints what a brush did in its epoch: strokes are numbered from 1 in each.
@@ -84,7 +84,7 @@ impl Painting {
         let Some((_, mut path)) = running else {
             let path = if lands {
                 let dips = !self.scene.surfaces[on].wells.is_empty();
-                let landed = (waypoint, if dips { DIP } else { 1 });
+                let landed = (waypoint, if dips { DIP } else { 1.0 });
                 PathStepper::landing(&head, landed, scale, |sweep, doublings| {
                     self.step((brush, on), scale, (sweep, doublings));
                 })
