@@ -116,7 +116,7 @@ fn of_next_version(mut bytes: Vec<u8>) -> Vec<u8> {
 #[test]
 fn a_device_of_a_later_version_paints() {
     let place = Place::new();
-    let launcher = Launcher::up(&place, &["--headless"]);
+    let launcher = Launcher::up(&place, &[]);
     place.done(&["load", "Bone Black"]);
     let (bus, topics) = join(&place);
     let origin = Origin {

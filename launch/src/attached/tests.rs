@@ -113,7 +113,7 @@ fn a_tablet_is_listed_by_its_events_where_its_reports_say_no_pen() {
     assert_eq!(brief, [("UC-Logic Tablet", "5543:0081", Some("evdev"))]);
     let missing = found[0].missing.as_deref();
     assert!(
-        missing.is_some_and(|missing| missing.contains("--udev")),
+        missing.is_some_and(|missing| missing.contains("device allow")),
         "{missing:?}"
     );
 }
@@ -170,7 +170,7 @@ fn a_device_that_may_not_be_read_is_listed_with_what_to_do() {
     let found = machine.found(hid::devices);
     let missing = found[0].missing.as_deref().expect("something is missing");
     assert!(
-        missing.contains("no permission") && missing.contains("--udev"),
+        missing.contains("no permission") && missing.contains("device allow"),
         "{missing}"
     );
     assert_eq!(found[1].missing, None, "nobody asks for a keyboard");

@@ -148,16 +148,10 @@ impl Rivals {
         self.others.len() - 1
     }
 
-    /// True if a message that is set aside shows that there are two senders. The last message of a sender that has
-    /// ended does not, nor do the first ones of its successor.
+    /// True if a message shows that there are two senders: a late one of a sender that has ended does not.
     #[must_use]
     pub fn is_rival(&self, header: &Header, arrived_ns: u64) -> bool {
-        let successor = |other: &Sender| {
-            other.epoch == header.epoch
-                && other.epoch != self.followed.epoch
-                && other.began_ns > self.followed.sent_ns
-        };
-        sent_ns(header, arrived_ns) >= self.followed.began_ns && !self.others.iter().any(successor)
+        sent_ns(header, arrived_ns) >= self.followed.began_ns
     }
 }
 

@@ -24,7 +24,7 @@ const BESIDE: f32 = 24.0;
 const WIDTH: f32 = 320.0;
 /// Height of the line over the window's edge where it stands over the bar, and its width there, points.
 const ABOVE_BAR: f32 = 56.0;
-const LEAST_WIDTH: f32 = 280.0;
+const LEAST_WIDTH: f32 = 256.0;
 
 /// State of the line of help.
 #[derive(Debug, Default)]

@@ -222,7 +222,7 @@ fn a_device_that_is_not_there_is_looked_for_each_second() {
     assert_eq!(attempts(&plugs), 6);
     let trouble = rig.status().expect("told").trouble;
     assert!(
-        trouble.contains("may not read") && trouble.contains("--udev"),
+        trouble.contains("may not read") && trouble.contains("device allow"),
         "{trouble}"
     );
     assert!(rig.samples().is_empty());

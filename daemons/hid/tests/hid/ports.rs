@@ -15,7 +15,7 @@ fn what_keeps_a_device_closed_says_what_to_do() {
         (
             ErrorKind::PermissionDenied,
             "may not read 056a:0357 Intuos",
-            "--udev",
+            "device allow",
         ),
         (ErrorKind::ResourceBusy, "in use", "end the program"),
         (ErrorKind::NotFound, "gone", "plug it in"),

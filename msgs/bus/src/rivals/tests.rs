@@ -88,18 +88,6 @@ fn a_first_message_is_followed_at_once_and_a_late_one_never() {
 }
 
 #[test]
-fn a_successor_is_no_rival_until_the_one_before_it_goes_on() {
-    let mut two = Two::new();
-    two.run(&[1], 1000);
-    two.now_ms = 1200;
-    assert_eq!(two.hear(2, Flags::NONE, 1200), Verdict::SetAside);
-    let successor = header(2, Flags::NONE, 1200);
-    assert!(!two.rivals.is_rival(&successor, 1200 * MS));
-    two.run(&[1], 10);
-    assert!(two.rivals.is_rival(&successor, 1210 * MS));
-}
-
-#[test]
 fn a_clock_that_is_ahead_wins_nothing() {
     let mut two = Two::new();
     let ahead = header(2, Flags::FIRST, u64::MAX / MS);

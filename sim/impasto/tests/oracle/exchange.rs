@@ -123,7 +123,10 @@ fn wants(
         (net, both) = (f64::from(flow) * travel, 0.0);
     }
     let quanta = |units: f64| units * f64::from(c.cover) * QUANTA_PER_UNIT;
-    let room = (QUANTA_PER_UNIT.min(f64::from(handling.most)) - lying).max(0.0);
+    // A limited brush leaves as much again in a hollow that is as deep.
+    let most = f64::from(handling.most);
+    let most = most + most.min(gap * QUANTA_PER_UNIT);
+    let room = (QUANTA_PER_UNIT.min(most) - lying).max(0.0);
     let both = quanta(both).min(room);
     [
         (quanta(net.max(0.0)) + both).min(room),
