@@ -1,10 +1,11 @@
 //! Force Dimension's arms: the driver as it is, over a libdhd of our own.
 
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use maulstick_haptic::device::driver::{Opened, Wrench};
 use maulstick_haptic::drivers::force_dimension::{library, open};
 use maulstick_haptics::Switch;
 use maulstick_libdhd::{Call, Control, Script, control};
+use maulstick_num::geometry::rotation;
 use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::stylus::axes;
@@ -43,7 +44,7 @@ fn a_handle_is_read_in_our_axes() {
     let reading = opened.driver.read(1e-3).expect("read").expect("new");
     assert_eq!(reading.handle.position, DVec3::new(0.02, 0.03, 0.01));
     assert_eq!(reading.handle.velocity, DVec3::new(0.2, 0.3, 0.1));
-    let quarter = DQuat::from_rotation_y(std::f64::consts::FRAC_PI_2);
+    let quarter = rotation(DVec3::Y, std::f64::consts::FRAC_PI_2);
     assert!(reading.handle.orientation.abs_diff_eq(quarter, 1e-12));
     assert_eq!(reading.switches, 5);
     let abilities = opened.driver.abilities();

@@ -146,7 +146,6 @@ extern "C" fn dhdGetButtonMask(_id: c_char) -> c_uint {
     with(|state| state.script.buttons)
 }
 
-#[expect(clippy::too_many_arguments, reason = "the vendor's own")]
 #[unsafe(no_mangle)]
 extern "C" fn dhdSetForceAndTorqueAndGripperForce(
     x: f64,

@@ -8,8 +8,9 @@
 //! | `overlay` | what lies over the desk: panels, dialogs, help |
 //! | [`rack`] | the brush rack at the edge |
 //! | `first_run` | the line of help for a new painter |
+//! | `window_memory` | title and size of the window, and the painter's habits |
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -26,7 +27,6 @@ use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
 use crate::app::overlay::Overlay;
-use crate::dialogs::paths;
 use crate::input::brush_turn::BrushTurn;
 use crate::input::clean_key::CleanKey;
 use crate::input::mouse_stylus::Mouse;
@@ -67,6 +67,7 @@ pub mod rack;
 pub(crate) mod sides;
 #[cfg(test)]
 mod tests;
+mod window_memory;
 
 /// Interval at which a pressed pointer that stands still is sent: a longer silence would lift the brush.
 const STILL: Duration = Duration::from_millis(30);
@@ -316,44 +317,6 @@ impl App {
             true => STATUS_LOOK,
             false if self.preferences.panels || self.tracker.hears_another() => SILENCE,
             false => IDLE_LOOK,
-        }
-    }
-
-    /// Titles the window with the painting's name.
-    fn name_window(&mut self, context: &Context) {
-        let path = self.rig.paint.as_ref().map(|node| &*node.status.path);
-        let title = match path.filter(|path| !path.is_empty()) {
-            Some(path) => format!("{} · Maulstick", paths::name(Path::new(path))),
-            None => "Maulstick".to_owned(),
-        };
-        if self.title != title {
-            self.title.clone_from(&title);
-            context.send_viewport_cmd(egui::ViewportCommand::Title(title));
-        }
-    }
-
-    /// Remembers the size of the window once nobody drags it.
-    fn remember_size(&mut self, context: &Context) {
-        let size = context.input(|input| {
-            let whole = input.viewport().fullscreen.unwrap_or(false);
-            let rests = !whole && !input.pointer.any_down() && input.stable_dt < 0.5;
-            rests.then(|| input.content_rect().size())
-        });
-        // The window system does not know of the text size.
-        if let Some(size) = size.map(|size| size * context.zoom_factor()) {
-            self.preferences.size = size.round().into();
-        }
-    }
-
-    /// Keeps the habits where they have changed.
-    fn keep(&mut self) {
-        let (kept, place) = &mut self.kept;
-        if *kept == self.preferences {
-            return;
-        }
-        kept.clone_from(&self.preferences);
-        if let Some(Err(fault)) = place.as_deref().map(|place| kept.keep(place)) {
-            self.notifications.of(&fault);
         }
     }
 }

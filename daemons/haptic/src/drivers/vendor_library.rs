@@ -173,7 +173,7 @@ mod tests {
 
     #[test]
     fn one_that_is_not_installed_is_told_as_such() {
-        let fault = OURS.find(None, load).err().expect("nobody has it");
+        let fault = OURS.find(None, load).expect_err("nobody has it");
         assert_eq!(
             fault.what,
             "Feel is not installed: the system has no libfeel.so"

@@ -28,6 +28,8 @@ pub fn orientation(frame: &DMat3) -> DQuat {
 
 #[cfg(test)]
 mod tests {
+    use maulstick_num::geometry::rotation;
+
     use super::*;
 
     #[test]
@@ -44,14 +46,14 @@ mod tests {
     fn a_turn_of_theirs_is_the_same_turn_of_ours() {
         assert!(orientation(&DMat3::IDENTITY).abs_diff_eq(DQuat::IDENTITY, 1e-12));
         // About their upright axis, which is our y.
-        let turned = orientation(&DMat3::from_rotation_z(0.3));
+        let turned = orientation(&DMat3::from_quat(rotation(DVec3::Z, 0.3)));
         assert!(
-            turned.abs_diff_eq(DQuat::from_rotation_y(0.3), 1e-12),
+            turned.abs_diff_eq(rotation(DVec3::Y, 0.3), 1e-12),
             "{turned}"
         );
-        let rolled = orientation(&DMat3::from_rotation_x(0.3));
+        let rolled = orientation(&DMat3::from_quat(rotation(DVec3::X, 0.3)));
         assert!(
-            rolled.abs_diff_eq(DQuat::from_rotation_z(0.3), 1e-12),
+            rolled.abs_diff_eq(rotation(DVec3::Z, 0.3), 1e-12),
             "{rolled}"
         );
     }
