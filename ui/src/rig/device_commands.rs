@@ -76,7 +76,9 @@ pub(crate) struct DeviceCommands {
     running: Option<BackgroundTask<Result<String, Refused>>>,
     listing: Option<BackgroundTask<Result<DeviceListing, Refused>>>,
     seen: Option<Seen>,
+    /// Commands that have ended, and those that had when the newest listing began.
     done: u64,
+    listed: u64,
     fit: Option<Fit>,
 }
 
@@ -97,6 +99,7 @@ impl DeviceCommands {
             listing: None,
             seen: None,
             done: 0,
+            listed: 0,
             fit: None,
         }
     }
@@ -142,18 +145,18 @@ impl DeviceCommands {
         }
         self.follow_fit(rig, notifications);
         if let Some(Poll::Ready(listed)) = self.listing.as_ref().map(BackgroundTask::poll) {
-            self.listing = None;
+            (self.listing, self.listed) = (None, self.seen.as_ref().map_or(0, |seen| seen.done));
             match listed {
                 Some(Ok(listing)) => rig.listing = Some(listing),
                 Some(Err(Refused { what, help })) => notifications.fault(what, help),
                 None => {}
             }
         }
-        if is_shown && self.listing.is_none() {
+        let is_behind = self.listed < self.done;
+        if (is_shown || is_behind) && self.listing.is_none() {
             self.list(context, rig);
         }
-        rig.changes_devices =
-            self.running.is_some() || !self.waiting.is_empty() || self.listing.is_some();
+        rig.changes_devices = self.running.is_some() || !self.waiting.is_empty() || is_behind;
     }
 
     /// Lists the devices where something has changed.

@@ -11,7 +11,7 @@ use crate::widgets::rows::note;
 pub(super) fn show(ui: &mut Ui, work: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         ui.label(RichText::new(tr!("Attached")).strong());
-        if work.rig.changes_devices {
+        if work.rig.listing.is_none() || work.rig.changes_devices {
             ui.weak(tr!("looking…"));
         }
     });

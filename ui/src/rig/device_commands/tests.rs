@@ -72,6 +72,9 @@ fn commands_run_one_after_the_other_and_are_told() {
         (Weight::Fault, "no such device".to_owned()),
     ];
     assert_eq!(desk.told, told);
+    assert!(desk.rig.changes_devices, "the listing is of before");
+    desk.until(|desk| !desk.rig.changes_devices);
+    assert!(desk.rig.listing.is_some());
 }
 
 #[test]
