@@ -202,13 +202,7 @@ impl Daemon {
         let mounted = MountedDevice::new(opened.driver, self.registration, clutch);
         let abilities = mounted.abilities();
         let scale = mounted.scale();
-        let limits = Limits {
-            max_force_n: device.max_force_n.min(abilities.max_force_n),
-            continuous_force_n: device.max_force_n.min(abilities.continuous_force_n),
-            max_stiffness_n_m: abilities.max_stiffness_n_m,
-            damping_n_s_m: abilities.damping_n_s_m,
-            ..Limits::default()
-        };
+        let limits = abilities.limits(device.max_force_n);
         let unscaled = limits;
         let limits = limits.scaled(scale);
         let previous = self.previous_of(limits, now_ns);

@@ -10,12 +10,14 @@
 //! | --- | --- |
 //! | [`limits`] | bounds of the force |
 //! | [`fault`] | faults that latch the force at zero |
+//! | [`fast_hand`] | less force to a fast hand |
 //! | [`motor_thermal`] | thermal model of the motors, which bounds the force |
 //! | [`persistent`] | state that survives the loss of the device |
 //! | [`passivity`] | the energy that sampling gives, taken back |
 //! | [`oscillation`] | detection of a shaking hand, which makes the force softer |
 //! | [`tick`] | input and report of a tick |
 
+pub mod fast_hand;
 pub mod fault;
 pub mod limits;
 pub mod motor_thermal;
@@ -26,6 +28,7 @@ pub mod tick;
 
 use glam::DVec3;
 
+use self::fast_hand::FastHand;
 use self::fault::Fault;
 use self::limits::Limits;
 use self::motor_thermal::MotorThermal;
@@ -69,6 +72,7 @@ pub struct Servo {
     thermal: MotorThermal,
     passivity: Passivity,
     oscillation: Oscillation,
+    fast_hand: FastHand,
     last: Option<Last>,
     force: DVec3,
     fault: Option<Fault>,
@@ -117,6 +121,7 @@ impl Servo {
             thermal: memory.thermal,
             passivity: Passivity::default(),
             oscillation: Oscillation::default(),
+            fast_hand: FastHand::default(),
             last: None,
             force: DVec3::ZERO,
             fault: memory.fault,
@@ -223,6 +228,8 @@ impl Servo {
             Touch::Air
         };
         self.watch(handle, touch, dt);
+        let speed = handle.velocity.length() / self.limits.max_speed_m_s;
+        self.fast_hand.follow(speed, touch);
         self.rest(touch, dt);
         let off = [self.switch, self.permitted].contains(&Switch::Off);
         tick.resting = off || self.idle_s >= self.limits.idle_s;
@@ -403,7 +410,7 @@ impl Servo {
             return DVec3::ZERO;
         };
         tick.stale = model.overdue_s() > 0.0;
-        let softer = self.strength * self.oscillation.softness();
+        let softer = self.strength * self.oscillation.softness() * self.fast_hand.softness();
         tick.asked_n_m = contact_force.asked_n_m;
         tick.stiffness_n_m = contact_force.stiffness_n_m * softer;
         let (correction, cap_n) = (self.correction, tick.cap_n);

@@ -117,7 +117,7 @@ unsafe extern "C" fn hdGetIntegerv(parameter: u32, to: *mut c_int) {
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn hdGetFloatv(parameter: u32, to: *mut f32) {
-    let values = with(|state| state.value(parameter, Phantom::doubles));
+    let values = with(|state| state.value(parameter, Phantom::floats));
     let narrow = |values: Vec<f64>| values.iter().map(|value| *value as f32).collect();
     // SAFETY: as the caller promises.
     unsafe { write(values.map(narrow), to) };

@@ -290,7 +290,7 @@ impl State {
         let known = !self.script.unknown.contains(&parameter);
         let value = get(device, parameter).filter(|_| known);
         let of_another_type = known
-            && (device.doubles(parameter).is_some()
+            && (device.floats(parameter).is_some()
                 || device.integer(parameter).is_some()
                 || device.boolean(parameter).is_some());
         if value.is_none() {

@@ -87,11 +87,20 @@ impl Phantom {
             codes::MAX_STIFFNESS => vec![script.stiffness],
             codes::MAX_FORCE => vec![script.max_force],
             codes::CONTINUOUS_FORCE => vec![script.continuous_force],
+            codes::VELOCITY_LIMIT => vec![script.velocity_limit],
             codes::MAX_TORQUE => vec![script.max_torque],
             codes::TEMPERATURE => script.temperatures.to_vec(),
             codes::FORCE => self.force.to_vec(),
             _ => return None,
         })
+    }
+
+    /// Values of a parameter that may be got as floats.
+    pub(crate) fn floats(&self, parameter: u32) -> Option<Vec<f64>> {
+        match parameter {
+            codes::IMPULSE_LIMIT => Some(vec![self.script.impulse_limit]),
+            _ => self.doubles(parameter),
+        }
     }
 
     /// The value of a parameter of type integer.

@@ -31,6 +31,10 @@ pub struct Script {
     pub stiffness: f64,
     /// Nominal largest torque, mN·m.
     pub max_torque: f64,
+    /// Speed of the hand above which the driver cuts the force, mm/s.
+    pub velocity_limit: f64,
+    /// Change of the force between two ticks above which it does so, N/ms.
+    pub impulse_limit: f64,
     /// Usable working area, mm.
     pub workspace: [f64; 6],
     /// Bits of the styles of calibration.
@@ -132,6 +136,8 @@ impl Default for Script {
             continuous_force: 0.88,
             stiffness: 0.5,
             max_torque: 0.0,
+            velocity_limit: 10_000.0,
+            impulse_limit: 100.0,
             workspace: [-80.0, -60.0, -35.0, 80.0, 60.0, 35.0],
             styles: 2,
             calibration: vec![0x5000],

@@ -3,8 +3,8 @@
 use std::ops::ControlFlow;
 
 use glam::DVec3;
-use maulstick_haptics::Switch;
 use maulstick_haptics::contact::HandleState;
+use maulstick_haptics::{Limits, Switch};
 
 /// The state of a device at a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,10 +74,31 @@ pub struct Abilities {
     pub max_torque_nm: f64,
     /// Largest stiffness, N/m.
     pub max_stiffness_n_m: f64,
+    /// Fastest change of the force that it takes, N/s; infinite where it names none.
+    pub max_slew_n_s: f64,
+    /// Speed of the hand above which it gives no force, m/s; infinite where it names none.
+    pub max_speed_m_s: f64,
     /// Lower bound of its own viscous friction, N·s/m.
     pub damping_n_s_m: f64,
     /// Working area in the device frame: least x, y, z, then greatest, m.
     pub workspace_m: [f64; 6],
+}
+
+impl Abilities {
+    /// Bounds of a servo over the device that gives at most `max_force_n`, device frame.
+    #[must_use]
+    pub fn limits(&self, max_force_n: f64) -> Limits {
+        let usual = Limits::default();
+        Limits {
+            max_force_n: max_force_n.min(self.max_force_n),
+            continuous_force_n: max_force_n.min(self.continuous_force_n),
+            max_stiffness_n_m: self.max_stiffness_n_m,
+            damping_n_s_m: self.damping_n_s_m,
+            slew_n_s: usual.slew_n_s.min(self.max_slew_n_s),
+            max_speed_m_s: usual.max_speed_m_s.min(self.max_speed_m_s),
+            ..usual
+        }
+    }
 }
 
 /// Driver of a device; it knows its own frame only. Its methods run on the real-time thread: no allocation,

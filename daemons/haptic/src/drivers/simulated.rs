@@ -120,6 +120,8 @@ impl Driver for Simulated {
             continuous_force_n: CONTINUOUS_N,
             max_torque_nm: 0.0,
             max_stiffness_n_m: 500.0,
+            max_slew_n_s: f64::INFINITY,
+            max_speed_m_s: f64::INFINITY,
             damping_n_s_m: self.plant.damping,
             workspace_m: [-0.3, -0.3, -0.05, 0.3, 0.3, 0.3],
         }

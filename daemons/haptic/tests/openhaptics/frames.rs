@@ -6,6 +6,7 @@ use glam::{DQuat, DVec3};
 use maulstick_device::registration::Registration;
 use maulstick_haptic::MountedDevice;
 use maulstick_haptic::device::driver::{Opened, Reading, Wrench};
+use maulstick_haptics::Limits;
 use maulstick_libhd::script::Grip;
 use maulstick_libhd::{Call, Event, Script};
 use maulstick_num::geometry::{Rigid, rotation};
@@ -265,7 +266,7 @@ fn warm_motors_give_their_continuous_force() {
     });
     let opened = open(&section()).expect("opened");
     let can = opened.driver.abilities();
-    let limits = maulstick_haptics::Limits {
+    let limits = Limits {
         continuous_force_n: can.continuous_force_n,
         ..patient()
     };
@@ -278,6 +279,60 @@ fn warm_motors_give_their_continuous_force() {
     let record = tick(&mut servo, |record| record.tick.cap_n < 0.51);
     assert_eq!(record.reading.motor_temperature, 0.95);
     tick(&mut servo, |record| (record.force.z - 0.5).abs() < 0.01);
+}
+
+/// Fastest change of the force, N/s, and force at last, N, of a device whose driver has limits of its own, under a hand
+/// that is 10 mm in the wall at a speed.
+fn changes(impulse_n_ms: f64, speed_limit_mm_s: f64, speed_mm_s: f64) -> (f64, f64) {
+    let _control = play(&Script {
+        position: [0.0, 0.0, 15.0],
+        velocity: [speed_mm_s, 0.0, 0.0],
+        impulse_limit: impulse_n_ms,
+        velocity_limit: speed_limit_mm_s,
+        ..Script::default()
+    });
+    let opened = open(&section()).expect("opened");
+    let own = opened.driver.abilities().limits(3.0);
+    let limits = Limits {
+        slew_n_s: own.slew_n_s,
+        max_speed_m_s: own.max_speed_m_s,
+        ..patient()
+    };
+    let mut servo = start(opened, limits);
+    wall(&mut servo);
+    let (mut fastest, mut last, mut steady) = (0.0_f64, None, 0);
+    let record = tick(&mut servo, |record| {
+        let now = (record.monotonic_ns, record.force.z);
+        if let Some((ns, force)) = last.replace(now) {
+            let change: f64 = record.force.z - force;
+            fastest = fastest.max(change / ((record.monotonic_ns - ns) as f64 * 1e-9));
+            steady = match change == 0.0 && record.tick.contact && !record.tick.waiting {
+                true => steady + 1,
+                false => 0,
+            };
+        }
+        steady > 20
+    });
+    (fastest, record.force.z)
+}
+
+#[test]
+fn the_driver_s_own_limits_of_change_and_speed_are_kept() {
+    let (free, force) = changes(100.0, 10_000.0, 0.0);
+    assert!(
+        free > 60.0 && (force - 1.0).abs() < 1e-9,
+        "{free} N/s, {force} N"
+    );
+    let (kept, force) = changes(0.05, 10_000.0, 0.0);
+    assert!(
+        kept <= 45.01 && (force - 1.0).abs() < 1e-9,
+        "{kept} N/s, {force} N"
+    );
+    // Of the driver's limit nine tenths are the fault: below .6 of that all, from .9 on none.
+    for (speed, expected) in [(200.0, 1.0), (300.0, 0.222), (400.0, 0.0)] {
+        let (_, force) = changes(100.0, 400.0, speed);
+        assert!((force - expected).abs() < 0.01, "{speed} mm/s: {force} N");
+    }
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Opening: names, what a device can do, libraries that are none.
 
+use maulstick_haptics::Limits;
 use maulstick_libhd::{Call, Script};
 use maulstick_types::stylus::axes;
 
@@ -107,7 +108,8 @@ fn a_device_that_says_nothing_of_itself_is_taken_for_the_weakest() {
     let control = play(&Script {
         model: "Touch".into(),
         unknown: vec![
-            0x2005, 0x2001, 0x2002, 0x2551, 0x2602, 0x2603, 0x2604, 0x2605, 0x2622, 0x4001,
+            0x2005, 0x2001, 0x2002, 0x2551, 0x2602, 0x2603, 0x2604, 0x2605, 0x2606, 0x2607, 0x2622,
+            0x4001,
         ],
         inkwell: 1,
         temperatures: [1.0; 6],
@@ -121,6 +123,10 @@ fn a_device_that_says_nothing_of_itself_is_taken_for_the_weakest() {
     );
     assert_eq!(limits, (3.3, 0.88, 400.0));
     assert_eq!(can.workspace_m[3], 0.08);
+    let usual = Limits::default();
+    let limits = can.limits(1.0);
+    let rates = (limits.slew_n_s, limits.max_speed_m_s);
+    assert_eq!(rates, (usual.slew_n_s, usual.max_speed_m_s));
     // What it cannot answer it is asked once, and is taken for in range and cold.
     let mut servo = serve();
     let mut count = 0;

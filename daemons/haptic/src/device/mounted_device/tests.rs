@@ -65,6 +65,8 @@ impl Driver for Put {
             continuous_force_n: 0.88,
             max_torque_nm: bench.max_torque_nm,
             max_stiffness_n_m: 500.0,
+            max_slew_n_s: f64::INFINITY,
+            max_speed_m_s: f64::INFINITY,
             damping_n_s_m: 0.3,
             workspace_m: bench.workspace_m,
         }

@@ -85,6 +85,8 @@ impl Driver for ForceDimension {
             continuous_force_n: self.model.continuous_n,
             max_torque_nm: 0.0,
             max_stiffness_n_m: self.model.stiffness_n_m,
+            max_slew_n_s: f64::INFINITY,
+            max_speed_m_s: f64::INFINITY,
             damping_n_s_m: model::DAMPING_N_S_M,
             workspace_m: [-REACH_M, -REACH_M, -REACH_M, REACH_M, REACH_M, REACH_M],
         }

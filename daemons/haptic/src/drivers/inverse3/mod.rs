@@ -207,6 +207,8 @@ impl Driver for Inverse3 {
             continuous_force_n: self.max_force_n * CONTINUOUS,
             max_torque_nm: 0.0,
             max_stiffness_n_m: MAX_STIFFNESS_N_M,
+            max_slew_n_s: f64::INFINITY,
+            max_speed_m_s: f64::INFINITY,
             damping_n_s_m: DAMPING_N_S_M,
             workspace_m: WORKSPACE_M,
         }

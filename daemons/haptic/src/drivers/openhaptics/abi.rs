@@ -26,6 +26,9 @@ const _: () = assert!(size_of::<ErrorInfo>() == 12);
 /// A parameter of `N` doubles.
 #[derive(Clone, Copy, Debug)]
 pub struct Doubles<const N: usize>(pub u32);
+/// A parameter of one float, which can be got as nothing else.
+#[derive(Clone, Copy, Debug)]
+pub struct Float(pub u32);
 /// A parameter of one integer.
 #[derive(Clone, Copy, Debug)]
 pub struct Integer(pub u32);
@@ -74,6 +77,10 @@ pub const NOMINAL_MAX_FORCE: Doubles<1> = Doubles(0x2603);
 pub const NOMINAL_MAX_CONTINUOUS_FORCE: Doubles<1> = Doubles(0x2604);
 /// 0 cold to 1 warm, of three or six motors.
 pub const MOTOR_TEMPERATURE: Doubles<6> = Doubles(0x2605);
+/// Speed above which the driver cuts the force, mm/s.
+pub const SOFTWARE_VELOCITY_LIMIT: Doubles<1> = Doubles(0x2606);
+/// Change of the force between two ticks above which it does so, N/ms.
+pub const SOFTWARE_FORCE_IMPULSE_LIMIT: Float = Float(0x2607);
 /// mN·m.
 pub const NOMINAL_MAX_TORQUE: Doubles<1> = Doubles(0x2622);
 /// Force, N, in the base's frame; applied as the frame ends.

@@ -16,7 +16,7 @@ use maulstick_rig::UserError;
 use crate::drivers::vendor_library::{Unusable, VendorLibrary, load};
 
 use super::abi::{
-    Boolean, Capability, Doubles, ErrorInfo, Handle, Integer, MOST_DOUBLES, Text, error,
+    Boolean, Capability, Doubles, ErrorInfo, Float, Handle, Integer, MOST_DOUBLES, Text, error,
 };
 
 /// Function that the scheduler calls.
@@ -65,6 +65,7 @@ functions! {
     disable = "hdDisable": fn(u32);
     get_boolean = "hdGetBooleanv": fn(u32, *mut c_uchar);
     get_integer = "hdGetIntegerv": fn(u32, *mut c_int);
+    get_float = "hdGetFloatv": fn(u32, *mut f32);
     get_double = "hdGetDoublev": fn(u32, *mut f64);
     set_double = "hdSetDoublev": fn(u32, *const f64);
     get_string = "hdGetString": fn(u32) -> *const c_char;
@@ -218,6 +219,15 @@ impl Library {
         // SAFETY: room for the one value that the parameter has.
         unsafe { (self.functions.get_integer)(parameter.0, &raw mut value) };
         value
+    }
+
+    /// A float of the current device; not a number where it gives none.
+    #[must_use]
+    pub fn float(&self, parameter: Float) -> f64 {
+        let mut values = [f32::NAN; MOST_DOUBLES];
+        // SAFETY: room for more values than the one that the parameter has.
+        unsafe { (self.functions.get_float)(parameter.0, values.as_mut_ptr()) };
+        f64::from(values[0])
     }
 
     /// Doubles of the current device; those are `absent` that it does not give.

@@ -50,6 +50,10 @@ const DEFAULT_NAMES: [&str; 2] = ["Default Device", "Default PHANToM"];
 const WORKSPACE_MM: [f64; 6] = [-80.0, -60.0, -35.0, 80.0, 60.0, 35.0];
 /// Least viscous friction that was measured of such arms, N·s/m.
 const DAMPING_N_S_M: f64 = 0.1;
+/// Share of the driver's own limits that is used of them: at the limit it cuts the motors.
+const BELOW_LIMIT: f64 = 0.9;
+/// Unit of the library's impulse, N/s.
+const N_PER_MS: f64 = 1000.0;
 /// Unit of the library's stiffness, N/m.
 const STIFFEST_N_M: f64 = 1000.0;
 
@@ -141,13 +145,16 @@ fn initiate(library: &Library, name: Option<&str>) -> Result<abi::Handle, UserEr
 
 /// Abilities of the current device: the library's values, within the limits of the model.
 fn abilities(library: &Library, model: &Model) -> Abilities {
+    let known = |value: f64, unit: f64, otherwise: f64| match value.is_finite() && value > 0.0 {
+        true => value * unit,
+        false => otherwise,
+    };
     let nominal = |parameter: abi::Doubles<1>, unit: f64, otherwise: f64| {
         let [value] = library.doubles(parameter, f64::NAN);
-        match value.is_finite() && value > 0.0 {
-            true => value * unit,
-            false => otherwise,
-        }
+        known(value, unit, otherwise)
     };
+    let impulse = library.float(abi::SOFTWARE_FORCE_IMPULSE_LIMIT);
+    let speed = abi::SOFTWARE_VELOCITY_LIMIT;
     let max_force_n = nominal(abi::NOMINAL_MAX_FORCE, 1.0, model.force_n).min(model.force_n);
     let stiffness = nominal(
         abi::NOMINAL_MAX_STIFFNESS,
@@ -178,6 +185,8 @@ fn abilities(library: &Library, model: &Model) -> Abilities {
         continuous_force_n: nominal(continuous, 1.0, model.continuous_n).min(max_force_n),
         max_torque_nm,
         max_stiffness_n_m: stiffness.min(model.stiffness_n_m),
+        max_slew_n_s: known(impulse, BELOW_LIMIT * N_PER_MS, f64::INFINITY),
+        max_speed_m_s: nominal(speed, BELOW_LIMIT * MILLI, f64::INFINITY),
         damping_n_s_m: DAMPING_N_S_M,
         workspace_m: match is_box {
             true => workspace,
