@@ -37,5 +37,4 @@ pub(crate) use performance::strokes;
 pub use performance::{demo, mark_sheet};
 pub use take::{Take, TakeSample};
 pub use take_setup::TakeSetup;
-pub(crate) use takes::records;
 pub use takes::{player, salvage, table, take, take_setup};

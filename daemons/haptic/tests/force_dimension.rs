@@ -4,15 +4,16 @@ use glam::DVec3;
 use maulstick_haptic::device::driver::{Opened, Wrench};
 use maulstick_haptic::drivers::force_dimension::{library, open};
 use maulstick_haptics::Switch;
-use maulstick_libdhd::{Call, Control, Script, control};
+use maulstick_libdhd::{Call, Control, Script};
 use maulstick_num::geometry::rotation;
 use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
+use maulstick_scripted::Script as _;
 use maulstick_types::stylus::axes;
 
 fn section(address: Option<&str>) -> DeviceSection {
     DeviceSection {
-        library: Some(control::path().expect("a path")),
+        library: Some(Script::path().expect("a path")),
         address: address.map(str::to_owned),
         ..DeviceSection::new("arm", "forcedimension", "main")
     }

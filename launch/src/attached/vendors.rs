@@ -1,9 +1,11 @@
-//! Software of vendors between a device and a program: libraries of OpenHaptics and of Force Dimension, Haply's service.
+//! Software of vendors between a device and a program: libraries of OpenHaptics and of Force Dimension, the
+//! OpenXR loader, Haply's service.
 
 use std::net::{TcpStream, ToSocketAddrs as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use maulstick_haptic::drivers::openxr::runtime::LOADER;
 use maulstick_haptic::drivers::vendor_library::VendorLibrary;
 
 /// The folders of libraries, besides those that LD_LIBRARY_PATH names.
@@ -14,6 +16,8 @@ const FOLDERS: [&str; 5] = [
     "/usr/local/lib",
     "/usr/local/lib64",
 ];
+/// Where a folder of settings has the manifest of the active OpenXR runtime, as the loader looks for it.
+const ACTIVE_RUNTIME: &str = "openxr/1/active_runtime.json";
 /// Address of Haply's Inverse Service.
 pub const INVERSE_SERVICE: &str = "localhost:10001";
 /// Longest wait for a connection to a service of this machine.
@@ -36,6 +40,19 @@ pub fn library(vendor: &VendorLibrary, folders: &[impl AsRef<Path>]) -> Option<P
         paths.into_iter().find(|path| path.exists())
     };
     folders.iter().find_map(|folder| in_folder(folder.as_ref()))
+}
+
+/// The OpenXR loader of `folders`, where a runtime is the user's or the system's active one: the loader alone serves
+/// nothing.
+#[must_use]
+pub fn openxr_loader(folders: &[impl AsRef<Path>]) -> Option<PathBuf> {
+    let named = std::env::var_os("XR_RUNTIME_JSON").map(PathBuf::from);
+    let own = directories::BaseDirs::new().map(|dirs| dirs.config_dir().join(ACTIVE_RUNTIME));
+    let all = ["/etc/xdg", "/etc", "/usr/local/share", "/usr/share"];
+    let all = all.map(|folder| Path::new(folder).join(ACTIVE_RUNTIME));
+    let mut manifests = named.into_iter().chain(own).chain(all);
+    let is_active = manifests.any(|manifest| manifest.exists());
+    is_active.then(|| library(&LOADER, folders)).flatten()
 }
 
 /// True if something listens at an address.

@@ -56,7 +56,7 @@ pub mod viewing;
 
 pub use backend::{BackendError, CpuFilms, FilmBackend};
 pub use cie::{Illuminant, Observer};
-pub use mixing::{comparison, km, matching, mixture, paints, search, surface};
+pub use mixing::{comparison, km, matching, mixture, paints, search, surface, thinning};
 pub use mixture::{Blend, Coat, Layer};
 pub use paints::{Paint, PaintError, PaintLibrary, THINNER};
 pub use rule::SamplingRule;
@@ -64,5 +64,6 @@ pub use spectra::{cie, quadrature, rule, spectrum, spectrum_file, upsampling};
 pub use spectrum::Spectrum;
 pub use spectrum_file::Reflectance;
 pub use studio::{FilmPlanes, RuleKind, Studio, StudioSettings, Under};
+pub use thinning::thinned;
 pub use upsampling::{Smooth, Upsampler};
 pub use viewing::{Seen, Viewing};

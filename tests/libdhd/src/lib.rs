@@ -7,12 +7,12 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`script`] | what the device is, and what was called |
-//! | [`control`] | how a test hands one in and gets the other out |
 //! | `exports` | the C functions |
 
-pub mod control;
 mod exports;
 pub mod script;
 
-pub use control::Control;
 pub use script::{Call, Script};
+
+/// How a test hands a script in and gets the calls out.
+pub type Control = maulstick_scripted::Control<Script>;

@@ -27,6 +27,11 @@ pub struct Script {
     pub force_code: i32,
 }
 
+impl maulstick_scripted::Script for Script {
+    const LIBRARY: &'static str = "maulstick_libdhd";
+    type Call = Call;
+}
+
 /// An omega.6 that lies still.
 impl Default for Script {
     fn default() -> Self {

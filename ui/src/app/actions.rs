@@ -14,6 +14,7 @@ use crate::input::navigation::{Around, is_panel, place};
 use crate::rig::force_history;
 use crate::settings::preferences::Preferences;
 use crate::view::camera::View;
+use crate::view::fit_crosses;
 use crate::view::well_labels::{self, Shown};
 
 /// A newton is shown so long, m.
@@ -77,6 +78,7 @@ impl App {
                 x,
                 y,
                 surface,
+                thinner: self.preferences.loading.share(),
                 brush,
             }),
             _ => self.notifications.fault(
@@ -166,6 +168,13 @@ impl App {
         };
         if let Some(shown) = shown {
             well_labels::draw(painter, view, palette, shown);
+        }
+    }
+
+    /// Shows what a device is to touch that is being fitted.
+    pub(super) fn show_fit(&self, painter: &egui::Painter, view: &View) {
+        if let (Some(fit), Some(canvas)) = (&self.rig.fit, self.rig.canvas()) {
+            fit_crosses::draw(painter, view, canvas, &fit.said);
         }
     }
 

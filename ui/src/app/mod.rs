@@ -411,6 +411,7 @@ impl eframe::App for App {
                 .shapes(&self.rig, &surfaces, &self.tracker, &seen);
             ui.painter().extend(shapes);
             self.name_wells(ui.painter(), &view, &surfaces);
+            self.show_fit(ui.painter(), &view);
             let palette = surfaces.iter().find(|surface| surface.id == PALETTE);
             self.overlay.palette = palette.map(|palette| view.covered(palette));
             self.draw_force(ui.painter(), &view);

@@ -313,7 +313,7 @@ fn fill_screen(context: &Context, fills: bool) {
 /// What an edit was about, as a painter reads it: a step, or a mixture.
 fn told(detail: &str) -> String {
     match detail.parse::<Mixture>() {
-        Ok(mixture) if mixture.parts.len() > 1 => brush_load::words(&mixture),
+        Ok(mixture) if detail.contains('=') => brush_load::words(&mixture),
         _ => step(detail),
     }
 }
@@ -366,6 +366,15 @@ mod tests {
             let lines = bench.told();
             assert!(lines.lines().any(|line| line.trim_end() == told), "{lines}");
         }
+    }
+
+    #[test]
+    fn mixtures_are_told_in_per_cent_also_those_of_one_paint() {
+        let one = super::told("Burnt Sienna=1.000");
+        assert_eq!(one, "Burnt Sienna");
+        let two = super::told("Burnt Sienna=0.12,Thinner=0.88");
+        assert_eq!(two, "Burnt Sienna 12 %, Thinner 88 %");
+        assert_eq!(super::told("layer 1"), "layer 1");
     }
 
     #[test]

@@ -14,6 +14,8 @@ pub struct DeviceListing {
     openhaptics: Library,
     #[serde(default)]
     forcedimension: Library,
+    #[serde(default)]
+    openxr: Library,
     inverse_service: Service,
     rig: Option<Vec<RigDevice>>,
 }
@@ -92,6 +94,7 @@ impl DeviceListing {
         let libraries = [
             (&self.openhaptics, "OpenHaptics", "openhaptics"),
             (&self.forcedimension, "Force Dimension", "forcedimension"),
+            (&self.openxr, "OpenXR controller", "openxr"),
         ];
         let libraries = libraries
             .into_iter()
@@ -143,6 +146,7 @@ mod tests {
         ],
         "events": [], "serial": [],
         "openhaptics": {"path": null, "looked_in": []},
+        "openxr": {"path": "/usr/lib/libopenxr_loader.so.1", "looked_in": []},
         "forcedimension": {"path": "/usr/lib/libdhd.so.3", "looked_in": []},
         "inverse_service": {"address": "localhost:10001", "listens": true},
         "rig": [
@@ -157,13 +161,18 @@ mod tests {
         let offered: Vec<String> = listing.unused().into_iter().map(|it| it.name).collect();
         assert_eq!(
             offered,
-            ["Intuos", "Force Dimension", "Haply Inverse Service"]
+            [
+                "Intuos",
+                "Force Dimension",
+                "OpenXR controller",
+                "Haply Inverse Service"
+            ]
         );
         let tablet = listing.device("tablet").expect("a tablet");
         assert!(tablet.is_own && tablet.section.priority == 1);
         let any = SAID.replace("\"address\": \"28BD:0935\", ", "");
         let listing = DeviceListing::parse(any.as_bytes()).expect("read");
-        assert_eq!(listing.unused().len(), 2);
+        assert_eq!(listing.unused().len(), 3);
         assert!(DeviceListing::parse(b"{").is_err());
     }
 }

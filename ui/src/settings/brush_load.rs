@@ -1,15 +1,11 @@
 //! Load of a brush: a paint or mixture, another one beside it, and thinner in both.
 
-use maulstick_optics::{PaintLibrary, THINNER};
+use maulstick_optics::{PaintLibrary, THINNER, thinned};
 use maulstick_rig::UserError;
 use maulstick_types::Mixture;
 use maulstick_types::edits::Load;
-use maulstick_types::mixture::Part;
-use maulstick_types::values::BrushName;
+use maulstick_types::values::{BrushName, ThinnerShare};
 use serde::{Deserialize, Serialize};
-
-/// Largest share of thinner in a load; pure thinner is a paint by itself.
-pub(crate) const MOST_THINNER: f64 = 0.95;
 
 /// Load of a brush.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -20,7 +16,7 @@ pub struct BrushLoad {
     /// Load of the other half of the brush; `None` if it is the same.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub beside: Option<String>,
-    /// Share of thinner in both, 0 to [`MOST_THINNER`].
+    /// Share of thinner in both, 0 to [`ThinnerShare::MOST`].
     pub thinner: f64,
 }
 
@@ -28,11 +24,14 @@ impl BrushLoad {
     /// A mixture of it, thinned.
     fn mixture(&self, text: &str, library: &PaintLibrary) -> Result<Mixture, UserError> {
         let mixture = read(text, library)?;
-        let thinner = match self.thinner.is_finite() {
-            true => self.thinner.clamp(0.0, MOST_THINNER),
-            false => 0.0,
-        };
-        Ok(thinned(&mixture, thinner))
+        Ok(thinned(&mixture, self.share()))
+    }
+
+    /// Share of thinner in both.
+    #[must_use]
+    pub fn share(&self) -> ThinnerShare {
+        let most = ThinnerShare::MOST.get();
+        ThinnerShare::new(self.thinner.clamp(0.0, most)).unwrap_or_default()
     }
 
     /// The edit that loads a brush so.
@@ -62,31 +61,6 @@ pub(crate) fn read(text: &str, library: &PaintLibrary) -> Result<Mixture, UserEr
     library
         .check(&mixture)
         .map_err(|error| UserError::usage(error.to_string()).help(help))
-}
-
-/// A mixture with a share of its volume of thinner added to its own.
-#[must_use]
-pub(crate) fn thinned(mixture: &Mixture, share: f64) -> Mixture {
-    if share <= 0.0 {
-        return mixture.clone();
-    }
-    let mut parts: Vec<Part> = Vec::new();
-    let mut thinner = share;
-    for part in &mixture.parts {
-        let left = part.share * (1.0 - share);
-        match part.paint == THINNER {
-            true => thinner += left,
-            false => parts.push(Part {
-                paint: part.paint.clone(),
-                share: left,
-            }),
-        }
-    }
-    parts.push(Part {
-        paint: THINNER.to_owned(),
-        share: thinner,
-    });
-    Mixture { parts }
 }
 
 /// A mixture as a painter writes it; [`read`] reads it.
@@ -192,9 +166,8 @@ mod tests {
         assert_eq!(left.to_string(), "Cobalt Blue=0.25,Thinner=0.75");
         assert_eq!(right.to_string(), "Bone Black=0.5,Thinner=0.5");
         assert_eq!(left.check(), Ok(()));
-        let unthinned = thinned(&right, 0.0);
-        assert_eq!(unthinned, right);
-        assert_ne!(thinned(&right, 0.5), right, "a fault would pass");
+        assert_eq!(loading("", None, f64::NAN).share(), ThinnerShare::NONE);
+        assert_eq!(loading("", None, 7.0).share(), ThinnerShare::MOST);
     }
 
     #[test]

@@ -1,7 +1,6 @@
 //! Takes: recorded samples as files, what they embed, tables imported as takes, and their player.
 
 pub mod player;
-pub(crate) mod records;
 pub mod salvage;
 pub mod table;
 pub mod take;

@@ -13,9 +13,9 @@ use maulstick_types::stylus::StylusSample;
 use mcap::MAGIC;
 use mcap::records::{MessageHeader, Record, op};
 
-use crate::records::{Found, HEAD, records, unpack};
 use crate::take::{Take, TakeSample};
 use crate::take_setup::TakeSetup;
+use maulstick_streams::mcap_records::{Found, HEAD, records, unpack};
 
 /// Name of a device whose channel record is lost.
 const UNNAMED: &str = "recovered";

@@ -11,7 +11,7 @@ use std::io::{Seek, Write};
 use mcap::records::{Metadata, Record, op};
 use sha2::{Digest as _, Sha256};
 
-use crate::records::Found;
+use maulstick_streams::mcap_records::Found;
 
 /// Name of the metadata record.
 const RECORD: &str = "maulstick.kit";

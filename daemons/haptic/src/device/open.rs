@@ -9,7 +9,7 @@ use maulstick_rig::{RigConfig, UserError};
 
 use crate::device::driver::Opened;
 use crate::drivers::simulated::Simulated;
-use crate::drivers::{force_dimension, inverse3, openhaptics, polhem};
+use crate::drivers::{force_dimension, inverse3, openhaptics, openxr, polhem};
 use crate::servo::clock::MonotonicClock;
 
 /// Settings of a haptic daemon.
@@ -33,6 +33,7 @@ pub fn open(config: &RigConfig, settings: &HapticSettings) -> Result<Opened, Use
         "polhem" => polhem::open(device),
         "inverse3" => inverse3::open(device),
         "forcedimension" => force_dimension::open(device),
+        "openxr" => openxr::open(device),
         other => Err(UserError::usage(format!(
             "this daemon has no driver '{other}'"
         ))),

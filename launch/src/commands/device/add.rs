@@ -118,7 +118,7 @@ fn chosen(
                 .help("`maulstick device use` has it paint"))
         }
         [] => Err(UserError::usage("no device is attached that a driver fits")
-            .help("`maulstick device list` shows what is; `--driver` names one that shows nowhere, as `openhaptics`, `forcedimension` or `inverse3`")),
+            .help("`maulstick device list` shows what is; `--driver` names one that shows nowhere, as `openhaptics`, `forcedimension`, `openxr` or `inverse3`")),
         several => {
             let of = |device: &&Attached| format!("{} {}", device.address(), plain(&device.name));
             let all: Vec<String> = several.iter().map(of).collect();

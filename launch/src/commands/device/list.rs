@@ -12,7 +12,7 @@ use maulstick_types::stylus::{StylusInfo, StylusStatus};
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
-use crate::attached::vendors::{INVERSE_SERVICE, library, library_folders, listens};
+use crate::attached::vendors::{INVERSE_SERVICE, library, library_folders, listens, openxr_loader};
 use crate::attached::{Attached, Places, events, hid, rules, serial};
 use crate::commands::session::{Feed, Session, Target};
 use crate::commands::{print_json, print_text};
@@ -48,6 +48,7 @@ struct Findings {
     serial: Vec<Attached>,
     openhaptics: Library,
     forcedimension: Library,
+    openxr: Library,
     inverse_service: Service,
     /// The devices of the rig; `None` if it does not run.
     rig: Option<Vec<Used>>,
@@ -119,6 +120,10 @@ pub(super) fn run(options: &ListOptions) -> Result<i32, UserError> {
         },
         forcedimension: Library {
             path: library(&DHD, &looked_in),
+            looked_in: looked_in.clone(),
+        },
+        openxr: Library {
+            path: openxr_loader(&looked_in),
             looked_in,
         },
         inverse_service: Service {
@@ -215,6 +220,7 @@ fn table(findings: &Findings) -> String {
             "forcedimension",
             &findings.forcedimension,
         ),
+        ("OpenXR controller", "openxr", &findings.openxr),
     ] {
         let path = library.path.as_ref();
         rows.extend(path.map(|path| program(name, driver, &path.display().to_string())));
@@ -234,6 +240,7 @@ fn table(findings: &Findings) -> String {
     if !all().any(|device| device.driver.is_some())
         && findings.openhaptics.path.is_none()
         && findings.forcedimension.path.is_none()
+        && findings.openxr.path.is_none()
         && !service.listens
     {
         text += &nothing(findings);
@@ -299,7 +306,8 @@ fn nothing(findings: &Findings) -> String {
          Shown would be pens (pen) and 6-DOF mice (spacemouse) at /dev/hidraw*, other tablets (evdev)\n\
          at /dev/input/event*, Polhem and WoodenHaptics (polhem) at serial ports, an Inverse3\n\
          (inverse3) with Haply's service at {}, a Touch (openhaptics) with libHD.so\n\
-         and an omega (forcedimension) with libdhd.so in\n\
+         an omega (forcedimension) with libdhd.so and a headset's controller (openxr) with an active\n\
+         runtime and libopenxr_loader.so.1 in\n\
          {}.\n",
         findings.inverse_service.address,
         folders.join(", ")

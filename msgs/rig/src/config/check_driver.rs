@@ -1,7 +1,7 @@
 //! Keys of a `[[device]]` that its driver would ignore.
 
 use super::check::Wrong;
-use super::device::{DeviceSection, PEN_DRIVERS};
+use super::device::{DeviceSection, LIBRARY_DRIVERS, PEN_DRIVERS};
 
 /// Refuses what the driver of a device would ignore.
 pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
@@ -26,8 +26,8 @@ pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
         ),
         (
             "library",
-            device.library.is_some() && !["openhaptics", "forcedimension"].contains(&driver),
-            "take it out: it is the library of openhaptics or forcedimension",
+            device.library.is_some() && !LIBRARY_DRIVERS.contains(&driver),
+            "take it out: it is the library of openhaptics, forcedimension or openxr",
         ),
         (
             "replay",

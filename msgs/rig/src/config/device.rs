@@ -8,10 +8,11 @@ use super::{RigConfig, toml_fault};
 use crate::user_error::UserError;
 
 /// Drivers of devices.
-pub const DRIVERS: [&str; 8] = [
+pub const DRIVERS: [&str; 9] = [
     "simulated",
     "openhaptics",
     "forcedimension",
+    "openxr",
     "polhem",
     "inverse3",
     "pen",
@@ -22,6 +23,8 @@ pub const DRIVERS: [&str; 8] = [
 pub const HID_DRIVERS: [&str; 3] = ["pen", "evdev", "spacemouse"];
 /// Those of them that read a tablet.
 pub const PEN_DRIVERS: [&str; 2] = ["pen", "evdev"];
+/// Those of them that work through a vendor's library.
+pub(super) const LIBRARY_DRIVERS: [&str; 3] = ["openhaptics", "forcedimension", "openxr"];
 /// Force laws of a brush.
 pub const FORCES: [&str; 5] = ["linear", "hermite", "local", "rigid", "none"];
 /// Actions of a switch on a stylus.
@@ -35,13 +38,13 @@ pub struct DeviceSection {
     pub name: String,
     /// One of [`DRIVERS`].
     pub driver: String,
-    /// Address among several devices: the name that OpenHaptics gives it; the serial number of one of Force Dimension's; a
-    /// serial port; a WebSocket's URL with
+    /// Address among several devices: the name that OpenHaptics gives it; the serial number of one of Force Dimension's; the
+    /// `left` or `right` hand of OpenXR; a serial port; a WebSocket's URL with
     /// `#device+grip`; `vendor:product` of a HID device or of an event device in hexadecimal, or its path below /dev. The
     /// first that fits if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub address: Option<String>,
-    /// The vendor's library of `openhaptics` or `forcedimension`, where it is not in the system's folders.
+    /// The vendor's library of `openhaptics` or `forcedimension`, the loader of `openxr`, where it is not in the system's folders.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub library: Option<PathBuf>,
     /// A recording that is played in the place of a HID device or an event device, in the text format of hid-recorder or
@@ -134,9 +137,8 @@ impl DeviceSection {
         match (&self.switches, self.driver.as_str()) {
             (Some(actions), _) => actions.iter().map(String::as_str).collect(),
             (None, driver) if PEN_DRIVERS.contains(&driver) => vec!["pick", "undo"],
-            (None, "openhaptics" | "forcedimension" | "polhem" | "inverse3") => {
-                vec!["clutch", "undo"]
-            }
+            (None, driver) if LIBRARY_DRIVERS.contains(&driver) => vec!["clutch", "undo"],
+            (None, "polhem" | "inverse3") => vec!["clutch", "undo"],
             (None, _) => Vec::new(),
         }
     }

@@ -11,8 +11,8 @@ mod texts;
 mod ticks;
 
 pub use numbers::{
-    Distance, FilmThickness, MarkerFlow, OpacityFactor, Share, StainThickness, Stiffness, Wetness,
-    Zoom,
+    Distance, FilmThickness, MarkerFlow, OpacityFactor, Share, StainThickness, Stiffness,
+    ThinnerShare, Wetness, Zoom,
 };
 pub use texts::{
     BrushName, BrushToml, DeviceName, DeviceToml, LayerName, MaterialName, SpectrumText,

@@ -34,6 +34,9 @@ impl Visitor<'_> for Number {
     }
 }
 
+/// Largest share of thinner in a load.
+const MOST_THINNER: f64 = 0.95;
+
 macro_rules! number {
     (
         $(#[$meta:meta])*
@@ -118,6 +121,10 @@ number! {
     OpacityFactor(f32) "opacity", 1.0 "", "0 to 1" if |factor| (0.0..=1.0).contains(factor)
 }
 number! {
+    /// Share of a load that is thinner, 0 to .95; pure thinner is a paint by itself.
+    ThinnerShare(f64) "thinner", 1.0 "", "0 to .95" if |share| (0.0..=MOST_THINNER).contains(share)
+}
+number! {
     /// Thickness of a film of paint, m; µm in texts.
     FilmThickness(f64) "film", 1e-6 " µm", "1 to 5000" if |m| FILM_M.contains(m)
 }
@@ -149,6 +156,25 @@ number! {
 impl Share {
     /// All of it.
     pub const WHOLE: Self = Self(1.0);
+}
+
+impl ThinnerShare {
+    /// No thinner.
+    pub const NONE: Self = Self(0.0);
+    /// As much as there may be.
+    pub const MOST: Self = Self(MOST_THINNER);
+}
+
+impl Default for ThinnerShare {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+impl std::fmt::Display for ThinnerShare {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.fmt(f)
+    }
 }
 
 impl Default for Share {

@@ -13,6 +13,10 @@ const CHORDS: usize = 8;
 /// whole path then.
 const PAUSE: f64 = 4.0;
 
+/// Bend of a path that any hand may have, m: it turns round at 1.5 m/s between two frames of a window. More is a pointer's that leapt
+/// before, and would swing far out.
+const FREE_BEND_M: f64 = 0.03;
+
 /// A sampled pose and its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampled {
@@ -64,7 +68,7 @@ impl HandlePath {
                         limited(place, gone),
                         limited_turn(turn, end.rotation - from.pose.rotation),
                     ),
-                    false => (place, turn),
+                    false => (without_a_leap(place, gone), turn),
                 }
             },
         );
@@ -123,6 +127,12 @@ impl HandlePath {
 fn limited(bend: DVec3, path: DVec3) -> DVec3 {
     let along = bend.truncate().clamp_length_max(path.truncate().length());
     along.extend(bend.z.clamp(-path.z.abs(), path.z.abs()))
+}
+
+/// The bend along the surface of a path after which a pointer may have leapt.
+fn without_a_leap(bend: DVec3, path: DVec3) -> DVec3 {
+    let most = path.truncate().length().max(FREE_BEND_M);
+    bend.truncate().clamp_length_max(most).extend(bend.z)
 }
 
 /// As [`limited`], of a turn.
@@ -215,6 +225,27 @@ mod tests {
         );
         let (coarse, fine) = (error(0.1, None), error(0.05, None));
         assert!(coarse / fine < 5.0, "straight chords are of second order");
+    }
+
+    #[test]
+    fn after_a_leap_it_does_not_swing_out_and_a_hand_that_turns_round_is_followed() {
+        let at = |x: f64, ms: u64| Sampled {
+            pose: Rigid {
+                rotation: DQuat::IDENTITY,
+                translation: DVec3::X * x,
+            },
+            event_ns: ms * 1_000_000,
+        };
+        // 300 mm in 4 ms, and 5 mm in the 12 after that: the parabola would go 160 mm on.
+        let path = HandlePath::new(Some(&at(-0.3, 0)), &at(0.0, 4), &at(0.005, 16), 0.02);
+        let farthest = (0..=100).map(|i| path.at(f64::from(i) * 0.01).translation.x);
+        let farthest = farthest.fold(0.0, f64::max);
+        assert!(farthest < 0.011, "{farthest} m");
+        assert!(path.length_m() < 0.02, "{} m", path.length_m());
+        // A hand of 1.5 m/s that turns round within a frame goes on by what the parabola says.
+        let turn = HandlePath::new(Some(&at(-0.024, 0)), &at(0.0, 16), &at(0.0, 32), 0.02);
+        let [quarter, half] = [0.25, 0.5].map(|s| turn.at(s).translation.x);
+        assert!((quarter - 0.00225).abs() < 1e-12 && (half - 0.003).abs() < 1e-12);
     }
 
     #[test]

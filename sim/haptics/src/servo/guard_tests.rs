@@ -109,7 +109,9 @@ fn a_hand_that_grows_fast_feels_less_and_latches_nothing() {
 /// Work done on a hand that goes 7 mm into a wall and out again, less what the device's own friction takes, J.
 fn in_and_out(in_m_s: f64, out_m_s: f64) -> f64 {
     let mut servo = pressed(Limits::default());
-    (0..20).for_each(|_| drop(servo.step(&handle(-0.001), DT)));
+    for _ in 0..20 {
+        servo.step(&handle(-0.001), DT);
+    }
     let (mut place, mut speed, mut work) = (-0.001, in_m_s, 0.0);
     let mut force = DVec3::ZERO;
     while place >= -0.001 {

@@ -7,3 +7,4 @@ pub mod mixture;
 pub mod paints;
 pub mod search;
 pub mod surface;
+pub mod thinning;

@@ -6,7 +6,7 @@ use maulstick_painting::{Applied, Apply as _, Painting, PaintingSetup};
 use maulstick_types::Mixture;
 use maulstick_types::edits::{Dry, LoadFrom, Scrape, Undo};
 use maulstick_types::scene::{CANVAS, PALETTE, WellKind};
-use maulstick_types::values::{BrushName, Distance};
+use maulstick_types::values::{BrushName, Distance, ThinnerShare};
 
 use super::studio::{BRUSH, fill, load, mixture, painting};
 
@@ -19,6 +19,7 @@ fn load_from(
         x: Distance::new(x).expect("in range"),
         y: Distance::new(y).expect("in range"),
         surface,
+        thinner: ThinnerShare::NONE,
         brush: BrushName::main(),
     };
     match edit.apply(painting)? {
@@ -115,4 +116,34 @@ fn a_well_gives_its_mixture() {
             WellKind::Cleaner => assert!(picked.is_err(), "{picked:?}"),
         }
     }
+}
+
+#[test]
+fn what_is_loaded_may_be_thinned_and_keeps_its_proportions() {
+    let mut painting = with_brush();
+    let green = "Cobalt Blue=0.45,Hansa Yellow Opaque=0.15,Thinner=0.4";
+    fill(green, 60.0).apply(&mut painting).expect("a film");
+    let edit = LoadFrom {
+        x: Distance::in_unit(8.0).expect("in range"),
+        y: Distance::in_unit(6.0).expect("in range"),
+        surface: CANVAS,
+        thinner: ThinnerShare::in_unit(0.5).expect("in range"),
+        brush: BrushName::main(),
+    };
+    let Ok(Applied::Loaded(said)) = edit.apply(&mut painting) else {
+        unreachable!("a load");
+    };
+    let report = painting.report();
+    let on_brush = |paint: &str| report.paints_m3[paint]["brush"];
+    let carried = report.accounts_m3["brush"];
+    for (paint, expected) in [
+        ("Cobalt Blue", 0.225),
+        ("Hansa Yellow Opaque", 0.075),
+        ("Thinner", 0.7),
+    ] {
+        for got in [share(&said, paint), on_brush(paint) / carried] {
+            assert!((got - expected).abs() < 1e-3, "{paint}: {got}");
+        }
+    }
+    assert_eq!(painting.report().quanta_missing, 0);
 }

@@ -3,10 +3,10 @@
 use eframe::egui::{Button, TextEdit, Ui};
 use maulstick_rig::UserError;
 use maulstick_types::edits::Clean;
-use maulstick_types::values::BrushName;
+use maulstick_types::values::{BrushName, ThinnerShare};
 
 use crate::input::keys::Action;
-use crate::settings::brush_load::{MOST_THINNER, completed, completions};
+use crate::settings::brush_load::{completed, completions};
 use crate::widgets::brush_gauge;
 use crate::widgets::context::PanelContext;
 use crate::widgets::labelled;
@@ -55,7 +55,7 @@ impl PaintRows {
             });
         }
         let mut percent = (work.preferences.loading.thinner * 100.0).round();
-        let most = MOST_THINNER * 100.0;
+        let most = ThinnerShare::MOST.get() * 100.0;
         let slider = labelled::slider(&mut percent, 0.0..=most, " %").max_decimals(0);
         let hover =
             tr!("Share of thinner in what the brush takes up: thin paint is transparent and runs.");

@@ -29,6 +29,10 @@ fn findings(hid: Vec<Attached>, serial: Vec<Attached>) -> Findings {
             path: None,
             looked_in: Vec::new(),
         },
+        openxr: Library {
+            path: None,
+            looked_in: Vec::new(),
+        },
         inverse_service: Service {
             address: INVERSE_SERVICE,
             listens: false,

@@ -4,7 +4,7 @@ use serde::{Deserialize as _, Deserializer};
 
 use crate::edits::{Form, StepForm, read};
 use crate::scene::CANVAS;
-use crate::values::{BrushName, Distance, ValueError};
+use crate::values::{BrushName, Distance, ThinnerShare, ValueError};
 use crate::wire::define::wire_struct;
 
 wire_struct! {
@@ -23,6 +23,9 @@ wire_struct! {
         /// Surface: 0 for the canvas, 1 for the palette
         #[cfg_attr(feature = "cli", arg(long, value_name = "NUMBER", default_value_t = CANVAS))]
         pub surface: u32,
+        /// Share of thinner that is added, 0 to .95
+        #[cfg_attr(feature = "cli", arg(long, value_name = "SHARE", default_value_t = ThinnerShare::NONE))]
+        pub thinner: ThinnerShare,
         /// Brush of the rig
         #[cfg_attr(feature = "cli", arg(long, default_value = "main"))]
         pub brush: BrushName,
@@ -35,15 +38,17 @@ struct LoadFromStep {
     load_from: [Distance; 2],
     #[serde(default = "read::canvas")]
     surface: u32,
+    #[serde(default)]
+    thinner: ThinnerShare,
 }
 
 impl Form for LoadFrom {
     const STEPS: &'static [StepForm] = &[StepForm::new(
         "load_from",
-        &["surface"],
-        "{ load_from = [120, 45] }",
+        &["surface", "thinner"],
+        "{ load_from = [120, 45], thinner = 0.5 }",
     )];
-    const ARGUMENTS: Option<&'static str> = Some("load-from|120|45");
+    const ARGUMENTS: Option<&'static str> = Some("load-from|120|45|--thinner|0.5");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
         Some(crate::edits::CommandForm::of::<Self>("load-from", "Brush"));
@@ -53,17 +58,23 @@ impl Form for LoadFrom {
             x: Distance::in_unit(120.0)?,
             y: Distance::in_unit(45.0)?,
             surface: CANVAS,
+            thinner: ThinnerShare::in_unit(0.5)?,
             brush: BrushName::main(),
         })
     }
 
     fn read_step<'de, D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        let LoadFromStep { load_from, surface } = LoadFromStep::deserialize(from)?;
+        let LoadFromStep {
+            load_from,
+            surface,
+            thinner,
+        } = LoadFromStep::deserialize(from)?;
         let [x, y] = load_from;
         Ok(Self {
             x,
             y,
             surface,
+            thinner,
             brush: BrushName::main(),
         })
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::Counts;
 use maulstick_model::brush::load::Half;
-use maulstick_optics::THINNER;
+use maulstick_optics::{THINNER, thinned};
 use maulstick_types::edits::{Clean, Load, LoadFrom};
 use maulstick_types::scene::{Scene, Surface, WellKind};
 use maulstick_types::values::Distance;
@@ -55,6 +55,7 @@ impl Apply for LoadFrom {
         let mixture = mixture_of(&counts, &painting.scene)
             .or_else(|| well_at(&painting.scene.surfaces[on], at_m))
             .ok_or(EditError::NoPaintThere { at_m })?;
+        let mixture = thinned(&mixture, self.thinner);
         Load {
             mixture: mixture.clone(),
             beside: None,

@@ -12,7 +12,7 @@ use mcap::MAGIC;
 use mcap::records::op;
 
 /// Opcode and length of a record, bytes.
-pub(crate) const HEAD: usize = 9;
+pub const HEAD: usize = 9;
 /// The first opcode that MCAP leaves to applications.
 const FIRST_PRIVATE: u8 = 0x80;
 /// Window of a zstd frame that is decompressed, as a power of 2 in bytes; zstd's own levels up to 19 need it.
@@ -24,25 +24,25 @@ const LEAST_ROOM: usize = 1 << 20;
 
 /// A record of a file or chunk, or damaged bytes that begin where one was expected.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Found<'a> {
+pub struct Found<'a> {
     /// Offset of its beginning, bytes.
-    pub(crate) at: usize,
+    pub at: usize,
     /// Its kind; see [`mcap::records::op`].
-    pub(crate) opcode: u8,
+    pub opcode: u8,
     /// Its content. Of a damaged one all up to the next record.
-    pub(crate) body: &'a [u8],
+    pub body: &'a [u8],
     /// True if its length is one that its kind may have, and another record begins at its end.
-    pub(crate) whole: bool,
+    pub whole: bool,
 }
 
 /// Records one after the other.
-pub(crate) struct Records<'a> {
+pub struct Records<'a> {
     bytes: &'a [u8],
     at: usize,
 }
 
 /// The records of `bytes` from `at` on, up to the closing magic or the end.
-pub(crate) fn records(bytes: &[u8], at: usize) -> Records<'_> {
+pub fn records(bytes: &[u8], at: usize) -> Records<'_> {
     Records { bytes, at }
 }
 
@@ -164,15 +164,15 @@ fn chunk_data(body: &[u8]) -> Option<(&str, u64, &[u8])> {
 }
 
 /// Records of a chunk, decompressed.
-pub(crate) struct Unpacked<'a> {
+pub struct Unpacked<'a> {
     /// As far as they can be had.
-    pub(crate) bytes: Cow<'a, [u8]>,
+    pub bytes: Cow<'a, [u8]>,
     /// The damage, if some are missing or changed.
-    pub(crate) damage: Option<String>,
+    pub damage: Option<String>,
 }
 
 /// Decompresses the body of a chunk record, as far as that goes.
-pub(crate) fn unpack(body: &[u8]) -> Unpacked<'_> {
+pub fn unpack(body: &[u8]) -> Unpacked<'_> {
     let nothing = |damage: String| Unpacked {
         bytes: Cow::Borrowed(&[]),
         damage: Some(damage),

@@ -1,0 +1,24 @@
+//! Streams of a rig as data, whatever their messages are.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`field_table`] | bodies of messages, decoded by their field tables |
+//! | [`value`] | what comes of it |
+//! | [`topic_pattern`] | patterns of topics |
+//! | [`traffic`] | rates, losses and delays |
+//! | [`recording_writer`], [`recording`] | recordings, written and read |
+//! | [`mcap_records`] | records of MCAP files, read within their bounds |
+
+pub mod field_table;
+pub mod mcap_records;
+pub mod recording;
+pub mod recording_writer;
+pub mod topic_pattern;
+pub mod traffic;
+pub mod value;
+
+pub use field_table::{FieldTable, TableError};
+pub use recording::Recording;
+pub use recording_writer::RecordingWriter;
+pub use traffic::Traffic;
+pub use value::Value;

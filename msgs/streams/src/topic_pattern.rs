@@ -1,0 +1,43 @@
+//! Patterns of topics: `*` for one part of a topic, `**` for any number of them.
+
+/// True if a topic, without the rig's prefix, is one that a pattern means.
+#[must_use]
+pub fn matches(pattern: &str, topic: &str) -> bool {
+    let pattern: Vec<&str> = pattern.split('/').collect();
+    let topic: Vec<&str> = topic.split('/').collect();
+    parts_match(&pattern, &topic)
+}
+
+fn parts_match(pattern: &[&str], topic: &[&str]) -> bool {
+    match (pattern.split_first(), topic.split_first()) {
+        (None, None) => true,
+        (Some((&"**", rest)), _) => (0..=topic.len()).any(|from| parts_match(rest, &topic[from..])),
+        (Some((part, rest)), Some((own, others))) => {
+            (*part == "*" || part == own) && parts_match(rest, others)
+        }
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::matches;
+
+    #[test]
+    fn stars_stand_for_parts() {
+        for (pattern, fits, others) in [
+            ("stylus/*/sample", "stylus/pen/sample", "stylus/pen/info"),
+            ("**", "scene", ""),
+            ("**/state", "brush/main/state", "brush/main/look"),
+            ("brush/**", "brush/main/look", "brushes/main"),
+            ("scene", "scene", "scene/a"),
+            ("*", "scene", "paint/status"),
+        ] {
+            assert!(matches(pattern, fits), "{pattern} {fits}");
+            assert!(
+                pattern == "**" || !matches(pattern, others),
+                "{pattern} {others}"
+            );
+        }
+    }
+}

@@ -1,0 +1,280 @@
+//! Rates, losses and delays of streams, counted message by message.
+//!
+//! A stream is what one sender sends on one topic from one start to the next. Its messages are numbered, so what is
+//! missing is known exactly, however late some come.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use maulstick_types::Origin;
+use maulstick_types::wire::header::Header;
+
+/// Samples of one measure at most; beyond, each second one is dropped and the rest stand for two.
+const MOST_SAMPLES: usize = 1 << 16;
+
+/// Missing numbers of a stream that are remembered, should they still come.
+const MOST_MISSING: usize = 4096;
+
+/// A message that arrived.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Arrived {
+    /// Its header.
+    pub header: Header,
+    /// Header and body, bytes.
+    pub bytes: usize,
+    /// When, rig clock, ns.
+    pub arrived_ns: u64,
+}
+
+/// Distribution of times, ns.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Distribution {
+    samples: Vec<u64>,
+    /// Each so many times.
+    every: u64,
+    skipped: u64,
+    most: u64,
+}
+
+impl Distribution {
+    fn add(&mut self, ns: u64) {
+        self.most = self.most.max(ns);
+        self.every = self.every.max(1);
+        self.skipped += 1;
+        if self.skipped < self.every {
+            return;
+        }
+        self.skipped = 0;
+        self.samples.push(ns);
+        if self.samples.len() >= MOST_SAMPLES {
+            let mut keep = false;
+            self.samples.retain(|_| {
+                keep = !keep;
+                keep
+            });
+            self.every *= 2;
+        }
+    }
+
+    /// The time that a share of them does not exceed, ns; 0 without any.
+    #[must_use]
+    pub fn quantile(&self, share: f64) -> u64 {
+        let mut sorted = self.samples.clone();
+        sorted.sort_unstable();
+        let last = sorted.len().saturating_sub(1);
+        let place = (share * last as f64).round() as usize;
+        sorted.get(place.min(last)).copied().unwrap_or(0)
+    }
+
+    /// The longest, ns.
+    #[must_use]
+    pub fn most(&self) -> u64 {
+        self.most
+    }
+}
+
+/// What was heard of a stream.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Stream {
+    /// Hash of its messages' field table.
+    pub schema: u32,
+    /// Messages.
+    pub messages: u64,
+    /// Bytes, headers among them.
+    pub bytes: u64,
+    /// Messages that are missing between the first and the last one heard.
+    pub lost: u64,
+    /// Messages that came twice, or after one that was sent later.
+    pub disordered: u64,
+    /// Time between two arrivals.
+    pub gaps: Distribution,
+    /// From sending to arrival.
+    pub on_the_way: Distribution,
+    /// From sampling to arrival.
+    pub age: Distribution,
+    first_ns: u64,
+    last_ns: u64,
+    /// One more than the highest number.
+    next_seq: u64,
+    /// The newest of the missing numbers.
+    missing: BTreeSet<u64>,
+}
+
+impl Stream {
+    fn add(&mut self, message: &Arrived) {
+        let Arrived {
+            header,
+            bytes,
+            arrived_ns,
+        } = *message;
+        if self.messages == 0 {
+            self.first_ns = arrived_ns;
+            self.next_seq = header.seq;
+        } else {
+            self.gaps.add(arrived_ns.saturating_sub(self.last_ns));
+        }
+        self.schema = header.schema;
+        self.messages += 1;
+        self.bytes += bytes as u64;
+        self.last_ns = arrived_ns;
+        self.on_the_way
+            .add(arrived_ns.saturating_sub(header.sent_ns));
+        self.age.add(arrived_ns.saturating_sub(header.event_ns));
+        if header.seq >= self.next_seq {
+            self.lost += header.seq - self.next_seq;
+            self.missing
+                .extend((self.next_seq..header.seq).rev().take(MOST_MISSING));
+            while self.missing.len() > MOST_MISSING {
+                self.missing.pop_first();
+            }
+            self.next_seq = header.seq.saturating_add(1);
+        } else {
+            self.disordered += 1;
+            self.lost -= u64::from(self.missing.remove(&header.seq));
+        }
+    }
+
+    /// Messages a second, between the first and the last; 0 of fewer than two.
+    #[must_use]
+    pub fn rate_hz(&self) -> f64 {
+        let passed_s = self.last_ns.saturating_sub(self.first_ns) as f64 * 1e-9;
+        match self.messages >= 2 && passed_s > 0.0 {
+            true => (self.messages - 1) as f64 / passed_s,
+            false => 0.0,
+        }
+    }
+
+    /// Share of its messages that are missing.
+    #[must_use]
+    pub fn loss(&self) -> f64 {
+        let sent = self.messages + self.lost;
+        self.lost as f64 / sent.max(1) as f64
+    }
+}
+
+/// Streams by topic and sender.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Traffic {
+    streams: BTreeMap<(String, Origin), Stream>,
+}
+
+impl Traffic {
+    /// Takes in a message of a topic.
+    pub fn add(&mut self, topic: &str, message: &Arrived) {
+        let key = (topic.to_owned(), message.header.origin());
+        self.streams.entry(key).or_default().add(message);
+    }
+
+    /// The streams, by topic.
+    pub fn streams(&self) -> impl Iterator<Item = (&str, Origin, &Stream)> {
+        let streams = self.streams.iter();
+        streams.map(|((topic, origin), stream)| (topic.as_str(), *origin, stream))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_types::Flags;
+
+    use super::*;
+
+    /// A message that was sampled, sent and heard at these times, ms.
+    fn message(seq: u64, [event, sent, arrived]: [u64; 3]) -> Arrived {
+        Arrived {
+            header: Header {
+                version: 1,
+                schema: 9,
+                source: 7,
+                epoch: 1,
+                flags: Flags::NONE,
+                length: 52,
+                seq,
+                event_ns: event * 1_000_000,
+                sent_ns: sent * 1_000_000,
+            },
+            bytes: 100,
+            arrived_ns: arrived * 1_000_000,
+        }
+    }
+
+    fn heard(messages: impl IntoIterator<Item = Arrived>) -> Stream {
+        let mut traffic = Traffic::default();
+        for message in messages {
+            traffic.add("a", &message);
+        }
+        let (topic, _, stream) = traffic.streams().next().expect("one");
+        assert_eq!(topic, "a");
+        stream.clone()
+    }
+
+    /// A sender of 1000 messages 4 ms apart that drops each tenth, and delays each fiftieth by 30 ms.
+    #[test]
+    fn drops_and_delays_by_plan_are_counted_exactly() {
+        let sent = (0..1000u64).filter(|seq| seq % 10 != 5);
+        let mut plan: Vec<Arrived> = sent
+            .map(|seq| {
+                let delay = if seq % 50 == 0 { 30 } else { 1 };
+                message(seq, [4 * seq, 4 * seq + 1, 4 * seq + 1 + delay])
+            })
+            .collect();
+        plan.sort_by_key(|message| message.arrived_ns);
+        let stream = heard(plan);
+        assert_eq!((stream.messages, stream.lost), (900, 100));
+        // Seven messages overtake each delayed one, of which one was dropped before.
+        assert_eq!(stream.disordered, 20);
+        assert!((stream.loss() - 0.1).abs() < 1e-12);
+        assert_eq!(stream.on_the_way.quantile(0.5), 1_000_000);
+        assert_eq!(stream.on_the_way.most(), 30_000_000);
+        assert_eq!(stream.age.quantile(0.5), 2_000_000);
+        assert_eq!(stream.gaps.most(), 8_000_000);
+        assert_eq!(stream.bytes, 90_000);
+    }
+
+    #[test]
+    fn a_rate_is_that_of_what_arrives() {
+        let stream = heard((0..101).map(|seq| message(seq, [10 * seq; 3])));
+        assert!((stream.rate_hz() - 100.0).abs() < 1e-9);
+        assert_eq!(heard([message(3, [0; 3])]).rate_hz(), 0.0);
+        assert_eq!(
+            heard([message(3, [0; 3])]).lost,
+            0,
+            "nobody heard it from its start"
+        );
+    }
+
+    #[test]
+    fn what_comes_twice_is_not_found_again() {
+        let stream = heard([0, 1, 5, 5, 3, 3].map(|seq| message(seq, [0; 3])));
+        assert_eq!(
+            (stream.lost, stream.disordered),
+            (2, 3),
+            "2 and 4 are missing"
+        );
+        let far = heard([0, u64::MAX].map(|seq| message(seq, [0; 3])));
+        assert_eq!(far.lost, u64::MAX - 1);
+        assert_eq!(far.missing.len(), MOST_MISSING);
+    }
+
+    #[test]
+    fn a_sender_that_starts_anew_is_another_stream() {
+        let mut traffic = Traffic::default();
+        let first = message(99, [0; 3]);
+        let mut second = message(0, [1; 3]);
+        second.header.epoch = 2;
+        traffic.add("a", &first);
+        traffic.add("a", &second);
+        assert_eq!(traffic.streams().count(), 2);
+        assert!(traffic.streams().all(|(_, _, stream)| stream.lost == 0));
+    }
+
+    #[test]
+    fn a_long_measurement_keeps_its_quantiles_in_bounded_memory() {
+        let mut times = Distribution::default();
+        (0..1_000_000).for_each(|ns| times.add(ns));
+        assert!(times.samples.len() < MOST_SAMPLES);
+        for share in [0.1, 0.5, 0.99] {
+            let off = times.quantile(share) as f64 - share * 1e6;
+            assert!(off.abs() < 100.0, "{share}: {off}");
+        }
+        assert_eq!(times.most(), 999_999);
+    }
+}

@@ -1,0 +1,95 @@
+//! Crosses at the corners of the desk's usual canvas, while a device is fitted to it: on a pen display they are what the
+//! nib is to touch.
+
+use eframe::egui::{Color32, Painter, Stroke, vec2};
+use glam::DVec3;
+use maulstick_device::corner_calibration::Corner;
+use maulstick_types::scene::Surface;
+
+use crate::view::camera::View;
+
+/// Half of a cross, points.
+const ARM: f32 = 14.0;
+/// The corner that is asked for.
+const ASKED: Color32 = Color32::from_rgb(240, 120, 30);
+/// The others.
+const OTHER: Color32 = Color32::from_gray(150);
+
+/// The corner that the newest lines of a fit ask for.
+#[must_use]
+pub(crate) fn asked(said: &[String]) -> Option<Corner> {
+    let of_line = |line: &String| {
+        let mut corners = Corner::ALL.into_iter();
+        corners.find(|corner| line.starts_with(&format!("touch the {corner} corner ")))
+    };
+    said.iter().rev().find_map(of_line)
+}
+
+/// Where a corner lies on the desk, m, of a canvas that lies as it does in the beginning.
+#[must_use]
+fn place(canvas: &Surface, corner: Corner) -> DVec3 {
+    let [x, y] = canvas
+        .cells
+        .map(|cells| 0.5 * f64::from(cells) * canvas.cell_m);
+    match corner {
+        Corner::LowerLeft => DVec3::new(-x, -y, 0.0),
+        Corner::LowerRight => DVec3::new(x, -y, 0.0),
+        Corner::UpperLeft => DVec3::new(-x, y, 0.0),
+    }
+}
+
+/// Draws them.
+pub(crate) fn draw(painter: &Painter, view: &View, canvas: &Surface, said: &[String]) {
+    let asked = asked(said);
+    for corner in Corner::ALL {
+        let at = view.to_window(place(canvas, corner));
+        let colour = match asked == Some(corner) {
+            true => ASKED,
+            false => OTHER,
+        };
+        // On any ground: a dark rim below.
+        for stroke in [
+            Stroke::new(5.0, Color32::from_black_alpha(130)),
+            Stroke::new(2.0, colour),
+        ] {
+            for arm in [vec2(ARM, 0.0), vec2(0.0, ARM)] {
+                painter.line_segment([at - arm, at + arm], stroke);
+            }
+            painter.circle_stroke(at, 0.5 * ARM, stroke);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_painting::PaintingSetup;
+
+    use super::*;
+
+    #[test]
+    fn the_newest_question_is_the_one_that_is_asked() {
+        let lines = |lines: &[&str]| lines.iter().map(ToString::to_string).collect::<Vec<_>>();
+        assert_eq!(asked(&lines(&["tablet: an Intuos"])), None);
+        let ask = |corner: Corner| format!("touch the {corner} corner of the canvas with the pen");
+        let [first, second, third] = Corner::ALL.map(ask);
+        assert_eq!(asked(&lines(&["tablet", &first])), Some(Corner::LowerLeft));
+        let found = "lower left: 0.1, 0.2, 0.0 mm";
+        assert_eq!(
+            asked(&lines(&[&first, found, &second])),
+            Some(Corner::LowerRight)
+        );
+        let all = [&first, found, &second, &third, "the hand moved"];
+        assert_eq!(asked(&lines(&all)), Some(Corner::UpperLeft));
+    }
+
+    #[test]
+    fn they_lie_where_the_fit_takes_the_corners_to_be() {
+        let scene = PaintingSetup::default().scene();
+        let canvas = &scene.surfaces[0];
+        let size = canvas.cells.map(|cells| f64::from(cells) * canvas.cell_m);
+        let [left, right, upper] = Corner::ALL.map(|corner| place(canvas, corner));
+        assert!((right.x - left.x - size[0]).abs() < 1e-12 && left.y == right.y);
+        assert!((upper.y - left.y - size[1]).abs() < 1e-12 && left.x == upper.x);
+        assert!((right + upper).length() < 1e-12, "about the desk's origin");
+    }
+}
