@@ -8,9 +8,11 @@ use maulstick_rig::files::{allow_overwriting, clear_on_signals};
 use maulstick_types::edits::commands;
 
 use crate::advice;
+use crate::commands::measure::Measure;
 use crate::commands::{
-    begin, bench, brush, demo, device, edit, endpoint, export, fit, force, import, light, matching,
-    mix, open, painting, paints, render, save_as, schema, snapshot, take,
+    begin, bench, brush, demo, device, echo, edit, endpoint, export, fit, force, import, light,
+    matching, measure, mix, nodes, open, painting, paints, record, recording, render, save_as,
+    schema, snapshot, take,
 };
 use crate::processes::{self, NodeCommand};
 use crate::up;
@@ -82,6 +84,21 @@ enum Command {
     Bench(bench::BenchOptions),
     /// Show the force of a brush on the hand, by depth and angle
     Force(force::ForceOptions),
+    /// List the processes of a rig
+    Nodes(nodes::NodesOptions),
+    /// List what a rig sends
+    Topics(measure::MeasureOptions),
+    /// Print the messages of a topic as they come
+    Echo(echo::EchoOptions),
+    /// Measure how often messages come, and how many are missing
+    Hz(measure::MeasureOptions),
+    /// Measure how long messages are on the way
+    Latency(measure::MeasureOptions),
+    /// Record what a rig sends
+    Record(record::RecordOptions),
+    /// Show a recording, or export its messages
+    #[command(subcommand)]
+    Recording(recording::RecordingCommand),
 }
 
 /// The commands as `maulstick --help` lists them; those of edits stand before them, as each edit says.
@@ -97,6 +114,18 @@ const GROUPS: &[(&str, &[&str])] = &[
     ("Brush", &["brush"]),
     ("Colour", &["paints", "mix", "match", "fit"]),
     ("Takes", &["demo", "import", "render", "take"]),
+    (
+        "Streams",
+        &[
+            "nodes",
+            "topics",
+            "echo",
+            "hz",
+            "latency",
+            "record",
+            "recording",
+        ],
+    ),
     ("Devices", &["device", "force"]),
     ("Measure", &["bench"]),
 ];
@@ -144,6 +173,12 @@ pub fn run() -> Result<i32, UserError> {
     let handles_signals = match &command {
         Command::Up(_) | Command::Node(_) => true,
         Command::Device(command) => command.handles_signals(),
+        Command::Nodes(_)
+        | Command::Topics(_)
+        | Command::Echo(_)
+        | Command::Hz(_)
+        | Command::Latency(_)
+        | Command::Record(_) => true,
         _ => false,
     };
     if !handles_signals {
@@ -179,6 +214,13 @@ fn carry_out(command: Command) -> Result<i32, UserError> {
         Command::Fit(options) => fit::run(&options),
         Command::Bench(options) => bench::run(&options),
         Command::Force(options) => force::run(&options),
+        Command::Nodes(options) => nodes::run(&options),
+        Command::Topics(options) => measure::run(&options, Measure::Topics),
+        Command::Echo(options) => echo::run(&options),
+        Command::Hz(options) => measure::run(&options, Measure::Rates),
+        Command::Latency(options) => measure::run(&options, Measure::Delays),
+        Command::Record(options) => record::run(&options),
+        Command::Recording(command) => recording::run(&command),
     }
 }
 

@@ -27,6 +27,8 @@ pub enum Kind {
     Brush,
     /// Recording of a HID device, text.
     Recording,
+    /// Messages of a recording, CSV or lines of JSON.
+    Messages,
     /// File that belongs to the program whatever it holds: settings, and what lies in folders of its own.
     Own,
 }
@@ -68,6 +70,7 @@ impl Kind {
             Self::Paints => "a fitted paint file",
             Self::Brush => "a brush file",
             Self::Recording => "a recording of a device",
+            Self::Messages => "exported messages",
             Self::Own => "a file of Maulstick",
         }
     }
@@ -87,6 +90,9 @@ impl Kind {
             Self::Recording => [b"D:", b"R:", b"E:", b"N:"]
                 .iter()
                 .any(|mark| head.starts_with(*mark)),
+            Self::Messages => [&b"topic,seconds,seq,event_ns,"[..], b"{\"arrived_ns\":"]
+                .iter()
+                .any(|mark| head.starts_with(mark)),
             Self::Own => true,
         }
     }

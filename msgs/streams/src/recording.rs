@@ -208,6 +208,33 @@ impl Recording {
             }
         }
         self.chunks.sort_by_key(|chunk| chunk.at);
+        for record in &found {
+            if [op::METADATA_INDEX, op::ATTACHMENT_INDEX].contains(&record.opcode) {
+                let number = |place: usize| {
+                    let bytes = record.body.get(8 * place..8 * place + 8)?;
+                    Some(u64::from_le_bytes(bytes.try_into().ok()?))
+                };
+                let [at, bytes] = [0, 1].map(|place| number(place).unwrap_or(0));
+                let side = self.read(at, bytes).unwrap_or_default();
+                records(&side, 0).take(1).for_each(|side| self.aside(&side));
+            } else {
+                self.aside(record);
+            }
+        }
+    }
+
+    /// Takes in what a recording says of itself, or a file that it holds.
+    fn aside(&mut self, record: &Found<'_>) {
+        if !record.whole || ![op::METADATA, op::ATTACHMENT].contains(&record.opcode) {
+            return;
+        }
+        match mcap::parse_record(record.opcode, record.body) {
+            Ok(Record::Metadata(note)) => drop(self.notes.insert(note.name, note.metadata)),
+            Ok(Record::Attachment { header, data, .. }) => {
+                self.files.insert(header.name, data.into_owned());
+            }
+            _ => {}
+        }
     }
 
     /// Finds the chunks of a file without an index.

@@ -23,6 +23,12 @@ pub struct Target {
 }
 
 impl Target {
+    /// Name of the rig.
+    #[must_use]
+    pub fn rig(&self) -> &str {
+        &self.name
+    }
+
     /// The rig called `name`.
     #[must_use]
     pub fn named(name: &str) -> Self {

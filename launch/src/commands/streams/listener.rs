@@ -1,0 +1,141 @@
+//! Messages of a running rig, whatever they are: a member of its own, to which the nodes send directly.
+
+use std::time::Instant;
+
+use maulstick_bus::{Qos, Queue, RigFolder, Subscription};
+use maulstick_rig::{NodeArgs, NodeHandle, UserError};
+use maulstick_streams::topic_pattern::matches;
+use maulstick_streams::traffic::Arrived;
+use maulstick_types::Header;
+
+use crate::commands::session::Target;
+
+/// Topics whose last message is kept for late joiners.
+const CACHED: [&str; 4] = ["scene", "brush/*/def", "brush/*/look", "stylus/*/info"];
+/// Messages that wait while this program is busy: some seconds of all streams.
+const ROOM: usize = 1 << 15;
+
+/// A message that was heard.
+pub(super) struct Heard {
+    /// Its topic, without the rig's prefix.
+    pub topic: String,
+    /// Header, size and time.
+    pub message: Arrived,
+    /// Header and body.
+    pub bytes: Vec<u8>,
+}
+
+/// Hears the topics of a pattern.
+pub(super) struct Listener {
+    /// This program in the rig.
+    pub member: NodeHandle,
+    pattern: String,
+    live: Subscription,
+    cached: Vec<Subscription>,
+    /// Messages that are none of Maulstick's.
+    pub foreign: u64,
+}
+
+impl Listener {
+    /// Joins the rig.
+    ///
+    /// # Errors
+    /// A [`UserError`] where no rig of that name runs, or the pattern is none.
+    pub(super) fn open(target: &Target, pattern: &str) -> Result<Self, UserError> {
+        let (folder, _) = RigFolder::join(target.rig())?;
+        let member = NodeHandle::join(&NodeArgs {
+            folder: folder.path().to_owned(),
+            node: format!("listener-{}", std::process::id()),
+            guarded: false,
+        })?;
+        let pattern = pattern.trim_start_matches(member.topics.prefix());
+        let is_key = !pattern.is_empty() && pattern.split('/').all(|part| !part.is_empty());
+        if !is_key || pattern.contains(['?', '#', '$']) {
+            let what = format!("'{pattern}' is no topic");
+            return Err(UserError::usage(what).help(
+                "a topic such as stylus/pen/sample, with * for any one part and ** for any number of them",
+            ));
+        }
+        let key = format!("{}{pattern}", member.topics.prefix());
+        let live = member
+            .bus
+            .subscribe(&key, Qos::RealTime, Queue::Ring(ROOM), &member.wake)?;
+        let cached = CACHED.iter().map(|topic| {
+            let key = format!("{}{topic}", member.topics.prefix());
+            let room = Queue::Ring(ROOM);
+            member.bus.subscribe(&key, Qos::Cached, room, &member.wake)
+        });
+        let cached = cached.collect::<Result<_, _>>()?;
+        Ok(Self {
+            pattern: pattern.to_owned(),
+            live,
+            cached,
+            foreign: 0,
+            member,
+        })
+    }
+
+    /// The next message until then, or until this program is told to end.
+    pub(super) fn next(&mut self, until: Instant) -> Option<Heard> {
+        while !self.member.stop.requested() {
+            if let Some(heard) = self.waiting() {
+                return Some(heard);
+            }
+            let left = until.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return None;
+            }
+            self.member.wake.wait(left);
+        }
+        None
+    }
+
+    /// A message that has arrived.
+    fn waiting(&mut self) -> Option<Heard> {
+        let is_cached = |topic: &str| CACHED.iter().any(|pattern| matches(pattern, topic));
+        loop {
+            let of_cache = self.cached.iter().find_map(Subscription::try_recv);
+            let came_cached = of_cache.is_some();
+            let arrival = of_cache.or_else(|| self.live.try_recv())?;
+            let Some(topic) = self.member.topics.relative(&arrival.key) else {
+                continue;
+            };
+            // A message of a cached topic comes twice.
+            if is_cached(topic) != came_cached || !matches(&self.pattern, topic) {
+                continue;
+            }
+            let Ok(header) = Header::from_bytes(&arrival.bytes) else {
+                self.foreign += 1;
+                continue;
+            };
+            return Some(Heard {
+                topic: topic.to_owned(),
+                message: Arrived {
+                    header,
+                    bytes: arrival.bytes.len(),
+                    arrived_ns: arrival.arrived_ns,
+                },
+                bytes: arrival.bytes,
+            });
+        }
+    }
+
+    /// Messages that this program was too slow for.
+    #[must_use]
+    pub(super) fn dropped(&self) -> u64 {
+        let all = self.cached.iter().chain([&self.live]);
+        all.map(|subscription| subscription.counts().dropped).sum()
+    }
+
+    /// True if this program was told to end.
+    #[must_use]
+    pub(super) fn is_over(&self) -> bool {
+        self.member.stop.requested()
+    }
+
+    /// True while the rig runs.
+    #[must_use]
+    pub(super) fn has_rig(&self) -> bool {
+        RigFolder::join_at(&self.member.folder).is_ok()
+    }
+}

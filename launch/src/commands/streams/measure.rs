@@ -1,0 +1,198 @@
+//! `maulstick topics`, `hz` and `latency`: what streams carry, measured for some seconds.
+
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use maulstick_rig::UserError;
+use maulstick_streams::Traffic;
+use maulstick_streams::traffic::{Distribution, Stream};
+use maulstick_types::{CATALOGUE, Origin};
+use serde_json::{Value, json};
+
+use super::listener::Listener;
+use super::table::table;
+use crate::commands::session::Target;
+use crate::commands::{print_json, print_text};
+
+/// Options of `maulstick topics`, `hz` and `latency`.
+#[derive(Args, Clone, Debug)]
+pub struct MeasureOptions {
+    /// Topic, such as stylus/*/sample: * stands for one part, ** for any number
+    #[arg(default_value = "**")]
+    topic: String,
+    /// Measure for so long, s
+    #[arg(long, value_name = "S", default_value_t = 2.0)]
+    seconds: f64,
+    /// Measure once; otherwise again and again until Ctrl-C
+    #[arg(long)]
+    once: bool,
+    /// Print JSON, once
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// What is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// Which topics there are.
+    Topics,
+    /// How often messages come, and how many are missing.
+    Rates,
+    /// How long they take.
+    Delays,
+}
+
+/// Measures and prints.
+///
+/// # Errors
+/// A [`UserError`] for a rig that does not run, or a time that is none.
+pub fn run(options: &MeasureOptions, measure: Measure) -> Result<i32, UserError> {
+    if !(0.1..=3600.0).contains(&options.seconds) {
+        let what = format!("{} s is out of range", options.seconds);
+        return Err(UserError::usage(what).help("measure for .1 to 3600 s"));
+    }
+    let mut listener = Listener::open(&options.target, &options.topic)?;
+    loop {
+        let mut traffic = Traffic::default();
+        let until = Instant::now() + Duration::from_secs_f64(options.seconds);
+        while let Some(heard) = listener.next(until) {
+            traffic.add(&heard.topic, &heard.message);
+        }
+        if options.json {
+            let streams: Vec<Value> = traffic.streams().map(entry).collect();
+            print_json(&json!({
+                "seconds": options.seconds,
+                "streams": streams,
+                "dropped_here": listener.dropped(),
+                "foreign": listener.foreign,
+            }))?;
+            return Ok(0);
+        }
+        print_text(&shown(&listener, &traffic, measure))?;
+        if options.once || listener.is_over() || !listener.has_rig() {
+            return Ok(0);
+        }
+        print_text("\n")?;
+    }
+}
+
+/// Name and version of the messages of a hash.
+#[must_use]
+pub(super) fn message_of(schema: u32) -> String {
+    let mut entries = CATALOGUE.iter();
+    let entry = entries.find(|entry| (entry.schema)().hash == schema);
+    entry.map_or_else(
+        || format!("unknown {schema:#010x}"),
+        |entry| format!("{} {}", entry.name, entry.version),
+    )
+}
+
+/// A stream with its topic and sender.
+type Row<'a> = (&'a str, Origin, &'a Stream);
+
+fn entry((topic, origin, stream): Row<'_>) -> Value {
+    let times = |of: &maulstick_streams::traffic::Distribution| json!({"p50": of.quantile(0.5), "p90": of.quantile(0.9), "p99": of.quantile(0.99), "most": of.most()});
+    json!({
+        "topic": topic,
+        "source": origin.source,
+        "epoch": origin.epoch,
+        "message": message_of(stream.schema),
+        "messages": stream.messages,
+        "bytes": stream.bytes,
+        "rate_hz": stream.rate_hz(),
+        "lost": stream.lost,
+        "disordered": stream.disordered,
+        "gap_ns": times(&stream.gaps),
+        "on_the_way_ns": times(&stream.on_the_way),
+        "age_ns": times(&stream.age),
+    })
+}
+
+/// Nanoseconds as milliseconds.
+fn ms(ns: u64) -> String {
+    format!("{:.2}", ns as f64 * 1e-6)
+}
+
+fn shown(listener: &Listener, traffic: &Traffic, measure: Measure) -> String {
+    let streams: Vec<Row<'_>> = traffic.streams().collect();
+    if streams.is_empty() {
+        return "nothing came: `maulstick nodes` lists who is there\n".into();
+    }
+    let mut text = match measure {
+        Measure::Topics => {
+            let rows = streams.iter().map(|(topic, _, stream)| {
+                let rate = format!("{:.1}", stream.rate_hz());
+                let bytes = stream.bytes / stream.messages.max(1);
+                [
+                    (*topic).to_owned(),
+                    message_of(stream.schema),
+                    rate,
+                    bytes.to_string(),
+                ]
+            });
+            let rows: Vec<_> = rows.collect();
+            table(["topic", "message", "a second", "bytes each"], &rows)
+        }
+        Measure::Rates => {
+            let rows = streams.iter().map(|(topic, _, stream)| {
+                [
+                    (*topic).to_owned(),
+                    format!("{:.1}", stream.rate_hz()),
+                    ms(stream.gaps.quantile(0.5)),
+                    ms(stream.gaps.quantile(0.99)),
+                    ms(stream.gaps.most()),
+                    stream.messages.to_string(),
+                    stream.lost.to_string(),
+                ]
+            });
+            let rows: Vec<_> = rows.collect();
+            let head = [
+                "topic",
+                "a second",
+                "gap p50, ms",
+                "p99",
+                "most",
+                "heard",
+                "lost",
+            ];
+            table(head, &rows)
+        }
+        Measure::Delays => {
+            let rows = streams.iter().map(|(topic, _, stream)| {
+                let way = &stream.on_the_way;
+                [
+                    (*topic).to_owned(),
+                    ms(way.quantile(0.5)),
+                    ms(way.quantile(0.9)),
+                    ms(way.quantile(0.99)),
+                    ms(way.most()),
+                    ms(stream.age.quantile(0.5)),
+                    stream.lost.to_string(),
+                ]
+            });
+            let rows: Vec<_> = rows.collect();
+            let head = [
+                "topic",
+                "on the way p50, ms",
+                "p90",
+                "p99",
+                "most",
+                "age p50, ms",
+                "lost",
+            ];
+            table(head, &rows)
+        }
+    };
+    if listener.dropped() > 0 {
+        text += &format!(
+            "{} messages came faster than this program reads\n",
+            listener.dropped()
+        );
+    }
+    if listener.foreign > 0 {
+        text += &format!("{} messages are none of Maulstick's\n", listener.foreign);
+    }
+    text
+}

@@ -1,0 +1,309 @@
+//! `maulstick recording`: what a recording holds, and its messages for other programs.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Write as _;
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+use maulstick_rig::UserError;
+use maulstick_rig::files::{Kind, write_whole};
+use maulstick_streams::recording::{RecordedMessage, Topic};
+use maulstick_streams::topic_pattern::matches;
+use maulstick_streams::traffic::Arrived;
+use maulstick_streams::{Recording, Traffic};
+use serde_json::json;
+
+use super::echo::quoted;
+use super::table::table;
+use crate::commands::{print_json, print_text, say};
+use crate::outputs::{UsedFile, check_outputs};
+
+/// Subcommands of `maulstick recording`.
+#[derive(Subcommand, Clone, Debug)]
+pub enum RecordingCommand {
+    /// Show what a recording holds
+    Info {
+        /// Recording
+        recording: PathBuf,
+        /// Print JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Write the messages of a topic as a table or as JSON
+    Export(ExportOptions),
+}
+
+/// Options of `maulstick recording export`.
+#[derive(Args, Clone, Debug)]
+pub struct ExportOptions {
+    /// Recording
+    recording: PathBuf,
+    /// Topic, such as stylus/*/sample
+    #[arg(long, value_name = "TOPIC")]
+    topic: String,
+    /// Form of the file
+    #[arg(long, value_enum, default_value_t = Form::Csv)]
+    format: Form,
+    /// File to write
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Only this field, such as pose.Contact.pressure; may be given several times
+    #[arg(long, value_name = "PATH")]
+    field: Vec<String>,
+    /// From so many seconds after its beginning
+    #[arg(long, value_name = "S", default_value_t = 0.0)]
+    start: f64,
+    /// To so many seconds after its beginning
+    #[arg(long, value_name = "S")]
+    end: Option<f64>,
+}
+
+/// Forms of an export.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Form {
+    /// Comma-separated values, a row for each message
+    Csv,
+    /// A line of JSON for each message
+    Json,
+}
+
+/// Runs the subcommand.
+///
+/// # Errors
+/// A [`UserError`] for a file that cannot be read or written, a topic that it does not hold.
+pub fn run(command: &RecordingCommand) -> Result<i32, UserError> {
+    match command {
+        RecordingCommand::Info { recording, json } => info(recording, *json),
+        RecordingCommand::Export(options) => export(options),
+    }
+}
+
+/// The whole of a recording.
+const WHOLE: [u64; 2] = [0, u64::MAX];
+
+fn info(path: &std::path::Path, as_json: bool) -> Result<i32, UserError> {
+    let mut recording = Recording::open(path)?;
+    let mut traffic = Traffic::default();
+    let topics = recording.topics().clone();
+    recording.messages(WHOLE, &mut |message| {
+        if let Some(topic) = topics.get(&message.channel) {
+            let arrived = Arrived {
+                header: message.header,
+                bytes: message.bytes.len(),
+                arrived_ns: message.arrived_ns,
+            };
+            traffic.add(&topic.name, &arrived);
+        }
+        true
+    })?;
+    let [first, last] = recording.times_ns().unwrap_or_default();
+    let seconds = (last - first) as f64 * 1e-9;
+    let known: BTreeMap<&str, &str> = topics
+        .values()
+        .map(|topic| {
+            (
+                topic.name.as_str(),
+                topic.message.as_deref().unwrap_or("unknown"),
+            )
+        })
+        .collect();
+    let message = |topic: &str| known.get(topic).copied().unwrap_or("unknown");
+    if as_json {
+        let streams: Vec<_> = traffic
+            .streams()
+            .map(|(topic, origin, stream)| {
+                json!({
+                    "topic": topic,
+                    "source": origin.source,
+                    "epoch": origin.epoch,
+                    "message": message(topic),
+                    "messages": stream.messages,
+                    "bytes": stream.bytes,
+                    "rate_hz": stream.rate_hz(),
+                    "lost": stream.lost,
+                })
+            })
+            .collect();
+        print_json(&json!({
+            "seconds": seconds,
+            "notes": recording.notes,
+            "files": recording.files.keys().collect::<Vec<_>>(),
+            "damage": recording.damage,
+            "streams": streams,
+        }))?;
+        return Ok(0);
+    }
+    let facts = recording.notes.get("recording");
+    let fact = |name: &str| {
+        facts
+            .and_then(|facts| facts.get(name))
+            .map_or("?", String::as_str)
+    };
+    say!(
+        "{:.1} s of {}, by maulstick {}",
+        seconds,
+        fact("rig"),
+        fact("version")
+    );
+    if let Some(damage) = &recording.damage {
+        say!("damaged: {damage}; what is shown can be read");
+    }
+    let rows = traffic.streams().map(|(topic, _, stream)| {
+        [
+            topic.to_owned(),
+            message(topic).to_owned(),
+            stream.messages.to_string(),
+            format!("{:.1}", stream.rate_hz()),
+            format!("{:.1}", stream.bytes as f64 * 1e-3),
+            stream.lost.to_string(),
+        ]
+    });
+    let rows: Vec<_> = rows.collect();
+    let head = ["topic", "message", "messages", "a second", "kB", "lost"];
+    print_text(&table(head, &rows))?;
+    Ok(0)
+}
+
+fn export(options: &ExportOptions) -> Result<i32, UserError> {
+    let mut recording = Recording::open(&options.recording)?;
+    let place = options.recording.display().to_string();
+    let output = UsedFile::new("the export", &options.output).of(Kind::Messages);
+    check_outputs(
+        &[output],
+        &[UsedFile::new("the recording", &options.recording)],
+    )?;
+    let topics: BTreeMap<u16, Topic> = recording
+        .topics()
+        .iter()
+        .filter(|(_, topic)| matches(&options.topic, &topic.name))
+        .map(|(channel, topic)| (*channel, topic.clone()))
+        .collect();
+    if topics.is_empty() {
+        let names: BTreeSet<&str> = recording
+            .topics()
+            .values()
+            .map(|topic| topic.name.as_str())
+            .collect();
+        let what = format!("the recording has no topic '{}'", options.topic);
+        return Err(UserError::unknown(what, &options.topic, names).at(place));
+    }
+    let [first, last] = recording.times_ns().unwrap_or_default();
+    let after = |seconds: f64| first.saturating_add((seconds.max(0.0) * 1e9) as u64);
+    let range = [after(options.start), options.end.map_or(last, after)];
+    if !options.start.is_finite() || options.start < 0.0 || range[0] > range[1] {
+        let long = (last - first) as f64 * 1e-9;
+        let what = format!("there is nothing from {} s on in this range", options.start);
+        return Err(UserError::usage(what)
+            .at(place)
+            .help(format!("the recording is {long:.3} s long")));
+    }
+    let mut lines = Lines {
+        options,
+        topics: &topics,
+        columns: None,
+        text: Vec::new(),
+        messages: 0,
+    };
+    let mut wrong = None;
+    recording.messages(range, &mut |message| match lines.add(&message, first) {
+        Ok(()) => true,
+        Err(fault) => {
+            wrong = Some(fault);
+            false
+        }
+    })?;
+    if let Some(fault) = wrong {
+        return Err(fault.at(place));
+    }
+    let (text, count) = (lines.text, lines.messages);
+    write_whole(&options.output, Kind::Messages, |file| {
+        file.write_all(&text)
+    })
+    .map_err(|error| UserError::writing(&options.output, &error))?;
+    say!("{count} messages in {}", options.output.display());
+    Ok(0)
+}
+
+/// Lines of an export.
+struct Lines<'a> {
+    options: &'a ExportOptions,
+    topics: &'a BTreeMap<u16, Topic>,
+    columns: Option<Vec<String>>,
+    text: Vec<u8>,
+    messages: u64,
+}
+
+impl Lines<'_> {
+    /// Adds a message of one of the topics.
+    fn add(&mut self, message: &RecordedMessage, first_ns: u64) -> Result<(), UserError> {
+        let Some(topic) = self.topics.get(&message.channel) else {
+            return Ok(());
+        };
+        let value = topic.decode(&message.bytes).map_err(|error| {
+            UserError::failure(format!(
+                "{}, message {}: {error}",
+                topic.name, message.header.seq
+            ))
+            .help("a newer version of Maulstick may know it")
+        })?;
+        for path in &self.options.field {
+            if value.at(path).is_none() {
+                let columns = value.columns();
+                let what = format!("the messages of {} have no field '{path}'", topic.name);
+                let names = columns.iter().map(String::as_str);
+                return Err(UserError::unknown(what, path, names));
+            }
+        }
+        self.messages += 1;
+        let seconds = message.arrived_ns.saturating_sub(first_ns) as f64 * 1e-9;
+        let header = &message.header;
+        if self.options.format == Form::Json {
+            let shown = match self.options.field.is_empty() {
+                true => json!(value),
+                false => {
+                    let fields = self.options.field.iter();
+                    json!(
+                        fields
+                            .map(|path| (path, value.at(path)))
+                            .collect::<BTreeMap<_, _>>()
+                    )
+                }
+            };
+            let line = json!({
+                "topic": topic.name,
+                "seconds": seconds,
+                "seq": header.seq,
+                "event_ns": header.event_ns,
+                "sent_ns": header.sent_ns,
+                "arrived_ns": message.arrived_ns,
+                "value": shown,
+            });
+            self.text.extend(format!("{line}\n").bytes());
+            return Ok(());
+        }
+        let columns = self.columns.get_or_insert_with(|| {
+            let columns = match self.options.field.is_empty() {
+                true => value.columns(),
+                false => self.options.field.clone(),
+            };
+            let head = format!("topic,seconds,seq,event_ns,{}\n", columns.join(","));
+            self.text.extend(head.bytes());
+            columns
+        });
+        let mut row = format!(
+            "{},{seconds:.6},{},{}",
+            topic.name, header.seq, header.event_ns
+        );
+        for path in columns {
+            row.push(',');
+            row += &quoted(
+                &value
+                    .at(path)
+                    .map(maulstick_streams::Value::cell)
+                    .unwrap_or_default(),
+            );
+        }
+        self.text.extend((row + "\n").bytes());
+        Ok(())
+    }
+}

@@ -1,0 +1,32 @@
+//! Tables in text: columns as wide as their widest cell.
+
+/// Rows with a head; all but the last column are padded.
+#[must_use]
+pub(super) fn table<const N: usize>(head: [&str; N], rows: &[[String; N]]) -> String {
+    let head = head.map(str::to_owned);
+    let all = || std::iter::once(&head).chain(rows);
+    let wide = |column: usize| all().map(|row| row[column].chars().count()).max();
+    let widths: Vec<usize> = (0..N).map(|column| wide(column).unwrap_or(0)).collect();
+    let line = |row: &[String; N]| {
+        let mut line = String::new();
+        for (cell, width) in row.iter().zip(&widths) {
+            line += &format!("{cell:<width$}  ");
+        }
+        line.trim_end().to_owned() + "\n"
+    };
+    all().map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::table;
+
+    #[test]
+    fn columns_stand_below_their_heads() {
+        let rows = [["a", "1"], ["longer", "22"]].map(|row| row.map(str::to_owned));
+        assert_eq!(
+            table(["topic", "n"], &rows),
+            "topic   n\na       1\nlonger  22\n"
+        );
+    }
+}

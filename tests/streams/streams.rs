@@ -1,0 +1,375 @@
+//! Streams of a running rig: recorded, measured, printed, exported, against a sender that drops by plan.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use maulstick_bus::{Bus, Qos, ZenohBus};
+use maulstick_types::control::ControlSample;
+use maulstick_types::wire::topics::Topics;
+use maulstick_types::{Flags, Origin, encode};
+use nix::sys::signal::Signal;
+use serde_json::Value;
+use support::{Launcher, PATIENCE, Place, fault, has, join, wait_for};
+
+/// Of ten numbers the sender leaves out one.
+const EACH: u64 = 10;
+
+/// Sends samples of a free hand, numbered, without each tenth, until it is told to end; how many it sent.
+fn send(bus: &ZenohBus, topics: &Topics, is_over: &AtomicBool) -> u64 {
+    let origin = Origin {
+        source: 9,
+        epoch: 9,
+    };
+    let publisher = bus
+        .publisher(&topics.control("puck"), Qos::RealTime)
+        .expect("declared");
+    let mut sent = 0;
+    for number in 0.. {
+        if is_over.load(Ordering::Relaxed) {
+            break;
+        }
+        if number % EACH == EACH - 1 {
+            continue;
+        }
+        let now_ns = bus.now_ns();
+        let sample = ControlSample {
+            push: [number as f64 * 1e-6, 0.0, 0.0],
+            turn: [0.0; 3],
+            switches: 0,
+        };
+        let bytes = encode(&origin, Flags::NONE, number, now_ns, now_ns, &sample).expect("encoded");
+        publisher.put(bytes).expect("sent");
+        sent += 1;
+        wait_for(Duration::from_millis(2), || None::<()>);
+    }
+    sent
+}
+
+/// A rig with a sender, while something is done.
+fn beside_a_sender(work: impl FnOnce(&Place)) -> u64 {
+    let place = Place::new();
+    let mut launcher = Launcher::up(&place, &[]);
+    launcher.wait_says("is up");
+    let (bus, topics) = join(&place);
+    let is_over = AtomicBool::new(false);
+    let sent = std::thread::scope(|scope| {
+        let sender = scope.spawn(|| send(&bus, &topics, &is_over));
+        work(&place);
+        is_over.store(true, Ordering::Relaxed);
+        sender.join().expect("sent")
+    });
+    bus.close();
+    launcher.close(&place);
+    sent
+}
+
+/// The stream of the sender in what a command prints in JSON.
+fn stream(json: &[u8]) -> Value {
+    let said: Value = serde_json::from_slice(json).expect("JSON");
+    let streams = said["streams"].as_array().expect("streams").clone();
+    let of_sender = |stream: &Value| stream["topic"] == "control/puck/sample";
+    streams.into_iter().find(of_sender).expect("the sender's")
+}
+
+/// Messages and losses of a stream: nine and one of each ten numbers, but for where it begins and ends.
+fn check_losses(stream: &Value) -> (u64, u64) {
+    let count = |name: &str| stream[name].as_u64().expect("a number");
+    let (heard, lost) = (count("messages"), count("lost"));
+    assert!(heard > 50, "{stream}");
+    assert!(
+        (lost * (EACH - 1)).abs_diff(heard) <= EACH,
+        "{heard} heard, {lost} lost"
+    );
+    (heard, lost)
+}
+
+#[test]
+fn what_a_sender_leaves_out_is_counted_exactly_and_its_contents_are_shown() {
+    beside_a_sender(|place| {
+        let hz = place
+            .done(&["hz", "control/**", "--seconds", "1", "--json"])
+            .stdout;
+        check_losses(&stream(&hz));
+        let echo = place
+            .done(&["echo", "control/*/sample", "--once", "--json"])
+            .stdout;
+        let echo: Value = serde_json::from_slice(&echo).expect("JSON");
+        let number = echo["seq"].as_f64().expect("a number");
+        assert_eq!(echo["message"], "ControlSample");
+        assert!((echo["value"]["push"][0].as_f64().expect("a push") - number * 1e-6).abs() < 1e-12);
+        let csv = place.done(&[
+            "echo",
+            "control/*/sample",
+            "--once",
+            "--csv",
+            "--field",
+            "push.0",
+            "--field",
+            "switches",
+        ]);
+        let csv = String::from_utf8(csv.stdout).expect("text");
+        let rows: Vec<&str> = csv.lines().collect();
+        assert_eq!(rows[0], "topic,seq,event_ns,push.0,switches");
+        assert!(rows[1].starts_with("control/puck/sample,") && rows[1].ends_with(",0"));
+        let latency = place
+            .done(&["latency", "--once", "--seconds", "0.5"])
+            .stdout;
+        has(
+            &String::from_utf8_lossy(&latency),
+            &["on the way p50", "control/puck/sample", "paint/status"],
+        );
+        let nodes = String::from_utf8(place.done(&["nodes"]).stdout).expect("text");
+        has(&nodes, &["brush-main", "paint"]);
+        // What was said before one came is heard too.
+        has(
+            &String::from_utf8_lossy(
+                &place
+                    .done(&["topics", "scene", "--once", "--seconds", "0.5"])
+                    .stdout,
+            ),
+            &["Scene"],
+        );
+        let wrong = fault(
+            place,
+            &["echo", "control/*/sample", "--once", "--field", "pusch.0"],
+            2,
+        );
+        has(&wrong, &["pusch.0", "push.0"]);
+        has(
+            &fault(place, &["hz", "a//b", "--once"], 2),
+            &["no topic", "**"],
+        );
+        has(&fault(place, &["hz", "--seconds", "0"], 2), &[".1 to 3600"]);
+    });
+}
+
+#[test]
+fn a_recording_holds_what_was_sent_and_is_exported() {
+    let mut recorded = 0;
+    let sent = beside_a_sender(|place| {
+        let path = place.path("s.mcap");
+        let path = path.to_str().expect("text");
+        place.done(&["record", "-o", path, "--seconds", "1.5"]);
+        let info = place.done(&["recording", "info", path, "--json"]).stdout;
+        let (messages, _) = check_losses(&stream(&info));
+        recorded = messages;
+        let whole: Value = serde_json::from_slice(&info).expect("JSON");
+        assert_eq!(whole["damage"], Value::Null);
+        assert_eq!(whole["files"][0], "rig.toml");
+        assert_eq!(whole["notes"]["counts"]["dropped"], "0");
+        let topics: Vec<&str> = whole["streams"]
+            .as_array()
+            .expect("streams")
+            .iter()
+            .filter_map(|stream| stream["topic"].as_str())
+            .collect();
+        for topic in ["scene", "brush/main/def", "paint/status"] {
+            assert!(topics.contains(&topic), "{topic} is missing in {topics:?}");
+        }
+        let csv = place.path("s.csv");
+        let csv = csv.to_str().expect("text");
+        place.done(&[
+            "recording",
+            "export",
+            path,
+            "--topic",
+            "control/**",
+            "--field",
+            "push.0",
+            "-o",
+            csv,
+        ]);
+        let text = std::fs::read_to_string(csv).expect("read");
+        assert_eq!(text.lines().count() as u64, messages + 1);
+        let numbers: Vec<u64> = text
+            .lines()
+            .skip(1)
+            .filter_map(|row| row.split(',').nth(2)?.parse().ok())
+            .collect();
+        assert!(numbers.is_sorted() && numbers.iter().all(|number| number % EACH != EACH - 1));
+        // Over itself it may be written again, over another file not.
+        place.done(&[
+            "recording",
+            "export",
+            path,
+            "--topic",
+            "control/**",
+            "-o",
+            csv,
+            "--format",
+            "json",
+        ]);
+        std::fs::write(csv, "my diary").expect("written");
+        fault(
+            place,
+            &[
+                "recording",
+                "export",
+                path,
+                "--topic",
+                "control/**",
+                "-o",
+                csv,
+            ],
+            2,
+        );
+        has(
+            &fault(
+                place,
+                &[
+                    "recording",
+                    "export",
+                    path,
+                    "--topic",
+                    "contrl/puck/sample",
+                    "-o",
+                    "x.csv",
+                ],
+                2,
+            ),
+            &["control/puck/sample"],
+        );
+        has(&fault(place, &["recording", "info", csv], 2), &["no MCAP"]);
+        fault(place, &["record", "-o", csv, "--seconds", "1"], 2);
+    });
+    assert!(recorded <= sent);
+}
+
+#[test]
+fn a_killed_recorder_leaves_what_it_had_written_and_a_rig_that_ends_ends_it() {
+    beside_a_sender(|place| {
+        let path = place.path("s.mcap");
+        let path = path.to_str().expect("text");
+        let mut recorder = Launcher::start(place.maulstick(&["record", "-o", path]));
+        let grown = wait_for(PATIENCE, || {
+            let info = place.run(&["recording", "info", path, "--json"]).stdout;
+            let said: Value = serde_json::from_slice(&info).ok()?;
+            let streams = said["streams"].as_array()?;
+            let mut messages = streams
+                .iter()
+                .filter_map(|stream| stream["messages"].as_u64());
+            messages.any(|messages| messages > 200).then_some(())
+        });
+        assert!(grown.is_some(), "{}", recorder.said());
+        recorder.signal(Signal::SIGKILL);
+        recorder.wait(PATIENCE);
+        let info = place.done(&["recording", "info", path, "--json"]).stdout;
+        check_losses(&stream(&info));
+        let said: Value = serde_json::from_slice(&info).expect("JSON");
+        assert!(
+            said["damage"]
+                .as_str()
+                .is_some_and(|damage| damage.contains("no index"))
+        );
+    });
+    let place = Place::new();
+    let mut launcher = Launcher::up(&place, &[]);
+    launcher.wait_says("is up");
+    let path = place.path("s.mcap");
+    let mut recorder =
+        Launcher::start(place.maulstick(&["record", "-o", path.to_str().expect("text")]));
+    let begun = wait_for(PATIENCE, || {
+        path.metadata()
+            .is_ok_and(|file| file.len() > 0)
+            .then_some(())
+    });
+    assert!(begun.is_some(), "{}", recorder.said());
+    launcher.close(&place);
+    assert!(recorder.wait(PATIENCE).success(), "{}", recorder.said());
+    let whole = place.done(&["recording", "info", path.to_str().expect("text"), "--json"]);
+    let whole: Value = serde_json::from_slice(&whole.stdout).expect("JSON");
+    assert_eq!(whole["damage"], Value::Null);
+    has(
+        &fault(&place, &["record", "-o", "x.mcap"], 1),
+        &["is running"],
+    );
+}
+
+/// Python of the tests, with the packages that `./test` installs.
+fn python(place: &Place, program: &str, words: &[&str]) -> Command {
+    let root: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let python = root.join("target/test-venv/bin/python");
+    assert!(
+        python.exists(),
+        "run ./test: it installs zenoh and mcap for Python"
+    );
+    let mut command = Command::new(python);
+    command
+        .arg(root.join("tests/python").join(program))
+        .args(words)
+        .env("XDG_RUNTIME_DIR", place.path(""));
+    command
+}
+
+/// What a program prints that must succeed.
+fn printed(command: &mut Command, input: &[u8]) -> String {
+    let mut child = command
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("started");
+    child
+        .stdin
+        .take()
+        .expect("piped")
+        .write_all(input)
+        .expect("read");
+    let output = child.wait_with_output().expect("ended");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    String::from_utf8(output.stdout)
+        .expect("text")
+        .trim()
+        .to_owned()
+}
+
+#[test]
+fn python_reads_and_writes_every_golden_message() {
+    let place = Place::new();
+    let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("../msgs/types/tests/golden.txt");
+    let messages = std::fs::read_to_string(&golden)
+        .expect("read")
+        .lines()
+        .count();
+    let schema = place.done(&["schema", "--json"]).stdout;
+    let golden = golden.to_str().expect("text");
+    let read = printed(&mut python(&place, "golden.py", &[golden]), &schema);
+    assert_eq!(read, messages.to_string());
+}
+
+#[test]
+fn python_sends_into_a_rig_hears_it_and_reads_a_recording() {
+    let place = Place::new();
+    let mut launcher = Launcher::up(&place, &[]);
+    launcher.wait_says("is up");
+    let path = place.path("s.mcap");
+    let path = path.to_str().expect("text");
+    let mut recorder =
+        Launcher::start(place.maulstick(&["record", "-o", path, "--topic", "control/**"]));
+    let begun = wait_for(PATIENCE, || {
+        std::fs::metadata(path)
+            .is_ok_and(|file| file.len() > 0)
+            .then_some(())
+    });
+    assert!(begun.is_some(), "{}", recorder.said());
+    let heard = printed(
+        &mut python(&place, "echo.py", &[support::MAULSTICK, "200"]),
+        b"",
+    );
+    assert_eq!(heard, "200");
+    launcher.close(&place);
+    recorder.wait(PATIENCE);
+    let read = printed(
+        &mut python(&place, "read_recording.py", &[path, "control/*/sample"]),
+        b"",
+    );
+    let read: usize = read.parse().expect("a number");
+    assert!((200..=400).contains(&read), "{read}");
+}
