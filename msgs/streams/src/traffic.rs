@@ -65,6 +65,12 @@ impl Distribution {
         sorted.get(place.min(last)).copied().unwrap_or(0)
     }
 
+    /// True if there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.samples.is_empty() && self.most == 0
+    }
+
     /// The longest, ns.
     #[must_use]
     pub fn most(&self) -> u64 {
@@ -100,7 +106,7 @@ pub struct Stream {
 }
 
 impl Stream {
-    fn add(&mut self, message: &Arrived) {
+    fn add(&mut self, message: &Arrived, since_ns: u64) {
         let Arrived {
             header,
             bytes,
@@ -116,9 +122,11 @@ impl Stream {
         self.messages += 1;
         self.bytes += bytes as u64;
         self.last_ns = arrived_ns;
-        self.on_the_way
-            .add(arrived_ns.saturating_sub(header.sent_ns));
-        self.age.add(arrived_ns.saturating_sub(header.event_ns));
+        if header.sent_ns >= since_ns {
+            self.on_the_way
+                .add(arrived_ns.saturating_sub(header.sent_ns));
+            self.age.add(arrived_ns.saturating_sub(header.event_ns));
+        }
         if header.seq >= self.next_seq {
             self.lost += header.seq - self.next_seq;
             self.missing
@@ -155,13 +163,25 @@ impl Stream {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Traffic {
     streams: BTreeMap<(String, Origin), Stream>,
+    since_ns: u64,
 }
 
 impl Traffic {
+    /// Of a listener who begins at this time, rig clock, ns: what was sent before was kept for late joiners, and its delay
+    /// says nothing.
+    #[must_use]
+    pub fn since(since_ns: u64) -> Self {
+        Self {
+            since_ns,
+            ..Self::default()
+        }
+    }
+
     /// Takes in a message of a topic.
     pub fn add(&mut self, topic: &str, message: &Arrived) {
         let key = (topic.to_owned(), message.header.origin());
-        self.streams.entry(key).or_default().add(message);
+        let stream = self.streams.entry(key).or_default();
+        stream.add(message, self.since_ns);
     }
 
     /// The streams, by topic.
@@ -239,6 +259,23 @@ mod tests {
             0,
             "nobody heard it from its start"
         );
+    }
+
+    #[test]
+    fn what_was_kept_for_late_joiners_has_no_delay() {
+        let mut traffic = Traffic::since(50_000_000);
+        traffic.add("a", &message(0, [1, 2, 60]));
+        let delays = |traffic: &Traffic| {
+            let (_, _, stream) = traffic.streams().next().expect("one");
+            (
+                stream.messages,
+                stream.on_the_way.quantile(0.5),
+                stream.age.is_empty(),
+            )
+        };
+        assert_eq!(delays(&traffic), (1, 0, true));
+        traffic.add("a", &message(1, [61, 62, 64]));
+        assert_eq!(delays(&traffic), (2, 2_000_000, false));
     }
 
     #[test]

@@ -187,7 +187,7 @@ proptest! {
             let topics = recording.topics().clone();
             let mut see = |message: RecordedMessage| {
                 if let Some(topic) = topics.get(&message.channel) {
-                    let _ = topic.decode(&message.bytes);
+                    topic.decode(&message.bytes).ok();
                 }
                 true
             };

@@ -55,7 +55,7 @@ pub fn run(options: &MeasureOptions, measure: Measure) -> Result<i32, UserError>
     }
     let mut listener = Listener::open(&options.target, &options.topic)?;
     loop {
-        let mut traffic = Traffic::default();
+        let mut traffic = Traffic::since(listener.member.bus.now_ns());
         let until = Instant::now() + Duration::from_secs_f64(options.seconds);
         while let Some(heard) = listener.next(until) {
             traffic.add(&heard.topic, &heard.message);
@@ -93,7 +93,7 @@ pub(super) fn message_of(schema: u32) -> String {
 type Row<'a> = (&'a str, Origin, &'a Stream);
 
 fn entry((topic, origin, stream): Row<'_>) -> Value {
-    let times = |of: &maulstick_streams::traffic::Distribution| json!({"p50": of.quantile(0.5), "p90": of.quantile(0.9), "p99": of.quantile(0.99), "most": of.most()});
+    let times = |of: &Distribution| json!({"p50": of.quantile(0.5), "p90": of.quantile(0.9), "p99": of.quantile(0.99), "most": of.most()});
     json!({
         "topic": topic,
         "source": origin.source,
@@ -110,9 +110,18 @@ fn entry((topic, origin, stream): Row<'_>) -> Value {
     })
 }
 
-/// Nanoseconds as milliseconds.
-fn ms(ns: u64) -> String {
-    format!("{:.2}", ns as f64 * 1e-6)
+/// Quantiles of times as milliseconds, the longest for 1.
+fn ms<const N: usize>(times: &Distribution, shares: [f64; N]) -> [String; N] {
+    shares.map(|share| {
+        let ns = match share {
+            1.0 => times.most(),
+            share => times.quantile(share),
+        };
+        match times.is_empty() {
+            true => "-".to_owned(),
+            false => format!("{:.2}", ns as f64 * 1e-6),
+        }
+    })
 }
 
 fn shown(listener: &Listener, traffic: &Traffic, measure: Measure) -> String {
@@ -137,15 +146,10 @@ fn shown(listener: &Listener, traffic: &Traffic, measure: Measure) -> String {
         }
         Measure::Rates => {
             let rows = streams.iter().map(|(topic, _, stream)| {
-                [
-                    (*topic).to_owned(),
-                    format!("{:.1}", stream.rate_hz()),
-                    ms(stream.gaps.quantile(0.5)),
-                    ms(stream.gaps.quantile(0.99)),
-                    ms(stream.gaps.most()),
-                    stream.messages.to_string(),
-                    stream.lost.to_string(),
-                ]
+                let [p50, p99, most] = ms(&stream.gaps, [0.5, 0.99, 1.0]);
+                let rate = format!("{:.1}", stream.rate_hz());
+                let [heard, lost] = [stream.messages, stream.lost].map(|count| count.to_string());
+                [(*topic).to_owned(), rate, p50, p99, most, heard, lost]
             });
             let rows: Vec<_> = rows.collect();
             let head = [
@@ -161,16 +165,10 @@ fn shown(listener: &Listener, traffic: &Traffic, measure: Measure) -> String {
         }
         Measure::Delays => {
             let rows = streams.iter().map(|(topic, _, stream)| {
-                let way = &stream.on_the_way;
-                [
-                    (*topic).to_owned(),
-                    ms(way.quantile(0.5)),
-                    ms(way.quantile(0.9)),
-                    ms(way.quantile(0.99)),
-                    ms(way.most()),
-                    ms(stream.age.quantile(0.5)),
-                    stream.lost.to_string(),
-                ]
+                let [p50, p90, p99, most] = ms(&stream.on_the_way, [0.5, 0.9, 0.99, 1.0]);
+                let [age] = ms(&stream.age, [0.5]);
+                let lost = stream.lost.to_string();
+                [(*topic).to_owned(), p50, p90, p99, most, age, lost]
             });
             let rows: Vec<_> = rows.collect();
             let head = [

@@ -170,11 +170,13 @@ impl Runtime {
                 let state = switch.state(&self.session, xr::Path::NULL)?;
                 switches |= u32::from(state.current_state) << bit;
             }
-            // Not a number counts as not pulled.
-            let pulled = f64::from(trigger.current_state).max(0.0).min(1.0);
+            let pulled = f64::from(trigger.current_state);
             Ok(Held {
                 is_there: trigger.is_active,
-                trigger: pulled,
+                trigger: match pulled.is_finite() {
+                    true => pulled.clamp(0.0, 1.0),
+                    false => 0.0,
+                },
                 switches,
             })
         };
