@@ -3,7 +3,7 @@
 pip install eclipse-zenoh mcap. `maulstick` is asked for the message formats, unless they come with the recording.
 """
 
-import json, random, re, struct, subprocess, time
+import json, random, struct, subprocess, time
 
 HEADER = struct.Struct("<HHIIIIIQQQ")
 FIELDS = ("magic", "version", "schema", "source", "epoch", "flags", "length", "seq", "event_ns", "sent_ns")
@@ -85,14 +85,20 @@ class Table:
         return struct.pack("<I", tag) + b"".join(self._write(field["type"], fields[field["name"]]) for field in own)
 
 
-def recording(path, topics="*"):
+def recording(path, topics="**"):
     """Messages of a recording or take: topic, seconds of arrival on the rig's clock, header, fields."""
-    from mcap.stream_reader import StreamReader
+    from mcap.exceptions import McapError
     from mcap.records import Channel, Message, Schema
+    from mcap.stream_reader import StreamReader
 
     schemas, channels = {}, {}
     with open(path, "rb") as file:
-        for record in StreamReader(file).records:
+        records = iter(StreamReader(file).records)
+        while True:
+            try:
+                record = next(records)
+            except (StopIteration, McapError):  # the end, or where a recorder was killed
+                return
             if isinstance(record, Schema) and record.encoding == "x-maulstick-fields+json":
                 schemas[record.id] = Table(json.loads(record.data))
             elif isinstance(record, Channel):
@@ -113,9 +119,15 @@ def split(message):
 
 
 def _means(pattern, topic):
-    stars = {"**": ".*", "*": "[^/]*" if "/" in pattern else ".*"}
-    parts = re.split(r"(\*\*|\*)", pattern)
-    return re.fullmatch("".join(stars.get(part, re.escape(part)) for part in parts), topic) is not None
+    return _match(pattern.split("/"), topic.split("/"))
+
+
+def _match(pattern, topic):
+    if not pattern:
+        return not topic
+    if pattern[0] == "**":
+        return any(_match(pattern[1:], topic[at:]) for at in range(len(topic) + 1))
+    return bool(topic) and pattern[0] in ("*", topic[0]) and _match(pattern[1:], topic[1:])
 
 
 class Rig:
@@ -145,7 +157,10 @@ class Rig:
         """Messages of topics as they come: topic, header, fields. Those that this program does not know are left out."""
         with self.session.declare_subscriber(self.facts["prefix"] + topics) as subscriber:
             for sample in subscriber:
-                header, body = split(sample.payload.to_bytes())
+                try:
+                    header, body = split(sample.payload.to_bytes())
+                except (ValueError, struct.error):  # none of Maulstick's
+                    continue
                 if table := self.by_hash.get(header["schema"]):
                     yield str(sample.key_expr).removeprefix(self.facts["prefix"]), header, table.decode(body)
 
@@ -175,6 +190,6 @@ class Sender:
     def _answer(self, query):
         asked = self.rig.by_name["GapRequest"].decode(split(query.payload.to_bytes())[1])
         if asked["epoch"] == self.epoch:
-            for seq in range(asked["from"], min(asked["to"], self.seq) + 1):
-                if seq in self.sent:
-                    query.reply(self.key, self.sent[seq])
+            wanted = range(asked["from"], min(asked["to"], self.seq) + 1)
+            found = [self.sent.get(seq, b"") for seq in wanted[: self.keeps]]
+            query.reply(query.key_expr, b"".join(found))

@@ -30,4 +30,9 @@ with maulstick.Rig(program=sys.argv[1]) as rig:
     numbers = [seq for _, seq, _ in heard]
     assert numbers == list(range(numbers[0], numbers[0] + count)), numbers
     assert all(topic == "control/python/sample" and push == 0.25 for topic, _, push in heard)
+    request = rig.by_name["GapRequest"].encode({"epoch": sender.epoch, "from": numbers[1], "to": numbers[3]})
+    head = maulstick.HEADER.pack(0x4D4C, 1, rig.by_name["GapRequest"].hash, 1, 1, 0, len(request), 0, 0, 0)
+    replies = rig.session.get(rig.facts["prefix"] + "gap/control/python/sample", payload=head + request)
+    (answer,) = [reply.ok.payload.to_bytes() for reply in replies]
+    assert answer == b"".join(sender.sent[seq] for seq in numbers[1:4]), "not what was lost"
 print(len(heard))

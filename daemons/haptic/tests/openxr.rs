@@ -220,6 +220,14 @@ fn a_session_that_ends_is_a_lost_device_and_one_that_stops_may_begin_again() {
         .expect("changed");
     let error = opened.driver.read(1e-3).expect_err("a lost session");
     assert_eq!((error.what, error.code), (runtime::LOST.what, 17));
+    let odd = Script {
+        place_code: -1,
+        states: Vec::new(),
+        ..Script::default()
+    };
+    control.change(&odd).expect("changed");
+    let error = opened.driver.read(1e-3).expect_err("a refused call");
+    assert!(error.what.contains("refused a call"), "{error}");
 }
 
 #[test]

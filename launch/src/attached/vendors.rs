@@ -50,8 +50,11 @@ pub fn openxr_loader(folders: &[impl AsRef<Path>]) -> Option<PathBuf> {
     let own = directories::BaseDirs::new().map(|dirs| dirs.config_dir().join(ACTIVE_RUNTIME));
     let all = ["/etc/xdg", "/etc", "/usr/local/share", "/usr/share"];
     let all = all.map(|folder| Path::new(folder).join(ACTIVE_RUNTIME));
-    let mut manifests = named.into_iter().chain(own).chain(all);
-    let is_active = manifests.any(|manifest| manifest.exists());
+    let is_active = match named {
+        // The loader then looks nowhere else.
+        Some(named) => named.exists(),
+        None => own.into_iter().chain(all).any(|manifest| manifest.exists()),
+    };
     is_active.then(|| library(&LOADER, folders)).flatten()
 }
 

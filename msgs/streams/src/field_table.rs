@@ -18,7 +18,7 @@ const DEEPEST: usize = 32;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TableError {
     /// The JSON is no table.
-    #[error("the schema is no field table: {0}")]
+    #[error("the schema is malformed: {0}")]
     Json(String),
     /// A type that is not defined.
     #[error("the schema has no type '{0}'")]
@@ -166,6 +166,43 @@ impl FieldTable {
         self.hash
     }
 
+    /// True if a message may have a value at this path, as [`Value::at`] reads it: of several alternatives one has.
+    #[must_use]
+    pub fn has(&self, path: &str) -> bool {
+        let parts: Vec<&str> = path.split('.').collect();
+        self.type_has(&Type::Defined(self.message), &parts)
+    }
+
+    fn type_has(&self, of: &Type, path: &[&str]) -> bool {
+        let Some((part, rest)) = path.split_first() else {
+            return true;
+        };
+        match of {
+            Type::Optional(of) => self.type_has(of, path),
+            Type::List(of) => part.parse::<usize>().is_ok() && self.type_has(of, rest),
+            Type::Array(of, count) => {
+                part.parse().is_ok_and(|place: usize| place < *count) && self.type_has(of, rest)
+            }
+            Type::Defined(place) => match &self.definitions[*place] {
+                Definition::Struct(fields) => self.fields_have(fields, path),
+                Definition::Enum(variants) => variants.iter().any(|(name, fields)| {
+                    let named = **name == **part;
+                    let below = rest.is_empty() || self.fields_have(fields, rest);
+                    (named && below) || self.fields_have(fields, path)
+                }),
+            },
+            _ => false,
+        }
+    }
+
+    fn fields_have(&self, fields: &[TypedField], path: &[&str]) -> bool {
+        let Some((part, rest)) = path.split_first() else {
+            return true;
+        };
+        let mut own = fields.iter().filter(|(name, _)| **name == **part);
+        own.any(|(_, of)| self.type_has(of, rest))
+    }
+
     /// Decodes a body; bytes behind its last field are left alone.
     ///
     /// # Errors
@@ -175,6 +212,7 @@ impl FieldTable {
             definitions: &self.definitions,
             rest: body,
             path: Vec::new(),
+            budget: 64 * (body.len() + 64),
         };
         reader.value(&Type::Defined(self.message))
     }
@@ -225,6 +263,8 @@ struct Reader<'a> {
     rest: &'a [u8],
     /// Names of the fields that lead here.
     path: Vec<Arc<str>>,
+    /// Values that may still come: a hostile table has some without bytes.
+    budget: usize,
 }
 
 impl<'a> Reader<'a> {
@@ -271,6 +311,11 @@ impl<'a> Reader<'a> {
     }
 
     fn several(&mut self, of: &Type, count: usize) -> Result<Value, TableError> {
+        if count > self.rest.len() {
+            return Err(TableError::Short {
+                field: self.field(),
+            });
+        }
         (0..count)
             .map(|_| self.value(of))
             .collect::<Result<_, _>>()
@@ -294,6 +339,13 @@ impl<'a> Reader<'a> {
     }
 
     fn value(&mut self, of: &Type) -> Result<Value, TableError> {
+        self.budget = self
+            .budget
+            .checked_sub(1)
+            .ok_or_else(|| TableError::Invalid {
+                field: self.field(),
+                what: "more than its bytes can hold".into(),
+            })?;
         Ok(match of {
             Type::U8 => Value::Unsigned(u8::from_le_bytes(self.bytes()?).into()),
             Type::U16 => Value::Unsigned(u16::from_le_bytes(self.bytes()?).into()),
@@ -342,122 +394,4 @@ impl<'a> Reader<'a> {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::sync::LazyLock;
-
-    use maulstick_types::stylus::{StylusPose, StylusSample};
-    use maulstick_types::{CATALOGUE, Flags, Message as _, Origin, encode};
-    use proptest::prelude::*;
-
-    use super::*;
-
-    /// A body of a sample: what a message holds behind its header.
-    fn body(sample: &StylusSample) -> Vec<u8> {
-        let origin = Origin {
-            source: 1,
-            epoch: 1,
-        };
-        let bytes = encode(&origin, Flags::NONE, 0, 0, 0, sample).expect("encoded");
-        bytes[48..].to_vec()
-    }
-
-    fn sample() -> StylusSample {
-        StylusSample {
-            pose: StylusPose::Contact {
-                point_m: [0.25, -0.5, 0.0],
-                tilt_rad: [0.1, 0.2],
-                twist_rad: 3.0,
-                pressure: 0.75,
-            },
-            switches: 5,
-            in_range: true,
-            ..StylusSample::away()
-        }
-    }
-
-    #[test]
-    fn every_message_of_the_rig_has_a_readable_table() {
-        for entry in CATALOGUE {
-            let schema = (entry.schema)();
-            let table = FieldTable::of(schema).expect(entry.name);
-            assert_eq!((table.name(), table.hash()), (entry.name, schema.hash));
-        }
-    }
-
-    #[test]
-    fn a_body_is_read_by_name() {
-        let table = FieldTable::of(StylusSample::schema()).expect("a table");
-        let mut bytes = body(&sample());
-        let value = table.decode(&bytes).expect("read");
-        let json = serde_json::to_value(&value).expect("JSON");
-        assert_eq!(json["pose"]["Contact"]["point_m"][1], -0.5);
-        assert_eq!(json["pose"]["Contact"]["pressure"], 0.75);
-        assert_eq!(
-            (&json["switches"], &json["in_range"]),
-            (&5.into(), &true.into())
-        );
-        bytes.extend([1, 2, 3]);
-        assert_eq!(
-            table.decode(&bytes),
-            Ok(value),
-            "what a newer version appends"
-        );
-        for cut in 0..body(&sample()).len() {
-            assert!(table.decode(&bytes[..cut]).is_err(), "{cut}");
-        }
-    }
-
-    #[test]
-    fn what_is_wrong_is_told_with_its_field() {
-        let table = FieldTable::of(StylusSample::schema()).expect("a table");
-        let bytes = body(&sample());
-        let told = |bytes: &[u8]| table.decode(bytes).expect_err("wrong").to_string();
-        assert_eq!(told(&bytes[..2]), "the message ends within 'senses'");
-        assert_eq!(told(&bytes[..20]), "the message ends within 'pose.point_m'");
-        let mut other = bytes.clone();
-        other[4] = 9;
-        assert_eq!(told(&other), "'pose' is alternative 9 of 2");
-        let mut flag = bytes;
-        *flag.last_mut().expect("a byte") = 7;
-        assert_eq!(told(&flag), "'in_range' is 7, and neither 0 nor 1");
-    }
-
-    #[test]
-    fn a_table_that_refers_to_itself_or_to_nothing_is_told() {
-        let table = |types: &str| {
-            let json = format!(r#"{{"name": "A", "hash": 1, "types": {types}}}"#);
-            FieldTable::parse(json.as_bytes())
-        };
-        let own = table(r#"{"A": {"struct": [{"name": "a", "type": "A"}]}}"#).expect("a table");
-        assert!(own.decode(&[]).is_err());
-        let list =
-            table(r#"{"A": {"struct": []}, "B": {"struct": [{"name": "a", "type": "Vec<A>"}]}}"#);
-        assert!(list.is_ok());
-        let nothing = table(r#"{"A": {"struct": [{"name": "a", "type": "Vec<C>"}]}}"#);
-        assert_eq!(nothing, Err(TableError::Type("C".into())));
-        assert_eq!(table("{}"), Err(TableError::Type("A".into())));
-        let deep = format!("{}u8{}", "Vec<".repeat(99), ">".repeat(99));
-        let deep = table(&format!(
-            r#"{{"A": {{"struct": [{{"name": "a", "type": "{deep}"}}]}}}}"#
-        ));
-        assert!(deep.is_err());
-        assert!(FieldTable::parse(b"[1]").is_err());
-    }
-
-    static TABLES: LazyLock<Vec<FieldTable>> = LazyLock::new(|| {
-        let tables = CATALOGUE
-            .iter()
-            .map(|entry| FieldTable::of((entry.schema)()));
-        tables.collect::<Result<_, _>>().expect("tables")
-    });
-
-    proptest! {
-        #[test]
-        fn no_bytes_make_it_panic_or_take_much_memory(
-            place in 0..CATALOGUE.len(),
-            bytes in prop::collection::vec(any::<u8>(), 0..400),
-        ) {
-            TABLES[place].decode(&bytes).ok();
-        }
-    }
-}
+mod tests;

@@ -73,6 +73,12 @@ pub struct RecordedMessage {
 }
 
 impl Topic {
+    /// True if a message may have a value at a path.
+    #[must_use]
+    pub fn has(&self, path: &str) -> bool {
+        self.table.as_ref().is_ok_and(|table| table.has(path))
+    }
+
     /// What a message holds.
     ///
     /// # Errors
@@ -110,11 +116,11 @@ impl Recording {
                 .help("`maulstick record` writes recordings"));
         }
         match recording.summary().map_err(reading)? {
-            Some(summary) => recording.take_in(&summary),
+            Some(summary) => recording.read_summary(&summary),
             None => {
                 recording.damage = Some("it has no index, as after a crash".into());
                 let bytes = std::fs::read(path).map_err(reading)?;
-                recording.take_in(&bytes[MAGIC.len()..]);
+                recording.read_summary(&bytes[MAGIC.len()..]);
                 recording.scan(&bytes);
             }
         }
@@ -127,13 +133,18 @@ impl Recording {
             return Ok(None);
         };
         let footer = self.read(end, END_BYTES)?;
-        let start = footer.get(HEAD..HEAD + 8).and_then(|at| at.try_into().ok());
-        let start = start.map_or(0, u64::from_le_bytes);
         let whole = footer[0] == op::FOOTER && footer.ends_with(MAGIC);
-        match whole && (MAGIC.len() as u64..end).contains(&start) {
-            true => self.read(start, end - start).map(Some),
-            false => Ok(None),
-        }
+        let start = number(&footer[HEAD..], 0).filter(|start| whole && *start < end);
+        let Some(start) = start.filter(|start| *start >= MAGIC.len() as u64) else {
+            return Ok(None);
+        };
+        // The checksum is of all up to itself, behind the footer's two numbers.
+        let mut summary = self.read(start, end - start + HEAD as u64 + 16)?;
+        let crc = footer[HEAD + 16..HEAD + 20].first_chunk();
+        let crc = crc.copied().map_or(0, u32::from_le_bytes);
+        let is_sound = crc == 0 || crc32fast::hash(&summary) == crc;
+        summary.truncate((end - start) as usize);
+        Ok(is_sound.then_some(summary))
     }
 
     /// Bytes of the file that it has.
@@ -145,8 +156,8 @@ impl Recording {
         Ok(read)
     }
 
-    /// Takes in schemas, channels and chunk indexes, in the order of their kinds: channels refer to schemas.
-    fn take_in(&mut self, bytes: &[u8]) {
+    /// Reads schemas, channels, indexes, notes and files; schemas first, for channels refer to them.
+    fn read_summary(&mut self, bytes: &[u8]) {
         let found: Vec<Found<'_>> = records(bytes, 0).filter(|record| record.whole).collect();
         let mut schemas = BTreeMap::new();
         let all = |inner: &mut dyn FnMut(&Found<'_>)| {
@@ -188,43 +199,37 @@ impl Recording {
             }
         });
         self.topics = topics;
-        for record in found
-            .iter()
-            .filter(|record| record.opcode == op::CHUNK_INDEX)
-        {
-            let number = |place: usize| {
-                let bytes = record.body.get(8 * place..8 * place + 8)?;
-                Some(u64::from_le_bytes(bytes.try_into().ok()?))
-            };
-            let [first, last, at, bytes] = [0, 1, 2, 3].map(|place| number(place).unwrap_or(0));
-            let fits = at.checked_add(bytes).is_some_and(|end| end <= self.length);
-            match fits {
-                true => self.chunks.push(Chunk {
-                    at,
-                    bytes,
-                    times_ns: [first, last],
-                }),
-                false => self.damage = Some("its index points beyond the file".into()),
+        for record in &found {
+            let numbers = [0, 1, 2, 3].map(|place| number(record.body, place).unwrap_or(0));
+            match record.opcode {
+                op::CHUNK_INDEX => {
+                    let [first, last, at, bytes] = numbers;
+                    let fits = at.checked_add(bytes).is_some_and(|end| end <= self.length);
+                    if !fits || first > last {
+                        self.damage = Some("its index is not that of the file".into());
+                        continue;
+                    }
+                    self.chunks.push(Chunk {
+                        at,
+                        bytes,
+                        times_ns: [first, last],
+                    });
+                }
+                op::METADATA_INDEX | op::ATTACHMENT_INDEX => {
+                    let [at, bytes, ..] = numbers;
+                    let side = self.read(at, bytes).unwrap_or_default();
+                    records(&side, 0)
+                        .take(1)
+                        .for_each(|side| self.read_aside(&side));
+                }
+                _ => self.read_aside(record),
             }
         }
         self.chunks.sort_by_key(|chunk| chunk.at);
-        for record in &found {
-            if [op::METADATA_INDEX, op::ATTACHMENT_INDEX].contains(&record.opcode) {
-                let number = |place: usize| {
-                    let bytes = record.body.get(8 * place..8 * place + 8)?;
-                    Some(u64::from_le_bytes(bytes.try_into().ok()?))
-                };
-                let [at, bytes] = [0, 1].map(|place| number(place).unwrap_or(0));
-                let side = self.read(at, bytes).unwrap_or_default();
-                records(&side, 0).take(1).for_each(|side| self.aside(&side));
-            } else {
-                self.aside(record);
-            }
-        }
     }
 
-    /// Takes in what a recording says of itself, or a file that it holds.
-    fn aside(&mut self, record: &Found<'_>) {
+    /// Reads a note or a file that stands beside the messages.
+    fn read_aside(&mut self, record: &Found<'_>) {
         if !record.whole || ![op::METADATA, op::ATTACHMENT].contains(&record.opcode) {
             return;
         }
@@ -237,20 +242,22 @@ impl Recording {
         }
     }
 
-    /// Finds the chunks of a file without an index.
+    /// Finds the chunks of a file without an index. The times that a chunk states are no others than 0 before it is ended.
     fn scan(&mut self, bytes: &[u8]) {
         self.chunks.clear();
         for record in records(bytes, MAGIC.len()).filter(|record| record.opcode == op::CHUNK) {
-            let number = |place: usize| {
-                let bytes = record.body.get(8 * place..8 * place + 8)?;
-                Some(u64::from_le_bytes(bytes.try_into().ok()?))
+            let unpacked = unpack(record.body);
+            let arrived = || {
+                let inner = records(&unpacked.bytes, 0).filter(|own| own.whole);
+                inner.filter_map(|own| Some(message(&own)?.arrived_ns))
             };
-            let [first, last] = [0, 1].map(|place| number(place).unwrap_or(0));
-            self.chunks.push(Chunk {
-                at: record.at as u64,
-                bytes: (HEAD + record.body.len()) as u64,
-                times_ns: [first, last],
-            });
+            if let (Some(first), Some(last)) = (arrived().min(), arrived().max()) {
+                self.chunks.push(Chunk {
+                    at: record.at as u64,
+                    bytes: (HEAD + record.body.len()) as u64,
+                    times_ns: [first, last],
+                });
+            }
         }
     }
 
@@ -279,7 +286,12 @@ impl Recording {
     ) -> Result<(), UserError> {
         for chunk in self.chunks.clone() {
             let [first, last] = chunk.times_ns;
-            if last < from_ns || first > to_ns || chunk.bytes > MOST_CHUNK {
+            if last < from_ns || first > to_ns {
+                continue;
+            }
+            if chunk.bytes > MOST_CHUNK {
+                self.damage
+                    .get_or_insert("a chunk is too large to be read".into());
                 continue;
             }
             let bytes = self.read(chunk.at, chunk.bytes);
@@ -300,6 +312,12 @@ impl Recording {
         }
         Ok(())
     }
+}
+
+/// The number at a place among the first of a record, u64 each.
+fn number(body: &[u8], place: usize) -> Option<u64> {
+    let bytes = body.get(8 * place..)?.first_chunk()?;
+    Some(u64::from_le_bytes(*bytes))
 }
 
 /// The message of a record, if it is one of the bus.

@@ -94,7 +94,7 @@ pub struct Stream {
     /// Time between two arrivals.
     pub gaps: Distribution,
     /// From sending to arrival.
-    pub on_the_way: Distribution,
+    pub transit: Distribution,
     /// From sampling to arrival.
     pub age: Distribution,
     first_ns: u64,
@@ -123,8 +123,7 @@ impl Stream {
         self.bytes += bytes as u64;
         self.last_ns = arrived_ns;
         if header.sent_ns >= since_ns {
-            self.on_the_way
-                .add(arrived_ns.saturating_sub(header.sent_ns));
+            self.transit.add(arrived_ns.saturating_sub(header.sent_ns));
             self.age.add(arrived_ns.saturating_sub(header.event_ns));
         }
         if header.seq >= self.next_seq {
@@ -149,13 +148,6 @@ impl Stream {
             true => (self.messages - 1) as f64 / passed_s,
             false => 0.0,
         }
-    }
-
-    /// Share of its messages that are missing.
-    #[must_use]
-    pub fn loss(&self) -> f64 {
-        let sent = self.messages + self.lost;
-        self.lost as f64 / sent.max(1) as f64
     }
 }
 
@@ -241,9 +233,8 @@ mod tests {
         assert_eq!((stream.messages, stream.lost), (900, 100));
         // Seven messages overtake each delayed one, of which one was dropped before.
         assert_eq!(stream.disordered, 20);
-        assert!((stream.loss() - 0.1).abs() < 1e-12);
-        assert_eq!(stream.on_the_way.quantile(0.5), 1_000_000);
-        assert_eq!(stream.on_the_way.most(), 30_000_000);
+        assert_eq!(stream.transit.quantile(0.5), 1_000_000);
+        assert_eq!(stream.transit.most(), 30_000_000);
         assert_eq!(stream.age.quantile(0.5), 2_000_000);
         assert_eq!(stream.gaps.most(), 8_000_000);
         assert_eq!(stream.bytes, 90_000);
@@ -269,7 +260,7 @@ mod tests {
             let (_, _, stream) = traffic.streams().next().expect("one");
             (
                 stream.messages,
-                stream.on_the_way.quantile(0.5),
+                stream.transit.quantile(0.5),
                 stream.age.is_empty(),
             )
         };

@@ -73,7 +73,7 @@ impl Value {
                     value.add_columns(below(name), paths);
                 }
             }
-            Self::List(list) if list.len() <= MOST_COLUMNS && list.iter().all(Self::is_plain) => {
+            Self::List(list) if !list.is_empty() && self.is_plain() => {
                 for (place, value) in list.iter().enumerate() {
                     value.add_columns(below(&place.to_string()), paths);
                 }

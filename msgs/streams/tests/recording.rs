@@ -133,6 +133,10 @@ fn a_recorder_that_was_killed_leaves_all_that_it_had_flushed() {
     let mut recording = Recording::open(&path).expect("opened");
     let damage = recording.damage.clone();
     assert!(damage.is_some_and(|damage| damage.contains("no index")));
+    let last = (MESSAGES - 1) * 1_000_000 + 110;
+    assert_eq!(recording.times_ns(), Some([110, last]));
+    let late = numbers(&mut recording, [last - 1, u64::MAX]);
+    assert_eq!(late, [MESSAGES - 1]);
     let found = numbers(&mut recording, WHOLE);
     assert_eq!(found, (0..MESSAGES).collect::<Vec<_>>());
     assert_eq!(recording.notes["recording"]["rig"], "studio");

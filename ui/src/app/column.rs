@@ -53,6 +53,8 @@ impl Column {
                     ScrollArea::vertical()
                         .max_height(height)
                         .min_scrolled_height(height)
+                        // Else it is as narrow as its content, and the bar with it.
+                        .auto_shrink([false, true])
                         .show(ui, |ui| {
                             // The bar lies over what is at the edge.
                             ui.set_max_width(ui.available_width() - BAR);

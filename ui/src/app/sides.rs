@@ -5,7 +5,7 @@ use crate::settings::preferences::Preferences;
 use crate::settings::window_side::WindowSide;
 
 /// Width of the column's inside, points.
-pub(crate) const COLUMN: f32 = 322.0;
+pub(crate) const COLUMN: f32 = 314.0;
 /// Distance of the column from what is beside it, points.
 pub(crate) const MARGIN: f32 = 8.0;
 

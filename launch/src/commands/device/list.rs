@@ -305,7 +305,7 @@ fn nothing(findings: &Findings) -> String {
         "Nothing attached that a driver fits; the mouse paints, and so does `driver = \"simulated\"`.\n\
          Shown would be pens (pen) and 6-DOF mice (spacemouse) at /dev/hidraw*, other tablets (evdev)\n\
          at /dev/input/event*, Polhem and WoodenHaptics (polhem) at serial ports, an Inverse3\n\
-         (inverse3) with Haply's service at {}, a Touch (openhaptics) with libHD.so\n\
+         (inverse3) with Haply's service at {}, a Touch (openhaptics) with libHD.so,\n\
          an omega (forcedimension) with libdhd.so and a headset's controller (openxr) with an active\n\
          runtime and libopenxr_loader.so.1 in\n\
          {}.\n",

@@ -6,12 +6,12 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use maulstick_rig::UserError;
 use maulstick_streams::{FieldTable, Value};
-use maulstick_types::{CATALOGUE, HEADER_BYTES};
+use maulstick_types::{CATALOGUE, HEADER_BYTES, plain};
 use serde_json::json;
 
-use super::listener::{Heard, Listener};
+use super::listener::{Listener, ReceivedMessage};
+use crate::commands::print_text;
 use crate::commands::session::Target;
-use crate::commands::{print_text, say};
 
 /// Options of `maulstick echo`.
 #[derive(Args, Clone, Debug)]
@@ -47,7 +47,7 @@ pub fn run(options: &EchoOptions) -> Result<i32, UserError> {
     let give_up = options.once.then(|| Instant::now() + PATIENCE);
     while !listener.is_over() {
         let soon = Instant::now() + Duration::from_secs(1);
-        let Some(heard) = listener.next(give_up.unwrap_or(soon)) else {
+        let Some(received) = listener.next(give_up.unwrap_or(soon)) else {
             if give_up.is_some_and(|at| Instant::now() >= at) {
                 let what = format!("nothing came on {} within 10 s", options.topic);
                 return Err(UserError::failure(what)
@@ -58,7 +58,7 @@ pub fn run(options: &EchoOptions) -> Result<i32, UserError> {
             }
             continue;
         };
-        printer.print(&heard)?;
+        printer.print(&received)?;
         if options.once {
             break;
         }
@@ -83,27 +83,43 @@ impl<'a> Printer<'a> {
         }
     }
 
-    fn print(&mut self, heard: &Heard) -> Result<(), UserError> {
-        let header = &heard.message.header;
+    fn print(&mut self, received: &ReceivedMessage) -> Result<(), UserError> {
+        let header = &received.message.header;
         let table = self.tables.entry(header.schema).or_insert_with(|| {
             let mut entries = CATALOGUE.iter();
             let entry = entries.find(|entry| (entry.schema)().hash == header.schema)?;
             FieldTable::of((entry.schema)()).ok()
         });
         let Some(table) = table else {
-            return say_other(heard);
+            eprintln!(
+                "{}: a message of version {} and hash {:#010x}, which this program does not know",
+                plain(&received.topic),
+                header.version,
+                header.schema
+            );
+            return Ok(());
         };
-        let value = match table.decode(&heard.bytes[HEADER_BYTES..]) {
+        let wrong = self.options.field.iter().find(|path| !table.has(path));
+        let value = match table.decode(&received.bytes[HEADER_BYTES..]) {
             Ok(value) => value,
             Err(error) => {
-                say!("{}: {error}", heard.topic);
+                eprintln!("{}: {error}", plain(&received.topic));
                 return Ok(());
             }
         };
+        if let Some(path) = wrong {
+            let columns = value.columns();
+            let what = format!("{} has no field '{path}'", table.name());
+            return Err(UserError::unknown(
+                what,
+                path,
+                columns.iter().map(String::as_str),
+            ));
+        }
         let name = table.name().to_owned();
-        let chosen = self.chosen(&value)?;
+        let chosen = self.chosen(&value);
         if self.options.csv {
-            return self.row(heard, &value);
+            return self.row(received, &value);
         }
         if self.options.json {
             let shown = match &chosen[..] {
@@ -111,17 +127,17 @@ impl<'a> Printer<'a> {
                 fields => json!(fields.iter().cloned().collect::<BTreeMap<_, _>>()),
             };
             let line = json!({
-                "topic": heard.topic,
+                "topic": received.topic,
                 "message": name,
                 "seq": header.seq,
                 "event_ns": header.event_ns,
                 "sent_ns": header.sent_ns,
-                "arrived_ns": heard.message.arrived_ns,
+                "arrived_ns": received.message.arrived_ns,
                 "value": shown,
             });
             return print_text(&format!("{line}\n"));
         }
-        let mut text = format!("{}  {} {}\n", heard.topic, name, header.seq);
+        let mut text = format!("{}  {} {}\n", received.topic, name, header.seq);
         let shown = match (&value, chosen.is_empty()) {
             (Value::Fields(fields), true) => {
                 let fields = fields.iter();
@@ -137,26 +153,21 @@ impl<'a> Printer<'a> {
         print_text(&text)
     }
 
-    /// The fields that were asked for.
-    fn chosen(&self, value: &Value) -> Result<Vec<(String, Value)>, UserError> {
-        let mut chosen = Vec::new();
-        for path in &self.options.field {
-            let Some(found) = value.at(path) else {
-                let what = format!("the message has no field '{path}'");
-                let columns = value.columns();
-                return Err(UserError::unknown(
-                    what,
-                    path,
-                    columns.iter().map(String::as_str),
-                ));
-            };
-            chosen.push((path.clone(), found.clone()));
-        }
-        Ok(chosen)
+    /// The fields that were asked for; absent are those of another alternative.
+    fn chosen(&self, value: &Value) -> Vec<(String, Value)> {
+        let fields = self.options.field.iter();
+        fields
+            .map(|path| {
+                (
+                    path.clone(),
+                    value.at(path).cloned().unwrap_or(Value::Absent),
+                )
+            })
+            .collect()
     }
 
     /// A row of the table; its head before the first.
-    fn row(&mut self, heard: &Heard, value: &Value) -> Result<(), UserError> {
+    fn row(&mut self, received: &ReceivedMessage, value: &Value) -> Result<(), UserError> {
         if self.columns.is_none() {
             let columns = match self.options.field.is_empty() {
                 true => value.columns(),
@@ -165,27 +176,14 @@ impl<'a> Printer<'a> {
             print_text(&format!("topic,seq,event_ns,{}\n", columns.join(",")))?;
             self.columns = Some(columns);
         }
-        let header = &heard.message.header;
-        let mut row = format!("{},{},{}", heard.topic, header.seq, header.event_ns);
+        let header = &received.message.header;
+        let mut row = format!("{},{},{}", received.topic, header.seq, header.event_ns);
         for path in self.columns.iter().flatten() {
             row.push(',');
             row += &quoted(&value.at(path).map(Value::cell).unwrap_or_default());
         }
         print_text(&(row + "\n"))
     }
-}
-
-/// A message that this program does not know.
-fn say_other(heard: &Heard) -> Result<(), UserError> {
-    let header = &heard.message.header;
-    say!(
-        "{}  a message of version {} and hash {:#010x}, which this program does not know: {} bytes",
-        heard.topic,
-        header.version,
-        header.schema,
-        heard.bytes.len()
-    );
-    Ok(())
 }
 
 /// A cell of comma-separated values (RFC 4180).

@@ -15,8 +15,9 @@ const CACHED: [&str; 4] = ["scene", "brush/*/def", "brush/*/look", "stylus/*/inf
 /// Messages that wait while this program is busy: some seconds of all streams.
 const ROOM: usize = 1 << 15;
 
-/// A message that was heard.
-pub(super) struct Heard {
+/// A message that was received.
+#[derive(Clone)]
+pub(super) struct ReceivedMessage {
     /// Its topic, without the rig's prefix.
     pub topic: String,
     /// Header, size and time.
@@ -25,7 +26,7 @@ pub(super) struct Heard {
     pub bytes: Vec<u8>,
 }
 
-/// Hears the topics of a pattern.
+/// Receives the topics of a pattern.
 pub(super) struct Listener {
     /// This program in the rig.
     pub member: NodeHandle,
@@ -51,7 +52,7 @@ impl Listener {
         let pattern = pattern.trim_start_matches(member.topics.prefix());
         let is_key = !pattern.is_empty() && pattern.split('/').all(|part| !part.is_empty());
         if !is_key || pattern.contains(['?', '#', '$']) {
-            let what = format!("'{pattern}' is no topic");
+            let what = format!("the topic '{pattern}' is malformed");
             return Err(UserError::usage(what).help(
                 "a topic such as stylus/pen/sample, with * for any one part and ** for any number of them",
             ));
@@ -76,23 +77,20 @@ impl Listener {
     }
 
     /// The next message until then, or until this program is told to end.
-    pub(super) fn next(&mut self, until: Instant) -> Option<Heard> {
-        while !self.member.stop.requested() {
-            if let Some(heard) = self.waiting() {
-                return Some(heard);
+    pub(super) fn next(&mut self, until: Instant) -> Option<ReceivedMessage> {
+        // However fast they come, the time ends.
+        while !self.member.stop.requested() && Instant::now() < until {
+            if let Some(received) = self.waiting() {
+                return Some(received);
             }
             let left = until.saturating_duration_since(Instant::now());
-            if left.is_zero() {
-                return None;
-            }
             self.member.wake.wait(left);
         }
         None
     }
 
     /// A message that has arrived.
-    fn waiting(&mut self) -> Option<Heard> {
-        let is_cached = |topic: &str| CACHED.iter().any(|pattern| matches(pattern, topic));
+    fn waiting(&mut self) -> Option<ReceivedMessage> {
         loop {
             let of_cache = self.cached.iter().find_map(Subscription::try_recv);
             let came_cached = of_cache.is_some();
@@ -101,14 +99,14 @@ impl Listener {
                 continue;
             };
             // A message of a cached topic comes twice.
-            if is_cached(topic) != came_cached || !matches(&self.pattern, topic) {
+            if Self::is_cached(topic) != came_cached || !matches(&self.pattern, topic) {
                 continue;
             }
             let Ok(header) = Header::from_bytes(&arrival.bytes) else {
                 self.foreign += 1;
                 continue;
             };
-            return Some(Heard {
+            return Some(ReceivedMessage {
                 topic: topic.to_owned(),
                 message: Arrived {
                     header,
@@ -118,6 +116,12 @@ impl Listener {
                 bytes: arrival.bytes,
             });
         }
+    }
+
+    /// True for a topic whose last message is kept for late joiners.
+    #[must_use]
+    pub(super) fn is_cached(topic: &str) -> bool {
+        CACHED.iter().any(|pattern| matches(pattern, topic))
     }
 
     /// Messages that this program was too slow for.

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use super::listener::Listener;
 use super::table::table;
 use crate::commands::session::Target;
-use crate::commands::{print_json, print_text};
+use crate::commands::{print_json, print_text, say};
 
 /// Options of `maulstick topics`, `hz` and `latency`.
 #[derive(Args, Clone, Debug)]
@@ -55,6 +55,7 @@ pub fn run(options: &MeasureOptions, measure: Measure) -> Result<i32, UserError>
     }
     let mut listener = Listener::open(&options.target, &options.topic)?;
     loop {
+        let dropped = listener.dropped();
         let mut traffic = Traffic::since(listener.member.bus.now_ns());
         let until = Instant::now() + Duration::from_secs_f64(options.seconds);
         while let Some(heard) = listener.next(until) {
@@ -65,12 +66,22 @@ pub fn run(options: &MeasureOptions, measure: Measure) -> Result<i32, UserError>
             print_json(&json!({
                 "seconds": options.seconds,
                 "streams": streams,
-                "dropped_here": listener.dropped(),
+                "dropped_here": listener.dropped() - dropped,
                 "foreign": listener.foreign,
             }))?;
             return Ok(0);
         }
-        print_text(&shown(&listener, &traffic, measure))?;
+        print_text(&shown(&traffic, measure))?;
+        let dropped = listener.dropped() - dropped;
+        if dropped > 0 {
+            say!("{dropped} messages came faster than this program reads");
+        }
+        if listener.foreign > 0 {
+            say!(
+                "{} messages so far are none of Maulstick's",
+                listener.foreign
+            );
+        }
         if options.once || listener.is_over() || !listener.has_rig() {
             return Ok(0);
         }
@@ -93,7 +104,11 @@ pub(super) fn message_of(schema: u32) -> String {
 type Row<'a> = (&'a str, Origin, &'a Stream);
 
 fn entry((topic, origin, stream): Row<'_>) -> Value {
-    let times = |of: &Distribution| json!({"p50": of.quantile(0.5), "p90": of.quantile(0.9), "p99": of.quantile(0.99), "most": of.most()});
+    let times = |of: &Distribution| {
+        let [p50, p90, p99] = [0.5, 0.9, 0.99].map(|share| of.quantile(share));
+        let times = json!({"p50": p50, "p90": p90, "p99": p99, "most": of.most()});
+        (!of.is_empty()).then_some(times)
+    };
     json!({
         "topic": topic,
         "source": origin.source,
@@ -105,7 +120,7 @@ fn entry((topic, origin, stream): Row<'_>) -> Value {
         "lost": stream.lost,
         "disordered": stream.disordered,
         "gap_ns": times(&stream.gaps),
-        "on_the_way_ns": times(&stream.on_the_way),
+        "transit_ns": times(&stream.transit),
         "age_ns": times(&stream.age),
     })
 }
@@ -124,12 +139,12 @@ fn ms<const N: usize>(times: &Distribution, shares: [f64; N]) -> [String; N] {
     })
 }
 
-fn shown(listener: &Listener, traffic: &Traffic, measure: Measure) -> String {
+fn shown(traffic: &Traffic, measure: Measure) -> String {
     let streams: Vec<Row<'_>> = traffic.streams().collect();
     if streams.is_empty() {
         return "nothing came: `maulstick nodes` lists who is there\n".into();
     }
-    let mut text = match measure {
+    match measure {
         Measure::Topics => {
             let rows = streams.iter().map(|(topic, _, stream)| {
                 let rate = format!("{:.1}", stream.rate_hz());
@@ -165,7 +180,7 @@ fn shown(listener: &Listener, traffic: &Traffic, measure: Measure) -> String {
         }
         Measure::Delays => {
             let rows = streams.iter().map(|(topic, _, stream)| {
-                let [p50, p90, p99, most] = ms(&stream.on_the_way, [0.5, 0.9, 0.99, 1.0]);
+                let [p50, p90, p99, most] = ms(&stream.transit, [0.5, 0.9, 0.99, 1.0]);
                 let [age] = ms(&stream.age, [0.5]);
                 let lost = stream.lost.to_string();
                 [(*topic).to_owned(), p50, p90, p99, most, age, lost]
@@ -182,15 +197,5 @@ fn shown(listener: &Listener, traffic: &Traffic, measure: Measure) -> String {
             ];
             table(head, &rows)
         }
-    };
-    if listener.dropped() > 0 {
-        text += &format!(
-            "{} messages came faster than this program reads\n",
-            listener.dropped()
-        );
     }
-    if listener.foreign > 0 {
-        text += &format!("{} messages are none of Maulstick's\n", listener.foreign);
-    }
-    text
 }

@@ -13,7 +13,7 @@ use maulstick_rig::node_handle::CONFIG_FILE;
 use maulstick_streams::{RecordingWriter, Traffic};
 use mcap::McapError;
 
-use super::listener::{Heard, Listener};
+use super::listener::{Listener, ReceivedMessage};
 use crate::commands::say;
 use crate::commands::session::Target;
 use crate::outputs::{UsedFile, check_outputs};
@@ -65,12 +65,14 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
         options.output.display()
     );
     let begun = Instant::now();
-    let mut part = Part::begin(&options.output, &listener)?;
-    let mut number = 1;
+    let end = lasts.map(|lasts| begun + lasts);
+    let mut state = State::default();
+    let mut part = Part::begin(&options.output, |path| File::create(path), &listener)?;
     let mut flush_at = begun + FLUSH;
-    while !listener.is_over() && lasts.is_none_or(|lasts| begun.elapsed() < lasts) {
-        if let Some(heard) = listener.next(flush_at) {
-            part.write(&heard)?;
+    while !listener.is_over() && end.is_none_or(|end| Instant::now() < end) {
+        if let Some(received) = listener.next(end.map_or(flush_at, |end| end.min(flush_at))) {
+            part.write(&received)?;
+            state.add(received);
         }
         if Instant::now() < flush_at {
             continue;
@@ -80,18 +82,58 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
         if !listener.has_rig() {
             break;
         }
-        let is_full = options
-            .split_mb
-            .is_some_and(|mb| part.bytes >= mb * 1_000_000)
+        let most = options.split_mb.map(|mb| mb.saturating_mul(1_000_000));
+        let is_full = most.is_some_and(|most| part.bytes >= most)
             || split_after.is_some_and(|after| part.begun.elapsed() >= after);
         if is_full {
-            part.finish(&listener)?;
-            number += 1;
-            part = Part::begin(&numbered(&options.output, number), &listener)?;
+            part.finish(&mut state, &listener)?;
+            part = Part::begin(
+                &next_free(&options.output),
+                |path| File::create_new(path),
+                &listener,
+            )?;
+            // What is sent rarely is in each file.
+            for received in state.kept.values() {
+                part.write(received)?;
+            }
         }
     }
-    part.finish(&listener)?;
+    part.finish(&mut state, &listener)?;
     Ok(0)
+}
+
+/// What was received so far, over all files.
+#[derive(Default)]
+struct State {
+    traffic: Traffic,
+    /// The last message of each topic that is kept for late joiners.
+    kept: BTreeMap<String, ReceivedMessage>,
+    /// Messages that were lost, dropped and foreign before this file.
+    before: [u64; 3],
+}
+
+impl State {
+    fn add(&mut self, received: ReceivedMessage) {
+        self.traffic.add(&received.topic, &received.message);
+        if Listener::is_cached(&received.topic) {
+            self.kept.insert(received.topic.clone(), received);
+        }
+    }
+
+    /// Messages that were lost, dropped and foreign since the last question.
+    fn missing(&mut self, listener: &Listener) -> [u64; 3] {
+        let lost = self.traffic.streams().map(|(_, _, stream)| stream.lost);
+        let all = [lost.sum(), listener.dropped(), listener.foreign];
+        let before = std::mem::replace(&mut self.before, all);
+        // One that came late after all was lost in the file before.
+        std::array::from_fn(|place| all[place].saturating_sub(before[place]))
+    }
+}
+
+/// The first name of a further file that is not taken.
+fn next_free(path: &Path) -> PathBuf {
+    let mut names = (2..).map(|number| numbered(path, number));
+    names.find(|name| !name.exists()).unwrap_or_default()
 }
 
 /// The name of a further file.
@@ -108,20 +150,21 @@ fn numbered(path: &Path, number: u32) -> PathBuf {
 struct Part {
     path: PathBuf,
     writer: RecordingWriter<BufWriter<File>>,
-    traffic: Traffic,
     messages: u64,
     /// Bytes of its messages, before they are compressed.
     bytes: u64,
     begun: Instant,
-    /// What the listener had dropped before.
-    dropped_before: u64,
 }
 
 impl Part {
     /// Begins a file, with what it takes to understand it later.
-    fn begin(path: &Path, listener: &Listener) -> Result<Self, UserError> {
+    fn begin(
+        path: &Path,
+        create: impl FnOnce(&Path) -> std::io::Result<File>,
+        listener: &Listener,
+    ) -> Result<Self, UserError> {
         let writing = |error: std::io::Error| UserError::writing(path, &error);
-        let file = File::create(path).map_err(writing)?;
+        let file = create(path).map_err(writing)?;
         let member = &listener.member;
         let settings = std::fs::read(member.folder.join(CONFIG_FILE)).unwrap_or_default();
         let now = SystemTime::now()
@@ -149,27 +192,24 @@ impl Part {
         Ok(Self {
             writer: begin().map_err(|error| fault(path, error))?,
             path: path.to_owned(),
-            traffic: Traffic::default(),
             messages: 0,
             bytes: 0,
             begun: Instant::now(),
-            dropped_before: listener.dropped(),
         })
     }
 
-    fn write(&mut self, heard: &Heard) -> Result<(), UserError> {
-        let message = &heard.message;
+    fn write(&mut self, received: &ReceivedMessage) -> Result<(), UserError> {
+        let message = &received.message;
         self.writer
             .write(
-                &heard.topic,
+                &received.topic,
                 &message.header,
-                &heard.bytes,
+                &received.bytes,
                 message.arrived_ns,
             )
             .map_err(|error| fault(&self.path, error))?;
-        self.traffic.add(&heard.topic, message);
         self.messages += 1;
-        self.bytes += heard.bytes.len() as u64;
+        self.bytes += received.bytes.len() as u64;
         Ok(())
     }
 
@@ -180,18 +220,13 @@ impl Part {
     }
 
     /// Ends it, with what is missing in it.
-    fn finish(mut self, listener: &Listener) -> Result<(), UserError> {
-        let lost: u64 = self
-            .traffic
-            .streams()
-            .map(|(_, _, stream)| stream.lost)
-            .sum();
-        let dropped = listener.dropped() - self.dropped_before;
+    fn finish(mut self, state: &mut State, listener: &Listener) -> Result<(), UserError> {
+        let [lost, dropped, foreign] = state.missing(listener);
         let counts = [
             ("messages", self.messages),
             ("lost", lost),
             ("dropped", dropped),
-            ("foreign", listener.foreign),
+            ("foreign", foreign),
         ];
         let counts = counts.map(|(name, count)| (name.to_owned(), count.to_string()));
         let path = self.path;
@@ -202,7 +237,7 @@ impl Part {
         end().map_err(|error| fault(&path, error))?;
         let on_disk = std::fs::metadata(&path).map_or(0, |data| data.len());
         say!(
-            "{}: {} messages in {:.1} s, {:.1} MB; {lost} lost on the way, {dropped} of them here",
+            "{}: {} messages in {:.1} s, {:.1} MB; {lost} lost, {dropped} dropped here",
             path.display(),
             self.messages,
             self.begun.elapsed().as_secs_f64(),

@@ -10,7 +10,7 @@ use maulstick_rig::files::{Kind, write_whole};
 use maulstick_streams::recording::{RecordedMessage, Topic};
 use maulstick_streams::topic_pattern::matches;
 use maulstick_streams::traffic::Arrived;
-use maulstick_streams::{Recording, Traffic};
+use maulstick_streams::{Recording, Traffic, Value};
 use serde_json::json;
 
 use super::echo::quoted;
@@ -97,7 +97,7 @@ fn info(path: &std::path::Path, as_json: bool) -> Result<i32, UserError> {
         true
     })?;
     let [first, last] = recording.times_ns().unwrap_or_default();
-    let seconds = (last - first) as f64 * 1e-9;
+    let seconds = last.saturating_sub(first) as f64 * 1e-9;
     let known: BTreeMap<&str, &str> = topics
         .values()
         .map(|topic| {
@@ -188,20 +188,40 @@ fn export(options: &ExportOptions) -> Result<i32, UserError> {
         return Err(UserError::unknown(what, &options.topic, names).at(place));
     }
     let [first, last] = recording.times_ns().unwrap_or_default();
-    let after = |seconds: f64| first.saturating_add((seconds.max(0.0) * 1e9) as u64);
-    let range = [after(options.start), options.end.map_or(last, after)];
-    if !options.start.is_finite() || options.start < 0.0 || range[0] > range[1] {
-        let long = (last - first) as f64 * 1e-9;
-        let what = format!("there is nothing from {} s on in this range", options.start);
+    let after = |seconds: f64| first.saturating_add((seconds * 1e9) as u64);
+    let end = options.end.unwrap_or(f64::MAX);
+    let range = [after(options.start), after(end)];
+    let is_range = options.start >= 0.0 && end >= options.start;
+    if !is_range || range[0] > last {
+        let long = last.saturating_sub(first) as f64 * 1e-9;
+        let what = format!("nothing was recorded from {} s to {end} s", options.start);
+        let what = what.replace(&format!(" to {} s", f64::MAX), " on");
         return Err(UserError::usage(what)
             .at(place)
             .help(format!("the recording is {long:.3} s long")));
     }
+    if let Some(path) = options
+        .field
+        .iter()
+        .find(|path| !topics.values().any(|own| own.has(path)))
+    {
+        let what = format!("the messages of {} have no field '{path}'", options.topic);
+        let columns = columns(&mut recording, &topics, range)?;
+        let names = columns.iter().map(String::as_str);
+        return Err(UserError::unknown(what, path, names).at(place));
+    }
+    let columns = match options.field.is_empty() {
+        true => columns(&mut recording, &topics, range)?,
+        false => options.field.clone(),
+    };
     let mut lines = Lines {
         options,
         topics: &topics,
-        columns: None,
-        text: Vec::new(),
+        text: match options.format {
+            Form::Csv => format!("topic,seconds,seq,event_ns,{}\n", columns.join(",")).into_bytes(),
+            Form::Json => Vec::new(),
+        },
+        columns,
         messages: 0,
     };
     let mut wrong = None;
@@ -224,11 +244,31 @@ fn export(options: &ExportOptions) -> Result<i32, UserError> {
     Ok(0)
 }
 
+/// Columns of the messages of topics: those of all alternatives and lists that are there, in the order in which they come.
+fn columns(
+    recording: &mut Recording,
+    topics: &BTreeMap<u16, Topic>,
+    range: [u64; 2],
+) -> Result<Vec<String>, UserError> {
+    let (mut known, mut columns) = (BTreeSet::new(), Vec::new());
+    recording.messages(range, &mut |message| {
+        let topic = topics.get(&message.channel);
+        let value = topic.and_then(|topic| topic.decode(&message.bytes).ok());
+        for column in value.iter().flat_map(Value::columns) {
+            if known.insert(column.clone()) {
+                columns.push(column);
+            }
+        }
+        true
+    })?;
+    Ok(columns)
+}
+
 /// Lines of an export.
 struct Lines<'a> {
     options: &'a ExportOptions,
     topics: &'a BTreeMap<u16, Topic>,
-    columns: Option<Vec<String>>,
+    columns: Vec<String>,
     text: Vec<u8>,
     messages: u64,
 }
@@ -246,14 +286,6 @@ impl Lines<'_> {
             ))
             .help("a newer version of Maulstick may know it")
         })?;
-        for path in &self.options.field {
-            if value.at(path).is_none() {
-                let columns = value.columns();
-                let what = format!("the messages of {} have no field '{path}'", topic.name);
-                let names = columns.iter().map(String::as_str);
-                return Err(UserError::unknown(what, path, names));
-            }
-        }
         self.messages += 1;
         let seconds = message.arrived_ns.saturating_sub(first_ns) as f64 * 1e-9;
         let header = &message.header;
@@ -281,27 +313,13 @@ impl Lines<'_> {
             self.text.extend(format!("{line}\n").bytes());
             return Ok(());
         }
-        let columns = self.columns.get_or_insert_with(|| {
-            let columns = match self.options.field.is_empty() {
-                true => value.columns(),
-                false => self.options.field.clone(),
-            };
-            let head = format!("topic,seconds,seq,event_ns,{}\n", columns.join(","));
-            self.text.extend(head.bytes());
-            columns
-        });
         let mut row = format!(
             "{},{seconds:.6},{},{}",
             topic.name, header.seq, header.event_ns
         );
-        for path in columns {
+        for path in &self.columns {
             row.push(',');
-            row += &quoted(
-                &value
-                    .at(path)
-                    .map(maulstick_streams::Value::cell)
-                    .unwrap_or_default(),
-            );
+            row += &quoted(&value.at(path).map(Value::cell).unwrap_or_default());
         }
         self.text.extend((row + "\n").bytes());
         Ok(())

@@ -137,8 +137,9 @@ impl DeviceSection {
         match (&self.switches, self.driver.as_str()) {
             (Some(actions), _) => actions.iter().map(String::as_str).collect(),
             (None, driver) if PEN_DRIVERS.contains(&driver) => vec!["pick", "undo"],
-            (None, driver) if LIBRARY_DRIVERS.contains(&driver) => vec!["clutch", "undo"],
-            (None, "polhem" | "inverse3") => vec!["clutch", "undo"],
+            (None, "openhaptics" | "forcedimension" | "openxr" | "polhem" | "inverse3") => {
+                vec!["clutch", "undo"]
+            }
             (None, _) => Vec::new(),
         }
     }

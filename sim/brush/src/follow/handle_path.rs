@@ -13,8 +13,8 @@ const CHORDS: usize = 8;
 /// whole path then.
 const PAUSE: f64 = 4.0;
 
-/// Bend of a path that any hand may have, m: it turns round at 1.5 m/s between two frames of a window. More is a pointer's that leapt
-/// before, and would swing far out.
+/// Bend of a path that any hand may have, m: it turns round at 1.5 m/s between two frames of a window. More is that of a
+/// pointer that leapt before, and would swing far out.
 const FREE_BEND_M: f64 = 0.03;
 
 /// A sampled pose and its time.
@@ -39,8 +39,8 @@ pub struct HandlePath {
 
 impl HandlePath {
     /// The path from `from` to `to` of a hand that came from `before`; straight without it. Across a pause its bend is
-    /// limited so that it goes nowhere backward: a hand that was fast before may have stopped in it. Its length is that
-    /// of the farther of the ferrule and the point of a head of `head_m`.
+    /// limited so that it goes nowhere backward: a hand that was fast before may have stopped in it; after a leap, so that it
+    /// does not swing out. Its length is that of the farther of the ferrule and the point of a head of `head_m`.
     #[must_use]
     pub fn new(before: Option<&Sampled>, from: &Sampled, to: &Sampled, head_m: f64) -> Self {
         let near = |of: DQuat, q: DQuat| if of.dot(q) < 0.0 { -q } else { q };

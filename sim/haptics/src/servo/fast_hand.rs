@@ -1,5 +1,5 @@
-//! A fast hand: as it nears the speed at which force latches off, it is given less force, and none before that speed. So
-//! a quick stroke is no fault, and a hand that the device drives is let go.
+//! A fast hand: as it nears the speed at which force latches off, it is given less force, and none from nine tenths of that
+//! speed on. So a quick stroke is no fault, and a hand that the device drives is let go.
 //!
 //! In contact the share only falls. A wall that grew hard again while the hand is in it would give more on the way out
 //! than it took on the way in; in the air it costs nothing.

@@ -21,7 +21,7 @@ use maulstick_rig::config::DeviceSection;
 use maulstick_types::stylus::axes;
 
 use self::bindings::Hand;
-use self::runtime::{Held, Runtime};
+use self::runtime::{ControllerInputs, Runtime};
 use self::vibration::Vibration;
 use crate::device::driver::{Abilities, DeviceError, Driver, Opened, Reading, Wrench};
 use crate::device::velocity::Velocity;
@@ -49,7 +49,7 @@ pub fn open(device: &DeviceSection) -> Result<Opened, UserError> {
     Ok(Opened {
         driver: Box::new(Controller {
             runtime,
-            held: Held::default(),
+            inputs: ControllerInputs::default(),
             newest: HandleState {
                 position: DVec3::ZERO,
                 orientation: DQuat::IDENTITY,
@@ -67,7 +67,7 @@ pub fn open(device: &DeviceSection) -> Result<Opened, UserError> {
 /// A controller in a hand.
 pub struct Controller {
     runtime: Runtime,
-    held: Held,
+    inputs: ControllerInputs,
     newest: HandleState,
     velocity: Velocity,
     vibration: Vibration,
@@ -92,17 +92,17 @@ impl Driver for Controller {
 
     fn read(&mut self, dt: f64) -> Result<Option<Reading>, DeviceError> {
         if self.ticks.is_multiple_of(PRESSED_EVERY) {
-            self.held = self.runtime.held()?;
+            self.inputs = self.runtime.inputs()?;
         }
         self.ticks = self.ticks.wrapping_add(1);
-        let place = match self.held.is_there {
-            true => self.runtime.place()?,
+        let place = match self.inputs.is_there {
+            true => self.runtime.pose()?,
             false => None,
         };
         if let Some(place) = place {
             let orientation = canonical(place.orientation);
             let forward = orientation * -DVec3::Z;
-            let position = place.position - CANVAS_M + forward * (PUSH_M * self.held.trigger);
+            let position = place.position - CANVAS_M + forward * (PUSH_M * self.inputs.trigger);
             self.newest = HandleState {
                 position,
                 orientation,
@@ -113,7 +113,7 @@ impl Driver for Controller {
         }
         Ok(Some(Reading {
             handle: self.newest,
-            switches: self.held.switches,
+            switches: self.inputs.switches,
             in_range: place.is_some(),
             is_permitted: place.is_some(),
             motor_temperature: 0.0,

@@ -35,12 +35,19 @@ pub const LOST: DeviceError = DeviceError {
     help: "start the runtime again",
 };
 
+/// The runtime does not do what it is asked.
+const REFUSED: DeviceError = DeviceError {
+    what: "the OpenXR runtime refused a call",
+    code: 0,
+    help: "see the runtime's own log",
+};
+
 /// How long an order to vibrate lasts: two orders, so that a late one leaves no gap.
 const LASTS_NS: i64 = 32_000_000;
 
-/// What a hand does with its controller.
+/// Inputs of a controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Held {
+pub struct ControllerInputs {
     /// Whether it is switched on, and the session is ours.
     pub is_there: bool,
     /// How far the trigger is pulled, 0 to 1.
@@ -49,9 +56,9 @@ pub struct Held {
     pub switches: u32,
 }
 
-/// Where a controller is, in the axes of the session: x right, y up, z toward the user.
+/// Pose of a controller, in the axes of the session: x right, y up, z toward the user.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct ControllerPose {
     /// Position, m.
     pub position: DVec3,
     /// It points along −z.
@@ -152,16 +159,16 @@ impl Runtime {
         &self.name
     }
 
-    /// What the hand does now.
+    /// The inputs now.
     ///
     /// # Errors
     /// [`DeviceError`] once the session is over.
-    pub fn held(&mut self) -> Result<Held, DeviceError> {
+    pub fn inputs(&mut self) -> Result<ControllerInputs, DeviceError> {
         self.follow_events()?;
         if !self.is_running {
-            return Ok(Held::default());
+            return Ok(ControllerInputs::default());
         }
-        let read = || -> xr::Result<Held> {
+        let read = || -> xr::Result<ControllerInputs> {
             self.session
                 .sync_actions(&[xr::ActiveActionSet::new(&self.set)])?;
             let trigger = self.trigger.state(&self.session, xr::Path::NULL)?;
@@ -171,7 +178,7 @@ impl Runtime {
                 switches |= u32::from(state.current_state) << bit;
             }
             let pulled = f64::from(trigger.current_state);
-            Ok(Held {
+            Ok(ControllerInputs {
                 is_there: trigger.is_active,
                 trigger: match pulled.is_finite() {
                     true => pulled.clamp(0.0, 1.0),
@@ -183,11 +190,11 @@ impl Runtime {
         read().map_err(lost)
     }
 
-    /// Where the controller is now, if that is known.
+    /// The pose now, if it is known.
     ///
     /// # Errors
     /// [`DeviceError`] once the session is over.
-    pub fn place(&self) -> Result<Option<Place>, DeviceError> {
+    pub fn pose(&self) -> Result<Option<ControllerPose>, DeviceError> {
         let [aim, base] = &self.spaces;
         let read = || aim.locate(base, self.instance.now()?);
         let found = read().map_err(lost)?;
@@ -198,7 +205,7 @@ impl Runtime {
             position: p,
             orientation: q,
         } = found.pose;
-        let place = Place {
+        let place = ControllerPose {
             position: DVec3::new(p.x.into(), p.y.into(), p.z.into()),
             orientation: DQuat::from_xyzw(q.x.into(), q.y.into(), q.z.into(), q.w.into()),
         };
@@ -284,7 +291,7 @@ fn instance(entry: &xr::Entry) -> Result<xr::Instance, UserError> {
         .map_err(refused)
 }
 
-/// Why there is no session, and what to do.
+/// The error of a session that does not begin, with advice.
 fn refused(error: xr::sys::Result) -> UserError {
     use xr::sys::Result as Code;
     let (what, help) = match error {
@@ -308,10 +315,21 @@ fn refused(error: xr::sys::Result) -> UserError {
     UserError::failure(what).help(help)
 }
 
-/// The end of a session.
+/// The error of a call in a session.
 fn lost(error: xr::sys::Result) -> DeviceError {
+    use xr::sys::Result as Code;
+    let ended = [
+        Code::ERROR_SESSION_LOST,
+        Code::ERROR_INSTANCE_LOST,
+        Code::ERROR_RUNTIME_FAILURE,
+    ];
+    let told = if ended.contains(&error) {
+        LOST
+    } else {
+        REFUSED
+    };
     DeviceError {
         code: i64::from(error.into_raw()).abs(),
-        ..LOST
+        ..told
     }
 }
