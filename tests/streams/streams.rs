@@ -153,7 +153,7 @@ fn what_a_sender_leaves_out_is_counted_exactly_and_its_contents_are_shown() {
         has(&wrong, &["pusch.0", "push.0"]);
         has(
             &fault(place, &["hz", "a//b", "--once"], 2),
-            &["no topic", "**"],
+            &["malformed", "**"],
         );
         has(&fault(place, &["hz", "--seconds", "0"], 2), &[".1 to 3600"]);
     });
@@ -249,6 +249,36 @@ fn a_recording_holds_what_was_sent_and_is_exported() {
         fault(place, &["record", "-o", csv, "--seconds", "1"], 1);
     });
     assert!(recorded <= sent);
+}
+
+#[test]
+fn further_files_stand_over_none_and_each_has_what_is_sent_rarely() {
+    beside_a_sender(|place| {
+        let path = place.path("s.mcap");
+        std::fs::write(place.path("s-2.mcap"), "my diary").expect("written");
+        let path = path.to_str().expect("text");
+        place.done(&[
+            "record",
+            "-o",
+            path,
+            "--seconds",
+            "2.2",
+            "--split-seconds",
+            "0.9",
+        ]);
+        let diary = std::fs::read_to_string(place.path("s-2.mcap")).expect("read");
+        assert_eq!(diary, "my diary");
+        for name in ["s.mcap", "s-3.mcap"] {
+            let file = place.path(name);
+            let info = place.done(&["recording", "info", file.to_str().expect("text"), "--json"]);
+            let said: Value = serde_json::from_slice(&info.stdout).expect("JSON");
+            let streams = said["streams"].as_array().expect("streams");
+            let mut topics = streams.iter().map(|stream| &stream["topic"]);
+            assert!(topics.any(|topic| topic == "scene"), "{name}: {said}");
+            let seconds = said["seconds"].as_f64().expect("a number");
+            assert!(seconds > 0.0, "{name}: {seconds} s");
+        }
+    });
 }
 
 #[test]

@@ -92,9 +92,12 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
                 |path| File::create_new(path),
                 &listener,
             )?;
-            // What is sent rarely is in each file.
+            // What is sent rarely is in each file, from its beginning on.
+            let now_ns = listener.member.bus.now_ns();
             for received in state.kept.values() {
-                part.write(received)?;
+                let mut again = received.clone();
+                again.message.arrived_ns = now_ns;
+                part.write(&again)?;
             }
         }
     }
