@@ -111,7 +111,6 @@ fn what_a_sender_leaves_out_is_counted_exactly_and_its_contents_are_shown() {
             .stdout;
         let echo: Value = serde_json::from_slice(&echo).expect("JSON");
         let number = echo["seq"].as_f64().expect("a number");
-        assert_eq!(echo["message"], "ControlSample");
         assert!((echo["value"]["push"][0].as_f64().expect("a push") - number * 1e-6).abs() < 1e-12);
         let csv = place.done(&[
             "echo",
@@ -125,7 +124,7 @@ fn what_a_sender_leaves_out_is_counted_exactly_and_its_contents_are_shown() {
         ]);
         let csv = String::from_utf8(csv.stdout).expect("text");
         let rows: Vec<&str> = csv.lines().collect();
-        assert_eq!(rows[0], "topic,seq,event_ns,push.0,switches");
+        assert_eq!(rows[0], "topic,arrived_ns,seq,event_ns,push.0,switches");
         assert!(rows[1].starts_with("control/puck/sample,") && rows[1].ends_with(",0"));
         let latency = place
             .done(&["latency", "--once", "--seconds", "0.5"])

@@ -10,6 +10,7 @@ pub mod mode;
 pub mod painting;
 mod rig;
 mod streams;
+mod table;
 mod takes;
 
 pub use colour::{fit, light, matching, mix, paints};

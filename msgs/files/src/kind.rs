@@ -90,7 +90,7 @@ impl Kind {
             Self::Recording => [b"D:", b"R:", b"E:", b"N:"]
                 .iter()
                 .any(|mark| head.starts_with(*mark)),
-            Self::Messages => [&b"topic,seconds,seq,event_ns,"[..], b"{\"arrived_ns\":"]
+            Self::Messages => [&b"topic,arrived_ns,seq,event_ns,"[..], b"{\"arrived_ns\":"]
                 .iter()
                 .any(|mark| head.starts_with(mark)),
             Self::Own => true,

@@ -2,6 +2,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | [`catalogue`] | this program's messages by their hash |
 //! | [`field_table`] | bodies of messages, decoded by their field tables |
 //! | [`value`] | what comes of it |
 //! | [`topic_pattern`] | patterns of topics |
@@ -9,6 +10,7 @@
 //! | [`recording_writer`], [`recording`] | recordings, written and read |
 //! | [`mcap_records`] | records of MCAP files, read within their bounds |
 
+pub mod catalogue;
 pub mod field_table;
 pub mod mcap_records;
 pub mod recording;

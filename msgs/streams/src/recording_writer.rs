@@ -4,10 +4,11 @@
 use std::collections::BTreeMap;
 use std::io::{Seek, Write};
 
-use maulstick_types::CATALOGUE;
 use maulstick_types::wire::header::Header;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, McapResult, WriteOptions, Writer};
+
+use crate::catalogue::message_of;
 
 /// Encoding of the messages: the bus's own header and body.
 pub const MESSAGE_ENCODING: &str = "x-maulstick";
@@ -94,8 +95,7 @@ impl<W: Write + Seek> RecordingWriter<W> {
         if let Some(channel) = self.channels.get(&key) {
             return Ok(*channel);
         }
-        let mut entries = CATALOGUE.iter();
-        let schema_id = match entries.find(|entry| (entry.schema)().hash == schema) {
+        let schema_id = match message_of(schema) {
             Some(entry) => {
                 let name = format!("{}/{}", entry.name, entry.version);
                 let whole = (entry.schema)().whole();

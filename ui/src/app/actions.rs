@@ -174,7 +174,7 @@ impl App {
     /// Shows what a device is to touch that is being fitted.
     pub(super) fn show_fit(&self, painter: &egui::Painter, view: &View) {
         if let (Some(fit), Some(canvas)) = (&self.rig.fit, self.rig.canvas()) {
-            fit_crosses::draw(painter, view, canvas, &fit.said);
+            fit_crosses::draw(painter, view, canvas, fit.asks.as_deref());
         }
     }
 

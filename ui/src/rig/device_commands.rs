@@ -11,6 +11,7 @@ use std::time::SystemTime;
 use eframe::egui::Context;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
+use serde::Deserialize;
 
 use crate::background_task::BackgroundTask;
 use crate::rig::device_listing::DeviceListing;
@@ -40,6 +41,25 @@ pub struct FitProgress {
     pub device: String,
     /// What was said so far, line by line.
     pub said: Vec<String>,
+    /// The corner that is to be touched now.
+    pub asks: Option<String>,
+}
+
+/// A line of `maulstick device fit --json`.
+#[derive(Debug, Deserialize)]
+struct FitLine {
+    said: String,
+    asks: Option<String>,
+}
+
+impl FitProgress {
+    /// Adds a line.
+    fn read(&mut self, line: FitLine) {
+        self.said.push(line.said);
+        if line.asks.is_some() {
+            self.asks = line.asks;
+        }
+    }
 }
 
 /// What the newest listing shows.
@@ -56,7 +76,7 @@ struct Seen {
 #[derive(Debug)]
 struct Fit {
     child: Child,
-    lines: Receiver<String>,
+    lines: Receiver<FitLine>,
 }
 
 impl Drop for Fit {
@@ -209,7 +229,10 @@ impl DeviceCommands {
         rig: &mut RigState,
         notifications: &mut Notifications,
     ) {
-        let mut command = self.command(&["fit".to_owned(), device.clone()], &rig.rig);
+        let mut command = self.command(
+            &["fit".to_owned(), device.clone(), "--json".to_owned()],
+            &rig.rig,
+        );
         let started = command
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -223,7 +246,9 @@ impl DeviceCommands {
             let context = context.clone();
             let read = move || {
                 for line in BufReader::new(stdout).lines().map_while(Result::ok) {
-                    to_window.send(line).ok();
+                    if let Ok(line) = serde_json::from_str(&line) {
+                        to_window.send(line).ok();
+                    }
                     context.request_repaint();
                 }
                 drop(to_window);
@@ -237,7 +262,7 @@ impl DeviceCommands {
         self.fit = Some(Fit { child, lines });
         rig.fit = Some(FitProgress {
             device,
-            said: Vec::new(),
+            ..FitProgress::default()
         });
     }
 
@@ -245,14 +270,14 @@ impl DeviceCommands {
         let (Some(fit), Some(progress)) = (&mut self.fit, &mut rig.fit) else {
             return;
         };
-        progress.said.extend(fit.lines.try_iter());
+        fit.lines.try_iter().for_each(|line| progress.read(line));
         let ended = match fit.child.try_wait() {
             Ok(None) => return,
             Ok(Some(status)) => status.success(),
             Err(_) => false,
         };
         // Until the reader has come to the end.
-        progress.said.extend(fit.lines.iter());
+        fit.lines.iter().for_each(|line| progress.read(line));
         let said = progress.said.pop().unwrap_or_default();
         let complaint = fit.child.stderr.take().map(|stderr| {
             let lines = BufReader::new(stderr).lines().map_while(Result::ok);

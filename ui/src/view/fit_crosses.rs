@@ -15,16 +15,6 @@ const ASKED: Color32 = Color32::from_rgb(240, 120, 30);
 /// The others.
 const OTHER: Color32 = Color32::from_gray(150);
 
-/// The corner that the newest lines of a fit ask for.
-#[must_use]
-pub(crate) fn asked(said: &[String]) -> Option<Corner> {
-    let of_line = |line: &String| {
-        let mut corners = Corner::ALL.into_iter();
-        corners.find(|corner| line.starts_with(&format!("touch the {corner} corner ")))
-    };
-    said.iter().rev().find_map(of_line)
-}
-
 /// Where a corner lies on the desk, m, of a canvas that lies as it does in the beginning.
 #[must_use]
 fn place(canvas: &Surface, corner: Corner) -> DVec3 {
@@ -38,12 +28,11 @@ fn place(canvas: &Surface, corner: Corner) -> DVec3 {
     }
 }
 
-/// Draws them.
-pub(crate) fn draw(painter: &Painter, view: &View, canvas: &Surface, said: &[String]) {
-    let asked = asked(said);
+/// Draws them, that of the corner that is asked for in a colour of its own.
+pub(crate) fn draw(painter: &Painter, view: &View, canvas: &Surface, asked: Option<&str>) {
     for corner in Corner::ALL {
         let at = view.to_window(place(canvas, corner));
-        let colour = match asked == Some(corner) {
+        let colour = match asked == Some(&*corner.to_string()) {
             true => ASKED,
             false => OTHER,
         };
@@ -65,22 +54,6 @@ mod tests {
     use maulstick_painting::PaintingSetup;
 
     use super::*;
-
-    #[test]
-    fn the_newest_question_is_the_one_that_is_asked() {
-        let lines = |lines: &[&str]| lines.iter().map(ToString::to_string).collect::<Vec<_>>();
-        assert_eq!(asked(&lines(&["tablet: an Intuos"])), None);
-        let ask = |corner: Corner| format!("touch the {corner} corner of the canvas with the pen");
-        let [first, second, third] = Corner::ALL.map(ask);
-        assert_eq!(asked(&lines(&["tablet", &first])), Some(Corner::LowerLeft));
-        let found = "lower left: 0.1, 0.2, 0.0 mm";
-        assert_eq!(
-            asked(&lines(&[&first, found, &second])),
-            Some(Corner::LowerRight)
-        );
-        let all = [&first, found, &second, &third, "the hand moved"];
-        assert_eq!(asked(&lines(&all)), Some(Corner::UpperLeft));
-    }
 
     #[test]
     fn they_lie_where_the_fit_takes_the_corners_to_be() {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use glam::DVec3;
 use maulstick_bus::Wake;
-use maulstick_device::corner_calibration::{CornerCalibration, HandReading, Progress};
+use maulstick_device::corner_calibration::{Corner, CornerCalibration, HandReading, Progress};
 use maulstick_device::registration::{by_corners, canvas_m, check_side};
 use maulstick_haptic::device::open::{HapticSettings, open};
 use maulstick_haptic::device::probe::probe;
@@ -16,12 +16,13 @@ use maulstick_hid::tablet::Tablet;
 use maulstick_rig::config::DeviceSection;
 use maulstick_rig::files::{Kind, check_writable, write_whole};
 use maulstick_rig::{RigConfig, Stop, UserError, user_devices};
+use serde_json::json;
 use toml_edit::{Array, DocumentMut, Item, TableLike, Value};
 
 use super::user_file::{is_same, put_in_rig, remove_from_rig};
 use crate::EXIT_INTERRUPTED;
-use crate::commands::say;
 use crate::commands::session::{Session, Target};
+use crate::commands::{print_line, print_text};
 
 /// Options of `maulstick device fit`.
 #[derive(Args, Clone, Debug)]
@@ -31,8 +32,32 @@ pub struct FitOptions {
     /// Settings of a rig, into which the corners are written [default: your own devices]
     #[arg(long, value_name = "FILE")]
     rig: Option<PathBuf>,
+    /// Print a line of JSON for each that is said, with the corner that is to be touched
+    #[arg(long)]
+    json: bool,
     #[command(flatten)]
     target: Target,
+}
+
+/// Prints what is said, for people or for a program.
+#[derive(Clone, Copy, Debug)]
+struct Teller {
+    as_json: bool,
+}
+
+impl Teller {
+    fn say(self, said: &str) -> Result<(), UserError> {
+        self.ask(said, None)
+    }
+
+    /// Says something that asks for a corner.
+    fn ask(self, said: &str, asks: Option<Corner>) -> Result<(), UserError> {
+        if !self.as_json {
+            return print_line(said);
+        }
+        let asks = asks.map(|corner| corner.to_string());
+        print_text(&format!("{}\n", json!({"said": said, "asks": asks})))
+    }
 }
 
 /// Has a hand show the corners and writes them; a rig that runs lets go of the device meanwhile.
@@ -41,13 +66,16 @@ pub struct FitOptions {
 /// A [`UserError`] for a device that is not there, corners that do not fit the canvas, or settings that
 /// cannot be written.
 pub(super) fn run(options: &FitOptions) -> Result<i32, UserError> {
+    let teller = Teller {
+        as_json: options.json,
+    };
     let (path, config, target) = match &options.rig {
         Some(path) => {
             let config = RigConfig::read(path)?;
             let target = Target::named(&config.rig.name);
             (path.clone(), config, target)
         }
-        None => own_settings(&options.target)?,
+        None => own_settings(&options.target, teller)?,
     };
     let place = path.display().to_string();
     let device = section(&config, &options.device).ok_or_else(|| {
@@ -71,7 +99,7 @@ pub(super) fn run(options: &FitOptions) -> Result<i32, UserError> {
     };
     is_same(&device, running.as_ref())?;
     let fitted = remove_from_rig(&target, &device.name)
-        .and_then(|_| fit(&path, &config, device.clone(), &stop));
+        .and_then(|_| fit(&path, &config, device.clone(), (&stop, teller)));
     if let Some(running) = running {
         let written = fitted.as_ref().is_ok_and(|code| *code == 0);
         let now = written.then(|| corners(&path, &device.name)).flatten();
@@ -80,7 +108,10 @@ pub(super) fn run(options: &FitOptions) -> Result<i32, UserError> {
             ..running
         };
         if let Err(fault) = put_in_rig(&target, &back) {
-            say!("the rig does not take '{}' back: {}", back.name, fault.what);
+            teller.say(&format!(
+                "the rig does not take '{}' back: {}",
+                back.name, fault.what
+            ))?;
         }
     }
     fitted
@@ -99,7 +130,10 @@ fn section(config: &RigConfig, name: &str) -> Option<DeviceSection> {
 }
 
 /// The user's own devices, to be fitted to the canvas of the rig that runs.
-fn own_settings(target: &Target) -> Result<(PathBuf, RigConfig, Target), UserError> {
+fn own_settings(
+    target: &Target,
+    teller: Teller,
+) -> Result<(PathBuf, RigConfig, Target), UserError> {
     let path = user_devices::path()?;
     if !path.exists() {
         return Err(UserError::usage("you have no device yet").help(
@@ -111,11 +145,10 @@ fn own_settings(target: &Target) -> Result<(PathBuf, RigConfig, Target), UserErr
         Err(_) => {
             let config = RigConfig::default();
             let canvas = &config.canvas;
-            say!(
+            teller.say(&format!(
                 "no rig runs: this is for a canvas of {} x {} mm",
-                canvas.width_mm,
-                canvas.height_mm
-            );
+                canvas.width_mm, canvas.height_mm
+            ))?;
             config
         }
     };
@@ -128,10 +161,10 @@ fn fit(
     path: &Path,
     config: &RigConfig,
     device: DeviceSection,
-    stop: &Stop,
+    (stop, teller): (&Stop, Teller),
 ) -> Result<i32, UserError> {
     check_writable(path, Kind::Own).map_err(|error| UserError::writing(path, &error))?;
-    let mut showing = Showing::of(&device);
+    let mut showing = Showing::of(&device, teller);
     let mut broken = None;
     let look = |reading| {
         if stop.requested() {
@@ -146,24 +179,24 @@ fn fit(
         }
     };
     match device.is_hid() {
-        true => watch_pen(&device, look)?,
-        false => watch_ferrule(config, &device, look)?,
+        true => watch_pen(&device, teller, look)?,
+        false => watch_ferrule(config, &device, teller, look)?,
     }
     if let Some(fault) = broken {
         return Err(fault);
     }
     let Some(corners) = showing.corners.all() else {
-        say!("nothing is written");
+        teller.say("nothing is written")?;
         return Ok(EXIT_INTERRUPTED);
     };
     check_side(&corners, showing.corners.handle())?;
     let name = device.name.clone();
     match device.is_hid() {
-        true => fit_tablet(config, device, &corners)?,
-        false => fit_ferrule(config, &corners)?,
+        true => fit_tablet(config, device, &corners, teller)?,
+        false => fit_ferrule(config, &corners, teller)?,
     }
     write(path, &name, &corners)?;
-    say!("written into {}", path.display());
+    teller.say(&format!("written into {}", path.display()))?;
     Ok(0)
 }
 
@@ -173,50 +206,53 @@ fn fit_tablet(
     config: &RigConfig,
     mut device: DeviceSection,
     corners: &[DVec3; 3],
+    teller: Teller,
 ) -> Result<(), UserError> {
     device.corners_m = Some(corners.map(|corner| corner.to_array()));
     // With corners, neither the tablet's area nor its senses matter.
     Tablet::fit([1.0; 2], 0, &device, &config.canvas)?;
     let size = canvas_m(&config.canvas);
     let [width, height] = [1, 2].map(|to| corners[to].distance(corners[0]));
-    say!(
+    teller.say(&format!(
         "the canvas is {:.2} times as wide and {:.2} times as high",
         size.x / width,
         size.y / height
-    );
+    ))?;
     Ok(())
 }
 
 /// Checks that the corners are those of the canvas, and says how they fit: a hand in the air may not
 /// be stretched.
-fn fit_ferrule(config: &RigConfig, corners: &[DVec3; 3]) -> Result<(), UserError> {
+fn fit_ferrule(config: &RigConfig, corners: &[DVec3; 3], teller: Teller) -> Result<(), UserError> {
     let (to_desk, fit) = by_corners(corners, canvas_m(&config.canvas))?;
-    say!("{fit}");
+    teller.say(&fit.to_string())?;
     if !fit.is_good() {
         return Err(UserError::failure("the three places are no corners of the canvas; nothing is written")
             .help("its width by height has to fit within 10 %, and its corner to be a right one; begin again"));
     }
-    say!(
+    teller.say(&format!(
         "the canvas is {:.2} times as large; at worst a corner comes to lie {:.1} mm off",
         to_desk.scale,
         fit.off_m * 1e3
-    );
+    ))?;
     Ok(())
 }
 
 fn watch_pen(
     device: &DeviceSection,
+    teller: Teller,
     look: impl FnMut(HandReading) -> ControlFlow<()>,
 ) -> Result<(), UserError> {
     let shown = maulstick_hid::probe::open(&mut *DeviceKind::of_section(device)?.ports(), device)?;
-    say!("{}: {}", device.name, shown.what);
-    Showing::of(device).ask()?;
+    teller.say(&format!("{}: {}", device.name, shown.what))?;
+    Showing::of(device, teller).ask()?;
     shown.probe(look)
 }
 
 fn watch_ferrule(
     config: &RigConfig,
     device: &DeviceSection,
+    teller: Teller,
     look: impl FnMut(HandReading) -> ControlFlow<()>,
 ) -> Result<(), UserError> {
     let settings = HapticSettings {
@@ -224,8 +260,8 @@ fn watch_ferrule(
         hand: None,
     };
     let opened = open(config, &settings)?;
-    say!("{}: {}", device.name, opened.what);
-    Showing::of(device).ask()?;
+    teller.say(&format!("{}: {}", device.name, opened.what))?;
+    Showing::of(device, teller).ask()?;
     probe(opened, DVec3::from(device.ferrule_m), look)
         .map_err(|error| UserError::failure(error.to_string()).help(error.help))
 }
@@ -235,12 +271,14 @@ struct Showing {
     corners: CornerCalibration,
     /// Gesture that marks a corner.
     how: &'static str,
+    teller: Teller,
 }
 
 impl Showing {
-    fn of(device: &DeviceSection) -> Self {
+    fn of(device: &DeviceSection, teller: Teller) -> Self {
         Self {
             corners: CornerCalibration::new(),
+            teller,
             how: match device.is_hid() {
                 true => "with the pen on its tablet",
                 false => "with the ferrule, and keep still for a second or press the first switch",
@@ -250,7 +288,8 @@ impl Showing {
 
     fn ask(&self) -> Result<(), UserError> {
         if let Some(corner) = self.corners.wanted() {
-            say!("touch the {corner} corner of the canvas {}", self.how);
+            let said = format!("touch the {corner} corner of the canvas {}", self.how);
+            self.teller.ask(&said, Some(corner))?;
         }
         Ok(())
     }
@@ -267,10 +306,11 @@ impl Showing {
             Progress::Going => {}
             Progress::Found(corner, place) => {
                 let [x, y, z] = (place * 1e3).to_array();
-                say!("{corner}: {x:.1}, {y:.1}, {z:.1} mm");
+                self.teller
+                    .say(&format!("{corner}: {x:.1}, {y:.1}, {z:.1} mm"))?;
                 self.ask()?;
             }
-            Progress::Rejected(why) => say!("{why}"),
+            Progress::Rejected(why) => self.teller.say(&why.to_string())?,
         }
         Ok(match self.corners.wanted() {
             Some(_) => ControlFlow::Continue(()),

@@ -15,6 +15,7 @@ use serde_json::json;
 use crate::attached::vendors::{INVERSE_SERVICE, library, library_folders, listens, openxr_loader};
 use crate::attached::{Attached, Places, events, hid, rules, serial};
 use crate::commands::session::{Feed, Session, Target};
+use crate::commands::table::table;
 use crate::commands::{print_json, print_text};
 
 /// Options of `maulstick device list`.
@@ -134,7 +135,7 @@ pub(super) fn run(options: &ListOptions) -> Result<i32, UserError> {
     };
     match options.json {
         true => print_json(&json!(findings))?,
-        false => print_text(&table(&findings))?,
+        false => print_text(&in_words(&findings))?,
     }
     Ok(0)
 }
@@ -198,8 +199,8 @@ fn used(target: &Target) -> Option<Vec<Used>> {
 /// Row of a device.
 type Row = [String; 5];
 
-/// Table of the findings, for people.
-fn table(findings: &Findings) -> String {
+/// The findings, for people.
+fn in_words(findings: &Findings) -> String {
     let mut rows: Vec<Row> = Vec::new();
     let all = || {
         findings
@@ -234,8 +235,7 @@ fn table(findings: &Findings) -> String {
     }
     let mut text = String::new();
     if !rows.is_empty() {
-        let heads = ["device", "id", "at", "driver", ""].map(str::to_owned);
-        text += &aligned(&[vec![heads], rows].concat());
+        text += &table(["device", "id", "at", "driver", ""], &rows);
     }
     if !all().any(|device| device.driver.is_some())
         && findings.openhaptics.path.is_none()
@@ -276,21 +276,6 @@ fn row(device: &Attached) -> Row {
 
 fn program(name: &str, driver: &str, at: &str) -> Row {
     [name, "-", at, driver, "found"].map(str::to_owned)
-}
-
-/// Rows with columns as wide as their widest cell.
-fn aligned(rows: &[Row]) -> String {
-    let wide = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
-    let widths = [0, 1, 2, 3].map(|column| wide(column).unwrap_or(0));
-    let line = |row: &Row| {
-        let mut line = String::new();
-        for (cell, width) in row.iter().zip(widths) {
-            line += &format!("{cell:<width$}  ");
-        }
-        line += &row[4];
-        line.trim_end().to_owned() + "\n"
-    };
-    rows.iter().map(line).collect()
 }
 
 /// Message if there is nothing to paint with.
@@ -342,9 +327,9 @@ fn in_rig(used: Option<&[Used]>) -> String {
         let priority = own.priority.to_string();
         [&own.name, &own.driver, &own.brush, &priority, state].map(Into::into)
     };
-    let heads = ["in the rig", "driver", "brush", "priority", ""].map(str::to_owned);
-    let rows: Vec<Row> = [heads].into_iter().chain(used.iter().map(row)).collect();
-    format!("\n{}", aligned(&rows))
+    let rows: Vec<Row> = used.iter().map(row).collect();
+    let head = ["in the rig", "driver", "brush", "priority", ""];
+    format!("\n{}", table(head, &rows))
 }
 
 #[cfg(test)]

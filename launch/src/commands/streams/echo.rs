@@ -5,11 +5,12 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use maulstick_rig::UserError;
+use maulstick_streams::catalogue::message_of;
 use maulstick_streams::{FieldTable, Value};
-use maulstick_types::{CATALOGUE, HEADER_BYTES, plain};
-use serde_json::json;
+use maulstick_types::{HEADER_BYTES, plain};
 
 use super::listener::{Listener, ReceivedMessage};
+use super::message_lines::{MessageLine, head};
 use crate::commands::print_text;
 use crate::commands::session::Target;
 
@@ -86,8 +87,7 @@ impl<'a> Printer<'a> {
     fn print(&mut self, received: &ReceivedMessage) -> Result<(), UserError> {
         let header = &received.message.header;
         let table = self.tables.entry(header.schema).or_insert_with(|| {
-            let mut entries = CATALOGUE.iter();
-            let entry = entries.find(|entry| (entry.schema)().hash == header.schema)?;
+            let entry = message_of(header.schema)?;
             FieldTable::of((entry.schema)()).ok()
         });
         let Some(table) = table else {
@@ -116,81 +116,37 @@ impl<'a> Printer<'a> {
                 columns.iter().map(String::as_str),
             ));
         }
-        let name = table.name().to_owned();
-        let chosen = self.chosen(&value);
-        if self.options.csv {
-            return self.row(received, &value);
-        }
-        if self.options.json {
-            let shown = match &chosen[..] {
-                [] => json!(value),
-                fields => json!(fields.iter().cloned().collect::<BTreeMap<_, _>>()),
-            };
-            let line = json!({
-                "topic": received.topic,
-                "message": name,
-                "seq": header.seq,
-                "event_ns": header.event_ns,
-                "sent_ns": header.sent_ns,
-                "arrived_ns": received.message.arrived_ns,
-                "value": shown,
-            });
-            return print_text(&format!("{line}\n"));
-        }
-        let mut text = format!("{}  {} {}\n", received.topic, name, header.seq);
-        let shown = match (&value, chosen.is_empty()) {
-            (Value::Fields(fields), true) => {
-                let fields = fields.iter();
-                fields
-                    .map(|(name, value)| (name.to_string(), value.clone()))
-                    .collect()
-            }
-            _ => chosen,
+        let line = MessageLine {
+            topic: &received.topic,
+            header,
+            arrived_ns: received.message.arrived_ns,
+            value: &value,
         };
-        for (name, value) in shown {
-            text += &format!("    {name}  {}\n", value.cell());
+        let fields = &self.options.field;
+        if self.options.json {
+            return print_text(&line.json(fields));
+        }
+        if self.options.csv {
+            let columns = self.columns.get_or_insert_default();
+            if columns.is_empty() {
+                *columns = match fields.is_empty() {
+                    true => value.columns(),
+                    false => fields.clone(),
+                };
+                print_text(&head(columns))?;
+            }
+            return print_text(&line.row(columns));
+        }
+        let mut text = format!("{}  {} {}\n", received.topic, table.name(), header.seq);
+        let mut add = |name: &str, value: Option<&Value>| {
+            let cell = value.map(Value::cell).unwrap_or_default();
+            text += format!("    {name}  {cell}").trim_end();
+            text.push('\n');
+        };
+        match (&value, fields.is_empty()) {
+            (Value::Fields(own), true) => own.iter().for_each(|(name, own)| add(name, Some(own))),
+            _ => fields.iter().for_each(|path| add(path, value.at(path))),
         }
         print_text(&text)
-    }
-
-    /// The fields that were asked for; absent are those of another alternative.
-    fn chosen(&self, value: &Value) -> Vec<(String, Value)> {
-        let fields = self.options.field.iter();
-        fields
-            .map(|path| {
-                (
-                    path.clone(),
-                    value.at(path).cloned().unwrap_or(Value::Absent),
-                )
-            })
-            .collect()
-    }
-
-    /// A row of the table; its head before the first.
-    fn row(&mut self, received: &ReceivedMessage, value: &Value) -> Result<(), UserError> {
-        if self.columns.is_none() {
-            let columns = match self.options.field.is_empty() {
-                true => value.columns(),
-                false => self.options.field.clone(),
-            };
-            print_text(&format!("topic,seq,event_ns,{}\n", columns.join(",")))?;
-            self.columns = Some(columns);
-        }
-        let header = &received.message.header;
-        let mut row = format!("{},{},{}", received.topic, header.seq, header.event_ns);
-        for path in self.columns.iter().flatten() {
-            row.push(',');
-            row += &quoted(&value.at(path).map(Value::cell).unwrap_or_default());
-        }
-        print_text(&(row + "\n"))
-    }
-}
-
-/// A cell of comma-separated values (RFC 4180).
-#[must_use]
-pub(super) fn quoted(cell: &str) -> String {
-    match cell.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", cell.replace('"', "\"\"")),
-        false => cell.to_owned(),
     }
 }

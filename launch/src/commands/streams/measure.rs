@@ -5,13 +5,14 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use maulstick_rig::UserError;
 use maulstick_streams::Traffic;
+use maulstick_streams::catalogue::message_of;
 use maulstick_streams::traffic::{Distribution, Stream};
-use maulstick_types::{CATALOGUE, Origin};
+use maulstick_types::Origin;
 use serde_json::{Value, json};
 
 use super::listener::Listener;
-use super::table::table;
 use crate::commands::session::Target;
+use crate::commands::table::table;
 use crate::commands::{print_json, print_text, say};
 
 /// Options of `maulstick topics`, `hz` and `latency`.
@@ -91,10 +92,8 @@ pub fn run(options: &MeasureOptions, measure: Measure) -> Result<i32, UserError>
 
 /// Name and version of the messages of a hash.
 #[must_use]
-pub(super) fn message_of(schema: u32) -> String {
-    let mut entries = CATALOGUE.iter();
-    let entry = entries.find(|entry| (entry.schema)().hash == schema);
-    entry.map_or_else(
+fn message_name(schema: u32) -> String {
+    message_of(schema).map_or_else(
         || format!("unknown {schema:#010x}"),
         |entry| format!("{} {}", entry.name, entry.version),
     )
@@ -113,7 +112,7 @@ fn entry((topic, origin, stream): Row<'_>) -> Value {
         "topic": topic,
         "source": origin.source,
         "epoch": origin.epoch,
-        "message": message_of(stream.schema),
+        "message": message_name(stream.schema),
         "messages": stream.messages,
         "bytes": stream.bytes,
         "rate_hz": stream.rate_hz(),
@@ -151,7 +150,7 @@ fn shown(traffic: &Traffic, measure: Measure) -> String {
                 let bytes = stream.bytes / stream.messages.max(1);
                 [
                     (*topic).to_owned(),
-                    message_of(stream.schema),
+                    message_name(stream.schema),
                     rate,
                     bytes.to_string(),
                 ]

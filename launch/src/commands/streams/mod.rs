@@ -5,12 +5,12 @@
 //! | [`listener`] | messages of a running rig |
 //! | [`echo`], [`measure`], [`nodes`] | contents, rates and senders of live streams |
 //! | [`record`], [`recording`] | recordings, made and looked at |
-//! | [`table`] | tables in text |
+//! | [`message_lines`] | messages as rows of a table and as lines of JSON |
 
 pub mod echo;
 mod listener;
 pub mod measure;
+mod message_lines;
 pub mod nodes;
 pub mod record;
 pub mod recording;
-mod table;

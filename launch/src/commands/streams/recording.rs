@@ -13,8 +13,8 @@ use maulstick_streams::traffic::Arrived;
 use maulstick_streams::{Recording, Traffic, Value};
 use serde_json::json;
 
-use super::echo::quoted;
-use super::table::table;
+use super::message_lines::{MessageLine, head};
+use crate::commands::table::table;
 use crate::commands::{print_json, print_text, say};
 use crate::outputs::{UsedFile, check_outputs};
 
@@ -189,13 +189,12 @@ fn export(options: &ExportOptions) -> Result<i32, UserError> {
     }
     let [first, last] = recording.times_ns().unwrap_or_default();
     let after = |seconds: f64| first.saturating_add((seconds * 1e9) as u64);
-    let end = options.end.unwrap_or(f64::MAX);
+    let end = options.end.unwrap_or(f64::INFINITY);
     let range = [after(options.start), after(end)];
     let is_range = options.start >= 0.0 && end >= options.start;
     if !is_range || range[0] > last {
         let long = last.saturating_sub(first) as f64 * 1e-9;
         let what = format!("nothing was recorded from {} s to {end} s", options.start);
-        let what = what.replace(&format!(" to {} s", f64::MAX), " on");
         return Err(UserError::usage(what)
             .at(place)
             .help(format!("the recording is {long:.3} s long")));
@@ -218,14 +217,14 @@ fn export(options: &ExportOptions) -> Result<i32, UserError> {
         options,
         topics: &topics,
         text: match options.format {
-            Form::Csv => format!("topic,seconds,seq,event_ns,{}\n", columns.join(",")).into_bytes(),
-            Form::Json => Vec::new(),
+            Form::Csv => head(&columns),
+            Form::Json => String::new(),
         },
         columns,
         messages: 0,
     };
     let mut wrong = None;
-    recording.messages(range, &mut |message| match lines.add(&message, first) {
+    recording.messages(range, &mut |message| match lines.add(&message) {
         Ok(()) => true,
         Err(fault) => {
             wrong = Some(fault);
@@ -237,7 +236,7 @@ fn export(options: &ExportOptions) -> Result<i32, UserError> {
     }
     let (text, count) = (lines.text, lines.messages);
     write_whole(&options.output, Kind::Messages, |file| {
-        file.write_all(&text)
+        file.write_all(text.as_bytes())
     })
     .map_err(|error| UserError::writing(&options.output, &error))?;
     say!("{count} messages in {}", options.output.display());
@@ -269,13 +268,13 @@ struct Lines<'a> {
     options: &'a ExportOptions,
     topics: &'a BTreeMap<u16, Topic>,
     columns: Vec<String>,
-    text: Vec<u8>,
+    text: String,
     messages: u64,
 }
 
 impl Lines<'_> {
     /// Adds a message of one of the topics.
-    fn add(&mut self, message: &RecordedMessage, first_ns: u64) -> Result<(), UserError> {
+    fn add(&mut self, message: &RecordedMessage) -> Result<(), UserError> {
         let Some(topic) = self.topics.get(&message.channel) else {
             return Ok(());
         };
@@ -287,41 +286,16 @@ impl Lines<'_> {
             .help("a newer version of Maulstick may know it")
         })?;
         self.messages += 1;
-        let seconds = message.arrived_ns.saturating_sub(first_ns) as f64 * 1e-9;
-        let header = &message.header;
-        if self.options.format == Form::Json {
-            let shown = match self.options.field.is_empty() {
-                true => json!(value),
-                false => {
-                    let fields = self.options.field.iter();
-                    json!(
-                        fields
-                            .map(|path| (path, value.at(path)))
-                            .collect::<BTreeMap<_, _>>()
-                    )
-                }
-            };
-            let line = json!({
-                "topic": topic.name,
-                "seconds": seconds,
-                "seq": header.seq,
-                "event_ns": header.event_ns,
-                "sent_ns": header.sent_ns,
-                "arrived_ns": message.arrived_ns,
-                "value": shown,
-            });
-            self.text.extend(format!("{line}\n").bytes());
-            return Ok(());
-        }
-        let mut row = format!(
-            "{},{seconds:.6},{},{}",
-            topic.name, header.seq, header.event_ns
-        );
-        for path in &self.columns {
-            row.push(',');
-            row += &quoted(&value.at(path).map(Value::cell).unwrap_or_default());
-        }
-        self.text.extend((row + "\n").bytes());
+        let line = MessageLine {
+            topic: &topic.name,
+            header: &message.header,
+            arrived_ns: message.arrived_ns,
+            value: &value,
+        };
+        self.text += &match self.options.format {
+            Form::Csv => line.row(&self.columns),
+            Form::Json => line.json(&self.options.field),
+        };
         Ok(())
     }
 }

@@ -177,6 +177,7 @@ fn a_device_is_preferred_fitted_and_removed() {
     harness.state_mut().rig.fit = Some(FitProgress {
         device: "tablet".into(),
         said: vec!["touch the lower left corner".into()],
+        asks: Some("lower left".into()),
     });
     harness.run();
     harness.get_by_label("Touch the lower left corner");

@@ -13,7 +13,8 @@ list) echo '{"hid": [], "events": [], "serial": [], "openhaptics": {"path": null
  "inverse_service": {"listens": false}, "rig": [{"name": "arm", "driver": "polhem", "brush": "main",
  "is_in_rig": true, "is_own": true}]}';;
 use) echo "first"; echo "$*";;
-fit) trap 'echo "nothing is written"; exit 130' INT; echo "touch the lower left corner"
+fit) trap 'echo "{\"said\": \"nothing is written\", \"asks\": null}"; exit 130' INT
+    echo '{"said": "touch the lower left corner", "asks": "lower left"}'
  while :; do sleep 0.01; done;;
 *) printf 'error: no such device\n  --> /x\n help: plug it in\n' >&2; exit 1;;
 esac
@@ -118,6 +119,8 @@ fn a_fit_says_what_to_touch_until_it_is_stopped() {
     desk.turn(vec![DeviceOrder::Fit("arm".into())], false);
     let said = |desk: &Desk| desk.rig.fit.as_ref().map_or(0, |fit| fit.said.len());
     desk.until(|desk| said(desk) == 1);
+    let asks = desk.rig.fit.as_ref().and_then(|fit| fit.asks.clone());
+    assert_eq!(asks.as_deref(), Some("lower left"));
     desk.turn(vec![DeviceOrder::StopFit], false);
     desk.until(|desk| desk.rig.fit.is_none());
     assert_eq!(desk.told, [(Weight::Note, "nothing is written".to_owned())]);

@@ -45,7 +45,7 @@ fn findings(hid: Vec<Attached>, serial: Vec<Attached>) -> Findings {
 fn nothing_attached_is_said_and_what_would_be_seen() {
     let keyboard = attached("A keyboard", "046d:c31c", "hidraw0", None);
     for found in [findings(vec![], vec![]), findings(vec![keyboard], vec![])] {
-        let text = table(&found);
+        let text = in_words(&found);
         for word in [
             "Nothing attached",
             "/usr/lib.",
@@ -56,7 +56,7 @@ fn nothing_attached_is_said_and_what_would_be_seen() {
         }
     }
     let pen = attached("A pen", "056a:0374", "hidraw0", Some("pen"));
-    assert!(!table(&findings(vec![pen], vec![])).contains("Nothing"));
+    assert!(!in_words(&findings(vec![pen], vec![])).contains("Nothing"));
 }
 
 #[test]
@@ -75,7 +75,7 @@ fn what_a_driver_fits_comes_first_in_columns_and_how_it_is_used_below() {
     );
     found.openhaptics.path = Some("/usr/lib/libHD.so".into());
     found.inverse_service.listens = true;
-    let text = table(&found);
+    let text = in_words(&found);
     let expected = "\
 device                 id         at                 driver
 Intuos S               056a:0374  /dev/hidraw3       pen          no permission

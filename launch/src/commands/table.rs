@@ -2,16 +2,18 @@
 
 /// Rows with a head; all but the last column are padded.
 #[must_use]
-pub(super) fn table<const N: usize>(head: [&str; N], rows: &[[String; N]]) -> String {
+pub(crate) fn table<const N: usize>(head: [&str; N], rows: &[[String; N]]) -> String {
     let head = head.map(str::to_owned);
     let all = || std::iter::once(&head).chain(rows);
     let wide = |column: usize| all().map(|row| row[column].chars().count()).max();
-    let widths: Vec<usize> = (0..N).map(|column| wide(column).unwrap_or(0)).collect();
+    let last = N - 1;
+    let widths: Vec<usize> = (0..last).map(|column| wide(column).unwrap_or(0)).collect();
     let line = |row: &[String; N]| {
         let mut line = String::new();
         for (cell, width) in row.iter().zip(&widths) {
             line += &format!("{cell:<width$}  ");
         }
+        line += &row[last];
         line.trim_end().to_owned() + "\n"
     };
     all().map(line).collect()
