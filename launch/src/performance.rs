@@ -19,7 +19,7 @@ use crate::ground::GroundFile;
 use crate::viewing::illuminant;
 
 /// What is painted with, and on.
-#[derive(Args, Clone, Debug, Default)]
+#[derive(Args, Clone, Debug, Default, PartialEq)]
 pub struct KitOptions {
     /// Size of the canvas in cells, such as 1024x1024
     #[arg(long, value_name = "WxH", value_parser = parse_size)]

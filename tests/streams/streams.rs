@@ -127,7 +127,7 @@ fn what_a_sender_leaves_out_is_counted_exactly_and_its_contents_are_shown() {
         assert_eq!(rows[0], "topic,arrived_ns,seq,event_ns,push.0,switches");
         assert!(rows[1].starts_with("control/puck/sample,") && rows[1].ends_with(",0"));
         let latency = place
-            .done(&["latency", "--once", "--seconds", "0.5"])
+            .done(&["latency", "--once", "--seconds", "1.5"])
             .stdout;
         has(
             &String::from_utf8_lossy(&latency),

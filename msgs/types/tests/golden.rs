@@ -293,6 +293,10 @@ fn all() -> String {
         line(&entry(Entry::Decision {
             what: "backend cpu".into(),
         })),
+        line(&entry(Entry::Brush {
+            brush: "main".into(),
+            toml: "kind".into(),
+        })),
         line(&FrameRequest {
             surface: 0,
             since: 1,

@@ -148,6 +148,7 @@ impl Document {
         self.shared.wake.notify_all();
         Relocation {
             to: to.to_owned(),
+            how,
             outcome,
         }
     }
@@ -180,7 +181,7 @@ impl Document {
         relocation: &Relocation,
         outcome: Result<(), DocumentError>,
     ) -> Result<(), DocumentError> {
-        if outcome.is_ok() {
+        if outcome.is_ok() && relocation.how != Relocate::Leave {
             self.path.clone_from(&relocation.to);
         }
         outcome

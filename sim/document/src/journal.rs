@@ -3,9 +3,9 @@
 use std::io::Read as _;
 
 use maulstick_painting::sequencer::{Accepted, Record};
-use maulstick_types::brush::{BrushDef, BrushState};
+use maulstick_types::brush::BrushState;
 use maulstick_types::paint::JournalEntry;
-use maulstick_types::{Flags, Header, Message, Origin, decode, encode, name_hash};
+use maulstick_types::{Flags, Header, Message, Origin, decode, encode};
 
 use rusqlite::params;
 
@@ -41,14 +41,6 @@ fn message(record: &Record) -> Result<Vec<u8>, DocumentError> {
                 entry: entry.clone(),
             };
             encode(&NO_ORIGIN, Flags::NONE, record.serial, 0, 0, &entry)
-        }
-        Accepted::Brush { brush, toml } => {
-            let def = BrushDef {
-                brush: brush.clone(),
-                toml: toml.clone(),
-                hash: name_hash(toml),
-            };
-            encode(&NO_ORIGIN, Flags::NONE, record.serial, 0, 0, &def)
         }
     };
     bytes.map_err(damaged)
@@ -123,13 +115,6 @@ fn accepted(message: &[u8]) -> Result<Accepted, DocumentError> {
     if header.schema == BrushState::schema().hash {
         let (header, state) = decode::<BrushState>(message).map_err(damaged)?;
         return Ok(Accepted::State { header, state });
-    }
-    if header.schema == BrushDef::schema().hash {
-        let (_, def) = decode::<BrushDef>(message).map_err(damaged)?;
-        return Ok(Accepted::Brush {
-            brush: def.brush,
-            toml: def.toml,
-        });
     }
     let (_, entry) = decode::<JournalEntry>(message).map_err(damaged)?;
     Ok(Accepted::Entry(entry.entry))

@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | [`offline`] | samples in, a painting out: the same bytes as a rig that heard them |
 //! | [`autosave`] | a painting kept in its document as it grows |
+//! | [`recorded`] | a recorded session as what its painting accepted |
 //! | [`ticker`] | ticks of a clock |
 //!
 //! A stroke of a loaded flat, 40 mm long; the books of the painting are even to the quantum:
@@ -41,7 +42,9 @@
 
 pub mod autosave;
 pub mod offline;
+pub mod recorded;
 pub mod ticker;
 
 pub use autosave::Autosave;
 pub use offline::Offline;
+pub use recorded::RecordedSession;

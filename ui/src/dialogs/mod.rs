@@ -396,6 +396,7 @@ fn done(command: &Command) -> Option<String> {
             tr!("The export has ended without a file.").to_owned()
         }
         Command::Rig(RigCommand::PutDevice { .. } | RigCommand::RemoveDevice { .. })
+        | Command::File(FileCommand::Copy { .. })
         | Command::Edit(_)
         | Command::Take(_)
         | Command::Brush(_) => return None,

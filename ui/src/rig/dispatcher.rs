@@ -187,7 +187,7 @@ fn address(request: &Request) -> String {
 fn patience(command: &Command) -> Duration {
     match command {
         Command::Rig(_) | Command::File(FileCommand::SaveAs(_)) => OPENING,
-        Command::File(FileCommand::Export(_)) => EXPORTING,
+        Command::File(FileCommand::Export(_) | FileCommand::Copy { .. }) => EXPORTING,
         Command::File(FileCommand::StopExport)
         | Command::Edit(_)
         | Command::Take(_)

@@ -124,6 +124,7 @@ impl PaintNode {
             FileCommand::SaveAs(SaveAs { path, replace }) => {
                 self.save_as(asker, Path::new(path.as_str()), *replace)
             }
+            FileCommand::Copy { path } => self.copy(asker, Path::new(path.as_str())),
             FileCommand::StopExport => {
                 self.exporter.stop()?;
                 Ok(Outcome::done(""))

@@ -58,12 +58,7 @@ impl PaintNode {
         to: &Path,
         replace: bool,
     ) -> Result<Outcome, Refusal> {
-        if let Some(saving) = &self.saving {
-            return Err(Refusal::say(
-                format!("the painting is on its way to {}", saving.to.display()),
-                "wait until it is there, and ask again",
-            ));
-        }
+        self.check_at_rest()?;
         let stage = match &self.autosave {
             Some(autosave) if self.unnamed => {
                 Stage::Moved(autosave.document().relocate(to, Relocate::Rename, replace))
@@ -85,6 +80,38 @@ impl PaintNode {
             stage,
         });
         Ok(Outcome::Waiting)
+    }
+
+    /// Begins to write a copy of the painting, which has a file.
+    ///
+    /// # Errors
+    /// [`Refusal`] if it is in memory alone, or a move is in progress.
+    pub(super) fn copy(&mut self, asker: Asker, to: &Path) -> Result<Outcome, Refusal> {
+        self.check_at_rest()?;
+        let Some(autosave) = self.autosave.as_ref().filter(|_| !self.unnamed) else {
+            return Err(Refusal::say(
+                "a painting in memory only cannot be copied",
+                "save it in a file first",
+            ));
+        };
+        let stage = Stage::Moved(autosave.document().relocate(to, Relocate::Leave, false));
+        self.saving = Some(Saving {
+            asker,
+            to: to.to_owned(),
+            replace: false,
+            stage,
+        });
+        Ok(Outcome::Waiting)
+    }
+
+    fn check_at_rest(&self) -> Result<(), Refusal> {
+        match &self.saving {
+            None => Ok(()),
+            Some(saving) => Err(Refusal::say(
+                format!("the painting is on its way to {}", saving.to.display()),
+                "wait until it is there, and ask again",
+            )),
+        }
     }
 
     /// Gives a painting in memory alone a document beside the name that it is to have.

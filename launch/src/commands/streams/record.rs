@@ -10,12 +10,16 @@ use clap::Args;
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 use maulstick_rig::node_handle::CONFIG_FILE;
+use maulstick_streams::topic_pattern::matches;
 use maulstick_streams::{RecordingWriter, Traffic};
+use maulstick_types::command::FileCommand;
 use mcap::McapError;
 
 use super::listener::{Listener, ReceivedMessage};
+use crate::commands::open::{LONGEST, whole};
 use crate::commands::say;
-use crate::commands::session::Target;
+use crate::commands::session::{Session, Target};
+use crate::commands::takes::session_file::{JOURNAL, PAINTING};
 use crate::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick record`.
@@ -69,6 +73,7 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
     let mut state = State::default();
     let mut part = Part::begin(&options.output, |path| File::create(path), &listener)?;
     let mut flush_at = begun + FLUSH;
+    let mut lacks_painting = matches(&options.topic, JOURNAL);
     while !listener.is_over() && end.is_none_or(|end| Instant::now() < end) {
         if let Some(received) = listener.next(end.map_or(flush_at, |end| end.min(flush_at))) {
             part.write(&received)?;
@@ -79,6 +84,10 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
         }
         flush_at = Instant::now() + FLUSH;
         part.flush()?;
+        // Brush states that were on their way at the beginning are painted by now.
+        if std::mem::take(&mut lacks_painting) {
+            part.attach_painting(&options.target)?;
+        }
         if !listener.has_rig() {
             break;
         }
@@ -99,6 +108,7 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
                 again.message.arrived_ns = now_ns;
                 part.write(&again)?;
             }
+            lacks_painting = matches(&options.topic, JOURNAL);
         }
     }
     part.finish(&mut state, &listener)?;
@@ -214,6 +224,30 @@ impl Part {
         self.messages += 1;
         self.bytes += received.bytes.len() as u64;
         Ok(())
+    }
+
+    /// Attaches the painting as it is now, so that what is accepted from now on can be painted again.
+    fn attach_painting(&mut self, target: &Target) -> Result<(), UserError> {
+        let failed = |error: std::io::Error| UserError::failure(error.to_string());
+        let folder = tempfile::tempdir().map_err(failed)?;
+        let copy = folder.path().join(PAINTING);
+        let command = FileCommand::Copy {
+            path: whole(&copy)?,
+        };
+        let copied =
+            Session::open(target).and_then(|session| session.send_within(command, LONGEST));
+        if let Err(fault) = copied {
+            say!(
+                "without the painting, {}: it cannot be painted again from this recording",
+                fault.what
+            );
+            return Ok(());
+        }
+        let bytes = std::fs::read(&copy).map_err(|error| UserError::reading(&copy, &error))?;
+        self.writer
+            .attach(PAINTING, "application/vnd.sqlite3", &bytes)
+            .map_err(|error| fault(&self.path, error))?;
+        self.flush()
     }
 
     fn flush(&mut self) -> Result<(), UserError> {

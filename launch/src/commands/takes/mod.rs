@@ -1,6 +1,9 @@
 //! Commands of takes: performances made, imported and painted.
 
 pub mod demo;
+mod from;
 pub mod import;
 pub mod render;
+mod render_session;
+pub(crate) mod session_file;
 pub mod take;

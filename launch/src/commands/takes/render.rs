@@ -10,6 +10,8 @@ use maulstick_rig::files::Kind;
 use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::{Autosave, Offline};
 
+use super::render_session::render_session;
+use super::session_file::{SessionFile, is_recording};
 use crate::backend::choose_backend;
 use crate::cells::picture_settings;
 use crate::commands::progress_bar;
@@ -24,7 +26,7 @@ use crate::script::{Act, Script, advice};
 /// Options of `maulstick render`.
 #[derive(Args, Clone, Debug)]
 pub struct RenderOptions {
-    /// Take
+    /// Take, or a recorded session
     #[arg(required_unless_present = "script", conflicts_with = "script")]
     take: Option<PathBuf>,
     /// Script instead of a take: brushes, loads, takes, drying, light, step by step
@@ -32,7 +34,7 @@ pub struct RenderOptions {
     script: Option<PathBuf>,
     /// Picture to write, a PNG
     #[arg(short, long, value_name = "PNG")]
-    output: PathBuf,
+    pub(super) output: PathBuf,
     /// Settings of the rig
     #[arg(long, value_name = "FILE")]
     rig: Option<PathBuf>,
@@ -45,9 +47,9 @@ pub struct RenderOptions {
     gamut: Option<String>,
     /// Painting to paint in and save; begun if it does not exist
     #[arg(long, value_name = "FILE")]
-    document: Option<PathBuf>,
+    pub(super) document: Option<PathBuf>,
     #[command(flatten)]
-    painting: PaintingOptions,
+    pub(super) painting: PaintingOptions,
 }
 
 impl RenderOptions {
@@ -61,6 +63,24 @@ impl RenderOptions {
             .chain(UsedFile::given("the settings", self.rig.as_ref()))
             .chain(document.map(|path| UsedFile::painting(path)))
             .collect()
+    }
+
+    /// The take, if it is a recorded session.
+    fn session(&self) -> Result<Option<SessionFile>, UserError> {
+        let path = self.take.as_ref().filter(|path| is_recording(path));
+        path.map_or(Ok(None), |path| SessionFile::open(path))
+    }
+
+    /// Puts profile and gamut mapping into the settings.
+    fn show(&self, config: &mut RigConfig) {
+        for (setting, option) in [
+            (&mut config.view.profile, &self.profile),
+            (&mut config.view.gamut, &self.gamut),
+        ] {
+            if let Some(value) = option {
+                setting.clone_from(value);
+            }
+        }
     }
 
     /// The files that are written, but for the painting.
@@ -117,6 +137,11 @@ pub fn run(options: &RenderOptions) -> Result<i32, UserError> {
         None => picture_settings(),
     };
     options.check_idle()?;
+    if let Some(session) = options.session()? {
+        options.show(&mut config);
+        check_outputs(&options.outputs(), &options.inputs(&config))?;
+        return render_session(options, session, &config);
+    }
     let take = match &options.take {
         Some(path) => Some((path, read_take(path)?)),
         None => None,
@@ -127,14 +152,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, UserError> {
         None => Vec::new(),
     };
     let section = options.painting.apply(&mut config)?;
-    for (setting, option) in [
-        (&mut config.view.profile, &options.profile),
-        (&mut config.view.gamut, &options.gamut),
-    ] {
-        if let Some(value) = option {
-            setting.clone_from(value);
-        }
-    }
+    options.show(&mut config);
     let export = export(&config.view, "--profile, --gamut")?;
     let (outputs, inputs) = (options.outputs(), options.inputs(&config));
     check_apart(&outputs, &inputs)?;

@@ -1,6 +1,7 @@
 //! `maulstick take`: contents of a take, its setup, and the intact part of a damaged one.
 
-use std::path::PathBuf;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use maulstick_device::salvage::salvage;
@@ -10,8 +11,11 @@ use maulstick_rig::{RigConfig, UserError};
 use maulstick_types::stylus::StylusPose;
 use serde_json::json;
 
+use super::from::{self, FromOptions};
+use super::session_file::{Event, PAINTING, SessionFile, is_recording};
 use crate::cells::picture_settings;
 use crate::commands::{print_json, say, write_take};
+use crate::document::wrong;
 use crate::kit::{kit_of, use_kit};
 use crate::outputs::{UsedFile, check_outputs, named_by};
 use crate::performance::{KitOptions, library_from, painting_setup, refused};
@@ -27,6 +31,8 @@ pub enum TakeCommand {
         #[arg(long)]
         json: bool,
     },
+    /// Make a take of a recorded session: its strokes and commands, and the painting as it was before
+    From(FromOptions),
     /// Embed in a take what it is painted with: canvas, palette, brush, paints, light, loads. It then
     /// gives the same painting anywhere
     Embed(EmbedOptions),
@@ -98,6 +104,46 @@ fn kit_in_words(kit: &TakeSetup) -> String {
     )
 }
 
+/// Shows what a session holds, once all of it was found.
+fn session_info(path: &Path, as_json: bool) -> Result<i32, UserError> {
+    let Some(mut session) = SessionFile::open(path)? else {
+        return Ok(0);
+    };
+    let folder = tempfile::tempdir().map_err(|error| UserError::failure(error.to_string()))?;
+    let begin = folder.path().join(PAINTING);
+    session.write_painting(&begin)?;
+    let (document, mut sequencer, _) = from::open_begin(&begin)?;
+    let (mut counts, mut devices) = (from::Counts::default(), BTreeMap::<String, u64>::new());
+    session.follow(&mut sequencer, u64::MAX, &mut |_, _, event| {
+        match event {
+            Event::Accepted(record) => counts.note(&record),
+            Event::Other { topic, .. } => {
+                let device = topic.strip_prefix("stylus/");
+                if let Some(device) = device.and_then(|rest| rest.strip_suffix("/sample")) {
+                    *devices.entry(device.to_owned()).or_default() += 1;
+                }
+            }
+        }
+        Ok(())
+    })?;
+    document.close().map_err(|error| wrong(&begin, &error))?;
+    let seconds = session.length_ns() as f64 * 1e-9;
+    if as_json {
+        print_json(&json!({
+            "kind": "session",
+            "seconds": seconds,
+            "painted": counts.in_json(),
+            "samples": devices,
+        }))?;
+        return Ok(0);
+    }
+    say!("session  {seconds:.1} s: {}", counts.in_words());
+    for (device, samples) in devices {
+        say!("samples  {samples} of {device}");
+    }
+    Ok(0)
+}
+
 /// Runs the subcommand.
 ///
 /// # Errors
@@ -105,6 +151,8 @@ fn kit_in_words(kit: &TakeSetup) -> String {
 pub fn run(command: &TakeCommand) -> Result<i32, UserError> {
     match command {
         TakeCommand::Embed(options) => embed(options),
+        TakeCommand::From(options) => from::run(options),
+        TakeCommand::Info { take, json } if is_recording(take) => session_info(take, *json),
         TakeCommand::Info { take, json } => {
             let take = Take::read(take)?;
             let seconds = take.length_ns() as f64 * 1e-9;

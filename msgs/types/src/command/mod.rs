@@ -274,6 +274,11 @@ wire_enum! {
         StopExport,
         /// Puts the painting into another file.
         SaveAs(SaveAs),
+        /// Writes a copy of the painting, with its history; painting goes on where it was.
+        Copy {
+            /// The whole path of the copy, which is not there yet.
+            path: WholePath,
+        },
     }
 }
 
@@ -361,7 +366,7 @@ impl Command {
 
 message! {
     /// A command with its sender and number; sending it again with the same number is safe.
-    pub struct CommandRequest [version 9, at most 1048576 bytes] {
+    pub struct CommandRequest [version 10, at most 1048576 bytes] {
         /// A number that the client drew at random.
         pub client: u64,
         /// Counts the client's commands.

@@ -88,12 +88,19 @@ wire_enum! {
             /// In words: the backend, a degradation.
             what: String,
         },
+        /// A brush, or another file of a known one.
+        Brush {
+            /// Its name.
+            brush: String,
+            /// The file, TOML.
+            toml: String,
+        },
     }
 }
 
 message! {
     /// An entry of the journal, in order; it has room for the largest command with its index.
-    pub struct JournalEntry [version 9, at most 1049600 bytes] {
+    pub struct JournalEntry [version 10, at most 1049600 bytes] {
         /// From 0, without gaps.
         pub index: u64,
         /// The record.

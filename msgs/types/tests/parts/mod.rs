@@ -154,7 +154,7 @@ pub(crate) fn takes() -> [TakeCommand; 3] {
 }
 
 /// The commands about files, and those of other nodes.
-pub(crate) fn files() -> [Command; 9] {
+pub(crate) fn files() -> [Command; 10] {
     let material = |name: &str| MaterialName::new(name).expect("a name");
     let canvas = NewCanvas {
         width_m: 0.3,
@@ -180,6 +180,10 @@ pub(crate) fn files() -> [Command; 9] {
         FileCommand::Export(order).into(),
         FileCommand::StopExport.into(),
         FileCommand::SaveAs(save_as.clone()).into(),
+        FileCommand::Copy {
+            path: path("/d.maul"),
+        }
+        .into(),
         BrushCommand::Define {
             brush: BrushName::main(),
             toml: BrushToml::new("kind").expect("short"),

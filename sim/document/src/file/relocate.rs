@@ -17,6 +17,8 @@ pub enum Relocate {
     Copy,
     /// The file gets the new name.
     Rename,
+    /// A copy is written; painting goes on where it was.
+    Leave,
 }
 
 /// Request to relocate a painting.
@@ -33,6 +35,7 @@ pub(crate) struct RelocateRequest {
 #[derive(Debug)]
 pub struct Relocation {
     pub(crate) to: PathBuf,
+    pub(crate) how: Relocate,
     pub(crate) outcome: mpsc::Receiver<Result<(), DocumentError>>,
 }
 
@@ -87,7 +90,7 @@ pub(crate) fn relocate(from: &Path, request: &RelocateRequest) -> Result<(), Doc
             })
     };
     match request.how {
-        Relocate::Copy => copied()?,
+        Relocate::Copy | Relocate::Leave => copied()?,
         Relocate::Rename => match rename(from, to, replace) {
             Err(error) if error.kind() == ErrorKind::CrossesDevices => {
                 copied()?;

@@ -111,6 +111,17 @@ impl Opened {
     /// # Errors
     /// [`EditError`] if the stored parts do not fit together.
     pub fn sequencer(self) -> Result<Sequencer, EditError> {
+        let mut sequencer = self.in_its_midst()?;
+        sequencer.record();
+        sequencer.go_on();
+        Ok(sequencer)
+    }
+
+    /// The same for records that follow without a break: brushes stay where they are.
+    ///
+    /// # Errors
+    /// As [`sequencer`](Self::sequencer).
+    pub fn in_its_midst(self) -> Result<Sequencer, EditError> {
         let painting = Painting::restore(self.restored, self.library, self.pager)?;
         let mut sequencer = Sequencer::restored(painting, self.sequencer);
         for record in self.records {
@@ -118,8 +129,6 @@ impl Opened {
         }
         let painting = sequencer.painting_mut();
         painting.skip_versions(painting.versions() + VERSION_SKIP);
-        sequencer.record();
-        sequencer.go_on();
         Ok(sequencer)
     }
 }

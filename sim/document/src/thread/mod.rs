@@ -13,7 +13,7 @@ use maulstick_painting::sequencer::Record;
 
 use crate::error::DocumentError;
 use crate::file::database::{Access, Database, is_new};
-use crate::file::relocate::{self, RelocateRequest};
+use crate::file::relocate::{self, Relocate, RelocateRequest};
 use crate::file::watch::{FileState, FileWatch};
 use crate::journal;
 use crate::writing::{Checkpoint, ShownTile, Writer};
@@ -115,6 +115,11 @@ impl DocumentThread {
     /// If the painting cannot continue in either file.
     fn relocate(mut self, request: RelocateRequest) -> Result<Self, DocumentError> {
         self.committed_for_relocation = false;
+        if request.how == Relocate::Leave {
+            let copied = relocate::rescue(&self.database, &request.to, request.replace);
+            request.answer.send(copied).ok();
+            return Ok(self);
+        }
         let open = |path: &Path| match is_new(path)? {
             // SQLite would create a blank one.
             true => Err(DocumentError::Missing),

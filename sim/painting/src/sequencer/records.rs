@@ -32,15 +32,8 @@ pub enum Accepted {
         /// Itself.
         state: BrushState,
     },
-    /// A command, a tick or a decision.
+    /// A command, a tick, a decision or a brush.
     Entry(Entry),
-    /// A brush and its file, TOML.
-    Brush {
-        /// Its name.
-        brush: String,
-        /// The file.
-        toml: String,
-    },
 }
 
 /// An accepted thing and its place.
@@ -58,11 +51,7 @@ impl Record {
     /// Index of the next journal entry after it.
     #[must_use]
     pub fn next(&self) -> u64 {
-        match self.what {
-            // No entry tells of it.
-            Accepted::Brush { .. } => self.index,
-            Accepted::State { .. } | Accepted::Entry(_) => self.index + 1,
-        }
+        self.index + 1
     }
 }
 
@@ -168,11 +157,12 @@ impl Sequencer {
     pub fn define_brush(&mut self, brush: &str, file: BrushFile) {
         let toml = file.to_toml().unwrap_or_default();
         if self.painting.define_brush(brush, file) {
-            let index = self.next;
-            self.note(index, || Accepted::Brush {
+            let entry = Entry::Brush {
                 brush: brush.to_owned(),
                 toml,
-            });
+            };
+            let index = self.enter(entry.clone());
+            self.note(index, || Accepted::Entry(entry));
         }
     }
 
@@ -220,7 +210,7 @@ impl Sequencer {
                 self.drop_states(cut);
             }
             Accepted::Entry(Entry::States { .. }) => {}
-            Accepted::Brush { brush, toml } => {
+            Accepted::Entry(Entry::Brush { brush, toml }) => {
                 if let Ok(file) = BrushFile::parse(&toml) {
                     self.painting.define_brush(&brush, file);
                 }

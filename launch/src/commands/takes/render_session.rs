@@ -1,0 +1,67 @@
+//! `maulstick render` of a session: what its painting accepted, accepted again.
+
+use std::time::Instant;
+
+use maulstick_paint_node::snapshots::write_snapshot;
+use maulstick_rig::{RigConfig, UserError};
+use maulstick_session::Autosave;
+
+use super::from::{Counts, open_begin};
+use super::render::RenderOptions;
+use super::session_file::{Event, PAINTING, SessionFile};
+use crate::backend::choose_backend;
+use crate::commands::{progress_bar, say};
+use crate::destination::export;
+use crate::document::{Presence, presence, wrong};
+use crate::performance::KitOptions;
+
+/// Paints a session.
+///
+/// # Errors
+/// A [`UserError`] where something is missing in it, for options that do not apply, or where a file cannot be written.
+pub(super) fn render_session(
+    options: &RenderOptions,
+    mut session: SessionFile,
+    config: &RigConfig,
+) -> Result<i32, UserError> {
+    let painting = &options.painting;
+    if painting.kit != KitOptions::default() || painting.model.is_some() {
+        return Err(UserError::usage("a session is painted with what it was painted with")
+            .help("leave out canvas, brush, loads, paints, light and model: only --profile, --gamut, --backend, --document and --ledger apply"));
+    }
+    let export = export(&config.view, "--profile, --gamut")?;
+    let folder = tempfile::tempdir().map_err(|error| UserError::failure(error.to_string()))?;
+    let path = match &options.document {
+        Some(path) if presence(path, painting)? == Presence::There => {
+            return Err(UserError::usage("a session has a painting of its own")
+                .at(path.display().to_string())
+                .help("give a name that is not there yet"));
+        }
+        Some(path) => path.clone(),
+        None => folder.path().join(PAINTING),
+    };
+    session.write_painting(&path)?;
+    let (document, mut sequencer, since) = open_begin(&path)?;
+    choose_backend(&mut sequencer, &config.paint.backend)?;
+    let mut autosave = Autosave::new(document, &mut sequencer, since);
+    let bar = progress_bar(session.length_ns()).with_message("painting");
+    let (begun, mut counts) = (Instant::now(), Counts::default());
+    session.follow(&mut sequencer, u64::MAX, &mut |sequencer, at_ns, event| {
+        if let Event::Accepted(record) = event {
+            counts.note(&record);
+            sequencer.replay(record);
+            autosave.turn(sequencer, begun.elapsed().as_nanos() as u64);
+            bar.set_position(at_ns / 1_000_000);
+        }
+        Ok(())
+    })?;
+    bar.finish_and_clear();
+    let ledger = painting.ledger.as_deref();
+    write_snapshot(sequencer.painting_mut(), &options.output, ledger, &export)
+        .map_err(|(path, error)| UserError::writing(&path, &error))?;
+    autosave
+        .close(&mut sequencer)
+        .map_err(|error| wrong(&path, &error))?;
+    say!("painted as it was recorded: {}", counts.in_words());
+    Ok(0)
+}

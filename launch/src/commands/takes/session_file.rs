@@ -1,0 +1,175 @@
+//! A session in a file: a recording that holds the painting as it was, what was accepted since, and the samples of the
+//! hands.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use maulstick_painting::Sequencer;
+use maulstick_painting::sequencer::Record;
+use maulstick_rig::UserError;
+use maulstick_rig::files::{Kind, write_whole};
+use maulstick_session::RecordedSession;
+use maulstick_session::recorded::SessionFault;
+use maulstick_streams::Recording;
+use maulstick_streams::recording::RecordedMessage;
+use maulstick_types::brush::BrushState;
+use maulstick_types::decode;
+use maulstick_types::paint::JournalEntry;
+
+/// Name of the attached painting.
+pub(crate) const PAINTING: &str = "painting.maul";
+/// Topic of the painting's journal.
+pub(crate) const JOURNAL: &str = "paint/journal";
+
+/// A session in a file.
+#[derive(Debug)]
+pub(crate) struct SessionFile {
+    path: PathBuf,
+    pub(crate) recording: Recording,
+}
+
+/// What happens in a session, in the order of time.
+pub(crate) enum Event<'a> {
+    /// A record that the painting accepts.
+    Accepted(Record),
+    /// A message of another topic than the journal and the brush states.
+    Other {
+        /// Its topic.
+        topic: &'a str,
+        /// The message.
+        message: &'a RecordedMessage,
+    },
+}
+
+impl SessionFile {
+    /// Opens a session; `None` if the file is no recording of a painting's journal.
+    ///
+    /// # Errors
+    /// A [`UserError`] where it cannot be read, or lacks the painting.
+    pub(crate) fn open(path: &Path) -> Result<Option<Self>, UserError> {
+        let recording = Recording::open(path)?;
+        let mut topics = recording.topics().values();
+        if !topics.any(|topic| topic.name == JOURNAL) {
+            return Ok(None);
+        }
+        if !recording.files.contains_key(PAINTING) {
+            return Err(
+                UserError::usage("the recording lacks the painting as it was at its beginning")
+                    .at(path.display().to_string())
+                    .help("record a painting that is in a file, such as `maulstick up sea.maul`"),
+            );
+        }
+        Ok(Some(Self {
+            path: path.to_owned(),
+            recording,
+        }))
+    }
+
+    /// Writes the painting as it was at the beginning to a file that is not there yet.
+    ///
+    /// # Errors
+    /// A [`UserError`] where it cannot be written.
+    pub(crate) fn write_painting(&self, to: &Path) -> Result<(), UserError> {
+        let bytes = self.recording.files.get(PAINTING);
+        let bytes = bytes.map(Vec::as_slice).unwrap_or_default();
+        write_whole(to, Kind::Own, |file| file.write_all(bytes))
+            .map_err(|error| UserError::writing(to, &error))
+    }
+
+    /// Length of the session, ns.
+    pub(crate) fn length_ns(&self) -> u64 {
+        let [first, last] = self.recording.times_ns().unwrap_or_default();
+        last.saturating_sub(first)
+    }
+
+    /// Has `each` see what happened since `sequencer`, whose painting is that of the beginning, up to so many ns after the
+    /// beginning: the time since then, ns, and the event.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the file cannot be read, is damaged, or something is missing in it; that of `each`.
+    pub(crate) fn follow(
+        &mut self,
+        sequencer: &mut Sequencer,
+        to_ns: u64,
+        each: &mut dyn FnMut(&mut Sequencer, u64, Event<'_>) -> Result<(), UserError>,
+    ) -> Result<(), UserError> {
+        let mut session = RecordedSession::after(sequencer);
+        let topics = self.recording.topics().clone();
+        let [first_ns, _] = self.recording.times_ns().unwrap_or_default();
+        let place = self.path.display().to_string();
+        let broken = |fault: &SessionFault, at_ns: u64| {
+            let at_s = at_ns as f64 * 1e-9;
+            UserError::usage(format!("at {at_s:.1} s: {fault}"))
+                .at(&place)
+                .help(format!("what is before it is whole: `--end {at_s:.1}`"))
+        };
+        let (mut newest_ns, mut done) = (0, Ok(()));
+        let range = [first_ns, first_ns.saturating_add(to_ns)];
+        self.recording.messages(range, &mut |message| {
+            let at_ns = message.arrived_ns.saturating_sub(first_ns);
+            let Some(topic) = topics.get(&message.channel) else {
+                return true;
+            };
+            let mut take_in = || -> Result<(), UserError> {
+                let is_state = topic.name.starts_with("brush/") && topic.name.ends_with("/state");
+                if is_state {
+                    let (header, state) = typed::<BrushState>(&message, &place)?;
+                    session.state(header, state);
+                } else if topic.name == JOURNAL {
+                    let (header, entry) = typed::<JournalEntry>(&message, &place)?;
+                    let known = session.entry(&header, entry);
+                    known.map_err(|fault| broken(&fault, at_ns))?;
+                } else {
+                    let name = topic.name.as_str();
+                    let message = &message;
+                    let other = Event::Other {
+                        topic: name,
+                        message,
+                    };
+                    return each(sequencer, at_ns, other);
+                }
+                while let Some(record) = session.next_record() {
+                    newest_ns = at_ns;
+                    each(sequencer, at_ns, Event::Accepted(record))?;
+                }
+                Ok(())
+            };
+            done = take_in();
+            done.is_ok()
+        })?;
+        done?;
+        if to_ns == u64::MAX {
+            let end = session.end();
+            end.map_err(|fault| broken(&fault, newest_ns))?;
+        }
+        match &self.recording.damage {
+            Some(damage) if to_ns == u64::MAX && !self.is_cut_off() => {
+                Err(UserError::usage(format!("the recording is damaged: {damage}")).at(place))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// True if it has no index, as after a crash: what it holds is whole.
+    fn is_cut_off(&self) -> bool {
+        !self.recording.notes.contains_key("counts")
+    }
+}
+
+/// True if a file may be a recording: a take that is damaged is told of as a take.
+pub(crate) fn is_recording(path: &Path) -> bool {
+    Recording::open(path)
+        .is_ok_and(|recording| recording.topics().values().any(|topic| topic.name == JOURNAL))
+}
+
+/// Header and body of a message of this program's version.
+fn typed<M: maulstick_types::Message>(
+    message: &RecordedMessage,
+    place: &str,
+) -> Result<(maulstick_types::Header, M), UserError> {
+    decode::<M>(&message.bytes).map_err(|error| {
+        UserError::usage(format!("a {} cannot be read: {error}", M::schema().name))
+            .at(place)
+            .help("paint it with the version of Maulstick that recorded it: `maulstick recording info` names it")
+    })
+}

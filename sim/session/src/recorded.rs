@@ -1,0 +1,296 @@
+//! A recorded session as the records that its paint node accepted: the entries of the journal, each with the brush states
+//! that it names. Accepted again they give the same painting, byte for byte.
+
+use std::collections::BTreeMap;
+
+use maulstick_painting::Sequencer;
+use maulstick_painting::sequencer::{Accepted, Record};
+use maulstick_types::brush::BrushState;
+use maulstick_types::paint::{Entry, JournalEntry};
+use maulstick_types::{Header, name_hash};
+use thiserror::Error;
+
+/// A brush state by the source and the epoch of its brush, and its number.
+type StateKey = (u32, u32, u64);
+
+/// What keeps a session from being painted again.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum SessionFault {
+    /// Entries of the journal are missing.
+    #[error("entries {from} to {to} of the painting's journal are missing")]
+    Entries {
+        /// First missing entry.
+        from: u64,
+        /// Last missing entry.
+        to: u64,
+    },
+    /// A brush state is missing.
+    #[error("state {number} of the brush '{brush}' is missing")]
+    State {
+        /// Name of the brush.
+        brush: String,
+        /// Its number.
+        number: u64,
+    },
+    /// The journal went on at an earlier place, or was another painting's.
+    #[error(
+        "the rig went on in another painting, or at an earlier place of it (journal {found} after {known})"
+    )]
+    Another {
+        /// Index of the newest entry before.
+        known: u64,
+        /// Index of the entry that followed.
+        found: u64,
+    },
+}
+
+/// Entries and states of a session, put together in the order of the journal.
+#[derive(Debug)]
+pub struct RecordedSession {
+    /// Index of the next entry.
+    next: u64,
+    /// Number of the next record.
+    serial: u64,
+    /// Epoch of the paint node.
+    epoch: Option<u32>,
+    /// Entries that wait for their turn or for states.
+    entries: BTreeMap<u64, Entry>,
+    states: BTreeMap<StateKey, (Header, BrushState)>,
+}
+
+impl RecordedSession {
+    /// A session that goes on where a sequencer is.
+    #[must_use]
+    pub fn after(sequencer: &Sequencer) -> Self {
+        Self {
+            next: sequencer.journal_next(),
+            serial: sequencer.serial(),
+            epoch: None,
+            entries: BTreeMap::new(),
+            states: BTreeMap::new(),
+        }
+    }
+
+    /// Index of the next entry of the journal.
+    #[must_use]
+    pub fn next_index(&self) -> u64 {
+        self.next
+    }
+
+    /// Takes in a brush state.
+    pub fn state(&mut self, header: Header, state: BrushState) {
+        let key = (header.source, header.epoch, header.seq);
+        self.states.insert(key, (header, state));
+    }
+
+    /// Takes in an entry of the journal; one from before the session is passed over.
+    ///
+    /// # Errors
+    /// [`SessionFault::Another`].
+    pub fn entry(&mut self, header: &Header, entry: JournalEntry) -> Result<(), SessionFault> {
+        let known = self.epoch.replace(header.epoch);
+        let newest = self.entries.last_key_value().map(|(index, _)| *index);
+        let newest = newest.or(self.next.checked_sub(1));
+        if known.is_some_and(|known| known != header.epoch)
+            && let Some(known) = newest.filter(|newest| entry.index <= *newest)
+        {
+            return Err(SessionFault::Another {
+                known,
+                found: entry.index,
+            });
+        }
+        if entry.index >= self.next {
+            self.entries.insert(entry.index, entry.entry);
+        }
+        Ok(())
+    }
+
+    /// The next record, if it is whole.
+    pub fn next_record(&mut self) -> Option<Record> {
+        let index = self.next;
+        let mut entry = self.entries.first_entry().filter(|own| *own.key() == index)?;
+        let what = match entry.get_mut() {
+            Entry::States {
+                brush,
+                epoch,
+                from,
+                to,
+            } => {
+                let key = (name_hash(brush), *epoch, *from);
+                let (header, state) = self.states.remove(&key)?;
+                // Those before it were not accepted, and are needed no more.
+                let first = (key.0, key.1, 0);
+                let passed: Vec<StateKey> =
+                    self.states.range(first..key).map(|(key, _)| *key).collect();
+                passed.iter().for_each(|key| drop(self.states.remove(key)));
+                if from == to {
+                    entry.remove();
+                    self.next += 1;
+                } else {
+                    *from += 1;
+                }
+                Accepted::State { header, state }
+            }
+            _ => {
+                self.next += 1;
+                Accepted::Entry(entry.remove())
+            }
+        };
+        let serial = self.serial;
+        self.serial += 1;
+        Some(Record {
+            serial,
+            index,
+            what,
+        })
+    }
+
+    /// Checks that nothing is left over.
+    ///
+    /// # Errors
+    /// [`SessionFault`] with what is missing before it.
+    pub fn end(&self) -> Result<(), SessionFault> {
+        match self.entries.first_key_value() {
+            None => Ok(()),
+            Some((index, Entry::States { brush, from, .. })) if *index == self.next => {
+                Err(SessionFault::State {
+                    brush: brush.clone(),
+                    number: *from,
+                })
+            }
+            Some((index, _)) => Err(SessionFault::Entries {
+                from: self.next,
+                to: index.saturating_sub(1),
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_brush::BrushFile;
+    use maulstick_optics::PaintLibrary;
+    use maulstick_painting::{Painting, PaintingSetup};
+    use maulstick_types::stylus::{StylusPose, StylusSample, axes};
+
+    use super::*;
+    use crate::Offline;
+
+    const BRUSH: &str = "main";
+
+    fn offline() -> Offline {
+        let setup = PaintingSetup::default();
+        let library = PaintLibrary::measured().expect("built in");
+        let painting = Painting::new(&setup, library).expect("valid");
+        let file = BrushFile::library("flat").expect("built in");
+        let loads = vec!["Cobalt Blue=0.7,Titanium White=0.3".parse().expect("one")];
+        Offline::new(painting, BRUSH, file, 0.5, loads).expect("valid")
+    }
+
+    /// Records of a stroke, and the painting that they gave.
+    fn painted() -> (Vec<Record>, Painting) {
+        let mut offline = offline();
+        offline.sequencer_mut().record();
+        for step in 0..=20u32 {
+            let sample = StylusSample {
+                senses: axes::POSITION | axes::PRESSURE,
+                in_range: true,
+                pose: StylusPose::Contact {
+                    point_m: [1e-3 * f64::from(step) - 0.01, 0.0, 0.0],
+                    tilt_rad: [0.4, 0.0],
+                    twist_rad: 0.0,
+                    pressure: if step == 20 { 0.0 } else { 0.5 },
+                },
+                ..StylusSample::away()
+            };
+            let sampled = offline.sample(u64::from(step) * 10_000_000, &sample);
+            sampled.expect("it fits");
+        }
+        let records = offline.sequencer_mut().take_records();
+        (records, offline.into_painting())
+    }
+
+    fn message(index: u64) -> Header {
+        Header {
+            version: 1,
+            schema: 0,
+            source: 1,
+            epoch: 1,
+            flags: maulstick_types::Flags::NONE,
+            length: 0,
+            seq: index,
+            event_ns: 0,
+            sent_ns: 0,
+        }
+    }
+
+    /// Paints a session again whose messages arrive in disorder, without the states of `lost`.
+    fn again(records: &[Record], lost: Option<usize>) -> (Painting, Result<(), SessionFault>) {
+        let mut offline = offline();
+        let sequencer = offline.sequencer_mut();
+        let mut session = RecordedSession::after(sequencer);
+        let mut accept = |session: &mut RecordedSession| {
+            while let Some(record) = session.next_record() {
+                sequencer.replay(record);
+            }
+        };
+        for (number, record) in records.iter().enumerate() {
+            let Accepted::State { header, state } = &record.what else {
+                continue;
+            };
+            let entry = JournalEntry {
+                index: record.index,
+                entry: Entry::States {
+                    brush: BRUSH.into(),
+                    epoch: header.epoch,
+                    from: header.seq,
+                    to: header.seq,
+                },
+            };
+            session.entry(&message(record.index), entry).expect("known");
+            accept(&mut session);
+            if lost != Some(number) {
+                session.state(*header, state.clone());
+            }
+            accept(&mut session);
+        }
+        let end = session.end();
+        (offline.into_painting(), end)
+    }
+
+    #[test]
+    fn a_session_is_painted_again_and_a_lost_state_is_missed() {
+        let (records, mut painting) = painted();
+        let report =
+            |painting: &mut Painting| serde_json::to_string(&painting.report()).expect("JSON");
+        let (mut same, end) = again(&records, None);
+        assert_eq!(end, Ok(()));
+        assert_eq!(report(&mut same), report(&mut painting));
+        let (mut other, end) = again(&records, Some(5));
+        let fault = end.expect_err("one is lost").to_string();
+        assert!(fault.contains("'main' is missing"), "{fault}");
+        assert_ne!(report(&mut other), report(&mut painting));
+    }
+
+    #[test]
+    fn gaps_and_other_paintings_are_told() {
+        let mut offline = offline();
+        let mut session = RecordedSession::after(offline.sequencer_mut());
+        let next = session.next_index();
+        let tick = |index: u64| JournalEntry {
+            index,
+            entry: Entry::Tick { count: index },
+        };
+        let header = message(0);
+        session.entry(&header, tick(next + 2)).expect("later");
+        assert_eq!(session.next_record(), None);
+        let missing = SessionFault::Entries {
+            from: next,
+            to: next + 1,
+        };
+        assert_eq!(session.end(), Err(missing));
+        let restarted = Header { epoch: 2, ..header };
+        let fault = session.entry(&restarted, tick(next + 1));
+        assert!(matches!(fault, Err(SessionFault::Another { .. })));
+    }
+}
