@@ -11,8 +11,8 @@ use crate::advice;
 use crate::commands::measure::Measure;
 use crate::commands::{
     begin, bench, brush, demo, device, echo, edit, endpoint, export, fit, force, import, light,
-    matching, measure, mix, nodes, open, painting, paints, record, recording, render, save_as,
-    schema, snapshot, take,
+    matching, measure, mix, nodes, open, painting, paints, record, recording, render, replay,
+    save_as, schema, snapshot, take,
 };
 use crate::processes::{self, NodeCommand};
 use crate::up;
@@ -99,6 +99,8 @@ enum Command {
     /// Show a recording, or export its messages
     #[command(subcommand)]
     Recording(recording::RecordingCommand),
+    /// Play a recording into a running rig
+    Replay(replay::ReplayOptions),
 }
 
 /// The commands as `maulstick --help` lists them; those of edits stand before them, as each edit says.
@@ -124,6 +126,7 @@ const GROUPS: &[(&str, &[&str])] = &[
             "latency",
             "record",
             "recording",
+            "replay",
         ],
     ),
     ("Devices", &["device", "force"]),
@@ -178,7 +181,8 @@ pub fn run() -> Result<i32, UserError> {
         | Command::Echo(_)
         | Command::Hz(_)
         | Command::Latency(_)
-        | Command::Record(_) => true,
+        | Command::Record(_)
+        | Command::Replay(_) => true,
         _ => false,
     };
     if !handles_signals {
@@ -193,6 +197,7 @@ fn carry_out(command: Command) -> Result<i32, UserError> {
         Command::Up(options) => up::run(&options),
         Command::Node(command) => processes::run(&command),
         Command::Render(options) => render::run(&options),
+        Command::Replay(options) => replay::run(&options),
         Command::Import(options) => import::run(&options),
         Command::Demo(options) => demo::run(&options),
         Command::Take(command) => take::run(&command),

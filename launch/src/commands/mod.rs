@@ -8,6 +8,7 @@ pub mod edit;
 pub mod export;
 pub mod mode;
 pub mod painting;
+pub mod replay;
 mod rig;
 mod streams;
 mod table;

@@ -75,7 +75,8 @@ impl CommandClient {
             | Command::Edit(_)
             | Command::File(_)
             | Command::Brush(_)
-            | Command::Rig(_) => UserError::usage,
+            | Command::Rig(_)
+            | Command::Session(_) => UserError::usage,
         };
         self.number += 1;
         let number = self.number;

@@ -2,6 +2,7 @@
 
 mod cut;
 mod records;
+mod repeat;
 
 pub use records::{Accepted, Record};
 
@@ -62,6 +63,8 @@ pub struct Sequencer {
     serial: u64,
     /// Accepted records, if they are saved.
     records: Option<Vec<Record>>,
+    /// A recorded session is painted again.
+    repeats: bool,
 }
 
 impl Sequencer {
@@ -81,6 +84,7 @@ impl Sequencer {
             ignored: 0,
             serial: 0,
             records: None,
+            repeats: false,
         }
     }
 
@@ -204,6 +208,9 @@ impl Sequencer {
 
     /// True if a state is of the announced take, or live while no take has its brush, and no undo has dropped it.
     fn may_paint(&self, brush: &str, header: &Header, state: &BrushState) -> bool {
+        if self.repeats {
+            return false;
+        }
         if !header.flags.has(Flags::REPLAY) && self.is_cut(header.origin(), header.seq) {
             return false;
         }
@@ -269,9 +276,12 @@ impl Sequencer {
 
     /// A sixtieth of a second goes by: entered where something dries by itself, else nothing happens.
     pub fn tick(&mut self) {
-        if !self.painting.is_drying() {
-            return;
+        if self.painting.is_drying() && !self.repeats {
+            self.enter_tick();
         }
+    }
+
+    fn enter_tick(&mut self) {
         self.painting.tick();
         let count = self.painting.clock().ticks;
         let entry = Entry::Tick { count };
@@ -290,6 +300,12 @@ impl Sequencer {
         };
         if let Some(outcome) = self.replies.find(&request) {
             return reply(outcome);
+        }
+        if self.repeats {
+            return reply(Outcome::refused(
+                "a recorded session is being painted",
+                "wait for its end, or end `maulstick replay`",
+            ));
         }
         if self
             .waiting
@@ -340,7 +356,10 @@ impl Sequencer {
         let done = match &request.command {
             Command::Edit(edit) => edit.apply(&mut self.painting),
             Command::Take(command) => self.take(command, &mut effect),
-            command @ (Command::File(_) | Command::Brush(_) | Command::Rig(_)) => {
+            command @ (Command::File(_)
+            | Command::Brush(_)
+            | Command::Rig(_)
+            | Command::Session(_)) => {
                 return Replied {
                     client,
                     number,

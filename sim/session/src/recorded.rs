@@ -108,7 +108,10 @@ impl RecordedSession {
     /// The next record, if it is whole.
     pub fn next_record(&mut self) -> Option<Record> {
         let index = self.next;
-        let mut entry = self.entries.first_entry().filter(|own| *own.key() == index)?;
+        let mut entry = self
+            .entries
+            .first_entry()
+            .filter(|own| *own.key() == index)?;
         let what = match entry.get_mut() {
             Entry::States {
                 brush,

@@ -399,7 +399,8 @@ fn done(command: &Command) -> Option<String> {
         | Command::File(FileCommand::Copy { .. })
         | Command::Edit(_)
         | Command::Take(_)
-        | Command::Brush(_) => return None,
+        | Command::Brush(_)
+        | Command::Session(_) => return None,
     })
 }
 

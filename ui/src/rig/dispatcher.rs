@@ -191,7 +191,8 @@ fn patience(command: &Command) -> Duration {
         Command::File(FileCommand::StopExport)
         | Command::Edit(_)
         | Command::Take(_)
-        | Command::Brush(_) => PATIENCE,
+        | Command::Brush(_)
+        | Command::Session(_) => PATIENCE,
     }
 }
 

@@ -84,8 +84,11 @@ impl BrushNode {
         }
         let command = match &asked.command {
             Command::Brush(command) => command,
-            command
-            @ (Command::Edit(_) | Command::Take(_) | Command::File(_) | Command::Rig(_)) => {
+            command @ (Command::Edit(_)
+            | Command::Take(_)
+            | Command::File(_)
+            | Command::Rig(_)
+            | Command::Session(_)) => {
                 return Ok(command.misaddressed());
             }
         };

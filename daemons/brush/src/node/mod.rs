@@ -323,7 +323,11 @@ impl BrushNode {
             self.arbiter.hear(&device, priority, range, stroke, now_ns)
         };
         if !moved {
-            return Ok(());
+            // A hand feels the brush that a take moves.
+            return match self.is_held() && !received.header.flags.has(Flags::REPLAY) {
+                true => self.feel(&device, origin, now_ns),
+                false => Ok(()),
+            };
         }
         if !received.header.flags.has(Flags::REPLAY) {
             let sample = received.message;

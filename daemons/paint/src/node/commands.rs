@@ -87,6 +87,7 @@ impl PaintNode {
     fn beside(&mut self, asked: &CommandRequest, now_ns: u64) -> Option<Outcome> {
         let command = match &asked.command {
             Command::File(command) => command,
+            Command::Session(command) => return Some(self.repeat(asked, command, now_ns)),
             Command::Edit(_) | Command::Take(_) | Command::Brush(_) | Command::Rig(_) => {
                 return None;
             }

@@ -2,6 +2,7 @@
 
 mod commands;
 mod frame_feed;
+mod repeat;
 mod save_as;
 mod status;
 mod time;
@@ -89,6 +90,8 @@ pub struct PaintNode {
     /// Commit counter at the newest commit seen, and its time, ns.
     committed: (u64, u64),
     ticker: Ticker,
+    /// When a recorded session was gone on with last, ns.
+    repeated_ns: u64,
 }
 
 impl PaintNode {
@@ -167,6 +170,7 @@ impl PaintNode {
             memory: 1 << 30,
             committed: (0, 0),
             ticker: Ticker::default(),
+            repeated_ns: 0,
             topics: topics.clone(),
             me,
             sequencer,
@@ -264,6 +268,7 @@ impl PaintNode {
         }
         self.states.poll(&*bus)?;
         self.serve_commands(now_ns);
+        self.check_repeating(now_ns);
         self.let_time_pass(now_ns);
         let until_ns = bus.now_ns() + TURN_NS;
         let mut is_more = self.next_state(now_ns)?;

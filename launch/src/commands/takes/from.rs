@@ -58,9 +58,11 @@ pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
         return Err(UserError::usage(what).help("choose seconds after the beginning"));
     }
     let Some(mut session) = SessionFile::open(path)? else {
-        return Err(UserError::usage("the recording has no journal of a painting")
-            .at(path.display().to_string())
-            .help("record all topics: `maulstick record -o session.mcap`"));
+        return Err(
+            UserError::usage("the recording has no journal of a painting")
+                .at(path.display().to_string())
+                .help("record all topics: `maulstick record -o session.mcap`"),
+        );
     };
     let length_s = session.length_ns() as f64 * 1e-9;
     if bounds[0] >= length_s {
@@ -104,11 +106,10 @@ pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
                     counts.note(record);
                     take.accepted(at_ns, record)
                 }
-                Event::Other { topic, message } if is_kept(topic) => {
-                    take.writer
-                        .write(topic, &message.header, &message.bytes, at_ns)
-                        .map_err(std::io::Error::other)
-                }
+                Event::Other { topic, message } if is_kept(topic) => take
+                    .writer
+                    .write(topic, &message.header, &message.bytes, at_ns)
+                    .map_err(std::io::Error::other),
                 Event::Other { .. } => Ok(()),
             };
             written.map_err(|error| UserError::writing(&options.output, &error))
@@ -129,7 +130,7 @@ pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
 }
 
 /// The painting of a beginning, in the midst of its journal, and the tile versions that its file has.
-pub(super) fn open_begin(path: &Path) -> Result<(Document, Sequencer, u64), UserError> {
+pub(crate) fn open_begin(path: &Path) -> Result<(Document, Sequencer, u64), UserError> {
     let failed = |error| wrong(path, &error);
     let settings = DocumentSettings::new(path, Access::Paint);
     let (document, opened) = Document::open(&settings).map_err(failed)?;
@@ -247,8 +248,15 @@ impl<W: std::io::Write + std::io::Seek> SessionWriter<W> {
     ) -> std::io::Result<()> {
         let origin: Origin = header.origin();
         let [event_ns, sent_ns] = [header.event_ns, header.sent_ns];
-        let bytes = encode(&origin, header.flags, header.seq, event_ns, sent_ns, message)
-            .map_err(std::io::Error::other)?;
+        let bytes = encode(
+            &origin,
+            header.flags,
+            header.seq,
+            event_ns,
+            sent_ns,
+            message,
+        )
+        .map_err(std::io::Error::other)?;
         let header = Header {
             schema: M::schema().hash,
             ..*header
@@ -266,4 +274,3 @@ impl<W: std::io::Write + std::io::Seek> SessionWriter<W> {
             .map_err(std::io::Error::other)
     }
 }
-

@@ -1,7 +1,7 @@
 //! Commands of takes: performances made, imported and painted.
 
 pub mod demo;
-mod from;
+pub(crate) mod from;
 pub mod import;
 pub mod render;
 mod render_session;

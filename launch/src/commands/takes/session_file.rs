@@ -53,11 +53,11 @@ impl SessionFile {
             return Ok(None);
         }
         if !recording.files.contains_key(PAINTING) {
-            return Err(
-                UserError::usage("the recording lacks the painting as it was at its beginning")
-                    .at(path.display().to_string())
-                    .help("record a painting that is in a file, such as `maulstick up sea.maul`"),
-            );
+            return Err(UserError::usage(
+                "the recording lacks the painting as it was at its beginning",
+            )
+            .at(path.display().to_string())
+            .help("record a painting that is in a file, such as `maulstick up sea.maul`"));
         }
         Ok(Some(Self {
             path: path.to_owned(),
@@ -158,8 +158,12 @@ impl SessionFile {
 
 /// True if a file may be a recording: a take that is damaged is told of as a take.
 pub(crate) fn is_recording(path: &Path) -> bool {
-    Recording::open(path)
-        .is_ok_and(|recording| recording.topics().values().any(|topic| topic.name == JOURNAL))
+    Recording::open(path).is_ok_and(|recording| {
+        recording
+            .topics()
+            .values()
+            .any(|topic| topic.name == JOURNAL)
+    })
 }
 
 /// Header and body of a message of this program's version.

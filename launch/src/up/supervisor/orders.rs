@@ -92,7 +92,8 @@ impl Orders {
             | Command::Edit(_)
             | Command::Take(_)
             | Command::File(_)
-            | Command::Brush(_) => true,
+            | Command::Brush(_)
+            | Command::Session(_) => true,
         }
     }
 
@@ -196,7 +197,8 @@ impl Supervisor {
             command @ (Command::Edit(_)
             | Command::Take(_)
             | Command::File(_)
-            | Command::Brush(_)) => return Ok(command.misaddressed()),
+            | Command::Brush(_)
+            | Command::Session(_)) => return Ok(command.misaddressed()),
         };
         let ask = match command {
             RigCommand::Open { path, forget } => {

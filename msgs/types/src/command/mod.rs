@@ -4,6 +4,7 @@ pub mod advice;
 pub mod reply_cache;
 
 use serde::de::Error as _;
+use serde_bytes::ByteBuf;
 
 use crate::command::advice::Advice;
 use crate::edits::Edit;
@@ -233,6 +234,8 @@ wire_enum! {
         Brush(BrushCommand),
         /// The launcher: the rig goes on in another painting.
         Rig(RigCommand),
+        /// The paint node: a recorded session is painted again.
+        Session(SessionCommand),
     }
 }
 
@@ -329,6 +332,20 @@ wire_enum! {
     }
 }
 
+wire_enum! {
+    /// A recorded session that is painted again.
+    pub enum SessionCommand {
+        /// Accepts again what was accepted then, in order. From the first of these to [`End`](Self::End), or until none
+        /// came for ten seconds, hands paint nothing, other commands are refused, and time passes only with these.
+        Repeat {
+            /// Records as a painting keeps them in its journal.
+            records: ByteBuf,
+        },
+        /// Ends it.
+        End,
+    }
+}
+
 macro_rules! from {
     ($($inner:ident => $variant:ident),*) => {
         $(
@@ -341,14 +358,15 @@ macro_rules! from {
     };
 }
 
-from!(Edit => Edit, TakeCommand => Take, FileCommand => File, BrushCommand => Brush, RigCommand => Rig);
+from!(Edit => Edit, TakeCommand => Take, FileCommand => File, BrushCommand => Brush, RigCommand => Rig,
+    SessionCommand => Session);
 
 impl Command {
     /// Name of the node that carries it out.
     #[must_use]
     pub fn node(&self) -> &str {
         match self {
-            Self::Edit(_) | Self::Take(_) | Self::File(_) => PAINT_NODE,
+            Self::Edit(_) | Self::Take(_) | Self::File(_) | Self::Session(_) => PAINT_NODE,
             Self::Brush(BrushCommand::Define { brush, .. }) => brush,
             Self::Rig(_) => RIG_NODE,
         }

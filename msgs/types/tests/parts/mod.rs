@@ -1,7 +1,8 @@
 //! Parts of the messages whose bytes are golden.
 
 use maulstick_types::command::{
-    BrushCommand, Command, ExportOrder, FileCommand, NewCanvas, RigCommand, SaveAs, TakeCommand,
+    BrushCommand, Command, ExportOrder, FileCommand, NewCanvas, RigCommand, SaveAs, SessionCommand,
+    TakeCommand,
 };
 use maulstick_types::control::ControlSample;
 use maulstick_types::edits::Relight;
@@ -16,6 +17,7 @@ use maulstick_types::values::{
 };
 use maulstick_types::window::Presented;
 use maulstick_types::{Mixture, Pose};
+use serde_bytes::ByteBuf;
 
 pub(crate) fn handling() -> BrushHandling {
     BrushHandling {
@@ -154,7 +156,7 @@ pub(crate) fn takes() -> [TakeCommand; 3] {
 }
 
 /// The commands about files, and those of other nodes.
-pub(crate) fn files() -> [Command; 10] {
+pub(crate) fn files() -> [Command; 12] {
     let material = |name: &str| MaterialName::new(name).expect("a name");
     let canvas = NewCanvas {
         width_m: 0.3,
@@ -184,6 +186,11 @@ pub(crate) fn files() -> [Command; 10] {
             path: path("/d.maul"),
         }
         .into(),
+        SessionCommand::Repeat {
+            records: ByteBuf::from(vec![1, 2, 3]),
+        }
+        .into(),
+        SessionCommand::End.into(),
         BrushCommand::Define {
             brush: BrushName::main(),
             toml: BrushToml::new("kind").expect("short"),

@@ -20,7 +20,7 @@ const OWN: u64 = 0;
 
 /// The decision that a painting goes on after its program ended: what its brushes did last is not
 /// joined to what they do next.
-const GOES_ON: &str = "the painting goes on";
+pub(super) const GOES_ON: &str = "the painting goes on";
 
 /// Something that was accepted.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,0 +1,203 @@
+//! `maulstick replay`: a recording into a running rig.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`session`] | a session is painted again |
+//! | [`streams`] | messages of chosen topics are sent again |
+//! | [`transport`], [`orders`] | pause, seek, step, rate |
+//! | [`events`] | what is to come |
+
+mod events;
+mod orders;
+mod session;
+mod streams;
+mod transport;
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use maulstick_bus::RigFolder;
+use maulstick_device::player::Rate;
+use maulstick_rig::{NodeArgs, NodeHandle, UserError};
+use serde_json::json;
+
+use self::orders::{KEYS, Orders};
+use self::transport::{Leap, Order, Transport, parse_rate};
+use crate::EXIT_INTERRUPTED;
+use crate::commands::print_text;
+use crate::commands::session::Target;
+use crate::commands::takes::session_file::SessionFile;
+
+/// Options of `maulstick replay`.
+#[derive(Args, Clone, Debug)]
+pub struct ReplayOptions {
+    /// Recording, or take
+    recording: PathBuf,
+    /// Rate: .1 to 100 (1 = real time), or 'max'
+    #[arg(long, value_name = "R|max", default_value = "1", value_parser = parse_rate)]
+    rate: Rate,
+    /// From so many seconds after its beginning
+    #[arg(long, value_name = "S", default_value_t = 0.0)]
+    start: f64,
+    /// To so many seconds after its beginning [default: its end]
+    #[arg(long, value_name = "S")]
+    end: Option<f64>,
+    /// Begin anew at the end
+    #[arg(long = "loop")]
+    again: bool,
+    /// Begin paused: the key . goes on by one event
+    #[arg(long)]
+    step: bool,
+    /// Send the messages of these topics again, such as stylus/*/sample; may be given several times [default: a session is
+    /// painted again; of any other recording the samples of the hands]
+    #[arg(short, long, value_name = "TOPIC")]
+    topic: Vec<String>,
+    /// Send topic A as B; may be given several times
+    #[arg(long, value_name = "A=B")]
+    remap: Vec<String>,
+    /// Send samples of a stylus as this device's
+    #[arg(long = "as", value_name = "DEVICE")]
+    device: Option<String>,
+    /// Let recorded contact models move the hand that holds this device
+    #[arg(long, value_name = "DEVICE")]
+    drive: Option<String>,
+    /// Painting to write, in which a session is painted again [default: RECORDING-replay.maul]
+    #[arg(short, long, value_name = "FILE")]
+    document: Option<PathBuf>,
+    /// Discard the current painting if it is in memory only
+    #[arg(long)]
+    forget: bool,
+    /// Read orders from the standard input (pause, step, seek S, skip S, rate R, end), and print the position as lines of JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// Time between two lines that say where it is.
+const TOLD: Duration = Duration::from_millis(200);
+/// Longest wait for the next event while orders may come.
+const TURN: Duration = Duration::from_millis(20);
+
+impl ReplayOptions {
+    /// Start and end of what is played of a recording of this length, ns.
+    fn range_ns(&self, length_ns: u64) -> Result<[u64; 2], UserError> {
+        let length_s = length_ns as f64 * 1e-9;
+        let end_s = self.end.unwrap_or(length_s);
+        if !(self.start >= 0.0 && self.start < end_s && self.start < length_s) {
+            let what = format!("--start {} is not before the end", self.start);
+            return Err(UserError::usage(what)
+                .at(self.recording.display().to_string())
+                .help(format!("it is {length_s:.1} s long")));
+        }
+        Ok([
+            (self.start * 1e9) as u64,
+            ((end_s * 1e9) as u64).min(length_ns),
+        ])
+    }
+
+    /// Joins the rig as a member of its own.
+    fn join(&self) -> Result<NodeHandle, UserError> {
+        let (folder, _) = RigFolder::join(self.target.rig())?;
+        NodeHandle::join(&NodeArgs {
+            folder: folder.path().to_owned(),
+            node: format!("replay-{}", std::process::id()),
+            guarded: false,
+        })
+    }
+}
+
+/// Plays a recording into a running rig.
+///
+/// # Errors
+/// A [`UserError`] where no rig runs, the recording lacks something, or the rig refuses it.
+pub fn run(options: &ReplayOptions) -> Result<i32, UserError> {
+    if options.topic.is_empty() && options.device.is_none() && options.drive.is_none() {
+        if let Some(session) = SessionFile::open(&options.recording)? {
+            return session::replay(options, &session);
+        }
+    }
+    streams::replay(options)
+}
+
+/// What plays: the transport, its orders, and what is told of them.
+struct Deck {
+    transport: Transport,
+    orders: Orders,
+    begun: Instant,
+    told: Option<Instant>,
+    json: bool,
+}
+
+/// What an order asks of a player.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Turn {
+    /// To play on.
+    On,
+    /// To go on elsewhere.
+    Leap(Leap),
+    /// To end.
+    End,
+}
+
+impl Deck {
+    fn new(options: &ReplayOptions, range_ns: [u64; 2]) -> Result<Self, UserError> {
+        let orders = Orders::listen(options.json)?;
+        if orders.are_keys() {
+            eprintln!("{KEYS}");
+        }
+        Ok(Self {
+            transport: Transport::new(range_ns, options.rate, options.step),
+            orders,
+            begun: Instant::now(),
+            told: None,
+            json: options.json,
+        })
+    }
+
+    /// Carries out the orders that came, and lets the transport go on; `next_ns` is the time of the next event.
+    fn turn(&mut self, next_ns: Option<u64>) -> Result<Turn, UserError> {
+        self.transport.look(self.begun.elapsed().as_nanos() as u64);
+        let mut turn = Turn::On;
+        while let Some(order) = self.orders.next() {
+            if order == Order::End {
+                return Ok(Turn::End);
+            }
+            match self.transport.order(order, next_ns) {
+                Leap::None => {}
+                leap => turn = Turn::Leap(leap),
+            }
+            self.told = None;
+        }
+        self.tell()?;
+        Ok(turn)
+    }
+
+    /// Says where it is, at most five times a second.
+    fn tell(&mut self) -> Result<(), UserError> {
+        if self.told.is_some_and(|told| told.elapsed() < TOLD) {
+            return Ok(());
+        }
+        self.told = Some(Instant::now());
+        let s = self.transport.position_ns() as f64 * 1e-9;
+        let (rate, paused) = (self.transport.rate(), self.transport.is_paused());
+        if self.json {
+            let line = json!({"position_s": s, "rate": rate.to_string(), "paused": paused});
+            return print_text(&format!("{line}\n"));
+        }
+        if self.orders.are_keys() {
+            let paused = if paused { "  paused" } else { "        " };
+            eprint!("\r{s:8.1} s  × {rate}{paused}  ");
+        }
+        Ok(())
+    }
+
+    /// The exit code, after the line of the position.
+    fn end(self, member: &NodeHandle) -> i32 {
+        if self.orders.are_keys() {
+            eprintln!();
+        }
+        member.stop.exit_code(EXIT_INTERRUPTED)
+    }
+}

@@ -1,0 +1,336 @@
+//! Messages of chosen topics are sent again, as those of a sender of now: strokes for the brushes that are in the rig, brush
+//! states for the paint, contact models for a device.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Instant;
+
+use maulstick_bus::bus::Publish;
+use maulstick_bus::typed::{Receiver, random_epoch};
+use maulstick_bus::{Qos, Queue};
+use maulstick_rig::{NodeHandle, UserError};
+use maulstick_streams::Recording;
+use maulstick_streams::recording::RecordedMessage;
+use maulstick_streams::topic_pattern::matches;
+use maulstick_types::haptics::ContactModel;
+use maulstick_types::stylus::{StylusInfo, StylusSample};
+use maulstick_types::wire::header::HEADER_BYTES;
+use maulstick_types::{Flags, Header, Origin, decode, encode, name_hash};
+
+use super::events::Events;
+use super::{Deck, ReplayOptions, TURN, Turn};
+
+/// Topics that are sent again where none is named.
+const HANDS: [&str; 2] = ["stylus/*/sample", "control/*/sample"];
+/// Topics of contact models.
+const MODELS: &str = "haptics/*/model";
+/// Longest wait for a device that is to be driven, s.
+const PATIENCE_S: u64 = 5;
+
+/// Sends the messages of a recording again.
+///
+/// # Errors
+/// A [`UserError`] where no rig runs, or the recording has none of the topics.
+pub(super) fn replay(options: &ReplayOptions) -> Result<i32, UserError> {
+    let path = &options.recording;
+    let recording = Recording::open(path)?;
+    let patterns = match options.topic.is_empty() {
+        true if options.drive.is_some() => vec![MODELS.to_owned()],
+        true => HANDS.map(str::to_owned).to_vec(),
+        false => options.topic.clone(),
+    };
+    let is_meant = |topic: &str| patterns.iter().any(|pattern| matches(pattern, topic));
+    let all = recording.topics().values().map(|topic| topic.name.clone());
+    let all: Vec<String> = all.collect();
+    if !all.iter().any(|topic| is_meant(topic)) {
+        let what = format!("it has no topic {}", patterns.join(", "));
+        return Err(UserError::usage(what)
+            .at(path.display().to_string())
+            .help(format!("it has {}", all.join(", "))));
+    }
+    let has_models = all
+        .iter()
+        .any(|topic| is_meant(topic) && matches(MODELS, topic));
+    if has_models && options.drive.is_none() {
+        return Err(
+            UserError::usage("contact models move the hand that holds the device")
+                .help("name the device, with a hand at it that expects it: --drive DEVICE"),
+        );
+    }
+    let renamed = renamed(&options.remap)?;
+    let [first_ns, last_ns] = recording.times_ns().unwrap_or_default();
+    let range_ns = options.range_ns(last_ns.saturating_sub(first_ns))?;
+    let member = options.join()?;
+    let driven = match &options.drive {
+        Some(device) => Some(Driven::find(&member, device)?),
+        None => None,
+    };
+    let mut senders = Senders {
+        member: &member,
+        epoch: random_epoch(),
+        senders: BTreeMap::new(),
+        renamed,
+        device: options.device.as_deref(),
+        driven,
+    };
+    if let Some(device) = &options.device {
+        senders.introduce(&recording, device, path)?;
+    }
+    let mut deck = Deck::new(options, range_ns)?;
+    let mut events = events(path, &patterns, range_ns)?;
+    while !member.stop.requested() {
+        let next_ns = events.next_ns()?;
+        match deck.turn(next_ns)? {
+            Turn::On => {}
+            Turn::End => break,
+            Turn::Leap(_) => {
+                let from_ns = deck.transport.position_ns();
+                events = self::events(path, &patterns, [from_ns, range_ns[1]])?;
+                continue;
+            }
+        }
+        match next_ns {
+            Some(at_ns) if deck.transport.is_due(at_ns) => {
+                if let Some((topic, message)) = events.take() {
+                    senders.send(&topic, &message)?;
+                }
+            }
+            Some(_) => {
+                member.wake.wait(TURN / 20);
+            }
+            None if options.again => {
+                deck.transport.rewind();
+                events = self::events(path, &patterns, range_ns)?;
+            }
+            None => break,
+        }
+    }
+    let code = deck.end(&member);
+    senders.senders.clear();
+    member.leave();
+    Ok(code)
+}
+
+/// Topics by the names that they are to have.
+fn renamed(pairs: &[String]) -> Result<BTreeMap<String, String>, UserError> {
+    let pair = |pair: &String| {
+        let (from, to) = pair.split_once('=')?;
+        let is_topic =
+            |topic: &str| !topic.is_empty() && topic.split('/').all(|part| !part.is_empty());
+        (is_topic(from) && is_topic(to)).then(|| (from.to_owned(), to.to_owned()))
+    };
+    let pairs = pairs.iter().map(|own| {
+        pair(own).ok_or_else(|| {
+            UserError::usage(format!("--remap {own} is not A=B"))
+                .help("two topics, such as stylus/pen/sample=stylus/other/sample")
+        })
+    });
+    pairs.collect()
+}
+
+/// The messages of the topics of `patterns` within a range of times, as they come.
+fn events(
+    path: &Path,
+    patterns: &[String],
+    [from_ns, to_ns]: [u64; 2],
+) -> Result<Events<(String, RecordedMessage)>, UserError> {
+    let mut recording = Recording::open(path)?;
+    let patterns = patterns.to_vec();
+    Events::read(move |feed| {
+        let topics = recording.topics().clone();
+        let [first_ns, _] = recording.times_ns().unwrap_or_default();
+        let range = [first_ns + from_ns, first_ns.saturating_add(to_ns)];
+        recording.messages(range, &mut |message| {
+            let topic = topics.get(&message.channel).map(|topic| &topic.name);
+            let meant = topic.filter(|topic| patterns.iter().any(|own| matches(own, topic)));
+            let at_ns = message.arrived_ns.saturating_sub(first_ns);
+            meant.is_none_or(|topic| feed.push(at_ns, (topic.clone(), message)))
+        })
+    })
+}
+
+/// A device that recorded contact models drive.
+struct Driven {
+    name: String,
+    origin: Origin,
+    brush: String,
+}
+
+impl Driven {
+    /// Finds the device in the rig, in its current session.
+    fn find(member: &NodeHandle, name: &str) -> Result<Self, UserError> {
+        let (bus, topics) = (&*member.bus, &member.topics);
+        let queue = || Queue::Ring(16);
+        let sample = topics.sample(name);
+        let mut samples: Receiver<StylusSample> =
+            Receiver::new(bus, &sample, Qos::RealTime, queue(), &member.wake)?;
+        let info = topics.stylus_info(name);
+        let mut infos: Receiver<StylusInfo> =
+            Receiver::new(bus, &info, Qos::Cached, queue(), &member.wake)?;
+        let give_up = Instant::now() + std::time::Duration::from_secs(PATIENCE_S);
+        let (mut origin, mut brush) = (None, None);
+        while Instant::now() < give_up && !member.stop.requested() {
+            origin = samples
+                .newest()
+                .map(|sample| sample.header.origin())
+                .or(origin);
+            brush = infos.newest().map(|info| info.message.brush).or(brush);
+            if let (Some(origin), Some(brush)) = (origin, &brush) {
+                return Ok(Self {
+                    name: name.to_owned(),
+                    origin,
+                    brush: match brush.is_empty() {
+                        true => "main".to_owned(),
+                        false => brush.clone(),
+                    },
+                });
+            }
+            member.wake.wait(TURN);
+        }
+        Err(
+            UserError::usage(format!("no device called '{name}' is in the rig"))
+                .help("`maulstick device list` shows which are"),
+        )
+    }
+
+    /// A recorded model as one for this device.
+    fn address(&self, message: &RecordedMessage) -> Option<ContactModel> {
+        let (_, model) = decode::<ContactModel>(&message.bytes).ok()?;
+        Some(ContactModel {
+            device: self.origin.source,
+            device_epoch: self.origin.epoch,
+            brush: self.brush.clone(),
+            ..model
+        })
+    }
+}
+
+/// Senders by topic, each with the number of its next message.
+struct Senders<'a> {
+    member: &'a NodeHandle,
+    epoch: u32,
+    senders: BTreeMap<String, (Box<dyn Publish>, u64)>,
+    renamed: BTreeMap<String, String>,
+    device: Option<&'a str>,
+    driven: Option<Driven>,
+}
+
+impl Senders<'_> {
+    /// The topic as which a topic is sent.
+    fn topic(&self, topic: &str) -> String {
+        if let Some(renamed) = self.renamed.get(topic) {
+            return renamed.clone();
+        }
+        let mut parts: Vec<&str> = topic.split('/').collect();
+        match (parts.as_mut_slice(), self.device, &self.driven) {
+            ([first, middle, _], Some(device), _) if ["stylus", "control"].contains(first) => {
+                *middle = device;
+            }
+            (["haptics", middle, _], _, Some(driven)) => *middle = &driven.name,
+            _ => {}
+        }
+        parts.join("/")
+    }
+
+    /// Tells the rig of the device as which samples are sent.
+    fn introduce(
+        &mut self,
+        recording: &Recording,
+        device: &str,
+        path: &Path,
+    ) -> Result<(), UserError> {
+        let infos: Vec<u16> = recording
+            .topics()
+            .iter()
+            .filter(|(_, topic)| matches("stylus/*/info", &topic.name))
+            .map(|(channel, _)| *channel)
+            .collect();
+        let mut told = None;
+        Recording::open(path)?.messages([0, u64::MAX], &mut |message| {
+            if infos.contains(&message.channel) {
+                told = decode::<StylusInfo>(&message.bytes).ok();
+            }
+            told.is_none()
+        })?;
+        let Some((_, info)) = told else {
+            return Ok(());
+        };
+        let info = StylusInfo {
+            device: device.to_owned(),
+            drives: 0,
+            ..info
+        };
+        let topic = format!("stylus/{device}/info");
+        let bytes = self.encoded(&topic, Flags::NONE, [0, 0], &info)?;
+        self.put(&topic, Qos::Cached, bytes)
+    }
+
+    fn origin(&self, topic: &str) -> Origin {
+        let middle = topic.split('/').nth(1).unwrap_or(topic);
+        Origin {
+            source: name_hash(middle),
+            epoch: self.epoch,
+        }
+    }
+
+    fn encoded<M: maulstick_types::Message>(
+        &self,
+        topic: &str,
+        flags: Flags,
+        [seq, event_ns]: [u64; 2],
+        message: &M,
+    ) -> Result<Vec<u8>, UserError> {
+        let now_ns = self.member.bus.now_ns();
+        encode(&self.origin(topic), flags, seq, event_ns, now_ns, message)
+            .map_err(|error| UserError::failure(error.to_string()))
+    }
+
+    /// Sends a message as one of now: its number and its times are new.
+    fn send(&mut self, recorded: &str, message: &RecordedMessage) -> Result<(), UserError> {
+        let topic = self.topic(recorded);
+        let now_ns = self.member.bus.now_ns();
+        let old = message.header;
+        let event_ns = now_ns.saturating_sub(old.sent_ns.saturating_sub(old.event_ns));
+        let seq = self.senders.get(&topic).map_or(0, |(_, next)| *next);
+        let bytes = match &self.driven {
+            Some(driven) if matches(MODELS, recorded) => {
+                let Some(model) = driven.address(message) else {
+                    return Ok(());
+                };
+                self.encoded(&topic, Flags::NONE, [seq, event_ns], &model)?
+            }
+            _ => {
+                let origin = self.origin(&topic);
+                let header = Header {
+                    source: origin.source,
+                    epoch: origin.epoch,
+                    flags: Flags::NONE,
+                    seq,
+                    event_ns,
+                    sent_ns: now_ns,
+                    ..old
+                };
+                let body = message.bytes.get(HEADER_BYTES..).unwrap_or_default();
+                [header.to_bytes().as_slice(), body].concat()
+            }
+        };
+        let qos = match topic.starts_with("haptics/") || topic.ends_with("/sample") {
+            true => Qos::RealTime,
+            false => Qos::Data,
+        };
+        self.put(&topic, qos, bytes)
+    }
+
+    fn put(&mut self, topic: &str, qos: Qos, bytes: Vec<u8>) -> Result<(), UserError> {
+        if !self.senders.contains_key(topic) {
+            let key = format!("{}{topic}", self.member.topics.prefix());
+            let publisher = self.member.bus.publisher(&key, qos)?;
+            self.senders.insert(topic.to_owned(), (publisher, 0));
+        }
+        if let Some((publisher, next)) = self.senders.get_mut(topic) {
+            publisher.put(bytes)?;
+            *next += 1;
+        }
+        Ok(())
+    }
+}

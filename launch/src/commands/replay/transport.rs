@@ -1,0 +1,226 @@
+//! The transport of a replay: where it is, how fast it goes on, and the orders that change it. It reads no clock.
+
+use std::str::FromStr;
+
+use maulstick_device::player::Rate;
+
+/// Slowest and fastest rate.
+pub(super) const RATES: std::ops::RangeInclusive<f64> = 0.1..=100.0;
+
+/// An order to the transport.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Order {
+    /// Stands still, or goes on.
+    Pause,
+    /// Goes so far, s; back where it is negative.
+    Skip(f64),
+    /// Goes to a time since the beginning, s.
+    Seek(f64),
+    /// Stands still after the next event.
+    Step,
+    /// Goes on at this rate.
+    Rate(Rate),
+    /// Goes on so many times as fast.
+    Faster(f64),
+    /// Ends.
+    End,
+}
+
+impl FromStr for Order {
+    type Err = String;
+
+    fn from_str(line: &str) -> Result<Self, String> {
+        let (word, rest) = line.trim().split_once(' ').unwrap_or((line.trim(), ""));
+        let number = || match rest.trim().parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(number),
+            _ => Err(format!("'{line}' lacks a number of seconds")),
+        };
+        match word {
+            "pause" => Ok(Self::Pause),
+            "step" => Ok(Self::Step),
+            "end" => Ok(Self::End),
+            "seek" => number().map(Self::Seek),
+            "skip" => number().map(Self::Skip),
+            "rate" => parse_rate(rest.trim()).map(Self::Rate),
+            _ => Err(format!(
+                "'{line}' is none of pause, step, seek S, skip S, rate R, end"
+            )),
+        }
+    }
+}
+
+/// A rate within [`RATES`], or `max`.
+///
+/// # Errors
+/// What is wrong with it.
+pub(super) fn parse_rate(text: &str) -> Result<Rate, String> {
+    match text.parse()? {
+        Rate::Times(rate) if !RATES.contains(&rate) => {
+            Err(format!("{rate} is no rate from .1 to 100, nor 'max'"))
+        }
+        rate => Ok(rate),
+    }
+}
+
+/// A leap of a replay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Leap {
+    /// None.
+    None,
+    /// Back: what is before has to be played anew.
+    Back,
+    /// Over what is between.
+    Forth,
+}
+
+/// Where a replay is.
+#[derive(Clone, Debug)]
+pub(super) struct Transport {
+    /// Beginning and end of what is played, ns.
+    range_ns: [u64; 2],
+    position_ns: u64,
+    /// The clock at the last look, ns.
+    looked_ns: Option<u64>,
+    rate: Rate,
+    paused: bool,
+}
+
+impl Transport {
+    /// At the beginning of a range.
+    pub(super) fn new(range_ns: [u64; 2], rate: Rate, paused: bool) -> Self {
+        Self {
+            range_ns,
+            position_ns: range_ns[0],
+            looked_ns: None,
+            rate,
+            paused,
+        }
+    }
+
+    /// The clock shows this.
+    pub(super) fn look(&mut self, now_ns: u64) {
+        let passed_ns = now_ns.saturating_sub(self.looked_ns.replace(now_ns).unwrap_or(now_ns));
+        if self.paused {
+            return;
+        }
+        self.position_ns = match self.rate {
+            Rate::Max => self.range_ns[1],
+            Rate::Times(rate) => {
+                let on_ns = (passed_ns as f64 * rate) as u64;
+                self.position_ns.saturating_add(on_ns).min(self.range_ns[1])
+            }
+        };
+    }
+
+    /// True once an event of this time is due.
+    pub(super) fn is_due(&self, event_ns: u64) -> bool {
+        event_ns <= self.position_ns
+    }
+
+    /// Where it is, ns since the beginning of the recording.
+    pub(super) fn position_ns(&self) -> u64 {
+        self.position_ns
+    }
+
+    /// True while it stands still.
+    pub(super) fn is_paused(&self) -> bool {
+        self.paused
+    }
+
+    /// Its rate.
+    pub(super) fn rate(&self) -> Rate {
+        self.rate
+    }
+
+    /// Carries out an order; `next_ns` is the time of the next event.
+    pub(super) fn order(&mut self, order: Order, next_ns: Option<u64>) -> Leap {
+        let before_ns = self.position_ns;
+        match order {
+            Order::Pause => self.paused = !self.paused,
+            Order::Seek(s) => self.go_to((s.max(0.0) * 1e9) as u64),
+            Order::Skip(s) => {
+                let by_ns = (s.abs() * 1e9) as u64;
+                self.go_to(match s < 0.0 {
+                    true => before_ns.saturating_sub(by_ns),
+                    false => before_ns.saturating_add(by_ns),
+                });
+            }
+            Order::Step => {
+                self.paused = true;
+                self.go_to(next_ns.unwrap_or(before_ns).max(before_ns));
+            }
+            Order::Rate(rate) => self.rate = rate,
+            Order::Faster(factor) => {
+                let rate = match self.rate {
+                    Rate::Times(rate) => rate * factor,
+                    Rate::Max => *RATES.end(),
+                };
+                self.rate = Rate::Times(rate.max(*RATES.start()).min(*RATES.end()));
+            }
+            Order::End => {}
+        }
+        match order {
+            Order::Seek(_) | Order::Skip(_) if self.position_ns < before_ns => Leap::Back,
+            Order::Seek(_) | Order::Skip(_) if self.position_ns > before_ns => Leap::Forth,
+            _ => Leap::None,
+        }
+    }
+
+    /// Begins anew.
+    pub(super) fn rewind(&mut self) {
+        self.position_ns = self.range_ns[0];
+    }
+
+    fn go_to(&mut self, position_ns: u64) {
+        let [start, end] = self.range_ns;
+        self.position_ns = position_ns.max(start).min(end);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const S: u64 = 1_000_000_000;
+
+    #[test]
+    fn it_goes_at_its_rate_and_stands_still_while_paused() {
+        let mut transport = Transport::new([2 * S, 12 * S], Rate::Times(0.5), false);
+        transport.look(100 * S);
+        assert!(transport.is_due(2 * S) && !transport.is_due(2 * S + 1));
+        transport.look(102 * S);
+        assert_eq!(transport.position_ns(), 3 * S);
+        assert_eq!(transport.order(Order::Pause, None), Leap::None);
+        transport.look(109 * S);
+        assert_eq!(transport.position_ns(), 3 * S);
+        assert_eq!(transport.order(Order::Step, Some(4 * S)), Leap::None);
+        assert_eq!(
+            (transport.position_ns(), transport.is_paused()),
+            (4 * S, true)
+        );
+        transport.order(Order::Pause, None);
+        transport.order(Order::Faster(8.0), None);
+        transport.look(110 * S);
+        assert_eq!(transport.position_ns(), 8 * S);
+        assert_eq!(transport.order(Order::Skip(-1.5), None), Leap::Back);
+        assert_eq!(transport.position_ns(), 6_500_000_000);
+        assert_eq!(transport.order(Order::Seek(0.0), None), Leap::Back);
+        assert_eq!(transport.position_ns(), 2 * S, "not before the start");
+        assert_eq!(transport.order(Order::Seek(1e9), None), Leap::Forth);
+        assert_eq!(transport.position_ns(), 12 * S, "nor behind the end");
+        transport.rewind();
+        transport.order(Order::Rate(Rate::Max), None);
+        transport.look(110 * S + 1);
+        assert_eq!(transport.position_ns(), 12 * S);
+    }
+
+    #[test]
+    fn orders_are_read_and_wrong_ones_are_told() {
+        assert_eq!("seek 3.5".parse(), Ok(Order::Seek(3.5)));
+        assert_eq!(" skip -2\n".parse(), Ok(Order::Skip(-2.0)));
+        assert_eq!("rate max".parse(), Ok(Order::Rate(Rate::Max)));
+        for wrong in ["", "seek", "seek nan", "rate 0", "rate 101", "halt"] {
+            assert!(wrong.parse::<Order>().is_err(), "{wrong}");
+        }
+    }
+}

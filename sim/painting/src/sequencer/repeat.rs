@@ -1,0 +1,93 @@
+//! A recorded session accepted again, record by record, in a painting that goes on.
+
+use maulstick_canvas::EditError;
+use maulstick_types::Flags;
+use maulstick_types::command::{Command, TakeCommand};
+use maulstick_types::paint::Entry;
+
+use super::records::GOES_ON;
+use super::{Accepted, Record, Sequencer};
+use crate::apply::Apply as _;
+
+impl Sequencer {
+    /// Accepts a record of a session as if it had come now: it takes the next place in the journal. Until
+    /// [`end_repeating`](Self::end_repeating) hands paint nothing, other commands are refused, and no tick passes but those
+    /// of the session.
+    ///
+    /// # Errors
+    /// [`EditError`] where the painting refuses what it accepted then.
+    pub fn repeat(&mut self, record: Record) -> Result<(), EditError> {
+        self.repeats = true;
+        match record.what {
+            Accepted::State { header, state } => {
+                let brush = self.painting.brush_of(header.source).map(str::to_owned);
+                let Some(brush) = brush.filter(|_| state.fault().is_none()) else {
+                    return Ok(());
+                };
+                let index = self.enter_states(&brush, header.epoch, header.seq);
+                self.note(index, || Accepted::State {
+                    header,
+                    state: state.clone(),
+                });
+                if header.flags.has(Flags::REPLAY.with(Flags::LAST))
+                    && let Some(take) = self.announced.get_mut(&brush)
+                {
+                    take.ended = true;
+                }
+                // A state that was refused then is refused now.
+                self.paint(&brush, &header, &state).ok();
+                Ok(())
+            }
+            Accepted::Entry(Entry::Command {
+                client,
+                number,
+                command,
+            }) => {
+                match &command {
+                    Command::Edit(edit) => drop(edit.apply(&mut self.painting)?),
+                    Command::Take(TakeCommand::Begin {
+                        brush,
+                        device,
+                        device_epoch,
+                        loads,
+                        again,
+                    }) => self.begin_take(brush, [*device, *device_epoch], loads, *again)?,
+                    _ => return Ok(()),
+                }
+                self.enter_command(client, number, command);
+                Ok(())
+            }
+            Accepted::Entry(Entry::Tick { .. }) => {
+                self.enter_tick();
+                Ok(())
+            }
+            Accepted::Entry(Entry::Brush { brush, toml }) => {
+                if let Ok(file) = maulstick_brush::BrushFile::parse(&toml) {
+                    self.define_brush(&brush, file);
+                }
+                Ok(())
+            }
+            Accepted::Entry(Entry::Decision { what }) => {
+                if what == GOES_ON {
+                    self.go_on();
+                }
+                Ok(())
+            }
+            // The states that it names are not among the records.
+            Accepted::Entry(Entry::Cut { .. } | Entry::States { .. }) => Ok(()),
+        }
+    }
+
+    /// True while a recorded session is painted.
+    #[must_use]
+    pub fn is_repeating(&self) -> bool {
+        self.repeats
+    }
+
+    /// Hands paint again; their brushes begin anew.
+    pub fn end_repeating(&mut self) {
+        if std::mem::take(&mut self.repeats) {
+            self.go_on();
+        }
+    }
+}
