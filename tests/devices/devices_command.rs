@@ -43,6 +43,13 @@ fn the_devices_of_a_rig_are_listed_while_it_runs() {
     });
     let text = text.unwrap_or_else(|| panic!("no phantom: {}", launcher.said()));
     has(&text, &["in the rig", "phantom", "in use"]);
+    has(
+        &refused(&place, &["device", "rename", "phantom", "arm"]),
+        &[
+            "'phantom' is a device of the rig's own settings",
+            "rig.toml",
+        ],
+    );
     // Another rig has none of it.
     let text = String::from_utf8(place.done(&["device", "list", "--name", "other"]).stdout)
         .expect("UTF-8");
@@ -123,6 +130,33 @@ fn devices_come_change_and_go_while_the_rig_runs() {
         &["'puck' moves 'main' with priority 1; its force is rigid"],
     );
     row(&place, "puck", |row| row["priority"] == 1);
+    // By another name, as it is, and with its force as off as it was.
+    has(&said(&["force", "off", "--device", "puck"]), &["force off"]);
+    has(
+        &said(&["device", "rename", "puck", "cup"]),
+        &["'puck' is called 'cup' now"],
+    );
+    row(&place, "cup", |row| {
+        row["priority"] == 1 && row["force"] == "rigid" && row["is_there"] == true
+    });
+    let listed = devices(&place)["rig"].to_string();
+    assert!(!listed.contains("puck"), "{listed}");
+    has(
+        &said(&["force", "strength", "100%", "--device", "cup"]),
+        &["cup: force off"],
+    );
+    // Nothing of what is refused changes anything.
+    has(
+        &refused(&place, &["device", "rename", "cup", "arm"]),
+        &["a device called 'arm' already"],
+    );
+    has(
+        &refused(&place, &["device", "rename", "cup", "paint"]),
+        &["something called 'paint'"],
+    );
+    row(&place, "cup", |row| row["is_own"] == true);
+    has(&said(&["device", "rename", "cup", "puck"]), &["'puck' now"]);
+    row(&place, "puck", |row| row["priority"] == 1);
     has(
         &said(&["device", "remove", "arm"]),
         &["kept no more", "has left the rig"],
@@ -175,6 +209,14 @@ fn what_does_not_fit_changes_nothing() {
         (
             vec!["device", "remove", "puk"],
             vec!["no device called 'puk'", "'puck'"],
+        ),
+        (
+            vec!["device", "rename", "puk", "cup"],
+            vec!["no device called 'puk'", "'puck'"],
+        ),
+        (
+            vec!["device", "rename", "puck", "my cup"],
+            vec!["'my cup' is not 1 to 32 letters"],
         ),
     ] {
         has(&refused(&place, &args), &what);

@@ -5,10 +5,10 @@ use maulstick_rig::UserError;
 use maulstick_rig::config::{DeviceSection, PEN_DRIVERS};
 use maulstick_types::plain;
 
-use super::user_file::{UserFile, put_in_rig};
+use super::user_file::{UserFile, in_rig, put_in_rig};
 use crate::attached::{Attached, Places, events, hid, serial};
 use crate::commands::say;
-use crate::commands::session::{Session, Target};
+use crate::commands::session::Target;
 
 /// Options of `maulstick device add`.
 #[derive(Args, Clone, Debug)]
@@ -49,21 +49,7 @@ pub(super) fn run(options: &AddOptions) -> Result<i32, UserError> {
         Some(name) => name.clone(),
         None => free_name(&driver, &file.devices),
     };
-    let in_rig = Session::open(&options.target).and_then(|session| session.config());
-    let in_rig = in_rig.map(|config| config.device).unwrap_or_default();
-    if in_rig.iter().any(|device| device.name == name) {
-        return Err(
-            UserError::usage(format!("the rig has a device called '{name}' already"))
-                .help("give this one another name"),
-        );
-    }
-    if file.devices.iter().any(|device| device.name == name) {
-        return Err(
-            UserError::usage(format!("you have a device called '{name}' already"))
-                .at(file.path().display().to_string())
-                .help("give this one another name, or remove that one: `maulstick device remove`"),
-        );
-    }
+    file.check_free(&name, &in_rig(&options.target)?)?;
     let device = DeviceSection {
         address,
         priority: options.priority,

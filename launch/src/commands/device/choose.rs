@@ -6,9 +6,9 @@ use clap::Args;
 use maulstick_rig::UserError;
 use maulstick_rig::config::{ACTIONS, DeviceSection, FORCES, PEN_PRIORITY};
 
-use super::user_file::{UserFile, is_same, put_in_rig};
+use super::user_file::{UserFile, in_rig, is_same, put_in_rig};
 use crate::commands::say;
-use crate::commands::session::{Session, Target};
+use crate::commands::session::Target;
 
 /// Options of `maulstick device use`.
 #[derive(Args, Clone, Debug)]
@@ -66,10 +66,7 @@ impl FromStr for PressureCurve {
 pub(super) fn run(options: &UseOptions) -> Result<i32, UserError> {
     let mut file = UserFile::read()?;
     let name = &options.device;
-    let in_rig = match Session::open(&options.target) {
-        Ok(session) => session.config()?.device,
-        Err(_) => Vec::new(),
-    };
+    let in_rig = in_rig(&options.target)?;
     let own = file.device(name).cloned();
     let is_own = own.is_ok();
     // A studio's device is one of the rig alone.

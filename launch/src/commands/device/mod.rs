@@ -8,6 +8,7 @@ pub mod force;
 pub mod force_order;
 mod list;
 mod remove;
+mod rename;
 mod user_file;
 
 use clap::Subcommand;
@@ -24,6 +25,8 @@ pub enum DeviceCommand {
     Add(add::AddOptions),
     /// Paint with a device no more
     Remove(remove::RemoveOptions),
+    /// Give a device another name, in your own devices and in the running rig
+    Rename(rename::RenameOptions),
     /// Choose the device that paints, its brush and its law of force, while painting
     Use(choose::UseOptions),
     /// Fit a device to the canvas by touching three corners
@@ -48,6 +51,7 @@ pub fn run(command: &DeviceCommand) -> Result<i32, UserError> {
         DeviceCommand::Allow(options) => allow::run(options),
         DeviceCommand::Add(options) => add::run(options),
         DeviceCommand::Remove(options) => remove::run(options),
+        DeviceCommand::Rename(options) => rename::run(options),
         DeviceCommand::Use(options) => choose::run(options),
         DeviceCommand::Fit(options) => fit::run(options),
     }

@@ -68,6 +68,26 @@ impl UserFile {
         })
     }
 
+    /// Checks that neither the user nor the rig, whose devices are `in_rig`, has a device called `name`.
+    ///
+    /// # Errors
+    /// A [`UserError`] that says who has it.
+    pub(super) fn check_free(&self, name: &str, in_rig: &[DeviceSection]) -> Result<(), UserError> {
+        let is_it = |device: &DeviceSection| device.name == name;
+        if self.devices.iter().any(is_it) {
+            let what = format!("you have a device called '{name}' already");
+            let help = "give this one another name, or remove that one: `maulstick device remove`";
+            return Err(UserError::usage(what)
+                .at(self.path.display().to_string())
+                .help(help));
+        }
+        if in_rig.iter().any(is_it) {
+            let what = format!("the rig has a device called '{name}' already");
+            return Err(UserError::usage(what).help("give this one another name"));
+        }
+        Ok(())
+    }
+
     /// Puts a device into the file: what it had and has still, comments among it, stays as it was.
     ///
     /// # Errors
@@ -102,11 +122,7 @@ impl UserFile {
             let is_usual = usual.get(key).and_then(Item::as_value).map(bare) == Some(bare(value));
             match own.get_mut(key).and_then(Item::as_value_mut) {
                 Some(before) if bare(before) == bare(value) => {}
-                Some(before) => {
-                    let decor = before.decor().clone();
-                    *before = value.clone();
-                    *before.decor_mut() = decor;
-                }
+                Some(before) => set(before, value.clone()),
                 None if is_usual && !["name", "driver", "brush"].contains(&key) => {}
                 None => {
                     own.insert(key, item.clone());
@@ -114,6 +130,29 @@ impl UserFile {
             }
         }
         own.retain(|key, _| wanted.contains_key(key));
+        Ok(())
+    }
+
+    /// Gives a device another name; all else stays as it was.
+    ///
+    /// # Errors
+    /// A [`UserError`] where there is no such device, the name is invalid, or the file cannot be written.
+    pub(super) fn rename(&mut self, device: &str, name: &str) -> Result<(), UserError> {
+        self.change_name(device, name)?;
+        self.write()
+    }
+
+    fn change_name(&mut self, device: &str, name: &str) -> Result<(), UserError> {
+        check(&DeviceSection {
+            name: name.to_owned(),
+            ..self.device(device)?.clone()
+        })?;
+        let mut tables = self.tables()?.iter_mut();
+        let own = tables.find(|table| name_of(table) == Some(device));
+        let before = own.and_then(|own| own.get_mut("name")?.as_value_mut());
+        if let Some(before) = before {
+            set(before, name.into());
+        }
         Ok(())
     }
 
@@ -178,6 +217,13 @@ fn bare(value: &Value) -> String {
     }
 }
 
+/// Sets a value; blanks and comments beside it stay.
+fn set(before: &mut Value, value: Value) {
+    let decor = before.decor().clone();
+    *before = value;
+    *before.decor_mut() = decor;
+}
+
 fn name_of(table: &Table) -> Option<&str> {
     table.get("name").and_then(Item::as_str)
 }
@@ -192,6 +238,17 @@ fn table(device: &DeviceSection) -> Result<Table, UserError> {
 
 fn toml_text(device: &DeviceSection) -> Result<String, UserError> {
     toml::to_string(device).map_err(|error| UserError::failure(error.to_string()))
+}
+
+/// The devices of the rig of `target`, none if that does not run.
+///
+/// # Errors
+/// A [`UserError`] where its settings cannot be read.
+pub(super) fn in_rig(target: &Target) -> Result<Vec<DeviceSection>, UserError> {
+    match Session::open(target) {
+        Ok(session) => Ok(session.config()?.device),
+        Err(_) => Ok(Vec::new()),
+    }
 }
 
 /// Starts a device in the rig of `target`, if that runs; what the rig says.
@@ -236,7 +293,7 @@ pub(super) fn is_same(
     match running {
         Some(other) if (&other.driver, &other.address) != (&own.driver, &own.address) => {
             let what = format!("the rig has another device called '{}'", own.name);
-            Err(UserError::usage(what).help("give yours another name: remove it and add it anew"))
+            Err(UserError::usage(what).help("give yours another name: `maulstick device rename`"))
         }
         _ => Ok(()),
     }
@@ -284,5 +341,45 @@ brush = \"main\"
         };
         assert!(file.change(&wrong).is_err());
         assert_eq!(file.text.to_string(), changed, "it is as it was");
+    }
+
+    #[test]
+    fn a_new_name_leaves_comments_and_order_as_they_were_and_may_be_taken_back() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("devices.toml");
+        let mut file = UserFile::parse(path.clone(), TEXT).expect("valid");
+        file.rename("arm", "left-arm").expect("it fits");
+        let written = std::fs::read_to_string(&path).expect("written");
+        let renamed = TEXT.replace("name = 'arm' # left", "name = \"left-arm\" # left");
+        assert_eq!(written, renamed);
+        let names: Vec<&str> = file.devices.iter().map(|own| own.name.as_str()).collect();
+        assert_eq!(names, ["left-arm", "puck"]);
+        file.rename("left-arm", "arm").expect("it fits");
+        assert_eq!(file.text.to_string(), TEXT.replace("'arm'", "\"arm\""));
+    }
+
+    #[test]
+    fn names_that_are_taken_or_invalid_are_refused() {
+        let mut file = UserFile::parse("/x/devices.toml".into(), TEXT).expect("valid");
+        let mut said = |device: &str, name: &str| {
+            let fault = file.change_name(device, name).expect_err(name);
+            assert_eq!(file.text.to_string(), TEXT);
+            fault.to_string()
+        };
+        for (device, name, what) in [
+            ("arn", "cup", "did you mean 'arm'"),
+            ("arm", "my arm", "'my arm' is not 1 to 32 letters"),
+            ("arm", "", "'' is not 1 to 32 letters"),
+            ("arm", "paint", "something called 'paint'"),
+        ] {
+            let said = said(device, name);
+            assert!(said.contains(what), "{said}");
+        }
+        let rigs = [DeviceSection::new("phantom", "openhaptics", "main")];
+        let said = |name| file.check_free(name, &rigs).map_err(|fault| fault.what);
+        assert_eq!(said("cup"), Ok(()));
+        let taken = "have a device called 'puck' already";
+        assert!(said("puck").is_err_and(|what| what.contains(taken)));
+        assert!(said("phantom").is_err_and(|what| what.contains("the rig has")));
     }
 }

@@ -3,7 +3,7 @@
 //! | module | holds |
 //! | --- | --- |
 //! | `attached` | what is attached and not in the rig |
-//! | `settings` | brush, force, switches and pressure of a device; its fit to the canvas |
+//! | `settings` | name, brush, force, switches and pressure of a device; its fit to the canvas |
 //! | `pressure_curve` | a curve drawn by hand |
 //! | `test_page` | what a device senses, and how evenly |
 //! | `health` | timing of the force loop |
@@ -32,7 +32,7 @@ use crate::panels::Panel;
 use crate::rig::force_history::{self, KEPT_S, size};
 use crate::rig::state::{Device, RigState};
 use crate::widgets::context::PanelContext;
-use pressure_curve::CurveEditor;
+use settings::Edits;
 
 /// Of the button that switches force off, and of a trouble.
 const RED: Color32 = Color32::from_rgb(178, 34, 34);
@@ -52,7 +52,7 @@ const PATIENCE_NS: u64 = 700_000_000;
 pub(crate) struct DevicePanel {
     /// The device whose strength is being changed, the requested percentage, and the time until which it is shown, ns.
     asked: Option<(String, f64, u64)>,
-    curve: CurveEditor,
+    edits: Edits,
     /// The device whose test page is open.
     tested: Option<String>,
 }
@@ -90,6 +90,7 @@ impl Panel for DevicePanel {
         }
         attached::show(ui, work);
         let tested = self.tested.take();
+        let tested = tested.map(|name| self.renamed(name, work.rig));
         self.tested = tested.filter(|name| test_page::show(ui.ctx(), name, work.rig));
     }
 }
@@ -121,6 +122,14 @@ impl DevicePanel {
         }
     }
 
+    /// The name that a device goes by once the rig has it under another one.
+    fn renamed(&self, name: String, rig: &RigState) -> String {
+        match &self.edits.renamed {
+            Some((from, to)) if *from == name && rig.nodes.contains(to) => to.clone(),
+            _ => name,
+        }
+    }
+
     /// What the painter may change of a device, and its test page.
     fn own_settings(
         &mut self,
@@ -137,11 +146,11 @@ impl DevicePanel {
                 // A change begins with the settings as they were listed.
                 ui.add_enabled_ui(!work.rig.changes_devices, |ui| {
                     settings::buttons(ui, &known, work);
-                    settings::show(ui, &known.section, device, &mut self.curve, work);
+                    settings::show(ui, &known, device, &mut self.edits, work);
                 });
             }
             None if driver == Some("window") => {
-                settings::window_pen(ui, &mut self.curve, work);
+                settings::window_pen(ui, &mut self.edits.curve, work);
             }
             None => {}
         }

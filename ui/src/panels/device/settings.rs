@@ -1,6 +1,6 @@
-//! Settings of a device of the rig, changed while it paints: its brush, its force, its pressure, its switches, its place.
+//! Settings of a device of the rig, changed while it paints: its name, brush, force, pressure, switches and place.
 
-use eframe::egui::{CollapsingHeader, Frame, RichText, Ui};
+use eframe::egui::{CollapsingHeader, Frame, Key, RichText, TextEdit, Ui};
 use maulstick_device::pressure_curve::sensed;
 use maulstick_rig::config::{ACTIONS, DeviceSection, FORCES, PEN_DRIVERS};
 
@@ -10,20 +10,61 @@ use crate::rig::device_commands::DeviceOrder;
 use crate::rig::device_listing::RigDevice;
 use crate::rig::state::Device;
 use crate::widgets::context::PanelContext;
-use crate::widgets::rows::{choice, note};
+use crate::widgets::rows::{choice, note, row};
+
+/// Settings that are being changed.
+#[derive(Debug, Default)]
+pub(super) struct Edits {
+    /// The pressure curve that is being drawn.
+    pub(super) curve: CurveEditor,
+    /// The device whose name is being typed, and the name so far.
+    typed: Option<(String, String)>,
+    /// The device that was given another name last, and that name.
+    pub(super) renamed: Option<(String, String)>,
+}
+
+impl Edits {
+    /// The name of one of the user's devices; it is given another one once that is typed.
+    fn name(&mut self, ui: &mut Ui, device: &str, work: &mut PanelContext<'_>) {
+        let typed = self.typed.take_if(|(own, _)| own == device);
+        let mut name = typed.map_or_else(|| device.to_owned(), |(_, name)| name);
+        let field = row(ui, tr!("Name"), |ui| {
+            let width = ui.available_width();
+            let field = ui.add(TextEdit::singleline(&mut name).desired_width(width));
+            field.on_hover_text(tr!("The device starts anew under the name that you type"))
+        });
+        if field.has_focus() {
+            self.typed = Some((device.to_owned(), name));
+            return;
+        }
+        let is_left = ui.input(|input| input.key_pressed(Key::Escape)) || !ui.is_enabled();
+        let name = name.trim();
+        if field.lost_focus() && !is_left && !name.is_empty() && name != device {
+            work.requests.device(["rename", device, name]);
+            self.renamed = Some((device.to_owned(), name.to_owned()));
+        }
+    }
+}
 
 /// Shows them, folded until they are wanted.
 pub(super) fn show(
     ui: &mut Ui,
-    section: &DeviceSection,
+    known: &RigDevice,
     device: &Device,
-    curve: &mut CurveEditor,
+    edits: &mut Edits,
     work: &mut PanelContext<'_>,
 ) {
+    let section = &known.section;
     let name = section.name.clone();
+    // The name was typed here.
+    let is_renamed = edits.renamed.as_ref().is_some_and(|(_, own)| *own == name);
     CollapsingHeader::new(tr!("Settings"))
         .id_salt("settings")
+        .default_open(is_renamed)
         .show(ui, |ui| {
+            if known.is_own {
+                edits.name(ui, &name, work);
+            }
             let brushes: Vec<String> = work
                 .rig
                 .brushes
@@ -46,7 +87,7 @@ pub(super) fn show(
                 let newest = device.samples.newest(work.rig.now_ns);
                 let given = newest.and_then(|sample| sample.pen).map(|(given, _)| given);
                 let sensed = given.map(|given| sensed(&section.pressure_curve, given));
-                let drawn = curve.show(ui, &name, &section.pressure_curve, sensed);
+                let drawn = edits.curve.show(ui, &name, &section.pressure_curve, sensed);
                 change = drawn
                     .map(|points| ["--pressure-curve".to_owned(), written(&points)])
                     .or(change);

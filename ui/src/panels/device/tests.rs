@@ -227,6 +227,62 @@ fn a_law_a_switch_and_a_curve_are_chosen_with_the_priority_as_it_is() {
     assert_eq!(orders(&mut harness), [soft]);
 }
 
+/// Types at the end of the name in a device's settings.
+fn type_name(harness: &mut Harness<'_, Bench<DevicePanel>>, text: &str) {
+    let name = (Role::TextInput, "Name");
+    harness.get_by_role_and_label(name.0, name.1).focus();
+    harness.run_steps(4);
+    let field = harness.get_by_role_and_label(name.0, name.1);
+    field.type_text(text);
+    harness.run_steps(4);
+}
+
+#[test]
+fn a_typed_name_renames_a_device_of_ones_own_which_stays_unfolded_and_tested() {
+    let mut harness = harness::<DevicePanel>(listed());
+    harness
+        .get_all_by_label("Settings")
+        .next()
+        .expect("the phantom's")
+        .click();
+    harness.run_steps(20);
+    let field = harness.query_by_role_and_label(Role::TextInput, "Name");
+    assert!(field.is_none(), "the phantom is the studio's");
+    harness
+        .get_all_by_label("Settings")
+        .nth(1)
+        .expect("the tablet's")
+        .click();
+    harness.run_steps(20);
+    harness
+        .get_all_by_label("Test…")
+        .nth(1)
+        .expect("the tablet's")
+        .click();
+    harness.run_steps(4);
+    type_name(&mut harness, "-x");
+    harness.key_press(eframe::egui::Key::Escape);
+    harness.run_steps(4);
+    assert!(orders(&mut harness).is_empty(), "left as it was");
+    type_name(&mut harness, "-2");
+    harness.key_press(eframe::egui::Key::Enter);
+    harness.run_steps(4);
+    assert_eq!(orders(&mut harness), ["rename tablet tablet-2"]);
+    assert!(harness.query_all_by_label("Test of tablet").count() > 0);
+    // The rig has it under its new name.
+    let rig = &mut harness.state_mut().rig;
+    let said = LISTING.replace(r#""name": "tablet""#, r#""name": "tablet-2""#);
+    rig.listing = Some(DeviceListing::parse(said.as_bytes()).expect("a listing"));
+    rig.nodes.retain(|node| node != "tablet");
+    rig.nodes.push("tablet-2".into());
+    let tablet = rig.devices.remove("tablet").expect("a tablet");
+    rig.devices.insert("tablet-2".into(), tablet);
+    harness.run_steps(20);
+    assert!(harness.query_all_by_label("Test of tablet-2").count() > 0);
+    let field = harness.get_by_role_and_label(Role::TextInput, "Name");
+    assert_eq!(field.value().as_deref(), Some("tablet-2"));
+}
+
 #[test]
 fn a_device_that_left_is_shown_no_more() {
     let mut harness = harness::<DevicePanel>(listed());
