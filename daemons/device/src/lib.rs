@@ -10,6 +10,7 @@
 //! | [`player`] | a device that plays a take |
 //! | [`brush`] | the brush of a section of `rig.toml` |
 //! | [`device_missing`] | report of a device that is not there |
+//! | [`node_watch`] | nodes of devices that appear |
 //! | [`canvas_mover`] | motion of the canvas by a 6-DOF mouse |
 //! | [`registration`] | a device's frame on the desk |
 //! | [`corner_calibration`] | corners of the canvas, as a hand shows them |
@@ -25,6 +26,7 @@ pub mod canvas_mover;
 pub mod corner_calibration;
 pub mod device_missing;
 pub mod hid_collections;
+pub mod node_watch;
 pub mod pen;
 pub mod pen_stream;
 mod performance;

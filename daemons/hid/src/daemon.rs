@@ -8,6 +8,7 @@ use glam::DQuat;
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{Bus, Qos, Subscription, Wake};
 use maulstick_device::device_missing::report_missing;
+use maulstick_device::node_watch::NodeWatch;
 use maulstick_num::geometry::canonical;
 use maulstick_rig::config::{BRUSH_NODE, CanvasSection, DeviceSection};
 use maulstick_rig::{NodeHandle, UserError};
@@ -29,6 +30,8 @@ use crate::tablet::Tablet;
 const STATUS_PERIOD_NS: u64 = 100_000_000;
 /// Time between two attempts to open a device that is not there, ns.
 const ATTEMPT_PERIOD_NS: u64 = 1_000_000_000;
+/// Quiet after news of a node until it is opened, ns: udev gives a device's nodes to the user one after the other.
+const SETTLING_NS: u64 = 100_000_000;
 /// Longest time between two turns.
 const LONGEST_TURN: Duration = Duration::from_millis(20);
 /// Histogram bins in the status of a daemon without a servo.
@@ -97,6 +100,8 @@ pub struct Daemon {
     kind: Kind,
     address: Address,
     ports: Box<dyn Ports>,
+    /// Has a device that is plugged in opened before the next attempt is due.
+    nodes: Option<NodeWatch>,
     /// The recording to be played, until it starts.
     replay: Option<Recorded>,
     /// Token of the brush that a played pen waits for: without it the first stroke would be lost.
@@ -158,6 +163,7 @@ impl Daemon {
             brush,
             kind,
             address: Address::parse(device.address.as_deref())?,
+            nodes: ports.dev().and_then(NodeWatch::of),
             ports,
             replay,
             recorder: settings
@@ -190,8 +196,13 @@ impl Daemon {
     /// A [`UserError`] where the rig is gone.
     pub fn turn(&mut self) -> Result<Duration, UserError> {
         let now_ns = self.bus.now_ns();
-        if self.stream.is_none() && self.attempt_ns.is_some_and(|at| now_ns >= at) {
-            self.attempt(now_ns)?;
+        if self.stream.is_none() {
+            if self.nodes.as_ref().is_some_and(NodeWatch::has_news) {
+                self.attempt_ns = self.attempt_ns.map(|_| now_ns + SETTLING_NS);
+            }
+            if self.attempt_ns.is_some_and(|at| now_ns >= at) {
+                self.attempt(now_ns)?;
+            }
         }
         let due_ns = self.listen(now_ns)?;
         if let Output::Stylus(stylus) = &mut self.output {

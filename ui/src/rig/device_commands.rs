@@ -9,6 +9,7 @@ use std::task::Poll;
 use std::time::SystemTime;
 
 use eframe::egui::Context;
+use maulstick_device::node_watch::NodeWatch;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use serde::Deserialize;
@@ -20,7 +21,7 @@ use crate::widgets::notifications::Notifications;
 
 /// Folders that change where a device is plugged in or out.
 const NODES: [&str; 2] = ["/dev", "/dev/input"];
-/// Time between two looks while a device lacks a permission, s.
+/// Time between two looks while a device lacks a permission, s, where the system does not tell that it has one.
 const LOOK_S: f64 = 3.0;
 
 /// A request to this runner.
@@ -67,6 +68,8 @@ impl FitProgress {
 struct Seen {
     nodes: Vec<String>,
     plugged: [Option<SystemTime>; 2],
+    /// Counts nodes that have come or changed.
+    news: u64,
     done: u64,
     /// Counts while a permission is waited for.
     looks: u64,
@@ -96,6 +99,8 @@ pub(crate) struct DeviceCommands {
     running: Option<BackgroundTask<Result<String, Refused>>>,
     listing: Option<BackgroundTask<Result<DeviceListing, Refused>>>,
     seen: Option<Seen>,
+    nodes: Option<NodeWatch>,
+    news: u64,
     /// Commands that have ended, and those that had when the newest listing began.
     done: u64,
     listed: u64,
@@ -118,6 +123,8 @@ impl DeviceCommands {
             running: None,
             listing: None,
             seen: None,
+            nodes: NodeWatch::of(Path::new(NODES[0])),
+            news: 0,
             done: 0,
             listed: 0,
             fit: None,
@@ -183,6 +190,9 @@ impl DeviceCommands {
     fn list(&mut self, context: &Context, rig: &RigState) {
         let mut nodes = rig.nodes.clone();
         nodes.sort_unstable();
+        if self.nodes.as_ref().is_some_and(NodeWatch::has_news) {
+            self.news += 1;
+        }
         // A permission changes no folder.
         let waits = rig
             .listing
@@ -191,6 +201,7 @@ impl DeviceCommands {
         let seen = Seen {
             nodes,
             plugged: NODES.map(changed),
+            news: self.news,
             done: self.done,
             looks: match waits {
                 true => context.input(|input| input.time / LOOK_S) as u64,

@@ -110,6 +110,10 @@ impl Ports for EventDevices {
         Ok(found)
     }
 
+    fn dev(&self) -> Option<&Path> {
+        Some(&self.dev)
+    }
+
     fn open(&mut self, found: &Found) -> Result<Box<dyn HidSource>, UserError> {
         let identity = &found.identity;
         let opened = RawDevice::open(&identity.place).and_then(|mut device| {

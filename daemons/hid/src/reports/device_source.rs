@@ -1,6 +1,7 @@
 //! Interface to plugged-in devices, above hidapi and below decoding; tests put a fake device here.
 
 use std::fmt;
+use std::path::Path;
 use std::time::Duration;
 
 use maulstick_rig::UserError;
@@ -69,6 +70,10 @@ pub trait Ports: Send {
     /// # Errors
     /// [`UserError`] if the system cannot list them.
     fn list(&mut self) -> Result<Vec<Found>, UserError>;
+    /// The folder that stands for /dev, in which a node appears where a device is plugged in; absent if none does.
+    fn dev(&self) -> Option<&Path> {
+        None
+    }
     /// Opens a device.
     ///
     /// # Errors

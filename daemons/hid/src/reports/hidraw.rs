@@ -71,6 +71,10 @@ impl Ports for Hidraw {
         Ok(found)
     }
 
+    fn dev(&self) -> Option<&Path> {
+        Some(Path::new("/dev"))
+    }
+
     fn open(&mut self, found: &Found) -> Result<Box<dyn HidSource>, UserError> {
         let Identity { place, .. } = &found.identity;
         let name = found.identity.to_string();

@@ -1,6 +1,8 @@
 //! Devices that are plugged in, made up below decoding: the daemon's own thread reads them.
 
 use std::collections::VecDeque;
+use std::os::unix::fs::PermissionsExt as _;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -30,7 +32,11 @@ struct Desk {
 }
 
 #[derive(Clone, Default)]
-struct Plugs(Arc<Mutex<Desk>>);
+struct Plugs {
+    desk: Arc<Mutex<Desk>>,
+    /// What stands for /dev.
+    dev: Option<PathBuf>,
+}
 
 struct Device {
     plugs: Plugs,
@@ -39,7 +45,7 @@ struct Device {
 
 impl Plugs {
     fn with<T>(&self, deed: impl FnOnce(&mut Desk) -> T) -> T {
-        deed(&mut self.0.lock().expect("no panic"))
+        deed(&mut self.desk.lock().expect("no panic"))
     }
 
     fn plug(&self, identity: Identity, descriptor: &Descriptor, usage: (u16, u16)) {
@@ -58,6 +64,10 @@ impl Plugs {
 impl Ports for Plugs {
     fn list(&mut self) -> Result<Vec<Found>, UserError> {
         Ok(self.with(|desk| desk.found.iter().map(|(found, _)| found.clone()).collect()))
+    }
+
+    fn dev(&self) -> Option<&Path> {
+        self.dev.as_deref()
     }
 
     fn open(&mut self, found: &Found) -> Result<Box<dyn HidSource>, UserError> {
@@ -226,6 +236,32 @@ fn a_device_that_is_not_there_is_looked_for_each_second() {
         "{trouble}"
     );
     assert!(rig.samples().is_empty());
+}
+
+#[test]
+fn a_node_that_appears_is_opened_once_udev_is_done_with_it() {
+    let dev = tempfile::tempdir().expect("a folder");
+    let plugs = Plugs {
+        dev: Some(dev.path().to_owned()),
+        ..Plugs::default()
+    };
+    let mut rig = Rig::new(&settings("pen"), Box::new(plugs.clone())).expect("a daemon");
+    rig.run(200_000_000, 10_000_000);
+    plugs.plug(identity(0x28BD, 0x0935, "Deco L"), &deco_l(), PEN);
+    std::fs::write(dev.path().join("sda1"), "").expect("made");
+    rig.run(200_000_000, 10_000_000);
+    assert_eq!(attempts(&plugs), 0, "that is a disk");
+    let node = dev.path().join("hidraw3");
+    std::fs::write(&node, "").expect("made");
+    rig.run(80_000_000, 10_000_000);
+    let all = std::fs::Permissions::from_mode(0o666);
+    std::fs::set_permissions(&node, all).expect("set");
+    rig.run(80_000_000, 10_000_000);
+    assert_eq!(attempts(&plugs), 0, "its permissions may change again");
+    rig.run(30_000_000, 10_000_000);
+    assert_eq!(attempts(&plugs), 1, "before a second is over");
+    rig.run(100_000_000, 10_000_000);
+    assert_eq!(rig.status().expect("told").trouble, "");
 }
 
 #[test]

@@ -111,6 +111,14 @@ fn devices_are_listed_where_somebody_looks_and_something_has_changed() {
     desk.rig.nodes.push("arm".into());
     desk.turn(Vec::new(), true);
     assert!(desk.commands.listing.is_some(), "a device came");
+    let dev = tempfile::tempdir().expect("a folder");
+    desk.commands.nodes = NodeWatch::of(dev.path());
+    desk.until(|desk| desk.commands.listing.is_none());
+    desk.turn(Vec::new(), true);
+    assert!(desk.commands.listing.is_none(), "nothing has changed");
+    std::fs::write(dev.path().join("hidraw0"), "").expect("made");
+    desk.turn(Vec::new(), true);
+    assert!(desk.commands.listing.is_some(), "a node came");
 }
 
 #[test]
