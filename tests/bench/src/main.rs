@@ -14,6 +14,7 @@
 //! | [`optics`] | `optics`: colours of few wavelengths beside all; films on both backends beside a copy |
 //! | [`advection`] | `paint`: the advection by itself, beside a copy |
 //! | [`paint`] | `paint`: steps of the paint model by themselves, beside a copy |
+//! | [`pen`] | `pen`: a pen's sample to the brush node, through the window and through the HID daemon |
 //! | [`render`] | `render`: the 30 s recording, offline |
 //! | [`report`] | rows and their table |
 //! | [`tails`] | `render`: work beside the steps, as shares of it |
@@ -34,6 +35,7 @@ mod looks;
 mod optics;
 mod paint;
 mod peers;
+mod pen;
 mod render;
 mod report;
 mod running;
@@ -53,8 +55,8 @@ use crate::report::Report;
 #[derive(Parser)]
 #[command(name = "maulstick-bench", version)]
 struct Options {
-    /// What to measure: brush, bus, document, frames, haptics, idle, latency, looks, optics, paint, render,
-    /// view, window [default: everything]
+    /// What to measure: brush, bus, document, frames, haptics, idle, latency, looks, optics, paint, pen,
+    /// render, view, window [default: everything]
     area: Option<String>,
     /// Paint model to measure
     #[arg(long, default_value = "impasto", value_parser = PossibleValuesParser::new(model_names()))]
@@ -68,6 +70,9 @@ struct Options {
     /// The far end of the bus benchmark
     #[arg(long, hide = true)]
     far_end: Option<String>,
+    /// A process of the pen benchmark
+    #[arg(long, hide = true)]
+    pen: Option<String>,
 }
 
 /// An area's name and what measures it.
@@ -76,7 +81,7 @@ type Area = (
     fn(&mut Report, &Options) -> Result<(), UserError>,
 );
 
-const AREAS: [Area; 13] = [
+const AREAS: [Area; 14] = [
     ("brush", |report, _| brush::run(report)),
     ("bus", |report, _| bus::run(report)),
     ("document", |report, _| document::run(report)),
@@ -89,6 +94,7 @@ const AREAS: [Area; 13] = [
     ("paint", |report, options| {
         paint::run(report, &options.backend, &options.model)
     }),
+    ("pen", |report, _| pen::run(report)),
     ("render", |report, _| render::run(report)),
     ("view", |report, _| view::run(report)),
     ("window", |report, _| window::run(report)),
@@ -105,6 +111,9 @@ fn main() {
 fn measure(options: &Options) -> Result<(), UserError> {
     if let Some(locator) = &options.far_end {
         return bus::far_end(locator);
+    }
+    if let Some(pen) = &options.pen {
+        return pen::send(pen);
     }
     let wanted = |name: &str| options.area.as_deref().is_none_or(|area| area == name);
     let areas: Vec<&Area> = AREAS.iter().filter(|(name, _)| wanted(name)).collect();

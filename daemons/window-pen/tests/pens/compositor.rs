@@ -3,7 +3,7 @@
 use std::os::fd::AsFd;
 use std::os::unix::net::UnixStream;
 use std::sync::Arc;
-use std::sync::mpsc::{Sender, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
@@ -46,6 +46,7 @@ pub(crate) struct NewTool {
 enum Order {
     Tool(NewTool),
     Do(usize, Vec<Do>),
+    Lend(usize, Sender<(ZwpTabletToolV2, DisplayHandle)>),
     Close,
 }
 
@@ -138,6 +139,14 @@ impl Compositor {
     pub(crate) fn act(&self, tool: usize, all: &[Do]) {
         self.order(Order::Do(tool, all.to_vec()));
     }
+
+    /// The tool of this number once it has done all that, and what flushes its events: it acts in the caller's time then.
+    #[allow(dead_code, reason = "the benchmarks use it")]
+    pub(crate) fn lend(&self, tool: usize) -> Receiver<(ZwpTabletToolV2, DisplayHandle)> {
+        let (to, lent) = channel();
+        self.order(Order::Lend(tool, to));
+        lent
+    }
 }
 
 impl Drop for Compositor {
@@ -188,6 +197,9 @@ impl Server {
                 for act in all {
                     self.act(tool, act);
                 }
+            }
+            Order::Lend(tool, to) => {
+                to.send((self.tools[tool].clone(), handle.clone())).ok();
             }
             Order::Close => {}
         }
