@@ -7,6 +7,7 @@ use maulstick_brush_node::contact_model::ForceKind;
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Receiver, Sender};
 use maulstick_bus::{CreditSender, Faults, MemoryNet, Qos, Queue, Wake};
+use maulstick_painting::picture::picture;
 use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::command::BrushCommand;
 use maulstick_types::command::{Command, Outcome};
@@ -68,6 +69,35 @@ fn a_force_device_with_a_number_of_its_own_gets_its_model() {
     turn(&mut live);
     let model = models.try_recv().expect("a model").message;
     assert_eq!((model.device, model.device_epoch), (42, 11));
+}
+
+#[test]
+fn a_hand_feels_the_brush_of_a_take_and_paints_nothing_into_it() {
+    let mut live = live();
+    let (bus, wake) = (live.net.bus(), Wake::new());
+    let topic = live.topics.contact_model("arm");
+    let mut models =
+        Receiver::<ContactModel>::new(&bus, &topic, Qos::RealTime, Queue::Ring(512), &wake)
+            .expect("subscribed");
+    let mut arm = force_device(&live);
+    turn(&mut live);
+    live.announce(1);
+    let samples = take();
+    let mut felt = 0;
+    for _ in 0..1000 {
+        if live.sent < samples.len() {
+            arm.send(&pen(0.02, 0.02, 0.9));
+        }
+        live.player_turn(&samples);
+        turn(&mut live);
+        while let Some(model) = models.try_recv() {
+            assert_eq!((model.message.device, model.message.device_epoch), (42, 11));
+            felt += 1;
+        }
+    }
+    assert!(felt > 5, "{felt} models while the take played");
+    let painted = picture(live.paint.painting_mut(), 0).rgb;
+    assert!(painted == support::offline(), "the hand has painted");
 }
 
 /// What a pressed brush gives to a device that feels it by a law.

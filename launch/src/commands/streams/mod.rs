@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | [`listener`] | messages of a running rig |
 //! | [`echo`], [`measure`], [`nodes`] | contents, rates and senders of live streams |
-//! | [`record`], [`recording`] | recordings, made and looked at |
+//! | [`record`], [`ring`], [`recording`] | recordings, made, kept within bounds, and looked at |
 //! | [`message_lines`] | messages as rows of a table and as lines of JSON |
 
 pub mod echo;
@@ -14,3 +14,4 @@ mod message_lines;
 pub mod nodes;
 pub mod record;
 pub mod recording;
+mod ring;

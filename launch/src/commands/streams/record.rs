@@ -16,6 +16,7 @@ use maulstick_types::command::FileCommand;
 use mcap::McapError;
 
 use super::listener::{Listener, ReceivedMessage};
+use super::ring::{FILES, Ring};
 use crate::commands::open::{LONGEST, whole};
 use crate::commands::say;
 use crate::commands::session::{Session, Target};
@@ -40,10 +41,18 @@ pub struct RecordOptions {
     /// Begin another file after so long, s
     #[arg(long, value_name = "S")]
     split_seconds: Option<f64>,
+    /// Keep only the newest so many seconds: the oldest of six files goes
+    #[arg(long, value_name = "S", conflicts_with = "split_seconds")]
+    last: Option<f64>,
+    /// Keep at most so many megabytes on the disk: the oldest files go
+    #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..))]
+    quota_mb: Option<u64>,
     #[command(flatten)]
     target: Target,
 }
 
+/// Of a quota the part that one file has.
+const QUOTA_FILES: u64 = 8;
 /// At most so much is lost with this process.
 const FLUSH: Duration = Duration::from_millis(500);
 
@@ -60,7 +69,18 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
         seconds => Ok(seconds.map(Duration::from_secs_f64)),
     };
     let lasts = bounded("seconds", options.seconds)?;
-    let split_after = bounded("split-seconds", options.split_seconds)?;
+    let last = bounded("last", options.last)?.map(|last| last / FILES);
+    let split_after = bounded("split-seconds", options.split_seconds)?.or(last);
+    let bytes = |mb: u64| mb.saturating_mul(1_000_000);
+    let quota = options.quota_mb.map(bytes);
+    let of_quota = quota.map(|quota| quota / QUOTA_FILES);
+    let most = options
+        .split_mb
+        .map(bytes)
+        .into_iter()
+        .chain(of_quota)
+        .min();
+    let mut ring = Ring::new(&options.output, last.is_some(), quota);
     let output = UsedFile::new("the recording", &options.output).of(Kind::Take);
     check_outputs(&[output], &[])?;
     let mut listener = Listener::open(&options.target, &options.topic)?;
@@ -91,16 +111,12 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
         if !listener.has_rig() {
             break;
         }
-        let most = options.split_mb.map(|mb| mb.saturating_mul(1_000_000));
         let is_full = most.is_some_and(|most| part.bytes >= most)
             || split_after.is_some_and(|after| part.begun.elapsed() >= after);
         if is_full {
             part.finish(&mut state, &listener)?;
-            part = Part::begin(
-                &next_free(&options.output),
-                |path| File::create_new(path),
-                &listener,
-            )?;
+            part = Part::begin(&ring.next(), |path| File::create_new(path), &listener)?;
+            ring.trim()?;
             // What is sent rarely is in each file, from its beginning on.
             let now_ns = listener.member.bus.now_ns();
             for received in state.kept.values() {
@@ -141,22 +157,6 @@ impl State {
         // One that came late after all was lost in the file before.
         std::array::from_fn(|place| all[place].saturating_sub(before[place]))
     }
-}
-
-/// The first name of a further file that is not taken.
-fn next_free(path: &Path) -> PathBuf {
-    let mut names = (2..).map(|number| numbered(path, number));
-    names.find(|name| !name.exists()).unwrap_or_default()
-}
-
-/// The name of a further file.
-fn numbered(path: &Path, number: u32) -> PathBuf {
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let name = match path.extension() {
-        Some(ending) => format!("{stem}-{number}.{}", ending.to_string_lossy()),
-        None => format!("{stem}-{number}"),
-    };
-    path.with_file_name(name)
 }
 
 /// A file of a recording.
@@ -291,19 +291,4 @@ fn fault(path: &Path, error: McapError) -> UserError {
         other => std::io::Error::other(other),
     };
     UserError::writing(path, &error)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn further_files_are_numbered_before_their_ending() {
-        let named = |path: &str| numbered(Path::new(path), 2);
-        assert_eq!(
-            named("/a/b.c/session.mcap"),
-            Path::new("/a/b.c/session-2.mcap")
-        );
-        assert_eq!(named("session"), Path::new("session-2"));
-    }
 }

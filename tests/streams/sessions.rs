@@ -1,0 +1,179 @@
+//! A session of a rig that paints in a file: recorded, made a take, rendered, played again, to the same picture.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+use std::io::Write as _;
+use std::process::{Child, Stdio};
+
+use nix::sys::signal::Signal;
+use serde_json::Value;
+use support::{Launcher, PATIENCE, Place, assert_same, fault, has, wait_for};
+
+/// Small cells would take long.
+const CANVAS: [&str; 4] = ["--size", "320x256", "--cell-mm", "0.5"];
+
+/// A recorder that has the painting already.
+fn recorder(place: &Place, file: &str) -> Launcher {
+    let recorder = Launcher::start(place.maulstick(&["record", "-o", file]));
+    let has_painting = || {
+        let info = place.run(&["recording", "info", file, "--json"]).stdout;
+        let info: Value = serde_json::from_slice(&info).ok()?;
+        let files = info["files"].as_array()?;
+        let is_painting = |name: &Value| name == "painting.maul";
+        files.iter().any(is_painting).then_some(())
+    };
+    let found = wait_for(PATIENCE, has_painting);
+    assert!(found.is_some(), "{}", recorder.said());
+    recorder
+}
+
+/// Paints with two styluses and commands in between, until nothing is wet.
+fn paint(place: &Place) {
+    let stroke = |device: &str| {
+        let topic = "stylus/*/sample";
+        place.done(&["replay", "hand.mcap", "-t", topic, "--as", device]);
+    };
+    place.done(&["load", "Ultramarine Blue=0.6,Titanium White=0.4"]);
+    stroke("left");
+    place.done(&["load", "Cadmium Red Light"]);
+    stroke("right");
+    place.done(&["undo"]);
+    place.done(&["clean"]);
+    place.done(&["load", "Hansa Yellow Opaque"]);
+    stroke("left");
+    place.done(&["light", "--azimuth", "40"]);
+    place.done(&["dry"]);
+}
+
+/// The picture of the rig.
+fn snapshot(place: &Place, file: &str) -> Vec<u8> {
+    place.done(&["snapshot", "-o", file]);
+    place.bytes(file)
+}
+
+/// Replays with orders on the standard input.
+fn ordered(place: &Place, args: &[&str], orders: &str) {
+    let mut command = place.maulstick(args);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped());
+    let mut child: Child = command.spawn().expect("started");
+    let mut input = child.stdin.take().expect("piped");
+    input.write_all(orders.as_bytes()).expect("written");
+    let output = child.wait_with_output().expect("ended");
+    drop(input);
+    assert!(output.status.success(), "{args:?}");
+    let said = String::from_utf8_lossy(&output.stdout);
+    has(&said, &["position_s", "\"paused\":true", "painted in"]);
+}
+
+#[test]
+fn a_session_is_painted_again_to_the_same_picture() {
+    let place = Place::new();
+    place.short_demo("hand.mcap", 1.5);
+    let mut launcher = Launcher::up(&place, &[&["sea.maul"], CANVAS.as_slice()].concat());
+    launcher.wait_says("is up");
+    let blank = snapshot(&place, "blank.png");
+    let mut recorder = recorder(&place, "s.mcap");
+    paint(&place);
+    let painted = snapshot(&place, "painted.png");
+    assert_ne!(painted, blank);
+    recorder.signal(Signal::SIGINT);
+    recorder.wait(PATIENCE);
+
+    place.done(&["take", "from", "s.mcap", "-o", "t.mcap"]);
+    let info = place.done(&["take", "info", "t.mcap", "--json"]).stdout;
+    let info: Value = serde_json::from_slice(&info).expect("JSON");
+    assert_eq!(info["painted"]["commands"].as_u64(), Some(8), "{info}");
+    assert!(info["painted"]["states"].as_u64() > Some(100), "{info}");
+    assert!(info["samples"]["left"].as_u64() > Some(100), "{info}");
+    assert!(info["samples"]["right"].as_u64() > Some(100), "{info}");
+
+    for file in ["s.mcap", "t.mcap"] {
+        place.done(&["render", file, "-o", "again.png", "--overwrite"]);
+        assert_same(&place.bytes("again.png"), &painted, file);
+    }
+    let half = info["seconds"].as_f64().expect("a number") / 2.0;
+    let half = format!("{half:.2}");
+    place.done(&[
+        "take",
+        "from",
+        "s.mcap",
+        "-o",
+        "half.mcap",
+        "--start",
+        &half,
+    ]);
+    place.done(&[
+        "render",
+        "half.mcap",
+        "-o",
+        "half.png",
+        "--document",
+        "half.maul",
+    ]);
+    assert_same(&place.bytes("half.png"), &painted, "the second half");
+    place.done(&["take", "from", "s.mcap", "-o", "less.mcap", "--end", &half]);
+    place.done(&["render", "less.mcap", "-o", "less.png"]);
+    assert_ne!(
+        place.bytes("less.png"),
+        painted,
+        "the first half is not all"
+    );
+
+    place.done(&["replay", "t.mcap", "--rate", "max"]);
+    assert_same(&snapshot(&place, "max.png"), &painted, "as fast as can be");
+    let orders =
+        "pause\nstep\nseek 1\nskip 0.5\nseek 0.2\nrate 20\npause\nseek 2\nskip -1\nrate 50\n";
+    ordered(
+        &place,
+        &["replay", "t.mcap", "--json", "--document", "r.maul"],
+        orders,
+    );
+    assert_same(&snapshot(&place, "ordered.png"), &painted, "with orders");
+
+    let refused = |args: &[&str], words: &[&str]| has(&fault(&place, args, 2), words);
+    refused(
+        &["replay", "t.mcap", "--document", "r.maul"],
+        &["there already"],
+    );
+    refused(&["replay", "t.mcap", "--rate", "0"], &["rate"]);
+    refused(&["replay", "t.mcap", "--start", "1e6"], &["s long"]);
+    refused(
+        &["replay", "t.mcap", "-t", "none/*"],
+        &["no topic none/*", "paint/journal"],
+    );
+    refused(
+        &["replay", "s.mcap", "-t", "haptics/*/model"],
+        &["no topic"],
+    );
+    refused(
+        &["render", "t.mcap", "-o", "x.png", "--load", "Bone Black"],
+        &["leave out"],
+    );
+    refused(
+        &["take", "from", "hand.mcap", "-o", "x.mcap"],
+        &["no journal"],
+    );
+    refused(
+        &[
+            "take", "from", "s.mcap", "-o", "x.mcap", "--start", "9", "--end", "3",
+        ],
+        &["--start"],
+    );
+    launcher.close(&place);
+}
+
+#[test]
+fn a_painting_in_memory_only_is_recorded_without_it() {
+    let place = Place::new();
+    let mut launcher = Launcher::up(&place, &CANVAS);
+    launcher.wait_says("is up");
+    let output = place.done(&["record", "-o", "s.mcap", "--seconds", "1.5"]);
+    let said = String::from_utf8_lossy(&output.stdout);
+    has(&said, &["without the painting", "in memory only"]);
+    has(
+        &fault(&place, &["take", "from", "s.mcap", "-o", "t.mcap"], 2),
+        &["lacks the painting", "in a file"],
+    );
+    launcher.close(&place);
+}
