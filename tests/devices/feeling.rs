@@ -84,6 +84,76 @@ fn whichever_of_brush_and_paint_dies_the_force_fades_without_a_leap_and_comes_ba
     bus.close();
 }
 
+/// The largest force of a device in a second after the first one, and whether it leaped.
+fn strongest(samples: &mut Receiver<StylusSample>) -> (f64, bool) {
+    let (mut first_ns, mut last, mut most, mut leaped) = (None, None, 0.0f64, false);
+    let ended = wait_for(PATIENCE, || {
+        while let Some(received) = samples.try_recv() {
+            let (event_ns, force_n) = (received.header.event_ns, received.message.force_n);
+            most = most.max(size(&received.message));
+            if let Some((before_ns, before)) = last.replace((event_ns, force_n)) {
+                let s = (event_ns - before_ns) as f64 * 1e-9;
+                leaped |= s <= Limits::default().longest_tick_s && leaps(&before, &force_n, s);
+            }
+            if event_ns > *first_ns.get_or_insert(event_ns) + 4_000_000_000 {
+                return Some(());
+            }
+        }
+        None
+    });
+    assert!(ended.is_some(), "no samples");
+    (most, leaped)
+}
+
+#[test]
+fn recorded_models_drive_a_device_by_the_rules_of_its_servo() {
+    let place = Place::new();
+    support::press_for_minutes(&place.path("press.mcap"));
+    let config = String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
+    let hand = config.replace("# hand = \"demo.mcap\"", "hand = \"press.mcap\"");
+    std::fs::write(place.path("rig.toml"), &hand).expect("written");
+    let mut launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
+    launcher.wait_says("is up");
+    let (bus, topics) = support::join(&place);
+    let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Qos::RealTime);
+    let felt = |sample: &StylusSample| size(sample) > 0.1;
+    assert!(hear(&mut samples, felt).is_some(), "{}", launcher.said());
+    place.done(&[
+        "record",
+        "-o",
+        "s.mcap",
+        "--topic",
+        "haptics/**",
+        "--seconds",
+        "6",
+    ]);
+    place.done(&["device", "use", "phantom", "--force", "none"]);
+    let brush = BrushFile::library("round").expect("a brush");
+    let head_length_m = brush.scaled_to(10.0).expect("a size").length_m();
+    assert!(
+        fades(&mut samples, head_length_m).is_some(),
+        "a law without force"
+    );
+    let refused = support::fault(&place, &["replay", "s.mcap", "-t", "haptics/*/model"], 2);
+    support::has(&refused, &["--drive"]);
+    let replay = ["replay", "s.mcap", "--drive", "phantom", "--loop"];
+    let mut player = Launcher::start(place.maulstick(&replay));
+    assert!(hear(&mut samples, felt).is_some(), "{}", player.said());
+    let (most, leaped) = strongest(&mut samples);
+    assert!(
+        most > 0.1 && most <= Limits::default().max_force_n,
+        "{most} N"
+    );
+    assert!(!leaped, "the force leaps");
+    player.signal(Signal::SIGINT);
+    player.wait(PATIENCE);
+    assert!(
+        fades(&mut samples, head_length_m).is_some(),
+        "the live brush has it again"
+    );
+    bus.close();
+}
+
 /// The seeded fault: a force that goes at once is a leap.
 #[test]
 fn a_force_that_goes_at_once_is_found_out() {

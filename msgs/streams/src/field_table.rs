@@ -41,7 +41,7 @@ pub enum TableError {
 
 /// A type, as a body has it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum Type {
+pub(crate) enum Type {
     U8,
     U16,
     U32,
@@ -61,11 +61,11 @@ enum Type {
 }
 
 /// A field: its name and its type.
-type TypedField = (Arc<str>, Type);
+pub(crate) type TypedField = (Arc<str>, Type);
 
 /// A definition.
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum Definition {
+pub(crate) enum Definition {
     Struct(Vec<TypedField>),
     Enum(Vec<(Arc<str>, Vec<TypedField>)>),
 }
@@ -75,8 +75,9 @@ enum Definition {
 pub struct FieldTable {
     name: String,
     hash: u32,
-    definitions: Vec<Definition>,
-    message: usize,
+    pub(crate) definitions: Vec<Definition>,
+    /// Place of the message among them.
+    pub(crate) message: usize,
 }
 
 /// A table in JSON, as `maulstick schema --json` and recordings have it.

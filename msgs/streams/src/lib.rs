@@ -5,6 +5,7 @@
 //! | [`catalogue`] | this program's messages by their hash |
 //! | [`field_table`] | bodies of messages, decoded by their field tables |
 //! | [`value`] | what comes of it |
+//! | [`translate`] | messages of other versions as those of this program |
 //! | [`topic_pattern`] | patterns of topics |
 //! | [`traffic`] | rates, losses and delays |
 //! | [`recording_writer`], [`recording`] | recordings, written and read |
@@ -17,6 +18,7 @@ pub mod recording;
 pub mod recording_writer;
 pub mod topic_pattern;
 pub mod traffic;
+pub mod translate;
 pub mod value;
 
 pub use field_table::{FieldTable, TableError};

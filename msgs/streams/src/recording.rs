@@ -73,6 +73,21 @@ pub struct RecordedMessage {
 }
 
 impl Topic {
+    /// A topic of messages of a table.
+    #[cfg(test)]
+    pub(crate) fn of(table: FieldTable) -> Self {
+        Self {
+            name: String::new(),
+            message: None,
+            table: Ok(table),
+        }
+    }
+
+    /// Name of its messages, where their table is known.
+    pub(crate) fn message_name(&self) -> Option<&str> {
+        self.table.as_ref().ok().map(FieldTable::name)
+    }
+
     /// True if a message may have a value at a path.
     #[must_use]
     pub fn has(&self, path: &str) -> bool {

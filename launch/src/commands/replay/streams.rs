@@ -265,10 +265,15 @@ impl Senders<'_> {
         self.put(&topic, Qos::Cached, bytes)
     }
 
+    /// Sender of a topic: the one that is named in it; of contact models the brush, whose own ones are then set aside.
     fn origin(&self, topic: &str) -> Origin {
-        let middle = topic.split('/').nth(1).unwrap_or(topic);
+        let named = topic.split('/').nth(1).unwrap_or(topic);
+        let sender = match &self.driven {
+            Some(driven) if matches(MODELS, topic) => driven.brush.as_str(),
+            _ => named,
+        };
         Origin {
-            source: name_hash(middle),
+            source: name_hash(sender),
             epoch: self.epoch,
         }
     }

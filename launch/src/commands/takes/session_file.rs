@@ -11,10 +11,10 @@ use maulstick_rig::files::{Kind, write_whole};
 use maulstick_session::RecordedSession;
 use maulstick_session::recorded::SessionFault;
 use maulstick_streams::Recording;
-use maulstick_streams::recording::RecordedMessage;
+use maulstick_streams::recording::{RecordedMessage, Topic};
 use maulstick_types::brush::BrushState;
-use maulstick_types::decode;
 use maulstick_types::paint::JournalEntry;
+use maulstick_types::{Header, Message};
 
 /// Name of the attached painting.
 pub(crate) const PAINTING: &str = "painting.maul";
@@ -113,10 +113,10 @@ impl SessionFile {
             let mut take_in = || -> Result<(), UserError> {
                 let is_state = topic.name.starts_with("brush/") && topic.name.ends_with("/state");
                 if is_state {
-                    let (header, state) = typed::<BrushState>(&message, &place)?;
+                    let (header, state) = typed::<BrushState>(topic, &message, &place)?;
                     session.state(header, state);
                 } else if topic.name == JOURNAL {
-                    let (header, entry) = typed::<JournalEntry>(&message, &place)?;
+                    let (header, entry) = typed::<JournalEntry>(topic, &message, &place)?;
                     let known = session.entry(&header, entry);
                     known.map_err(|fault| broken(&fault, at_ns))?;
                 } else {
@@ -166,13 +166,14 @@ pub(crate) fn is_recording(path: &Path) -> bool {
     })
 }
 
-/// Header and body of a message of this program's version.
-fn typed<M: maulstick_types::Message>(
+/// Header and body of a message, whatever version recorded it.
+fn typed<M: Message>(
+    topic: &Topic,
     message: &RecordedMessage,
     place: &str,
-) -> Result<(maulstick_types::Header, M), UserError> {
-    decode::<M>(&message.bytes).map_err(|error| {
-        UserError::usage(format!("a {} cannot be read: {error}", M::schema().name))
+) -> Result<(Header, M), UserError> {
+    topic.read::<M>(message).map_err(|error| {
+        UserError::usage(format!("{}: {error}", topic.name))
             .at(place)
             .help("paint it with the version of Maulstick that recorded it: `maulstick recording info` names it")
     })

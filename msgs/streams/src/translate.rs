@@ -1,0 +1,276 @@
+//! Messages of other versions: a value that one field table gave, as the body that another one has.
+//!
+//! Fields and alternatives are found by name. What the value lacks is 0, none or empty; what the table does not have is left
+//! out.
+
+use maulstick_types::{DecodeError, Header, Message, decode};
+
+use crate::field_table::{Definition, FieldTable, TableError, Type, TypedField};
+use crate::recording::{RecordedMessage, Topic};
+use crate::value::{Fields, Value};
+
+/// Deepest nesting of what is filled in: a table may refer to itself.
+const DEEPEST: usize = 32;
+
+/// Why a recorded message cannot be read as one of this program.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ReadError {
+    /// It is another message.
+    #[error("it is a {found}, not a {wanted}")]
+    Other {
+        /// Name of the message.
+        found: String,
+        /// Name of the message that was wanted.
+        wanted: &'static str,
+    },
+    /// Its field table, or its body.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// Its body in this version.
+    #[error(transparent)]
+    Decode(#[from] DecodeError),
+}
+
+impl Topic {
+    /// A message of it as one of this program, whatever version it has.
+    ///
+    /// # Errors
+    /// [`ReadError`].
+    pub fn read<M: Message>(&self, message: &RecordedMessage) -> Result<(Header, M), ReadError> {
+        if message.header.schema == M::schema().hash {
+            return Ok(decode::<M>(&message.bytes)?);
+        }
+        if self.message_name() != Some(M::NAME) {
+            return Err(ReadError::Other {
+                found: self.message_name().unwrap_or("unknown message").to_owned(),
+                wanted: M::NAME,
+            });
+        }
+        let value = self.decode(&message.bytes)?;
+        let body = FieldTable::of(M::schema())?.encode(&value)?;
+        Ok((message.header, M::decode_body(M::VERSION, &body)?))
+    }
+}
+
+impl FieldTable {
+    /// The body that has a value.
+    ///
+    /// # Errors
+    /// [`TableError::Invalid`] where a value is of another type, or an alternative is not known.
+    pub fn encode(&self, value: &Value) -> Result<Vec<u8>, TableError> {
+        let mut writer = Writer {
+            definitions: &self.definitions,
+            bytes: Vec::new(),
+        };
+        writer.value(&Type::Defined(self.message), Some(value), 0)?;
+        Ok(writer.bytes)
+    }
+}
+
+struct Writer<'a> {
+    definitions: &'a [Definition],
+    bytes: Vec<u8>,
+}
+
+impl Writer<'_> {
+    fn put(&mut self, bytes: &[u8]) {
+        self.bytes.extend_from_slice(bytes);
+    }
+
+    fn length(&mut self, length: usize) {
+        self.put(&(length as u64).to_le_bytes());
+    }
+
+    fn value(&mut self, of: &Type, value: Option<&Value>, depth: usize) -> Result<(), TableError> {
+        if depth > DEEPEST {
+            return Err(TableError::Json("it refers to itself".into()));
+        }
+        let number = match value {
+            None => 0,
+            Some(Value::Unsigned(number)) => *number,
+            Some(Value::Signed(number)) => number.cast_unsigned(),
+            Some(Value::Flag(flag)) => u64::from(*flag),
+            Some(_) => 0,
+        };
+        match (of, value) {
+            (Type::U8 | Type::Bool, _) => self.put(&number.to_le_bytes()[..1]),
+            (Type::U16, _) => self.put(&number.to_le_bytes()[..2]),
+            (Type::U32 | Type::I32, _) => self.put(&number.to_le_bytes()[..4]),
+            (Type::U64 | Type::I64, _) => self.put(&number.to_le_bytes()),
+            (Type::F32, Some(Value::Single(value))) => self.put(&value.to_le_bytes()),
+            (Type::F32, _) => self.put(&[0; 4]),
+            (Type::F64, Some(Value::Real(value))) => self.put(&value.to_le_bytes()),
+            (Type::F64, Some(Value::Single(value))) => self.put(&f64::from(*value).to_le_bytes()),
+            (Type::F64, _) => self.put(&[0; 8]),
+            (Type::Text, Some(Value::Text(text))) => {
+                self.length(text.len());
+                self.put(text.as_bytes());
+            }
+            (Type::Bytes, Some(Value::Bytes(bytes))) => {
+                self.length(bytes.len());
+                self.put(bytes);
+            }
+            (Type::List(of), Some(Value::List(list))) => {
+                self.length(list.len());
+                for value in list {
+                    self.value(of, Some(value), depth + 1)?;
+                }
+            }
+            (Type::Text | Type::Bytes | Type::List(_), _) => self.length(0),
+            (Type::Array(of, count), value) => {
+                let list = match value {
+                    Some(Value::List(list)) => list.as_slice(),
+                    _ => &[],
+                };
+                for place in 0..*count {
+                    self.value(of, list.get(place), depth + 1)?;
+                }
+            }
+            (Type::Optional(_), None | Some(Value::Absent)) => self.put(&[0]),
+            (Type::Optional(of), value) => {
+                self.put(&[1]);
+                self.value(of, value, depth + 1)?;
+            }
+            (Type::Defined(place), value) => {
+                let definitions = self.definitions;
+                self.defined(&definitions[*place], value, depth + 1)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn defined(
+        &mut self,
+        definition: &Definition,
+        value: Option<&Value>,
+        depth: usize,
+    ) -> Result<(), TableError> {
+        match (definition, value) {
+            (Definition::Struct(fields), Some(Value::Fields(values))) => {
+                self.fields(fields, values, depth)
+            }
+            (Definition::Struct(fields), _) => self.fields(fields, &Vec::new(), depth),
+            (Definition::Enum(variants), Some(Value::Variant(name, values))) => {
+                let place = variants.iter().position(|(own, _)| own == name);
+                let Some(place) = place else {
+                    return Err(TableError::Invalid {
+                        field: name.to_string(),
+                        what: "no alternative that this version knows".into(),
+                    });
+                };
+                self.put(&(place as u32).to_le_bytes());
+                self.fields(&variants[place].1, values, depth)
+            }
+            (Definition::Enum(variants), _) => {
+                self.put(&[0; 4]);
+                let first = variants.first().map_or(&[][..], |(_, fields)| fields);
+                self.fields(first, &Vec::new(), depth)
+            }
+        }
+    }
+
+    fn fields(
+        &mut self,
+        fields: &[TypedField],
+        values: &Fields,
+        depth: usize,
+    ) -> Result<(), TableError> {
+        fields.iter().try_for_each(|(name, of)| {
+            let value = values.iter().find(|(own, _)| own == name);
+            self.value(of, value.map(|(_, value)| value), depth)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_types::brush::BrushState;
+    use maulstick_types::command::{Command, TakeCommand};
+    use maulstick_types::paint::{Entry, JournalEntry};
+    use maulstick_types::wire::header::HEADER_BYTES;
+    use maulstick_types::{Flags, Origin, encode};
+
+    use super::*;
+
+    fn entry() -> JournalEntry {
+        let command = TakeCommand::Begin {
+            brush: maulstick_types::values::BrushName::main(),
+            device: 1,
+            device_epoch: 2,
+            loads: vec!["Cobalt Blue=0.7,Titanium White=0.3".parse().expect("one")],
+            again: true,
+        };
+        JournalEntry {
+            index: 7,
+            entry: Entry::Command {
+                client: 3,
+                number: 4,
+                command: Command::from(command),
+            },
+        }
+    }
+
+    fn message(entry: &JournalEntry) -> Vec<u8> {
+        let origin = Origin {
+            source: 1,
+            epoch: 1,
+        };
+        encode(&origin, Flags::NONE, 0, 0, 0, entry).expect("short")
+    }
+
+    #[test]
+    fn a_body_is_the_same_by_its_own_table() {
+        let table = FieldTable::of(JournalEntry::schema()).expect("its own");
+        let bytes = message(&entry());
+        let body = &bytes[HEADER_BYTES..];
+        let value = table.decode(body).expect("whole");
+        assert_eq!(table.encode(&value).expect("known"), body);
+    }
+
+    /// A topic whose messages lacked some fields and alternatives, and had others.
+    fn older(change: impl Fn(&str) -> String) -> Topic {
+        let json = serde_json::to_string(&JournalEntry::schema().whole()).expect("JSON");
+        let hash = JournalEntry::schema().hash.to_string();
+        let older = change(&json).replacen(&hash, "77", 1);
+        Topic::of(FieldTable::parse(older.as_bytes()).expect("a table"))
+    }
+
+    fn recorded(mut bytes: Vec<u8>) -> RecordedMessage {
+        bytes[4..8].copy_from_slice(&77u32.to_le_bytes());
+        RecordedMessage {
+            channel: 0,
+            arrived_ns: 0,
+            header: Header::from_bytes(&bytes).expect("whole"),
+            bytes,
+        }
+    }
+
+    #[test]
+    fn an_older_message_is_read_and_a_newer_one_says_what_is_unknown() {
+        let same = older(str::to_owned);
+        let read = same.read::<JournalEntry>(&recorded(message(&entry())));
+        assert_eq!(read.expect("older").1, entry());
+        // That version had no field `index`: it is 0 here.
+        let field = r#"{"name":"index","type":"u64"},"#;
+        let lacking = older(|json| {
+            assert!(json.contains(field), "{json}");
+            json.replace(field, "")
+        });
+        let mut bytes = message(&entry());
+        bytes.drain(HEADER_BYTES..HEADER_BYTES + 8);
+        let length = (bytes.len() - HEADER_BYTES) as u32;
+        bytes[20..24].copy_from_slice(&length.to_le_bytes());
+        let read = lacking.read::<JournalEntry>(&recorded(bytes));
+        let expected = JournalEntry {
+            index: 0,
+            ..entry()
+        };
+        assert_eq!(read.expect("older").1, expected);
+        let newer = older(|json| json.replace(r#""name":"Begin""#, r#""name":"Commence""#));
+        let fault = newer.read::<JournalEntry>(&recorded(message(&entry())));
+        let fault = fault.expect_err("unknown").to_string();
+        assert!(fault.contains("Commence"), "{fault}");
+        let fault = same.read::<BrushState>(&recorded(message(&entry())));
+        assert!(matches!(fault, Err(ReadError::Other { .. })));
+    }
+}
