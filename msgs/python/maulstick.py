@@ -3,11 +3,19 @@
 pip install eclipse-zenoh mcap. `maulstick` is asked for the message formats, unless they come with the recording.
 """
 
-import json, random, struct, subprocess, time
+import functools, io, json, random, re, struct, subprocess, time
 
 HEADER = struct.Struct("<HHIIIIIQQQ")
 FIELDS = ("magic", "version", "schema", "source", "epoch", "flags", "length", "seq", "event_ns", "sent_ns")
-PLAIN = dict(u8="B", u16="H", u32="I", u64="Q", i32="i", i64="q", f32="f", f64="d", bool="?")
+PLAIN = dict(u8="<B", u16="<H", u32="<I", u64="<Q", i32="<i", i64="<q", f32="<f", f64="<d", bool="<?")
+
+
+def split(message):
+    """Header and body of a message."""
+    header = dict(zip(FIELDS, HEADER.unpack_from(message)))
+    if header["magic"] != 0x4D4C or header["length"] != len(message) - HEADER.size:
+        raise ValueError("this is no message of Maulstick")
+    return header, message[HEADER.size :]
 
 
 class Table:
@@ -19,115 +27,92 @@ class Table:
 
     def decode(self, body):
         """The fields of a body, as dicts, lists and numbers; what a newer version appended is left alone."""
-        return self._read(self.name, body, 0)[0]
+        return self._read(self.name, io.BytesIO(body))
 
     def encode(self, value):
         return self._write(self.name, value)
 
-    def _read(self, kind, data, at):
-        if kind in PLAIN:
-            plain = struct.Struct("<" + PLAIN[kind])
-            return plain.unpack_from(data, at)[0], at + plain.size
-        if kind == "String" or kind.startswith("Vec<"):
-            count, at = self._read("u64", data, at)
-            if count > len(data) - at:
+    def _read(self, kind, body):
+        form, inner, count = _parts(kind)
+        if form in PLAIN:
+            return struct.unpack(PLAIN[form], body.read(struct.calcsize(PLAIN[form])))[0]
+        if form == "Option":
+            return self._read(inner, body) if self._read("bool", body) else None
+        if form == "Vec":
+            count = self._read("u64", body)
+            if count > len(body.getbuffer()) - body.tell():
                 raise ValueError("the message ends early")
-            if kind in ("String", "Vec<u8>"):
-                found = bytes(data[at : at + count])
-                return found.decode() if kind == "String" else found, at + count
-            return self._several(kind[4:-1], count, data, at)
-        if kind.startswith("Option<"):
-            return self._read(kind[7:-1], data, at + 1) if data[at] else (None, at + 1)
-        if kind.startswith("["):
-            of, count = kind[1:-1].rsplit("; ", 1)
-            return self._several(of, int(count), data, at)
+        if kind == "Vec<u8>":
+            return body.read(count)
+        if kind == "String":
+            return self._read("Vec<u8>", body).decode()
+        if form in ("Vec", "array"):
+            return [self._read(inner, body) for _ in range(count)]
         shape = self.types[kind]
         if "struct" in shape:
-            return self._fields(shape["struct"], data, at)
-        tag, at = self._read("u32", data, at)
-        fields, at = self._fields(shape["enum"][tag]["fields"], data, at)
-        return {shape["enum"][tag]["name"]: fields}, at
+            return self._read_fields(shape["struct"], body)
+        variant = shape["enum"][self._read("u32", body)]
+        return {variant["name"]: self._read_fields(variant["fields"], body)}
 
-    def _several(self, kind, count, data, at):
-        found = []
-        for _ in range(count):
-            value, at = self._read(kind, data, at)
-            found.append(value)
-        return found, at
-
-    def _fields(self, fields, data, at):
-        found = {}
-        for field in fields:
-            found[field["name"]], at = self._read(field["type"], data, at)
-        return found, at
+    def _read_fields(self, fields, body):
+        return {field["name"]: self._read(field["type"], body) for field in fields}
 
     def _write(self, kind, value):
-        if kind in PLAIN:
-            return struct.pack("<" + PLAIN[kind], value)
-        if kind in ("String", "Vec<u8>"):
-            value = value.encode() if kind == "String" else value
-            return struct.pack("<Q", len(value)) + value
-        if kind.startswith("Vec<"):
-            return struct.pack("<Q", len(value)) + b"".join(self._write(kind[4:-1], item) for item in value)
-        if kind.startswith("Option<"):
-            return b"\0" if value is None else b"\1" + self._write(kind[7:-1], value)
-        if kind.startswith("["):
-            of, count = kind[1:-1].rsplit("; ", 1)
-            if len(value) != int(count):
+        form, inner, count = _parts(kind)
+        if form in PLAIN:
+            return struct.pack(PLAIN[form], value)
+        if form == "Option":
+            return b"\0" if value is None else b"\1" + self._write(inner, value)
+        if kind == "String":
+            return self._write("Vec<u8>", value.encode())
+        if form in ("Vec", "array"):
+            if count not in (None, len(value)):
                 raise ValueError(f"{kind} has {count} values, not {len(value)}")
-            return b"".join(self._write(of, item) for item in value)
+            length = self._write("u64", len(value)) if form == "Vec" else b""
+            return length + b"".join(self._write(inner, item) for item in value)
         shape = self.types[kind]
         if "struct" in shape:
-            return b"".join(self._write(field["type"], value[field["name"]]) for field in shape["struct"])
-        (name, fields), = value.items()
+            return self._write_fields(shape["struct"], value)
+        ((name, fields),) = value.items()
         tag = [variant["name"] for variant in shape["enum"]].index(name)
-        own = shape["enum"][tag]["fields"]
-        return struct.pack("<I", tag) + b"".join(self._write(field["type"], fields[field["name"]]) for field in own)
+        return self._write("u32", tag) + self._write_fields(shape["enum"][tag]["fields"], fields)
+
+    def _write_fields(self, fields, value):
+        return b"".join(self._write(field["type"], value[field["name"]]) for field in fields)
+
+
+@functools.cache
+def _parts(kind):
+    """Form, inner type and length of a type such as Vec<u8>, Option<Pose> or [f64; 3]."""
+    if kind.startswith("["):
+        inner, count = kind[1:-1].rsplit("; ", 1)
+        return "array", inner, int(count)
+    form, _, inner = kind.removesuffix(">").partition("<")
+    return form, inner, None
 
 
 def recording(path, topics="**"):
     """Messages of a recording or take: topic, seconds of arrival on the rig's clock, header, fields."""
     from mcap.exceptions import McapError
-    from mcap.records import Channel, Message, Schema
-    from mcap.stream_reader import StreamReader
+    from mcap.reader import NonSeekingReader
 
-    schemas, channels = {}, {}
+    tables = {}
     with open(path, "rb") as file:
-        records = iter(StreamReader(file).records)
-        while True:
-            try:
-                record = next(records)
-            except (StopIteration, McapError):  # the end, or where a recorder was killed
-                return
-            if isinstance(record, Schema) and record.encoding == "x-maulstick-fields+json":
-                schemas[record.id] = Table(json.loads(record.data))
-            elif isinstance(record, Channel):
-                channels[record.id] = record.topic, schemas.get(record.schema_id)
-            elif isinstance(record, Message):
-                topic, table = channels[record.channel_id]
-                if table and _means(topics, topic):
-                    header, body = split(record.data)
-                    yield topic, record.log_time * 1e-9, header, table.decode(body)
+        try:
+            for schema, channel, message in NonSeekingReader(file).iter_messages(log_time_order=False):
+                if schema and schema.encoding == "x-maulstick-fields+json" and _matches(topics, channel.topic):
+                    if schema.id not in tables:
+                        tables[schema.id] = Table(json.loads(schema.data))
+                    header, body = split(message.data)
+                    yield channel.topic, message.log_time * 1e-9, header, tables[schema.id].decode(body)
+        except McapError:  # where a recorder was killed
+            return
 
 
-def split(message):
-    """Header and body of a message."""
-    header = dict(zip(FIELDS, HEADER.unpack_from(message)))
-    if header["magic"] != 0x4D4C or header["length"] != len(message) - HEADER.size:
-        raise ValueError("this is no message of Maulstick")
-    return header, message[HEADER.size :]
-
-
-def _means(pattern, topic):
-    return _match(pattern.split("/"), topic.split("/"))
-
-
-def _match(pattern, topic):
-    if not pattern:
-        return not topic
-    if pattern[0] == "**":
-        return any(_match(pattern[1:], topic[at:]) for at in range(len(topic) + 1))
-    return bool(topic) and pattern[0] in ("*", topic[0]) and _match(pattern[1:], topic[1:])
+def _matches(pattern, topic):
+    stars = {"*": "/[^/]+", "**": "(/[^/]+)*"}
+    parts = [stars.get(part, "/" + re.escape(part)) for part in pattern.split("/")]
+    return re.fullmatch("".join(parts), "/" + topic)
 
 
 class Rig:
@@ -173,9 +158,9 @@ class Sender:
 
     def __init__(self, rig, topic, table, keeps=5000):
         self.rig, self.table, self.keeps = rig, table, keeps
-        self.source, self.epoch, self.sent = random.getrandbits(32), random.getrandbits(32) | 1, {}
-        self.key, self.seq = rig.facts["prefix"] + topic, 0
-        self.publisher = rig.session.declare_publisher(self.key)
+        self.source, self.epoch = random.getrandbits(32), random.getrandbits(32) | 1
+        self.seq, self.sent = 0, {}
+        self.publisher = rig.session.declare_publisher(rig.facts["prefix"] + topic)
         self.gaps = rig.session.declare_queryable(rig.facts["prefix"] + "gap/" + topic, self._answer)
 
     def send(self, value, event_ns=None):
@@ -190,6 +175,6 @@ class Sender:
     def _answer(self, query):
         asked = self.rig.by_name["GapRequest"].decode(split(query.payload.to_bytes())[1])
         if asked["epoch"] == self.epoch:
-            wanted = range(asked["from"], min(asked["to"], self.seq) + 1)
-            found = [self.sent.get(seq, b"") for seq in wanted[: self.keeps]]
+            sent = list(self.sent.items())  # at once: the other thread goes on sending
+            found = [message for seq, message in sent if asked["from"] <= seq <= asked["to"]]
             query.reply(query.key_expr, b"".join(found))
