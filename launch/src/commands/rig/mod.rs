@@ -5,5 +5,6 @@ pub mod endpoint;
 pub mod open;
 pub mod save_as;
 pub mod schema;
+mod schema_c;
 pub mod session;
 pub mod snapshot;

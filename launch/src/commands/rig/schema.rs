@@ -6,6 +6,7 @@ use maulstick_types::wire::schema::{ENCODING, Field, Shape, header_fields};
 use maulstick_types::{CATALOGUE, STYLUS_CONTRACT};
 use serde_json::json;
 
+use super::schema_c;
 use crate::commands::{print_json, print_text, say};
 
 /// Options of `maulstick schema`.
@@ -16,6 +17,9 @@ pub struct SchemaOptions {
     /// Print JSON
     #[arg(long)]
     json: bool,
+    /// Print a header of C that reads them
+    #[arg(long, conflicts_with = "json")]
+    c: bool,
 }
 
 /// Prints the field tables.
@@ -37,6 +41,10 @@ pub fn run(options: &SchemaOptions) -> Result<i32, UserError> {
         let what = format!("there is no message called '{message}'");
         let names = CATALOGUE.iter().map(|entry| entry.name);
         return Err(UserError::unknown(what, message, names));
+    }
+    if options.c {
+        print_text(&schema_c::header(&entries))?;
+        return Ok(0);
     }
     if options.json {
         let messages: Vec<_> = entries
