@@ -10,9 +10,9 @@ use maulstick_types::edits::commands;
 use crate::advice;
 use crate::commands::measure::Measure;
 use crate::commands::{
-    begin, bench, brush, demo, device, echo, edit, endpoint, export, fit, force, import, light,
-    matching, measure, mix, nodes, open, painting, paints, record, recording, render, replay,
-    save_as, schema, snapshot, take,
+    begin, bench, brush, demo, device, echo, edit, endpoint, export, fit, force, graph, import,
+    light, matching, measure, mix, nodes, open, painting, paints, record, recording, render,
+    replay, save_as, schema, snapshot, take,
 };
 use crate::processes::{self, NodeCommand};
 use crate::up;
@@ -88,6 +88,8 @@ enum Command {
     Nodes(nodes::NodesOptions),
     /// List what a rig sends
     Topics(measure::MeasureOptions),
+    /// Draw the processes of a rig and what they send each other
+    Graph(graph::GraphOptions),
     /// Print the messages of a topic as they come
     Echo(echo::EchoOptions),
     /// Measure how often messages come, and how many are missing
@@ -121,6 +123,7 @@ const GROUPS: &[(&str, &[&str])] = &[
         &[
             "nodes",
             "topics",
+            "graph",
             "echo",
             "hz",
             "latency",
@@ -178,6 +181,7 @@ pub fn run() -> Result<i32, UserError> {
         Command::Device(command) => command.handles_signals(),
         Command::Nodes(_)
         | Command::Topics(_)
+        | Command::Graph(_)
         | Command::Echo(_)
         | Command::Hz(_)
         | Command::Latency(_)
@@ -221,6 +225,7 @@ fn carry_out(command: Command) -> Result<i32, UserError> {
         Command::Force(options) => force::run(&options),
         Command::Nodes(options) => nodes::run(&options),
         Command::Topics(options) => measure::run(&options, Measure::Topics),
+        Command::Graph(options) => graph::run(&options),
         Command::Echo(options) => echo::run(&options),
         Command::Hz(options) => measure::run(&options, Measure::Rates),
         Command::Latency(options) => measure::run(&options, Measure::Delays),

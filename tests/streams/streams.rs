@@ -159,6 +159,48 @@ fn what_a_sender_leaves_out_is_counted_exactly_and_its_contents_are_shown() {
 }
 
 #[test]
+fn a_graph_shows_who_sends_what_to_whom() {
+    beside_a_sender(|place| {
+        let said = place.done(&["graph", "--json"]).stdout;
+        let said: Value = serde_json::from_slice(&said).expect("JSON");
+        let processes = said["processes"].as_array().expect("processes");
+        let names: Vec<&str> = processes
+            .iter()
+            .filter_map(|process| process["name"].as_str())
+            .collect();
+        assert_eq!(names, ["test", "brush-main", "paint", "launcher"]);
+        assert_eq!(processes[0]["sends"][0]["topic"], "control/puck/sample");
+        let rate = processes[0]["sends"][0]["rate_hz"].as_f64();
+        assert!(rate.is_some_and(|rate| rate > 50.0), "{rate:?}");
+        let arrows = said["arrows"].as_array().expect("arrows");
+        let is_there = |from: &str, topic: &str, to: &str| {
+            arrows
+                .iter()
+                .any(|arrow| arrow["from"] == from && arrow["topic"] == topic && arrow["to"] == to)
+        };
+        for [from, topic, to] in [
+            ["brush-main", "brush/main/state", "paint"],
+            ["paint", "paint/consumed", "brush-main"],
+            ["paint", "scene", "brush-main"],
+            ["paint", "paint/status", "launcher"],
+        ] {
+            assert!(is_there(from, topic, to), "{from} {topic} {to}: {said}");
+        }
+        assert!(!is_there("paint", "paint/consumed", "launcher"));
+        let mermaid = String::from_utf8(place.done(&["graph"]).stdout).expect("text");
+        has(
+            &mermaid,
+            &["flowchart LR", "control/puck/sample", "brush-main"],
+        );
+        place.done(&["graph", "-o", "rig.svg"]);
+        assert!(place.bytes("rig.svg").starts_with(b"<svg"));
+        place.done(&["graph", "-o", "rig.svg", "--format", "mermaid"]);
+        std::fs::write(place.path("rig.svg"), "my diary").expect("written");
+        fault(place, &["graph", "-o", "rig.svg"], 1);
+    });
+}
+
+#[test]
 fn a_recording_holds_what_was_sent_and_is_exported() {
     let mut recorded = 0;
     let sent = beside_a_sender(|place| {

@@ -12,6 +12,7 @@
 //! | [`typed`] | messages instead of bytes |
 //! | [`credit`] | streams that lose nothing: credit, a ring, re-asking for gaps |
 //! | [`rivals`] | the choice between two senders under one name |
+//! | [`participants`] | the programs of a rig, and what each sends, receives and answers |
 //! | [`clock`] | the rig's clock |
 //! | [`rig`] | the rig's folder, and the file by which a foreign program finds it |
 
@@ -21,6 +22,7 @@ pub mod clock;
 pub mod credit;
 pub mod inbox;
 mod memory;
+pub mod participants;
 mod payload;
 mod pool;
 mod recent;
@@ -35,6 +37,7 @@ pub use clock::RigClock;
 pub use credit::{CreditReceiver, CreditSender};
 pub use inbox::{Counts, Inbox, Queue, Wake};
 pub use memory::{Faults, MemoryBus, MemoryNet};
+pub use participants::Participant;
 pub use payload::{Lent, Payload};
 pub use pool::clear_shared_memory;
 pub use recent::Recent;

@@ -51,7 +51,7 @@ pub struct ZenohBus {
     pool: Option<Arc<Pool>>,
 }
 
-fn topic_error(topic: &str, error: impl std::fmt::Display) -> BusError {
+pub(crate) fn topic_error(topic: &str, error: impl std::fmt::Display) -> BusError {
     BusError::Topic {
         topic: topic.to_owned(),
         reason: error.to_string(),
@@ -197,6 +197,8 @@ fn config(dial: &Dial, memory: Memory) -> zenoh::Result<zenoh::Config> {
             serde_json::json!(protocols(dial)),
         ),
         ("timestamping/enabled", serde_json::json!(true)),
+        // Each says what it sends and receives, to who asks.
+        ("adminspace/enabled", serde_json::json!(true)),
         ("transport/link/tx/lease", serde_json::json!(LEASE_MS)),
         (
             "transport/link/tx/queue/size/real_time",

@@ -29,6 +29,8 @@ pub enum Kind {
     Recording,
     /// Messages of a recording, CSV or lines of JSON.
     Messages,
+    /// Graph of a rig, SVG or Mermaid.
+    Graph,
     /// File that belongs to the program whatever it holds: settings, and what lies in folders of its own.
     Own,
 }
@@ -71,6 +73,7 @@ impl Kind {
             Self::Brush => "a brush file",
             Self::Recording => "a recording of a device",
             Self::Messages => "exported messages",
+            Self::Graph => "a graph of a rig",
             Self::Own => "a file of Maulstick",
         }
     }
@@ -91,6 +94,9 @@ impl Kind {
                 .iter()
                 .any(|mark| head.starts_with(*mark)),
             Self::Messages => [&b"topic,arrived_ns,seq,event_ns,"[..], b"{\"arrived_ns\":"]
+                .iter()
+                .any(|mark| head.starts_with(mark)),
+            Self::Graph => [&b"<svg xmlns="[..], b"flowchart LR\n"]
                 .iter()
                 .any(|mark| head.starts_with(mark)),
             Self::Own => true,
@@ -169,7 +175,7 @@ mod tests {
 
     #[test]
     fn a_file_gives_way_to_its_own_kind_alone() {
-        let kinds: [(Kind, &[u8]); 9] = [
+        let kinds: [(Kind, &[u8]); 10] = [
             (Kind::Png, b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"),
             (Kind::Exr, &[0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0]),
             (
@@ -184,6 +190,7 @@ mod tests {
                 b"# Kubelka-Munk absorption K and scattering S of paints, in",
             ),
             (Kind::Brush, b"kind = \"round\"\n"),
+            (Kind::Graph, b"flowchart LR\n    n0[\"paint\"]\n"),
             (Kind::Recording, b"D: 0\nR: 3 05 0d 09\n"),
         ];
         let folder = tempfile::tempdir().expect("a folder");

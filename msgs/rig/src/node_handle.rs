@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use maulstick_bus::bus::Token;
 use maulstick_bus::typed::random_epoch;
-use maulstick_bus::{Bus, Dial, RigClock, RigFolder, Wake, ZenohBus};
+use maulstick_bus::{Bus, Dial, Participant, RigClock, RigFolder, Wake, ZenohBus};
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
@@ -125,6 +125,14 @@ impl NodeHandle {
             self.wake.wait(wait);
         }
         Ok(())
+    }
+
+    /// The other programs of the rig, and what each sends, receives and answers.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the bus is closed.
+    pub fn participants(&self) -> Result<Vec<Participant>, UserError> {
+        Ok(self.session.participants()?)
     }
 
     /// Leaves the rig.

@@ -1,9 +1,10 @@
 //! Messages of a running rig, whatever they are: a member of its own, to which the nodes send directly.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use maulstick_bus::{Qos, Queue, RigFolder, Subscription};
 use maulstick_rig::{NodeArgs, NodeHandle, UserError};
+use maulstick_streams::Traffic;
 use maulstick_streams::topic_pattern::matches;
 use maulstick_streams::traffic::Arrived;
 use maulstick_types::Header;
@@ -87,6 +88,16 @@ impl Listener {
             self.member.wake.wait(left);
         }
         None
+    }
+
+    /// What comes from now on, for a time.
+    pub(super) fn traffic(&mut self, time: Duration) -> Traffic {
+        let mut traffic = Traffic::since(self.member.bus.now_ns());
+        let until = Instant::now() + time;
+        while let Some(received) = self.next(until) {
+            traffic.add(&received.topic, &received.message);
+        }
+        traffic
     }
 
     /// A message that has arrived.

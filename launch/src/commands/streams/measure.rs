@@ -1,6 +1,6 @@
 //! `maulstick topics`, `hz` and `latency`: what streams carry, measured for some seconds.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use clap::Args;
 use maulstick_rig::UserError;
@@ -50,18 +50,11 @@ pub enum Measure {
 /// # Errors
 /// A [`UserError`] for a rig that does not run, or a time that is none.
 pub fn run(options: &MeasureOptions, measure: Measure) -> Result<i32, UserError> {
-    if !(0.1..=3600.0).contains(&options.seconds) {
-        let what = format!("{} s is out of range", options.seconds);
-        return Err(UserError::usage(what).help("measure for .1 to 3600 s"));
-    }
+    let time = duration(options.seconds)?;
     let mut listener = Listener::open(&options.target, &options.topic)?;
     loop {
         let dropped = listener.dropped();
-        let mut traffic = Traffic::since(listener.member.bus.now_ns());
-        let until = Instant::now() + Duration::from_secs_f64(options.seconds);
-        while let Some(heard) = listener.next(until) {
-            traffic.add(&heard.topic, &heard.message);
-        }
+        let traffic = listener.traffic(time);
         if options.json {
             let streams: Vec<Value> = traffic.streams().map(entry).collect();
             print_json(&json!({
@@ -88,6 +81,18 @@ pub fn run(options: &MeasureOptions, measure: Measure) -> Result<i32, UserError>
         }
         print_text("\n")?;
     }
+}
+
+/// A time to measure for.
+///
+/// # Errors
+/// A [`UserError`] for one that is out of range.
+pub(super) fn duration(seconds: f64) -> Result<Duration, UserError> {
+    if !(0.1..=3600.0).contains(&seconds) {
+        let what = format!("{seconds} s is out of range");
+        return Err(UserError::usage(what).help("measure for .1 to 3600 s"));
+    }
+    Ok(Duration::from_secs_f64(seconds))
 }
 
 /// Name and version of the messages of a hash.
