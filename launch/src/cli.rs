@@ -14,6 +14,7 @@ use crate::commands::{
     light, matching, measure, mix, nodes, open, painting, paints, record, recording, render,
     replay, save_as, schema, snapshot, take,
 };
+use crate::doctor;
 use crate::processes::{self, NodeCommand};
 use crate::up;
 
@@ -32,6 +33,8 @@ struct Cli {
 enum Command {
     /// Start a rig and keep it running
     Up(up::UpOptions),
+    /// Check this machine, and say what mends what is wrong
+    Doctor(doctor::DoctorOptions),
     /// Paint a take without a rig
     Render(render::RenderOptions),
     /// Make a take from a table of strokes
@@ -107,7 +110,7 @@ enum Command {
 
 /// The commands as `maulstick --help` lists them; those of edits stand before them, as each edit says.
 const GROUPS: &[(&str, &[&str])] = &[
-    ("Rig", &["up", "node", "endpoint", "schema"]),
+    ("Rig", &["up", "doctor", "node", "endpoint", "schema"]),
     (
         "Painting",
         &["new", "open", "save-as", "snapshot", "export", "painting"],
@@ -199,6 +202,7 @@ pub fn run() -> Result<i32, UserError> {
 fn carry_out(command: Command) -> Result<i32, UserError> {
     match command {
         Command::Up(options) => up::run(&options),
+        Command::Doctor(options) => doctor::run(&options),
         Command::Node(command) => processes::run(&command),
         Command::Render(options) => render::run(&options),
         Command::Replay(options) => replay::run(&options),

@@ -16,6 +16,7 @@
 //! | [`attached`] | attached devices, as the system lists them |
 //! | [`backend`] | backend of the paint's steps |
 //! | [`cells`] | the side of the cells that pictures are painted with |
+//! | [`doctor`] | what of this machine keeps a rig from painting well |
 //! | [`document`] | paintings in files |
 //! | [`easel`] | a painting at which a script is followed |
 //! | [`duration`], [`ground`], [`tooth`] | times, grounds and teeth as a painter names them |
@@ -32,6 +33,7 @@ pub mod attached;
 pub mod chart;
 pub mod cli;
 pub mod commands;
+pub mod doctor;
 mod figures;
 pub mod outputs;
 pub mod paintings;

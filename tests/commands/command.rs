@@ -386,6 +386,44 @@ fn schemas_and_paints_are_listed() {
 }
 
 #[test]
+fn the_doctor_has_a_finding_for_each_check_and_an_exit_code() {
+    let place = Place::new();
+    let said = place.run(&["doctor", "--json"]);
+    let findings: serde_json::Value = serde_json::from_slice(&said.stdout).expect("JSON");
+    let findings = findings.as_array().expect("findings");
+    let named = |check: &str| findings.iter().any(|finding| finding["check"] == check);
+    for check in [
+        "graphics",
+        "display",
+        "sockets",
+        "disk",
+        "device",
+        "real time",
+    ] {
+        assert!(named(check), "{check} is missing in {findings:?}");
+    }
+    let mut wrong = findings
+        .iter()
+        .filter(|finding| finding["state"] == "wrong");
+    assert_eq!(said.status.code(), Some(i32::from(wrong.next().is_some())));
+    for finding in findings {
+        let is_ok = finding["state"] == "ok";
+        assert_eq!(finding["mend"].is_null(), is_ok, "{finding}");
+    }
+    // Sockets cannot be where others may write.
+    let shared = place
+        .maulstick(&["doctor"])
+        .env("XDG_RUNTIME_DIR", "/proc")
+        .output()
+        .expect("started");
+    assert_eq!(shared.status.code(), Some(1));
+    has(
+        &String::from_utf8_lossy(&shared.stdout),
+        &["wrong    sockets", "mend: "],
+    );
+}
+
+#[test]
 fn a_faulty_command_is_told_before_a_rig_is_asked() {
     let place = Place::new();
     let name = "b".repeat(65);

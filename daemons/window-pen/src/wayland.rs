@@ -119,6 +119,24 @@ struct Listener {
     readings: Vec<PenReading>,
 }
 
+/// True if the compositor that `WAYLAND_DISPLAY` names tells of pens.
+///
+/// # Errors
+/// A [`UserError`] where there is none.
+pub fn tells_of_pens() -> Result<bool, UserError> {
+    let away = |error: &dyn std::fmt::Display| {
+        UserError::failure(format!("no Wayland compositor answers: {error}"))
+            .help("start it from a terminal of a graphical session")
+    };
+    let connection = Connection::connect_to_env().map_err(|error| away(&error))?;
+    let (globals, _) =
+        registry_queue_init::<Listener>(&connection).map_err(|error| away(&error))?;
+    Ok(globals.contents().with_list(|list| {
+        let mut names = list.iter().map(|global| global.interface.as_str());
+        names.any(|name| name == "zwp_tablet_manager_v2")
+    }))
+}
+
 /// Pens of a Wayland connection.
 pub struct WaylandPens {
     connection: Connection,

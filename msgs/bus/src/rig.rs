@@ -116,7 +116,30 @@ fn clear(path: &Path) -> Result<(), BusError> {
     Ok(())
 }
 
+/// Checks that sockets fit into the folder of a rig.
+fn check_length(path: &Path) -> Result<(), BusError> {
+    let longest = path.join("0123456789abcdef0123456789abcdef.sock");
+    if longest.as_os_str().len() > SOCKET_PATH_MAX {
+        return Err(folder_error(
+            format!("{} is too long for a socket", path.display()),
+            "set XDG_RUNTIME_DIR to a shorter path",
+        ));
+    }
+    Ok(())
+}
+
 impl RigFolder {
+    /// Parent folder of all rigs, made if it is not there, in which a rig called `rig` could run.
+    ///
+    /// # Errors
+    /// [`BusError::Folder`] where it is not the user's alone, cannot be made, or is too long for a socket.
+    pub fn parent_for(rig: &str) -> Result<PathBuf, BusError> {
+        let base = base();
+        make_private(&base)?;
+        check_length(&base.join(rig))?;
+        Ok(base)
+    }
+
     /// Makes the folder of a new rig and takes its name.
     ///
     /// # Errors
@@ -135,17 +158,7 @@ impl RigFolder {
         make_private(base)?;
         let path = base.join(rig);
         make_private(&path)?;
-        if path
-            .join("0123456789abcdef0123456789abcdef.sock")
-            .as_os_str()
-            .len()
-            > SOCKET_PATH_MAX
-        {
-            return Err(folder_error(
-                format!("{} is too long for a socket", path.display()),
-                "set XDG_RUNTIME_DIR to a shorter path",
-            ));
-        }
+        check_length(&path)?;
         let lock_path = path.join("lock");
         let file = OpenOptions::new()
             .create(true)

@@ -68,6 +68,54 @@ fn rank(info: &wgpu::AdapterInfo, choice: Choice) -> Option<u32> {
     }
 }
 
+/// Backends of any adapter. OpenGL only where there is nothing better: it shows the same adapters once more.
+const ANY: [wgpu::Backends; 2] = [wgpu::Backends::PRIMARY, wgpu::Backends::GL];
+
+/// The adapters of backends that will do, the best first.
+fn wanted(backends: wgpu::Backends, choice: Choice) -> Vec<wgpu::Adapter> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = backends;
+    let instance = wgpu::Instance::new(descriptor);
+    let adapters = block_on(instance.enumerate_adapters(backends)).into_iter();
+    let mut wanted: Vec<(u32, wgpu::Adapter)> = adapters
+        .filter_map(|adapter| Some((rank(&adapter.get_info(), choice)?, adapter)))
+        .collect();
+    wanted.sort_by_key(|(rank, _)| *rank);
+    wanted.into_iter().map(|(_, adapter)| adapter).collect()
+}
+
+/// An adapter of this machine.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AdapterReport {
+    /// Its name.
+    pub name: String,
+    /// The interface through which it is used, such as Vulkan.
+    pub backend: String,
+    /// Its driver, with its version.
+    pub driver: String,
+    /// True if a processor emulates it.
+    pub is_emulated: bool,
+}
+
+/// The adapters of this machine, emulated ones too, in the order in which [`Device::open`] tries them.
+#[must_use]
+pub fn adapters() -> Vec<AdapterReport> {
+    let mut found = ANY.into_iter().map(|any| wanted(any, Choice::Forced));
+    let found = found.find(|found| !found.is_empty()).unwrap_or_default();
+    let report = |adapter: &wgpu::Adapter| {
+        let info = adapter.get_info();
+        AdapterReport {
+            name: info.name,
+            backend: format!("{:?}", info.backend),
+            driver: format!("{} {}", info.driver, info.driver_info)
+                .trim()
+                .to_owned(),
+            is_emulated: info.device_type == wgpu::DeviceType::Cpu,
+        }
+    };
+    found.iter().map(report).collect()
+}
+
 /// Whether the kernel has a graphics processor that drivers might open, as far as it tells. Where it has none
 /// the drivers need not be loaded to find the emulated adapters alone; Mesa's layer before them would besides
 /// look for a Wayland display, and complain on stderr where no session runs.
@@ -109,19 +157,10 @@ impl Device {
         let backends: &[wgpu::Backends] = match choice {
             Choice::Auto if !has_processor(Path::new("/dev")) => &[],
             Choice::Auto => &[wgpu::Backends::PRIMARY],
-            // OpenGL only where there is nothing better: it shows the same adapters once more.
-            Choice::Forced => &[wgpu::Backends::PRIMARY, wgpu::Backends::GL],
+            Choice::Forced => &ANY,
         };
         for backends in backends.iter().copied() {
-            let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-            descriptor.backends = backends;
-            let instance = wgpu::Instance::new(descriptor);
-            let adapters = block_on(instance.enumerate_adapters(backends)).into_iter();
-            let mut wanted: Vec<(u32, wgpu::Adapter)> = adapters
-                .filter_map(|adapter| Some((rank(&adapter.get_info(), choice)?, adapter)))
-                .collect();
-            wanted.sort_by_key(|(rank, _)| *rank);
-            for (_, adapter) in wanted {
+            for adapter in wanted(backends, choice) {
                 match Self::on(&adapter) {
                     Ok(device) => return Ok(device),
                     Err(refusal) => refusals.push(refusal),

@@ -19,6 +19,6 @@ pub mod impasto;
 mod shade_films;
 mod stage;
 
-pub use device::{Choice, Device, GpuError};
+pub use device::{AdapterReport, Choice, Device, GpuError, adapters};
 pub use films::GpuFilms;
 pub use impasto::{GpuImpasto, Traffic};

@@ -22,7 +22,7 @@ pub const BINS: usize = 12;
 /// Ticks that fit into the ring to the publisher: two seconds.
 const RING: usize = 2048;
 /// SCHED_FIFO priority of the servo.
-const PRIORITY: u8 = 80;
+pub const PRIORITY: u8 = 80;
 
 /// End of a servo that lost its device.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -192,24 +192,26 @@ fn become_real_time(caller: Caller) -> Vec<String> {
     if caller == Caller::Vendor {
         return warnings;
     }
-    let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
-    let priority = ThreadPriorityValue::try_from(PRIORITY).map(ThreadPriority::Crossplatform);
-    let set = priority
-        .map_err(|error| error.to_string())
-        .and_then(|priority| {
-            thread_priority::set_thread_priority_and_policy(
-                thread_priority::thread_native_id(),
-                priority,
-                policy,
-            )
-            .map_err(|error| format!("{error:?}"))
-        });
-    if let Err(error) = set {
+    if let Err(error) = take_priority() {
         warnings.push(format!(
             "the servo has no real-time priority ({error}): add 'rtprio 99' for your user to /etc/security/limits.conf"
         ));
     }
     warnings
+}
+
+/// Gives this thread the servo's priority.
+///
+/// # Errors
+/// The system's refusal.
+pub fn take_priority() -> Result<(), thread_priority::Error> {
+    let priority = ThreadPriorityValue::try_from(PRIORITY)
+        .map_err(|_| thread_priority::Error::Priority("out of range"))?;
+    thread_priority::set_thread_priority_and_policy(
+        thread_priority::thread_native_id(),
+        ThreadPriority::Crossplatform(priority),
+        ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo),
+    )
 }
 
 /// The histogram bin of a time.

@@ -29,6 +29,25 @@ const ALL: u16 = 0;
 /// that is near, 0 for none.
 const SERIALS: &str = "Wacom Serial IDs";
 
+/// True if the X server that `DISPLAY` names tells of pens.
+///
+/// # Errors
+/// A [`UserError`] where the server is away.
+pub fn tells_of_pens() -> Result<bool, UserError> {
+    let away = |error: &dyn std::fmt::Display| {
+        UserError::failure(format!("no X server answers: {error}"))
+            .help("start it from a terminal of a graphical session")
+    };
+    let (connection, _) = x11rb::connect(None).map_err(|error| away(&error))?;
+    has_pens(&connection).map_err(|error| away(&error))
+}
+
+/// True if a server has XInput 2.2; one without any refuses the question.
+fn has_pens(connection: &RustConnection) -> Result<bool, ConnectionError> {
+    let version = connection.xinput_xi_query_version(2, 2)?.reply();
+    Ok(version.is_ok_and(|version| (version.major_version, version.minor_version) >= (2, 2)))
+}
+
 /// Pens of an X server over a window.
 pub struct XinputPens {
     connection: RustConnection,
@@ -45,18 +64,12 @@ impl XinputPens {
     /// A [`UserError`] where the server is away or lacks XInput 2.2.
     pub fn new(window: Window) -> Result<Self, UserError> {
         let (connection, screen) = x11rb::connect(None).map_err(|error| gone(&error))?;
-        let old = || {
-            UserError::failure("this X server tells nothing of pens (XInput 2.2)").help(
-                "the pen paints as a mouse: for its pressure give its tablet to the rig, `maulstick device list` says how",
-            )
-        };
-        let version = connection
-            .xinput_xi_query_version(2, 2)
-            .map_err(|error| gone(&error))?
-            .reply()
-            .map_err(|_| old())?;
-        if (version.major_version, version.minor_version) < (2, 2) {
-            return Err(old());
+        if !has_pens(&connection).map_err(|error| gone(&error))? {
+            return Err(
+                UserError::failure("this X server tells nothing of pens (XInput 2.2)").help(
+                    "the pen paints as a mouse: for its pressure give its tablet to the rig, `maulstick device list` says how",
+                ),
+            );
         }
         let atom = |name: &str| -> Result<Atom, ReplyError> {
             Ok(connection
