@@ -10,9 +10,9 @@ use maulstick_types::edits::commands;
 use crate::advice;
 use crate::commands::measure::Measure;
 use crate::commands::{
-    begin, bench, brush, demo, device, echo, edit, endpoint, export, fit, force, graph, import,
-    light, matching, measure, mix, nodes, open, painting, paints, record, recording, render,
-    replay, save_as, schema, snapshot, take,
+    begin, bench, bridge, brush, demo, device, echo, edit, endpoint, export, fit, force, graph,
+    import, light, matching, measure, mix, nodes, open, painting, paints, record, recording,
+    render, replay, save_as, schema, snapshot, take,
 };
 use crate::doctor;
 use crate::processes::{self, NodeCommand};
@@ -101,6 +101,8 @@ enum Command {
     Latency(measure::MeasureOptions),
     /// Record what a rig sends
     Record(record::RecordOptions),
+    /// Show a running rig in Foxglove
+    Bridge(bridge::BridgeOptions),
     /// Show a recording, or export its messages
     #[command(subcommand)]
     Recording(recording::RecordingCommand),
@@ -133,6 +135,7 @@ const GROUPS: &[(&str, &[&str])] = &[
             "record",
             "recording",
             "replay",
+            "bridge",
         ],
     ),
     ("Devices", &["device", "force"]),
@@ -189,7 +192,8 @@ pub fn run() -> Result<i32, UserError> {
         | Command::Hz(_)
         | Command::Latency(_)
         | Command::Record(_)
-        | Command::Replay(_) => true,
+        | Command::Replay(_)
+        | Command::Bridge(_) => true,
         _ => false,
     };
     if !handles_signals {
@@ -234,6 +238,7 @@ fn carry_out(command: Command) -> Result<i32, UserError> {
         Command::Hz(options) => measure::run(&options, Measure::Rates),
         Command::Latency(options) => measure::run(&options, Measure::Delays),
         Command::Record(options) => record::run(&options),
+        Command::Bridge(options) => bridge::run(&options),
         Command::Recording(command) => recording::run(&command),
     }
 }

@@ -3,9 +3,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -15,7 +13,7 @@ use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin, encode};
 use nix::sys::signal::Signal;
 use serde_json::Value;
-use support::{Launcher, PATIENCE, Place, fault, has, join, wait_for};
+use support::{Launcher, PATIENCE, Place, fault, has, join, printed, python, wait_for};
 
 /// Of ten numbers the sender leaves out one.
 const EACH: u64 = 10;
@@ -370,45 +368,6 @@ fn a_killed_recorder_leaves_what_it_had_written_and_a_rig_that_ends_ends_it() {
         &fault(&place, &["record", "-o", "x.mcap"], 1),
         &["is running"],
     );
-}
-
-/// Python of the tests, with the packages that `./test` installs.
-fn python(place: &Place, program: &str, words: &[&str]) -> Command {
-    let root: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let python = root.join("target/test-venv/bin/python");
-    assert!(
-        python.exists(),
-        "run ./test: it installs zenoh and mcap for Python"
-    );
-    let mut command = Command::new(python);
-    command
-        .arg(root.join("tests/python").join(program))
-        .args(words)
-        .env("XDG_RUNTIME_DIR", place.path(""));
-    command
-}
-
-/// What a program prints that must succeed.
-fn printed(command: &mut Command, input: &[u8]) -> String {
-    let mut child = command
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("started");
-    child
-        .stdin
-        .take()
-        .expect("piped")
-        .write_all(input)
-        .expect("read");
-    let output = child.wait_with_output().expect("ended");
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
-    String::from_utf8(output.stdout)
-        .expect("text")
-        .trim()
-        .to_owned()
 }
 
 #[test]

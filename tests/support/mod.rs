@@ -10,7 +10,7 @@
 
 pub mod display;
 
-use std::io::{BufRead as _, BufReader};
+use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::sync::{Arc, Mutex};
@@ -355,4 +355,43 @@ pub fn pressed(sample: &StylusSample, head_length_m: f64) -> bool {
     let [x, y, ..] = pose.orientation;
     let tip_z = pose.position_m[2] - head_length_m * (1.0 - 2.0 * (x * x + y * y));
     sample.in_range && tip_z < -1e-3
+}
+
+/// Python of the tests, with the packages that `./test` installs.
+pub fn python(place: &Place, program: &str, words: &[&str]) -> Command {
+    let root: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let python = root.join("target/test-venv/bin/python");
+    assert!(
+        python.exists(),
+        "run ./test: it installs zenoh and mcap for Python"
+    );
+    let mut command = Command::new(python);
+    command
+        .arg(root.join("tests/python").join(program))
+        .args(words)
+        .env("XDG_RUNTIME_DIR", place.path(""));
+    command
+}
+
+/// What a program prints that must succeed.
+pub fn printed(command: &mut Command, input: &[u8]) -> String {
+    let mut child = command
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("started");
+    child
+        .stdin
+        .take()
+        .expect("piped")
+        .write_all(input)
+        .expect("read");
+    let output = child.wait_with_output().expect("ended");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    String::from_utf8(output.stdout)
+        .expect("text")
+        .trim()
+        .to_owned()
 }

@@ -17,7 +17,7 @@ mod takes;
 pub use colour::{fit, light, matching, mix, paints};
 pub use device::{force, force_order};
 pub use rig::{begin, endpoint, open, save_as, schema, session, snapshot};
-pub use streams::{echo, graph, measure, nodes, record, recording};
+pub use streams::{bridge, echo, graph, measure, nodes, record, recording};
 pub use takes::{demo, import, render, take};
 
 use std::io::{ErrorKind, Write as _};

@@ -10,11 +10,15 @@ use clap::Args;
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 use maulstick_rig::node_handle::CONFIG_FILE;
+use maulstick_streams::catalogue::KnownTables;
 use maulstick_streams::topic_pattern::matches;
-use maulstick_streams::{RecordingWriter, Traffic};
+use maulstick_streams::traffic::Arrived;
+use maulstick_streams::{RateLimit, RecordingWriter, Traffic};
+use maulstick_types::HEADER_BYTES;
 use maulstick_types::command::FileCommand;
-use mcap::McapError;
+use mcap::McapResult;
 
+use super::fault;
 use super::listener::{Listener, ReceivedMessage};
 use super::ring::{FILES, Ring};
 use crate::commands::open::{LONGEST, whole};
@@ -47,6 +51,9 @@ pub struct RecordOptions {
     /// Keep at most so many megabytes on the disk: the oldest files go
     #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..))]
     quota_mb: Option<u64>,
+    /// Most messages a second of each topic that are written as JSON too, for Foxglove; 0 for none
+    #[arg(long, value_name = "HZ", default_value_t = 20, value_parser = clap::value_parser!(u32).range(..=1000))]
+    json_hz: u32,
     #[command(flatten)]
     target: Target,
 }
@@ -91,7 +98,10 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
     let begun = Instant::now();
     let end = lasts.map(|lasts| begun + lasts);
     let mut state = State::default();
-    let mut part = Part::begin(&options.output, |path| File::create(path), &listener)?;
+    let begin = |path: &Path, create: Create, listener: &Listener| {
+        Part::begin(path, create, listener, options.json_hz)
+    };
+    let mut part = begin(&options.output, |path| File::create(path), &listener)?;
     let mut flush_at = begun + FLUSH;
     let mut lacks_painting = matches(&options.topic, JOURNAL);
     while !listener.is_over() && end.is_none_or(|end| Instant::now() < end) {
@@ -115,7 +125,7 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
             || split_after.is_some_and(|after| part.begun.elapsed() >= after);
         if is_full {
             part.finish(&mut state, &listener)?;
-            part = Part::begin(&ring.next(), |path| File::create_new(path), &listener)?;
+            part = begin(&ring.next(), |path| File::create_new(path), &listener)?;
             ring.trim()?;
             // What is sent rarely is in each file, from its beginning on.
             let now_ns = listener.member.bus.now_ns();
@@ -159,10 +169,16 @@ impl State {
     }
 }
 
+/// How a file is created.
+type Create = fn(&Path) -> std::io::Result<File>;
+
 /// A file of a recording.
 struct Part {
     path: PathBuf,
     writer: RecordingWriter<BufWriter<File>>,
+    /// Limit on what is written as JSON too; `None` where nothing is.
+    json: Option<RateLimit>,
+    tables: KnownTables,
     messages: u64,
     /// Bytes of its messages, before they are compressed.
     bytes: u64,
@@ -173,8 +189,9 @@ impl Part {
     /// Begins a file, with what it takes to understand it later.
     fn begin(
         path: &Path,
-        create: impl FnOnce(&Path) -> std::io::Result<File>,
+        create: Create,
         listener: &Listener,
+        json_hz: u32,
     ) -> Result<Self, UserError> {
         let writing = |error: std::io::Error| UserError::writing(path, &error);
         let file = create(path).map_err(writing)?;
@@ -205,6 +222,8 @@ impl Part {
         Ok(Self {
             writer: begin().map_err(|error| fault(path, error))?,
             path: path.to_owned(),
+            json: (json_hz > 0).then(|| RateLimit::new(json_hz)),
+            tables: KnownTables::default(),
             messages: 0,
             bytes: 0,
             begun: Instant::now(),
@@ -212,14 +231,8 @@ impl Part {
     }
 
     fn write(&mut self, received: &ReceivedMessage) -> Result<(), UserError> {
-        let message = &received.message;
-        self.writer
-            .write(
-                &received.topic,
-                &message.header,
-                &received.bytes,
-                message.arrived_ns,
-            )
+        self.write_as_sent(received)
+            .and_then(|()| self.write_as_json(received))
             .map_err(|error| fault(&self.path, error))?;
         self.messages += 1;
         self.bytes += received.bytes.len() as u64;
@@ -282,13 +295,4 @@ impl Part {
         );
         Ok(())
     }
-}
-
-/// Why a file could not be written.
-fn fault(path: &Path, error: McapError) -> UserError {
-    let error = match error {
-        McapError::Io(error) => error,
-        other => std::io::Error::other(other),
-    };
-    UserError::writing(path, &error)
 }

@@ -13,6 +13,7 @@ use maulstick_streams::traffic::Arrived;
 use maulstick_streams::{Recording, Traffic, Value};
 use serde_json::json;
 
+use super::foxglove_export;
 use super::message_lines::{MessageLine, head};
 use crate::commands::table::table;
 use crate::commands::{print_json, print_text, say};
@@ -29,7 +30,7 @@ pub enum RecordingCommand {
         #[arg(long)]
         json: bool,
     },
-    /// Write the messages of a topic as a table or as JSON
+    /// Write messages as a table, as JSON, or for Foxglove
     Export(ExportOptions),
 }
 
@@ -38,8 +39,8 @@ pub enum RecordingCommand {
 pub struct ExportOptions {
     /// Recording
     recording: PathBuf,
-    /// Topic, such as stylus/*/sample
-    #[arg(long, value_name = "TOPIC")]
+    /// Topics, such as stylus/*/sample: * stands for one part, ** for any number
+    #[arg(long, value_name = "TOPIC", default_value = "**")]
     topic: String,
     /// Form of the file
     #[arg(long, value_enum, default_value_t = Form::Csv)]
@@ -65,6 +66,8 @@ enum Form {
     Csv,
     /// A line of JSON for each message
     Json,
+    /// An MCAP file of JSON channels with their schemas
+    Foxglove,
 }
 
 /// Runs the subcommand.
@@ -167,7 +170,17 @@ fn info(path: &std::path::Path, as_json: bool) -> Result<i32, UserError> {
 fn export(options: &ExportOptions) -> Result<i32, UserError> {
     let mut recording = Recording::open(&options.recording)?;
     let place = options.recording.display().to_string();
-    let output = UsedFile::new("the export", &options.output).of(Kind::Messages);
+    let kind = match options.format {
+        Form::Csv | Form::Json => Kind::Messages,
+        Form::Foxglove if options.field.is_empty() => Kind::Take,
+        Form::Foxglove => {
+            return Err(
+                UserError::usage("messages for Foxglove have all of their fields")
+                    .help("leave out --field, or choose --format csv or json"),
+            );
+        }
+    };
+    let output = UsedFile::new("the export", &options.output).of(kind);
     check_outputs(
         &[output],
         &[UsedFile::new("the recording", &options.recording)],
@@ -199,6 +212,11 @@ fn export(options: &ExportOptions) -> Result<i32, UserError> {
             .at(place)
             .help(format!("the recording is {long:.3} s long")));
     }
+    if options.format == Form::Foxglove {
+        let count = foxglove_export::write(&mut recording, &topics, range, &options.output)?;
+        say!("{count} messages in {}", options.output.display());
+        return Ok(0);
+    }
     if let Some(path) = options
         .field
         .iter()
@@ -218,7 +236,7 @@ fn export(options: &ExportOptions) -> Result<i32, UserError> {
         topics: &topics,
         text: match options.format {
             Form::Csv => head(&columns),
-            Form::Json => String::new(),
+            Form::Json | Form::Foxglove => String::new(),
         },
         columns,
         messages: 0,
@@ -241,6 +259,18 @@ fn export(options: &ExportOptions) -> Result<i32, UserError> {
     .map_err(|error| UserError::writing(&options.output, &error))?;
     say!("{count} messages in {}", options.output.display());
     Ok(0)
+}
+
+/// What a message holds.
+///
+/// # Errors
+/// A [`UserError`] where it cannot be decoded.
+pub(super) fn decoded(topic: &Topic, message: &RecordedMessage) -> Result<Value, UserError> {
+    topic.decode(&message.bytes).map_err(|error| {
+        let seq = message.header.seq;
+        UserError::failure(format!("{}, message {seq}: {error}", topic.name))
+            .help("a newer version of Maulstick may know it")
+    })
 }
 
 /// Columns of the messages of topics: those of all alternatives and lists that are there, in the order in which they come.
@@ -278,13 +308,7 @@ impl Lines<'_> {
         let Some(topic) = self.topics.get(&message.channel) else {
             return Ok(());
         };
-        let value = topic.decode(&message.bytes).map_err(|error| {
-            UserError::failure(format!(
-                "{}, message {}: {error}",
-                topic.name, message.header.seq
-            ))
-            .help("a newer version of Maulstick may know it")
-        })?;
+        let value = decoded(topic, message)?;
         self.messages += 1;
         let line = MessageLine {
             topic: &topic.name,
@@ -294,7 +318,7 @@ impl Lines<'_> {
         };
         self.text += &match self.options.format {
             Form::Csv => line.row(&self.columns),
-            Form::Json => line.json(&self.options.field),
+            Form::Json | Form::Foxglove => line.json(&self.options.field),
         };
         Ok(())
     }

@@ -1,0 +1,216 @@
+//! Streams in Foxglove: recordings with JSON channels, exports of them, and the bridge to a running rig.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+use std::collections::BTreeMap;
+use std::net::{TcpListener, TcpStream};
+
+use nix::sys::signal::Signal;
+use serde_json::{Value, json};
+use support::{
+    Launcher, PATIENCE, Place, fault, has, press_for_minutes, printed, python, wait_for,
+};
+use tungstenite::{ClientRequestBuilder, Message, WebSocket};
+
+/// A rig that plays a take, 100 samples a second.
+fn playing(place: &Place) -> Launcher {
+    press_for_minutes(&place.path("t.mcap"));
+    let take = place.path("t.mcap");
+    let mut launcher = Launcher::up(place, &["--play", take.to_str().expect("text")]);
+    launcher.wait_says("is up");
+    launcher
+}
+
+/// Messages of each topic in the JSON channels of a recording, which are those of an export.
+fn compared(place: &Place, recording: &str, lines: &str) -> BTreeMap<String, usize> {
+    let words = [recording, lines].map(|name| place.path(name).display().to_string());
+    let words = words.each_ref().map(String::as_str);
+    let counts = printed(&mut python(place, "foxglove.py", &words), b"");
+    serde_json::from_str(&counts).expect("counts")
+}
+
+#[test]
+fn a_recording_and_its_export_have_json_channels_of_what_was_sent() {
+    let place = Place::new();
+    let launcher = playing(&place);
+    place.done(&["record", "-o", "s.mcap", "--seconds", "2"]);
+    place.done(&[
+        "record",
+        "-o",
+        "none.mcap",
+        "--seconds",
+        "0.5",
+        "--json-hz",
+        "0",
+    ]);
+    launcher.close(&place);
+    let export = |recording: &str, form: &str, output: &str| {
+        let form = ["--format", form, "-o", output];
+        place.done(&[&["recording", "export", recording], &form[..]].concat());
+    };
+    export("s.mcap", "json", "s.json");
+    export("s.mcap", "foxglove", "f.mcap");
+    export("none.mcap", "json", "none.json");
+    let text = String::from_utf8(place.bytes("s.json")).expect("text");
+    let mut sent = BTreeMap::new();
+    for line in text.lines() {
+        let line: Value = serde_json::from_str(line).expect("JSON");
+        let topic = line["topic"].as_str().expect("a topic").to_owned();
+        *sent.entry(topic).or_insert(0) += 1;
+    }
+    assert_eq!(compared(&place, "f.mcap", "s.json"), sent);
+    let thinned = compared(&place, "s.mcap", "s.json");
+    assert!(thinned.keys().eq(sent.keys()), "{thinned:?} of {sent:?}");
+    for topic in [
+        "scene",
+        "brush/main/def",
+        "paint/status",
+        "stylus/player/take",
+    ] {
+        assert_eq!(thinned[topic], sent[topic], "{topic}");
+    }
+    let fast = "stylus/player/sample";
+    assert!(thinned[fast] < sent[fast], "{thinned:?} of {sent:?}");
+    assert!(compared(&place, "none.mcap", "none.json").is_empty());
+    // A fault in one number is found.
+    let wrong = text.replacen("\"in_range\":true", "\"in_range\":false", 1);
+    assert_ne!(wrong, text);
+    std::fs::write(place.path("wrong.json"), wrong).expect("written");
+    let words = ["f.mcap", "wrong.json"].map(|name| place.path(name).display().to_string());
+    let words = words.each_ref().map(String::as_str);
+    let output = python(&place, "foxglove.py", &words).output();
+    let output = output.expect("started");
+    assert!(!output.status.success());
+    has(
+        &String::from_utf8_lossy(&output.stderr),
+        &["stylus/player/sample", "is not what was recorded"],
+    );
+    let words = ["recording", "export", "s.mcap", "--format", "foxglove"];
+    let said = fault(
+        &place,
+        &[&words[..], &["--field", "seq", "-o", "x.mcap"]].concat(),
+        2,
+    );
+    has(&said, &["--field"]);
+}
+
+/// A viewer of the bridge, which speaks the Foxglove protocol.
+struct Viewer {
+    socket: WebSocket<TcpStream>,
+    /// Numbers of the channels, by topic.
+    channels: BTreeMap<String, u64>,
+}
+
+impl Viewer {
+    /// Connects once the bridge listens.
+    fn connect(port: u16) -> Self {
+        let stream = wait_for(PATIENCE, || TcpStream::connect(("127.0.0.1", port)).ok());
+        let stream = stream.expect("the bridge listens");
+        stream.set_read_timeout(Some(PATIENCE)).expect("set");
+        let address = format!("ws://127.0.0.1:{port}")
+            .parse()
+            .expect("an address");
+        let request = ClientRequestBuilder::new(address).with_sub_protocol("foxglove.sdk.v1");
+        let (socket, _) = tungstenite::client(request, stream).expect("connected");
+        Self {
+            socket,
+            channels: BTreeMap::new(),
+        }
+    }
+
+    /// The next message of a subscription: its number, time of arrival (ns), and JSON. Notes new channels meanwhile.
+    fn next(&mut self) -> Option<(u32, u64, Value)> {
+        match self.socket.read().expect("a message") {
+            Message::Text(text) => {
+                let said: Value = serde_json::from_str(&text).expect("JSON");
+                let channels = said["channels"].as_array().into_iter().flatten();
+                for channel in channels {
+                    assert_eq!(channel["encoding"], "json");
+                    assert_eq!(channel["schemaEncoding"], "jsonschema");
+                    let topic = channel["topic"].as_str().expect("a topic");
+                    let number = channel["id"].as_u64().expect("a number");
+                    self.channels.insert(topic.to_owned(), number);
+                }
+                None
+            }
+            Message::Binary(data) if data[0] == 1 => {
+                let number = u32::from_le_bytes(*data[1..].first_chunk().expect("4 bytes"));
+                let time_ns = u64::from_le_bytes(*data[5..].first_chunk().expect("8 bytes"));
+                Some((
+                    number,
+                    time_ns,
+                    serde_json::from_slice(&data[13..]).expect("JSON"),
+                ))
+            }
+            _ => None,
+        }
+    }
+
+    /// Subscribes to a topic once it is advertised.
+    fn subscribe(&mut self, topic: &str, number: u32) {
+        while !self.channels.contains_key(topic) {
+            self.next();
+        }
+        let wish = json!({
+            "op": "subscribe",
+            "subscriptions": [{ "id": number, "channelId": self.channels[topic] }],
+        });
+        self.socket
+            .send(Message::text(wish.to_string()))
+            .expect("sent");
+    }
+
+    /// The next message of a subscription.
+    fn hear(&mut self, number: u32) -> (u64, Value) {
+        loop {
+            if let Some((own, time_ns, value)) = self.next()
+                && own == number
+            {
+                return (time_ns, value);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_viewer_watches_a_rig_by_the_bridge() {
+    let place = Place::new();
+    let launcher = playing(&place);
+    let free = TcpListener::bind(("127.0.0.1", 0)).expect("a port");
+    let port = free.local_addr().expect("an address").port();
+    drop(free);
+    let number = port.to_string();
+    let bridge = ["bridge", "--port", &number, "--hz", "20"];
+    let mut first = Launcher::start(place.maulstick(&bridge));
+    let mut viewer = Viewer::connect(port);
+    // The scene is sent rarely: a viewer has the one that is kept.
+    viewer.subscribe("scene", 1);
+    let (_, mut scene) = viewer.hear(1);
+    let echo = place.done(&["echo", "scene", "--once", "--json"]).stdout;
+    let echo: Value = serde_json::from_slice(&echo).expect("JSON");
+    let fields = scene.as_object_mut().expect("fields");
+    let header = fields.remove("header").expect("a header");
+    assert_eq!((&header["seq"], &scene), (&echo["seq"], &echo["value"]));
+    // What is sent often is thinned: a second's share at once, and the others one by one.
+    viewer.subscribe("stylus/player/sample", 2);
+    let times: Vec<u64> = (0..50).map(|_| viewer.hear(2).0).collect();
+    let lasted_ns = times
+        .last()
+        .zip(times.first())
+        .map(|(last, first)| last - first);
+    assert!(
+        lasted_ns.is_some_and(|lasted_ns| lasted_ns >= 29 * 50_000_000),
+        "{times:?}"
+    );
+    has(&fault(&place, &bridge, 1), &["is taken", "--port"]);
+    let elsewhere = ["bridge", "--port", "0", "--address", "192.0.2.1"];
+    has(&fault(&place, &elsewhere, 2), &["192.0.2.1", "--address"]);
+    first.signal(Signal::SIGINT);
+    assert!(first.wait(PATIENCE).success(), "{}", first.said());
+    let mut second = Launcher::start(place.maulstick(&bridge));
+    drop(Viewer::connect(port));
+    launcher.close(&place);
+    second.wait(PATIENCE);
+    has(&fault(&place, &bridge, 1), &["is running"]);
+}
