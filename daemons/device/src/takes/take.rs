@@ -126,6 +126,9 @@ impl Take {
 
 #[cfg(test)]
 mod tests {
+    use maulstick_streams::{FieldTable, RecordingWriter};
+    use maulstick_types::{HEADER_BYTES, Header};
+
     use super::*;
 
     fn take() -> Take {
@@ -153,6 +156,33 @@ mod tests {
         assert_eq!(Take::read(&paths[0]), Ok(take()));
         let bytes = paths.map(|path| std::fs::read(path).expect("read"));
         assert!(bytes[0] == bytes[1]);
+    }
+
+    #[test]
+    fn the_samples_of_a_recording_are_those_that_are_not_json() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("s.mcap");
+        let mut writer =
+            RecordingWriter::begin(File::create(&path).expect("created")).expect("begun");
+        let table = FieldTable::of(StylusSample::schema()).expect("a table");
+        let origin = Origin {
+            source: 1,
+            epoch: 1,
+        };
+        let samples = &take().samples[..3];
+        for TakeSample { time_ns, sample } in samples {
+            let at_ns = *time_ns;
+            let bytes = encode(&origin, Flags::NONE, 0, at_ns, at_ns, sample).expect("encoded");
+            let header = Header::from_bytes(&bytes).expect("a header");
+            let value = table.decode(&bytes[HEADER_BYTES..]).expect("decoded");
+            let topic = "stylus/pen/sample";
+            let written = writer.write(topic, &header, &bytes, at_ns);
+            written.expect("written");
+            let written = writer.write_json(topic, &table, &header, &value, at_ns);
+            written.expect("written");
+        }
+        writer.finish().expect("finished");
+        assert_eq!(Take::read(&path).expect("read").samples, samples);
     }
 
     fn with_a_setup() -> Take {
