@@ -11,6 +11,8 @@ use serde::Deserialize;
 
 use crate::value::{Fields, Value};
 
+mod json_schema;
+
 /// Deepest nesting of a value: a table may refer to itself.
 const DEEPEST: usize = 32;
 
@@ -63,11 +65,19 @@ pub(crate) enum Type {
 /// A field: its name and its type.
 pub(crate) type TypedField = (Arc<str>, Type);
 
+/// An alternative of an enum.
+type TypedVariant = (Arc<str>, Vec<TypedField>);
+
 /// A definition.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Definition {
     Struct(Vec<TypedField>),
-    Enum(Vec<(Arc<str>, Vec<TypedField>)>),
+    Enum(Vec<TypedVariant>),
+}
+
+/// True for an enum whose alternatives have no fields: its values are texts.
+fn is_plain(variants: &[TypedVariant]) -> bool {
+    variants.iter().all(|(_, fields)| fields.is_empty())
 }
 
 /// The field table of a message.
@@ -186,6 +196,7 @@ impl FieldTable {
             }
             Type::Defined(place) => match &self.definitions[*place] {
                 Definition::Struct(fields) => self.fields_have(fields, path),
+                Definition::Enum(variants) if is_plain(variants) => false,
                 Definition::Enum(variants) => variants.iter().any(|(name, fields)| {
                     let named = **name == **part;
                     let below = rest.is_empty() || self.fields_have(fields, rest);
@@ -387,7 +398,10 @@ impl<'a> Reader<'a> {
                         field: self.field(),
                         what: format!("alternative {tag} of {}", variants.len()),
                     })?;
-                    Value::Variant(Arc::clone(name), self.fields(fields)?)
+                    match is_plain(variants) {
+                        true => Value::Text(name.to_string()),
+                        false => Value::Variant(Arc::clone(name), self.fields(fields)?),
+                    }
                 }
             },
         })

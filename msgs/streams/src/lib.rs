@@ -7,13 +7,17 @@
 //! | [`value`] | what comes of it |
 //! | [`translate`] | messages of other versions as those of this program |
 //! | [`topic_pattern`] | patterns of topics |
+//! | [`json_channel`] | messages as JSON, for viewers |
+//! | [`rate_limit`] | streams thinned to a rate |
 //! | [`traffic`] | rates, losses and delays |
 //! | [`recording_writer`], [`recording`] | recordings, written and read |
 //! | [`mcap_records`] | records of MCAP files, read within their bounds |
 
 pub mod catalogue;
 pub mod field_table;
+pub mod json_channel;
 pub mod mcap_records;
+pub mod rate_limit;
 pub mod recording;
 pub mod recording_writer;
 pub mod topic_pattern;
@@ -22,6 +26,7 @@ pub mod translate;
 pub mod value;
 
 pub use field_table::{FieldTable, TableError};
+pub use rate_limit::RateLimit;
 pub use recording::Recording;
 pub use recording_writer::RecordingWriter;
 pub use traffic::Traffic;

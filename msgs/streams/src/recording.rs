@@ -1,4 +1,5 @@
-//! Reads a recording: by its index, or, where it has none as after a crash, by all of its records.
+//! Reads a recording: by its index, or, where it has none as after a crash, by all of its records. JSON channels, which are
+//! for viewers, are left alone.
 //!
 //! No length that the file states is believed before it is compared with the file.
 
@@ -13,6 +14,7 @@ use mcap::MAGIC;
 use mcap::records::{Record, op};
 
 use crate::field_table::{FieldTable, TableError};
+use crate::json_channel;
 use crate::mcap_records::{Found, HEAD, records, unpack};
 use crate::recording_writer::SCHEMA_ENCODING;
 use crate::value::Value;
@@ -56,7 +58,7 @@ pub struct Topic {
     /// Name and version of its messages, where they are known.
     pub message: Option<String>,
     /// How its messages are decoded, or why they cannot be.
-    table: Result<FieldTable, TableError>,
+    pub table: Result<FieldTable, TableError>,
 }
 
 /// A message of a recording.
@@ -202,6 +204,7 @@ impl Recording {
         all(&mut |record| {
             if record.opcode == op::CHANNEL
                 && let Ok(Record::Channel(channel)) = mcap::parse_record(op::CHANNEL, record.body)
+                && channel.message_encoding != json_channel::MESSAGE_ENCODING
             {
                 let schema = schemas.get(&channel.schema_id).cloned();
                 let unknown = || TableError::Type(format!("number {}", channel.schema_id));

@@ -1,4 +1,5 @@
-//! Writes a recording: an MCAP file with a channel for each topic, whose messages are those of the bus, header and all.
+//! Writes a recording: an MCAP file with a channel for each topic, whose messages are those of the bus, header and all;
+//! and, for viewers, channels of the same topics whose messages are JSON.
 //! `log_time` is the time of arrival, `publish_time` that of sending, both on the rig's clock.
 
 use std::collections::BTreeMap;
@@ -9,6 +10,9 @@ use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, McapResult, WriteOptions, Writer};
 
 use crate::catalogue::message_of;
+use crate::field_table::FieldTable;
+use crate::json_channel;
+use crate::value::Value;
 
 /// Encoding of the messages: the bus's own header and body.
 pub const MESSAGE_ENCODING: &str = "x-maulstick";
@@ -24,6 +28,8 @@ pub struct RecordingWriter<W: Write + Seek> {
     writer: Writer<W>,
     /// Numbers of the channels, by topic and hash of the field table.
     channels: BTreeMap<(String, u32), u16>,
+    /// The same of the JSON channels.
+    json_channels: BTreeMap<(String, u32), u16>,
 }
 
 impl<W: Write + Seek> RecordingWriter<W> {
@@ -42,6 +48,7 @@ impl<W: Write + Seek> RecordingWriter<W> {
         Ok(Self {
             writer,
             channels: BTreeMap::new(),
+            json_channels: BTreeMap::new(),
         })
     }
 
@@ -87,6 +94,44 @@ impl<W: Write + Seek> RecordingWriter<W> {
             publish_time: header.sent_ns,
         };
         self.writer.write_to_known_channel(&header, bytes)
+    }
+
+    /// Writes a message of a topic as JSON, into a channel beside that of [`Self::write`].
+    ///
+    /// # Errors
+    /// The error of the file.
+    pub fn write_json(
+        &mut self,
+        topic: &str,
+        table: &FieldTable,
+        header: &Header,
+        value: &Value,
+        arrived_ns: u64,
+    ) -> McapResult<()> {
+        let key = (topic.to_owned(), table.hash());
+        let channel_id = match self.json_channels.get(&key) {
+            Some(channel) => *channel,
+            None => {
+                let (name, encoding) = (table.name(), json_channel::SCHEMA_ENCODING);
+                let schema = json_channel::schema(table);
+                let schema_id = self.writer.add_schema(name, encoding, &schema)?;
+                let encoding = json_channel::MESSAGE_ENCODING;
+                let metadata = BTreeMap::new();
+                let channel = self
+                    .writer
+                    .add_channel(schema_id, topic, encoding, &metadata)?;
+                *self.json_channels.entry(key).or_insert(channel)
+            }
+        };
+        let message = json_channel::message(header, arrived_ns, value);
+        let header = MessageHeader {
+            channel_id,
+            sequence: header.seq as u32,
+            log_time: arrived_ns,
+            publish_time: header.sent_ns,
+        };
+        self.writer
+            .write_to_known_channel(&header, message.to_string().as_bytes())
     }
 
     /// The channel of a topic; without a schema where this program does not know its messages.

@@ -20,7 +20,7 @@ pub enum Value {
     Real(f64),
     /// A bool.
     Flag(bool),
-    /// A text.
+    /// A text, or an alternative of an enum of which none has fields.
     Text(String),
     /// Bytes.
     Bytes(Vec<u8>),
@@ -30,7 +30,7 @@ pub enum Value {
     Absent,
     /// A struct.
     Fields(Fields),
-    /// An alternative of an enum.
+    /// An alternative of an enum of which some have fields.
     Variant(Arc<str>, Fields),
 }
 
@@ -146,7 +146,6 @@ impl Serialize for Value {
             Self::List(list) => to.collect_seq(list),
             Self::Absent => to.serialize_none(),
             Self::Fields(own) => fields(own, to),
-            Self::Variant(name, own) if own.is_empty() => to.serialize_str(name),
             Self::Variant(name, own) => {
                 let mut map = to.serialize_map(Some(1))?;
                 map.serialize_entry(&**name, &Self::Fields(own.clone()))?;

@@ -15,6 +15,7 @@ use mcap::records::{MessageHeader, Record, op};
 
 use crate::take::{Take, TakeSample};
 use crate::take_setup::TakeSetup;
+use maulstick_streams::json_channel;
 use maulstick_streams::mcap_records::{Found, HEAD, records, unpack};
 
 /// Name of a device whose channel record is lost.
@@ -125,7 +126,10 @@ impl Reading {
             && let Ok(Record::Channel(channel)) = mcap::parse_record(op::CHANNEL, record.body)
             && (certain || !self.topics.contains_key(&channel.id))
         {
-            self.topics.insert(channel.id, channel.topic);
+            // A recording has topics as JSON too, for viewers.
+            let is_json = channel.message_encoding == json_channel::MESSAGE_ENCODING;
+            let topic = Some(channel.topic).filter(|_| !is_json);
+            self.topics.insert(channel.id, topic.unwrap_or_default());
         }
     }
 

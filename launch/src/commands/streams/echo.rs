@@ -1,12 +1,11 @@
 //! `maulstick echo`: the messages of a topic, as they come.
 
-use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use clap::Args;
 use maulstick_rig::UserError;
-use maulstick_streams::catalogue::message_of;
-use maulstick_streams::{FieldTable, Value};
+use maulstick_streams::Value;
+use maulstick_streams::catalogue::KnownTables;
 use maulstick_types::{HEADER_BYTES, plain};
 
 use super::listener::{Listener, ReceivedMessage};
@@ -70,7 +69,7 @@ pub fn run(options: &EchoOptions) -> Result<i32, UserError> {
 /// Prints messages of any kind.
 struct Printer<'a> {
     options: &'a EchoOptions,
-    tables: BTreeMap<u32, Option<FieldTable>>,
+    tables: KnownTables,
     /// Columns of the table, once its head is printed.
     columns: Option<Vec<String>>,
 }
@@ -79,18 +78,14 @@ impl<'a> Printer<'a> {
     fn new(options: &'a EchoOptions) -> Self {
         Self {
             options,
-            tables: BTreeMap::new(),
+            tables: KnownTables::default(),
             columns: None,
         }
     }
 
     fn print(&mut self, received: &ReceivedMessage) -> Result<(), UserError> {
         let header = &received.message.header;
-        let table = self.tables.entry(header.schema).or_insert_with(|| {
-            let entry = message_of(header.schema)?;
-            FieldTable::of((entry.schema)()).ok()
-        });
-        let Some(table) = table else {
+        let Some(table) = self.tables.of(header.schema) else {
             eprintln!(
                 "{}: a message of version {} and hash {:#010x}, which this program does not know",
                 plain(&received.topic),
