@@ -37,7 +37,7 @@ fn schema_of(topic: &str) -> Option<Json> {
     };
     let entry = CATALOGUE
         .iter()
-        .find(|entry| entry.topics.iter().any(|pattern| is_meant(&pattern)))?;
+        .find(|entry| entry.topics.iter().any(is_meant))?;
     let table = FieldTable::of((entry.schema)()).ok()?;
     serde_json::from_slice(&json_channel::schema(&table)).ok()
 }
