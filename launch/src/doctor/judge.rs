@@ -164,7 +164,7 @@ fn disk(disk: &Disk) -> Finding {
     let mend = format!("free some space; what fills it: du -xh -d1 {folder} | sort -h");
     match disk.free {
         ..NONE => Finding::warning(CHECK, format!("{what}: saving will fail"), mend).wrong(),
-        ..LITTLE => Finding::warning(
+        NONE..LITTLE => Finding::warning(
             CHECK,
             format!("{what}: little for recordings and large paintings"),
             mend,

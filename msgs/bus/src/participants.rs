@@ -174,7 +174,7 @@ mod tests {
         for (key, json) in REPLIES {
             found.add(key, json.as_bytes());
         }
-        let set = |keys: &[&str]| keys.iter().map(|key| format!("maulstick/studio/{key}"));
+        let set = |key: &str| BTreeSet::from([format!("maulstick/studio/{key}")]);
         let expected = [
             Participant {
                 session: "550d".into(),
@@ -184,16 +184,16 @@ mod tests {
             },
             Participant {
                 session: "614d".into(),
-                sends: set(&["stylus/python/sample"]).collect(),
-                receives: set(&["scene"]).collect(),
+                sends: set("stylus/python/sample"),
+                receives: set("scene"),
                 ..Participant::default()
             },
             Participant {
                 session: "6be6".into(),
                 name: Some("brush".into()),
                 process: Some(8),
-                receives: set(&["stylus/*/sample"]).collect(),
-                answers: set(&["command/main"]).collect(),
+                receives: set("stylus/*/sample"),
+                answers: set("command/main"),
                 ..Participant::default()
             },
         ];
