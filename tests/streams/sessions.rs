@@ -63,7 +63,10 @@ fn ordered(place: &Place, args: &[&str], orders: &str) {
     drop(input);
     assert!(output.status.success(), "{args:?}");
     let said = String::from_utf8_lossy(&output.stdout);
-    has(&said, &["position_s", "\"paused\":true", "painted in"]);
+    has(
+        &said,
+        &["position_s", "length_s", "\"paused\":true", "\"painting\":"],
+    );
 }
 
 #[test]

@@ -20,7 +20,7 @@ use clap::Args;
 use maulstick_bus::RigFolder;
 use maulstick_device::player::Rate;
 use maulstick_rig::{NodeArgs, NodeHandle, UserError};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use self::orders::{KEYS, Orders};
 use self::transport::{Leap, Order, Transport, parse_rate};
@@ -121,6 +121,11 @@ pub fn run(options: &ReplayOptions) -> Result<i32, UserError> {
     streams::replay(options)
 }
 
+/// Prints a line of JSON.
+fn print_json(line: &Value) -> Result<(), UserError> {
+    print_text(&format!("{line}\n"))
+}
+
 /// What plays: the transport, its orders, and what is told of them.
 struct Deck {
     transport: Transport,
@@ -183,8 +188,13 @@ impl Deck {
         let s = self.transport.position_ns() as f64 * 1e-9;
         let (rate, paused) = (self.transport.rate(), self.transport.is_paused());
         if self.json {
-            let line = json!({"position_s": s, "rate": rate.to_string(), "paused": paused});
-            return print_text(&format!("{line}\n"));
+            let end_s = self.transport.end_ns() as f64 * 1e-9;
+            return print_json(&json!({
+                "position_s": s,
+                "length_s": end_s,
+                "rate": rate.to_string(),
+                "paused": paused,
+            }));
         }
         if self.orders.are_keys() {
             let paused = if paused { "  paused" } else { "        " };

@@ -11,10 +11,11 @@ use maulstick_rig::command_client::CommandClient;
 use maulstick_rig::{NodeHandle, UserError};
 use maulstick_types::command::{RigCommand, SessionCommand};
 use serde_bytes::ByteBuf;
+use serde_json::json;
 
 use super::events::Events;
 use super::transport::Leap;
-use super::{Deck, ReplayOptions, TURN, Turn};
+use super::{Deck, ReplayOptions, TURN, Turn, print_json};
 use crate::commands::open::{LONGEST, whole};
 use crate::commands::say;
 use crate::commands::takes::from::open_begin;
@@ -96,7 +97,9 @@ pub(super) fn replay(options: &ReplayOptions, session: &SessionFile) -> Result<i
         }
     }
     player.command(&member, SessionCommand::End)?;
-    say!("painted in {}", player.place(&path, turns).display());
+    if !options.json {
+        say!("painted in {}", player.place(&path, turns).display());
+    }
     let code = deck.end(&member);
     member.leave();
     Ok(code)
@@ -160,7 +163,11 @@ impl Player<'_> {
         if opened.is_err() {
             std::fs::remove_file(path).ok();
         }
-        opened.map(drop)
+        opened?;
+        match self.options.json {
+            true => print_json(&json!({"painting": path.display().to_string()})),
+            false => Ok(()),
+        }
     }
 
     /// The painting in which it is painted after so many returns to the beginning.

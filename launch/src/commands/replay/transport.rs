@@ -122,6 +122,11 @@ impl Transport {
         self.position_ns
     }
 
+    /// The end of what is played, ns since the beginning of the recording.
+    pub(super) fn end_ns(&self) -> u64 {
+        self.range_ns[1]
+    }
+
     /// True while it stands still.
     pub(super) fn is_paused(&self) -> bool {
         self.paused
