@@ -1,20 +1,17 @@
 //! `maulstick device …`, run by the window as a user at a terminal would, one after the other.
 
 use std::collections::VecDeque;
-use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
-use std::sync::mpsc::{Receiver, channel};
+use std::process::{Command, Output, Stdio};
 use std::task::Poll;
 use std::time::SystemTime;
 
 use eframe::egui::Context;
 use maulstick_device::node_watch::NodeWatch;
-use nix::sys::signal::{Signal, kill};
-use nix::unistd::Pid;
 use serde::Deserialize;
 
 use crate::background_task::BackgroundTask;
+use crate::rig::child_process::{ChildProcess, Ended, Refused, complaint, own_program};
 use crate::rig::device_listing::DeviceListing;
 use crate::rig::state::RigState;
 use crate::widgets::notifications::Notifications;
@@ -54,11 +51,11 @@ struct FitLine {
 }
 
 impl FitProgress {
-    /// Adds a line.
-    fn read(&mut self, line: FitLine) {
-        self.said.push(line.said);
-        if line.asks.is_some() {
-            self.asks = line.asks;
+    /// Adds a line; one that is no [`FitLine`] says nothing.
+    fn read(&mut self, line: &str) {
+        if let Ok(FitLine { said, asks }) = serde_json::from_str(line) {
+            self.said.push(said);
+            self.asks = asks.or(self.asks.take());
         }
     }
 }
@@ -75,22 +72,6 @@ struct Seen {
     looks: u64,
 }
 
-/// The process of a fit.
-#[derive(Debug)]
-struct Fit {
-    child: Child,
-    lines: Receiver<FitLine>,
-}
-
-impl Drop for Fit {
-    fn drop(&mut self) {
-        if matches!(self.child.try_wait(), Ok(None)) {
-            interrupt(&self.child);
-            self.child.wait().ok();
-        }
-    }
-}
-
 /// Runs the commands, and lists the devices whenever something has changed.
 #[derive(Debug)]
 pub(crate) struct DeviceCommands {
@@ -104,14 +85,7 @@ pub(crate) struct DeviceCommands {
     /// Commands that have ended, and those that had when the newest listing began.
     done: u64,
     listed: u64,
-    fit: Option<Fit>,
-}
-
-/// A command's complaint, with advice.
-#[derive(Debug, PartialEq, Eq)]
-struct Refused {
-    what: String,
-    help: String,
+    fit: Option<ChildProcess>,
 }
 
 impl DeviceCommands {
@@ -133,7 +107,7 @@ impl DeviceCommands {
 
     /// The program of this process.
     pub(crate) fn own() -> Self {
-        Self::new(std::env::current_exe().unwrap_or_else(|_| "maulstick".into()))
+        Self::new(own_program())
     }
 
     /// Takes orders, and what has ended. `is_shown` says whether anybody looks at the listing.
@@ -152,7 +126,7 @@ impl DeviceCommands {
                     self.waiting.push_back(words);
                 }
                 DeviceOrder::Fit(device) => self.begin_fit(context, device, rig, notifications),
-                DeviceOrder::StopFit => self.fit.iter().for_each(|fit| interrupt(&fit.child)),
+                DeviceOrder::StopFit => self.fit.iter().for_each(ChildProcess::interrupt),
             }
         }
         if let Some(Poll::Ready(ended)) = self.running.as_ref().map(BackgroundTask::poll) {
@@ -240,37 +214,11 @@ impl DeviceCommands {
         rig: &mut RigState,
         notifications: &mut Notifications,
     ) {
-        let mut command = self.command(
-            &["fit".to_owned(), device.clone(), "--json".to_owned()],
-            &rig.rig,
-        );
-        let started = command
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn();
-        let mut child = match started {
-            Ok(child) => child,
+        let words = ["fit".to_owned(), device.clone(), "--json".to_owned()];
+        match ChildProcess::start(context, self.command(&words, &rig.rig)) {
+            Ok(child) => self.fit = Some(child),
             Err(error) => return notifications.fault(error.to_string(), ""),
-        };
-        let (to_window, lines) = channel();
-        if let Some(stdout) = child.stdout.take() {
-            let context = context.clone();
-            let read = move || {
-                for line in BufReader::new(stdout).lines().map_while(Result::ok) {
-                    if let Ok(line) = serde_json::from_str(&line) {
-                        to_window.send(line).ok();
-                    }
-                    context.request_repaint();
-                }
-                drop(to_window);
-                context.request_repaint();
-            };
-            let thread = std::thread::Builder::new().name("fit".into()).spawn(read);
-            if let Err(error) = thread {
-                tracing::error!("no thread for the fit: {error}");
-            }
         }
-        self.fit = Some(Fit { child, lines });
         rig.fit = Some(FitProgress {
             device,
             ..FitProgress::default()
@@ -281,23 +229,16 @@ impl DeviceCommands {
         let (Some(fit), Some(progress)) = (&mut self.fit, &mut rig.fit) else {
             return;
         };
-        fit.lines.try_iter().for_each(|line| progress.read(line));
-        let ended = match fit.child.try_wait() {
-            Ok(None) => return,
-            Ok(Some(status)) => status.success(),
-            Err(_) => false,
+        fit.lines().for_each(|line| progress.read(&line));
+        let Some(Ended { lines, result }) = fit.ended() else {
+            return;
         };
-        // Until the reader has come to the end.
-        fit.lines.iter().for_each(|line| progress.read(line));
+        lines.iter().for_each(|line| progress.read(line));
         let said = progress.said.pop().unwrap_or_default();
-        let complaint = fit.child.stderr.take().map(|stderr| {
-            let lines = BufReader::new(stderr).lines().map_while(Result::ok);
-            complaint(&lines.collect::<Vec<_>>().join("\n"))
-        });
-        match complaint.filter(|complaint| !ended && !complaint.what.is_empty()) {
-            Some(Refused { what, help }) => notifications.fault(what, help),
-            None if said.is_empty() => {}
-            None => notifications.note(said),
+        match result {
+            Err(Refused { what, help }) if !what.is_empty() => notifications.fault(what, help),
+            _ if said.is_empty() => {}
+            _ => notifications.note(said),
         }
         self.done += 1;
         (self.fit, rig.fit) = (None, None);
@@ -317,12 +258,6 @@ fn changed(folder: &str) -> Option<SystemTime> {
     Path::new(folder).metadata().ok()?.modified().ok()
 }
 
-fn interrupt(child: &Child) {
-    if let Ok(pid) = i32::try_from(child.id()) {
-        kill(Pid::from_raw(pid), Signal::SIGINT).ok();
-    }
-}
-
 /// What a command prints where it succeeds.
 fn run(mut command: Command) -> Result<Output, Refused> {
     let output = command.output().map_err(|error| Refused {
@@ -332,18 +267,6 @@ fn run(mut command: Command) -> Result<Output, Refused> {
     match output.status.success() {
         true => Ok(output),
         false => Err(complaint(&String::from_utf8_lossy(&output.stderr))),
-    }
-}
-
-/// A complaint as the command line writes it: `error: what`, where, and ` help: advice`.
-fn complaint(text: &str) -> Refused {
-    let text = text.trim();
-    let (first, help) = text.split_once("\n help: ").unwrap_or((text, ""));
-    let mut lines = first.lines();
-    let what = lines.find_map(|line| line.strip_prefix("error: "));
-    Refused {
-        what: what.or(first.lines().next()).unwrap_or_default().to_owned(),
-        help: help.trim().to_owned(),
     }
 }
 

@@ -7,6 +7,7 @@
 //! | [`brushes`] | newest sample and bend of each brush |
 //! | `force_history` | force trace of each device, and the device that paints |
 //! | `sample_history` | what each device sensed, and how evenly |
+//! | `child_process` | a command that runs beside the window |
 //! | `device_commands` | `maulstick device`, run by the window |
 //! | `device_listing` | what is attached, and settings of the rig's devices |
 //! | `health` | events of the other processes |
@@ -18,6 +19,7 @@
 
 pub mod brushes;
 pub(crate) mod carried_paint;
+pub(crate) mod child_process;
 pub(crate) mod device_commands;
 pub(crate) mod device_listing;
 pub(crate) mod dispatcher;

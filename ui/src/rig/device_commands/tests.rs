@@ -133,10 +133,3 @@ fn a_fit_says_what_to_touch_until_it_is_stopped() {
     desk.until(|desk| desk.rig.fit.is_none());
     assert_eq!(desk.told, [(Weight::Note, "nothing is written".to_owned())]);
 }
-
-#[test]
-fn a_complaint_is_parted_into_fault_and_advice() {
-    let refused = complaint("error: no permission\n  --> /dev/hidraw0\n help: ask\n");
-    assert_eq!((&*refused.what, &*refused.help), ("no permission", "ask"));
-    assert_eq!(complaint("it broke").what, "it broke");
-}
