@@ -12,6 +12,7 @@
 //! | `panels` | the panels, a folder each |
 //! | `dialogs` | files in the window: new, open, save, export, dropped files |
 //! | `reference` | a picture to paint after, and the mixtures of its colours |
+//! | `sessions` | recorder and player of sessions |
 //! | `settings_page` | the dialog of settings: text size, theme, units, keys |
 //! | `widgets` | parts that panels and dialogs are made of |
 //! | [`settings`] | settings that outlive the window |
@@ -31,6 +32,7 @@ mod panels;
 mod reference;
 pub mod render;
 pub mod rig;
+mod sessions;
 pub mod settings;
 mod settings_page;
 mod spectrum_file;

@@ -22,6 +22,8 @@ const GROUPS: [(&str, &[Action]); 4] = [
             Action::Save,
             Action::SaveAs,
             Action::Export,
+            Action::Record,
+            Action::Play,
             Action::Undo,
             Action::Redo,
             Action::Dry,
@@ -86,7 +88,7 @@ pub(super) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action>
             frame.inner_margin(Margin::same(3)).show(ui, |ui| {
                 ui.horizontal(|ui| {
                     ui.spacing_mut().item_spacing.x = 2.0;
-                    chosen = menu(ui, &work.preferences.keys);
+                    chosen = menu(ui, work);
                     for (word, action) in [
                         (tr!("Undo"), Action::Undo),
                         (tr!("Redo"), Action::Redo),
@@ -105,7 +107,7 @@ pub(super) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action>
 }
 
 /// The button of the menu; the action that was chosen in it.
-fn menu(ui: &mut Ui, keymap: &Keymap) -> Option<Action> {
+fn menu(ui: &mut Ui, work: &PanelContext<'_>) -> Option<Action> {
     let mut chosen = None;
     let button = Button::new(tr!("Menu")).min_size([26.0, 24.0].into());
     let (shown, _) = MenuButton::from_button(button).ui(ui, |ui| {
@@ -113,8 +115,12 @@ fn menu(ui: &mut Ui, keymap: &Keymap) -> Option<Action> {
             ui.menu_button(translated(title), |ui| {
                 for action in actions {
                     if let Some(binding) = binding(*action) {
-                        let keys = keymap.written(ui.ctx(), *action);
-                        let entry = Button::new(translated(binding.words)).shortcut_text(keys);
+                        let keys = work.preferences.keys.written(ui.ctx(), *action);
+                        let words = match (action, &work.rig.recording) {
+                            (Action::Record, Some(_)) => tr!("Stop recording"),
+                            _ => translated(binding.words),
+                        };
+                        let entry = Button::new(words).shortcut_text(keys);
                         if ui.add(entry).clicked() {
                             chosen = Some(*action);
                             ui.close();

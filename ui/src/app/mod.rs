@@ -49,6 +49,7 @@ use crate::rig::requests::Requests;
 use crate::rig::state::RigState;
 use crate::rig::stroke_barrier::StrokeBarrier;
 use crate::rig::thumbnails::ThumbnailFetcher;
+use crate::sessions::SessionProcesses;
 use crate::settings::look::Look;
 use crate::settings::preferences::Preferences;
 use crate::tracing::TracingPicture;
@@ -112,6 +113,7 @@ pub struct App {
     barrier: StrokeBarrier,
     dispatcher: CommandDispatcher,
     device_commands: DeviceCommands,
+    session_processes: SessionProcesses,
     fetcher: ThumbnailFetcher,
     notifications: Notifications,
     preferences: Preferences,
@@ -179,6 +181,7 @@ impl App {
             rig: RigState::new(&member.config.rig.name, &names, Arc::new(library)),
             dispatcher: CommandDispatcher::new(Arc::clone(bus), topics, &member.wake),
             device_commands: DeviceCommands::own(),
+            session_processes: SessionProcesses::own(),
             fetcher: ThumbnailFetcher::of_rig(member),
             bus: Arc::clone(bus),
             stop: member.stop.clone(),
@@ -285,6 +288,9 @@ impl App {
         let orders = self.requests.take_device_orders();
         let told = (&mut self.rig, &mut self.notifications);
         self.device_commands.turn(context, orders, is_shown, told);
+        let orders = self.requests.take_session_orders();
+        let told = (&mut self.rig, &mut self.notifications);
+        self.session_processes.turn(context, orders, told);
         for request in self.requests.take() {
             self.barrier
                 .push(now_ns, request, self.tracker.newest(now_ns));

@@ -23,6 +23,8 @@ use crate::panels;
 use crate::reference::Reference;
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
+use crate::sessions::SessionOrder;
+use crate::sessions::transport_bar::TransportBar;
 use crate::settings::brush_load;
 use crate::settings::brush_memory::BrushMemory;
 use crate::settings::preferences::Preferences;
@@ -56,6 +58,7 @@ pub(crate) struct Overlay {
     colour: ColourWindow,
     first_run: FirstRun,
     size_drag: SizeDrag,
+    transport: TransportBar,
     /// The part of the window that the palette covers; nothing opens over it.
     pub(crate) palette: Option<Rect>,
     /// True while the canvas is shown without tools, and whether the window was full screen before.
@@ -70,6 +73,9 @@ impl Overlay {
         let mut rest = Vec::new();
         // Keys are a dialog's while one is open.
         let in_dialog = self.files.is_open() || self.settings.is_open();
+        if !in_dialog {
+            TransportBar::follow_keys(&context, work);
+        }
         let mut acts = match in_dialog {
             true => presses::force_off(&context, &work.preferences.keys),
             false => presses::pressed(&context, &work.preferences.keys),
@@ -93,6 +99,7 @@ impl Overlay {
             }
         }
         if self.alone.is_none() {
+            self.transport.show(&context, work);
             rack::show(&context, work);
             if work.preferences.panels {
                 self.column.show(&context, work);
@@ -232,10 +239,15 @@ impl Overlay {
             | Action::Save
             | Action::SaveAs
             | Action::Export
+            | Action::Play
             | Action::Reference
             | Action::ChooseTracing => {
                 self.files.follow(context, act, work);
             }
+            Action::Record => work.requests.session(match work.rig.recording {
+                Some(_) => SessionOrder::StopRecording,
+                None => SessionOrder::Record,
+            }),
             Action::Keys => self.keys = !self.keys,
             Action::Colour => self.colour.toggle(),
             Action::Settings => self.settings.open(),

@@ -12,6 +12,7 @@ use serde::de::value::{Error, StrDeserializer};
 use crate::input::brush_choice::of_library;
 use crate::input::keys::{Action, BINDINGS};
 use crate::panels;
+use crate::sessions::tests::{recording, replay};
 use crate::test_support::overlay_bench::{Bench, ctrl, press, window};
 
 /// Presses of Tab at most: more than there are controls.
@@ -101,6 +102,7 @@ fn every_control_of_the_dialogs_is_named_and_reached_by_the_keyboard() {
         (Key::O, Modifiers::NONE),
         (Key::S, Modifiers::SHIFT),
         (Key::E, Modifiers::NONE),
+        (Key::P, Modifiers::NONE),
         (Key::R, Modifiers::NONE),
         (Key::T, Modifiers::SHIFT),
         (Key::M, Modifiers::NONE),
@@ -117,6 +119,17 @@ fn every_control_of_the_dialogs_is_named_and_reached_by_the_keyboard() {
             "{key:?}"
         );
     }
+}
+
+#[test]
+fn every_control_of_recorder_and_player_is_named_and_reached_by_the_keyboard() {
+    let mut harness = window(None);
+    let before = controls(&harness);
+    let rig = &mut harness.state_mut().rig;
+    (rig.recording, rig.replay) = (Some(recording()), Some(replay(false)));
+    harness.run_steps(3);
+    assert_eq!(controls(&harness).len(), before.len() + 8);
+    assert_eq!(faults(&mut harness, &before), Vec::<String>::new());
 }
 
 #[test]

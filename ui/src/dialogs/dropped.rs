@@ -10,10 +10,12 @@ use maulstick_types::command::BRUSH_FILE_MAX;
 
 use crate::dialogs::paths;
 use crate::language::translated;
+use crate::sessions::RECORDING;
 
 /// The kinds of files that may be dropped.
-pub(crate) const KINDS: &str =
-    tr_noop!("Drop a painting (.maul), a picture to look at (PNG, JPEG, TIFF) or a brush (.toml).");
+pub(crate) const KINDS: &str = tr_noop!(
+    "Drop a painting (.maul), a recording (.mcap), a picture to look at (PNG, JPEG, TIFF) or a brush (.toml)."
+);
 
 /// A file that was dropped, as it was found to be.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +24,8 @@ pub(crate) enum Dropped {
     Painting(PathBuf),
     /// A picture: it is pinned beside the canvas.
     Picture(PathBuf),
+    /// A recording, or a take: it is played where the painter confirms it.
+    Recording(PathBuf),
     /// A brush file: the brush in hand becomes it.
     Brush(Box<BrushFile>),
     /// Something else.
@@ -65,10 +69,7 @@ pub(crate) fn found(path: &Path) -> Dropped {
     }
     match ending.as_str() {
         "toml" => brush(path, &name),
-        "mcap" => nothing(
-            tr!("{name} is a take, and the window does not play one", name),
-            tr!("Paint it from a terminal: maulstick render TAKE -o picture.png"),
-        ),
+        RECORDING => Dropped::Recording(path.to_owned()),
         "" => nothing(
             tr!("{name} is none that can be opened", name),
             translated(KINDS),
@@ -119,6 +120,7 @@ pub(crate) fn hint(context: &Context) {
     let words = match (path.as_deref().map(paths::ending).as_deref(), count) {
         (_, 2..) => tr!("One file at a time."),
         (Some(paths::PAINTING), _) => tr!("Let go to open the painting."),
+        (Some(RECORDING), _) => tr!("Let go to play the recording."),
         (Some("toml"), _) => tr!("Let go to take this brush into the hand."),
         (Some(ending), _) if paths::PICTURES.contains(&ending) => {
             tr!("Let go to pin the picture beside the canvas.")
@@ -154,6 +156,8 @@ mod tests {
         assert_eq!(found(&picture), Dropped::Picture(picture));
         let named = put("scan.TIF", b"");
         assert_eq!(found(&named), Dropped::Picture(named));
+        let take = put("sea.mcap", b"");
+        assert_eq!(found(&take), Dropped::Recording(take));
         let round = BrushFile::library_text("round").expect("a brush");
         match found(&put("round.toml", round.as_bytes())) {
             Dropped::Brush(file) => assert_eq!(file.kind, "round"),
@@ -176,7 +180,6 @@ mod tests {
         };
         refused("song.mp3", b"ID3", &[".mp3", ".maul", "PNG", ".toml"]);
         refused("notes", b"words", &["notes", ".maul"]);
-        refused("a.mcap", b"", &["a take", "render"]);
         refused("b.toml", b"name = 7", &["b.toml", "docs/brushes.md"]);
         refused("c.toml", b"\xff\xfe", &["c.toml"]);
         refused("d.toml", &vec![b' '; BRUSH_FILE_MAX + 1], &["megabyte"]);

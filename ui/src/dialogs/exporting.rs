@@ -7,12 +7,16 @@ use maulstick_types::command::FileCommand;
 use maulstick_types::paint::ExportStatus;
 
 use crate::dialogs::paths;
+use crate::sessions::transport_bar;
 use crate::widgets::context::PanelContext;
 
 /// An export that lasts no longer than this is not worth a word, ns.
 const SHORT_NS: u64 = 500_000_000;
 /// Progress below which the time left cannot be estimated.
 const KNOWN: f32 = 0.02;
+
+/// Distance from the lower edge, points.
+const ABOVE: f32 = 48.0;
 
 /// Time left, in words; empty while it cannot be estimated.
 fn left(export: &ExportStatus) -> String {
@@ -37,9 +41,13 @@ pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) {
     let Some(export) = export.filter(|export| export.since_ns >= SHORT_NS) else {
         return;
     };
+    let above = match work.rig.replay.is_some() {
+        true => transport_bar::OVER,
+        false => ABOVE,
+    };
     Area::new(Id::unique("exporting"))
         .order(Order::Foreground)
-        .anchor(Align2::CENTER_BOTTOM, [0.0, -48.0])
+        .anchor(Align2::CENTER_BOTTOM, [0.0, -above])
         .show(context, |ui| {
             Frame::popup(ui.style()).show(ui, |ui| {
                 ui.horizontal(|ui| {

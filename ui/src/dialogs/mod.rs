@@ -4,12 +4,13 @@
 //! | module | holds |
 //! | --- | --- |
 //! | `dialog`, `browser`, `paths` | parts of dialogs: frame, file chooser with the listing of a folder, paths |
-//! | `new`, `open`, `recent`, `save_as`, `export`, `picture` | one dialog each |
+//! | `new`, `open`, `recent`, `save_as`, `export`, `choose` | one dialog each |
 //! | `discard_prompt` | asks before an unsaved painting is closed |
 //! | `dropped` | files dropped on the window |
 //! | `save_status`, `exporting` | line at the lower edge; progress of an export |
 
 mod browser;
+mod choose;
 mod dialog;
 mod discard_prompt;
 mod dropped;
@@ -18,7 +19,6 @@ mod exporting;
 mod new;
 mod open;
 pub(crate) mod paths;
-mod picture;
 mod recent;
 mod save_as;
 mod save_status;
@@ -35,7 +35,9 @@ use crate::language::translated;
 use crate::reference::Reference;
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
+use crate::sessions::SessionOrder;
 use crate::widgets::context::PanelContext;
+use choose::ChooseFile;
 pub(crate) use dialog::wrong;
 use dialog::{Answer, in_words};
 use discard_prompt::Unkept;
@@ -43,7 +45,6 @@ use dropped::Dropped;
 use export::ExportPicture;
 use new::NewPainting;
 use open::OpenPainting;
-use picture::ChoosePicture;
 use recent::RecentList;
 use save_as::SaveAs;
 
@@ -58,8 +59,9 @@ enum Dialog {
     Open(OpenPainting),
     SaveAs(SaveAs),
     Export(ExportPicture),
-    Picture(ChoosePicture),
-    Tracing(ChoosePicture),
+    Picture(ChooseFile),
+    Tracing(ChooseFile),
+    Recording(ChooseFile),
 }
 
 /// Files in the window.
@@ -104,6 +106,7 @@ impl Files {
                 let export = ExportPicture::new(&folder(work), &stem(work));
                 self.begin(Dialog::Export(export));
             }
+            Action::Play => self.choose_recording(None, work),
             Action::Reference => {
                 let known = work.preferences.reference.path.as_deref();
                 let choose = Self::picture(known, tr!("Pin a reference picture"), work);
@@ -131,16 +134,26 @@ impl Files {
     }
 
     /// The dialog that picks a picture: beside the one that is known, else beside the painting.
-    fn picture(
-        known: Option<&Path>,
-        title: &'static str,
-        work: &PanelContext<'_>,
-    ) -> ChoosePicture {
+    fn picture(known: Option<&Path>, title: &'static str, work: &PanelContext<'_>) -> ChooseFile {
         let known = known
             .and_then(Path::parent)
             .filter(|folder| folder.is_dir());
         let folder = known.map_or_else(|| folder(work), Path::to_owned);
-        ChoosePicture::new(&folder, title)
+        ChooseFile::picture(&folder, title)
+    }
+
+    /// Asks for a recording to play, and proposes one that is known.
+    fn choose_recording(&mut self, known: Option<&Path>, work: &mut PanelContext<'_>) {
+        if work.rig.replay.is_some() {
+            work.notifications.fault(
+                tr!("A recording is being played."),
+                tr!("End that first: its bar has a button."),
+            );
+            return;
+        }
+        let mut choose = ChooseFile::recording(&folder(work), Unkept::of(work.rig));
+        known.iter().for_each(|path| choose.propose(path));
+        self.begin(Dialog::Recording(choose));
     }
 
     fn save(&mut self, work: &mut PanelContext<'_>) {
@@ -218,6 +231,17 @@ impl Files {
                 }
                 (answer, None)
             }
+            Dialog::Recording(choose) => {
+                let (answer, recording) = choose.show(context);
+                if let Some(recording) = recording {
+                    let forget = choose.forgets();
+                    work.requests
+                        .session(SessionOrder::Play { recording, forget });
+                    self.dialog = None;
+                    return;
+                }
+                (answer, None)
+            }
         };
         match (answer, command) {
             (Answer::Leave, _) => (self.dialog, self.waiting) = (None, None),
@@ -269,9 +293,13 @@ impl Files {
                     Some(Dialog::New(new)) => new.refused(words),
                     Some(Dialog::Open(open)) => open.refused(words),
                     Some(Dialog::SaveAs(save_as)) => save_as.refused(words),
-                    Some(Dialog::Export(_) | Dialog::Picture(_) | Dialog::Tracing(_)) | None => {
-                        work.notifications.of(fault)
-                    }
+                    Some(
+                        Dialog::Export(_)
+                        | Dialog::Picture(_)
+                        | Dialog::Tracing(_)
+                        | Dialog::Recording(_),
+                    )
+                    | None => work.notifications.of(fault),
                 }
             }
             Err(fault) => work.notifications.of(fault),
@@ -335,6 +363,7 @@ impl Files {
         match found {
             Some(Dropped::Painting(path)) => self.open_dropped(context, &path, work),
             Some(Dropped::Picture(path)) => reference.pin(context, &path, work.preferences),
+            Some(Dropped::Recording(path)) => self.choose_recording(Some(&path), work),
             Some(Dropped::Brush(file)) => work.take_up(*file),
             Some(Dropped::Nothing { what, help }) => work.notifications.fault(what, help),
             None => work.notifications.fault(

@@ -36,6 +36,13 @@ pub(crate) fn pictures() -> PathBuf {
     own.filter(|folder| folder.is_dir()).unwrap_or_else(home)
 }
 
+/// The user's folder of documents, or the home folder.
+#[must_use]
+pub(crate) fn documents() -> PathBuf {
+    let own = UserDirs::new().and_then(|dirs| dirs.document_dir().map(Path::to_owned));
+    own.filter(|folder| folder.is_dir()).unwrap_or_else(home)
+}
+
 /// The whole path of what was typed: `~` is the user's folder, and what does not begin at the root counts
 /// from there.
 #[must_use]

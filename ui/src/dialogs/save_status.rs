@@ -1,14 +1,16 @@
 //! The line at the lower edge: name of the painting, and whether it is saved. It opens a menu of all file
-//! actions, for painters who do not know the keys.
+//! actions, for painters who do not know the keys. Before it stands the mark of a recording in progress.
 
 use std::path::Path;
 
 use eframe::egui::containers::menu::MenuButton;
-use eframe::egui::{Area, Button, Context, Frame, Id, Margin, Order, RichText, TextWrapMode};
+use eframe::egui::{Area, Button, Context, Frame, Id, Margin, Order, RichText, TextWrapMode, Ui};
 
 use crate::app::{rack, sides};
 use crate::dialogs::paths;
+use crate::input::keymap::Keymap;
 use crate::input::keys::{Action, BINDINGS};
+use crate::sessions::recording_mark;
 use crate::widgets::context::PanelContext;
 
 /// Unsaved time from which it is shown, ns.
@@ -49,9 +51,9 @@ fn words(context: &Context, work: &PanelContext<'_>) -> String {
 }
 
 /// Shows the line; what was chosen under it.
-pub(crate) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action> {
+pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) -> Option<Action> {
     let words = words(context, work);
-    if words.is_empty() {
+    if words.is_empty() && work.rig.recording.is_none() {
         return None;
     }
     let side = sides::rack_side(work.preferences);
@@ -67,22 +69,34 @@ pub(crate) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action>
             let back = ui.visuals().window_fill.gamma_multiply(0.8);
             let frame = Frame::NONE.fill(back).corner_radius(4.0);
             frame.inner_margin(Margin::symmetric(4, 0)).show(ui, |ui| {
-                let button = Button::new(RichText::new(words).small())
-                    .frame_when_inactive(false)
-                    .small();
-                MenuButton::from_button(button).ui(ui, |ui| {
-                    for act in OFFERS {
-                        let Some(binding) = BINDINGS.iter().find(|known| known.act == act) else {
-                            continue;
-                        };
-                        let keys = work.preferences.keys.written(ui.ctx(), act);
-                        let offer = Button::new(binding.words).shortcut_text(keys);
-                        if ui.add(offer).clicked() {
-                            chosen = Some(act);
-                        }
+                ui.horizontal(|ui| {
+                    recording_mark::show(ui, work);
+                    if !words.is_empty() {
+                        chosen = menu(ui, &words, &work.preferences.keys);
                     }
                 });
             });
         });
+    chosen
+}
+
+/// The line with its menu; what was chosen there.
+fn menu(ui: &mut Ui, words: &str, keymap: &Keymap) -> Option<Action> {
+    let mut chosen = None;
+    let button = Button::new(RichText::new(words).small())
+        .frame_when_inactive(false)
+        .small();
+    MenuButton::from_button(button).ui(ui, |ui| {
+        for act in OFFERS {
+            let Some(binding) = BINDINGS.iter().find(|known| known.act == act) else {
+                continue;
+            };
+            let keys = keymap.written(ui.ctx(), act);
+            let offer = Button::new(binding.words).shortcut_text(keys);
+            if ui.add(offer).clicked() {
+                chosen = Some(act);
+            }
+        }
+    });
     chosen
 }

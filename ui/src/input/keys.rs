@@ -19,6 +19,10 @@ pub enum Action {
     SaveAs,
     /// A picture of it for other programs.
     Export,
+    /// Record the session, or end that.
+    Record,
+    /// Play a recording.
+    Play,
     /// Show or hide the reference picture beside the canvas.
     Reference,
     /// Choose a picture to trace on the canvas.
@@ -127,7 +131,7 @@ const fn key(act: Action, modifiers: Modifiers, key: Key, words: &'static str) -
 }
 
 /// The keys of a new painter.
-pub(crate) const BINDINGS: [Binding; 38] = [
+pub(crate) const BINDINGS: [Binding; 40] = [
     key(
         Action::Palette,
         Modifiers::NONE,
@@ -262,6 +266,18 @@ pub(crate) const BINDINGS: [Binding; 38] = [
         Modifiers::COMMAND,
         Key::T,
         "Show or hide the tracing picture",
+    ),
+    key(
+        Action::Record,
+        Modifiers::COMMAND.plus(Modifiers::SHIFT),
+        Key::R,
+        "Record the session",
+    ),
+    key(
+        Action::Play,
+        Modifiers::COMMAND,
+        Key::P,
+        "Play a recording…",
     ),
     key(
         Action::Keys,

@@ -75,7 +75,9 @@ impl HealthMonitor {
                 continue;
             }
             let changes = state.changes_devices || state.fit.is_some();
-            if state.switching || changes && state.devices.contains_key(node) {
+            // A session is painted again in a painting of its own.
+            let opens = state.switching || state.replay.is_some();
+            if opens || changes && state.devices.contains_key(node) {
                 self.expected.insert(node.clone());
                 continue;
             }

@@ -7,6 +7,7 @@ use maulstick_types::haptics::ForceOrder;
 
 use crate::input::keys::Action;
 use crate::rig::device_commands::DeviceOrder;
+use crate::sessions::SessionOrder;
 
 pub(crate) use maulstick_types::command::PAINT_NODE as PAINT;
 
@@ -67,6 +68,7 @@ pub struct Requests {
     waiting: Vec<Request>,
     acts: Vec<Action>,
     devices: Vec<DeviceOrder>,
+    sessions: Vec<SessionOrder>,
 }
 
 impl Requests {
@@ -98,6 +100,17 @@ impl Requests {
     #[must_use]
     pub fn take_device_orders(&mut self) -> Vec<DeviceOrder> {
         std::mem::take(&mut self.devices)
+    }
+
+    /// Asks recorder or player.
+    pub fn session(&mut self, order: SessionOrder) {
+        self.sessions.push(order);
+    }
+
+    /// Takes the orders to recorder and player, the oldest first.
+    #[must_use]
+    pub fn take_session_orders(&mut self) -> Vec<SessionOrder> {
+        std::mem::take(&mut self.sessions)
     }
 
     /// Does what a key would do.

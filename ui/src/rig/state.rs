@@ -20,6 +20,8 @@ use crate::rig::force_history::ForceHistory;
 use crate::rig::health::RigEvent;
 use crate::rig::sample_history::SampleHistory;
 use crate::rig::thumbnails::Thumbnails;
+use crate::sessions::player::ReplayProgress;
+use crate::sessions::recorder::RecordingProgress;
 
 /// A brush of the rig.
 #[derive(Clone, Debug, Default)]
@@ -91,6 +93,10 @@ pub struct RigState {
     pub listing: Option<DeviceListing>,
     /// A fit of a device to the canvas in progress.
     pub fit: Option<FitProgress>,
+    /// A recording in progress that this window began.
+    pub recording: Option<RecordingProgress>,
+    /// A replay in progress that this window began.
+    pub replay: Option<ReplayProgress>,
     /// Pressure that a pen over the window senses now, 0 to 1; `None` while none is near.
     pub pen_pressure: Option<f64>,
     /// True while a change of a device is not in the listing yet.
@@ -129,6 +135,8 @@ impl RigState {
             nodes: Vec::new(),
             listing: None,
             fit: None,
+            recording: None,
+            replay: None,
             pen_pressure: None,
             changes_devices: false,
             library,

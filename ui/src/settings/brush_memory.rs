@@ -55,6 +55,7 @@ impl BrushMemory {
             input.pointer.latest_pos().is_some() || input.events.iter().any(is_key)
         });
         let is_taken = work.rig.paint.as_ref().is_none_or(|node| node.status.take)
+            || work.rig.replay.is_some()
             || work.rig.nodes.iter().any(|node| node.starts_with(PLAYER));
         if !self.is_used || is_taken || work.rig.switching || work.rig.scene.is_none() {
             return;

@@ -16,6 +16,7 @@ use crate::language::{Language, all, choose, chosen, translated};
 use crate::panels::canvas::CanvasPanel;
 use crate::panels::device::tests::devices;
 use crate::rig::state::RigState;
+use crate::sessions::tests::{recording, replay};
 use crate::settings::preferences::Preferences;
 use crate::test_support::context_bench;
 use crate::test_support::overlay_bench::{Bench, ctrl, press, until, window_of};
@@ -229,6 +230,7 @@ fn menu_keys_settings_and_dialogs_have_no_english_word_and_nothing_is_cut_off() 
             ("open", Key::O, Modifiers::NONE),
             ("save_as", Key::S, Modifiers::SHIFT),
             ("export", Key::E, Modifiers::NONE),
+            ("play", Key::P, Modifiers::NONE),
         ] {
             let folder = tempfile::tempdir().expect("a folder");
             let mut harness = speaking(code, "none");
@@ -241,6 +243,20 @@ fn menu_keys_settings_and_dialogs_have_no_english_word_and_nothing_is_cut_off() 
             harness.run_steps(4);
             look(&mut harness, code, name);
             assert_eq!(faults(&harness, language, true), [""; 0], "{code}: {name}");
+        }
+    }
+}
+
+#[test]
+fn recorder_and_player_have_no_english_word_and_nothing_is_cut_off() {
+    for (code, language) in all() {
+        for paused in [false, true] {
+            let mut harness = speaking(code, "none");
+            let rig = &mut harness.state_mut().rig;
+            (rig.recording, rig.replay) = (Some(recording()), Some(replay(paused)));
+            harness.run_steps(4);
+            look(&mut harness, code, "transport");
+            assert_eq!(faults(&harness, language, false), [""; 0], "{code}");
         }
     }
 }

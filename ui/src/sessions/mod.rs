@@ -1,0 +1,139 @@
+//! Sessions: recorded and played by processes that the window starts, as a user at a terminal would.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`recorder`] | `maulstick record` |
+//! | [`player`] | `maulstick replay` |
+//! | [`recording_mark`] | the red dot while a recording is written |
+//! | [`transport_bar`] | the bar and the keys while one is played |
+
+pub(crate) mod player;
+pub(crate) mod recorder;
+pub(crate) mod recording_mark;
+#[cfg(test)]
+pub(crate) mod tests;
+pub(crate) mod transport_bar;
+
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use eframe::egui::Context;
+
+use crate::rig::child_process::own_program;
+use crate::rig::state::RigState;
+use crate::sessions::player::{Player, TransportOrder};
+use crate::sessions::recorder::Recorder;
+use crate::widgets::notifications::Notifications;
+
+/// File ending of a recording.
+pub(crate) const RECORDING: &str = "mcap";
+
+/// A request to recorder or player.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SessionOrder {
+    /// Records the session from now on.
+    Record,
+    /// Ends the recording.
+    StopRecording,
+    /// Plays a recording.
+    Play {
+        /// Its file.
+        recording: PathBuf,
+        /// True if the painting on the easel may go, although it is in memory only.
+        forget: bool,
+    },
+    /// An order to what plays.
+    Transport(TransportOrder),
+}
+
+/// The processes of recorder and player.
+#[derive(Debug)]
+pub(crate) struct SessionProcesses {
+    program: PathBuf,
+    recorder: Option<Recorder>,
+    player: Option<Player>,
+}
+
+impl SessionProcesses {
+    /// Runs `program`.
+    pub(crate) fn new(program: PathBuf) -> Self {
+        Self {
+            program,
+            recorder: None,
+            player: None,
+        }
+    }
+
+    /// Runs the program of this process.
+    pub(crate) fn own() -> Self {
+        Self::new(own_program())
+    }
+
+    /// Carries out orders, and takes in what the processes say.
+    pub(crate) fn turn(
+        &mut self,
+        context: &Context,
+        orders: Vec<SessionOrder>,
+        (rig, notifications): (&mut RigState, &mut Notifications),
+    ) {
+        for order in orders {
+            let begun = match order {
+                SessionOrder::Record if self.recorder.is_none() => {
+                    let command = self.command("record", rig);
+                    Recorder::start(context, command, rig, notifications)
+                        .map(|recorder| self.recorder = Some(recorder))
+                }
+                SessionOrder::Play { recording, forget } if self.player.is_none() => {
+                    let command = self.command("replay", rig);
+                    Player::start(context, command, (recording, forget), rig)
+                        .map(|player| self.player = Some(player))
+                }
+                SessionOrder::StopRecording => {
+                    self.recorder.iter().for_each(Recorder::stop);
+                    Ok(())
+                }
+                SessionOrder::Transport(order) => {
+                    if let Some(player) = &mut self.player {
+                        player.send(order, rig);
+                    }
+                    Ok(())
+                }
+                SessionOrder::Record | SessionOrder::Play { .. } => Ok(()),
+            };
+            if let Err(error) = begun {
+                notifications.fault(
+                    tr!("maulstick cannot be started: {error}", error),
+                    tr!("Start the rig again."),
+                );
+            }
+        }
+        if let Some(recorder) = &mut self.recorder
+            && recorder.follow(context, rig, notifications)
+        {
+            self.recorder = None;
+        }
+        if let Some(player) = &mut self.player
+            && player.follow(context, rig, notifications)
+        {
+            self.player = None;
+        }
+    }
+
+    fn command(&self, name: &str, rig: &RigState) -> Command {
+        let mut command = Command::new(&self.program);
+        command.args([name, "--name", &rig.rig]);
+        command.stdin(Stdio::null());
+        command
+    }
+}
+
+/// A time as clocks of players show it: minutes and seconds, with hours where there are any.
+#[must_use]
+pub(crate) fn clock(seconds: f64) -> String {
+    let whole = seconds.max(0.0) as u64;
+    let [hours, minutes, seconds] = [whole / 3600, whole / 60 % 60, whole % 60];
+    match hours {
+        0 => format!("{minutes}:{seconds:02}"),
+        _ => format!("{hours}:{minutes:02}:{seconds:02}"),
+    }
+}
