@@ -239,6 +239,37 @@ impl Part {
         Ok(())
     }
 
+    fn write_as_sent(&mut self, received: &ReceivedMessage) -> McapResult<()> {
+        let ReceivedMessage { topic, bytes, .. } = received;
+        let Arrived {
+            header, arrived_ns, ..
+        } = &received.message;
+        self.writer.write(topic, header, bytes, *arrived_ns)
+    }
+
+    /// Writes what of a message its topic's limit lets through.
+    fn write_as_json(&mut self, received: &ReceivedMessage) -> McapResult<()> {
+        let Arrived {
+            header, arrived_ns, ..
+        } = &received.message;
+        let (topic, arrived_ns) = (&received.topic, *arrived_ns);
+        let passes = |limit: &mut RateLimit| limit.admits(topic, arrived_ns);
+        if !self.json.as_mut().is_some_and(passes) {
+            return Ok(());
+        }
+        let body = received.bytes.get(HEADER_BYTES..).unwrap_or_default();
+        let Some(table) = self.tables.of(header.schema) else {
+            return Ok(());
+        };
+        match table.decode(body) {
+            Ok(value) => self
+                .writer
+                .write_json(topic, table, header, &value, arrived_ns),
+            // As it was sent it is in the recording.
+            Err(_) => Ok(()),
+        }
+    }
+
     /// Attaches the painting as it is now, so that what is accepted from now on can be painted again.
     fn attach_painting(&mut self, target: &Target) -> Result<(), UserError> {
         let failed = |error: std::io::Error| UserError::failure(error.to_string());
