@@ -62,6 +62,10 @@ pub struct PaintingOptions {
     /// remembers it
     #[arg(long, value_name = "SIZE")]
     pub history: Option<String>,
+    /// Room for the record of what was painted, of which time lapses are made, at most, such as 512M; beyond that it
+    /// begins anew, and 0 keeps none. The painting remembers it
+    #[arg(long, value_name = "SIZE")]
+    pub record: Option<String>,
     /// Where paint and colour are computed; auto uses a graphics processor if there is one [default: that
     /// of rig.toml]
     #[arg(long, value_name = "NAME", value_parser = BACKENDS)]
@@ -205,7 +209,7 @@ impl PaintingOptions {
         model.or_else(|| self.kit.for_a_new_one())
     }
 
-    /// As [`KitOptions::apply`], with memory, history, backend and paint model.
+    /// As [`KitOptions::apply`], with memory, history, record, backend and paint model.
     ///
     /// # Errors
     /// As there, and for invalid sizes.
@@ -222,9 +226,12 @@ impl PaintingOptions {
         if self.history.is_some() {
             config.paint.history.clone_from(&self.history);
         }
-        config.paint.bytes().map_err(|what| {
+        if self.record.is_some() {
+            config.paint.record.clone_from(&self.record);
+        }
+        config.paint.room().map_err(|what| {
             UserError::usage(what)
-                .at("--memory, --history")
+                .at("--memory, --history, --record")
                 .help("write sizes as 512M or 2G; 64M is the least memory")
         })?;
         self.kit.apply(config)

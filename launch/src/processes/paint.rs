@@ -44,8 +44,8 @@ pub(super) fn run(options: &PaintOptions) -> Result<i32, UserError> {
     let (topic, feed) = (member.topics.frame(), node.feed());
     let mut frames =
         FrameServer::new(bus, &topic, feed.clone(), &member.wake, origin)?.telling_brushes(topics);
-    let (memory, _) = member.config.paint.bytes().map_err(UserError::usage)?;
-    node = node.with_memory(usize::try_from(memory).unwrap_or(usize::MAX));
+    let room = member.config.paint.room().map_err(UserError::usage)?;
+    node = node.with_memory(usize::try_from(room.memory).unwrap_or(usize::MAX));
     if let Some(document) = document {
         frames = frames.with_tile_cache(document.tile_cache());
         node = node.keeping(document, since);

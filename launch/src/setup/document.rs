@@ -51,13 +51,13 @@ pub fn read(path: &Path) -> Result<(Document, Opened), UserError> {
 /// # Errors
 /// A [`UserError`] where the file cannot be used, or the settings are wrong.
 pub fn go_on(config: &RigConfig, path: &Path) -> Result<(Document, Sequencer, u64), UserError> {
-    let (memory, history) = config.paint.bytes().map_err(|what| {
+    let room = config.paint.room().map_err(|what| {
         UserError::usage(what)
             .at("[paint]")
             .help("write sizes as 512M or 2G")
     })?;
     let settings = DocumentSettings {
-        memory: usize::try_from(memory).unwrap_or(usize::MAX),
+        memory: usize::try_from(room.memory).unwrap_or(usize::MAX),
         ..DocumentSettings::new(path, Access::Paint)
     };
     let (document, opened) = Document::open(&settings).map_err(|error| wrong(path, &error))?;
@@ -76,8 +76,12 @@ pub fn go_on(config: &RigConfig, path: &Path) -> Result<(Document, Sequencer, u6
             (sequencer, 0)
         }
     };
-    if let Some(history) = history {
-        sequencer.painting_mut().set_quota(history);
+    let painting = sequencer.painting_mut();
+    if let Some(history) = room.history {
+        painting.set_quota(history);
+    }
+    if let Some(record) = room.record {
+        painting.set_record_quota(record);
     }
     if let Some(what) = document.pager().fault() {
         return Err(wrong(path, &DocumentError::Damaged(what.to_owned())));

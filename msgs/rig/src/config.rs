@@ -141,20 +141,38 @@ pub struct PaintSection {
     /// absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub history: Option<String>,
+    /// Most room of the record of what was painted; 0 keeps none. As the document has it if absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub record: Option<String>,
+}
+
+/// Room of a painting, bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PaintingRoom {
+    /// Most memory of its tiles.
+    pub memory: u64,
+    /// Most of its history, if that is set.
+    pub history: Option<u64>,
+    /// Most of its record, if that is set.
+    pub record: Option<u64>,
 }
 
 impl PaintSection {
-    /// Most bytes of tiles in memory, and of the history if that is set.
+    /// Room in memory, and of history and record if that is set.
     ///
     /// # Errors
     /// The error, in words.
-    pub fn bytes(&self) -> Result<(u64, Option<u64>), String> {
+    pub fn room(&self) -> Result<PaintingRoom, String> {
         let memory = parse_bytes(&self.memory)?;
         if memory < MEMORY_MIN {
             return Err(format!("a memory of {} is less than 64M", self.memory));
         }
-        let history = self.history.as_deref().map(parse_bytes).transpose()?;
-        Ok((memory, history))
+        let bytes = |size: &Option<String>| size.as_deref().map(parse_bytes).transpose();
+        Ok(PaintingRoom {
+            memory,
+            history: bytes(&self.history)?,
+            record: bytes(&self.record)?,
+        })
     }
 }
 
@@ -170,6 +188,7 @@ impl Default for PaintSection {
             document: None,
             memory: "1G".into(),
             history: None,
+            record: None,
         }
     }
 }

@@ -10,13 +10,14 @@ use maulstick_canvas::page::Pager;
 use maulstick_painting::sequencer::Record;
 use maulstick_types::command::advice::Advice;
 
+use crate::checkpoint::Checkpoint;
 use crate::error::DocumentError;
 use crate::file::database::{Access, Database};
 use crate::file::relocate::{Relocate, RelocateRequest, Relocation, make_room};
 use crate::opening::{Opened, has_state, next_page, opened};
+use crate::record::{self, RecordRow};
 use crate::thread::DocumentThread;
-use crate::thread::queues::{DocumentBacking, Life, PANICKED, Shared, TileCache};
-use crate::writing::Checkpoint;
+use crate::thread::queues::{CLOSED, DocumentBacking, Fetch, Life, PANICKED, Shared, TileCache};
 
 /// Settings for opening a document.
 #[derive(Clone, Debug)]
@@ -71,6 +72,9 @@ impl Document {
         };
         if let Some(found) = &found {
             shared.committed.store(found.next_index(), SeqCst);
+            // Only the limit of the record depends on it.
+            let bytes = record::bytes(&database).unwrap_or_default();
+            shared.record_bytes.store(bytes, SeqCst);
         }
         let saved_version = found.as_ref().map_or(0, |found| found.snapshot().versions);
         let writes = settings.access == Access::Paint;
@@ -243,6 +247,22 @@ impl Document {
     #[must_use]
     pub fn committed(&self) -> u64 {
         self.shared.committed.load(SeqCst)
+    }
+
+    /// Bytes that the record takes in the file, as of the last checkpoint.
+    #[must_use]
+    pub fn record_bytes(&self) -> u64 {
+        self.shared.record_bytes.load(SeqCst)
+    }
+
+    /// What was accepted from a serial number on, as much as is in a row of the file; `None` at the end. It reads what is
+    /// written, not what was handed over since.
+    ///
+    /// # Errors
+    /// [`DocumentError::Damaged`] if it is not intact, or the reason why it cannot be read.
+    pub fn record_row(&self, serial: u64) -> Result<Option<RecordRow>, DocumentError> {
+        let row = self.shared.request(|answer| Fetch::Records(serial, answer));
+        row.unwrap_or_else(|| Err(DocumentError::Other(CLOSED.to_owned())))
     }
 
     /// Processor time spent on reading pages.

@@ -13,6 +13,8 @@ use crate::error::DocumentError;
 use crate::file::database::Database;
 use crate::tables::checksum::journal_checksum;
 
+/// Largest number of records in a row: many wait where the disk was full.
+pub(crate) const ROW_RECORDS: usize = 1024;
 /// Largest size of a row's data, bytes.
 const ROW_MAX: usize = 1 << 28;
 /// Origin of records that did not come from a brush.
@@ -51,6 +53,11 @@ fn message(record: &Record) -> Result<Vec<u8>, DocumentError> {
 /// # Errors
 /// The error of the codec or the compressor.
 pub fn write(records: &[Record]) -> Result<Vec<u8>, DocumentError> {
+    Ok(zstd::bulk::compress(&encoded(records)?, 1)?)
+}
+
+/// Records, in order, as bytes that are not compressed.
+pub(crate) fn encoded(records: &[Record]) -> Result<Vec<u8>, DocumentError> {
     let mut bytes = Vec::new();
     for record in records {
         let message = message(record)?;
@@ -58,7 +65,7 @@ pub fn write(records: &[Record]) -> Result<Vec<u8>, DocumentError> {
         bytes.extend((message.len() as u32).to_le_bytes());
         bytes.extend(message);
     }
-    Ok(zstd::bulk::compress(&bytes, 1)?)
+    Ok(bytes)
 }
 
 /// Writes records, of which there is at least one, as a row of the journal.
@@ -82,13 +89,22 @@ pub(crate) fn put(database: &Database, records: &[Record]) -> Result<(), Documen
 /// # Errors
 /// [`DocumentError::Damaged`].
 pub fn read(first: u64, bytes: &[u8]) -> Result<Vec<Record>, DocumentError> {
+    decoded(first, &unpacked(bytes)?)
+}
+
+/// Bytes of a row before they were compressed.
+pub(crate) fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, DocumentError> {
     let mut packed = zstd::stream::read::Decoder::new(bytes)?.take(ROW_MAX as u64 + 1);
     let mut bytes = Vec::new();
     packed.read_to_end(&mut bytes).map_err(damaged)?;
     if bytes.len() > ROW_MAX {
         return Err(damaged("a row is too long"));
     }
-    let (mut records, mut rest) = (Vec::new(), bytes.as_slice());
+    Ok(bytes)
+}
+
+fn decoded(first: u64, bytes: &[u8]) -> Result<Vec<Record>, DocumentError> {
+    let (mut records, mut rest) = (Vec::new(), bytes);
     while !rest.is_empty() {
         let (index, after) = rest
             .split_first_chunk::<8>()

@@ -1,14 +1,15 @@
 //! The painting as a file.
 //!
 //! A painting is one SQLite database (`.maul`), open in one program at a time. It holds the tiles with
-//! their history, the records accepted since the last checkpoint (the journal), named versions, tiles as they are
-//! displayed, and the files that the painting is made with. `docs/document.md` describes the tables.
+//! their history, the records accepted since the last checkpoint (the journal) and those before (the record), named
+//! versions, tiles as they are displayed, and the files that the painting is made with. `docs/document.md` describes the tables.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`document`], `thread` | an open painting; the thread that owns its file, and the queues between them |
-//! | [`writing`], [`opening`] | a checkpoint of a painting, written as one transaction and read back |
+//! | [`checkpoint`], [`writing`], [`opening`] | a checkpoint of a painting, written as one transaction and read back |
 //! | [`journal`] | accepted records as bytes |
+//! | [`record`] | what was accepted since the beginning of the record, to be executed again |
 //! | [`file`](mod@file) | the file: locks, pages read one by one, relocation, removal while it is open |
 //! | [`tables`] | tables and migrations, rows, checksums, paint as bytes |
 //! | [`stats`], [`pack`] | sizes and integrity of a file; making it small |
@@ -40,23 +41,27 @@
 //! # }
 //! ```
 
+pub mod checkpoint;
 pub mod document;
 pub mod error;
 pub mod file;
 pub mod journal;
 pub mod opening;
 pub mod pack;
+pub mod record;
 pub mod stats;
 pub mod tables;
 mod thread;
 pub mod writing;
 
+pub use checkpoint::Checkpoint;
 pub use document::{Document, DocumentSettings};
 pub use error::DocumentError;
 pub use file::database::Access;
 pub use file::relocate::{Relocate, Relocation, make_room, unfinished};
 pub use opening::{Opened, glance, scene, shown_tiles};
+pub use record::{RecordRow, RecordStats};
 pub use stats::DocumentStats;
 pub use tables::rows;
 pub use thread::queues::TileCache;
-pub use writing::{Checkpoint, ShownTile};
+pub use writing::ShownTile;

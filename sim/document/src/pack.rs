@@ -5,20 +5,22 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use rusqlite::params;
 
+use crate::checkpoint::Checkpoint;
 use crate::document::{Document, DocumentSettings};
 use crate::error::DocumentError;
 use crate::file::database::{Access, Database};
 use crate::tables::checksum::page_checksum;
 use crate::tables::planes;
-use crate::writing::Checkpoint;
 
-/// History of a packed painting.
+/// What a packed painting forgets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum History {
-    /// All its steps stay.
-    Kept,
-    /// Its steps are deleted; versions stay.
-    Forgotten,
+pub enum Forget {
+    /// Nothing.
+    Nothing,
+    /// The record of what was painted, which begins anew.
+    Record,
+    /// The steps of its history, and the record, for that may undo them; versions stay.
+    History,
 }
 
 /// Pages recompressed in one transaction.
@@ -31,13 +33,13 @@ const BATCH: usize = 256;
 /// Any [`DocumentError`].
 pub fn pack(
     path: &Path,
-    history: History,
+    forget: Forget,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<[u64; 2], DocumentError> {
     if !path.exists() {
         return Err(DocumentError::Missing);
     }
-    replay_journal(path, history)?;
+    replay_journal(path, forget)?;
     let before = std::fs::metadata(path)?.len();
     let (database, _) = Database::open(path, Access::Paint, None)?;
     let pages: Vec<i64> = {
@@ -63,11 +65,11 @@ pub fn pack(
     Ok([before, std::fs::metadata(path)?.len()])
 }
 
-/// Replays the journal of a closed painting and writes the result; deletes the history if it is to be forgotten.
+/// Replays the journal of a closed painting and writes the result; deletes what is to be forgotten.
 ///
 /// # Errors
 /// Any [`DocumentError`].
-pub fn replay_journal(path: &Path, history: History) -> Result<(), DocumentError> {
+pub fn replay_journal(path: &Path, forget: Forget) -> Result<(), DocumentError> {
     let (document, opened) = Document::open(&DocumentSettings::new(path, Access::Paint))?;
     let Some(opened) = opened else {
         return document.close();
@@ -79,15 +81,17 @@ pub fn replay_journal(path: &Path, history: History) -> Result<(), DocumentError
     if let Some(fault) = document.pager().fault() {
         return Err(DocumentError::Damaged(fault.to_owned()));
     }
-    if history == History::Forgotten {
-        sequencer.painting_mut().forget_history();
+    match forget {
+        Forget::Nothing => {}
+        Forget::Record => sequencer.painting_mut().break_record(),
+        Forget::History => sequencer.painting_mut().forget_history(),
     }
     document.write_checkpoint(Checkpoint::of(&mut sequencer, since));
     document.flush();
     if !document.is_ready() {
         return document.close();
     }
-    // Dropped steps are deleted with the next checkpoint.
+    // Pages of what was dropped are deleted with the next checkpoint.
     let versions = sequencer.painting().versions();
     document.write_checkpoint(Checkpoint::of(&mut sequencer, versions));
     document.close()

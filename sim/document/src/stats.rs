@@ -6,7 +6,8 @@ use rusqlite::params;
 
 use crate::error::DocumentError;
 use crate::file::database::{Access, Database};
-use crate::tables::schema::VERSION;
+use crate::record::{self, RecordStats};
+use crate::tables::schema;
 
 /// Format and sizes of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,10 +18,12 @@ pub struct DocumentStats {
     pub bytes: u64,
     /// Bytes of data of each table that has any.
     pub tables: Vec<(&'static str, u64)>,
+    /// The record, if there is one.
+    pub record: Option<RecordStats>,
 }
 
 /// Tables with data, and the column of that data.
-const DATA: [(&str, &str); 7] = [
+const DATA: [(&str, &str); 9] = [
     ("page", "data"),
     ("load", "data"),
     ("step", "tiles"),
@@ -28,6 +31,8 @@ const DATA: [(&str, &str); 7] = [
     ("file", "data"),
     ("journal", "data"),
     ("shown", "data"),
+    ("beginning", "tiles"),
+    ("record", "data"),
 ];
 
 impl DocumentStats {
@@ -38,7 +43,19 @@ impl DocumentStats {
     pub fn read(path: &Path) -> Result<Self, DocumentError> {
         let (database, _) = Database::open(path, Access::Read, None)?;
         let mut tables = Vec::new();
+        let format = schema::version(&database.connection)?;
+        let record = RecordStats::read(&database)?;
         for (table, column) in DATA {
+            let known = "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = ?1";
+            if !database.connection.prepare_cached(known)?.exists([table])? {
+                continue;
+            }
+            if table == "record" {
+                // Its rows count themselves.
+                let bytes = record.map_or(0, |record| record.bytes);
+                tables.extend((bytes > 0).then_some((table, bytes)));
+                continue;
+            }
             let query = format!("SELECT coalesce(sum(length({column})), 0) FROM {table}");
             let bytes: i64 = database
                 .connection
@@ -49,9 +66,10 @@ impl DocumentStats {
         }
         database.close_unchanged()?;
         Ok(Self {
-            format: VERSION,
+            format,
             bytes: std::fs::metadata(path)?.len(),
             tables,
+            record,
         })
     }
 
@@ -81,6 +99,7 @@ impl DocumentStats {
         for id in loads {
             database.load(id as u64)?;
         }
+        record::check(&database)?;
         let verdict: String =
             database
                 .connection

@@ -8,44 +8,23 @@ use maulstick_canvas::assets::{hash_of, kind_of};
 use maulstick_canvas::page::Page;
 use maulstick_canvas::planes::Planes;
 use maulstick_model::brush::load::BrushLoad;
+use maulstick_painting::Named;
 use maulstick_painting::history::{Step, TileRef};
-use maulstick_painting::snapshot::SequencerSnapshot;
-use maulstick_painting::{Named, Sequencer};
+use maulstick_painting::sequencer::Record;
+use maulstick_painting::snapshot::PaintingSnapshot;
 use rusqlite::{OptionalExtension as _, params};
 
+use crate::checkpoint::Checkpoint;
 use crate::error::DocumentError;
 use crate::file::database::{DEPTH_MAX, Database};
+use crate::record;
 use crate::tables::checksum::{Checksum, load_checksum, page_checksum, shown_checksum};
 use crate::tables::rows::{
-    COPY, StoredNonTileState, StoredStepEffects, packed, page_ids, place_number,
+    COPY, StoredNonTileState, StoredStepEffects, packed_changes, packed_tiles, page_ids,
+    place_number,
 };
 use crate::tables::schema::Table;
 use crate::tables::{loads, planes};
-
-/// Checkpoint of a painting, with its place in the journal and the files that belong to it.
-#[derive(Clone, Debug)]
-pub struct Checkpoint {
-    /// The painting.
-    pub painting: maulstick_painting::Checkpoint,
-    /// The sequencer.
-    pub sequencer: SequencerSnapshot,
-    /// Pictures and spectra of grounds and teeth, by their hash.
-    pub pictures: Vec<(String, Arc<[u8]>)>,
-}
-
-impl Checkpoint {
-    /// Checkpoint of a painting, with the tiles that are newer than the version `since`.
-    pub fn of(sequencer: &mut Sequencer, since: u64) -> Self {
-        let snapshot = sequencer.kept();
-        let embedded = sequencer.painting().embedded().iter();
-        let pictures = embedded.map(|(hash, bytes)| (hash.to_owned(), Arc::clone(bytes)));
-        Self {
-            pictures: pictures.collect(),
-            painting: sequencer.painting_mut().checkpoint(since),
-            sequencer: snapshot,
-        }
-    }
-}
 
 /// Tile as it is displayed.
 #[derive(Clone, Debug)]
@@ -89,7 +68,7 @@ type Base = (i64, i64, Arc<Planes>);
 
 /// Writer of rows inside one transaction.
 pub(crate) struct Writer<'a, 'b> {
-    database: &'a Database,
+    pub(crate) database: &'a Database,
     yield_hook: YieldHook<'b>,
     stored: Stored,
     written: BTreeSet<u64>,
@@ -105,11 +84,13 @@ impl<'a, 'b> Writer<'a, 'b> {
         }
     }
 
-    /// Writes a checkpoint and deletes rows that it replaces. If its pages are not written by `until`, only some of them
-    /// are written, still unreferenced, and false is returned.
+    /// Writes a checkpoint and deletes rows that it replaces; `records` were accepted before it and are not in the
+    /// journal. If its pages are not written by `until`, only some of them are written, still unreferenced, and false is
+    /// returned.
     pub(crate) fn checkpoint(
         mut self,
         checkpoint: &Checkpoint,
+        records: &[Record],
         until: Instant,
     ) -> Result<(Stored, bool), DocumentError> {
         let painting = &checkpoint.painting;
@@ -152,14 +133,11 @@ impl<'a, 'b> Writer<'a, 'b> {
         }
         self.write_state(checkpoint)?;
         self.delete_unreferenced(&painting.dead)?;
-        connection.execute(
-            "DELETE FROM journal WHERE last < ?1",
-            params![checkpoint.sequencer.serial as i64],
-        )?;
+        record::advance(&mut self, checkpoint, records)?;
         Ok((self.stored, true))
     }
 
-    fn write_tile(&mut self, tile: &TileRef) -> Result<(), DocumentError> {
+    pub(crate) fn write_tile(&mut self, tile: &TileRef) -> Result<(), DocumentError> {
         let Some(tile) = tile else {
             return Ok(());
         };
@@ -248,7 +226,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(Some((id, depth, content)))
     }
 
-    fn write_load(&mut self, page: &Page<BrushLoad>) -> Result<(), DocumentError> {
+    pub(crate) fn write_load(&mut self, page: &Page<BrushLoad>) -> Result<(), DocumentError> {
         if page.stored_bytes() > 0 || !self.written.insert(page.id()) {
             return Ok(());
         }
@@ -269,29 +247,15 @@ impl<'a, 'b> Writer<'a, 'b> {
     }
 
     fn write_step(&mut self, step: &Step) -> Result<(), DocumentError> {
-        let mut tiles = Vec::with_capacity(step.tiles.len() * 5);
-        for (place, change) in &*step.tiles {
+        for change in step.tiles.values() {
             self.write_tile(&change.before)?;
             self.write_tile(&change.after)?;
-            tiles.push(place_number(*place));
-            tiles.extend(page_ids(&change.before));
-            tiles.extend(page_ids(&change.after));
         }
         for page in step.effects.loads.values().flatten() {
             self.write_load(page)?;
         }
-        let loads = step.effects.loads.iter();
-        let effects = StoredStepEffects {
-            loads: loads
-                .map(|(name, pages)| (name.clone(), pages.each_ref().map(Page::id)))
-                .collect(),
-            booked: step.effects.booked.clone(),
-            layers: step.effects.layers.clone(),
-            materials: step.effects.materials.clone(),
-            tops: step.effects.tops.clone(),
-        };
-        let effects = serde_json::to_string(&effects)?;
-        let tiles = packed(tiles);
+        let effects = serde_json::to_string(&StoredStepEffects::from(&*step.effects))?;
+        let tiles = packed_changes(&step.tiles);
         let brush = step.brush.as_deref().unwrap_or_default();
         let (id, operations) = (step.id as i64, step.operations as i64);
         let sum = Checksum::new(Table::Step)
@@ -315,27 +279,14 @@ impl<'a, 'b> Writer<'a, 'b> {
     }
 
     fn write_version(&mut self, version: &Named) -> Result<(), DocumentError> {
-        let mut tiles = Vec::with_capacity(version.tiles.len() * 3);
-        for (place, tile) in &*version.tiles {
+        for tile in version.tiles.values() {
             self.write_tile(tile)?;
-            tiles.push(place_number(*place));
-            tiles.extend(page_ids(tile));
         }
         for page in version.rest.loads.values() {
             self.write_load(page)?;
         }
-        let loads = version.rest.loads.iter();
-        let rest = StoredNonTileState {
-            loads: loads
-                .map(|(name, page)| (name.clone(), page.id()))
-                .collect(),
-            ledger: version.rest.ledger.clone(),
-            layers: version.rest.layers.clone(),
-            materials: version.rest.materials.clone(),
-            tops: version.rest.tops.clone(),
-        };
-        let rest = serde_json::to_string(&rest)?;
-        let tiles = packed(tiles);
+        let rest = serde_json::to_string(&StoredNonTileState::from(&version.rest))?;
+        let tiles = packed_tiles(&version.tiles);
         let parent = version.parent.as_deref().unwrap_or_default();
         let sum = Checksum::new(Table::Version)
             .bytes(version.name.as_bytes())
@@ -397,12 +348,21 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(hash)
     }
 
-    fn write_state(&self, checkpoint: &Checkpoint) -> Result<(), DocumentError> {
-        let mut snapshot = checkpoint.painting.kept.clone();
+    /// Writes the paints and brushes of a snapshot; the snapshot with their hashes in their place.
+    pub(crate) fn with_files(
+        &self,
+        snapshot: &PaintingSnapshot,
+    ) -> Result<PaintingSnapshot, DocumentError> {
+        let mut snapshot = snapshot.clone();
         snapshot.paints = self.write_file("paints", "paints.csv", snapshot.paints.as_bytes())?;
         for (name, brush) in &mut snapshot.brushes {
             brush.file = self.write_file("brush", name, brush.file.as_bytes())?;
         }
+        Ok(snapshot)
+    }
+
+    fn write_state(&self, checkpoint: &Checkpoint) -> Result<(), DocumentError> {
+        let snapshot = self.with_files(&checkpoint.painting.kept)?;
         for (hash, data) in &checkpoint.pictures {
             if !self.has_file(hash)? {
                 self.write_file(kind_of(data), hash, data)?;

@@ -46,12 +46,7 @@ fn a_live_brush_paints_in_a_document_of_a_take() {
     painter.command(&mut kept, take(false, &["Titanium White"]));
     stroke(&mut painter, &mut kept);
     assert_eq!(kept.ignored(), 1, "the take has the brush");
-    let painting = kept.painting_mut().checkpoint(0);
-    document.write_checkpoint(Checkpoint {
-        painting,
-        sequencer: kept.kept(),
-        pictures: Vec::new(),
-    });
+    document.write_checkpoint(Checkpoint::of(&mut kept, 0));
     document.close().expect("closed");
 
     let (_document, opened) = Document::open(&settings).expect("opened");

@@ -11,6 +11,7 @@
 //! | [`models`] | the paint models that a surface can have |
 //! | [`setup`] | the scene of a new painting |
 //! | [`ledger`], [`history`] | the books, undo |
+//! | [`beginning`] | where the record of what was accepted begins |
 //! | [`Apply`] | edits as the painting carries them out |
 //! | [`clock`] | ticks, and the dryings that they drive |
 //! | [`snapshot`] | the part of a document that is not tiles |
@@ -44,6 +45,7 @@
 //! ```
 
 mod apply;
+pub mod beginning;
 pub mod brush_colour;
 pub mod clock;
 mod error;
@@ -57,6 +59,7 @@ pub mod setup;
 pub mod snapshot;
 
 pub use apply::{Applied, Apply};
+pub use beginning::{Beginning, RecordChange};
 pub use error::paint_error;
 pub use painting::{Checkpoint, LaidTile, NOW, Named, Painting, Restored, UnderBrush, Wetness};
 pub use sequencer::{Effect, Sequencer};

@@ -65,6 +65,8 @@ pub struct Sequencer {
     records: Option<Vec<Record>>,
     /// A recorded session is painted again.
     repeats: bool,
+    /// True if something was accepted that is not among the records.
+    is_unrecorded: bool,
 }
 
 impl Sequencer {
@@ -85,6 +87,7 @@ impl Sequencer {
             serial: 0,
             records: None,
             repeats: false,
+            is_unrecorded: false,
         }
     }
 

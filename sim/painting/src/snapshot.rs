@@ -9,6 +9,7 @@ use maulstick_types::scene::Scene;
 use maulstick_types::{Mixture, Origin};
 use serde::{Deserialize, Serialize};
 
+use crate::beginning::RECORD_QUOTA;
 use crate::clock::Clock;
 use crate::ledger::Ledger;
 
@@ -75,10 +76,17 @@ pub struct PaintingSnapshot {
     pub span_ns: Option<(u64, u64)>,
     /// Most bytes of the history.
     pub quota: u64,
+    /// Most bytes of the record; 0 keeps none.
+    #[serde(default = "default_record_quota")]
+    pub record_quota: u64,
     /// Time elapsed, and dryings in progress.
     pub clock: Clock,
     /// Rows that the document has of it; `None` in paintings from before rows were counted.
     pub rows: Option<RowCounts>,
+}
+
+fn default_record_quota() -> u64 {
+    RECORD_QUOTA
 }
 
 /// Numbers of rows that a document has of the painter's work.

@@ -52,6 +52,10 @@ impl Autosave {
     }
 
     fn hand_over(&mut self, sequencer: &mut Sequencer) {
+        let painting = sequencer.painting_mut();
+        if self.document.record_bytes() > painting.record_quota() {
+            painting.break_record();
+        }
         let checkpoint = Checkpoint::of(sequencer, self.since);
         (self.since, self.serial) = (
             checkpoint.painting.kept.versions,

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use maulstick_document::pack::{History, pack};
+use maulstick_document::pack::{Forget, pack};
 use maulstick_rig::UserError;
 use maulstick_rig::size::show_bytes;
 
@@ -15,9 +15,12 @@ use crate::document::wrong;
 pub struct PackOptions {
     /// Painting
     file: PathBuf,
-    /// Discard all undo steps; versions stay
+    /// Discard all undo steps, and the record of what was painted; versions stay
     #[arg(long)]
     forget_history: bool,
+    /// Discard the record of what was painted, of which time lapses are made; it begins anew
+    #[arg(long)]
+    forget_record: bool,
 }
 
 /// Packs a painting.
@@ -26,12 +29,13 @@ pub struct PackOptions {
 /// A [`UserError`] where it cannot be read or written; it is as it was then.
 pub(super) fn run(options: &PackOptions) -> Result<i32, UserError> {
     let path = &options.file;
-    let history = match options.forget_history {
-        true => History::Forgotten,
-        false => History::Kept,
+    let forget = match (options.forget_history, options.forget_record) {
+        (true, _) => Forget::History,
+        (false, true) => Forget::Record,
+        (false, false) => Forget::Nothing,
     };
     let bar = super::bar("packing");
-    let packed = pack(path, history, &mut super::tell(&bar));
+    let packed = pack(path, forget, &mut super::tell(&bar));
     bar.finish_and_clear();
     let [before, after] = packed.map_err(|error| wrong(path, &error))?;
     say!(

@@ -104,6 +104,7 @@ impl RenderOptions {
         for (option, given) in [
             ("--memory", &painting.memory),
             ("--history", &painting.history),
+            ("--record", &painting.record),
         ] {
             if given.is_some() && self.document.is_none() {
                 return Err(

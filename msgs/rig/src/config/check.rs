@@ -74,7 +74,7 @@ impl RigConfig {
         choose("backend", &self.paint.backend, &BACKENDS)
             .map_err(|(what, help)| fault(what, "[paint]", "").help(help))?;
         self.paint
-            .bytes()
+            .room()
             .map_err(|what| fault(what, "[paint]", "").help("write sizes as 512M or 2G"))?;
         let view = &self.view;
         view.check().map_err(|(what, help)| {

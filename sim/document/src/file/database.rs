@@ -196,7 +196,10 @@ impl Database {
         if new {
             schema::create(&self.connection)?;
         }
-        schema::migrate(&self.connection)?;
+        match access {
+            Access::Paint => schema::migrate(&self.connection)?,
+            Access::Read => drop(schema::version(&self.connection)?),
+        }
         Ok(new)
     }
 

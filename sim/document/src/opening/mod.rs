@@ -1,7 +1,7 @@
 //! Opening of a painting: its state, tiles, history and versions read from its file.
 
 mod shown;
-mod stored_pages;
+pub(crate) mod stored_pages;
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
@@ -12,10 +12,10 @@ use maulstick_canvas::assets::Assets;
 use maulstick_canvas::page::Pager;
 use maulstick_canvas::tile::{TileId, Version};
 use maulstick_optics::PaintLibrary;
-use maulstick_painting::history::{Change, NonTileState, Step, StepEffects, TilePlace, TileRef};
+use maulstick_painting::history::{Step, TilePlace, TileRef};
 use maulstick_painting::sequencer::Record;
 use maulstick_painting::snapshot::{PaintingSnapshot, SequencerSnapshot};
-use maulstick_painting::{Named, Painting, Restored, Sequencer};
+use maulstick_painting::{Beginning, Named, Painting, Restored, Sequencer};
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::Scene;
 use rusqlite::{OptionalExtension as _, params};
@@ -23,8 +23,9 @@ use rusqlite::{OptionalExtension as _, params};
 use crate::error::DocumentError;
 use crate::file::database::{Access, Database, is_new};
 use crate::journal;
+use crate::record::beginning;
 use crate::tables::checksum::{Checksum, journal_checksum};
-use crate::tables::rows::{COPY, StoredNonTileState, StoredStepEffects, place_of, unpacked};
+use crate::tables::rows::{COPY, StoredNonTileState, StoredStepEffects, place_of};
 use crate::tables::schema::Table;
 pub use shown::shown_tiles;
 use stored_pages::StoredPages;
@@ -104,6 +105,26 @@ impl Opened {
             }
         }
         Ok(())
+    }
+
+    /// Where its record begins, if it has one that this program can execute again.
+    #[must_use]
+    pub fn beginning(&self) -> Option<&Arc<Beginning>> {
+        self.restored.beginning.as_ref()
+    }
+
+    /// The painting where its record begins, to accept its records again; `None` without a record.
+    ///
+    /// # Errors
+    /// [`EditError`] if the stored parts do not fit together.
+    pub fn first(self) -> Result<Option<Sequencer>, EditError> {
+        let Restored {
+            beginning,
+            embedded,
+            ..
+        } = self.restored;
+        let begun = beginning.map(|begun| begun.sequencer(embedded, self.library, self.pager));
+        begun.transpose()
     }
 
     /// Restores the painting: its last checkpoint, then the records accepted since, replayed.
@@ -317,30 +338,11 @@ fn steps(database: &Database, stored: &StoredPages) -> Result<Vec<Step>, Documen
         if sum.finish() != row.get::<_, i64>(7)? {
             return Err(damaged(format!("step {id} does not match its checksum")));
         }
-        let mut tile = |ids: [i64; 2]| -> Result<TileRef, DocumentError> {
-            if let Some(tile) = known.get(&ids) {
-                return Ok(tile.clone());
-            }
-            let tile = stored.tile(ids)?;
-            known.insert(ids, tile.clone());
-            Ok(tile)
-        };
-        let mut tiles = BTreeMap::new();
-        let groups = unpacked::<5>(&packed);
-        for [place, a, b, c, d] in
-            groups.ok_or_else(|| damaged("the tiles of a step are cut short"))?
-        {
-            let change = Change {
-                before: tile([a, b])?,
-                after: tile([c, d])?,
-            };
-            tiles.insert(place_of(place), change);
-        }
         let effects: StoredStepEffects = serde_json::from_str(&texts[2])?;
-        let mut loads = BTreeMap::new();
-        for (name, [before, after]) in effects.loads {
-            loads.insert(name, [stored.load(before)?, stored.load(after)?]);
-        }
+        let (tiles, effects) = (
+            stored.changes(&packed, &mut known)?,
+            stored.step_effects(effects)?,
+        );
         let [what, brush, _] = texts;
         steps.push(Step {
             id: id as u64,
@@ -349,13 +351,7 @@ fn steps(database: &Database, stored: &StoredPages) -> Result<Vec<Step>, Documen
             operations: operations as u64,
             done: done != 0,
             tiles: Arc::new(tiles),
-            effects: Arc::new(StepEffects {
-                loads,
-                booked: effects.booked,
-                layers: effects.layers,
-                materials: effects.materials,
-                tops: effects.tops,
-            }),
+            effects: Arc::new(effects),
         });
     }
     Ok(steps)
@@ -380,30 +376,13 @@ fn versions(database: &Database, stored: &StoredPages) -> Result<Vec<Named>, Doc
                 texts[0]
             )));
         }
-        let mut tiles = BTreeMap::new();
-        let groups = unpacked::<3>(&packed);
-        for [place, page, dry] in
-            groups.ok_or_else(|| damaged("the tiles of a version are cut short"))?
-        {
-            tiles.insert(place_of(place), stored.tile([page, dry])?);
-        }
         let state: StoredNonTileState = serde_json::from_str(&texts[2])?;
-        let mut loads = BTreeMap::new();
-        for (name, id) in state.loads {
-            loads.insert(name, stored.load(id)?);
-        }
         let [name, parent, _] = texts;
         versions.push(Named {
             name,
             parent: (!parent.is_empty()).then_some(parent),
-            tiles: Arc::new(tiles),
-            rest: NonTileState {
-                loads,
-                ledger: state.ledger,
-                layers: state.layers,
-                materials: state.materials,
-                tops: state.tops,
-            },
+            tiles: Arc::new(stored.tiles(&packed)?),
+            rest: stored.non_tile_state(state)?,
         });
     }
     Ok(versions)
@@ -429,6 +408,14 @@ pub(crate) fn opened(database: &Database, pager: &Arc<Pager>) -> Result<Opened, 
         steps: steps(database, &stored)?,
         named: versions(database, &stored)?,
         embedded: pictures(database)?,
+        beginning: match beginning::read(database, &stored) {
+            // The painting itself may be whole.
+            Err(DocumentError::Damaged(what)) => {
+                tracing::warn!("{what}: it begins anew");
+                None
+            }
+            read => read?,
+        },
         kept: snapshot,
     };
     // Rows without any other reference are deleted with the next checkpoint.

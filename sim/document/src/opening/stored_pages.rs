@@ -1,6 +1,6 @@
 //! Pages, dry layers and loads of a file as references, by number; their paint is read when it is needed.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use maulstick_canvas::dry::{DryLayer, DryStack};
@@ -8,17 +8,18 @@ use maulstick_canvas::page::{Page, Pager};
 use maulstick_canvas::planes::Planes;
 use maulstick_canvas::tile::Tile;
 use maulstick_model::brush::load::BrushLoad;
-use maulstick_painting::history::TileRef;
+use maulstick_painting::history::{Change, NonTileState, StepEffects, TilePlace, TileRef};
 use rusqlite::params;
 
 use super::damaged;
 use crate::error::DocumentError;
 use crate::file::database::Database;
 use crate::tables::checksum::Checksum;
+use crate::tables::rows::{StoredNonTileState, StoredStepEffects, place_of, unpacked};
 use crate::tables::schema::Table;
 
 /// Pages, dry layers and loads of a file, by number.
-pub(super) struct StoredPages {
+pub(crate) struct StoredPages {
     pages: HashMap<i64, Page<Planes>>,
     stacks: HashMap<i64, Arc<DryStack>>,
     loads: HashMap<i64, Page<BrushLoad>>,
@@ -89,7 +90,7 @@ impl StoredPages {
     ///
     /// # Errors
     /// [`DocumentError::Damaged`] if it is missing.
-    pub(super) fn load(&self, id: u64) -> Result<Page<BrushLoad>, DocumentError> {
+    pub(crate) fn load(&self, id: u64) -> Result<Page<BrushLoad>, DocumentError> {
         let found = self.loads.get(&(id as i64)).cloned();
         found.ok_or_else(|| damaged(format!("load {id} is missing")))
     }
@@ -111,5 +112,93 @@ impl StoredPages {
             dry => Some(self.stack(dry)?),
         };
         Ok(Some(Arc::new(Tile::of_pages(wet, dry))))
+    }
+
+    /// Tiles of a version.
+    ///
+    /// # Errors
+    /// [`DocumentError::Damaged`] if a page is missing.
+    pub(crate) fn tiles(
+        &self,
+        packed: &[u8],
+    ) -> Result<BTreeMap<TilePlace, TileRef>, DocumentError> {
+        let groups = unpacked::<3>(packed);
+        let groups = groups.ok_or_else(|| damaged("the tiles of a version are cut short"))?;
+        let tiles = groups.into_iter();
+        tiles
+            .map(|[place, page, dry]| Ok((place_of(place), self.tile([page, dry])?)))
+            .collect()
+    }
+
+    /// Changes of a step. Neighbours share the tiles that one left to the other, which are in `known`.
+    ///
+    /// # Errors
+    /// [`DocumentError::Damaged`] if a page is missing.
+    pub(crate) fn changes(
+        &self,
+        packed: &[u8],
+        known: &mut HashMap<[i64; 2], TileRef>,
+    ) -> Result<BTreeMap<TilePlace, Change>, DocumentError> {
+        let mut tile = |ids: [i64; 2]| -> Result<TileRef, DocumentError> {
+            if let Some(tile) = known.get(&ids) {
+                return Ok(tile.clone());
+            }
+            let tile = self.tile(ids)?;
+            known.insert(ids, tile.clone());
+            Ok(tile)
+        };
+        let groups = unpacked::<5>(packed);
+        let groups = groups.ok_or_else(|| damaged("the tiles of a step are cut short"))?;
+        let mut changes = BTreeMap::new();
+        for [place, a, b, c, d] in groups {
+            let change = Change {
+                before: tile([a, b])?,
+                after: tile([c, d])?,
+            };
+            changes.insert(place_of(place), change);
+        }
+        Ok(changes)
+    }
+
+    /// Effects of a step besides tiles.
+    ///
+    /// # Errors
+    /// [`DocumentError::Damaged`] if a load is missing.
+    pub(crate) fn step_effects(
+        &self,
+        stored: StoredStepEffects,
+    ) -> Result<StepEffects, DocumentError> {
+        let mut loads = BTreeMap::new();
+        for (name, [before, after]) in stored.loads {
+            loads.insert(name, [self.load(before)?, self.load(after)?]);
+        }
+        Ok(StepEffects {
+            loads,
+            booked: stored.booked,
+            layers: stored.layers,
+            materials: stored.materials,
+            tops: stored.tops,
+        })
+    }
+
+    /// State of a version besides tiles.
+    ///
+    /// # Errors
+    /// [`DocumentError::Damaged`] if a load is missing.
+    pub(crate) fn non_tile_state(
+        &self,
+        stored: StoredNonTileState,
+    ) -> Result<NonTileState, DocumentError> {
+        let mut loads = BTreeMap::new();
+        for (name, id) in stored.loads {
+            loads.insert(name, self.load(id)?);
+        }
+        Ok(NonTileState {
+            loads,
+            ledger: stored.ledger,
+            layers: stored.layers,
+            materials: stored.materials,
+            tops: stored.tops,
+        })
     }
 }

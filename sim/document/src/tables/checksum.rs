@@ -67,6 +67,15 @@ pub(crate) fn shown_checksum(place: i64, version: i64, look: i64, data: &[u8]) -
     sum.bytes(data).finish()
 }
 
+/// Checksum of a row of the record: `ints` are the serial numbers of its first and last message, its time, and the
+/// bytes of the record up to and with it.
+pub(crate) fn record_checksum(ints: [i64; 4], data: &[u8]) -> i64 {
+    let sum = ints
+        .into_iter()
+        .fold(Checksum::new(Table::Record), Checksum::int);
+    sum.bytes(data).finish()
+}
+
 /// Checksum of a row of the journal: `ends` are the serial numbers of its first and last record.
 pub(crate) fn journal_checksum(ends: [u64; 2], data: &[u8]) -> i64 {
     let sum = Checksum::new(Table::Journal);

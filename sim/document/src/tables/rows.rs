@@ -2,8 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use maulstick_canvas::page::Page;
 use maulstick_canvas::tile::{Tile, TileId};
-use maulstick_painting::history::{Booked, SurfaceMaterial, TilePlace, TileRef};
+use maulstick_painting::history::{
+    Booked, Change, NonTileState, StepEffects, SurfaceMaterial, TilePlace, TileRef,
+};
 use maulstick_painting::ledger::Ledger;
 use maulstick_types::scene::Layer;
 use serde::{Deserialize, Serialize};
@@ -49,6 +52,27 @@ pub fn packed(numbers: impl IntoIterator<Item = i64>) -> Vec<u8> {
     numbers.into_iter().flat_map(i64::to_le_bytes).collect()
 }
 
+/// Place, page and dry layer of each tile, packed.
+#[must_use]
+pub fn packed_tiles(tiles: &BTreeMap<TilePlace, TileRef>) -> Vec<u8> {
+    let numbers = tiles.iter().flat_map(|(place, tile)| {
+        let place = place_number(*place);
+        [place].into_iter().chain(page_ids(tile))
+    });
+    packed(numbers)
+}
+
+/// Place of each tile, page and dry layer before and after a change, packed.
+#[must_use]
+pub fn packed_changes(tiles: &BTreeMap<TilePlace, Change>) -> Vec<u8> {
+    let numbers = tiles.iter().flat_map(|(place, change)| {
+        let place = [place_number(*place)].into_iter();
+        let ends = [&change.before, &change.after].map(page_ids);
+        place.chain(ends.into_iter().flatten())
+    });
+    packed(numbers)
+}
+
 /// Reads [`packed`] in groups of `N`; `None` if bytes are left over.
 #[must_use]
 pub fn unpacked<const N: usize>(bytes: &[u8]) -> Option<Vec<[i64; N]>> {
@@ -92,6 +116,36 @@ pub struct StoredNonTileState {
     pub materials: Vec<SurfaceMaterial>,
     /// Most quanta that a cell of a surface ever had.
     pub tops: BTreeMap<u32, f32>,
+}
+
+impl From<&StepEffects> for StoredStepEffects {
+    fn from(effects: &StepEffects) -> Self {
+        let loads = effects.loads.iter();
+        Self {
+            loads: loads
+                .map(|(name, pages)| (name.clone(), pages.each_ref().map(Page::id)))
+                .collect(),
+            booked: effects.booked.clone(),
+            layers: effects.layers.clone(),
+            materials: effects.materials.clone(),
+            tops: effects.tops.clone(),
+        }
+    }
+}
+
+impl From<&NonTileState> for StoredNonTileState {
+    fn from(state: &NonTileState) -> Self {
+        let loads = state.loads.iter();
+        Self {
+            loads: loads
+                .map(|(name, page)| (name.clone(), page.id()))
+                .collect(),
+            ledger: state.ledger.clone(),
+            layers: state.layers.clone(),
+            materials: state.materials.clone(),
+            tops: state.tops.clone(),
+        }
+    }
 }
 
 #[cfg(test)]

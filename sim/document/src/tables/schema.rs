@@ -9,7 +9,7 @@ use crate::error::DocumentError;
 /// `application_id` of a painting: "Maul".
 pub const APPLICATION_ID: i32 = 0x4D61_756C;
 /// The schema that this program writes.
-pub const VERSION: i32 = 4;
+pub const VERSION: i32 = 5;
 /// The oldest schema that it reads.
 const OLDEST: i32 = 4;
 
@@ -38,13 +38,17 @@ pub enum Table {
     Journal = 9,
     /// Tiles as they are shown.
     Shown = 10,
+    /// The painting where its record begins.
+    Beginning = 11,
+    /// Records accepted from the beginning to the state.
+    Record = 12,
 }
 
 impl Table {
     /// The table of this number.
     #[must_use]
     pub fn of(tag: i64) -> Option<Self> {
-        const ALL: [Table; 10] = [
+        const ALL: [Table; 12] = [
             Table::State,
             Table::File,
             Table::Page,
@@ -55,6 +59,8 @@ impl Table {
             Table::Version,
             Table::Journal,
             Table::Shown,
+            Table::Beginning,
+            Table::Record,
         ];
         ALL.into_iter().find(|table| *table as i64 == tag)
     }
@@ -73,6 +79,8 @@ impl Table {
             Table::Version => "version",
             Table::Journal => "journal",
             Table::Shown => "shown",
+            Table::Beginning => "beginning",
+            Table::Record => "record",
         }
     }
 
@@ -90,6 +98,8 @@ impl Table {
             Table::Version => "tttb",
             Table::Journal => "iib",
             Table::Shown => "iiib",
+            Table::Beginning => "ttb",
+            Table::Record => "iiiib",
         }
     }
 }
@@ -108,13 +118,19 @@ CREATE TABLE journal(tag INTEGER NOT NULL, id INTEGER PRIMARY KEY, last INTEGER 
 CREATE TABLE shown(tag INTEGER NOT NULL, place INTEGER PRIMARY KEY, version INTEGER NOT NULL, look INTEGER NOT NULL, data BLOB NOT NULL, sum INTEGER NOT NULL);
 ";
 
+/// The tables of the record, which came with schema 5.
+const RECORD_TABLES: &str = "
+CREATE TABLE beginning(tag INTEGER NOT NULL, part TEXT PRIMARY KEY, value TEXT NOT NULL, tiles BLOB NOT NULL, sum INTEGER NOT NULL);
+CREATE TABLE record(tag INTEGER NOT NULL, id INTEGER PRIMARY KEY, last INTEGER NOT NULL, time INTEGER NOT NULL, bytes INTEGER NOT NULL, data BLOB NOT NULL, sum INTEGER NOT NULL);
+";
+
 /// Creates the tables of a new painting.
 ///
 /// # Errors
 /// [`DocumentError`] where the file cannot be written.
 pub fn create(connection: &Connection) -> Result<(), DocumentError> {
     connection.execute_batch(&format!(
-        "BEGIN IMMEDIATE; {TABLES} PRAGMA application_id = {APPLICATION_ID}; \
+        "BEGIN IMMEDIATE; {TABLES} {RECORD_TABLES} PRAGMA application_id = {APPLICATION_ID}; \
          PRAGMA user_version = {VERSION}; COMMIT;"
     ))?;
     Ok(())
@@ -143,15 +159,14 @@ pub fn is_foreign(path: &Path) -> Result<bool, DocumentError> {
     Ok(application != APPLICATION_ID && !is_blank(&connection)?)
 }
 
-/// Steps from each older schema to the next; the first, to 4, will be the first here.
-const MIGRATIONS: [&str; (VERSION - OLDEST) as usize] = [];
+/// Steps from each older schema to the next.
+const MIGRATIONS: [&str; (VERSION - OLDEST) as usize] = [RECORD_TABLES];
 
-/// Migrates an older painting to the schema of this program; rejects one of a newer program or of before the oldest
-/// schema.
+/// Schema of a painting; rejects one of a newer program or of before the oldest schema.
 ///
 /// # Errors
 /// [`DocumentError::Newer`], [`DocumentError::Older`], [`DocumentError::NoPainting`], or what SQLite says.
-pub fn migrate(connection: &Connection) -> Result<(), DocumentError> {
+pub fn version(connection: &Connection) -> Result<i32, DocumentError> {
     let application: i32 =
         connection.query_row("PRAGMA application_id", params![], |row| row.get(0))?;
     let version: i32 = connection.query_row("PRAGMA user_version", params![], |row| row.get(0))?;
@@ -167,6 +182,23 @@ pub fn migrate(connection: &Connection) -> Result<(), DocumentError> {
             known: VERSION,
         });
     }
+    Ok(version)
+}
+
+/// True if a painting has the tables of the record.
+///
+/// # Errors
+/// As [`version`].
+pub fn has_record(connection: &Connection) -> Result<bool, DocumentError> {
+    Ok(version(connection)? > OLDEST)
+}
+
+/// Migrates an older painting to the schema of this program.
+///
+/// # Errors
+/// As [`version`].
+pub fn migrate(connection: &Connection) -> Result<(), DocumentError> {
+    let version = version(connection)?;
     for (place, change) in MIGRATIONS
         .iter()
         .enumerate()

@@ -11,12 +11,14 @@ use std::time::{Duration, Instant};
 
 use maulstick_painting::sequencer::Record;
 
+use crate::checkpoint::Checkpoint;
 use crate::error::DocumentError;
 use crate::file::database::{Access, Database, is_new};
 use crate::file::relocate::{self, Relocate, RelocateRequest};
 use crate::file::watch::{FileState, FileWatch};
 use crate::journal;
-use crate::writing::{Checkpoint, ShownTile, Writer};
+use crate::record;
+use crate::writing::{ShownTile, Writer};
 use queues::{EndGuard, Fetch, Life, Shared};
 
 /// Longest time until an accepted record is in the file.
@@ -27,8 +29,6 @@ const FIRST_CHECKPOINT: Duration = Duration::from_secs(3600);
 const RETRY_DELAY: Duration = Duration::from_secs(1);
 /// Largest number of displayed tiles in one transaction.
 const SHOWN_BATCH: usize = 128;
-/// Largest number of records in a row of the journal: many wait where the disk was full.
-const ROW_RECORDS: usize = 1024;
 
 /// The document's thread.
 pub(crate) struct DocumentThread {
@@ -306,9 +306,17 @@ impl DocumentThread {
         }
     }
 
-    fn write_checkpoint(&mut self, checkpoint: Checkpoint) {
+    fn write_checkpoint(&mut self, mut checkpoint: Checkpoint) {
         let shared = Arc::clone(&self.shared);
+        let serial = checkpoint.sequencer.serial;
+        let mut overtaken = Vec::new();
         let written = loop {
+            let mut queues = shared.lock();
+            let before = queues.records.iter();
+            let before = before.take_while(|record| record.serial < serial).count();
+            overtaken.extend(queues.records.drain(..before));
+            drop(queues);
+            overtaken.append(&mut checkpoint.records);
             let longest = if self.is_first {
                 FIRST_CHECKPOINT
             } else {
@@ -317,13 +325,14 @@ impl DocumentThread {
             let until = Instant::now() + longest;
             let written = self.transaction(|database| {
                 let mut yield_hook = |database: &Database| serve_fetches(&shared, database);
-                Writer::new(database, &mut yield_hook).checkpoint(&checkpoint, until)
+                Writer::new(database, &mut yield_hook).checkpoint(&checkpoint, &overtaken, until)
             });
             match written {
                 // Records accepted meanwhile do not wait for the remaining pages.
                 Ok((stored, false)) => {
                     stored.mark();
-                    let records = std::mem::take(&mut self.shared.lock().records);
+                    let mut records = std::mem::take(&mut overtaken);
+                    records.append(&mut self.shared.lock().records);
                     self.commit(records);
                 }
                 Ok((stored, true)) => break Ok(stored),
@@ -337,8 +346,10 @@ impl DocumentThread {
                 stored.mark();
                 self.is_first = false;
                 self.saved_version = checkpoint.painting.kept.versions;
-                let serial = checkpoint.sequencer.serial;
-                queues.records.retain(|record| record.serial >= serial);
+                // The next look is at the next checkpoint.
+                self.shared
+                    .record_bytes
+                    .store(record::bytes(&self.database).unwrap_or_default(), SeqCst);
                 self.shared
                     .committed
                     .fetch_max(checkpoint.sequencer.next, SeqCst);
@@ -346,6 +357,8 @@ impl DocumentThread {
                 self.note_written(Part::Checkpoint);
             }
             Err(error) => {
+                overtaken.append(&mut queues.records);
+                queues.records = overtaken;
                 queues.checkpoint = Some(checkpoint);
                 drop(queues);
                 self.note_failure(Part::Checkpoint, &error);
@@ -359,7 +372,7 @@ impl DocumentThread {
         };
         let written = self.transaction(|database| {
             records
-                .chunks(ROW_RECORDS)
+                .chunks(journal::ROW_RECORDS)
                 .try_for_each(|row| journal::put(database, row))
         });
         self.last_commit = Instant::now();
@@ -462,6 +475,11 @@ fn serve_fetches(shared: &Shared, database: &Database) {
                 .send(database.planes(id).map_err(broken))
                 .unwrap_or(()),
             Fetch::Load(id, answer) => answer.send(database.load(id).map_err(broken)).unwrap_or(()),
+            Fetch::Records(serial, answer) => {
+                answer
+                    .send(record::row_from(database, serial))
+                    .unwrap_or(());
+            }
             Fetch::Shown([place, version, look], answer) => {
                 answer
                     .send(database.shown(place, version, look))

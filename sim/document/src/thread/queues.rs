@@ -12,8 +12,11 @@ use maulstick_model::brush::load::BrushLoad;
 use maulstick_painting::sequencer::Record;
 use maulstick_types::command::advice::Advice;
 
+use crate::checkpoint::Checkpoint;
+use crate::error::DocumentError;
 use crate::file::relocate::RelocateRequest;
-use crate::writing::{Checkpoint, ShownTile};
+use crate::record::RecordRow;
+use crate::writing::ShownTile;
 
 /// Largest number of displayed tiles that wait to be written.
 const SHOWN_MAX: usize = 4096;
@@ -23,6 +26,8 @@ pub(crate) enum Fetch {
     Planes(u64, mpsc::Sender<Result<Planes, String>>),
     Load(u64, mpsc::Sender<Result<BrushLoad, String>>),
     Shown([i64; 3], mpsc::Sender<Option<Vec<u8>>>),
+    /// Messages of the record from a serial number on.
+    Records(u64, mpsc::Sender<Result<Option<RecordRow>, DocumentError>>),
 }
 
 /// State of the document's thread.
@@ -84,6 +89,8 @@ pub(crate) struct Shared {
     pub(crate) queues: Mutex<Queues>,
     pub(crate) wake: Condvar,
     pub(crate) committed: AtomicU64,
+    /// Bytes of the record.
+    pub(crate) record_bytes: AtomicU64,
     /// Processor time spent on reading pages, ns.
     pub(crate) page_in_ns: AtomicU64,
 }
@@ -130,7 +137,7 @@ impl Drop for EndGuard {
 pub(crate) struct DocumentBacking(pub(crate) Arc<Shared>);
 
 /// Error of a request after the end of the thread.
-const CLOSED: &str = "the document was closed";
+pub(crate) const CLOSED: &str = "the document was closed";
 /// Error of a document whose thread panicked.
 pub(crate) const PANICKED: &str = "internal error: the document's thread panicked";
 

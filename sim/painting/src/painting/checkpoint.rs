@@ -76,6 +76,7 @@ impl Painting {
             footprint_cells: self.accounts.footprint_cells,
             span_ns: self.accounts.span_ns,
             quota: self.history.quota,
+            record_quota: self.record.quota,
             clock: self.clock.clone(),
             rows: Some(RowCounts {
                 tiles: all_tiles,
@@ -99,5 +100,6 @@ impl Painting {
     pub fn tell_all_again(&mut self) {
         self.history.touch_all();
         self.versions.touch_all();
+        self.break_record();
     }
 }

@@ -5,6 +5,7 @@ mod brushes;
 mod checkpoint;
 mod layers;
 mod optics;
+mod record;
 mod restore;
 mod still;
 mod strokes;
@@ -38,6 +39,7 @@ use crate::setup::PaintingSetup;
 use accounts::Accounts;
 use brushes::Brushes;
 use optics::Optics;
+use record::RecordState;
 use strokes::backend::Backend;
 use surfaces::Surfaces;
 use undo::versions::Versions;
@@ -54,6 +56,7 @@ pub struct Painting {
     history: History,
     versions: Versions,
     clock: Clock,
+    record: RecordState,
 }
 
 impl Painting {
@@ -87,6 +90,7 @@ impl Painting {
             history: History::default(),
             versions: Versions::default(),
             clock: Clock::default(),
+            record: RecordState::default(),
         };
         if setup.exposure.is_none() {
             painting.expose();

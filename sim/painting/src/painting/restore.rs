@@ -14,11 +14,13 @@ use maulstick_types::scene::{CANVAS, PALETTE};
 use super::accounts::Accounts;
 use super::brushes::Brushes;
 use super::optics::Optics;
+use super::record::RecordState;
 use super::strokes::backend::Backend;
 use super::surfaces::Surfaces;
 use super::undo::materials;
 use super::undo::versions::Versions;
 use super::{Named, Painting};
+use crate::beginning::Beginning;
 use crate::history::{History, NonTileState, Step, TilePlace};
 use crate::setup::check_size;
 use crate::snapshot::PaintingSnapshot;
@@ -38,6 +40,8 @@ pub struct Restored {
     pub named: Vec<Named>,
     /// The pictures that its grounds and teeth are made of, those of its history among them.
     pub embedded: Assets,
+    /// Where its record begins, if it has one.
+    pub beginning: Option<Arc<Beginning>>,
 }
 
 impl Painting {
@@ -114,6 +118,7 @@ impl Painting {
             history,
             versions: Versions::restored(restored.named, kept.line),
             clock: kept.clock,
+            record: RecordState::restored(kept.record_quota, restored.beginning),
         })
     }
 }

@@ -5,6 +5,7 @@ use maulstick_canvas::tile::{TileId, Version};
 
 use super::Painting;
 use super::brushes::Brushes;
+use super::record::RecordState;
 use super::strokes::backend::Backend;
 use crate::clock::Clock;
 use crate::history::{Direction, History};
@@ -24,6 +25,7 @@ impl Painting {
             history: History::default(),
             versions: self.versions.clone(),
             clock: Clock::default(),
+            record: RecordState::default(),
         }
     }
 

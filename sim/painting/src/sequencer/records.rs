@@ -63,7 +63,12 @@ impl Sequencer {
 
     /// Keeps nothing of what is accepted from now on.
     pub fn stop_recording(&mut self) {
-        self.records = None;
+        self.is_unrecorded |= self.records.take().is_some_and(|left| !left.is_empty());
+    }
+
+    /// True if something was accepted since the last call that is not among the [records](Self::take_records).
+    pub fn take_unrecorded(&mut self) -> bool {
+        std::mem::take(&mut self.is_unrecorded)
     }
 
     /// Number of accepted records.
@@ -83,12 +88,13 @@ impl Sequencer {
     pub(super) fn note(&mut self, index: u64, what: impl FnOnce() -> Accepted) {
         let serial = self.serial;
         self.serial += 1;
-        if let Some(records) = &mut self.records {
-            records.push(Record {
+        match &mut self.records {
+            Some(records) => records.push(Record {
                 serial,
                 index,
                 what: what(),
-            });
+            }),
+            None => self.is_unrecorded = true,
         }
     }
 
@@ -168,7 +174,7 @@ impl Sequencer {
 
     /// Accepts a saved record again. Its effect on the painting is repeated; its effect on the outside world is not.
     pub fn replay(&mut self, record: Record) {
-        let recording = self.records.take();
+        let (recording, is_unrecorded) = (self.records.take(), self.is_unrecorded);
         let next = record.next();
         self.next = record.index;
         match record.what {
@@ -219,7 +225,7 @@ impl Sequencer {
         self.journal.clear();
         self.next = next;
         self.serial = record.serial + 1;
-        self.records = recording;
+        (self.records, self.is_unrecorded) = (recording, is_unrecorded);
     }
 
     /// Enters that something else computes the paint than before, if that is so.

@@ -150,8 +150,8 @@ impl IntactRows {
             Table::Journal => {
                 self.journal.entry(key).or_insert(row);
             }
-            // Deleted steps must not come back, and displayed tiles are drawn again.
-            Table::Step | Table::Shown => {}
+            // Deleted steps must not come back, displayed tiles are drawn again, and the record begins anew.
+            Table::Step | Table::Shown | Table::Beginning | Table::Record => {}
         }
         Ok(0)
     }

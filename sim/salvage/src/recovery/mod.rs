@@ -10,7 +10,8 @@
 //! - a version with a lost tile is dropped;
 //! - a ground or a tooth whose picture is lost is replaced by the default;
 //! - a brush whose load is lost is clean;
-//! - the journal is replayed up to its first gap.
+//! - the journal is replayed up to its first gap;
+//! - the record of what was painted begins anew.
 //!
 //! The ledger is balanced: lost paint counts as taken by the cleaner, paint that came back with an older tile as given by
 //! the tubes.
@@ -31,7 +32,7 @@ mod versions;
 use std::path::{Path, PathBuf};
 
 use maulstick_document::file::database::{Database, companion, lock_holder};
-use maulstick_document::pack::{History, replay_journal};
+use maulstick_document::pack::{Forget, replay_journal};
 use maulstick_document::tables::schema::{APPLICATION_ID, Table, VERSION};
 use maulstick_document::{Access, DocumentError};
 use maulstick_painting::snapshot::{PaintingSnapshot, SequencerSnapshot};
@@ -106,7 +107,7 @@ pub fn recover(
     };
     database.close()?;
     part.check_merged()?;
-    replay_journal(&part.0, History::Kept).map_err(|error| match error {
+    replay_journal(&part.0, Forget::Nothing).map_err(|error| match error {
         DocumentError::Damaged(what) => SalvageError::Lost(what),
         error => error.into(),
     })?;

@@ -1,6 +1,6 @@
 //! A packed painting beside an OpenEXR file of the same paint: float32, ZIP.
 
-use maulstick_document::pack::{History, pack};
+use maulstick_document::pack::{Forget, pack};
 use maulstick_exchange::write_open_exr;
 use maulstick_painting::Painting;
 use maulstick_rig::UserError;
@@ -35,7 +35,7 @@ pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
     let painting = easel.sequencer.painting_mut();
     write_open_exr(painting, CANVAS, file, &mut |_, _| {}).map_err(fault)?;
     easel.autosave.close(&mut easel.sequencer).map_err(fault)?;
-    let [before, after] = pack(&path, History::Forgotten, &mut |_, _| {}).map_err(fault)?;
+    let [before, after] = pack(&path, Forget::History, &mut |_, _| {}).map_err(fault)?;
     let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
     let exr = mib(std::fs::metadata(&exr).map_err(fault)?.len());
     report.row("document: 2048² with its history", mib(before), "MiB");

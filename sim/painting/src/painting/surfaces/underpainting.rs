@@ -76,6 +76,8 @@ impl Painting {
             Wetness::Dry { name } => self.dry_in_step(on, 1.0, name),
         };
         self.end_own_step();
+        // No message describes it.
+        self.break_record();
         Ok(name)
     }
 }

@@ -147,6 +147,9 @@ impl Painting {
             }
             gone.push(way);
         }
+        if step > 0 {
+            self.record.turn(step);
+        }
         let newest = self.history.last_done(None);
         Ok(newest.map_or_else(|| "the beginning".to_owned(), |step| step.what.clone()))
     }
@@ -189,6 +192,7 @@ impl Painting {
         let effects = &step.effects;
         // Time would do again what is taken back.
         self.clock.stop(None);
+        self.record.turn(step.id);
         for (place, change) in &*step.tiles {
             self.surfaces.put(*place, change.end(to).clone());
         }
@@ -258,6 +262,7 @@ impl Painting {
     pub fn forget_history(&mut self) {
         self.end_step(|_| true);
         self.history.forget();
+        self.break_record();
     }
 
     /// Limit of the history, bytes; beyond that its oldest steps are merged.

@@ -123,8 +123,8 @@ impl Painting {
 
     /// Merges the oldest steps until the history keeps to its quota, or only the newest are apart.
     pub(super) fn keep_to_quota(&mut self) {
-        let (surfaces, versions) = (&self.surfaces, &self.versions);
-        let besides = || surfaces.held_bytes(versions.tiles());
+        let (surfaces, versions, record) = (&self.surfaces, &self.versions, &self.record);
+        let besides = || surfaces.held_bytes(versions.tiles().chain(record.tiles()));
         self.history.keep_to_quota(&surfaces.pager, besides);
     }
 }

@@ -1,0 +1,48 @@
+//! Checkpoints that a painter's thread hands over.
+
+use std::sync::Arc;
+
+use maulstick_painting::sequencer::Record;
+use maulstick_painting::snapshot::SequencerSnapshot;
+use maulstick_painting::{RecordChange, Sequencer};
+
+use crate::record::wall_ms;
+
+/// Checkpoint of a painting, with its place in the journal and the files that belong to it.
+#[derive(Clone, Debug)]
+pub struct Checkpoint {
+    /// The painting.
+    pub painting: maulstick_painting::Checkpoint,
+    /// The sequencer.
+    pub sequencer: SequencerSnapshot,
+    /// Pictures and spectra of grounds and teeth, by their hash.
+    pub pictures: Vec<(String, Arc<[u8]>)>,
+    /// Change of the record.
+    pub record: RecordChange,
+    /// What was accepted before it and is not handed over yet.
+    pub records: Vec<Record>,
+}
+
+impl Checkpoint {
+    /// Checkpoint of a painting, with the tiles that are newer than the version `since`.
+    pub fn of(sequencer: &mut Sequencer, since: u64) -> Self {
+        let snapshot = sequencer.kept();
+        let records = sequencer.take_records();
+        let is_unrecorded = sequencer.take_unrecorded();
+        let embedded = sequencer.painting().embedded().iter();
+        let pictures = embedded.map(|(hash, bytes)| (hash.to_owned(), Arc::clone(bytes)));
+        let pictures = pictures.collect();
+        let painting = sequencer.painting_mut();
+        if is_unrecorded {
+            painting.break_record();
+        }
+        let checkpoint = painting.checkpoint(since);
+        Self {
+            record: painting.advance_record(&checkpoint, &snapshot, wall_ms()),
+            painting: checkpoint,
+            sequencer: snapshot,
+            pictures,
+            records,
+        }
+    }
+}
