@@ -72,7 +72,7 @@ enum Command {
     /// Show, export or import brushes
     #[command(subcommand)]
     Brush(brush::BrushCommand),
-    /// Show, export, import, repair, pack painting files; keep versions
+    /// Show, export, import, film, repair, pack painting files; keep versions
     #[command(subcommand)]
     Painting(painting::PaintingCommand),
     /// List the paints

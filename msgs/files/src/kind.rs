@@ -17,6 +17,10 @@ pub enum Kind {
     Ora,
     /// Binary STL.
     Stl,
+    /// Film, GIF.
+    Gif,
+    /// Film, MP4.
+    Mp4,
     /// Ledger of the paint, JSON.
     Ledger,
     /// Take, MCAP.
@@ -67,6 +71,8 @@ impl Kind {
             Self::Exr => "an OpenEXR picture",
             Self::Ora => "an OpenRaster picture",
             Self::Stl => "an STL solid",
+            Self::Gif => "a GIF film",
+            Self::Mp4 => "an MP4 film",
             Self::Ledger => "a ledger",
             Self::Take => "a take",
             Self::Paints => "a fitted paint file",
@@ -86,6 +92,8 @@ impl Kind {
             Self::Ora => head.starts_with(b"PK\x03\x04") && has(head, b"mimetypeimage/openraster"),
             // 80 bytes of header, a count, and 50 bytes a triangle.
             Self::Stl => length >= 84 && (length - 84).is_multiple_of(50) && !is_text(head),
+            Self::Gif => head.starts_with(b"GIF8"),
+            Self::Mp4 => head.get(4..8) == Some(b"ftyp"),
             Self::Ledger => head.starts_with(b"{") && has(head, b"\"accounts_m3\""),
             Self::Take => head.starts_with(b"\x89MCAP0\r\n"),
             Self::Paints => head.starts_with(b"# Kubelka-Munk absorption K and scattering S"),
@@ -175,7 +183,7 @@ mod tests {
 
     #[test]
     fn a_file_gives_way_to_its_own_kind_alone() {
-        let kinds: [(Kind, &[u8]); 10] = [
+        let kinds: [(Kind, &[u8]); 12] = [
             (Kind::Png, b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"),
             (Kind::Exr, &[0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0]),
             (
@@ -183,6 +191,8 @@ mod tests {
                 b"PK\x03\x04\x0a\0\0\0\0\0\0\0\0\0\0\0\0\0\x10\0\0\0\x10\0\0\0\x08\0\0\0mimetypeimage/openraster",
             ),
             (Kind::Stl, &[0; 84 + 100]),
+            (Kind::Gif, b"GIF89a\x40\x01"),
+            (Kind::Mp4, b"\0\0\0\x20ftypisom"),
             (Kind::Ledger, b"{\n  \"accounts_m3\": {"),
             (Kind::Take, b"\x89MCAP0\r\n"),
             (

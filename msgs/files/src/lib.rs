@@ -12,4 +12,7 @@ pub mod whole;
 
 pub use kind::{Kind, allow_overwriting, gives_way, is_companion};
 pub use open::{FileId, OpenDatabase, read_head};
-pub use whole::{Unfinished, check_writable, clear_on_signals, write_whole};
+pub use whole::{
+    Unfinished, check_folder, check_writable, clear_on_signals, write_folder, write_whole,
+    write_whole_at,
+};

@@ -1,7 +1,7 @@
 //! Files that are whole under their name, or not there at all.
 
 use std::fs::File;
-use std::io::{BufWriter, Error, Write as _};
+use std::io::{BufWriter, Error, ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
@@ -36,6 +36,14 @@ impl Drop for Unfinished {
     }
 }
 
+/// Removes a file, or a folder with all that is in it; it may not be there.
+fn remove(path: &Path) {
+    match path.is_dir() && !path.is_symlink() {
+        true => std::fs::remove_dir_all(path).ok(),
+        false => std::fs::remove_file(path).ok(),
+    };
+}
+
 /// From now on SIGINT and SIGTERM end the process with `code`, and no half-written file stays.
 ///
 /// # Errors
@@ -46,8 +54,7 @@ pub fn clear_on_signals(code: i32) -> Result<(), Error> {
         if signals.forever().next().is_some() {
             let unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
             for path in &*unfinished {
-                // It may not be there yet.
-                std::fs::remove_file(path).ok();
+                remove(path);
             }
             std::process::exit(code);
         }
@@ -77,19 +84,66 @@ pub fn write_whole(
     kind: Kind,
     fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), Error>,
 ) -> Result<(), Error> {
-    let path = &destination(path, kind)?;
-    let beside = beside(path);
-    let _unfinished = Unfinished::new(vec![beside.clone()]);
-    let write = || {
-        let mut file = BufWriter::new(File::create(&beside)?);
+    write_whole_at(path, kind, |beside| {
+        let mut file = BufWriter::new(File::create(beside)?);
         fill(&mut file)?;
         file.flush()?;
-        file.get_ref().sync_all()?;
-        std::fs::rename(&beside, path)
-    };
-    write().inspect_err(|_| {
-        std::fs::remove_file(&beside).ok();
+        file.get_ref().sync_all()
     })
+}
+
+/// As [`write_whole`], for what is written by another program: `fill` gets the name that the file has meanwhile.
+///
+/// # Errors
+/// As [`write_whole`].
+pub fn write_whole_at(
+    path: &Path,
+    kind: Kind,
+    fill: impl FnOnce(&Path) -> Result<(), Error>,
+) -> Result<(), Error> {
+    write_to(&destination(path, kind)?, fill)
+}
+
+/// Makes a folder of files, whole under its name or not at all: `fill` gets the name that the folder has meanwhile.
+///
+/// # Errors
+/// If there is anything at the path but an empty folder, or the error of `fill` or the file system; no half-written folder
+/// is left.
+pub fn write_folder(
+    path: &Path,
+    fill: impl FnOnce(&Path) -> Result<(), Error>,
+) -> Result<(), Error> {
+    check_folder(path)?;
+    // A name that ends in a slash has the same last part.
+    write_to(&path.components().collect::<PathBuf>(), |beside| {
+        std::fs::create_dir(beside)?;
+        fill(beside)
+    })
+}
+
+/// Sees whether a folder can be made by [`write_folder`].
+///
+/// # Errors
+/// As there.
+pub fn check_folder(path: &Path) -> Result<(), Error> {
+    let there = match std::fs::read_dir(path) {
+        Ok(mut files) => files.next().is_some(),
+        Err(_) => path.symlink_metadata().is_ok(),
+    };
+    match there {
+        true => Err(Error::new(
+            ErrorKind::AlreadyExists,
+            "it exists already: name a new folder",
+        )),
+        false => Ok(()),
+    }
+}
+
+fn write_to(path: &Path, fill: impl FnOnce(&Path) -> Result<(), Error>) -> Result<(), Error> {
+    let beside = beside(path);
+    let _unfinished = Unfinished::new(vec![beside.clone()]);
+    let written = fill(&beside).and_then(|()| std::fs::rename(&beside, path));
+    written.inspect_err(|_| remove(&beside))
 }
 
 /// Sees, before the work that fills it, whether a file of a kind can be written.
@@ -123,6 +177,35 @@ mod tests {
         assert_eq!(
             std::fs::read_dir(folder.path()).expect("a folder").count(),
             1
+        );
+    }
+
+    #[test]
+    fn a_folder_is_whole_or_not_there_and_takes_the_place_of_none() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("frames/");
+        let frame = |to: &Path| std::fs::write(to.join("1.png"), "picture");
+        let failed = write_folder(&path, |to| {
+            frame(to)?;
+            Err(Error::other("the disk is full"))
+        });
+        assert!(failed.is_err());
+        let names = || std::fs::read_dir(folder.path()).expect("a folder").count();
+        assert_eq!(names(), 0);
+        std::fs::create_dir(&path).expect("made");
+        write_folder(&path, frame).expect("an empty one gives way");
+        assert_eq!(
+            std::fs::read(path.join("1.png")).expect("there"),
+            b"picture"
+        );
+        let text = write_folder(&path, frame).expect_err("refused").to_string();
+        assert!(text.contains("new folder"), "{text}");
+        let file = folder.path().join("a.txt");
+        std::fs::write(&file, "own").expect("written");
+        assert!(write_folder(&file, frame).is_err());
+        assert_eq!(
+            (names(), std::fs::read(&file).expect("there")),
+            (2, b"own".into())
         );
     }
 

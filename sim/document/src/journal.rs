@@ -103,7 +103,8 @@ pub(crate) fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, DocumentError> {
     Ok(bytes)
 }
 
-fn decoded(first: u64, bytes: &[u8]) -> Result<Vec<Record>, DocumentError> {
+/// Reads records of [`encoded`]; the first has the serial number `first`.
+pub(crate) fn decoded(first: u64, bytes: &[u8]) -> Result<Vec<Record>, DocumentError> {
     let (mut records, mut rest) = (Vec::new(), bytes);
     while !rest.is_empty() {
         let (index, after) = rest

@@ -13,7 +13,7 @@
 //! | [`write_height_map`] | height: grey PNG of 16 bits; [`HeightRange`] says what black and white are |
 //! | [`write_stl`] | height as a solid to print: STL; [`stl_step`] proposes how fine |
 //!
-//! [`Order`] is any of these; [`small_picture`] is for the eye alone. Errors are [`ExchangeError`]; [`Progress`] hears how far an export is.
+//! [`Order`] is any of these; [`small_picture`] is for the eye alone, and [`film`] draws frame after frame. Errors are [`ExchangeError`]; [`Progress`] hears how far an export is.
 //!
 //! An import makes of a picture an underpainting, a ground or a tooth:
 //!
@@ -28,6 +28,7 @@
 
 pub mod embed;
 mod error;
+pub mod film;
 pub mod fit_to;
 mod format;
 mod height_map;

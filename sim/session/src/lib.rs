@@ -5,6 +5,9 @@
 //! | [`offline`] | samples in, a painting out: the same bytes as a rig that heard them |
 //! | [`autosave`] | a painting kept in its document as it grows |
 //! | [`recorded`] | a recorded session as what its painting accepted |
+//! | [`reexecution`] | the record of a document, executed again |
+//! | [`work_clock`] | working time of a record, without pauses |
+//! | [`painting_log`](mod@painting_log) | who did what and when |
 //! | [`ticker`] | ticks of a clock |
 //!
 //! A stroke of a loaded flat, 40 mm long; the books of the painting are even to the quantum:
@@ -43,8 +46,14 @@
 pub mod autosave;
 pub mod offline;
 pub mod recorded;
+pub mod painting_log;
+pub mod reexecution;
 pub mod ticker;
+pub mod work_clock;
 
 pub use autosave::Autosave;
 pub use offline::Offline;
 pub use recorded::RecordedSession;
+pub use painting_log::{Logged, LoggedStroke, LoggedWhat, painting_log};
+pub use reexecution::{Reexecution, TilePrints, tile_prints};
+pub use work_clock::WorkClock;

@@ -3,11 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use maulstick_document::{DocumentError, DocumentStats};
+use maulstick_document::{Document, DocumentError, DocumentStats, Opened, RecordStats};
 use maulstick_rig::UserError;
 use maulstick_rig::size::show_bytes;
-use serde_json::json;
+use maulstick_session::{LoggedWhat, painting_log};
+use serde_json::{Value, json};
 
+use super::wall_time::{utc, utc_seconds};
 use crate::commands::{print_json, say};
 use crate::document::{read, wrong};
 use crate::performance::refused;
@@ -43,6 +45,9 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, UserError> {
         opened.check().map_err(|error| wrong(path, &error))?;
     }
     let pending = opened.pending();
+    let record = stats
+        .record
+        .map(|stats| RecordInfo::read(stats, &document, &opened));
     let mut sequencer = opened.sequencer().map_err(refused)?;
     let journal = sequencer.journal_next();
     let painting = sequencer.painting_mut();
@@ -86,6 +91,7 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, UserError> {
             "versions": versions,
             "journal": journal,
             "pending": pending,
+            "record": record.as_ref().map(|record| record.as_json(painting.record_quota())),
             "tables": stats.tables,
             "checked": options.check,
             "ledger": ledger,
@@ -129,6 +135,10 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, UserError> {
             versions.join(", ")
         }
     );
+    match &record {
+        Some(record) => say!("record    {}", record.words()),
+        None => say!("record    none: no time lapse can be made of it"),
+    }
     say!(
         "file      {}, format {}",
         show_bytes(stats.bytes),
@@ -144,6 +154,55 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, UserError> {
         say!("          every tile is whole");
     }
     Ok(0)
+}
+
+/// The record of a painting, and how much was done in it.
+struct RecordInfo {
+    stats: RecordStats,
+    /// Strokes and commands; `None` if it is damaged, or of another version of the program.
+    counts: Option<[usize; 2]>,
+}
+
+impl RecordInfo {
+    fn read(stats: RecordStats, document: &Document, opened: &Opened) -> Self {
+        let log = opened.beginning().map(|_| painting_log(document, opened));
+        let counts = log.and_then(Result::ok).map(|log| {
+            let count = |which: fn(&LoggedWhat) -> bool| {
+                let lines = log.iter().filter(|line| which(&line.what));
+                lines.count()
+            };
+            [
+                count(|what| matches!(what, LoggedWhat::Stroke(_))),
+                count(|what| matches!(what, LoggedWhat::Command { .. })),
+            ]
+        });
+        Self { stats, counts }
+    }
+
+    fn as_json(&self, quota: u64) -> Value {
+        json!({
+            "bytes": self.stats.bytes,
+            "quota": quota,
+            "begun": utc(self.stats.begun_ms),
+            "newest": utc(self.stats.newest_ms),
+            "strokes": self.counts.map(|[strokes, _]| strokes),
+            "commands": self.counts.map(|[_, commands]| commands),
+        })
+    }
+
+    fn words(&self) -> String {
+        let counts = match self.counts {
+            Some([strokes, commands]) => format!("{strokes} strokes, {commands} commands"),
+            None => "damaged, or of another version of Maulstick".to_owned(),
+        };
+        let RecordStats {
+            bytes,
+            begun_ms,
+            newest_ms,
+        } = self.stats;
+        let [from, to] = [begun_ms, newest_ms].map(utc_seconds);
+        format!("{counts}, {}, from {from} to {to}", show_bytes(bytes))
+    }
 }
 
 /// The name of a ground or tooth; of a picture the first digits of its hash.

@@ -2,11 +2,15 @@
 
 mod compare;
 mod export;
+mod film_file;
 mod import;
 mod info;
+mod log;
 mod pack;
 mod recover;
+mod timelapse;
 mod versions;
+mod wall_time;
 
 pub(super) use export::formats;
 
@@ -29,6 +33,10 @@ pub enum PaintingCommand {
     Versions(versions::VersionsOptions),
     /// Make a painting's file as small as possible
     Pack(pack::PackOptions),
+    /// Make a film of how a painting was painted
+    Timelapse(timelapse::TimelapseOptions),
+    /// List who did what in a painting, and when
+    Log(log::LogOptions),
 }
 
 /// Runs the subcommand.
@@ -43,6 +51,8 @@ pub fn run(command: &PaintingCommand) -> Result<i32, UserError> {
         PaintingCommand::Recover(options) => recover::run(options),
         PaintingCommand::Versions(options) => versions::run(options),
         PaintingCommand::Pack(options) => pack::run(options),
+        PaintingCommand::Timelapse(options) => timelapse::run(options),
+        PaintingCommand::Log(options) => log::run(options),
     }
 }
 

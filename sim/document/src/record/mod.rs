@@ -4,6 +4,7 @@
 //! reads the journal alone, so a long record costs no time; it is read row by row by who executes it again.
 
 pub(crate) mod beginning;
+mod transposed;
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -142,7 +143,7 @@ impl<'a> OpenRow<'a> {
         if self.data.is_empty() {
             return Ok(());
         }
-        let data = zstd::bulk::compress(&self.data, LEVEL)?;
+        let data = zstd::bulk::compress(&transposed::transposed(&self.data)?, LEVEL)?;
         self.data.clear();
         self.bytes += data.len() as u64;
         let [first, last] = self.ends;
@@ -249,7 +250,8 @@ pub(crate) fn row_from(
             .optional()?;
         if let Some((ints, data, sum)) = row {
             checked(record_checksum(ints, &data), sum)?;
-            found = Some((ints[0] as u64, Some(ints[2] as u64), data));
+            let messages = transposed::in_order(&journal::unpacked(&data)?)?;
+            found = Some((ints[0] as u64, Some(ints[2] as u64), messages));
         }
     }
     if found.is_none() {
@@ -265,13 +267,13 @@ pub(crate) fn row_from(
         if let Some((ends, data, sum)) = row {
             let ends = ends.map(|end| end as u64);
             checked(journal_checksum(ends, &data), sum)?;
-            found = Some((ends[0], None, data));
+            found = Some((ends[0], None, journal::unpacked(&data)?));
         }
     }
-    let Some((first, time_ms, data)) = found else {
+    let Some((first, time_ms, messages)) = found else {
         return Ok(None);
     };
-    let mut records = journal::read(first, &data)?;
+    let mut records = journal::decoded(first, &messages)?;
     records.retain(|record| record.serial >= serial);
     match records.first() {
         Some(first) if first.serial == serial => Ok(Some(RecordRow { time_ms, records })),

@@ -265,6 +265,12 @@ impl Painting {
         self.break_record();
     }
 
+    /// Merges the oldest steps until all pages take so many bytes in memory, or only the newest steps are apart: for a
+    /// painting whose new pages no document holds.
+    pub fn merge_history(&mut self, resident: usize) {
+        while self.bytes() > resident && self.history.merge_oldest() {}
+    }
+
     /// Limit of the history, bytes; beyond that its oldest steps are merged.
     pub fn set_quota(&mut self, bytes: u64) {
         self.history.quota = bytes;

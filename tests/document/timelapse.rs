@@ -1,0 +1,198 @@
+//! Time lapses and logs of paintings, by the record that their files hold.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use support::{COARSE, Place, fault, has, info};
+
+/// Size and bytes of a PNG of 8 bits.
+fn pixels(path: &Path) -> ([u32; 2], Vec<u8>) {
+    let file = BufReader::new(File::open(path).expect("there"));
+    let mut reader = png::Decoder::new(file).read_info().expect("a PNG");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("small")];
+    let frame = reader.next_frame(&mut bytes).expect("whole");
+    bytes.truncate(frame.buffer_size());
+    ([frame.width, frame.height], bytes)
+}
+
+/// Largest difference of two pictures of the same size.
+fn apart(one: &[u8], other: &[u8]) -> u8 {
+    assert_eq!(one.len(), other.len());
+    let pairs = one.iter().zip(other);
+    let apart = pairs.map(|(one, other)| one.abs_diff(*other));
+    apart.max().expect("some")
+}
+
+fn said(place: &Place, args: &[&str]) -> [String; 2] {
+    let output = place.done(args);
+    [output.stdout, output.stderr].map(|said| String::from_utf8_lossy(&said).into_owned())
+}
+
+#[test]
+fn a_time_lapse_begins_with_the_canvas_and_ends_with_the_painting() {
+    let place = Place::new();
+    place.short_demo("take.mcap", 3.0);
+    let render = ["render", "take.mcap", "--load", "Ultramarine Blue", "-o"];
+    let file = ["first.png", "--document", "x.maul"];
+    place.done(&[&render[..], &file[..], &COARSE[..]].concat());
+    let twice = ["second.png", "--document", "x.maul"];
+    place.done(&[&render[..], &twice[..]].concat());
+    let before = place.bytes("x.maul");
+
+    let film = [
+        "painting",
+        "timelapse",
+        "x.maul",
+        "--seconds",
+        "1",
+        "--fps",
+        "10",
+    ];
+    let [out, error] = said(&place, &[&film[..], &["-o", "frames/"]].concat());
+    has(&out, &["10 frames", "in 1.0 s"]);
+    assert_eq!(error, "", "it gives the painting again");
+    let (size, finished) = pixels(&place.path("second.png"));
+    let mut names: Vec<_> = std::fs::read_dir(place.path("frames"))
+        .expect("a folder")
+        .map(|file| file.expect("read").path())
+        .collect();
+    names.sort();
+    assert_eq!(names.len(), 10);
+    let frames: Vec<_> = names.iter().map(|name| pixels(name)).collect();
+    assert!(frames.iter().all(|(other, _)| *other == size));
+    assert!(apart(&frames[9].1, &finished) <= 1, "a pixel a cell");
+    assert!(frames[9] == frames[8], "it holds");
+    let painted = |frame: &[u8]| {
+        let blank = &frames[0].1;
+        let changed = frame
+            .iter()
+            .zip(blank)
+            .filter(|(one, other)| one.abs_diff(**other) > 8);
+        changed.count()
+    };
+    let painted: Vec<usize> = frames.iter().map(|(_, frame)| painted(frame)).collect();
+    assert!(painted[2] > 0 && painted[2] < painted[4], "{painted:?}");
+    assert!(frames[4] != frames[6] && frames[6] != frames[9]);
+    has(
+        &fault(&place, &[&film[..], &["-o", "frames"]].concat(), 1),
+        &["frames", "new folder"],
+    );
+
+    said(
+        &place,
+        &[&film[..], &["-o", "film.gif", "--width", "100"]].concat(),
+    );
+    let bytes = place.bytes("film.gif");
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::RGBA);
+    let mut gif = options.read_info(&bytes[..]).expect("a GIF");
+    assert_eq!(
+        (gif.width(), u32::from(gif.height())),
+        (100, 100 * size[1] / size[0])
+    );
+    let (mut shown, mut time) = (0, 0);
+    while let Some(frame) = gif.read_next_frame().expect("whole") {
+        (shown, time) = (shown + 1, time + frame.delay);
+    }
+    assert!((4..=10).contains(&shown), "{shown} frames that differ");
+    assert_eq!(time, 100, "hundredths of a second");
+    assert_eq!(place.bytes("x.maul"), before, "the painting is only read");
+
+    // Another kind of file does not give way.
+    std::fs::write(place.path("film.mp4"), "a shopping list").expect("written");
+    has(
+        &fault(&place, &[&film[..], &["-o", "film.mp4"]].concat(), 1),
+        &["film.mp4", "--overwrite"],
+    );
+    has(
+        &fault(&place, &[&film[..], &["-o", "film.avi"]].concat(), 2),
+        &[".mp4 or .gif"],
+    );
+    has(
+        &fault(&place, &[&film[..], &["-o", "x.maul"]].concat(), 2),
+        &["maul"],
+    );
+}
+
+#[test]
+fn an_mp4_without_ffmpeg_is_refused_with_advice() {
+    let place = Place::new();
+    place.short_demo("take.mcap", 1.0);
+    let render = ["render", "take.mcap", "-o", "p.png", "--document", "x.maul"];
+    place.done(&[&render[..], &COARSE[..]].concat());
+    let film = ["painting", "timelapse", "x.maul", "-o", "film.mp4"];
+    let mut command = place.maulstick(&film);
+    let output = command.env("PATH", place.path("")).output().expect("run");
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!output.status.success());
+    has(&error, &["ffmpeg is not installed", ".gif"]);
+    assert!(!place.path("film.mp4").exists());
+}
+
+#[test]
+fn a_log_says_who_did_what_and_a_record_can_be_left_out_and_forgotten() {
+    let place = Place::new();
+    place.short_demo("take.mcap", 2.0);
+    let render = ["render", "take.mcap", "--load", "Bone Black", "-o", "p.png"];
+    let file = ["--document", "x.maul"];
+    place.done(&[&render[..], &file[..], &COARSE[..]].concat());
+    let strokes = |name: &str| info(&place, name)["record"]["strokes"].clone();
+    let painted = strokes("x.maul").as_u64().expect("a record");
+    assert!(painted > 0);
+    let [log, _] = said(&place, &["painting", "log", "x.maul"]);
+    has(
+        &log,
+        &[
+            "time",
+            "who",
+            "what",
+            "stroke of main on the canvas",
+            " UTC",
+            "Begin",
+        ],
+    );
+    assert_eq!(log.matches("stroke of main").count() as u64, painted);
+    let [json, _] = said(&place, &["painting", "log", "x.maul", "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    let lines = json["log"].as_array().expect("lines");
+    let kind = |line: &&serde_json::Value| line["kind"] == "stroke";
+    assert_eq!(lines.iter().filter(kind).count() as u64, painted);
+    let [words, _] = said(&place, &["painting", "info", "x.maul"]);
+    has(
+        &words,
+        &["record", &format!("{painted} strokes"), " UTC to "],
+    );
+
+    // A picture is laid by no message.
+    place.done(&["painting", "import", "x.maul", "p.png"]);
+    assert_eq!(strokes("x.maul"), 0);
+    let film = [
+        "painting",
+        "timelapse",
+        "x.maul",
+        "--seconds",
+        "0.5",
+        "-o",
+        "film.gif",
+    ];
+    let [_, error] = said(&place, &film);
+    assert_eq!(error, "");
+    place.done(&[&render[..], &file[..]].concat());
+    assert_eq!(strokes("x.maul"), painted);
+    place.done(&["painting", "pack", "x.maul"]);
+    assert_eq!(strokes("x.maul"), painted, "it stays");
+    place.done(&["painting", "pack", "x.maul", "--forget-record"]);
+    assert_eq!(strokes("x.maul"), 0);
+
+    place.done(&[&render[..], &file[..], &["--record", "0"]].concat());
+    assert_eq!(info(&place, "x.maul")["record"], serde_json::Value::Null);
+    has(&fault(&place, &film, 2), &["no record", "x.maul"]);
+    has(
+        &fault(&place, &["painting", "log", "x.maul"], 2),
+        &["no record"],
+    );
+}
