@@ -45,15 +45,15 @@
 
 pub mod autosave;
 pub mod offline;
-pub mod recorded;
 pub mod painting_log;
+pub mod recorded;
 pub mod reexecution;
 pub mod ticker;
 pub mod work_clock;
 
 pub use autosave::Autosave;
 pub use offline::Offline;
-pub use recorded::RecordedSession;
 pub use painting_log::{Logged, LoggedStroke, LoggedWhat, painting_log};
+pub use recorded::RecordedSession;
 pub use reexecution::{Reexecution, TilePrints, tile_prints};
 pub use work_clock::WorkClock;

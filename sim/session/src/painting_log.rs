@@ -112,7 +112,7 @@ impl LogWriter {
     fn add(&mut self, time_ms: Option<u64>, record: Record) {
         let what = match record.what {
             Accepted::State { header, state } => return self.add_state(time_ms, &header, &state),
-            Accepted::Brush { brush, .. } => {
+            Accepted::Entry(Entry::Brush { brush, .. }) => {
                 self.brushes.insert(name_hash(&brush), brush.clone());
                 LoggedWhat::Brush(brush)
             }

@@ -31,7 +31,7 @@ impl WorkClock {
                 command: Command::Edit(_),
                 ..
             }) => self.worked_ns += EDIT_NS,
-            Accepted::Entry(_) | Accepted::Brush { .. } => {}
+            Accepted::Entry(_) => {}
         }
         self.worked_ns
     }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use clap::Args;
+use maulstick_document::record;
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 use maulstick_rig::node_handle::CONFIG_FILE;
@@ -25,6 +26,7 @@ use crate::commands::open::{LONGEST, whole};
 use crate::commands::say;
 use crate::commands::session::{Session, Target};
 use crate::commands::takes::session_file::{JOURNAL, PAINTING};
+use crate::document::wrong;
 use crate::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick record`.
@@ -287,6 +289,8 @@ impl Part {
             );
             return Ok(());
         }
+        // What was painted before the session is not among what is painted again.
+        record::discard(&copy).map_err(|error| wrong(&copy, &error))?;
         let bytes = std::fs::read(&copy).map_err(|error| UserError::reading(&copy, &error))?;
         self.writer
             .attach(PAINTING, "application/vnd.sqlite3", &bytes)

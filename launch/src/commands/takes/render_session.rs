@@ -13,7 +13,7 @@ use crate::backend::choose_backend;
 use crate::commands::{progress_bar, say};
 use crate::destination::export;
 use crate::document::{Presence, presence, wrong};
-use crate::performance::KitOptions;
+use crate::performance::{KitOptions, refused};
 
 /// Paints a session.
 ///
@@ -49,13 +49,14 @@ pub(super) fn render_session(
     session.follow(&mut sequencer, u64::MAX, &mut |sequencer, at_ns, event| {
         if let Event::Accepted(record) = event {
             counts.note(&record);
-            sequencer.replay(record);
+            sequencer.repeat(record).map_err(refused)?;
             autosave.turn(sequencer, begun.elapsed().as_nanos() as u64);
             bar.set_position(at_ns / 1_000_000);
         }
         Ok(())
     })?;
     bar.finish_and_clear();
+    sequencer.end_repeating();
     let ledger = painting.ledger.as_deref();
     write_snapshot(sequencer.painting_mut(), &options.output, ledger, &export)
         .map_err(|(path, error)| UserError::writing(&path, &error))?;

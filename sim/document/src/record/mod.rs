@@ -6,6 +6,7 @@
 pub(crate) mod beginning;
 mod transposed;
 
+use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use maulstick_painting::RecordChange;
@@ -14,7 +15,7 @@ use rusqlite::{OptionalExtension as _, Row, params};
 
 use crate::checkpoint::Checkpoint;
 use crate::error::DocumentError;
-use crate::file::database::Database;
+use crate::file::database::{Access, Database};
 use crate::journal;
 use crate::tables::checksum::{journal_checksum, record_checksum};
 use crate::tables::schema::has_record;
@@ -75,6 +76,17 @@ pub(crate) fn advance(
         params![serial as i64],
     )?;
     Ok(())
+}
+
+/// Discards the record of a closed painting: the next one that opens it begins another.
+///
+/// # Errors
+/// Any [`DocumentError`].
+pub fn discard(path: &Path) -> Result<(), DocumentError> {
+    let (database, _) = Database::open(path, Access::Paint, None)?;
+    clear(&database)?;
+    database.connection.execute_batch("VACUUM")?;
+    database.close()
 }
 
 fn clear(database: &Database) -> Result<(), DocumentError> {

@@ -80,7 +80,7 @@ mod tests {
         let groups = transposed(&messages).expect("whole");
         assert_eq!(groups.len(), messages.len() + 4 * 8);
         assert_eq!(in_order(&groups).expect("whole"), messages);
-        assert_eq!(in_order(&[]).expect("whole"), []);
+        assert!(in_order(&[]).expect("whole").is_empty());
         for end in [1, 11, 14, messages.len() - 1] {
             assert!(transposed(&messages[..end]).is_err(), "{end}");
         }
