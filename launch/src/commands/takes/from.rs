@@ -85,7 +85,7 @@ pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
     if start_ns > 0 {
         session.follow(&mut sequencer, start_ns, &mut |sequencer, _, event| {
             if let Event::Accepted(record) = event {
-                sequencer.repeat(record).map_err(refused)?;
+                sequencer.replay(record);
             }
             Ok(())
         })?;
