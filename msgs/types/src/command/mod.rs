@@ -2,11 +2,12 @@
 
 pub mod advice;
 pub mod reply_cache;
+pub mod session;
 
 use serde::de::Error as _;
-use serde_bytes::ByteBuf;
 
 use crate::command::advice::Advice;
+pub use crate::command::session::SessionCommand;
 use crate::edits::Edit;
 use crate::mixture::Mixture;
 use crate::scene::{CANVAS, STAINS_M};
@@ -329,20 +330,6 @@ wire_enum! {
             /// Its name.
             name: DeviceName,
         },
-    }
-}
-
-wire_enum! {
-    /// A recorded session that is painted again.
-    pub enum SessionCommand {
-        /// Accepts again what was accepted then, in order. From the first of these to [`End`](Self::End), or until none
-        /// came for ten seconds, hands paint nothing, other commands are refused, and time passes only with these.
-        Repeat {
-            /// Records as a painting keeps them in its journal.
-            records: ByteBuf,
-        },
-        /// Ends it.
-        End,
     }
 }
 
