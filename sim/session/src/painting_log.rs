@@ -135,7 +135,8 @@ impl LogWriter {
             let at_m = [x, y];
             let open = self.open.get_mut(&header.source);
             if let Some(open) = open.filter(|open| open.stroke == stroke) {
-                let way_m = (x - open.at_m[0]).hypot(y - open.at_m[1]);
+                let [dx, dy] = [x - open.at_m[0], y - open.at_m[1]];
+                let way_m = (dx * dx + dy * dy).sqrt();
                 open.at_m = at_m;
                 if let Some(Logged {
                     what: LoggedWhat::Stroke(stroke),
