@@ -62,17 +62,24 @@ pub struct ReplayOptions {
     /// Let recorded contact models move the hand that holds this device
     #[arg(long, value_name = "DEVICE")]
     drive: Option<String>,
+    #[command(flatten)]
+    painting: PaintingOptions,
+    /// Read orders from the standard input (pause, step, seek S, skip S, rate R, end), and print the position as lines of JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// Where a session is painted again.
+#[derive(Args, Clone, Debug)]
+struct PaintingOptions {
     /// Painting to write, in which a session is painted again [default: RECORDING-replay.maul]
     #[arg(short, long, value_name = "FILE")]
     document: Option<PathBuf>,
     /// Discard the current painting if it is in memory only
     #[arg(long)]
     forget: bool,
-    /// Read orders from the standard input (pause, step, seek S, skip S, rate R, end), and print the position as lines of JSON
-    #[arg(long)]
-    json: bool,
-    #[command(flatten)]
-    target: Target,
 }
 
 /// Time between two lines that say where it is.
@@ -113,10 +120,13 @@ impl ReplayOptions {
 /// # Errors
 /// A [`UserError`] where no rig runs, the recording lacks something, or the rig refuses it.
 pub fn run(options: &ReplayOptions) -> Result<i32, UserError> {
-    if options.topic.is_empty() && options.device.is_none() && options.drive.is_none() {
-        if let Some(session) = SessionFile::open(&options.recording)? {
-            return session::replay(options, &session);
-        }
+    let sends = !options.topic.is_empty() || options.device.is_some() || options.drive.is_some();
+    let session = match sends {
+        true => None,
+        false => SessionFile::open(&options.recording)?,
+    };
+    if let Some(session) = session {
+        return session::replay(options, &session);
     }
     streams::replay(options)
 }

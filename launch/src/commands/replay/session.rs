@@ -36,7 +36,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// A [`UserError`] where the rig does not open its painting, or refuses a record.
 pub(super) fn replay(options: &ReplayOptions, session: &SessionFile) -> Result<i32, UserError> {
     let range_ns = options.range_ns(session.length_ns())?;
-    let path = match &options.document {
+    let path = match &options.painting.document {
         Some(path) => path.clone(),
         None => free_beside(&options.recording),
     };
@@ -155,7 +155,7 @@ impl Player<'_> {
         self.session.write_painting(path)?;
         let command = RigCommand::Open {
             path: whole(path)?,
-            forget: self.options.forget,
+            forget: self.options.painting.forget,
         };
         let opened = self
             .rig

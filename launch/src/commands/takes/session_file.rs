@@ -105,36 +105,30 @@ impl SessionFile {
         };
         let (mut newest_ns, mut done) = (0, Ok(()));
         let range = [first_ns, first_ns.saturating_add(to_ns)];
-        self.recording.messages(range, &mut |message| {
+        let mut take_in = |topic: &Topic, message: &RecordedMessage| -> Result<(), UserError> {
             let at_ns = message.arrived_ns.saturating_sub(first_ns);
-            let Some(topic) = topics.get(&message.channel) else {
-                return true;
-            };
-            let mut take_in = || -> Result<(), UserError> {
-                let is_state = topic.name.starts_with("brush/") && topic.name.ends_with("/state");
-                if is_state {
-                    let (header, state) = typed::<BrushState>(topic, &message, &place)?;
-                    session.state(header, state);
-                } else if topic.name == JOURNAL {
-                    let (header, entry) = typed::<JournalEntry>(topic, &message, &place)?;
-                    let known = session.entry(&header, entry);
-                    known.map_err(|fault| broken(&fault, at_ns))?;
-                } else {
-                    let name = topic.name.as_str();
-                    let message = &message;
-                    let other = Event::Other {
-                        topic: name,
-                        message,
-                    };
-                    return each(sequencer, at_ns, other);
-                }
-                while let Some(record) = session.next_record() {
-                    newest_ns = at_ns;
-                    each(sequencer, at_ns, Event::Accepted(record))?;
-                }
-                Ok(())
-            };
-            done = take_in();
+            let name = topic.name.as_str();
+            if name.starts_with("brush/") && name.ends_with("/state") {
+                let (header, state) = typed::<BrushState>(topic, message, &place)?;
+                session.state(header, state);
+            } else if name == JOURNAL {
+                let (header, entry) = typed::<JournalEntry>(topic, message, &place)?;
+                let known = session.entry(&header, entry);
+                known.map_err(|fault| broken(&fault, at_ns))?;
+            } else {
+                let topic = name;
+                return each(sequencer, at_ns, Event::Other { topic, message });
+            }
+            while let Some(record) = session.next_record() {
+                newest_ns = at_ns;
+                each(sequencer, at_ns, Event::Accepted(record))?;
+            }
+            Ok(())
+        };
+        self.recording.messages(range, &mut |message| {
+            if let Some(topic) = topics.get(&message.channel) {
+                done = take_in(topic, &message);
+            }
             done.is_ok()
         })?;
         done?;
