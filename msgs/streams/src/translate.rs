@@ -3,6 +3,8 @@
 //! Fields and alternatives are found by name. What the value lacks is 0, none or empty; what the table does not have is left
 //! out.
 
+use std::sync::Arc;
+
 use maulstick_types::{DecodeError, Header, Message, decode};
 
 use crate::field_table::{Definition, FieldTable, TableError, Type, TypedField};
@@ -85,23 +87,31 @@ impl Writer<'_> {
         if depth > DEEPEST {
             return Err(TableError::Json("it refers to itself".into()));
         }
+        let mismatch = |value: &Value| TableError::Invalid {
+            field: format!("{value:?}").chars().take(40).collect(),
+            what: "of another type than in this version".into(),
+        };
         let number = match value {
-            None => 0,
             Some(Value::Unsigned(number)) => *number,
             Some(Value::Signed(number)) => number.cast_unsigned(),
             Some(Value::Flag(flag)) => u64::from(*flag),
-            Some(_) => 0,
+            _ => 0,
         };
+        let is_number = matches!(
+            value,
+            None | Some(Value::Unsigned(_) | Value::Signed(_) | Value::Flag(_))
+        );
         match (of, value) {
-            (Type::U8 | Type::Bool, _) => self.put(&number.to_le_bytes()[..1]),
-            (Type::U16, _) => self.put(&number.to_le_bytes()[..2]),
-            (Type::U32 | Type::I32, _) => self.put(&number.to_le_bytes()[..4]),
-            (Type::U64 | Type::I64, _) => self.put(&number.to_le_bytes()),
+            (Type::U8 | Type::Bool, _) if is_number => self.put(&number.to_le_bytes()[..1]),
+            (Type::U16, _) if is_number => self.put(&number.to_le_bytes()[..2]),
+            (Type::U32 | Type::I32, _) if is_number => self.put(&number.to_le_bytes()[..4]),
+            (Type::U64 | Type::I64, _) if is_number => self.put(&number.to_le_bytes()),
+            (Type::F32, None) => self.put(&[0; 4]),
             (Type::F32, Some(Value::Single(value))) => self.put(&value.to_le_bytes()),
-            (Type::F32, _) => self.put(&[0; 4]),
+            (Type::F64, None) => self.put(&[0; 8]),
             (Type::F64, Some(Value::Real(value))) => self.put(&value.to_le_bytes()),
             (Type::F64, Some(Value::Single(value))) => self.put(&f64::from(*value).to_le_bytes()),
-            (Type::F64, _) => self.put(&[0; 8]),
+            (Type::Text | Type::Bytes | Type::List(_), None) => self.length(0),
             (Type::Text, Some(Value::Text(text))) => {
                 self.length(text.len());
                 self.put(text.as_bytes());
@@ -116,12 +126,12 @@ impl Writer<'_> {
                     self.value(of, Some(value), depth + 1)?;
                 }
             }
-            (Type::Text | Type::Bytes | Type::List(_), _) => self.length(0),
-            (Type::Array(of, count), value) => {
-                let list = match value {
-                    Some(Value::List(list)) => list.as_slice(),
-                    _ => &[],
-                };
+            (Type::Array(of, count), None) => {
+                for _ in 0..*count {
+                    self.value(of, None, depth + 1)?;
+                }
+            }
+            (Type::Array(of, count), Some(Value::List(list))) => {
                 for place in 0..*count {
                     self.value(of, list.get(place), depth + 1)?;
                 }
@@ -135,6 +145,8 @@ impl Writer<'_> {
                 let definitions = self.definitions;
                 self.defined(&definitions[*place], value, depth + 1)?;
             }
+            (_, Some(value)) => return Err(mismatch(value)),
+            (_, None) => {}
         }
         Ok(())
     }
@@ -149,24 +161,41 @@ impl Writer<'_> {
             (Definition::Struct(fields), Some(Value::Fields(values))) => {
                 self.fields(fields, values, depth)
             }
-            (Definition::Struct(fields), _) => self.fields(fields, &Vec::new(), depth),
+            (Definition::Struct(fields), None) => self.fields(fields, &Vec::new(), depth),
             (Definition::Enum(variants), Some(Value::Variant(name, values))) => {
-                let place = variants.iter().position(|(own, _)| own == name);
-                let Some(place) = place else {
-                    return Err(TableError::Invalid {
-                        field: name.to_string(),
-                        what: "no alternative that this version knows".into(),
-                    });
-                };
-                self.put(&(place as u32).to_le_bytes());
-                self.fields(&variants[place].1, values, depth)
+                self.variant(variants, name, values, depth)
             }
-            (Definition::Enum(variants), _) => {
+            (Definition::Enum(variants), Some(Value::Text(name))) => {
+                self.variant(variants, name, &Vec::new(), depth)
+            }
+            (Definition::Enum(variants), None) => {
                 self.put(&[0; 4]);
                 let first = variants.first().map_or(&[][..], |(_, fields)| fields);
                 self.fields(first, &Vec::new(), depth)
             }
+            (_, Some(value)) => Err(TableError::Invalid {
+                field: format!("{value:?}").chars().take(40).collect(),
+                what: "of another type than in this version".into(),
+            }),
         }
+    }
+
+    fn variant(
+        &mut self,
+        variants: &[(Arc<str>, Vec<TypedField>)],
+        name: &str,
+        values: &Fields,
+        depth: usize,
+    ) -> Result<(), TableError> {
+        let place = variants.iter().position(|(own, _)| **own == *name);
+        let Some(place) = place else {
+            return Err(TableError::Invalid {
+                field: name.to_owned(),
+                what: "no alternative that this version knows".into(),
+            });
+        };
+        self.put(&(place as u32).to_le_bytes());
+        self.fields(&variants[place].1, values, depth)
     }
 
     fn fields(
@@ -191,6 +220,7 @@ mod tests {
     use maulstick_types::{Flags, Origin, encode};
 
     use super::*;
+    use crate::catalogue::KnownTables;
 
     fn entry() -> JournalEntry {
         let command = TakeCommand::Begin {
@@ -225,6 +255,32 @@ mod tests {
         let body = &bytes[HEADER_BYTES..];
         let value = table.decode(body).expect("whole");
         assert_eq!(table.encode(&value).expect("known"), body);
+    }
+
+    /// Every golden message, units of enums among them.
+    #[test]
+    fn every_message_is_the_same_by_its_own_table() {
+        let mut known = KnownTables::default();
+        let mut count = 0;
+        for line in include_str!("../../types/tests/golden.txt").lines() {
+            let hex = line.split_whitespace().last().unwrap_or_default();
+            let pairs = hex.as_bytes().chunks_exact(2).map(|pair| {
+                let digits = std::str::from_utf8(pair).ok()?;
+                u8::from_str_radix(digits, 16).ok()
+            });
+            let Some(bytes) = pairs.collect::<Option<Vec<u8>>>() else {
+                continue;
+            };
+            let Ok(header) = Header::from_bytes(&bytes) else {
+                continue;
+            };
+            let table = known.of(header.schema).expect("its own");
+            let body = &bytes[HEADER_BYTES..];
+            let value = table.decode(body).expect("whole");
+            assert_eq!(table.encode(&value).expect("known"), body, "{line}");
+            count += 1;
+        }
+        assert!(count > 50, "{count}");
     }
 
     /// A topic whose messages lacked some fields and alternatives, and had others.

@@ -86,7 +86,7 @@ impl RecordedSession {
     /// Takes in an entry of the journal; one from before the session is passed over.
     ///
     /// # Errors
-    /// [`SessionFault::Another`].
+    /// [`SessionFault::Another`], or [`SessionFault::Entries`] where some are missing before it.
     pub fn entry(&mut self, header: &Header, entry: JournalEntry) -> Result<(), SessionFault> {
         let known = self.epoch.replace(header.epoch);
         let newest = self.entries.last_key_value().map(|(index, _)| *index);
@@ -99,6 +99,13 @@ impl RecordedSession {
                 found: entry.index,
             });
         }
+        let expected = newest.map_or(0, |newest| newest + 1).max(self.next);
+        if entry.index > expected {
+            return Err(SessionFault::Entries {
+                from: expected,
+                to: entry.index - 1,
+            });
+        }
         if entry.index >= self.next {
             self.entries.insert(entry.index, entry.entry);
         }
@@ -106,12 +113,15 @@ impl RecordedSession {
     }
 
     /// The next record, if it is whole.
-    pub fn next_record(&mut self) -> Option<Record> {
+    ///
+    /// # Errors
+    /// [`SessionFault::State`] where a later state of the same brush has come, and that of the record has not.
+    pub fn next_record(&mut self) -> Result<Option<Record>, SessionFault> {
         let index = self.next;
-        let mut entry = self
-            .entries
-            .first_entry()
-            .filter(|own| *own.key() == index)?;
+        let first = self.entries.first_entry();
+        let Some(mut entry) = first.filter(|own| *own.key() == index) else {
+            return Ok(None);
+        };
         let what = match entry.get_mut() {
             Entry::States {
                 brush,
@@ -120,7 +130,16 @@ impl RecordedSession {
                 to,
             } => {
                 let key = (name_hash(brush), *epoch, *from);
-                let (header, state) = self.states.remove(&key)?;
+                let Some((header, state)) = self.states.remove(&key) else {
+                    let mut later = self.states.range(key..(key.0, key.1, u64::MAX));
+                    return match later.next() {
+                        None => Ok(None),
+                        Some(_) => Err(SessionFault::State {
+                            brush: brush.clone(),
+                            number: key.2,
+                        }),
+                    };
+                };
                 // Those before it were not accepted, and are needed no more.
                 let first = (key.0, key.1, 0);
                 let passed: Vec<StateKey> =
@@ -141,11 +160,11 @@ impl RecordedSession {
         };
         let serial = self.serial;
         self.serial += 1;
-        Some(Record {
+        Ok(Some(Record {
             serial,
             index,
             what,
-        })
+        }))
     }
 
     /// Checks that nothing is left over.
@@ -232,9 +251,17 @@ mod tests {
         let mut offline = offline();
         let sequencer = offline.sequencer_mut();
         let mut session = RecordedSession::after(sequencer);
+        let mut fault = None;
         let mut accept = |session: &mut RecordedSession| {
-            while let Some(record) = session.next_record() {
-                sequencer.replay(record);
+            loop {
+                match session.next_record() {
+                    Ok(Some(record)) => sequencer.replay(record),
+                    Ok(None) => return,
+                    Err(found) => {
+                        fault.get_or_insert(found);
+                        return;
+                    }
+                }
             }
         };
         for (number, record) in records.iter().enumerate() {
@@ -257,7 +284,7 @@ mod tests {
             }
             accept(&mut session);
         }
-        let end = session.end();
+        let end = fault.map_or_else(|| session.end(), Err);
         (offline.into_painting(), end)
     }
 
@@ -285,13 +312,16 @@ mod tests {
             entry: Entry::Tick { count: index },
         };
         let header = message(0);
-        session.entry(&header, tick(next + 2)).expect("later");
-        assert_eq!(session.next_record(), None);
+        session.entry(&header, tick(next)).expect("the next");
         let missing = SessionFault::Entries {
-            from: next,
-            to: next + 1,
+            from: next + 1,
+            to: next + 2,
         };
-        assert_eq!(session.end(), Err(missing));
+        assert_eq!(session.entry(&header, tick(next + 3)), Err(missing));
+        session.entry(&header, tick(next + 1)).expect("the next");
+        let mut come = || session.next_record().expect("whole").is_some();
+        assert!(come() && come() && !come());
+        assert_eq!(session.end(), Ok(()));
         let restarted = Header { epoch: 2, ..header };
         let fault = session.entry(&restarted, tick(next + 1));
         assert!(matches!(fault, Err(SessionFault::Another { .. })));

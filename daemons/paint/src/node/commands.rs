@@ -87,7 +87,7 @@ impl PaintNode {
     fn beside(&mut self, asked: &CommandRequest, now_ns: u64) -> Option<Outcome> {
         let command = match &asked.command {
             Command::File(command) => command,
-            Command::Session(command) => return Some(self.repeat(asked, command, now_ns)),
+            Command::Session(command) => return Some(self.repeat(command, now_ns)),
             Command::Edit(_) | Command::Take(_) | Command::Brush(_) | Command::Rig(_) => {
                 return None;
             }
@@ -142,6 +142,7 @@ impl PaintNode {
             self.sequencer.remember(client, number, outcome);
         }
         self.go_on_saving(now_ns);
+        self.go_on_copying();
     }
 
     /// Does what a command still asks for.

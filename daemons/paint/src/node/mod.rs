@@ -8,7 +8,7 @@ mod status;
 mod time;
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -19,7 +19,7 @@ use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
 use maulstick_bus::{
     Announcer, Arrival, Bus, BusError, CreditReceiver, Qos, Queue, Server, Subscription, Wake,
 };
-use maulstick_document::{Document, DocumentError};
+use maulstick_document::{Document, DocumentError, Relocation};
 use maulstick_painting::{Painting, Sequencer};
 use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::paint::{BrushCredit, JournalEntry, PaintConsumed, PaintStatus};
@@ -27,7 +27,7 @@ use maulstick_types::scene::Scene;
 use maulstick_types::wire::topics::{Topics, check_name};
 use maulstick_types::{Origin, name_hash};
 
-use crate::exporter::Exporter;
+use crate::exporter::{Asker, Exporter};
 use crate::frames::Feed;
 use crate::snapshots::Snapshots;
 use crate::thumbnails::Thumbnails;
@@ -57,6 +57,8 @@ pub struct PaintNode {
     exporter: Exporter,
     snapshots: Snapshots,
     saving: Option<Saving>,
+    /// A copy that is being written: who asked, and where it will be.
+    copying: Option<(Asker, PathBuf, Relocation)>,
     /// Its document has not got the name yet that the painter gave it.
     unnamed: bool,
     thumbnails: Thumbnails,
@@ -90,8 +92,8 @@ pub struct PaintNode {
     /// Commit counter at the newest commit seen, and its time, ns.
     committed: (u64, u64),
     ticker: Ticker,
-    /// When a recorded session was gone on with last, ns.
-    repeated_ns: u64,
+    /// The recorded session that is painted again.
+    session: Option<repeat::Session>,
 }
 
 impl PaintNode {
@@ -142,6 +144,7 @@ impl PaintNode {
             exporter: Exporter::default(),
             snapshots: Snapshots::default(),
             saving: None,
+            copying: None,
             unnamed: false,
             thumbnails: Thumbnails::new(b, &topics.thumbnail(), wake, me)?,
             tokens: b.watch(&topics.node("*"), wake)?,
@@ -170,7 +173,7 @@ impl PaintNode {
             memory: 1 << 30,
             committed: (0, 0),
             ticker: Ticker::default(),
-            repeated_ns: 0,
+            session: None,
             topics: topics.clone(),
             me,
             sequencer,

@@ -1,37 +1,66 @@
 //! A recorded session that is painted again, in batches of a client.
 
 use maulstick_document::journal;
-use maulstick_types::command::{CommandRequest, Outcome, SessionCommand};
+use maulstick_types::command::{Outcome, SessionCommand};
 
 use super::PaintNode;
 
-/// Time without a batch after which the hands have the painting again, ns.
+/// Time without a command after which the hands have the painting again, ns.
 const SILENCE_NS: u64 = 10_000_000_000;
 
+/// A session that is painted again.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Session {
+    number: u64,
+    /// Number of the next batch.
+    batch: u64,
+    /// When something came of it last, ns.
+    heard_ns: u64,
+}
+
 impl PaintNode {
-    /// Carries out a command about a session, once.
-    pub(super) fn repeat(
-        &mut self,
-        asked: &CommandRequest,
-        command: &SessionCommand,
-        now_ns: u64,
-    ) -> Outcome {
-        if let Some(outcome) = self.replies.find(asked) {
-            return outcome;
-        }
-        let outcome = match command {
-            SessionCommand::Repeat { records } => self.repeat_batch(records, now_ns),
-            SessionCommand::End => {
-                self.sequencer.end_repeating();
+    /// Carries out a command about a session.
+    pub(super) fn repeat(&mut self, command: &SessionCommand, now_ns: u64) -> Outcome {
+        let own = self.session.as_ref().map(|session| session.number);
+        match command {
+            SessionCommand::Begin { session } if own.is_none_or(|own| own == *session) => {
+                self.session.get_or_insert(Session {
+                    number: *session,
+                    batch: 0,
+                    heard_ns: now_ns,
+                });
+                self.sequencer.begin_repeating();
                 Outcome::done("")
             }
-        };
-        self.replies
-            .keep(asked.client, asked.number, outcome.clone());
-        outcome
+            SessionCommand::Begin { .. } => Outcome::refused(
+                "another recorded session is being painted",
+                "end that `maulstick replay` first",
+            ),
+            SessionCommand::Repeat { session, .. } if own != Some(*session) => Outcome::refused(
+                "the painting is not that of this session any more",
+                "play the session anew",
+            ),
+            SessionCommand::Repeat { batch, records, .. } => {
+                self.repeat_batch(*batch, records, now_ns)
+            }
+            SessionCommand::End { session } => {
+                if own == Some(*session) {
+                    self.end_session();
+                }
+                Outcome::done("")
+            }
+        }
     }
 
-    fn repeat_batch(&mut self, records: &[u8], now_ns: u64) -> Outcome {
+    fn repeat_batch(&mut self, batch: u64, records: &[u8], now_ns: u64) -> Outcome {
+        let Some(session) = &mut self.session else {
+            return Outcome::done("");
+        };
+        session.heard_ns = now_ns;
+        if batch < session.batch {
+            return Outcome::done("");
+        }
+        session.batch = batch + 1;
         let records = match journal::read(0, records) {
             Ok(records) => records,
             Err(error) => {
@@ -41,7 +70,6 @@ impl PaintNode {
                 );
             }
         };
-        self.repeated_ns = now_ns;
         for record in records {
             if let Err(error) = self.sequencer.repeat(record) {
                 return error.into();
@@ -50,12 +78,17 @@ impl PaintNode {
         Outcome::done("")
     }
 
-    /// Gives the painting back to the hands where the client is gone.
+    fn end_session(&mut self) {
+        self.session = None;
+        self.sequencer.end_repeating();
+    }
+
+    /// Gives the painting back to the hands where the player is gone.
     pub(super) fn check_repeating(&mut self, now_ns: u64) {
-        let is_silent = now_ns.saturating_sub(self.repeated_ns) > SILENCE_NS;
-        if self.sequencer.is_repeating() && is_silent {
+        let silent_ns = |session: &Session| now_ns.saturating_sub(session.heard_ns);
+        if self.session.as_ref().map(silent_ns) > Some(SILENCE_NS) {
             tracing::warn!("the player of the session is silent: the hands paint again");
-            self.sequencer.end_repeating();
+            self.end_session();
         }
     }
 }

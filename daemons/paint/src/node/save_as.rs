@@ -58,7 +58,12 @@ impl PaintNode {
         to: &Path,
         replace: bool,
     ) -> Result<Outcome, Refusal> {
-        self.check_at_rest()?;
+        if let Some(saving) = &self.saving {
+            return Err(Refusal::say(
+                format!("the painting is on its way to {}", saving.to.display()),
+                "wait until it is there, and ask again",
+            ));
+        }
         let stage = match &self.autosave {
             Some(autosave) if self.unnamed => {
                 Stage::Moved(autosave.document().relocate(to, Relocate::Rename, replace))
@@ -85,32 +90,39 @@ impl PaintNode {
     /// Begins to write a copy of the painting, which has a file.
     ///
     /// # Errors
-    /// [`Refusal`] if it is in memory alone, or a move is in progress.
+    /// [`Refusal`] if it is in memory alone, or a copy is being written.
     pub(super) fn copy(&mut self, asker: Asker, to: &Path) -> Result<Outcome, Refusal> {
-        self.check_at_rest()?;
+        if self.copying.is_some() {
+            return Err(Refusal::say(
+                "a copy of the painting is being written",
+                "wait until it is there, and ask again",
+            ));
+        }
         let Some(autosave) = self.autosave.as_ref().filter(|_| !self.unnamed) else {
             return Err(Refusal::say(
                 "a painting in memory only cannot be copied",
                 "save it in a file first",
             ));
         };
-        let stage = Stage::Moved(autosave.document().relocate(to, Relocate::Leave, false));
-        self.saving = Some(Saving {
-            asker,
-            to: to.to_owned(),
-            replace: false,
-            stage,
-        });
+        let written = autosave.document().relocate(to, Relocate::Leave, false);
+        self.copying = Some((asker, to.to_owned(), written));
         Ok(Outcome::Waiting)
     }
 
-    fn check_at_rest(&self) -> Result<(), Refusal> {
-        match &self.saving {
-            None => Ok(()),
-            Some(saving) => Err(Refusal::say(
-                format!("the painting is on its way to {}", saving.to.display()),
-                "wait until it is there, and ask again",
-            )),
+    /// Answers once a copy is there.
+    pub(super) fn go_on_copying(&mut self) {
+        let (Some((_, to, written)), Some(autosave)) = (&self.copying, &mut self.autosave) else {
+            return;
+        };
+        let Some(written) = autosave.document_mut().poll_relocation(written) else {
+            return;
+        };
+        let outcome = match written {
+            Ok(()) => there(to),
+            Err(error) => refused(to, &error).into(),
+        };
+        if let Some(((client, number), ..)) = self.copying.take() {
+            self.replies.keep(client, number, outcome);
         }
     }
 

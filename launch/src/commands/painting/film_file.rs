@@ -205,7 +205,12 @@ impl Video {
             .arg(format!("{width}x{height}"))
             .args(["-framerate", &fps.to_string(), "-i", "pipe:0"])
             .args(output)
-            .arg(to)
+            // Else a name may be an option, or a protocol.
+            .arg({
+                let mut name = std::ffi::OsString::from("file:");
+                name.push(to);
+                name
+            })
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .stderr(said.try_clone()?)

@@ -58,6 +58,9 @@ pub(super) fn no_record(path: &Path) -> UserError {
         )
 }
 
+/// Most frames a second of a GIF: it counts hundredths, and viewers take one for ten.
+const GIF_FPS: u32 = 50;
+
 /// Writes the film.
 ///
 /// # Errors
@@ -69,6 +72,12 @@ pub(super) fn run(options: &TimelapseOptions) -> Result<i32, UserError> {
         return Err(UserError::usage(what)
             .at("--seconds")
             .help("give 0.1 to 3600 s"));
+    }
+    if kind == FilmKind::Gif && options.fps > GIF_FPS {
+        let what = format!("a GIF has no {} frames a second", options.fps);
+        return Err(UserError::usage(what).at("--fps").help(format!(
+            "give {GIF_FPS} at most, or a name that ends in .mp4"
+        )));
     }
     let file = FilmFile::new(kind, &options.output, &options.file, options.fps)?;
     let path = &options.file;

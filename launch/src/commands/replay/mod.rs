@@ -20,14 +20,15 @@ use clap::Args;
 use maulstick_bus::RigFolder;
 use maulstick_device::player::Rate;
 use maulstick_rig::{NodeArgs, NodeHandle, UserError};
+use maulstick_streams::Recording;
 use serde_json::{Value, json};
 
 use self::orders::{KEYS, Orders};
-use self::transport::{Leap, Order, Transport, parse_rate};
+use self::transport::{Order, Transport, parse_rate};
 use crate::EXIT_INTERRUPTED;
 use crate::commands::print_text;
 use crate::commands::session::Target;
-use crate::commands::takes::session_file::SessionFile;
+use crate::commands::takes::session_file::{PAINTING, SessionFile};
 
 /// Options of `maulstick replay`.
 #[derive(Args, Clone, Debug)]
@@ -121,11 +122,14 @@ impl ReplayOptions {
 /// A [`UserError`] where no rig runs, the recording lacks something, or the rig refuses it.
 pub fn run(options: &ReplayOptions) -> Result<i32, UserError> {
     let sends = !options.topic.is_empty() || options.device.is_some() || options.drive.is_some();
-    let session = match sends {
-        true => None,
-        false => SessionFile::open(&options.recording)?,
+    let has_painting = || -> Result<bool, UserError> {
+        let recording = Recording::open(&options.recording)?;
+        Ok(recording.files.contains_key(PAINTING))
     };
-    if let Some(session) = session {
+    if !sends
+        && has_painting()?
+        && let Some(session) = SessionFile::open(&options.recording)?
+    {
         return session::replay(options, &session);
     }
     streams::replay(options)
@@ -143,6 +147,15 @@ struct Deck {
     begun: Instant,
     told: Option<Instant>,
     json: bool,
+}
+
+/// A leap of a replay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Leap {
+    /// To before what was played.
+    Back,
+    /// Over what is between.
+    Forth,
 }
 
 /// What an order asks of a player.
@@ -171,22 +184,25 @@ impl Deck {
         })
     }
 
-    /// Carries out the orders that came, and lets the transport go on; `next_ns` is the time of the next event.
-    fn turn(&mut self, next_ns: Option<u64>) -> Result<Turn, UserError> {
+    /// Carries out the orders that came, and lets the transport go on; the times are those of the next event, and of the
+    /// newest one that was played.
+    fn turn(&mut self, next_ns: Option<u64>, played_ns: u64) -> Result<Turn, UserError> {
         self.transport.look(self.begun.elapsed().as_nanos() as u64);
-        let mut turn = Turn::On;
+        let mut leaps = false;
         while let Some(order) = self.orders.next() {
             if order == Order::End {
                 return Ok(Turn::End);
             }
-            match self.transport.order(order, next_ns) {
-                Leap::None => {}
-                leap => turn = Turn::Leap(leap),
-            }
+            leaps |= matches!(order, Order::Seek(_) | Order::Skip(_));
+            self.transport.order(order, next_ns);
             self.told = None;
         }
         self.tell()?;
-        Ok(turn)
+        Ok(match (leaps, self.transport.position_ns() < played_ns) {
+            (false, _) => Turn::On,
+            (true, true) => Turn::Leap(Leap::Back),
+            (true, false) => Turn::Leap(Leap::Forth),
+        })
     }
 
     /// Says where it is, at most five times a second.

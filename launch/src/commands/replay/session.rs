@@ -5,17 +5,18 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use maulstick_bus::typed::random_u64;
 use maulstick_document::journal;
 use maulstick_painting::sequencer::Record;
 use maulstick_rig::command_client::CommandClient;
+use maulstick_rig::user_error::EXIT_FAILURE;
 use maulstick_rig::{NodeHandle, UserError};
-use maulstick_types::command::{RigCommand, SessionCommand};
+use maulstick_types::command::{RIG_NODE, RigCommand, SessionCommand};
 use serde_bytes::ByteBuf;
 use serde_json::json;
 
 use super::events::Events;
-use super::transport::Leap;
-use super::{Deck, ReplayOptions, TURN, Turn, print_json};
+use super::{Deck, Leap, ReplayOptions, TURN, Turn, print_json};
 use crate::commands::open::{LONGEST, whole};
 use crate::commands::say;
 use crate::commands::takes::from::open_begin;
@@ -51,80 +52,24 @@ pub(super) fn replay(options: &ReplayOptions, session: &SessionFile) -> Result<i
     let mut player = Player {
         options,
         session,
+        member: &member,
         client: CommandClient::new(Arc::clone(&member.bus), &member.topics),
-        rig: CommandClient::of(Arc::clone(&member.bus), &member.topics, "rig"),
+        rig: CommandClient::of(Arc::clone(&member.bus), &member.topics, RIG_NODE),
+        number: 0,
+        batch: 0,
         sent: Instant::now(),
     };
-    player.open(&member, &path)?;
-    let mut events = events(&options.recording, range_ns[1])?;
+    player.open(&path)?;
     let mut deck = Deck::new(options, range_ns)?;
-    let mut turns = 0;
-    while !member.stop.requested() {
-        let next_ns = events.next_ns()?;
-        match deck.turn(next_ns)? {
-            Turn::End => break,
-            Turn::Leap(Leap::Back) => {
-                turns += 1;
-                player.open_anew(&member, &path, turns)?;
-                events = self::events(&options.recording, range_ns[1])?;
-                continue;
-            }
-            // What is between is painted as fast as can be.
-            Turn::On | Turn::Leap(_) => {}
-        }
-        let mut batch = Vec::new();
-        while batch.len() < BATCH
-            && let Some(at_ns) = events.next_ns()?
-            && deck.transport.is_due(at_ns)
-        {
-            batch.extend(events.take());
-        }
-        if !batch.is_empty() || player.sent.elapsed() > ALIVE {
-            player.send(&member, &batch)?;
-            continue;
-        }
-        match events.next_ns()? {
-            Some(_) => {
-                member.wake.wait(TURN);
-            }
-            None if options.again => {
-                deck.transport.rewind();
-                turns += 1;
-                player.open_anew(&member, &path, turns)?;
-                events = self::events(&options.recording, range_ns[1])?;
-            }
-            None => break,
-        }
-    }
-    player.command(&member, SessionCommand::End)?;
+    let played = player.play(&mut deck, &path);
+    let ended = player.end();
+    played.and(ended)?;
     if !options.json {
-        say!("painted in {}", player.place(&path, turns).display());
+        say!("painted in {}", path.display());
     }
     let code = deck.end(&member);
     member.leave();
     Ok(code)
-}
-
-/// What was accepted, as it comes.
-fn events(path: &Path, to_ns: u64) -> Result<Events<Record>, UserError> {
-    let path = path.to_owned();
-    Events::read(move |feed| {
-        let Some(mut session) = SessionFile::open(&path)? else {
-            return Ok(());
-        };
-        let folder = tempfile::tempdir().map_err(|error| UserError::failure(error.to_string()))?;
-        let begin = folder.path().join(PAINTING);
-        session.write_painting(&begin)?;
-        let (document, mut sequencer, _) = open_begin(&begin)?;
-        let mut wanted = true;
-        session.follow(&mut sequencer, to_ns, &mut |_, at_ns, event| {
-            if let Event::Accepted(record) = event {
-                wanted = wanted && feed.push(at_ns, record);
-            }
-            Ok(())
-        })?;
-        document.close().map_err(|error| wrong(&begin, &error))
-    })
 }
 
 /// `session-replay.maul` beside a recording, or the first further name that is not taken.
@@ -140,68 +85,156 @@ fn free_beside(recording: &Path) -> PathBuf {
         .unwrap_or_default()
 }
 
+/// What paints a session again.
 struct Player<'a> {
     options: &'a ReplayOptions,
     session: &'a SessionFile,
+    member: &'a NodeHandle,
     client: CommandClient,
     rig: CommandClient,
+    /// Number of this playing, for the paint node.
+    number: u64,
+    /// Number of the next batch.
+    batch: u64,
     /// When the paint node was told something last.
     sent: Instant,
 }
 
 impl Player<'_> {
-    /// Has the rig go on in the painting as it was at the beginning.
-    fn open(&mut self, member: &NodeHandle, path: &Path) -> Result<(), UserError> {
-        self.session.write_painting(path)?;
-        let command = RigCommand::Open {
-            path: whole(path)?,
-            forget: self.options.painting.forget,
-        };
-        let opened = self
-            .rig
-            .send(command, None, LONGEST, &|| member.stop.requested());
-        if opened.is_err() {
-            std::fs::remove_file(path).ok();
+    /// Plays until the end, or until it is told to end.
+    fn play(&mut self, deck: &mut Deck, path: &Path) -> Result<(), UserError> {
+        let mut events = self.events()?;
+        let mut played_ns = 0;
+        while !self.member.stop.requested() {
+            let next_ns = events.next_ns()?;
+            let turn = deck.turn(next_ns, played_ns)?;
+            let is_over = next_ns.is_none() && turn == Turn::On;
+            if turn == Turn::Leap(Leap::Back) || (is_over && self.options.again) {
+                if is_over {
+                    deck.transport.rewind();
+                }
+                self.open_anew(path)?;
+                events = self.events()?;
+                played_ns = 0;
+                continue;
+            }
+            if turn == Turn::End || is_over {
+                break;
+            }
+            let mut batch = Vec::new();
+            while batch.len() < BATCH
+                && let Some(at_ns) = events.next_ns()?
+                && deck.transport.is_due(at_ns)
+            {
+                played_ns = at_ns;
+                batch.extend(events.take());
+            }
+            if !batch.is_empty() || self.sent.elapsed() > ALIVE {
+                self.send(&batch)?;
+            } else {
+                self.member.wake.wait(TURN);
+            }
         }
-        opened?;
+        Ok(())
+    }
+
+    /// What was accepted, as it comes.
+    fn events(&self) -> Result<Events<Record>, UserError> {
+        let path = self.options.recording.clone();
+        let to_ns = match self.options.end {
+            Some(end_s) => (end_s * 1e9) as u64,
+            None => u64::MAX,
+        };
+        Events::read(move |feed| {
+            let Some(mut session) = SessionFile::open(&path)? else {
+                return Ok(());
+            };
+            let folder =
+                tempfile::tempdir().map_err(|error| UserError::failure(error.to_string()))?;
+            let begin = folder.path().join(PAINTING);
+            session.write_painting(&begin)?;
+            let (document, mut sequencer, _) = open_begin(&begin)?;
+            session.follow(&mut sequencer, to_ns, &mut |_, at_ns, event| {
+                let is_wanted = match event {
+                    Event::Accepted(record) => feed.push(at_ns, record),
+                    Event::Other { .. } => true,
+                };
+                // Nobody hears why it ends early.
+                match is_wanted {
+                    true => Ok(()),
+                    false => Err(UserError::failure("the player reads anew")),
+                }
+            })?;
+            document.close().map_err(|error| wrong(&begin, &error))
+        })
+    }
+
+    /// Has the rig go on in the painting as it was at the beginning, and the hands wait.
+    fn open(&mut self, path: &Path) -> Result<(), UserError> {
+        self.go_on_in(path, self.options.painting.forget)?;
+        (self.number, self.batch) = (random_u64(), 0);
+        self.command(SessionCommand::Begin {
+            session: self.number,
+        })?;
         match self.options.json {
             true => print_json(&json!({"painting": path.display().to_string()})),
             false => Ok(()),
         }
     }
 
-    /// The painting in which it is painted after so many returns to the beginning.
-    fn place(&self, path: &Path, turns: u32) -> PathBuf {
-        match turns % 2 {
-            0 => path.to_owned(),
-            _ => path.with_extension("again.maul"),
+    fn go_on_in(&mut self, path: &Path, forget: bool) -> Result<(), UserError> {
+        self.session.write_painting(path)?;
+        let command = RigCommand::Open {
+            path: whole(path)?,
+            forget,
+        };
+        let stop = &self.member.stop;
+        let opened = self.rig.send(command, None, LONGEST, &|| stop.requested());
+        // Without an answer the rig may be about to open it.
+        if opened
+            .as_ref()
+            .is_err_and(|fault| fault.code != EXIT_FAILURE)
+        {
+            std::fs::remove_file(path).ok();
         }
+        opened.map(drop)
     }
 
-    /// The same once more, in the place of the painting that was painted until now.
-    fn open_anew(&mut self, member: &NodeHandle, path: &Path, turns: u32) -> Result<(), UserError> {
-        self.command(member, SessionCommand::End)?;
-        self.open(member, &self.place(path, turns))?;
-        let before = self.place(path, turns + 1);
-        std::fs::remove_file(&before).map_err(|error| UserError::writing(&before, &error))
+    /// The same once more. A file cannot be written anew while it is open: the rig goes on in another one meanwhile.
+    fn open_anew(&mut self, path: &Path) -> Result<(), UserError> {
+        self.end()?;
+        let failed = |error: std::io::Error| UserError::writing(path, &error);
+        let folder = path
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty());
+        let folder = tempfile::tempdir_in(folder.unwrap_or(Path::new("."))).map_err(failed)?;
+        self.go_on_in(&folder.path().join(PAINTING), false)?;
+        std::fs::remove_file(path).map_err(failed)?;
+        self.open(path)
     }
 
-    fn send(&mut self, member: &NodeHandle, batch: &[Record]) -> Result<(), UserError> {
+    fn send(&mut self, batch: &[Record]) -> Result<(), UserError> {
         let records =
             journal::write(batch).map_err(|error| UserError::failure(error.to_string()))?;
-        self.command(
-            member,
-            SessionCommand::Repeat {
-                records: ByteBuf::from(records),
-            },
-        )
+        self.batch += 1;
+        self.command(SessionCommand::Repeat {
+            session: self.number,
+            batch: self.batch - 1,
+            records: ByteBuf::from(records),
+        })
     }
 
-    fn command(&mut self, member: &NodeHandle, command: SessionCommand) -> Result<(), UserError> {
+    fn end(&mut self) -> Result<(), UserError> {
+        self.command(SessionCommand::End {
+            session: self.number,
+        })
+    }
+
+    fn command(&mut self, command: SessionCommand) -> Result<(), UserError> {
         self.sent = Instant::now();
-        let is_over = || member.stop.requested();
+        let stop = &self.member.stop;
         self.client
-            .send(command, None, PATIENCE, &is_over)
+            .send(command, None, PATIENCE, &|| stop.requested())
             .map(drop)
     }
 }

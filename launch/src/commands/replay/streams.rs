@@ -48,14 +48,19 @@ pub(super) fn replay(options: &ReplayOptions) -> Result<i32, UserError> {
             .at(path.display().to_string())
             .help(format!("it has {}", all.join(", "))));
     }
-    let has_models = all
-        .iter()
-        .any(|topic| is_meant(topic) && matches(MODELS, topic));
-    if has_models && options.drive.is_none() {
+    let is_model = |topic: &&String| is_meant(topic) && matches(MODELS, topic);
+    let models: Vec<&String> = all.iter().filter(is_model).collect();
+    if !models.is_empty() && options.drive.is_none() {
         return Err(
             UserError::usage("contact models move the hand that holds the device")
                 .help("name the device, with a hand at it that expects it: --drive DEVICE"),
         );
+    }
+    if let [one, _, ..] = models.as_slice() {
+        let what = "it has the contact models of several devices, and one hand feels one";
+        return Err(UserError::usage(what)
+            .at(path.display().to_string())
+            .help(format!("choose one: --topic {one}")));
     }
     let renamed = renamed(&options.remap)?;
     let [first_ns, last_ns] = recording.times_ns().unwrap_or_default();
@@ -78,33 +83,36 @@ pub(super) fn replay(options: &ReplayOptions) -> Result<i32, UserError> {
     }
     let mut deck = Deck::new(options, range_ns)?;
     let mut events = events(path, &patterns, range_ns)?;
+    let mut played_ns = 0;
     while !member.stop.requested() {
         let next_ns = events.next_ns()?;
-        match deck.turn(next_ns)? {
-            Turn::On => {}
-            Turn::End => break,
-            Turn::Leap(_) => {
-                let from_ns = deck.transport.position_ns();
-                events = self::events(path, &patterns, [from_ns, range_ns[1]])?;
-                continue;
+        let turn = deck.turn(next_ns, played_ns)?;
+        let is_over = next_ns.is_none() && turn == Turn::On;
+        if matches!(turn, Turn::Leap(_)) || (is_over && options.again) {
+            if is_over {
+                deck.transport.rewind();
             }
+            senders.lift()?;
+            played_ns = deck.transport.position_ns();
+            events = self::events(path, &patterns, [played_ns, range_ns[1]])?;
+            continue;
+        }
+        if turn == Turn::End || is_over {
+            break;
         }
         match next_ns {
             Some(at_ns) if deck.transport.is_due(at_ns) => {
+                played_ns = at_ns;
                 if let Some((topic, message)) = events.take() {
                     senders.send(&topic, &message)?;
                 }
             }
-            Some(_) => {
+            _ => {
                 member.wake.wait(TURN / 20);
             }
-            None if options.again => {
-                deck.transport.rewind();
-                events = self::events(path, &patterns, range_ns)?;
-            }
-            None => break,
         }
     }
+    senders.lift()?;
     let code = deck.end(&member);
     senders.senders.clear();
     member.leave();
@@ -194,9 +202,12 @@ impl Driven {
     }
 
     /// A recorded model as one for this device.
-    fn address(&self, message: &RecordedMessage) -> Option<ContactModel> {
-        let (_, model) = decode::<ContactModel>(&message.bytes).ok()?;
-        Some(ContactModel {
+    fn address(&self, message: &RecordedMessage) -> Result<ContactModel, UserError> {
+        let (_, model) = decode::<ContactModel>(&message.bytes).map_err(|error| {
+            UserError::usage(format!("a contact model cannot be read: {error}"))
+                .help("play it with the version of Maulstick that recorded it")
+        })?;
+        Ok(ContactModel {
             device: self.origin.source,
             device_epoch: self.origin.epoch,
             brush: self.brush.clone(),
@@ -299,9 +310,7 @@ impl Senders<'_> {
         let seq = self.senders.get(&topic).map_or(0, |(_, next)| *next);
         let bytes = match &self.driven {
             Some(driven) if matches(MODELS, recorded) => {
-                let Some(model) = driven.address(message) else {
-                    return Ok(());
-                };
+                let model = driven.address(message)?;
                 self.encoded(&topic, Flags::NONE, [seq, event_ns], &model)?
             }
             _ => {
@@ -324,6 +333,19 @@ impl Senders<'_> {
             false => Qos::Data,
         };
         self.put(&topic, qos, bytes)
+    }
+
+    /// Takes the styluses away, so that a brush does not go on from where they were to where they are next.
+    fn lift(&mut self) -> Result<(), UserError> {
+        let is_stylus = |topic: &&String| matches("stylus/*/sample", topic);
+        let topics: Vec<String> = self.senders.keys().filter(is_stylus).cloned().collect();
+        for topic in topics {
+            let seq = self.senders.get(&topic).map_or(0, |(_, next)| *next);
+            let times = [seq, self.member.bus.now_ns()];
+            let bytes = self.encoded(&topic, Flags::NONE, times, &StylusSample::away())?;
+            self.put(&topic, Qos::RealTime, bytes)?;
+        }
+        Ok(())
     }
 
     fn put(&mut self, topic: &str, qos: Qos, bytes: Vec<u8>) -> Result<(), UserError> {

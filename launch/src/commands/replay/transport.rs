@@ -62,17 +62,6 @@ pub(super) fn parse_rate(text: &str) -> Result<Rate, String> {
     }
 }
 
-/// A leap of a replay.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Leap {
-    /// None.
-    None,
-    /// Back: what is before has to be played anew.
-    Back,
-    /// Over what is between.
-    Forth,
-}
-
 /// Where a replay is.
 #[derive(Clone, Debug)]
 pub(super) struct Transport {
@@ -138,7 +127,7 @@ impl Transport {
     }
 
     /// Carries out an order; `next_ns` is the time of the next event.
-    pub(super) fn order(&mut self, order: Order, next_ns: Option<u64>) -> Leap {
+    pub(super) fn order(&mut self, order: Order, next_ns: Option<u64>) {
         let before_ns = self.position_ns;
         match order {
             Order::Pause => self.paused = !self.paused,
@@ -163,11 +152,6 @@ impl Transport {
                 self.rate = Rate::Times(rate.max(*RATES.start()).min(*RATES.end()));
             }
             Order::End => {}
-        }
-        match order {
-            Order::Seek(_) | Order::Skip(_) if self.position_ns < before_ns => Leap::Back,
-            Order::Seek(_) | Order::Skip(_) if self.position_ns > before_ns => Leap::Forth,
-            _ => Leap::None,
         }
     }
 
@@ -195,10 +179,10 @@ mod tests {
         assert!(transport.is_due(2 * S) && !transport.is_due(2 * S + 1));
         transport.look(102 * S);
         assert_eq!(transport.position_ns(), 3 * S);
-        assert_eq!(transport.order(Order::Pause, None), Leap::None);
+        transport.order(Order::Pause, None);
         transport.look(109 * S);
         assert_eq!(transport.position_ns(), 3 * S);
-        assert_eq!(transport.order(Order::Step, Some(4 * S)), Leap::None);
+        transport.order(Order::Step, Some(4 * S));
         assert_eq!(
             (transport.position_ns(), transport.is_paused()),
             (4 * S, true)
@@ -207,11 +191,11 @@ mod tests {
         transport.order(Order::Faster(8.0), None);
         transport.look(110 * S);
         assert_eq!(transport.position_ns(), 8 * S);
-        assert_eq!(transport.order(Order::Skip(-1.5), None), Leap::Back);
+        transport.order(Order::Skip(-1.5), None);
         assert_eq!(transport.position_ns(), 6_500_000_000);
-        assert_eq!(transport.order(Order::Seek(0.0), None), Leap::Back);
+        transport.order(Order::Seek(0.0), None);
         assert_eq!(transport.position_ns(), 2 * S, "not before the start");
-        assert_eq!(transport.order(Order::Seek(1e9), None), Leap::Forth);
+        transport.order(Order::Seek(1e9), None);
         assert_eq!(transport.position_ns(), 12 * S, "nor behind the end");
         transport.rewind();
         transport.order(Order::Rate(Rate::Max), None);

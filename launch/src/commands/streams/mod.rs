@@ -5,10 +5,11 @@
 //! | [`listener`] | messages of a running rig |
 //! | [`echo`], [`measure`], [`nodes`] | contents, rates and senders of live streams |
 //! | [`graph`] | the processes of a rig, and what they send each other, as a picture |
-//! | [`record`], [`ring`], [`recording`], [`foxglove_export`] | recordings, made, kept within bounds, looked at, written for Foxglove |
+//! | [`record`], [`beginning`], [`ring`], [`recording`], [`foxglove_export`] | recordings, made, kept within bounds, looked at, written for Foxglove |
 //! | [`bridge`], [`foxglove_server`] | live streams for Foxglove |
 //! | [`message_lines`] | messages as rows of a table and as lines of JSON |
 
+mod beginning;
 pub mod bridge;
 pub mod echo;
 mod foxglove_export;

@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use clap::Args;
-use maulstick_document::record;
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 use maulstick_rig::node_handle::CONFIG_FILE;
@@ -16,17 +15,15 @@ use maulstick_streams::topic_pattern::matches;
 use maulstick_streams::traffic::Arrived;
 use maulstick_streams::{RateLimit, RecordingWriter, Traffic};
 use maulstick_types::HEADER_BYTES;
-use maulstick_types::command::FileCommand;
 use mcap::McapResult;
 
+use super::beginning::Beginning;
 use super::fault;
 use super::listener::{Listener, ReceivedMessage};
 use super::ring::{FILES, Ring};
-use crate::commands::open::{LONGEST, whole};
 use crate::commands::say;
-use crate::commands::session::{Session, Target};
+use crate::commands::session::Target;
 use crate::commands::takes::session_file::{JOURNAL, PAINTING};
-use crate::document::wrong;
 use crate::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick record`.
@@ -105,7 +102,8 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
     };
     let mut part = begin(&options.output, |path| File::create(path), &listener)?;
     let mut flush_at = begun + FLUSH;
-    let mut lacks_painting = matches(&options.topic, JOURNAL);
+    let paints = matches(&options.topic, JOURNAL);
+    let mut beginning = paints.then(Beginning::default);
     while !listener.is_over() && end.is_none_or(|end| Instant::now() < end) {
         if let Some(received) = listener.next(end.map_or(flush_at, |end| end.min(flush_at))) {
             part.write(&received)?;
@@ -116,9 +114,9 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
         }
         flush_at = Instant::now() + FLUSH;
         part.flush()?;
-        // Brush states that were on their way at the beginning are painted by now.
-        if std::mem::take(&mut lacks_painting) {
-            part.attach_painting(&options.target)?;
+        if let Some(bytes) = beginning.as_mut().and_then(|own| own.look(&options.target)) {
+            part.attach(&bytes)?;
+            beginning = None;
         }
         if !listener.has_rig() {
             break;
@@ -136,8 +134,11 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
                 again.message.arrived_ns = now_ns;
                 part.write(&again)?;
             }
-            lacks_painting = matches(&options.topic, JOURNAL);
+            beginning = paints.then(Beginning::default);
         }
+    }
+    if let Some(fault) = beginning.and_then(|beginning| beginning.refused) {
+        say!("without the painting, {fault}: it cannot be painted again from this recording");
     }
     part.finish(&mut state, &listener)?;
     Ok(0)
@@ -272,29 +273,12 @@ impl Part {
         }
     }
 
-    /// Attaches the painting as it is now, so that what is accepted from now on can be painted again.
-    fn attach_painting(&mut self, target: &Target) -> Result<(), UserError> {
-        let failed = |error: std::io::Error| UserError::failure(error.to_string());
-        let folder = tempfile::tempdir().map_err(failed)?;
-        let copy = folder.path().join(PAINTING);
-        let command = FileCommand::Copy {
-            path: whole(&copy)?,
-        };
-        let copied =
-            Session::open(target).and_then(|session| session.send_within(command, LONGEST));
-        if let Err(fault) = copied {
-            say!(
-                "without the painting, {}: it cannot be painted again from this recording",
-                fault.what
-            );
-            return Ok(());
-        }
-        // What was painted before the session is not among what is painted again.
-        record::discard(&copy).map_err(|error| wrong(&copy, &error))?;
-        let bytes = std::fs::read(&copy).map_err(|error| UserError::reading(&copy, &error))?;
+    /// Attaches the painting as it was at the beginning.
+    fn attach(&mut self, painting: &[u8]) -> Result<(), UserError> {
         self.writer
-            .attach(PAINTING, "application/vnd.sqlite3", &bytes)
+            .attach(PAINTING, "application/vnd.sqlite3", painting)
             .map_err(|error| fault(&self.path, error))?;
+        self.bytes += painting.len() as u64;
         self.flush()
     }
 

@@ -44,12 +44,12 @@ impl Ring {
         }
     }
 
-    /// Removes the oldest files that are too many, but not the newest one.
+    /// Removes the oldest files that are too many, but neither the one that is written nor the newest whole one.
     ///
     /// # Errors
     /// A [`UserError`] where one cannot be removed.
     pub(super) fn trim(&mut self) -> Result<(), UserError> {
-        while self.kept.len() > 1 && (self.are_many() || self.are_large()) {
+        while self.kept.len() > 2 && (self.are_many() || self.are_large()) {
             let Some(oldest) = self.kept.pop_front() else {
                 break;
             };
@@ -128,6 +128,10 @@ mod tests {
         assert_eq!(ring.kept.len(), 2);
         write(&ring.next(), 100);
         ring.trim().expect("removed");
-        assert_eq!(ring.kept.len(), 1, "the newest stays, however large");
+        assert_eq!(
+            ring.kept.len(),
+            2,
+            "the newest whole one stays, however large"
+        );
     }
 }

@@ -11,6 +11,7 @@ use maulstick_painting::sequencer::{Accepted, Record};
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, write_whole};
 use maulstick_streams::RecordingWriter;
+use maulstick_streams::recording::RecordedMessage;
 use maulstick_types::paint::{Entry, JournalEntry};
 use maulstick_types::{Flags, Header, Message, Origin, encode, name_hash};
 
@@ -97,22 +98,33 @@ pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
     let fault = RefCell::new(None);
     let written = write_whole(&options.output, Kind::Take, |file| {
         let mut take = SessionWriter::begin(file, &session, &painting)?;
+        // What is sent rarely, as it was at the start.
+        let mut rare = BTreeMap::new();
         let followed = session.follow(&mut sequencer, end_ns, &mut |_, at_ns, event| {
             if at_ns < start_ns {
+                if let Event::Other { topic, message } = event
+                    && is_kept(topic)
+                    && !topic.ends_with("/sample")
+                {
+                    rare.insert(topic.to_owned(), message.clone());
+                }
                 return Ok(());
             }
-            let written = match &event {
+            let failed = |error| UserError::writing(&options.output, &error);
+            for (topic, message) in std::mem::take(&mut rare) {
+                take.as_it_was(&topic, &message, start_ns).map_err(failed)?;
+            }
+            match &event {
                 Event::Accepted(record) => {
                     counts.note(record);
                     take.accepted(at_ns, record)
                 }
-                Event::Other { topic, message } if is_kept(topic) => take
-                    .writer
-                    .write(topic, &message.header, &message.bytes, at_ns)
-                    .map_err(std::io::Error::other),
+                Event::Other { topic, message } if is_kept(topic) => {
+                    take.as_it_was(topic, message, at_ns)
+                }
                 Event::Other { .. } => Ok(()),
-            };
-            written.map_err(|error| UserError::writing(&options.output, &error))
+            }
+            .map_err(failed)
         });
         if let Err(error) = followed {
             let what = error.what.clone();
@@ -237,6 +249,18 @@ impl<W: std::io::Write + std::io::Seek> SessionWriter<W> {
             entry,
         };
         self.message(JOURNAL, &header, &entry, at_ns)
+    }
+
+    /// Writes a message as it was recorded.
+    fn as_it_was(
+        &mut self,
+        topic: &str,
+        message: &RecordedMessage,
+        at_ns: u64,
+    ) -> std::io::Result<()> {
+        self.writer
+            .write(topic, &message.header, &message.bytes, at_ns)
+            .map_err(std::io::Error::other)
     }
 
     fn message<M: Message>(

@@ -25,9 +25,11 @@ pub(super) fn render_session(
     config: &RigConfig,
 ) -> Result<i32, UserError> {
     let painting = &options.painting;
-    if painting.kit != KitOptions::default() || painting.model.is_some() {
+    let sizes = [&painting.memory, &painting.history, &painting.record];
+    let is_sized = sizes.iter().any(|size| size.is_some());
+    if painting.kit != KitOptions::default() || painting.model.is_some() || is_sized {
         return Err(UserError::usage("a session is painted with what it was painted with")
-            .help("leave out canvas, brush, loads, paints, light and model: only --profile, --gamut, --backend, --document and --ledger apply"));
+            .help("leave out canvas, brush, loads, paints, light, model and sizes: only --profile, --gamut, --backend, --document and --ledger apply"));
     }
     let export = export(&config.view, "--profile, --gamut")?;
     let folder = tempfile::tempdir().map_err(|error| UserError::failure(error.to_string()))?;
@@ -42,14 +44,17 @@ pub(super) fn render_session(
     };
     session.write_painting(&path)?;
     let (document, mut sequencer, since) = open_begin(&path)?;
-    choose_backend(&mut sequencer, &config.paint.backend)?;
+    let backend = painting.backend.as_ref().unwrap_or(&config.paint.backend);
+    choose_backend(&mut sequencer, backend)?;
     let mut autosave = Autosave::new(document, &mut sequencer, since);
     let bar = progress_bar(session.length_ns()).with_message("painting");
+    sequencer.begin_repeating();
     let (begun, mut counts) = (Instant::now(), Counts::default());
     session.follow(&mut sequencer, u64::MAX, &mut |sequencer, at_ns, event| {
         if let Event::Accepted(record) = event {
             counts.note(&record);
             sequencer.repeat(record).map_err(refused)?;
+            sequencer.drain_journal();
             autosave.turn(sequencer, begun.elapsed().as_nanos() as u64);
             bar.set_position(at_ns / 1_000_000);
         }

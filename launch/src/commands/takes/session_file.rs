@@ -119,11 +119,14 @@ impl SessionFile {
                 let topic = name;
                 return each(sequencer, at_ns, Event::Other { topic, message });
             }
-            while let Some(record) = session.next_record() {
+            loop {
+                let next = session.next_record();
+                let Some(record) = next.map_err(|fault| broken(&fault, at_ns))? else {
+                    return Ok(());
+                };
                 newest_ns = at_ns;
                 each(sequencer, at_ns, Event::Accepted(record))?;
             }
-            Ok(())
         };
         self.recording.messages(range, &mut |message| {
             if let Some(topic) = topics.get(&message.channel) {

@@ -7,13 +7,25 @@ use crate::wire::define::wire_enum;
 wire_enum! {
     /// A recorded session that is painted again.
     pub enum SessionCommand {
-        /// Accepts again what was accepted then, in order. From the first of these to [`End`](Self::End), or until none
-        /// came for ten seconds, hands paint nothing, other commands are refused, and time passes only with these.
+        /// Begins it: until [`End`](Self::End), or until nothing came for ten seconds, hands paint nothing, other commands
+        /// are refused, and time passes only with the session.
+        Begin {
+            /// Number that its player has chosen at random.
+            session: u64,
+        },
+        /// Accepts again what was accepted then, in order.
         Repeat {
+            /// The session.
+            session: u64,
+            /// Number of the batch, from 0: one that was accepted is not accepted twice.
+            batch: u64,
             /// Records as a painting keeps them in its journal.
             records: ByteBuf,
         },
         /// Ends it.
-        End,
+        End {
+            /// The session.
+            session: u64,
+        },
     }
 }

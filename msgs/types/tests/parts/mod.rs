@@ -156,7 +156,7 @@ pub(crate) fn takes() -> [TakeCommand; 3] {
 }
 
 /// The commands about files, and those of other nodes.
-pub(crate) fn files() -> [Command; 12] {
+pub(crate) fn files() -> [Command; 13] {
     let material = |name: &str| MaterialName::new(name).expect("a name");
     let canvas = NewCanvas {
         width_m: 0.3,
@@ -186,11 +186,14 @@ pub(crate) fn files() -> [Command; 12] {
             path: path("/d.maul"),
         }
         .into(),
+        SessionCommand::Begin { session: 1 }.into(),
         SessionCommand::Repeat {
+            session: 1,
+            batch: 2,
             records: ByteBuf::from(vec![1, 2, 3]),
         }
         .into(),
-        SessionCommand::End.into(),
+        SessionCommand::End { session: 1 }.into(),
         BrushCommand::Define {
             brush: BrushName::main(),
             toml: BrushToml::new("kind").expect("short"),

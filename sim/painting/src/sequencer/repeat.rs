@@ -10,14 +10,17 @@ use super::{Accepted, Record, Sequencer};
 use crate::apply::Apply as _;
 
 impl Sequencer {
-    /// Accepts a record of a session as if it had come now: it takes the next place in the journal. Until
-    /// [`end_repeating`](Self::end_repeating) hands paint nothing, other commands are refused, and no tick passes but those
-    /// of the session.
+    /// Until [`end_repeating`](Self::end_repeating) hands paint nothing, other commands are refused, and no tick passes but
+    /// those of a session.
+    pub fn begin_repeating(&mut self) {
+        self.repeats = true;
+    }
+
+    /// Accepts a record of a session as if it had come now: it takes the next place in the journal.
     ///
     /// # Errors
     /// [`EditError`] where the painting refuses what it accepted then.
     pub fn repeat(&mut self, record: Record) -> Result<(), EditError> {
-        self.repeats = true;
         match record.what {
             Accepted::State { header, state } => {
                 let brush = self.painting.brush_of(header.source).map(str::to_owned);
@@ -76,12 +79,6 @@ impl Sequencer {
             // The states that it names are not among the records.
             Accepted::Entry(Entry::Cut { .. } | Entry::States { .. }) => Ok(()),
         }
-    }
-
-    /// True while a recorded session is painted.
-    #[must_use]
-    pub fn is_repeating(&self) -> bool {
-        self.repeats
     }
 
     /// Hands paint again; their brushes begin anew.

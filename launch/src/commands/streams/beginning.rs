@@ -1,0 +1,76 @@
+//! The painting as it is at the beginning of a recording, so that what is accepted from then on can be painted again.
+
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use maulstick_document::{Checkpoint, record};
+use maulstick_rig::UserError;
+use maulstick_types::command::FileCommand;
+
+use crate::commands::open::{LONGEST, whole};
+use crate::commands::session::{Session, Target};
+use crate::commands::takes::from::open_begin;
+use crate::commands::takes::session_file::PAINTING;
+use crate::document::wrong;
+
+/// Brush states that are on their way at the beginning are painted after this time.
+const SETTLES: Duration = Duration::from_millis(500);
+/// Time until the paint node is asked again, where it refused.
+const AGAIN: Duration = Duration::from_secs(2);
+
+/// A copy of the painting, made by a thread of its own while the recording goes on.
+#[derive(Debug)]
+pub(super) struct Beginning {
+    /// When the paint node is asked.
+    at: Instant,
+    copying: Option<JoinHandle<Result<Vec<u8>, UserError>>>,
+    /// Why it was refused last.
+    pub refused: Option<String>,
+}
+
+impl Default for Beginning {
+    fn default() -> Self {
+        Self {
+            at: Instant::now() + SETTLES,
+            copying: None,
+            refused: None,
+        }
+    }
+}
+
+impl Beginning {
+    /// The painting's file, once it is there.
+    pub(super) fn look(&mut self, target: &Target) -> Option<Vec<u8>> {
+        let Some(copying) = self.copying.take_if(|copying| copying.is_finished()) else {
+            if self.copying.is_none() && Instant::now() >= self.at {
+                let target = target.clone();
+                self.copying = Some(std::thread::spawn(move || copy(&target)));
+            }
+            return None;
+        };
+        match copying.join() {
+            Ok(Ok(painting)) => return Some(painting),
+            Ok(Err(fault)) => self.refused = Some(fault.what),
+            Err(_) => self.refused = Some("internal error: the copy panicked".into()),
+        }
+        self.at = Instant::now() + AGAIN;
+        None
+    }
+}
+
+/// A copy of the painting as it is now, without the record of what was painted before.
+fn copy(target: &Target) -> Result<Vec<u8>, UserError> {
+    let failed = |error: std::io::Error| UserError::failure(error.to_string());
+    let folder = tempfile::tempdir().map_err(failed)?;
+    let copy = folder.path().join(PAINTING);
+    let command = FileCommand::Copy {
+        path: whole(&copy)?,
+    };
+    Session::open(target)?.send_within(command, LONGEST)?;
+    // What its journal holds is of this version: another one could not read it.
+    let (document, mut sequencer, since) = open_begin(&copy)?;
+    document.write_checkpoint(Checkpoint::of(&mut sequencer, since));
+    document.close().map_err(|error| wrong(&copy, &error))?;
+    record::discard(&copy).map_err(|error| wrong(&copy, &error))?;
+    std::fs::read(&copy).map_err(|error| UserError::reading(&copy, &error))
+}
