@@ -3,12 +3,12 @@
 #[path = "../support/mod.rs"]
 mod support;
 
-use std::io::Write as _;
+use std::io::{BufRead as _, BufReader, Write as _};
 use std::process::{Child, Stdio};
 
 use nix::sys::signal::Signal;
 use serde_json::Value;
-use support::{Launcher, PATIENCE, Place, assert_same, fault, has, wait_for};
+use support::{Launcher, PATIENCE, Place, assert_same, fault, has, signal, wait_for};
 
 /// Small cells would take long.
 const CANVAS: [&str; 4] = ["--size", "320x256", "--cell-mm", "0.5"];
@@ -42,7 +42,7 @@ fn paint(place: &Place) {
     place.done(&["clean"]);
     place.done(&["load", "Hansa Yellow Opaque"]);
     stroke("left");
-    place.done(&["light", "--azimuth", "40"]);
+    place.done(&["light", "--direction=-0.4,0.5,0.8"]);
     place.done(&["dry"]);
 }
 
@@ -171,9 +171,21 @@ fn a_painting_in_memory_only_is_recorded_without_it() {
     let place = Place::new();
     let mut launcher = Launcher::up(&place, &CANVAS);
     launcher.wait_says("is up");
-    let output = place.done(&["record", "-o", "s.mcap", "--seconds", "1.5"]);
-    let said = String::from_utf8_lossy(&output.stdout);
-    has(&said, &["without the painting", "in memory only"]);
+    let mut command = place.maulstick(&["record", "-o", "s.mcap"]);
+    let mut recorder = command.stdout(Stdio::piped()).spawn().expect("started");
+    let has_journal = || {
+        place.done(&["load", "Bone Black"]);
+        let info = place.run(&["recording", "info", "s.mcap"]).stdout;
+        let info = String::from_utf8_lossy(&info).into_owned();
+        info.contains("paint/journal").then_some(())
+    };
+    assert!(wait_for(PATIENCE, has_journal).is_some());
+    let said = BufReader::new(recorder.stdout.take().expect("piped"));
+    let mut lines = said.lines().map_while(Result::ok);
+    let refused = "without the painting, a painting in memory only";
+    assert!(lines.any(|line| line.contains(refused)), "it ended");
+    signal(recorder.id(), Signal::SIGINT);
+    recorder.wait().expect("ended");
     has(
         &fault(&place, &["take", "from", "s.mcap", "-o", "t.mcap"], 2),
         &["lacks the painting", "in a file"],

@@ -16,4 +16,4 @@ pub mod node;
 pub mod outbox;
 pub mod path_simplifier;
 
-pub use node::{BrushNode, BrushSettings};
+pub use node::{BrushDevices, BrushNode, BrushSettings};

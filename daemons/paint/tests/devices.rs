@@ -104,7 +104,7 @@ fn a_hand_feels_the_brush_of_a_take_and_paints_nothing_into_it() {
 fn pressed(kind: ForceKind) -> ForceLaw {
     let net = MemoryNet::new(1, START_NS, Faults::default());
     let mut settings = support::settings();
-    settings.laws.insert("arm".into(), kind);
+    settings.devices.laws.insert("arm".into(), kind);
     let mut live = Live::with(net, settings);
     let (bus, wake) = (live.net.bus(), Wake::new());
     let topic = live.topics.contact_model("arm");
@@ -123,6 +123,32 @@ fn pressed(kind: ForceKind) -> ForceLaw {
         }
     }
     law.expect("a model")
+}
+
+#[test]
+fn a_law_that_changes_acts_at_once() {
+    let mut live = live();
+    let (bus, wake) = (live.net.bus(), Wake::new());
+    let topic = live.topics.contact_model("arm");
+    let mut models =
+        Receiver::<ContactModel>::new(&bus, &topic, Qos::RealTime, Queue::Ring(64), &wake)
+            .expect("subscribed");
+    let mut arm = force_device(&live);
+    turn(&mut live);
+    let mut law = |live: &mut Live| {
+        for _ in 0..8 {
+            arm.send(&pen(0.0, 0.0, 0.4));
+            turn(live);
+        }
+        std::iter::from_fn(|| models.try_recv())
+            .last()
+            .map(|model| model.message.law)
+    };
+    assert!(matches!(law(&mut live), Some(ForceLaw::Linear { .. })));
+    let mut devices = support::settings().devices;
+    devices.laws.insert("arm".into(), ForceKind::None);
+    live.brush.set_devices(devices);
+    assert!(matches!(law(&mut live), Some(ForceLaw::None)));
 }
 
 #[test]

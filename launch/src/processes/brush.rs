@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use maulstick_brush_node::contact_model::ForceKind;
-use maulstick_brush_node::{BrushNode, BrushSettings};
+use maulstick_brush_node::{BrushDevices, BrushNode, BrushSettings};
 use maulstick_bus::typed::random_epoch;
 use maulstick_rig::UserError;
 use maulstick_rig::config::{
     FOREIGN_PRIORITY, MOUSE_PRIORITY, PEN_PRIORITY, PLAYER_PRIORITY, RigConfig,
 };
+use maulstick_rig::node_handle::CONFIG_FILE;
 use nix::sys::signal::Signal;
 
 use super::{MOUSE, NodeOptions, PEN, PLAYER, brush_node_name};
@@ -34,11 +35,22 @@ fn brush_settings(config: &RigConfig, brush: &str) -> Result<BrushSettings, User
             config.brush.iter().map(|brush| brush.name.as_str()),
         )
     })?;
+    Ok(BrushSettings {
+        name: brush.to_owned(),
+        file: brush_file(section)?,
+        depth_share: section.depth_share,
+        devices: brush_devices(config, brush),
+        epoch: random_epoch(),
+    })
+}
+
+/// The devices of a rig, as a brush sees them.
+fn brush_devices(config: &RigConfig, brush: &str) -> BrushDevices {
     let first = config.brush[0].name == brush;
-    let mut devices = BTreeMap::from([(PLAYER.to_owned(), PLAYER_PRIORITY)]);
+    let mut priorities = BTreeMap::from([(PLAYER.to_owned(), PLAYER_PRIORITY)]);
     if first {
-        devices.insert(MOUSE.to_owned(), MOUSE_PRIORITY);
-        devices.insert(PEN.to_owned(), PEN_PRIORITY);
+        priorities.insert(MOUSE.to_owned(), MOUSE_PRIORITY);
+        priorities.insert(PEN.to_owned(), PEN_PRIORITY);
     }
     let (mut others, mut laws) = (Vec::new(), BTreeMap::new());
     for device in &config.device {
@@ -46,21 +58,17 @@ fn brush_settings(config: &RigConfig, brush: &str) -> Result<BrushSettings, User
             if let Some(law) = ForceKind::of(&device.force) {
                 laws.insert(device.name.clone(), law);
             }
-            devices.insert(device.name.clone(), device.priority);
+            priorities.insert(device.name.clone(), device.priority);
         } else {
             others.push(device.name.clone());
         }
     }
-    Ok(BrushSettings {
-        name: brush.to_owned(),
-        file: brush_file(section)?,
-        depth_share: section.depth_share,
-        devices,
+    BrushDevices {
+        priorities,
         laws,
         others,
         foreign_priority: first.then_some(FOREIGN_PRIORITY),
-        epoch: random_epoch(),
-    })
+    }
 }
 
 pub(super) fn run(options: &BrushOptions) -> Result<i32, UserError> {
@@ -75,7 +83,25 @@ pub(super) fn run(options: &BrushOptions) -> Result<i32, UserError> {
         settings,
     )?;
     member.ready()?;
-    member.run(|| Ok(node.turn()?))?;
+    let (path, brush) = (member.folder.join(CONFIG_FILE), &options.brush);
+    let modified = || {
+        std::fs::metadata(&path)
+            .and_then(|data| data.modified())
+            .ok()
+    };
+    let mut seen = modified();
+    member.run(|| {
+        // The launcher writes them anew where a device has come, gone or changed.
+        let newest = modified();
+        if newest != seen {
+            seen = newest;
+            match RigConfig::read(&path) {
+                Ok(config) => node.set_devices(brush_devices(&config, brush)),
+                Err(fault) => tracing::warn!("the rig's settings: {fault}"),
+            }
+        }
+        Ok(node.turn()?)
+    })?;
     member.leave();
     Ok(0)
 }

@@ -41,7 +41,13 @@ impl BrushNode {
             return Ok(());
         }
         *sent_ns = now_ns;
-        let kind = self.settings.laws.get(device).copied().unwrap_or_default();
+        let kind = self
+            .settings
+            .devices
+            .laws
+            .get(device)
+            .copied()
+            .unwrap_or_default();
         let felt = SurfaceFeel {
             law: law(kind, &mut self.model, &plane),
             drag_n_s_m: self.drag_n_s_m,

@@ -37,7 +37,7 @@ use crate::path_simplifier::{PathSimplifier, Place, Waiting};
 
 use pace::Pace;
 use progress::Progress;
-pub use settings::BrushSettings;
+pub use settings::{BrushDevices, BrushSettings};
 use settings::{DeviceClaims, moved_by};
 use takes::Take;
 
@@ -167,6 +167,11 @@ impl BrushNode {
         })
     }
 
+    /// Follows other devices, or the same by other priorities and laws of force, from now on.
+    pub fn set_devices(&mut self, devices: BrushDevices) {
+        self.settings.devices = devices;
+    }
+
     /// Number of states sent.
     #[must_use]
     pub fn sent(&self) -> u64 {
@@ -265,8 +270,10 @@ impl BrushNode {
         let (topics, settings, devices) = (&self.topics, &self.settings, &self.devices);
         let mine = |next: &Received<StylusSample>| {
             let device = topics.middle(&next.key).unwrap_or_default();
+            let moves = moved_by(devices, device);
             settings
-                .priority(device, moved_by(devices, device))
+                .devices
+                .priority(&settings.name, device, moves)
                 .is_some()
         };
         let anew = Flags::REPLAY.with(Flags::FIRST);
@@ -297,7 +304,11 @@ impl BrushNode {
             .unwrap_or_default()
             .to_owned();
         let moves = moved_by(&self.devices, &device);
-        let Some(priority) = self.settings.priority(&device, moves) else {
+        let Some(priority) = self
+            .settings
+            .devices
+            .priority(&self.settings.name, &device, moves)
+        else {
             return Ok(());
         };
         let (brush, next) = (self.states.origin(), self.states.next_seq());

@@ -8,11 +8,10 @@
     reason = "shared by test programs, each of which uses a part"
 )]
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use maulstick_brush::BrushFile;
-use maulstick_brush_node::{BrushNode, BrushSettings};
+use maulstick_brush_node::{BrushDevices, BrushNode, BrushSettings};
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, CreditSender, MemoryNet, Qos, Queue, Wake};
@@ -129,10 +128,10 @@ pub fn settings() -> BrushSettings {
         name: "main".into(),
         file: file(),
         depth_share: 0.5,
-        devices: BTreeMap::new(),
-        laws: BTreeMap::new(),
-        others: Vec::new(),
-        foreign_priority: Some(0),
+        devices: BrushDevices {
+            foreign_priority: Some(0),
+            ..BrushDevices::default()
+        },
         epoch: 77,
     }
 }

@@ -8,6 +8,7 @@ use maulstick_rig::UserError;
 use maulstick_types::command::FileCommand;
 
 use crate::commands::open::{LONGEST, whole};
+use crate::commands::say;
 use crate::commands::session::{Session, Target};
 use crate::commands::takes::from::open_begin;
 use crate::commands::takes::session_file::PAINTING;
@@ -24,8 +25,8 @@ pub(super) struct Beginning {
     /// When the paint node is asked.
     at: Instant,
     copying: Option<JoinHandle<Result<Vec<u8>, UserError>>>,
-    /// Why it was refused last.
-    pub refused: Option<String>,
+    /// True once it was said that it is refused.
+    is_refused: bool,
 }
 
 impl Default for Beginning {
@@ -33,28 +34,34 @@ impl Default for Beginning {
         Self {
             at: Instant::now() + SETTLES,
             copying: None,
-            refused: None,
+            is_refused: false,
         }
     }
 }
 
 impl Beginning {
-    /// The painting's file, once it is there.
-    pub(super) fn look(&mut self, target: &Target) -> Option<Vec<u8>> {
+    /// The painting's file, once it is there. That it is refused is said once.
+    ///
+    /// # Errors
+    /// A [`UserError`] where nothing can be said.
+    pub(super) fn look(&mut self, target: &Target) -> Result<Option<Vec<u8>>, UserError> {
         let Some(copying) = self.copying.take_if(|copying| copying.is_finished()) else {
             if self.copying.is_none() && Instant::now() >= self.at {
                 let target = target.clone();
                 self.copying = Some(std::thread::spawn(move || copy(&target)));
             }
-            return None;
+            return Ok(None);
         };
-        match copying.join() {
-            Ok(Ok(painting)) => return Some(painting),
-            Ok(Err(fault)) => self.refused = Some(fault.what),
-            Err(_) => self.refused = Some("internal error: the copy panicked".into()),
-        }
+        let fault = match copying.join() {
+            Ok(Ok(painting)) => return Ok(Some(painting)),
+            Ok(Err(fault)) => fault.what,
+            Err(_) => "internal error: the copy panicked".into(),
+        };
         self.at = Instant::now() + AGAIN;
-        None
+        if !std::mem::replace(&mut self.is_refused, true) {
+            say!("without the painting, {fault}: it cannot be painted again from this recording");
+        }
+        Ok(None)
     }
 }
 

@@ -114,8 +114,10 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
         }
         flush_at = Instant::now() + FLUSH;
         part.flush()?;
-        if let Some(bytes) = beginning.as_mut().and_then(|own| own.look(&options.target)) {
-            part.attach(&bytes)?;
+        if let Some(own) = &mut beginning
+            && let Some(painting) = own.look(&options.target)?
+        {
+            part.attach(&painting)?;
             beginning = None;
         }
         if !listener.has_rig() {
@@ -136,9 +138,6 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
             }
             beginning = paints.then(Beginning::default);
         }
-    }
-    if let Some(fault) = beginning.and_then(|beginning| beginning.refused) {
-        say!("without the painting, {fault}: it cannot be painted again from this recording");
     }
     part.finish(&mut state, &listener)?;
     Ok(0)
