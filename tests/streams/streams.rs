@@ -188,7 +188,7 @@ fn a_graph_shows_who_sends_what_to_whom() {
         let mermaid = String::from_utf8(place.done(&["graph"]).stdout).expect("text");
         has(
             &mermaid,
-            &["flowchart LR", "control/puck/sample", "brush-main"],
+            &["flowchart LR", "[\"test\"]", "brush/main/state", "scene"],
         );
         place.done(&["graph", "-o", "rig.svg"]);
         assert!(place.bytes("rig.svg").starts_with(b"<svg"));

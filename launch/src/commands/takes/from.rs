@@ -182,6 +182,10 @@ struct SessionWriter<W: std::io::Write + std::io::Seek> {
     writer: RecordingWriter<W>,
     /// Number of the next message of the journal.
     next: u64,
+    /// Time of the newest one, ns.
+    newest_ns: u64,
+    /// Index of the entry of the newest states, which are written, and the entry, which is not.
+    states: Option<(u64, Entry)>,
     /// Names of the brushes, by the source of their states.
     brushes: BTreeMap<u32, String>,
 }
@@ -212,26 +216,56 @@ impl<W: std::io::Write + std::io::Seek> SessionWriter<W> {
         Ok(Self {
             writer,
             next: 0,
+            newest_ns: 0,
+            states: None,
             brushes: topics.filter_map(brush).collect(),
         })
     }
 
-    /// Writes what the painting accepted: a state, and the entry that names it.
+    /// Writes what the painting accepted. One entry names states that follow each other.
     fn accepted(&mut self, at_ns: u64, record: &Record) -> std::io::Result<()> {
-        let entry = match &record.what {
-            Accepted::State { header, state } => {
-                let brush = self.brushes.get(&header.source).cloned();
-                let brush = brush.unwrap_or_default();
-                self.message(&format!("brush/{brush}/state"), header, state, at_ns)?;
-                Entry::States {
-                    brush,
-                    epoch: header.epoch,
-                    from: header.seq,
-                    to: header.seq,
-                }
+        let (header, state) = match &record.what {
+            Accepted::State { header, state } => (header, state),
+            Accepted::Entry(entry) => {
+                self.end_states(at_ns)?;
+                return self.entry(at_ns, record.index, entry.clone());
             }
-            Accepted::Entry(entry) => entry.clone(),
         };
+        let brush = self.brushes.get(&header.source).cloned();
+        let brush = brush.unwrap_or_default();
+        if self
+            .states
+            .as_ref()
+            .is_some_and(|(index, _)| *index != record.index)
+        {
+            self.end_states(at_ns)?;
+        }
+        self.message(&format!("brush/{brush}/state"), header, state, at_ns)?;
+        let first = || {
+            let (epoch, from, to) = (header.epoch, header.seq, header.seq);
+            let entry = Entry::States {
+                brush,
+                epoch,
+                from,
+                to,
+            };
+            (record.index, entry)
+        };
+        if let (_, Entry::States { to, .. }) = self.states.get_or_insert_with(first) {
+            *to = header.seq;
+        }
+        Ok(())
+    }
+
+    /// Writes the entry that names the newest states.
+    fn end_states(&mut self, at_ns: u64) -> std::io::Result<()> {
+        match self.states.take() {
+            Some((index, entry)) => self.entry(at_ns, index, entry),
+            None => Ok(()),
+        }
+    }
+
+    fn entry(&mut self, at_ns: u64, index: u64, entry: Entry) -> std::io::Result<()> {
         let header = Header {
             version: JournalEntry::VERSION,
             schema: JournalEntry::schema().hash,
@@ -244,11 +278,8 @@ impl<W: std::io::Write + std::io::Seek> SessionWriter<W> {
             sent_ns: at_ns,
         };
         self.next += 1;
-        let entry = JournalEntry {
-            index: record.index,
-            entry,
-        };
-        self.message(JOURNAL, &header, &entry, at_ns)
+        self.newest_ns = at_ns;
+        self.message(JOURNAL, &header, &JournalEntry { index, entry }, at_ns)
     }
 
     /// Writes a message as it was recorded.
@@ -291,6 +322,7 @@ impl<W: std::io::Write + std::io::Seek> SessionWriter<W> {
     }
 
     fn finish(mut self) -> std::io::Result<()> {
+        self.end_states(self.newest_ns)?;
         let counts = BTreeMap::from([("messages".to_owned(), self.next.to_string())]);
         self.writer
             .note("counts", counts)
