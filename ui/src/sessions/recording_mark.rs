@@ -1,6 +1,6 @@
 //! The red dot while a recording is written, with the time since its beginning. A click ends the recording.
 
-use eframe::egui::{Button, Color32, Response, RichText, Role, Ui, WidgetInfo};
+use eframe::egui::{Button, Color32, Response, RichText, Role, Ui, WidgetInfo, vec2};
 
 use crate::dialogs::paths;
 use crate::sessions::{SessionOrder, clock};
@@ -12,6 +12,9 @@ const RED: [Color32; 2] = [
     Color32::from_rgb(190, 20, 20),
 ];
 
+/// Radius of the dot, points.
+const DOT: f32 = 4.0;
+
 /// Shows it; `None` if nothing is recorded.
 pub(crate) fn show(ui: &mut Ui, work: &mut PanelContext<'_>) -> Option<Response> {
     let recording = work.rig.recording.as_ref()?;
@@ -21,11 +24,13 @@ pub(crate) fn show(ui: &mut Ui, work: &mut PanelContext<'_>) -> Option<Response>
         true => dark,
         false => light,
     };
-    let words = RichText::new(format!("● {}", clock(elapsed_ns as f64 * 1e-9)));
+    let words = RichText::new(format!("     {}", clock(elapsed_ns as f64 * 1e-9)));
     let button = Button::new(words.small().color(red))
         .frame_when_inactive(false)
         .small();
     let shown = ui.add(button);
+    let dot = shown.rect.left_center() + vec2(2.0 * DOT, 0.0);
+    ui.painter().circle_filled(dot, DOT, red);
     shown.widget_info(|| WidgetInfo::labeled(Role::Button, true, tr!("Stop recording")));
     let file = paths::shown(&recording.file);
     let shown = shown.on_hover_text(tr!("Recording into {file}. A click ends it.", file));

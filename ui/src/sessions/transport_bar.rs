@@ -59,9 +59,9 @@ impl Control {
     fn words(self, position: &Position) -> (&'static str, &'static str) {
         match self {
             Self::Back => ("−5 s", tr!("Back 5 s")),
-            Self::Pause if position.paused => ("▶", tr!("Play on")),
-            Self::Pause => ("⏸", tr!("Pause")),
-            Self::Step => ("⏭", tr!("On by one event")),
+            Self::Pause if position.paused => (tr!("Play on"), tr!("Play on")),
+            Self::Pause => (tr!("Pause"), tr!("Pause")),
+            Self::Step => ("+1", tr!("On by one event")),
             Self::Forth => ("+5 s", tr!("Forth 5 s")),
         }
     }
@@ -154,7 +154,7 @@ impl TransportBar {
             }
         }
         let words = tr!("End the replay");
-        match button(ui, "⏹", words).on_hover_text(words).clicked() {
+        match button(ui, "×", words).on_hover_text(words).clicked() {
             true => Some(TransportOrder::End),
             false => order,
         }
