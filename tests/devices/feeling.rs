@@ -9,6 +9,7 @@ use maulstick_brush::BrushFile;
 use maulstick_bus::Qos;
 use maulstick_bus::typed::Receiver;
 use maulstick_haptics::Limits;
+use maulstick_types::haptics::{ContactModel, ForceLaw};
 use maulstick_types::stylus::StylusSample;
 use nix::sys::signal::Signal;
 use support::{Launcher, PATIENCE, Place, drain, hear, listen, pressed, signal, wait_for};
@@ -128,16 +129,17 @@ fn recorded_models_drive_a_device_by_the_rules_of_its_servo() {
         "6",
     ]);
     place.done(&["device", "use", "phantom", "--force", "none"]);
-    let brush = BrushFile::library("round").expect("a brush");
-    let head_length_m = brush.scaled_to(10.0).expect("a size").length_m();
-    assert!(
-        fades(&mut samples, head_length_m).is_some(),
-        "a law without force"
-    );
+    let topic = topics.contact_model("phantom");
+    let mut models = listen::<ContactModel>(&bus, &topic, Qos::RealTime);
+    let is_free = |model: &ContactModel| matches!(model.law, ForceLaw::None);
+    assert!(hear(&mut models, is_free).is_some(), "a law without force");
     let refused = support::fault(&place, &["replay", "s.mcap", "-t", "haptics/*/model"], 2);
     support::has(&refused, &["--drive"]);
     let replay = ["replay", "s.mcap", "--drive", "phantom", "--loop"];
     let mut player = Launcher::start(place.maulstick(&replay));
+    let pushes = |model: &ContactModel| !matches!(model.law, ForceLaw::None);
+    assert!(hear(&mut models, pushes).is_some(), "{}", player.said());
+    drain(&mut samples);
     assert!(hear(&mut samples, felt).is_some(), "{}", player.said());
     let (most, leaped) = strongest(&mut samples);
     assert!(
@@ -148,7 +150,7 @@ fn recorded_models_drive_a_device_by_the_rules_of_its_servo() {
     player.signal(Signal::SIGINT);
     player.wait(PATIENCE);
     assert!(
-        fades(&mut samples, head_length_m).is_some(),
+        hear(&mut models, is_free).is_some(),
         "the live brush has it again"
     );
     bus.close();

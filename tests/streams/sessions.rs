@@ -32,7 +32,8 @@ fn recorder(place: &Place, file: &str) -> Launcher {
 fn paint(place: &Place) {
     let stroke = |device: &str| {
         let topic = "stylus/*/sample";
-        place.done(&["replay", "hand.mcap", "-t", topic, "--as", device]);
+        let device = ["--as", device, "--start", "3"];
+        place.done(&[&["replay", "hand.mcap", "-t", topic], device.as_slice()].concat());
     };
     place.done(&["load", "Ultramarine Blue=0.6,Titanium White=0.4"]);
     stroke("left");
@@ -72,7 +73,7 @@ fn ordered(place: &Place, args: &[&str], orders: &str) {
 #[test]
 fn a_session_is_painted_again_to_the_same_picture() {
     let place = Place::new();
-    place.short_demo("hand.mcap", 1.5);
+    place.short_demo("hand.mcap", 6.0);
     let mut launcher = Launcher::up(&place, &[&["sea.maul"], CANVAS.as_slice()].concat());
     launcher.wait_says("is up");
     let blank = snapshot(&place, "blank.png");

@@ -45,7 +45,8 @@ impl FirstRun {
         preferences: &mut Preferences,
     ) {
         let is_new = *self.is_new.get_or_insert(!preferences.has_painted);
-        if !is_new {
+        // The transport bar stands there while a recording is played.
+        if !is_new || rig.replay.is_some() {
             return;
         }
         let now = context.input(|input| input.time);

@@ -129,6 +129,7 @@ fn every_control_of_recorder_and_player_is_named_and_reached_by_the_keyboard() {
     (rig.recording, rig.replay) = (Some(recording()), Some(replay(false)));
     harness.run_steps(3);
     assert_eq!(controls(&harness).len(), before.len() + 8);
+    press(&mut harness, Key::F6);
     assert_eq!(faults(&mut harness, &before), Vec::<String>::new());
 }
 
