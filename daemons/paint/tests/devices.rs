@@ -55,14 +55,17 @@ fn force_device(live: &Live) -> Device {
     arm
 }
 
+/// The contact models of that device.
+fn models(live: &Live) -> Receiver<ContactModel> {
+    let topic = live.topics.contact_model("arm");
+    let (bus, queue) = (live.net.bus(), Queue::Ring(512));
+    Receiver::new(&bus, &topic, Qos::RealTime, queue, &Wake::new()).expect("subscribed")
+}
+
 #[test]
 fn a_force_device_with_a_number_of_its_own_gets_its_model() {
     let mut live = live();
-    let (bus, wake) = (live.net.bus(), Wake::new());
-    let topic = live.topics.contact_model("arm");
-    let mut models =
-        Receiver::<ContactModel>::new(&bus, &topic, Qos::RealTime, Queue::Ring(8), &wake)
-            .expect("subscribed");
+    let mut models = models(&live);
     let mut arm = force_device(&live);
     turn(&mut live);
     arm.send(&pen(0.0, 0.0, 0.3));
@@ -74,11 +77,7 @@ fn a_force_device_with_a_number_of_its_own_gets_its_model() {
 #[test]
 fn a_hand_feels_the_brush_of_a_take_and_paints_nothing_into_it() {
     let mut live = live();
-    let (bus, wake) = (live.net.bus(), Wake::new());
-    let topic = live.topics.contact_model("arm");
-    let mut models =
-        Receiver::<ContactModel>::new(&bus, &topic, Qos::RealTime, Queue::Ring(512), &wake)
-            .expect("subscribed");
+    let mut models = models(&live);
     let mut arm = force_device(&live);
     turn(&mut live);
     live.announce(1);
@@ -107,11 +106,7 @@ fn pressed(kind: ForceKind) -> ForceLaw {
     let mut settings = support::settings();
     settings.devices.laws.insert("arm".into(), kind);
     let mut live = Live::with(net, settings);
-    let (bus, wake) = (live.net.bus(), Wake::new());
-    let topic = live.topics.contact_model("arm");
-    let mut models =
-        Receiver::<ContactModel>::new(&bus, &topic, Qos::RealTime, Queue::Ring(64), &wake)
-            .expect("subscribed");
+    let mut models = models(&live);
     let mut arm = force_device(&live);
     turn(&mut live);
     let mut law = None;
@@ -129,11 +124,7 @@ fn pressed(kind: ForceKind) -> ForceLaw {
 #[test]
 fn a_law_that_changes_acts_at_once() {
     let mut live = live();
-    let (bus, wake) = (live.net.bus(), Wake::new());
-    let topic = live.topics.contact_model("arm");
-    let mut models =
-        Receiver::<ContactModel>::new(&bus, &topic, Qos::RealTime, Queue::Ring(64), &wake)
-            .expect("subscribed");
+    let mut models = models(&live);
     let mut arm = force_device(&live);
     turn(&mut live);
     let mut law = |live: &mut Live| {
@@ -316,11 +307,7 @@ fn another_brush_is_taken_up_and_a_bad_file_leaves_the_one_in_hand() {
 #[test]
 fn a_softer_brush_pushes_back_less() {
     let mut live = live();
-    let (bus, wake) = (live.net.bus(), Wake::new());
-    let topic = live.topics.contact_model("arm");
-    let mut models =
-        Receiver::<ContactModel>::new(&bus, &topic, Qos::RealTime, Queue::Ring(64), &wake)
-            .expect("subscribed");
+    let mut models = models(&live);
     let mut arm = force_device(&live);
     turn(&mut live);
     let mut felt = |live: &mut Live| {

@@ -141,7 +141,10 @@ impl Compositor {
     }
 
     /// The tool of this number once it has done all that, and what flushes its events: it acts in the caller's time then.
-    #[allow(dead_code, reason = "the benchmarks use it")]
+    #[allow(
+        dead_code,
+        reason = "the benchmark of pens includes this file; the tests send by orders"
+    )]
     pub(crate) fn lend(&self, tool: usize) -> Receiver<(ZwpTabletToolV2, DisplayHandle)> {
         let (to, lent) = channel();
         self.order(Order::Lend(tool, to));

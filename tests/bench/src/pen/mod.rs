@@ -171,7 +171,8 @@ impl Seams {
     }
 }
 
-/// Sends all samples once both pens are heard; their times, ns.
+/// Sends all samples, at the rate of a pen, once both pens are heard; their times, ns. Until then each sends a sample now and
+/// then, for what was sent before somebody listened is lost.
 fn feed(seams: &mut Seams, is_ready: &AtomicBool) -> Result<[Vec<u64>; 2], UserError> {
     let give_up = Instant::now() + PATIENCE;
     while !is_ready.load(Ordering::Acquire) {
