@@ -4,7 +4,7 @@
 mod support;
 
 use std::io::{BufRead as _, BufReader, Write as _};
-use std::process::{Child, Stdio};
+use std::process::Stdio;
 
 use nix::sys::signal::Signal;
 use serde_json::Value;
@@ -41,6 +41,7 @@ fn paint(place: &Place) {
     stroke("right");
     place.done(&["undo"]);
     place.done(&["clean"]);
+    place.done(&["brush", "take", "flat"]);
     place.done(&["load", "Hansa Yellow Opaque"]);
     stroke("left");
     place.done(&["light", "--direction=-0.4,0.5,0.8"]);
@@ -53,21 +54,43 @@ fn snapshot(place: &Place, file: &str) -> Vec<u8> {
     place.bytes(file)
 }
 
-/// Replays with orders on the standard input.
-fn ordered(place: &Place, args: &[&str], orders: &str) {
-    let mut command = place.maulstick(args);
+/// Replays a session as `name` with orders, each once the one before has been carried out: paused, a step, back to where it is
+/// painted anew, and on.
+fn ordered(place: &Place, name: &str) {
+    let mut command = place.maulstick(&["replay", "t.mcap", "--json", "--document", name]);
     command.stdin(Stdio::piped()).stdout(Stdio::piped());
-    let mut child: Child = command.spawn().expect("started");
+    let mut child = command.spawn().expect("started");
     let mut input = child.stdin.take().expect("piped");
-    input.write_all(orders.as_bytes()).expect("written");
-    let output = child.wait_with_output().expect("ended");
-    drop(input);
-    assert!(output.status.success(), "{args:?}");
-    let said = String::from_utf8_lossy(&output.stdout);
-    has(
-        &said,
-        &["position_s", "length_s", "\"painting\":\"r.maul\""],
-    );
+    let said = BufReader::new(child.stdout.take().expect("piped"));
+    let mut lines = said.lines().map_while(Result::ok);
+    let mut paintings = 0;
+    let mut until = |is_so: &dyn Fn(&Value) -> bool| {
+        for line in lines.by_ref() {
+            let line: Value = serde_json::from_str(&line).expect("JSON");
+            paintings += u32::from(line["painting"] == name);
+            if is_so(&line) {
+                return;
+            }
+        }
+        panic!("it ended");
+    };
+    let mut order = |order: &str| writeln!(input, "{order}").expect("written");
+    let position = |line: &Value| line["position_s"].as_f64().unwrap_or(0.0);
+    until(&|line| position(line) > 2.0);
+    order("pause");
+    until(&|line| line["paused"] == true);
+    order("step");
+    order("skip 0.5");
+    order("pause");
+    until(&|line| line["paused"] == false && position(line) > 3.0);
+    order("seek 0.5");
+    until(&|line| line["painting"] == name);
+    order("rate 4");
+    until(&|line| line["rate"] == "4" && position(line) > 4.0);
+    order("rate max");
+    lines.by_ref().for_each(drop);
+    assert!(child.wait().expect("ended").success());
+    assert_eq!(paintings, 2, "it was begun anew once");
 }
 
 #[test]
@@ -124,15 +147,11 @@ fn a_session_is_painted_again_to_the_same_picture() {
         "the first half is not all"
     );
 
+    // Another brush is in hand by now.
+    place.done(&["brush", "take", "filbert"]);
     place.done(&["replay", "t.mcap", "--rate", "max"]);
     assert_same(&snapshot(&place, "max.png"), &painted, "as fast as can be");
-    let orders =
-        "pause\nstep\nseek 1\nskip 0.5\nseek 0.2\nrate 20\npause\nseek 2\nskip -1\nrate 50\n";
-    ordered(
-        &place,
-        &["replay", "t.mcap", "--json", "--document", "r.maul"],
-        orders,
-    );
+    ordered(&place, "r.maul");
     assert_same(&snapshot(&place, "ordered.png"), &painted, "with orders");
 
     let refused = |args: &[&str], words: &[&str]| has(&fault(&place, args, 2), words);

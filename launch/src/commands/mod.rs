@@ -79,6 +79,14 @@ pub fn print_json(value: &Value) -> Result<(), UserError> {
     print_text(&(text + "\n"))
 }
 
+/// Prints JSON as one line, for a program that reads line by line.
+///
+/// # Errors
+/// As [`print_text`].
+pub fn print_json_line(value: &Value) -> Result<(), UserError> {
+    print_text(&format!("{value}\n"))
+}
+
 /// Writes a take and says what it holds.
 ///
 /// # Errors

@@ -43,6 +43,7 @@ impl PaintNode {
 
     /// Hands a command to the sequencer, with the states that wait of the brush behind which it goes.
     fn sequence(&mut self, asked: CommandRequest) -> Replied {
+        self.take_up_brushes();
         let brush = asked.after.as_ref().map(|after| Origin {
             source: after.brush,
             epoch: after.epoch,

@@ -92,6 +92,8 @@ pub struct PaintNode {
     /// Commit counter at the newest commit seen, and its time, ns.
     committed: (u64, u64),
     ticker: Ticker,
+    /// Other files of known brushes, until something is done with them.
+    newer_brushes: BTreeMap<String, BrushFile>,
     /// The recorded session that is painted again.
     session: Option<repeat::Session>,
 }
@@ -173,6 +175,7 @@ impl PaintNode {
             memory: 1 << 30,
             committed: (0, 0),
             ticker: Ticker::default(),
+            newer_brushes: BTreeMap::new(),
             session: None,
             topics: topics.clone(),
             me,
@@ -307,7 +310,12 @@ impl PaintNode {
         let brush = self.topics.middle(key).unwrap_or_default();
         let refusal = match (check_name(brush), BrushFile::parse(&def.toml)) {
             (Ok(()), Ok(file)) if def.brush == brush => {
-                return self.sequencer.define_brush(brush, file);
+                // A session that is painted again has the brushes of then.
+                match self.knows_brush(brush) {
+                    true => drop(self.newer_brushes.insert(brush.to_owned(), file)),
+                    false => self.sequencer.define_brush(brush, file),
+                }
+                return;
             }
             (Ok(()), Ok(_)) => "it names another brush".to_owned(),
             (Ok(()), Err(error)) => error.to_string(),
@@ -315,6 +323,15 @@ impl PaintNode {
         };
         self.refused += 1;
         tracing::warn!("{key}: the brush file is refused: {refusal}");
+    }
+
+    /// Takes other files of known brushes in hand, before something is done with them.
+    fn take_up_brushes(&mut self) {
+        if self.session.is_none() {
+            for (brush, file) in std::mem::take(&mut self.newer_brushes) {
+                self.sequencer.define_brush(&brush, file);
+            }
+        }
     }
 
     /// A take ends with its player, whatever it still had to play.
@@ -351,6 +368,7 @@ impl PaintNode {
             }
             return Ok(true);
         }
+        self.take_up_brushes();
         let (replies, painted) = self
             .sequencer
             .state(&brush, &received.header, &received.message);

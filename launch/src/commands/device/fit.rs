@@ -22,7 +22,7 @@ use toml_edit::{Array, DocumentMut, Item, TableLike, Value};
 use super::user_file::{is_same, put_in_rig, remove_from_rig};
 use crate::EXIT_INTERRUPTED;
 use crate::commands::session::{Session, Target};
-use crate::commands::{print_line, print_text};
+use crate::commands::{print_json_line, print_line};
 
 /// Options of `maulstick device fit`.
 #[derive(Args, Clone, Debug)]
@@ -56,7 +56,7 @@ impl Teller {
             return print_line(said);
         }
         let asks = asks.map(|corner| corner.to_string());
-        print_text(&format!("{}\n", json!({"said": said, "asks": asks})))
+        print_json_line(&json!({"said": said, "asks": asks}))
     }
 }
 

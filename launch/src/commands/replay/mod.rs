@@ -21,12 +21,12 @@ use maulstick_bus::RigFolder;
 use maulstick_device::player::Rate;
 use maulstick_rig::{NodeArgs, NodeHandle, UserError};
 use maulstick_streams::Recording;
-use serde_json::{Value, json};
+use serde_json::json;
 
 use self::orders::{KEYS, Orders};
 use self::transport::{Order, Transport, parse_rate};
 use crate::EXIT_INTERRUPTED;
-use crate::commands::print_text;
+use crate::commands::print_json_line;
 use crate::commands::session::Target;
 use crate::commands::takes::session_file::{PAINTING, SessionFile};
 
@@ -84,7 +84,7 @@ struct PaintingOptions {
 }
 
 /// Time between two lines that say where it is.
-const TOLD: Duration = Duration::from_millis(200);
+const REPORT_PERIOD: Duration = Duration::from_millis(200);
 /// Longest wait for the next event while orders may come.
 const TURN: Duration = Duration::from_millis(20);
 
@@ -135,17 +135,12 @@ pub fn run(options: &ReplayOptions) -> Result<i32, UserError> {
     streams::replay(options)
 }
 
-/// Prints a line of JSON.
-fn print_json(line: &Value) -> Result<(), UserError> {
-    print_text(&format!("{line}\n"))
-}
-
 /// What plays: the transport, its orders, and what is told of them.
 struct Deck {
     transport: Transport,
     orders: Orders,
     begun: Instant,
-    told: Option<Instant>,
+    reported: Option<Instant>,
     json: bool,
 }
 
@@ -179,7 +174,7 @@ impl Deck {
             transport: Transport::new(range_ns, options.rate, options.step),
             orders,
             begun: Instant::now(),
-            told: None,
+            reported: None,
             json: options.json,
         })
     }
@@ -195,9 +190,9 @@ impl Deck {
             }
             leaps |= matches!(order, Order::Seek(_) | Order::Skip(_));
             self.transport.order(order, next_ns);
-            self.told = None;
+            self.reported = None;
         }
-        self.tell()?;
+        self.report()?;
         Ok(match (leaps, self.transport.position_ns() < played_ns) {
             (false, _) => Turn::On,
             (true, true) => Turn::Leap(Leap::Back),
@@ -206,16 +201,19 @@ impl Deck {
     }
 
     /// Says where it is, at most five times a second.
-    fn tell(&mut self) -> Result<(), UserError> {
-        if self.told.is_some_and(|told| told.elapsed() < TOLD) {
+    fn report(&mut self) -> Result<(), UserError> {
+        if self
+            .reported
+            .is_some_and(|reported| reported.elapsed() < REPORT_PERIOD)
+        {
             return Ok(());
         }
-        self.told = Some(Instant::now());
+        self.reported = Some(Instant::now());
         let s = self.transport.position_ns() as f64 * 1e-9;
         let (rate, paused) = (self.transport.rate(), self.transport.is_paused());
         if self.json {
             let end_s = self.transport.end_ns() as f64 * 1e-9;
-            return print_json(&json!({
+            return print_json_line(&json!({
                 "position_s": s,
                 "length_s": end_s,
                 "rate": rate.to_string(),

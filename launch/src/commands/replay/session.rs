@@ -16,8 +16,9 @@ use serde_bytes::ByteBuf;
 use serde_json::json;
 
 use super::events::Events;
-use super::{Deck, Leap, ReplayOptions, TURN, Turn, print_json};
+use super::{Deck, Leap, ReplayOptions, TURN, Turn};
 use crate::commands::open::{LONGEST, whole};
+use crate::commands::print_json_line;
 use crate::commands::say;
 use crate::commands::takes::from::open_begin;
 use crate::commands::takes::session_file::{Event, PAINTING, SessionFile};
@@ -177,7 +178,7 @@ impl Player<'_> {
             session: self.number,
         })?;
         match self.options.json {
-            true => print_json(&json!({"painting": path.display().to_string()})),
+            true => print_json_line(&json!({"painting": path.display().to_string()})),
             false => Ok(()),
         }
     }

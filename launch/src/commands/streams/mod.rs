@@ -5,11 +5,10 @@
 //! | [`listener`] | messages of a running rig |
 //! | [`echo`], [`measure`], [`nodes`] | contents, rates and senders of live streams |
 //! | [`graph`] | the processes of a rig, and what they send each other, as a picture |
-//! | [`record`], [`beginning`], [`ring`], [`recording`], [`foxglove_export`] | recordings, made, kept within bounds, looked at, written for Foxglove |
+//! | [`record`], [`painting_copy`], [`ring`], [`recording`], [`foxglove_export`] | recordings, made, kept within bounds, looked at, written for Foxglove |
 //! | [`bridge`], [`foxglove_server`] | live streams for Foxglove |
 //! | [`message_lines`] | messages as rows of a table and as lines of JSON |
 
-mod beginning;
 pub mod bridge;
 pub mod echo;
 mod foxglove_export;
@@ -19,6 +18,7 @@ mod listener;
 pub mod measure;
 mod message_lines;
 pub mod nodes;
+mod painting_copy;
 pub mod record;
 pub mod recording;
 mod ring;

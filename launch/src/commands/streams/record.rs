@@ -17,9 +17,9 @@ use maulstick_streams::{RateLimit, RecordingWriter, Traffic};
 use maulstick_types::HEADER_BYTES;
 use mcap::McapResult;
 
-use super::beginning::Beginning;
 use super::fault;
 use super::listener::{Listener, ReceivedMessage};
+use super::painting_copy::PaintingCopy;
 use super::ring::{FILES, Ring};
 use crate::commands::say;
 use crate::commands::session::Target;
@@ -57,6 +57,8 @@ pub struct RecordOptions {
     target: Target,
 }
 
+/// Shortest time of which the newest files are kept, s: each needs time for its painting.
+const LEAST_LAST_S: f64 = 10.0;
 /// Of a quota the part that one file has.
 const QUOTA_FILES: u64 = 8;
 /// At most so much is lost with this process.
@@ -75,6 +77,10 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
         seconds => Ok(seconds.map(Duration::from_secs_f64)),
     };
     let lasts = bounded("seconds", options.seconds)?;
+    if options.last.is_some_and(|last| last < LEAST_LAST_S) {
+        let what = format!("--last {} is out of range", options.last.unwrap_or(0.0));
+        return Err(UserError::usage(what).help(format!("choose {LEAST_LAST_S} s or more")));
+    }
     let last = bounded("last", options.last)?.map(|last| last / FILES);
     let split_after = bounded("split-seconds", options.split_seconds)?.or(last);
     let bytes = |mb: u64| mb.saturating_mul(1_000_000);
@@ -103,7 +109,7 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
     let mut part = begin(&options.output, |path| File::create(path), &listener)?;
     let mut flush_at = begun + FLUSH;
     let paints = matches(&options.topic, JOURNAL);
-    let mut beginning = paints.then(Beginning::default);
+    let mut copy = paints.then(PaintingCopy::default);
     while !listener.is_over() && end.is_none_or(|end| Instant::now() < end) {
         if let Some(received) = listener.next(end.map_or(flush_at, |end| end.min(flush_at))) {
             part.write(&received)?;
@@ -114,18 +120,19 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
         }
         flush_at = Instant::now() + FLUSH;
         part.flush()?;
-        if let Some(own) = &mut beginning
+        if let Some(own) = &mut copy
             && let Some(painting) = own.look(&options.target)?
         {
             part.attach(&painting)?;
-            beginning = None;
+            copy = None;
         }
         if !listener.has_rig() {
             break;
         }
         let is_full = most.is_some_and(|most| part.bytes >= most)
             || split_after.is_some_and(|after| part.begun.elapsed() >= after);
-        if is_full {
+        // A copy belongs to the file at whose beginning it was asked for.
+        if is_full && !copy.as_ref().is_some_and(PaintingCopy::is_made) {
             part.finish(&mut state, &listener)?;
             part = begin(&ring.next(), |path| File::create_new(path), &listener)?;
             ring.trim()?;
@@ -136,8 +143,11 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
                 again.message.arrived_ns = now_ns;
                 part.write(&again)?;
             }
-            beginning = paints.then(Beginning::default);
+            copy = paints.then(PaintingCopy::default);
         }
+    }
+    if let Some(painting) = copy.and_then(PaintingCopy::wait) {
+        part.attach(&painting)?;
     }
     part.finish(&mut state, &listener)?;
     Ok(0)
@@ -277,7 +287,6 @@ impl Part {
         self.writer
             .attach(PAINTING, "application/vnd.sqlite3", painting)
             .map_err(|error| fault(&self.path, error))?;
-        self.bytes += painting.len() as u64;
         self.flush()
     }
 

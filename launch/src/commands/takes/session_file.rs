@@ -101,7 +101,9 @@ impl SessionFile {
             let at_s = at_ns as f64 * 1e-9;
             UserError::usage(format!("at {at_s:.1} s: {fault}"))
                 .at(&place)
-                .help(format!("what is before it is whole: `--end {at_s:.1}`"))
+                .help(format!(
+                    "`maulstick take from {place} --end {at_s:.1} -o TAKE` keeps what is before it"
+                ))
         };
         let (mut newest_ns, mut done) = (0, Ok(()));
         let range = [first_ns, first_ns.saturating_add(to_ns)];

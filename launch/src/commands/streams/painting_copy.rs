@@ -21,7 +21,7 @@ const AGAIN: Duration = Duration::from_secs(2);
 
 /// A copy of the painting, made by a thread of its own while the recording goes on.
 #[derive(Debug)]
-pub(super) struct Beginning {
+pub(super) struct PaintingCopy {
     /// When the paint node is asked.
     at: Instant,
     copying: Option<JoinHandle<Result<Vec<u8>, UserError>>>,
@@ -29,7 +29,7 @@ pub(super) struct Beginning {
     is_refused: bool,
 }
 
-impl Default for Beginning {
+impl Default for PaintingCopy {
     fn default() -> Self {
         Self {
             at: Instant::now() + SETTLES,
@@ -39,7 +39,7 @@ impl Default for Beginning {
     }
 }
 
-impl Beginning {
+impl PaintingCopy {
     /// The painting's file, once it is there. That it is refused is said once.
     ///
     /// # Errors
@@ -59,9 +59,21 @@ impl Beginning {
         };
         self.at = Instant::now() + AGAIN;
         if !std::mem::replace(&mut self.is_refused, true) {
-            say!("without the painting, {fault}: it cannot be painted again from this recording");
+            say!(
+                "without the painting, {fault}: until it is there, nothing can be painted again from this recording"
+            );
         }
         Ok(None)
+    }
+
+    /// True while it is being made.
+    pub(super) fn is_made(&self) -> bool {
+        self.copying.is_some()
+    }
+
+    /// Waits for a copy that is being made.
+    pub(super) fn wait(self) -> Option<Vec<u8>> {
+        self.copying?.join().ok()?.ok()
     }
 }
 
