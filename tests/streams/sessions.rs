@@ -28,13 +28,21 @@ fn recorder(place: &Place, file: &str) -> Launcher {
     recorder
 }
 
+/// Plays a hand's samples after `start` as those of a live device.
+fn stroke(place: &Place, device: &str, start: &str) {
+    let device = ["--as", device, "--start", start];
+    place.done(
+        &[
+            &["replay", "hand.mcap", "-t", "stylus/*/sample"],
+            device.as_slice(),
+        ]
+        .concat(),
+    );
+}
+
 /// Paints with two styluses and commands in between, until nothing is wet.
 fn paint(place: &Place) {
-    let stroke = |device: &str| {
-        let topic = "stylus/*/sample";
-        let device = ["--as", device, "--start", "3"];
-        place.done(&[&["replay", "hand.mcap", "-t", topic], device.as_slice()].concat());
-    };
+    let stroke = |device| stroke(place, device, "3");
     place.done(&["load", "Ultramarine Blue=0.6,Titanium White=0.4"]);
     stroke("left");
     place.done(&["load", "Cadmium Red Light"]);
@@ -54,10 +62,22 @@ fn snapshot(place: &Place, file: &str) -> Vec<u8> {
     place.bytes(file)
 }
 
+/// Orders to a replay.
+struct Orders {
+    /// Rate at which it begins.
+    rate: &'static str,
+    /// Time at which it is paused, s.
+    pause_s: f64,
+    /// Earlier time that it goes back to, s.
+    seek_s: f64,
+}
+
 /// Replays a session as `name` with orders, each once the one before has been carried out: paused, a step, back to where it is
 /// painted anew, and on.
-fn ordered(place: &Place, name: &str) {
-    let mut command = place.maulstick(&["replay", "t.mcap", "--json", "--document", name]);
+fn ordered(place: &Place, name: &str, orders: &Orders) {
+    let (rate, pause_s) = (orders.rate, orders.pause_s);
+    let options = ["--rate", rate, "--json", "--document", name];
+    let mut command = place.maulstick(&[&["replay", "t.mcap"], options.as_slice()].concat());
     command.stdin(Stdio::piped()).stdout(Stdio::piped());
     let mut child = command.spawn().expect("started");
     let mut input = child.stdin.take().expect("piped");
@@ -76,17 +96,17 @@ fn ordered(place: &Place, name: &str) {
     };
     let mut order = |order: &str| writeln!(input, "{order}").expect("written");
     let position = |line: &Value| line["position_s"].as_f64().unwrap_or(0.0);
-    until(&|line| position(line) > 2.0);
+    until(&|line| position(line) > pause_s);
     order("pause");
     until(&|line| line["paused"] == true);
     order("step");
     order("skip 0.5");
     order("pause");
-    until(&|line| line["paused"] == false && position(line) > 3.0);
-    order("seek 0.5");
+    until(&|line| line["paused"] == false && position(line) > pause_s + 1.0);
+    order(&format!("seek {}", orders.seek_s));
     until(&|line| line["painting"] == name);
     order("rate 4");
-    until(&|line| line["rate"] == "4" && position(line) > 4.0);
+    until(&|line| line["rate"] == "4" && position(line) > orders.seek_s + 2.0);
     order("rate max");
     lines.by_ref().for_each(drop);
     assert!(child.wait().expect("ended").success());
@@ -151,7 +171,12 @@ fn a_session_is_painted_again_to_the_same_picture() {
     place.done(&["brush", "take", "filbert"]);
     place.done(&["replay", "t.mcap", "--rate", "max"]);
     assert_same(&snapshot(&place, "max.png"), &painted, "as fast as can be");
-    ordered(&place, "r.maul");
+    let orders = Orders {
+        rate: "1",
+        pause_s: 2.0,
+        seek_s: 0.5,
+    };
+    ordered(&place, "r.maul", &orders);
     assert_same(&snapshot(&place, "ordered.png"), &painted, "with orders");
 
     let refused = |args: &[&str], words: &[&str]| has(&fault(&place, args, 2), words);
@@ -208,5 +233,57 @@ fn a_painting_in_memory_only_is_recorded_without_it() {
         &fault(&place, &["take", "from", "s.mcap", "-o", "t.mcap"], 2),
         &["lacks the painting", "in a file"],
     );
+    launcher.close(&place);
+}
+
+/// Five minutes of two styluses with four commands every half minute.
+fn paint_long(place: &Place) {
+    let rounds = ["Cadmium Red Light", "Hansa Yellow Opaque", "Bone Black"];
+    for (round, paint) in rounds.iter().cycle().take(10).enumerate() {
+        place.done(&["load", &format!("{paint}=0.7,Titanium White=0.3")]);
+        stroke(place, ["left", "right"][round % 2], "0");
+        if round % 3 == 2 {
+            place.done(&["undo"]);
+            place.done(&["redo"]);
+        } else {
+            place.done(&["light", &format!("--direction=-0.4,0.{},0.8", round % 9)]);
+            place.done(&["clean"]);
+        }
+        place.done(&["dry"]);
+    }
+}
+
+#[test]
+#[ignore = "takes half an hour"]
+fn five_minutes_with_forty_commands_are_painted_again_ten_times_out_of_ten() {
+    let place = Place::new();
+    place.short_demo("hand.mcap", 30.0);
+    let mut launcher = Launcher::up(&place, &[&["sea.maul"], CANVAS.as_slice()].concat());
+    launcher.wait_says("is up");
+    let mut recorder = recorder(&place, "s.mcap");
+    paint_long(&place);
+    let painted = snapshot(&place, "painted.png");
+    recorder.signal(Signal::SIGINT);
+    recorder.wait(PATIENCE);
+    place.done(&["take", "from", "s.mcap", "-o", "t.mcap"]);
+    let info = place.done(&["take", "info", "t.mcap", "--json"]).stdout;
+    let info: Value = serde_json::from_slice(&info).expect("JSON");
+    assert_eq!(info["painted"]["commands"].as_u64(), Some(40), "{info}");
+    place.done(&["render", "t.mcap", "-o", "rendered.png"]);
+    assert_same(&place.bytes("rendered.png"), &painted, "rendered");
+    for rate in ["0.5", "1", "4", "max"] {
+        place.done(&["replay", "t.mcap", "--rate", rate]);
+        assert_same(&snapshot(&place, &format!("{rate}.png")), &painted, rate);
+    }
+    for round in 0..6_u8 {
+        let orders = Orders {
+            rate: ["4", "10"][usize::from(round % 2)],
+            pause_s: 30.0 + 17.0 * f64::from(round),
+            seek_s: 11.0 * f64::from(round),
+        };
+        ordered(&place, &format!("r{round}.maul"), &orders);
+        let name = format!("ordered{round}.png");
+        assert_same(&snapshot(&place, &name), &painted, &name);
+    }
     launcher.close(&place);
 }

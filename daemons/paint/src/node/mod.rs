@@ -95,7 +95,7 @@ pub struct PaintNode {
     /// Other files of known brushes, until something is done with them.
     newer_brushes: BTreeMap<String, BrushFile>,
     /// The recorded session that is painted again.
-    session: Option<repeat::Session>,
+    session: Option<repeat::Repetition>,
 }
 
 impl PaintNode {

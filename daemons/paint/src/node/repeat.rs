@@ -9,11 +9,13 @@ use super::PaintNode;
 const SILENCE_NS: u64 = 10_000_000_000;
 
 /// A session that is painted again.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Session {
+#[derive(Clone, Debug)]
+pub(super) struct Repetition {
     number: u64,
     /// Number of the next batch.
     batch: u64,
+    /// Answer to the batch before it, which is asked again where it was lost.
+    answer: Outcome,
     /// When something came of it last, ns.
     heard_ns: u64,
 }
@@ -24,9 +26,10 @@ impl PaintNode {
         let own = self.session.as_ref().map(|session| session.number);
         match command {
             SessionCommand::Begin { session } if own.is_none_or(|own| own == *session) => {
-                self.session.get_or_insert(Session {
+                self.session.get_or_insert(Repetition {
                     number: *session,
                     batch: 0,
+                    answer: Outcome::done(""),
                     heard_ns: now_ns,
                 });
                 self.sequencer.begin_repeating();
@@ -58,9 +61,17 @@ impl PaintNode {
         };
         session.heard_ns = now_ns;
         if batch < session.batch {
-            return Outcome::done("");
+            return session.answer.clone();
         }
         session.batch = batch + 1;
+        let answer = self.accept_batch(records);
+        if let Some(session) = &mut self.session {
+            session.answer = answer.clone();
+        }
+        answer
+    }
+
+    fn accept_batch(&mut self, records: &[u8]) -> Outcome {
         let records = match journal::read(0, records) {
             Ok(records) => records,
             Err(error) => {
@@ -85,7 +96,7 @@ impl PaintNode {
 
     /// Gives the painting back to the hands where the player is gone.
     pub(super) fn check_repeating(&mut self, now_ns: u64) {
-        let silent_ns = |session: &Session| now_ns.saturating_sub(session.heard_ns);
+        let silent_ns = |session: &Repetition| now_ns.saturating_sub(session.heard_ns);
         if self.session.as_ref().map(silent_ns) > Some(SILENCE_NS) {
             tracing::warn!("the player of the session is silent: the hands paint again");
             self.end_session();
