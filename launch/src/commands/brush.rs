@@ -17,9 +17,9 @@ use maulstick_types::values::{BrushName, BrushToml};
 use serde_json::json;
 
 use crate::cells::SheetCells;
+use crate::commands::client::{Client, Target};
 use crate::commands::mode::{self, ModeOptions};
 use crate::commands::say;
-use crate::commands::session::{Session, Target};
 use crate::commands::{print_json, print_text, write_picture};
 use crate::outputs::{UsedFile, check_outputs};
 use crate::performance::{brush_file, library, of_a_brush};
@@ -186,7 +186,7 @@ fn take_up(options: &TakeOptions) -> Result<i32, UserError> {
         brush: BrushName::new(&*options.brush)?,
         toml: BrushToml::new(toml)?,
     };
-    Session::command(&options.target, command)?;
+    Client::command(&options.target, command)?;
     Ok(0)
 }
 

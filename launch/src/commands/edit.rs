@@ -5,8 +5,8 @@ use clap::{Args as _, FromArgMatches, Subcommand};
 use maulstick_rig::UserError;
 use maulstick_types::edits::{CommandForm, Edit, Ground, GroundSource, commands};
 
+use crate::commands::client::{Client, Target};
 use crate::commands::say;
-use crate::commands::session::{Session, Target};
 use crate::ground::GroundFile;
 
 /// An edit of the painting of a running rig.
@@ -77,7 +77,7 @@ pub(super) fn send(target: &Target, mut edit: Edit) -> Result<i32, UserError> {
         read_ground(ground)?;
     }
     let said = word(&edit);
-    let done = Session::command(target, edit)?;
+    let done = Client::command(target, edit)?;
     if let Some(said) = said {
         say!("{said}{done}");
     }

@@ -13,8 +13,8 @@ use maulstick_types::values::ValueError;
 
 use super::open::LONGEST;
 use super::painting::formats;
+use crate::commands::client::{Client, Target};
 use crate::commands::say;
-use crate::commands::session::{Session, Target};
 use crate::outputs::{Relayed, UsedFile, check_outputs, named_by};
 
 /// Options of `maulstick export`.
@@ -63,12 +63,12 @@ fn bits(text: &str) -> Result<u32, ValueError> {
 /// # Errors
 /// A [`UserError`] where it cannot be written, where another export goes on, or where no rig runs.
 pub fn run(options: &ExportOptions) -> Result<i32, UserError> {
-    let session = Session::open(&options.target)?;
+    let client = Client::open(&options.target)?;
     let Some(file) = &options.file else {
-        session.send(FileCommand::StopExport)?;
+        client.send(FileCommand::StopExport)?;
         return Ok(0);
     };
-    let config = session.config()?;
+    let config = client.config()?;
     let document = config.paint.document.iter();
     let inputs: Vec<_> = named_by(&config)
         .into_iter()
@@ -93,7 +93,7 @@ pub fn run(options: &ExportOptions) -> Result<i32, UserError> {
         gamut: options.gamut.clone().unwrap_or_default(),
         ..ExportOrder::to(file.asked()?)
     });
-    let done = session.send_within(command, LONGEST)?;
+    let done = client.send_within(command, LONGEST)?;
     say!("{}", file.arrive(&done)?);
     Ok(0)
 }

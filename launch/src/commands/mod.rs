@@ -16,7 +16,11 @@ mod takes;
 
 pub use colour::{fit, light, matching, mix, paints};
 pub use device::{force, force_order};
-pub use rig::{begin, endpoint, open, save_as, schema, session, snapshot};
+pub use rig::{begin, client, endpoint, open, save_as, schema, snapshot};
+pub(crate) use streams::listener::Listener;
+pub(crate) use streams::recorder::{
+    Division, RecorderSettings, Ring, Voice, record as record_files,
+};
 pub use streams::{bridge, echo, graph, measure, nodes, record, recording};
 pub use takes::{demo, import, render, take};
 

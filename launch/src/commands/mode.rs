@@ -4,7 +4,7 @@ use clap::Args;
 use maulstick_rig::UserError;
 use maulstick_types::edits::Handle;
 
-use crate::commands::session::Target;
+use crate::commands::client::Target;
 
 /// Options of `maulstick brush mode`.
 #[derive(Args, Clone, Debug)]

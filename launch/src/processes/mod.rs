@@ -6,6 +6,7 @@ mod haptic;
 mod hid;
 mod paint;
 mod player;
+mod recorder;
 mod ui;
 
 use std::ffi::CString;
@@ -24,6 +25,8 @@ pub const MOUSE: &str = "mouse";
 pub const PEN: &str = "pen";
 /// Device name of the player.
 pub const PLAYER: &str = "player";
+/// Name of the node that records.
+pub const RECORDER: &str = "recorder";
 
 /// A process of a rig, with its options.
 #[derive(clap::Subcommand, Debug)]
@@ -38,6 +41,8 @@ pub(crate) enum NodeCommand {
     Hid(hid::HidOptions),
     /// Play a take as a device
     Player(player::PlayerOptions),
+    /// Record what the rig sends, as [record] of rig.toml says
+    Recorder(recorder::RecorderOptions),
     /// Show the painting, and lend the mouse as a stylus
     Ui(ui::UiOptions),
 }
@@ -54,6 +59,7 @@ pub(crate) fn run(command: &NodeCommand) -> Result<i32, UserError> {
         NodeCommand::Haptic(options) => haptic::run(options),
         NodeCommand::Hid(options) => hid::run(options),
         NodeCommand::Player(options) => player::run(options),
+        NodeCommand::Recorder(options) => recorder::run(options),
         NodeCommand::Ui(options) => ui::run(options),
     }
 }
@@ -66,6 +72,7 @@ impl NodeCommand {
             Self::Haptic(_) => Program::Haptic,
             Self::Hid(_) => Program::Hid,
             Self::Player(_) => Program::Player,
+            Self::Recorder(_) => Program::Recorder,
             Self::Ui(_) => Program::Ui,
         }
     }
@@ -84,6 +91,8 @@ pub enum Program {
     Hid,
     /// The player of a take.
     Player,
+    /// The recorder.
+    Recorder,
     /// The window.
     Ui,
 }
@@ -98,6 +107,7 @@ impl Program {
             Self::Haptic => "haptic",
             Self::Hid => "hid",
             Self::Player => "player",
+            Self::Recorder => "recorder",
             Self::Ui => "ui",
         }
     }

@@ -186,6 +186,11 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
     if let Some(paints) = &mut config.paint.paints {
         *paints = absolute(paints)?;
     }
+    if let Some(record) = &mut config.record {
+        record.folder = absolute(&record.folder)?;
+        std::fs::create_dir_all(&record.folder)
+            .map_err(|error| UserError::writing(&record.folder, &error))?;
+    }
     let kinds = config.brush.iter_mut().map(|brush| &mut brush.kind);
     for text in kinds.chain([&mut config.light.illuminant, &mut config.canvas.ground]) {
         if is_path(text) {

@@ -2,7 +2,7 @@
 
 use maulstick_rig::config::{DeviceSection, Restart, RigConfig};
 
-use crate::processes::{Program, brush_node_name};
+use crate::processes::{Program, RECORDER, brush_node_name};
 
 /// Role of a process in the rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +17,16 @@ pub enum Role {
     Window,
     /// The player of a take.
     Player,
+    /// The recorder of the run.
+    Recorder,
+}
+
+impl Role {
+    /// True if the rig can do without it, however it ends.
+    #[must_use]
+    pub fn is_spare(self) -> bool {
+        matches!(self, Self::Device | Self::Recorder)
+    }
 }
 
 /// A process to start.
@@ -95,6 +105,10 @@ pub fn nodes(config: &RigConfig, window: Window, hands: Hands) -> Vec<NodeSpec> 
         Program::Paint,
         Vec::new(),
     )];
+    if config.record.is_some() {
+        let (role, program) = (Role::Recorder, Program::Recorder);
+        nodes.push(node(config, RECORDER, role, program, Vec::new()));
+    }
     for brush in &config.brush {
         let args = vec!["--brush".to_owned(), brush.name.clone()];
         let name = brush_node_name(&brush.name);

@@ -245,15 +245,16 @@ impl Supervisor {
                 Ended::Refused(code) if role == Role::Player => return Ok(Some(code)),
                 Ended::Refused(_) => {
                     self.nodes[place].state = State::Failed;
-                    if role != Role::Device {
+                    if !role.is_spare() {
                         return Err(self.failed(&name));
                     }
+                    tracing::error!("node '{name}' failed and is not started again");
                 }
                 // A node that somebody stopped is missed like one that crashed.
                 Ended::Well | Ended::Badly => {
                     let again = self.nodes[place].fail(&mut self.failures);
                     if !again {
-                        if role == Role::Device {
+                        if role.is_spare() {
                             tracing::error!("node '{name}' failed and is not started again");
                             continue;
                         }
@@ -276,7 +277,7 @@ impl Supervisor {
     /// True if the rig can do without a node that ended with success.
     fn may_end(&self, role: Role) -> bool {
         match role {
-            Role::Paint | Role::Brush => false,
+            Role::Paint | Role::Brush | Role::Recorder => false,
             // While its take is conducted it stays, even after the take's end.
             Role::Player => self.conductor.is_none(),
             Role::Device | Role::Window => true,
@@ -294,7 +295,7 @@ impl Supervisor {
         let Some(conductor) = &mut self.conductor else {
             return;
         };
-        if matches!(role, Role::Device | Role::Window) {
+        if role == Role::Window || role.is_spare() {
             return;
         }
         conductor.begin_again();
@@ -387,6 +388,9 @@ impl Supervisor {
         }
         match &self.conductor {
             None => {
+                if let Some(record) = &self.config.record {
+                    eprintln!("recorded in {}", record.folder.display());
+                }
                 match &self.config.paint.document {
                     Some(path) => eprintln!("painting in {}", path.display()),
                     None => eprintln!(
@@ -435,31 +439,39 @@ impl Supervisor {
     /// Asks all nodes to end, and ends those that do not; false where paint says that it could not keep
     /// the painting.
     fn stop_all(&mut self) -> bool {
-        self.nodes.iter_mut().for_each(Node::terminate);
-        let asked = Instant::now();
         let for_paint = self.closing_time();
         if for_paint > GRACE {
             tracing::info!("the rig ends when the painting is in its file");
         }
+        // The recorder ends last: it has what the others still send.
+        let is_kept = self.stop_those(|role| role != Role::Recorder, for_paint);
+        self.stop_those(|_| true, GRACE) && is_kept
+    }
+
+    /// Asks the nodes of some roles to end, and ends those that do not; false where paint ended badly.
+    fn stop_those(&mut self, is_meant: fn(Role) -> bool, for_paint: Duration) -> bool {
+        let meant = |node: &&mut Node| is_meant(node.spec.role);
+        let nodes = self.nodes.iter_mut().filter(meant);
+        nodes.for_each(Node::terminate);
+        let asked = Instant::now();
         let mut is_kept = true;
         loop {
-            for node in &mut self.nodes {
+            let mut waits = false;
+            for node in self.nodes.iter_mut().filter(meant) {
                 let failed = matches!(node.ended(), Some(Ended::Refused(_) | Ended::Badly));
                 is_kept &= !(failed && node.spec.role == Role::Paint);
-            }
-            let waits = |node: &Node| {
                 let grace = match node.spec.role {
                     Role::Paint => for_paint,
                     _ => GRACE,
                 };
-                node.pid().is_some() && asked.elapsed() < grace
-            };
-            if !self.nodes.iter().any(waits) {
+                waits |= node.pid().is_some() && asked.elapsed() < grace;
+            }
+            if !waits {
                 break;
             }
             self.wake.wait(Duration::from_millis(5));
         }
-        self.nodes.iter_mut().for_each(Node::kill);
+        self.nodes.iter_mut().filter(meant).for_each(Node::kill);
         is_kept
     }
 }

@@ -44,7 +44,7 @@ const HEAD: usize = 64;
 /// The first bytes of every SQLite file.
 const DATABASE: &[u8] = b"SQLite format 3\0";
 /// Suffixes of the files that SQLite keeps beside a database.
-const COMPANIONS: [&str; 3] = ["-wal", "-shm", "-journal"];
+pub(crate) const COMPANIONS: [&str; 3] = ["-wal", "-shm", "-journal"];
 /// True if the user asked to write over files of other kinds.
 static OVERWRITE: AtomicBool = AtomicBool::new(false);
 
@@ -60,6 +60,13 @@ pub fn is_companion(path: &Path) -> bool {
     COMPANIONS
         .iter()
         .any(|ending| name.ends_with(ending.as_bytes()))
+}
+
+/// True for a file that begins as a painting does.
+#[must_use]
+pub fn is_painting(path: &Path) -> bool {
+    let mut head = [0; DATABASE.len()];
+    read_head(path, &mut head).is_ok() && head == *DATABASE
 }
 
 impl Kind {

@@ -6,6 +6,7 @@ mod device;
 mod light;
 mod paint;
 mod palette;
+mod record;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -19,6 +20,7 @@ pub use device::{ACTIONS, DRIVERS, DeviceSection, FORCES, HID_DRIVERS, PEN_DRIVE
 pub use light::LightSection;
 pub use paint::{BACKENDS, PaintSection, PaintingRoom};
 pub use palette::{PILES, PaletteSection};
+pub use record::RecordSection;
 
 /// The commented default.
 pub const DEFAULT: &str = include_str!("default.toml");
@@ -33,9 +35,9 @@ pub const PEN_PRIORITY: i32 = -50;
 /// Priority of a device that `rig.toml` does not name.
 pub const FOREIGN_PRIORITY: i32 = 0;
 /// Names in a rig that are no device's: the launcher's and the nodes' sockets, the mouse and the pen over
-/// the window, a take.
+/// the window, a take, a recording.
 /// Those of brush nodes begin with [`BRUSH_NODE`].
-pub const RESERVED: [&str; 6] = ["hub", "paint", "ui", "player", "mouse", "pen"];
+pub const RESERVED: [&str; 7] = ["hub", "paint", "ui", "player", "recorder", "mouse", "pen"];
 /// Prefix of the names of brush nodes.
 pub const BRUSH_NODE: &str = "brush-";
 /// Priority of a played take.
@@ -207,6 +209,9 @@ pub struct RigConfig {
     /// Colour of the window and of pictures.
     #[serde(default)]
     pub view: ViewSection,
+    /// A recording of each run, if any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub record: Option<RecordSection>,
     /// Nodes by name.
     #[serde(default)]
     pub node: BTreeMap<String, NodeSection>,
@@ -246,6 +251,8 @@ impl RigConfig {
         let whole = |path: &mut PathBuf| *path = folder.join(&*path);
         self.paint.paints.iter_mut().for_each(whole);
         self.paint.document.iter_mut().for_each(whole);
+        let record = self.record.iter_mut();
+        record.for_each(|record| whole(&mut record.folder));
         self.device
             .iter_mut()
             .flat_map(|device| [&mut device.hand, &mut device.replay])
@@ -381,10 +388,10 @@ mod tests {
             text.contains("no node called 'piant'") && text.contains("did you mean 'paint'"),
             "{text}"
         );
-        assert!(text.contains("rig.toml:80"), "{text}");
+        assert!(text.contains("rig.toml:86"), "{text}");
         let text = error("[node.paint]", "[node.brush-mian]");
         assert!(text.contains("did you mean 'brush-main'"), "{text}");
-        for node in ["brush", "brush-main", "ui", "player", "phantom"] {
+        for node in ["brush", "brush-main", "ui", "player", "recorder", "phantom"] {
             let text = DEFAULT.replace("[node.paint]", &format!("[node.{node}]"));
             assert!(RigConfig::parse(&text, "rig.toml").is_ok(), "{node}");
         }

@@ -11,15 +11,18 @@
 //! | [`rate_limit`] | streams thinned to a rate |
 //! | [`traffic`] | rates, losses and delays |
 //! | [`recording_writer`], [`recording`] | recordings, written and read |
-//! | [`mcap_records`] | records of MCAP files, read within their bounds |
+//! | [`recovery`] | what is left of a damaged recording |
+//! | [`mcap_records`], `mcap_walk` | records of MCAP files, read within their bounds |
 
 pub mod catalogue;
 pub mod field_table;
 pub mod json_channel;
 pub mod mcap_records;
+mod mcap_walk;
 pub mod rate_limit;
 pub mod recording;
 pub mod recording_writer;
+pub mod recovery;
 pub mod topic_pattern;
 pub mod traffic;
 pub mod translate;

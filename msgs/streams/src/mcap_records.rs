@@ -115,18 +115,49 @@ fn fits(opcode: u8, body: &[u8]) -> bool {
     }
 }
 
+/// Names and size of an attachment.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct AttachmentHead {
+    /// Name of the file.
+    pub name: String,
+    /// Its media type.
+    pub media_type: String,
+    /// Where its data begin in the record's body.
+    pub data_at: u64,
+    /// Their length, as the record states it.
+    pub data_bytes: u64,
+}
+
+impl AttachmentHead {
+    /// Length of the record's body, with the checksum behind the data.
+    pub(crate) fn record_bytes(&self) -> Option<u64> {
+        self.data_at.checked_add(4)?.checked_add(self.data_bytes)
+    }
+}
+
+/// The head of the attachment whose body begins with `body`.
+pub(crate) fn attachment_head(body: &[u8]) -> Option<AttachmentHead> {
+    let [name, media_type, end] = [0, 1, 2].map(|count| after_texts(body, 16, count));
+    let text = |from: Option<usize>, to: Option<usize>| {
+        let bytes = body.get(from?.checked_add(4)?..to?)?;
+        String::from_utf8(bytes.to_vec()).ok()
+    };
+    Some(AttachmentHead {
+        name: text(name, media_type)?,
+        media_type: text(media_type, end)?,
+        data_at: end? as u64 + 8,
+        data_bytes: u64_at(body, end?)?,
+    })
+}
+
 /// True if an attachment's data and checksum end with it. [`mcap::parse_record`] panics on some that do not.
 fn attachment_fits(body: &[u8]) -> bool {
-    let stated = || {
-        let at = after_texts(body, 16, 2)?;
-        let data = usize::try_from(u64_at(body, at)?).ok()?;
-        at.checked_add(8 + 4)?.checked_add(data)
-    };
-    stated() == Some(body.len())
+    let stated = attachment_head(body).and_then(|head| head.record_bytes());
+    stated == Some(body.len() as u64)
 }
 
 /// End of the `count` texts that begin at `at`: each a u32 length and its bytes. Arrays look the same.
-fn after_texts(body: &[u8], at: usize, count: usize) -> Option<usize> {
+pub(crate) fn after_texts(body: &[u8], at: usize, count: usize) -> Option<usize> {
     (0..count).try_fold(at, |at, _| {
         let length = u32::from_le_bytes(*body.get(at..)?.first_chunk()?);
         let end = at
@@ -152,7 +183,7 @@ fn map_fits(body: &[u8], at: Option<usize>) -> bool {
     true
 }
 
-fn u64_at(bytes: &[u8], at: usize) -> Option<u64> {
+pub(crate) fn u64_at(bytes: &[u8], at: usize) -> Option<u64> {
     Some(u64::from_le_bytes(*bytes.get(at..)?.first_chunk()?))
 }
 

@@ -23,6 +23,16 @@ pub const PROFILE: &str = "maulstick";
 /// Records that are compressed together, bytes: so many are read for one message.
 const CHUNK_BYTES: u64 = 256 << 10;
 
+/// How its files are written.
+pub(crate) fn options() -> WriteOptions {
+    WriteOptions::new()
+        .profile(PROFILE)
+        .library(concat!("maulstick ", env!("CARGO_PKG_VERSION")))
+        .compression(Some(mcap::Compression::Zstd))
+        .compression_threads(0)
+        .chunk_size(Some(CHUNK_BYTES))
+}
+
 /// A recording that is being written.
 pub struct RecordingWriter<W: Write + Seek> {
     writer: Writer<W>,
@@ -38,15 +48,8 @@ impl<W: Write + Seek> RecordingWriter<W> {
     /// # Errors
     /// The error of the file.
     pub fn begin(to: W) -> McapResult<Self> {
-        let writer = WriteOptions::new()
-            .profile(PROFILE)
-            .library(concat!("maulstick ", env!("CARGO_PKG_VERSION")))
-            .compression(Some(mcap::Compression::Zstd))
-            .compression_threads(0)
-            .chunk_size(Some(CHUNK_BYTES))
-            .create(to)?;
         Ok(Self {
-            writer,
+            writer: options().create(to)?,
             channels: BTreeMap::new(),
             json_channels: BTreeMap::new(),
         })

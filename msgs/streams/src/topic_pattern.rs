@@ -19,9 +19,31 @@ fn parts_match(pattern: &[&str], topic: &[&str]) -> bool {
     }
 }
 
+/// The parts of a topic for which the `*` of a pattern stand; `None` if the pattern, which has no `**`, does not mean it.
+#[must_use]
+pub fn parts<'a>(pattern: &str, topic: &'a str) -> Option<Vec<&'a str>> {
+    matches(pattern, topic).then(|| {
+        let pairs = pattern.split('/').zip(topic.split('/'));
+        pairs
+            .filter(|(part, _)| *part == "*")
+            .map(|(_, own)| own)
+            .collect()
+    })
+}
+
 #[cfg(test)]
 mod tests {
-    use super::matches;
+    use super::{matches, parts};
+
+    #[test]
+    fn a_star_has_a_part() {
+        assert_eq!(
+            parts("stylus/*/sample", "stylus/pen/sample"),
+            Some(vec!["pen"])
+        );
+        assert_eq!(parts("*/*", "a/b"), Some(vec!["a", "b"]));
+        assert_eq!(parts("stylus/*/sample", "stylus/pen/info"), None);
+    }
 
     #[test]
     fn stars_stand_for_parts() {

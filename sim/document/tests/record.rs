@@ -10,6 +10,7 @@ use std::path::Path;
 use easel::Easel;
 use maulstick_document::file::database::Database;
 use maulstick_document::pack::{Forget, pack};
+use maulstick_document::record::{discard, rewind};
 use maulstick_document::tables::schema::{APPLICATION_ID, VERSION};
 use maulstick_document::{Access, Document, DocumentSettings, DocumentStats};
 use maulstick_painting::history::TilePlace;
@@ -351,4 +352,59 @@ fn a_killed_program_leaves_its_record() {
     })
     .expect("a record");
     assert_eq!((resumed, again), (1, stored(&killed)));
+}
+
+/// The tiles that a record gives in a copy that was taken back to where the record begins, and saved there.
+fn rewound(path: &Path, copy: &Path, skips: u64) -> Tiles {
+    std::fs::copy(path, copy).expect("copied");
+    assert!(rewind(copy).expect("taken back"));
+    let stats = DocumentStats::read(copy).expect("read");
+    assert_eq!(stats.record, None);
+    stats.check(copy, &mut |_, _| {}).expect("intact");
+    let (copied, opened) = Document::open(&settings(copy, Access::Paint)).expect("opened");
+    let opened = opened.expect("a painting");
+    opened.check().expect("all rows are there");
+    let mut sequencer = opened.in_its_midst().expect("whole");
+    let (document, _) = Document::open(&settings(path, Access::Read)).expect("opened");
+    let mut next = sequencer.serial();
+    let first = next;
+    while let Some(row) = document.record_row(next).expect("intact") {
+        for record in row.records {
+            next = record.serial + 1;
+            if record.serial >= first + skips {
+                sequencer.replay(record);
+            }
+        }
+    }
+    assert_eq!(copied.pager().fault(), None);
+    tiles(&mut sequencer)
+}
+
+#[test]
+fn a_copy_taken_back_to_where_its_record_begins_becomes_the_same_painting_by_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let mut differs = false;
+    for seed in 1..5 {
+        let path = at(&format!("{seed}.maul"));
+        paint(&path, seed, 40);
+        let before = std::fs::read(&path).expect("read");
+        let same = rewound(&path, &at(&format!("{seed} again.maul")), 0);
+        assert_eq!(same, stored(&path), "{seed}");
+        assert!(std::fs::read(&path).expect("read") == before, "{seed}");
+        let other = rewound(&path, &at(&format!("{seed} less.maul")), 5);
+        differs |= other != same;
+    }
+    assert!(differs, "records that are left out are missed");
+}
+
+#[test]
+fn a_painting_without_a_record_is_not_taken_back() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("sea.maul");
+    paint(&path, 7, 10);
+    discard(&path).expect("discarded");
+    let before = stored(&path);
+    assert!(!rewind(&path).expect("read"));
+    assert_eq!(stored(&path), before);
 }

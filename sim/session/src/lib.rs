@@ -55,5 +55,5 @@ pub use autosave::Autosave;
 pub use offline::Offline;
 pub use painting_log::{Logged, LoggedStroke, LoggedWhat, painting_log};
 pub use recorded::RecordedSession;
-pub use reexecution::{Reexecution, TilePrints, tile_prints};
+pub use reexecution::{Reexecution, TilePrints, each_record, tile_prints};
 pub use work_clock::WorkClock;

@@ -4,6 +4,7 @@ use std::path::{Component, Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use directories::{BaseDirs, UserDirs};
+use maulstick_rig::files::first_free;
 use maulstick_types::values::WholePath;
 
 /// File ending of a painting.
@@ -109,12 +110,11 @@ pub(crate) fn ending_in(path: &Path, wanted: &str) -> PathBuf {
 /// The first of `stem.ending`, `stem 2.ending`, … that is not there.
 #[must_use]
 pub(crate) fn free(folder: &Path, stem: &str, ending: &str) -> PathBuf {
-    let numbered = (2u32..).map(|number| format!("{stem} {number}.{ending}"));
-    let names = std::iter::once(format!("{stem}.{ending}")).chain(numbered);
-    let mut places = names.map(|name| folder.join(name));
-    places
-        .find(|place| !place.exists())
-        .unwrap_or_else(|| folder.join(stem))
+    let named = |number: u32| match number {
+        1 => folder.join(format!("{stem}.{ending}")),
+        number => folder.join(format!("{stem} {number}.{ending}")),
+    };
+    first_free(1, named).1
 }
 
 /// Time since the last change, in words.

@@ -80,7 +80,7 @@ impl SessionProcesses {
             let begun = match order {
                 SessionOrder::Record if self.recorder.is_none() => {
                     let command = self.command("record", rig);
-                    Recorder::start(context, command, rig, notifications)
+                    Recorder::start(context, command, rig)
                         .map(|recorder| self.recorder = Some(recorder))
                 }
                 SessionOrder::Play { recording, forget } if self.player.is_none() => {

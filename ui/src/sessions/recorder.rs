@@ -5,6 +5,7 @@ use std::process::Command;
 use std::time::Duration;
 
 use eframe::egui::Context;
+use serde::Deserialize;
 
 use crate::dialogs::paths;
 use crate::rig::child_process::{ChildProcess, Ended, Refused};
@@ -39,21 +40,13 @@ impl Recorder {
         context: &Context,
         mut command: Command,
         rig: &mut RigState,
-        notifications: &mut Notifications,
     ) -> std::io::Result<Self> {
         let now = jiff::Zoned::now().strftime("%Y-%m-%d %H.%M").to_string();
-        let painting = painting(rig);
-        let file = place(&painting, &now);
+        let file = place(&painting(rig), &now);
         let child = ChildProcess::start(context, {
-            command.arg("--output").arg(&file);
+            command.arg("--json").arg("--output").arg(&file);
             command
         })?;
-        if painting.as_os_str().is_empty() {
-            notifications.fault(
-                tr!("This recording cannot be painted again: the painting is in no file."),
-                tr!("Save the painting, then record anew."),
-            );
-        }
         rig.recording = Some(RecordingProgress {
             file,
             begun_ns: rig.now_ns,
@@ -66,17 +59,21 @@ impl Recorder {
         self.child.interrupt();
     }
 
-    /// Tells the end of the recording; true then.
+    /// Tells what the recorder says, and the end of the recording; true then.
     pub(crate) fn follow(
         &mut self,
         context: &Context,
         rig: &mut RigState,
         notifications: &mut Notifications,
     ) -> bool {
-        let Some(Ended { result, .. }) = self.child.ended() else {
+        self.child
+            .lines()
+            .for_each(|line| tell(&line, notifications));
+        let Some(Ended { lines, result }) = self.child.ended() else {
             context.request_repaint_after(TICK);
             return false;
         };
+        lines.iter().for_each(|line| tell(line, notifications));
         let recording = rig.recording.take();
         let file = recording.map_or_else(String::new, |recording| paths::shown(&recording.file));
         match result {
@@ -94,6 +91,26 @@ impl Recorder {
             }
         }
         true
+    }
+}
+
+/// A line of `maulstick record --json` that concerns the painter.
+#[derive(Debug, Deserialize)]
+struct RecorderLine {
+    /// Why the painting cannot be copied at present.
+    lacks_painting: String,
+}
+
+/// Tells what the painter has to know of a line.
+fn tell(line: &str, notifications: &mut Notifications) {
+    if let Ok(RecorderLine {
+        lacks_painting: why,
+    }) = serde_json::from_str(line)
+    {
+        notifications.fault(
+            tr!("So far this recording cannot be painted again: {why}", why),
+            tr!("Once the painting is in a file, it can from there on."),
+        );
     }
 }
 

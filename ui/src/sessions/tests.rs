@@ -22,6 +22,7 @@ const PROGRAM: &str = r#"#!/bin/sh
 for file; do :; done
 case "$1 $file" in
 *full*) printf 'error: no room\n  --> /x\n help: free some space\n' >&2; exit 1;;
+*bare*) echo '{"recording": "/x"}'; echo '{"lacks_painting": "it is in no file"}';;
 record*) trap 'exit 0' INT; : > "$file"
  while :; do sleep 0.01; done;;
 replay*) echo "$*" > "$file.args"
@@ -132,12 +133,12 @@ fn a_recording_stands_beside_the_painting_until_it_is_ended_and_its_file_is_told
 #[test]
 fn what_a_recording_lacks_and_why_one_fails_is_told() {
     let mut desk = Desk::new();
-    // It writes no file among the documents.
-    desk.processes = SessionProcesses::new("true".into());
+    desk.painting("bare.maul");
     desk.turn(vec![SessionOrder::Record]);
+    desk.until(|desk| desk.rig.recording.is_none());
     let (weight, told) = desk.told.first().expect("told");
     assert!(
-        *weight == Weight::Fault && told.contains("in no file"),
+        *weight == Weight::Fault && told.contains("it is in no file"),
         "{told}"
     );
     let mut desk = Desk::new();

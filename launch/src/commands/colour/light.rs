@@ -10,9 +10,9 @@ use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::{Light, Scene};
 use serde_json::json;
 
+use crate::commands::client::{Client, Feed, Target};
 use crate::commands::print_json;
 use crate::commands::say;
-use crate::commands::session::{Feed, Session, Target};
 use crate::lamp::changed;
 
 /// Options of `maulstick light`; what is not given stays as it is.
@@ -43,8 +43,8 @@ pub fn run(options: &LightOptions) -> Result<i32, UserError> {
     // An invalid change is refused even if no rig runs.
     let change = &options.change;
     changed(change, &Light::default())?;
-    let session = Session::open(&options.target)?;
-    let mut scenes: Feed<Scene> = session.follow(&session.topics().scene(), Qos::Cached)?;
+    let client = Client::open(&options.target)?;
+    let mut scenes: Feed<Scene> = client.follow(&client.topics().scene(), Qos::Cached)?;
     let before = scenes.hear()?.message.light;
     let mut light = changed(change, &before)?;
     let expose = match change.exposure {
@@ -52,9 +52,9 @@ pub fn run(options: &LightOptions) -> Result<i32, UserError> {
         None => changes_colour(&light, &before),
     };
     if light != before || expose {
-        let mut statuses = session.follow(&session.topics().paint_status(), Qos::Background)?;
-        session.send(Relight { light, expose })?;
-        wait_for_baking(&mut statuses, session.now_ns())?;
+        let mut statuses = client.follow(&client.topics().paint_status(), Qos::Background)?;
+        client.send(Relight { light, expose })?;
+        wait_for_baking(&mut statuses, client.now_ns())?;
         light = scenes.hear()?.message.light;
     } else {
         light = before;

@@ -7,8 +7,8 @@ use maulstick_types::plain;
 
 use super::user_file::{UserFile, in_rig, put_in_rig};
 use crate::attached::{Attached, Places, events, hid, serial};
+use crate::commands::client::Target;
 use crate::commands::say;
-use crate::commands::session::Target;
 
 /// Options of `maulstick device add`.
 #[derive(Args, Clone, Debug)]

@@ -21,7 +21,7 @@ use toml_edit::{Array, DocumentMut, Item, TableLike, Value};
 
 use super::user_file::{is_same, put_in_rig, remove_from_rig};
 use crate::EXIT_INTERRUPTED;
-use crate::commands::session::{Session, Target};
+use crate::commands::client::{Client, Target};
 use crate::commands::{print_json_line, print_line};
 
 /// Options of `maulstick device fit`.
@@ -93,8 +93,8 @@ pub(super) fn run(options: &FitOptions) -> Result<i32, UserError> {
     // From here on a signal ends the fit, which puts the device back.
     let stop = Stop::on_signals(&Wake::new())
         .map_err(|error| UserError::failure(format!("cannot watch for signals: {error}")))?;
-    let running = match Session::open(&target) {
-        Ok(session) => section(&session.config()?, &device.name),
+    let running = match Client::open(&target) {
+        Ok(client) => section(&client.config()?, &device.name),
         Err(_) => None,
     };
     is_same(&device, running.as_ref())?;
@@ -140,8 +140,8 @@ fn own_settings(
             "`maulstick device add` adds one that is attached; `--rig` names the settings of a rig",
         ));
     }
-    let config = match Session::open(target) {
-        Ok(session) => session.config()?,
+    let config = match Client::open(target) {
+        Ok(client) => client.config()?,
         Err(_) => {
             let config = RigConfig::default();
             let canvas = &config.canvas;

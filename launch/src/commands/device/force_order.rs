@@ -9,8 +9,8 @@ use maulstick_rig::config::DeviceSection;
 use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::stylus::{StylusInfo, axes};
 
-use crate::commands::session::{Session, Target};
-use crate::commands::{print_text, session};
+use crate::commands::client::{Client, Target};
+use crate::commands::{client, print_text};
 
 /// A command to the force of a device.
 #[derive(Clone, Debug, Subcommand)]
@@ -70,17 +70,17 @@ pub fn give(order: &Order) -> Result<i32, UserError> {
         Order::Strength { share, whose } => (whose, ForceOrder::Strength { share: *share }),
         Order::Rearm(whose) => (whose, ForceOrder::Rearm),
     };
-    let session = Session::open(&whose.target)?;
-    let known = session.config()?.device;
+    let client = Client::open(&whose.target)?;
+    let known = client.config()?.device;
     let devices = match &whose.device {
-        Some(device) => vec![chosen(&known, device, &session)?],
-        None => all(&known, &session)?,
+        Some(device) => vec![chosen(&known, device, &client)?],
+        None => all(&known, &client)?,
     };
     let request = ForceRequest { order };
     let (mut text, mut silent) = (String::new(), Vec::new());
     for device in devices {
-        let topic = session.topics().force(&device);
-        match session.ask_within::<_, ForceReply>(&topic, &request, ANSWER) {
+        let topic = client.topics().force(&device);
+        match client.ask_within::<_, ForceReply>(&topic, &request, ANSWER) {
             Ok(reply) => text += &told(&device, &reply),
             Err(_) => silent.push(device),
         }
@@ -92,13 +92,13 @@ pub fn give(order: &Order) -> Result<i32, UserError> {
             "{}: its daemon does not answer, so nothing is changed",
             silent.join(", ")
         ))
-        .at(session.topics().force("*"))
+        .at(client.topics().force("*"))
         .help("`maulstick up` shows its nodes; ended by Ctrl-C they leave no force")),
     }
 }
 
 /// The device of that name, if it is one that gives force.
-fn chosen(known: &[DeviceSection], name: &str, session: &Session) -> Result<String, UserError> {
+fn chosen(known: &[DeviceSection], name: &str, client: &Client) -> Result<String, UserError> {
     match known.iter().find(|device| device.name == name) {
         Some(device) if device.is_hid() => {
             Err(UserError::usage(format!("'{name}' gives no force"))
@@ -106,7 +106,7 @@ fn chosen(known: &[DeviceSection], name: &str, session: &Session) -> Result<Stri
         }
         Some(_) => Ok(name.to_owned()),
         None => {
-            let others = told_of(session, Instant::now() + TOGETHER)?;
+            let others = told_of(client, Instant::now() + TOGETHER)?;
             match others.iter().any(|other| other == name) {
                 true => Ok(name.to_owned()),
                 false => {
@@ -120,21 +120,21 @@ fn chosen(known: &[DeviceSection], name: &str, session: &Session) -> Result<Stri
 }
 
 /// All devices that give force: those of rig.toml, present or not, and others that report that they do.
-fn all(known: &[DeviceSection], session: &Session) -> Result<Vec<String>, UserError> {
+fn all(known: &[DeviceSection], client: &Client) -> Result<Vec<String>, UserError> {
     let own = known.iter().filter(|device| !device.is_hid());
     let mut found: Vec<String> = own.map(|device| device.name.clone()).collect();
     let wait = match found.is_empty() {
         true => PATIENCE,
         false => TOGETHER,
     };
-    for other in told_of(session, Instant::now() + wait)? {
+    for other in told_of(client, Instant::now() + wait)? {
         if !found.contains(&other) {
             found.push(other);
         }
     }
     match found.is_empty() {
         true => Err(UserError::failure("no device of the rig gives force")
-            .at(session.topics().stylus_info("*"))
+            .at(client.topics().stylus_info("*"))
             .help("see `[[device]]` of rig.toml")),
         false => Ok(found),
     }
@@ -157,9 +157,9 @@ fn told(device: &str, reply: &ForceReply) -> String {
 }
 
 /// The devices that report that they give force.
-fn told_of(session: &Session, mut until: Instant) -> Result<Vec<String>, UserError> {
-    let mut infos: session::Feed<StylusInfo> =
-        session.follow(&session.topics().stylus_info("*"), Qos::Cached)?;
+fn told_of(client: &Client, mut until: Instant) -> Result<Vec<String>, UserError> {
+    let mut infos: client::Feed<StylusInfo> =
+        client.follow(&client.topics().stylus_info("*"), Qos::Cached)?;
     let mut found = Vec::new();
     while let Some(info) = infos.next_before(until) {
         if info.drives & axes::FORCE != 0 && !found.contains(&info.device) {

@@ -14,7 +14,7 @@ use serde_json::json;
 
 use crate::attached::vendors::{INVERSE_SERVICE, library, library_folders, listens, openxr_loader};
 use crate::attached::{Attached, Places, events, hid, rules, serial};
-use crate::commands::session::{Feed, Session, Target};
+use crate::commands::client::{Client, Feed, Target};
 use crate::commands::table::table;
 use crate::commands::{print_json, print_text};
 
@@ -142,7 +142,7 @@ pub(super) fn run(options: &ListOptions) -> Result<i32, UserError> {
 
 /// The devices of a rig, if it runs.
 fn used(target: &Target) -> Option<Vec<Used>> {
-    let session = Session::open(target).ok()?;
+    let client = Client::open(target).ok()?;
     let own = user_devices::path().and_then(|path| user_devices::read(&path));
     let own = own.unwrap_or_default();
     let row = |section: DeviceSection, is_there: bool| Used {
@@ -152,11 +152,11 @@ fn used(target: &Target) -> Option<Vec<Used>> {
         is_there,
         trouble: String::new(),
     };
-    let sections = session.config().ok()?.device.into_iter();
+    let sections = client.config().ok()?.device.into_iter();
     let mut found: Vec<Used> = sections.map(|section| row(section, false)).collect();
-    let topics = session.topics();
-    let mut infos: Feed<StylusInfo> = session.follow(&topics.stylus_info("*"), Qos::Cached).ok()?;
-    let mut statuses: Feed<StylusStatus> = session
+    let topics = client.topics();
+    let mut infos: Feed<StylusInfo> = client.follow(&topics.stylus_info("*"), Qos::Cached).ok()?;
+    let mut statuses: Feed<StylusStatus> = client
         .follow(&topics.stylus_status("*"), Qos::Background)
         .ok()?;
     let mut until = Instant::now() + PATIENCE;

@@ -4,8 +4,8 @@ use clap::Args;
 use maulstick_rig::UserError;
 
 use super::user_file::{UserFile, remove_from_rig};
+use crate::commands::client::Target;
 use crate::commands::say;
-use crate::commands::session::Target;
 
 /// Options of `maulstick device remove`.
 #[derive(Args, Clone, Debug)]

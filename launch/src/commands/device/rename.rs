@@ -7,8 +7,8 @@ use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
 
 use super::user_file::{UserFile, in_rig, is_same, put_in_rig, remove_from_rig};
+use crate::commands::client::Target;
 use crate::commands::say;
-use crate::commands::session::Target;
 
 /// Options of `maulstick device rename`.
 #[derive(Args, Clone, Debug)]

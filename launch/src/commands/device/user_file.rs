@@ -12,7 +12,7 @@ use maulstick_types::command::RigCommand;
 use maulstick_types::values::{DeviceName, DeviceToml};
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, Value};
 
-use crate::commands::session::{Session, Target};
+use crate::commands::client::{Client, Target};
 
 /// The user's devices, read for a change.
 #[derive(Debug)]
@@ -245,8 +245,8 @@ fn toml_text(device: &DeviceSection) -> Result<String, UserError> {
 /// # Errors
 /// A [`UserError`] where its settings cannot be read.
 pub(super) fn in_rig(target: &Target) -> Result<Vec<DeviceSection>, UserError> {
-    match Session::open(target) {
-        Ok(session) => Ok(session.config()?.device),
+    match Client::open(target) {
+        Ok(client) => Ok(client.config()?.device),
         Err(_) => Ok(Vec::new()),
     }
 }
@@ -259,11 +259,11 @@ pub(super) fn put_in_rig(
     target: &Target,
     device: &DeviceSection,
 ) -> Result<Option<String>, UserError> {
-    let Ok(session) = Session::open(target) else {
+    let Ok(client) = Client::open(target) else {
         return Ok(None);
     };
     let toml = DeviceToml::new(toml_text(device)?)?;
-    session.send(RigCommand::PutDevice { toml }).map(Some)
+    client.send(RigCommand::PutDevice { toml }).map(Some)
 }
 
 /// Ends a device in the rig of `target`, if that runs and has it; true if so.
@@ -271,13 +271,13 @@ pub(super) fn put_in_rig(
 /// # Errors
 /// A [`UserError`] with the rig's refusal.
 pub(super) fn remove_from_rig(target: &Target, name: &str) -> Result<bool, UserError> {
-    let Ok(session) = Session::open(target) else {
+    let Ok(client) = Client::open(target) else {
         return Ok(false);
     };
-    let has = session.config()?.device.iter().any(|own| own.name == name);
+    let has = client.config()?.device.iter().any(|own| own.name == name);
     if has {
         let name = DeviceName::new(name)?;
-        session.send(RigCommand::RemoveDevice { name })?;
+        client.send(RigCommand::RemoveDevice { name })?;
     }
     Ok(has)
 }

@@ -13,6 +13,7 @@ mod versions;
 mod wall_time;
 
 pub(super) use export::formats;
+pub(super) use timelapse::no_record;
 
 use clap::Subcommand;
 use indicatif::{ProgressBar, ProgressStyle};

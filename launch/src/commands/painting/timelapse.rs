@@ -49,7 +49,7 @@ pub struct TimelapseOptions {
 }
 
 /// Error of a painting without a record.
-pub(super) fn no_record(path: &Path) -> UserError {
+pub(in crate::commands) fn no_record(path: &Path) -> UserError {
     UserError::usage("this painting has no record of how it was painted")
         .at(path.display().to_string())
         .help(

@@ -10,7 +10,7 @@ use maulstick_types::scene::{NamedVersion, Scene};
 use maulstick_types::values::VersionName;
 use serde_json::json;
 
-use crate::commands::session::{Session, Target};
+use crate::commands::client::{Client, Target};
 use crate::commands::{print_json, say};
 use crate::document::{go_on, there, wrong};
 use crate::performance::refused;
@@ -75,7 +75,7 @@ impl VersionsOptions {
 pub(super) fn run(options: &VersionsOptions) -> Result<i32, UserError> {
     let edit = options.edit();
     let Some(path) = &options.file else {
-        let session = Session::open(&options.target)?;
+        let session = Client::open(&options.target)?;
         if let Some(edit) = edit {
             session.send(edit)?;
         }

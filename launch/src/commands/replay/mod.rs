@@ -26,8 +26,8 @@ use serde_json::json;
 use self::orders::{KEYS, Orders};
 use self::transport::{Order, Transport, parse_rate};
 use crate::EXIT_INTERRUPTED;
+use crate::commands::client::Target;
 use crate::commands::print_json_line;
-use crate::commands::session::Target;
 use crate::commands::takes::session_file::{PAINTING, SessionFile};
 
 /// Options of `maulstick replay`.
@@ -122,21 +122,18 @@ impl ReplayOptions {
 /// A [`UserError`] where no rig runs, the recording lacks something, or the rig refuses it.
 pub fn run(options: &ReplayOptions) -> Result<i32, UserError> {
     let sends = !options.topic.is_empty() || options.device.is_some() || options.drive.is_some();
-    let has_painting = || -> Result<bool, UserError> {
-        let recording = Recording::open(&options.recording)?;
-        Ok(recording.files.contains_key(PAINTING))
-    };
+    let recording = Recording::open(&options.recording)?;
     if !sends
-        && has_painting()?
-        && let Some(session) = SessionFile::open(&options.recording)?
+        && recording.attachments().contains_key(PAINTING)
+        && let Some(session) = SessionFile::of(recording.clone())?
     {
         return session::replay(options, &session);
     }
-    streams::replay(options)
+    streams::replay(options, &recording)
 }
 
 /// What plays: the transport, its orders, and what is told of them.
-struct Deck {
+struct Playback {
     transport: Transport,
     orders: Orders,
     begun: Instant,
@@ -164,7 +161,7 @@ enum Turn {
     End,
 }
 
-impl Deck {
+impl Playback {
     fn new(options: &ReplayOptions, range_ns: [u64; 2]) -> Result<Self, UserError> {
         let orders = Orders::listen(options.json)?;
         if orders.are_keys() {

@@ -9,6 +9,7 @@ use maulstick_bus::typed::random_u64;
 use maulstick_document::journal;
 use maulstick_painting::sequencer::Record;
 use maulstick_rig::command_client::CommandClient;
+use maulstick_rig::files::first_free;
 use maulstick_rig::user_error::EXIT_FAILURE;
 use maulstick_rig::{NodeHandle, UserError};
 use maulstick_types::command::{RIG_NODE, RigCommand, SessionCommand};
@@ -16,7 +17,7 @@ use serde_bytes::ByteBuf;
 use serde_json::json;
 
 use super::events::Events;
-use super::{Deck, Leap, ReplayOptions, TURN, Turn};
+use super::{Leap, Playback, ReplayOptions, TURN, Turn};
 use crate::commands::open::{LONGEST, whole};
 use crate::commands::print_json_line;
 use crate::commands::say;
@@ -61,14 +62,14 @@ pub(super) fn replay(options: &ReplayOptions, session: &SessionFile) -> Result<i
         sent: Instant::now(),
     };
     player.open(&path)?;
-    let mut deck = Deck::new(options, range_ns)?;
-    let played = player.play(&mut deck, &path);
+    let mut playback = Playback::new(options, range_ns)?;
+    let played = player.play(&mut playback, &path);
     let ended = player.end();
     played.and(ended)?;
     if !options.json {
         say!("painted in {}", path.display());
     }
-    let code = deck.end(&member);
+    let code = playback.end(&member);
     member.leave();
     Ok(code)
 }
@@ -76,14 +77,11 @@ pub(super) fn replay(options: &ReplayOptions, session: &SessionFile) -> Result<i
 /// `session-replay.maul` beside a recording, or the first further name that is not taken.
 fn free_beside(recording: &Path) -> PathBuf {
     let stem = recording.file_stem().unwrap_or_default().to_string_lossy();
-    let names = (1..).map(|number| match number {
+    let named = |number: u32| match number {
         1 => recording.with_file_name(format!("{stem}-replay.maul")),
         number => recording.with_file_name(format!("{stem}-replay-{number}.maul")),
-    });
-    names
-        .into_iter()
-        .find(|path: &PathBuf| !path.exists())
-        .unwrap_or_default()
+    };
+    first_free(1, named).1
 }
 
 /// What paints a session again.
@@ -103,16 +101,16 @@ struct Player<'a> {
 
 impl Player<'_> {
     /// Plays until the end, or until it is told to end.
-    fn play(&mut self, deck: &mut Deck, path: &Path) -> Result<(), UserError> {
+    fn play(&mut self, playback: &mut Playback, path: &Path) -> Result<(), UserError> {
         let mut events = self.events()?;
         let mut played_ns = 0;
         while !self.member.stop.requested() {
             let next_ns = events.next_ns()?;
-            let turn = deck.turn(next_ns, played_ns)?;
+            let turn = playback.turn(next_ns, played_ns)?;
             let is_over = next_ns.is_none() && turn == Turn::On;
             if turn == Turn::Leap(Leap::Back) || (is_over && self.options.again) {
                 if is_over {
-                    deck.transport.rewind();
+                    playback.transport.rewind();
                 }
                 self.open_anew(path)?;
                 events = self.events()?;
@@ -125,7 +123,7 @@ impl Player<'_> {
             let mut batch = Vec::new();
             while batch.len() < BATCH
                 && let Some(at_ns) = events.next_ns()?
-                && deck.transport.is_due(at_ns)
+                && playback.transport.is_due(at_ns)
             {
                 played_ns = at_ns;
                 batch.extend(events.take());
@@ -141,15 +139,12 @@ impl Player<'_> {
 
     /// What was accepted, as it comes.
     fn events(&self) -> Result<Events<Record>, UserError> {
-        let path = self.options.recording.clone();
+        let mut session = self.session.clone();
         let to_ns = match self.options.end {
             Some(end_s) => (end_s * 1e9) as u64,
             None => u64::MAX,
         };
         Events::read(move |feed| {
-            let Some(mut session) = SessionFile::open(&path)? else {
-                return Ok(());
-            };
             let folder =
                 tempfile::tempdir().map_err(|error| UserError::failure(error.to_string()))?;
             let begin = folder.path().join(PAINTING);

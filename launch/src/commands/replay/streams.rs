@@ -18,7 +18,7 @@ use maulstick_types::wire::header::HEADER_BYTES;
 use maulstick_types::{Flags, Header, Origin, decode, encode, name_hash};
 
 use super::events::Events;
-use super::{Deck, ReplayOptions, TURN, Turn};
+use super::{Playback, ReplayOptions, TURN, Turn};
 
 /// Topics that are sent again where none is named.
 const HANDS: [&str; 2] = ["stylus/*/sample", "control/*/sample"];
@@ -31,9 +31,8 @@ const PATIENCE_S: u64 = 5;
 ///
 /// # Errors
 /// A [`UserError`] where no rig runs, or the recording has none of the topics.
-pub(super) fn replay(options: &ReplayOptions) -> Result<i32, UserError> {
-    let path = &options.recording;
-    let recording = Recording::open(path)?;
+pub(super) fn replay(options: &ReplayOptions, recording: &Recording) -> Result<i32, UserError> {
+    let path = recording.path();
     let patterns = match options.topic.is_empty() {
         true if options.drive.is_some() => vec![MODELS.to_owned()],
         true => HANDS.map(str::to_owned).to_vec(),
@@ -79,29 +78,29 @@ pub(super) fn replay(options: &ReplayOptions) -> Result<i32, UserError> {
         driven,
     };
     if let Some(device) = &options.device {
-        senders.introduce(&recording, device, path)?;
+        senders.introduce(recording, device)?;
     }
-    let mut deck = Deck::new(options, range_ns)?;
-    let mut events = events(path, &patterns, range_ns)?;
+    let mut playback = Playback::new(options, range_ns)?;
+    let mut events = events(recording, &patterns, range_ns)?;
     let mut played_ns = 0;
     while !member.stop.requested() {
         let next_ns = events.next_ns()?;
-        let turn = deck.turn(next_ns, played_ns)?;
+        let turn = playback.turn(next_ns, played_ns)?;
         let is_over = next_ns.is_none() && turn == Turn::On;
         if matches!(turn, Turn::Leap(_)) || (is_over && options.again) {
             if is_over {
-                deck.transport.rewind();
+                playback.transport.rewind();
             }
             senders.lift()?;
-            played_ns = deck.transport.position_ns();
-            events = self::events(path, &patterns, [played_ns, range_ns[1]])?;
+            played_ns = playback.transport.position_ns();
+            events = self::events(recording, &patterns, [played_ns, range_ns[1]])?;
             continue;
         }
         if turn == Turn::End || is_over {
             break;
         }
         match next_ns {
-            Some(at_ns) if deck.transport.is_due(at_ns) => {
+            Some(at_ns) if playback.transport.is_due(at_ns) => {
                 played_ns = at_ns;
                 if let Some((topic, message)) = events.take() {
                     senders.send(&topic, &message)?;
@@ -113,7 +112,7 @@ pub(super) fn replay(options: &ReplayOptions) -> Result<i32, UserError> {
         }
     }
     senders.lift()?;
-    let code = deck.end(&member);
+    let code = playback.end(&member);
     senders.senders.clear();
     member.leave();
     Ok(code)
@@ -138,11 +137,11 @@ fn renamed(pairs: &[String]) -> Result<BTreeMap<String, String>, UserError> {
 
 /// The messages of the topics of `patterns` within a range of times, as they come.
 fn events(
-    path: &Path,
+    recording: &Recording,
     patterns: &[String],
     [from_ns, to_ns]: [u64; 2],
 ) -> Result<Events<(String, RecordedMessage)>, UserError> {
-    let mut recording = Recording::open(path)?;
+    let mut recording = recording.clone();
     let patterns = patterns.to_vec();
     Events::read(move |feed| {
         let topics = recording.topics().clone();
@@ -244,12 +243,7 @@ impl Senders<'_> {
     }
 
     /// Tells the rig of the device as which samples are sent.
-    fn introduce(
-        &mut self,
-        recording: &Recording,
-        device: &str,
-        path: &Path,
-    ) -> Result<(), UserError> {
+    fn introduce(&mut self, recording: &Recording, device: &str) -> Result<(), UserError> {
         let infos: Vec<u16> = recording
             .topics()
             .iter()
@@ -257,7 +251,7 @@ impl Senders<'_> {
             .map(|(channel, _)| *channel)
             .collect();
         let mut told = None;
-        Recording::open(path)?.messages([0, u64::MAX], &mut |message| {
+        recording.clone().messages([0, u64::MAX], &mut |message| {
             if infos.contains(&message.channel) {
                 told = decode::<StylusInfo>(&message.bytes).ok();
             }

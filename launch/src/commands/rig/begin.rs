@@ -8,9 +8,9 @@ use maulstick_rig::config::{CanvasSection, is_path};
 use maulstick_types::command::{NewCanvas, RigCommand};
 use maulstick_types::values::MaterialName;
 
+use crate::commands::client::{Client, Target};
 use crate::commands::open::{LONGEST, whole};
 use crate::commands::say;
-use crate::commands::session::{Session, Target};
 
 /// Options of `maulstick new`.
 #[derive(Args, Clone, Debug)]
@@ -78,7 +78,7 @@ pub fn run(options: &NewOptions) -> Result<i32, UserError> {
         canvas,
         forget: options.forget,
     };
-    let done = Session::open(&options.target)?.send_within(command, LONGEST)?;
+    let done = Client::open(&options.target)?.send_within(command, LONGEST)?;
     say!("{done}");
     Ok(0)
 }

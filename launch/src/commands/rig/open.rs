@@ -8,8 +8,8 @@ use maulstick_rig::UserError;
 use maulstick_types::command::RigCommand;
 use maulstick_types::values::WholePath;
 
+use crate::commands::client::{Client, Target};
 use crate::commands::say;
-use crate::commands::session::{Session, Target};
 
 /// Longest wait for a painting to be open: its last journal records may have to be done again.
 pub(crate) const LONGEST: Duration = Duration::from_secs(3600);
@@ -49,7 +49,7 @@ pub fn run(options: &OpenOptions) -> Result<i32, UserError> {
         path: whole(&options.file)?,
         forget: options.forget,
     };
-    let done = Session::open(&options.target)?.send_within(command, LONGEST)?;
+    let done = Client::open(&options.target)?.send_within(command, LONGEST)?;
     say!("{done}");
     Ok(0)
 }

@@ -6,9 +6,9 @@ use clap::Args;
 use maulstick_rig::UserError;
 use maulstick_types::command::{RigCommand, SaveAs};
 
+use crate::commands::client::{Client, Target};
 use crate::commands::open::{LONGEST, whole};
 use crate::commands::say;
-use crate::commands::session::{Session, Target};
 
 /// Options of `maulstick save-as`.
 #[derive(Args, Clone, Debug)]
@@ -31,7 +31,7 @@ pub fn run(options: &SaveAsOptions) -> Result<i32, UserError> {
         path: whole(&options.file)?,
         replace: options.replace,
     });
-    let done = Session::open(&options.target)?.send_within(command, LONGEST)?;
+    let done = Client::open(&options.target)?.send_within(command, LONGEST)?;
     say!("{done}");
     Ok(0)
 }

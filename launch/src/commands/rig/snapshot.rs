@@ -7,8 +7,8 @@ use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 use maulstick_types::command::TakeCommand;
 
+use crate::commands::client::{Client, Target};
 use crate::commands::say;
-use crate::commands::session::{Session, Target};
 use crate::outputs::{Relayed, UsedFile, check_outputs};
 
 /// Options of `maulstick snapshot`.
@@ -41,7 +41,7 @@ pub fn snapshot(options: &SnapshotOptions) -> Result<i32, UserError> {
         path: picture.asked()?,
         ledger: ledger.as_ref().map(Relayed::asked).transpose()?,
     };
-    let said = Session::command(&options.target, command)?;
+    let said = Client::command(&options.target, command)?;
     if let Some(ledger) = ledger {
         ledger.arrive("")?;
     }

@@ -8,8 +8,8 @@ use maulstick_rig::UserError;
 
 use super::foxglove_server::FoxgloveServer;
 use super::listener::Listener;
+use crate::commands::client::Target;
 use crate::commands::say;
-use crate::commands::session::Target;
 
 /// Options of `maulstick bridge`.
 #[derive(Args, Clone, Debug)]

@@ -10,8 +10,8 @@ use maulstick_types::{HEADER_BYTES, plain};
 
 use super::listener::{Listener, ReceivedMessage};
 use super::message_lines::{MessageLine, head};
+use crate::commands::client::Target;
 use crate::commands::print_text;
-use crate::commands::session::Target;
 
 /// Options of `maulstick echo`.
 #[derive(Args, Clone, Debug)]

@@ -9,12 +9,14 @@ use maulstick_streams::topic_pattern::matches;
 use maulstick_streams::traffic::Arrived;
 use maulstick_types::Header;
 
-use crate::commands::session::Target;
+use crate::commands::client::Target;
 
 /// Topics whose last message is kept for late joiners.
 const CACHED: [&str; 4] = ["scene", "brush/*/def", "brush/*/look", "stylus/*/info"];
 /// Messages that wait while this program is busy: some seconds of all streams.
 const ROOM: usize = 1 << 15;
+/// Longest time in which what waits is taken in at the end.
+const REST: Duration = Duration::from_millis(200);
 
 /// A message that was received.
 #[derive(Clone)]
@@ -28,7 +30,7 @@ pub(super) struct ReceivedMessage {
 }
 
 /// Receives the topics of a pattern.
-pub(super) struct Listener {
+pub(crate) struct Listener {
     /// This program in the rig.
     pub member: NodeHandle,
     pattern: String,
@@ -50,6 +52,14 @@ impl Listener {
             node: format!("listener-{}", std::process::id()),
             guarded: false,
         })?;
+        Self::over(member, pattern)
+    }
+
+    /// Listens as a member of a rig.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the pattern is none.
+    pub(crate) fn over(member: NodeHandle, pattern: &str) -> Result<Self, UserError> {
         let pattern = pattern.trim_start_matches(member.topics.prefix());
         let is_key = !pattern.is_empty() && pattern.split('/').all(|part| !part.is_empty());
         if !is_key || pattern.contains(['?', '#', '$']) {
@@ -88,6 +98,13 @@ impl Listener {
             self.member.wake.wait(left);
         }
         None
+    }
+
+    /// What has arrived and was not asked for, for a moment at most: more may come meanwhile.
+    pub(super) fn rest(&mut self) -> Vec<ReceivedMessage> {
+        let until = Instant::now() + REST;
+        let waiting = std::iter::from_fn(|| self.waiting());
+        waiting.take_while(|_| Instant::now() < until).collect()
     }
 
     /// What comes from now on, for a time.

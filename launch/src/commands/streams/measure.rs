@@ -11,7 +11,7 @@ use maulstick_types::Origin;
 use serde_json::{Value, json};
 
 use super::listener::Listener;
-use crate::commands::session::Target;
+use crate::commands::client::Target;
 use crate::commands::table::table;
 use crate::commands::{print_json, print_text, say};
 

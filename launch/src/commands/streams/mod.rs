@@ -5,7 +5,8 @@
 //! | [`listener`] | messages of a running rig |
 //! | [`echo`], [`measure`], [`nodes`] | contents, rates and senders of live streams |
 //! | [`graph`] | the processes of a rig, and what they send each other, as a picture |
-//! | [`record`], [`painting_copy`], [`ring`], [`recording`], [`foxglove_export`] | recordings, made, kept within bounds, looked at, written for Foxglove |
+//! | [`recorder`], [`record`] | recordings, made and kept within bounds |
+//! | [`recording`], [`foxglove_export`] | recordings, looked at and written for Foxglove |
 //! | [`bridge`], [`foxglove_server`] | live streams for Foxglove |
 //! | [`message_lines`] | messages as rows of a table and as lines of JSON |
 
@@ -14,14 +15,13 @@ pub mod echo;
 mod foxglove_export;
 mod foxglove_server;
 pub mod graph;
-mod listener;
+pub(crate) mod listener;
 pub mod measure;
 mod message_lines;
 pub mod nodes;
-mod painting_copy;
 pub mod record;
+pub(crate) mod recorder;
 pub mod recording;
-mod ring;
 
 use std::path::Path;
 

@@ -8,7 +8,7 @@ use maulstick_rig::UserError;
 use serde_json::json;
 
 use super::listener::Listener;
-use crate::commands::session::Target;
+use crate::commands::client::Target;
 use crate::commands::{print_json, print_text};
 
 /// Options of `maulstick nodes`.

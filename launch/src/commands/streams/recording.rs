@@ -129,14 +129,14 @@ fn info(path: &std::path::Path, as_json: bool) -> Result<i32, UserError> {
             .collect();
         print_json(&json!({
             "seconds": seconds,
-            "notes": recording.notes,
-            "files": recording.files.keys().collect::<Vec<_>>(),
-            "damage": recording.damage,
+            "notes": recording.notes(),
+            "files": recording.attachments().keys().collect::<Vec<_>>(),
+            "damage": recording.damage(),
             "streams": streams,
         }))?;
         return Ok(0);
     }
-    let facts = recording.notes.get("recording");
+    let facts = recording.notes().get("recording");
     let fact = |name: &str| {
         facts
             .and_then(|facts| facts.get(name))
@@ -148,8 +148,8 @@ fn info(path: &std::path::Path, as_json: bool) -> Result<i32, UserError> {
         fact("rig"),
         fact("version")
     );
-    if let Some(damage) = &recording.damage {
-        say!("damaged: {damage}; what is shown can be read");
+    if let Some(damage) = recording.damage() {
+        say!("damaged: {damage}; what is shown can be read, and `maulstick take recover` mends it");
     }
     let rows = traffic.streams().map(|(topic, _, stream)| {
         [

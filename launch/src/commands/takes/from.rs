@@ -1,4 +1,4 @@
-//! `maulstick take from`: a recorded session as a take, with what it takes to paint it again.
+//! `maulstick take from`: a recorded session, or what a painting was painted with, as a take that is painted again.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -9,13 +9,13 @@ use maulstick_document::{Access, Checkpoint, Document, DocumentSettings};
 use maulstick_painting::Sequencer;
 use maulstick_painting::sequencer::{Accepted, Record};
 use maulstick_rig::UserError;
-use maulstick_rig::files::{Kind, write_whole};
-use maulstick_streams::RecordingWriter;
-use maulstick_streams::recording::RecordedMessage;
-use maulstick_types::paint::{Entry, JournalEntry};
-use maulstick_types::{Flags, Header, Message, Origin, encode, name_hash};
+use maulstick_rig::files::{Kind, is_painting, write_whole};
+use maulstick_streams::topic_pattern::matches;
+use maulstick_types::paint::Entry;
 
-use super::session_file::{Event, JOURNAL, PAINTING, SessionFile};
+use super::painting_record::PaintingRecord;
+use super::session_file::{Event, PAINTING, SessionFile};
+use super::take_writer::{TakeOrigin, TakeWriter};
 use crate::commands::say;
 use crate::document::wrong;
 use crate::outputs::{UsedFile, check_outputs};
@@ -24,12 +24,14 @@ use crate::performance::refused;
 /// Options of `maulstick take from`.
 #[derive(Args, Clone, Debug)]
 pub struct FromOptions {
-    /// Recording of a session, as `maulstick record` writes it
+    /// Recording of a session, as `maulstick record` writes it, or a painting
+    #[arg(value_name = "RECORDING|PAINTING")]
     recording: PathBuf,
     /// Take to write
     #[arg(short, long, value_name = "TAKE")]
     output: PathBuf,
-    /// From so many seconds after its beginning: what was painted before is the painting's beginning
+    /// From so many seconds after its beginning: what was painted before is the painting's beginning. Of a painting they
+    /// are seconds of work: brushes in contact, and pauses of up to a second
     #[arg(long, value_name = "S", default_value_t = 0.0)]
     start: f64,
     /// To so many seconds after its beginning [default: its end]
@@ -37,14 +39,13 @@ pub struct FromOptions {
     end: Option<f64>,
 }
 
-/// Topics whose messages a take keeps beside what the painting accepted.
-fn is_kept(topic: &str) -> bool {
-    let mut parts = topic.split('/');
-    match (parts.next(), parts.nth(1)) {
-        (Some("stylus"), Some(kind)) => ["sample", "info"].contains(&kind),
-        (Some("brush"), Some(kind)) => kind == "def",
-        (first, _) => first == Some("scene"),
-    }
+/// Topics whose last message holds until another comes, of those that a take keeps beside what the painting accepted.
+const RARE: [&str; 3] = ["stylus/*/info", "brush/*/def", "scene"];
+/// Topics of the hands, which a take keeps too.
+const HANDS: &str = "stylus/*/sample";
+
+fn is_rare(topic: &str) -> bool {
+    RARE.iter().any(|pattern| matches(pattern, topic))
 }
 
 /// Makes a take of a session.
@@ -58,13 +59,7 @@ pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
         let what = format!("--start {} is not before --end", options.start);
         return Err(UserError::usage(what).help("choose seconds after the beginning"));
     }
-    let Some(mut session) = SessionFile::open(path)? else {
-        return Err(
-            UserError::usage("the recording has no journal of a painting")
-                .at(path.display().to_string())
-                .help("record all topics: `maulstick record -o session.mcap`"),
-        );
-    };
+    let mut session = Source::open(path)?;
     let length_s = session.length_ns() as f64 * 1e-9;
     if bounds[0] >= length_s {
         return Err(
@@ -74,7 +69,7 @@ pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
         );
     }
     let output = UsedFile::new("the take", &options.output).of(Kind::Take);
-    check_outputs(&[output], &[UsedFile::new("the recording", path)])?;
+    check_outputs(&[output], &[session.used(path)])?;
     let [start_ns, end_ns] = bounds.map(|seconds| match seconds {
         f64::MAX => u64::MAX,
         seconds => (seconds * 1e9) as u64,
@@ -94,17 +89,18 @@ pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
     }
     document.close().map_err(|error| wrong(&begin, &error))?;
     let painting = std::fs::read(&begin).map_err(|error| UserError::reading(&begin, &error))?;
+    let mut origin = session.origin()?;
+    origin.files.insert(PAINTING.to_owned(), painting);
     let mut counts = Counts::default();
     let fault = RefCell::new(None);
     let written = write_whole(&options.output, Kind::Take, |file| {
-        let mut take = SessionWriter::begin(file, &session, &painting)?;
+        let mut take = TakeWriter::begin(file, origin)?;
         // What is sent rarely, as it was at the start.
         let mut rare = BTreeMap::new();
         let followed = session.follow(&mut sequencer, end_ns, &mut |_, at_ns, event| {
             if at_ns < start_ns {
                 if let Event::Other { topic, message } = event
-                    && is_kept(topic)
-                    && !topic.ends_with("/sample")
+                    && is_rare(topic)
                 {
                     rare.insert(topic.to_owned(), message.clone());
                 }
@@ -119,7 +115,7 @@ pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
                     counts.note(record);
                     take.accepted(at_ns, record)
                 }
-                Event::Other { topic, message } if is_kept(topic) => {
+                Event::Other { topic, message } if is_rare(topic) || matches(HANDS, topic) => {
                     take.as_it_was(topic, message, at_ns)
                 }
                 Event::Other { .. } => Ok(()),
@@ -139,6 +135,67 @@ pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
     written.map_err(|error| UserError::writing(&options.output, &error))?;
     say!("{}: {}", options.output.display(), counts.in_words());
     Ok(0)
+}
+
+/// Where a take comes from.
+enum Source {
+    Session(SessionFile),
+    Painting(PaintingRecord),
+}
+
+impl Source {
+    fn open(path: &Path) -> Result<Self, UserError> {
+        if is_painting(path) {
+            return Ok(Self::Painting(PaintingRecord::open(path)?));
+        }
+        let session = SessionFile::open(path)?;
+        session.map(Self::Session).ok_or_else(|| {
+            UserError::usage("the recording has no journal of a painting")
+                .at(path.display().to_string())
+                .help("record all topics: `maulstick record -o session.mcap`")
+        })
+    }
+
+    fn used(&self, path: &Path) -> UsedFile {
+        match self {
+            Self::Session(_) => UsedFile::new("the recording", path),
+            Self::Painting(_) => UsedFile::painting(path),
+        }
+    }
+
+    fn length_ns(&self) -> u64 {
+        match self {
+            Self::Session(session) => session.length_ns(),
+            Self::Painting(painting) => painting.length_ns(),
+        }
+    }
+
+    fn write_painting(&self, to: &Path) -> Result<(), UserError> {
+        match self {
+            Self::Session(session) => session.write_painting(to),
+            Self::Painting(painting) => painting.write_painting(to),
+        }
+    }
+
+    fn follow(
+        &mut self,
+        sequencer: &mut Sequencer,
+        to_ns: u64,
+        each: &mut dyn FnMut(&mut Sequencer, u64, Event<'_>) -> Result<(), UserError>,
+    ) -> Result<(), UserError> {
+        match self {
+            Self::Session(session) => session.follow(sequencer, to_ns, each),
+            Self::Painting(painting) => painting.follow(sequencer, to_ns, each),
+        }
+    }
+
+    /// What a take of it begins with, but for the painting.
+    fn origin(&self) -> Result<TakeOrigin, UserError> {
+        match self {
+            Self::Session(session) => session.origin(),
+            Self::Painting(painting) => Ok(painting.origin()),
+        }
+    }
 }
 
 /// The painting of a beginning, in the midst of its journal, and the tile versions that its file has.
@@ -174,159 +231,5 @@ impl Counts {
 
     pub(super) fn in_json(&self) -> serde_json::Value {
         serde_json::json!({"states": self.states, "commands": self.commands})
-    }
-}
-
-/// Writes a take of a session.
-struct SessionWriter<W: std::io::Write + std::io::Seek> {
-    writer: RecordingWriter<W>,
-    /// Number of the next message of the journal.
-    next: u64,
-    /// Time of the newest one, ns.
-    newest_ns: u64,
-    /// Index of the entry of the newest states, which are written, and the entry, which is not.
-    states: Option<(u64, Entry)>,
-    /// Names of the brushes, by the source of their states.
-    brushes: BTreeMap<u32, String>,
-}
-
-impl<W: std::io::Write + std::io::Seek> SessionWriter<W> {
-    fn begin(to: W, session: &SessionFile, painting: &[u8]) -> std::io::Result<Self> {
-        let failed = std::io::Error::other;
-        let mut writer = RecordingWriter::begin(to).map_err(failed)?;
-        for (name, facts) in &session.recording.notes {
-            if name != "counts" {
-                writer.note(name, facts.clone()).map_err(failed)?;
-            }
-        }
-        for (name, bytes) in &session.recording.files {
-            let bytes = match name == PAINTING {
-                true => painting,
-                false => bytes,
-            };
-            writer
-                .attach(name, "application/octet-stream", bytes)
-                .map_err(failed)?;
-        }
-        let topics = session.recording.topics().values();
-        let brush = |topic: &maulstick_streams::recording::Topic| {
-            let name = topic.name.strip_prefix("brush/")?.strip_suffix("/state")?;
-            Some((name_hash(name), name.to_owned()))
-        };
-        Ok(Self {
-            writer,
-            next: 0,
-            newest_ns: 0,
-            states: None,
-            brushes: topics.filter_map(brush).collect(),
-        })
-    }
-
-    /// Writes what the painting accepted. One entry names states that follow each other.
-    fn accepted(&mut self, at_ns: u64, record: &Record) -> std::io::Result<()> {
-        let (header, state) = match &record.what {
-            Accepted::State { header, state } => (header, state),
-            Accepted::Entry(entry) => {
-                self.end_states(at_ns)?;
-                return self.entry(at_ns, record.index, entry.clone());
-            }
-        };
-        let brush = self.brushes.get(&header.source).cloned();
-        let brush = brush.unwrap_or_default();
-        if self
-            .states
-            .as_ref()
-            .is_some_and(|(index, _)| *index != record.index)
-        {
-            self.end_states(at_ns)?;
-        }
-        self.message(&format!("brush/{brush}/state"), header, state, at_ns)?;
-        let first = || {
-            let (epoch, from, to) = (header.epoch, header.seq, header.seq);
-            let entry = Entry::States {
-                brush,
-                epoch,
-                from,
-                to,
-            };
-            (record.index, entry)
-        };
-        if let (_, Entry::States { to, .. }) = self.states.get_or_insert_with(first) {
-            *to = header.seq;
-        }
-        Ok(())
-    }
-
-    /// Writes the entry that names the newest states.
-    fn end_states(&mut self, at_ns: u64) -> std::io::Result<()> {
-        match self.states.take() {
-            Some((index, entry)) => self.entry(at_ns, index, entry),
-            None => Ok(()),
-        }
-    }
-
-    fn entry(&mut self, at_ns: u64, index: u64, entry: Entry) -> std::io::Result<()> {
-        let header = Header {
-            version: JournalEntry::VERSION,
-            schema: JournalEntry::schema().hash,
-            source: name_hash("paint"),
-            epoch: 1,
-            flags: Flags::NONE,
-            length: 0,
-            seq: self.next,
-            event_ns: at_ns,
-            sent_ns: at_ns,
-        };
-        self.next += 1;
-        self.newest_ns = at_ns;
-        self.message(JOURNAL, &header, &JournalEntry { index, entry }, at_ns)
-    }
-
-    /// Writes a message as it was recorded.
-    fn as_it_was(
-        &mut self,
-        topic: &str,
-        message: &RecordedMessage,
-        at_ns: u64,
-    ) -> std::io::Result<()> {
-        self.writer
-            .write(topic, &message.header, &message.bytes, at_ns)
-            .map_err(std::io::Error::other)
-    }
-
-    fn message<M: Message>(
-        &mut self,
-        topic: &str,
-        header: &Header,
-        message: &M,
-        at_ns: u64,
-    ) -> std::io::Result<()> {
-        let origin: Origin = header.origin();
-        let [event_ns, sent_ns] = [header.event_ns, header.sent_ns];
-        let bytes = encode(
-            &origin,
-            header.flags,
-            header.seq,
-            event_ns,
-            sent_ns,
-            message,
-        )
-        .map_err(std::io::Error::other)?;
-        let header = Header {
-            schema: M::schema().hash,
-            ..*header
-        };
-        self.writer
-            .write(topic, &header, &bytes, at_ns)
-            .map_err(std::io::Error::other)
-    }
-
-    fn finish(mut self) -> std::io::Result<()> {
-        self.end_states(self.newest_ns)?;
-        let counts = BTreeMap::from([("messages".to_owned(), self.next.to_string())]);
-        self.writer
-            .note("counts", counts)
-            .and_then(|()| self.writer.finish())
-            .map_err(std::io::Error::other)
     }
 }

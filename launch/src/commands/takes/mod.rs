@@ -3,7 +3,9 @@
 pub mod demo;
 pub(crate) mod from;
 pub mod import;
+mod painting_record;
 pub mod render;
 mod render_session;
 pub(crate) mod session_file;
 pub mod take;
+mod take_writer;

@@ -11,7 +11,7 @@ use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::{Autosave, Offline};
 
 use super::render_session::render_session;
-use super::session_file::{SessionFile, is_recording};
+use super::session_file::SessionFile;
 use crate::backend::choose_backend;
 use crate::cells::picture_settings;
 use crate::commands::progress_bar;
@@ -67,8 +67,7 @@ impl RenderOptions {
 
     /// The take, if it is a recorded session.
     fn session(&self) -> Result<Option<SessionFile>, UserError> {
-        let path = self.take.as_ref().filter(|path| is_recording(path));
-        path.map_or(Ok(None), |path| SessionFile::open(path))
+        self.take.as_deref().map_or(Ok(None), SessionFile::find)
     }
 
     /// Puts profile and gamut mapping into the settings.

@@ -1,7 +1,8 @@
 //! A session in a file: a recording that holds the painting as it was, what was accepted since, and the samples of the
 //! hands.
 
-use std::io::Write as _;
+use std::collections::BTreeMap;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use maulstick_painting::Sequencer;
@@ -12,17 +13,24 @@ use maulstick_session::RecordedSession;
 use maulstick_session::recorded::SessionFault;
 use maulstick_streams::Recording;
 use maulstick_streams::recording::{RecordedMessage, Topic};
+use maulstick_streams::topic_pattern::{matches, parts};
 use maulstick_types::brush::BrushState;
 use maulstick_types::paint::JournalEntry;
 use maulstick_types::{Header, Message};
+
+use super::take_writer::TakeOrigin;
 
 /// Name of the attached painting.
 pub(crate) const PAINTING: &str = "painting.maul";
 /// Topic of the painting's journal.
 pub(crate) const JOURNAL: &str = "paint/journal";
+/// Name of the note that a recording has once it was ended.
+const COUNTS: &str = "counts";
+/// Topics of the brush states.
+const STATES: &str = "brush/*/state";
 
 /// A session in a file.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct SessionFile {
     path: PathBuf,
     pub(crate) recording: Recording,
@@ -47,12 +55,28 @@ impl SessionFile {
     /// # Errors
     /// A [`UserError`] where it cannot be read, or lacks the painting.
     pub(crate) fn open(path: &Path) -> Result<Option<Self>, UserError> {
-        let recording = Recording::open(path)?;
+        Self::of(Recording::open(path)?)
+    }
+
+    /// As [`Self::open`]; `None` also if the file is no recording at all: a take that is damaged is told of as a take.
+    ///
+    /// # Errors
+    /// A [`UserError`] where it lacks the painting.
+    pub(crate) fn find(path: &Path) -> Result<Option<Self>, UserError> {
+        Recording::open(path).map_or(Ok(None), Self::of)
+    }
+
+    /// The session of a recording; `None` if it has no journal of a painting.
+    ///
+    /// # Errors
+    /// A [`UserError`] where it lacks the painting.
+    pub(crate) fn of(recording: Recording) -> Result<Option<Self>, UserError> {
+        let path = recording.path();
         let mut topics = recording.topics().values();
         if !topics.any(|topic| topic.name == JOURNAL) {
             return Ok(None);
         }
-        if !recording.files.contains_key(PAINTING) {
+        if !recording.attachments().contains_key(PAINTING) {
             return Err(UserError::usage(
                 "the recording lacks the painting as it was at its beginning",
             )
@@ -70,10 +94,41 @@ impl SessionFile {
     /// # Errors
     /// A [`UserError`] where it cannot be written.
     pub(crate) fn write_painting(&self, to: &Path) -> Result<(), UserError> {
-        let bytes = self.recording.files.get(PAINTING);
-        let bytes = bytes.map(Vec::as_slice).unwrap_or_default();
-        write_whole(to, Kind::Own, |file| file.write_all(bytes))
-            .map_err(|error| UserError::writing(to, &error))
+        let written = write_whole(to, Kind::Own, |file| {
+            self.recording.copy_attachment(PAINTING, file)
+        });
+        written.map_err(|error| match error.kind() {
+            ErrorKind::InvalidData => {
+                UserError::usage("the painting as it was at its beginning is damaged")
+                    .at(self.path.display().to_string())
+                    .help("nothing can be painted again from this recording")
+            }
+            _ => UserError::writing(to, &error),
+        })
+    }
+
+    /// What a take of it begins with, but for the painting.
+    ///
+    /// # Errors
+    /// A [`UserError`] where an attached file cannot be read.
+    pub(super) fn origin(&self) -> Result<TakeOrigin, UserError> {
+        let mut notes = self.recording.notes().clone();
+        notes.remove(COUNTS);
+        let mut files = BTreeMap::new();
+        for name in self.recording.attachments().keys() {
+            if name != PAINTING
+                && let Some(bytes) = self.recording.attachment(name)?
+            {
+                files.insert(name.clone(), bytes);
+            }
+        }
+        let topics = self.recording.topics().values();
+        let brush = |topic: &Topic| Some(parts(STATES, &topic.name)?.first()?.to_string());
+        Ok(TakeOrigin {
+            notes,
+            files,
+            brushes: topics.filter_map(brush).collect(),
+        })
     }
 
     /// Length of the session, ns.
@@ -110,7 +165,7 @@ impl SessionFile {
         let mut take_in = |topic: &Topic, message: &RecordedMessage| -> Result<(), UserError> {
             let at_ns = message.arrived_ns.saturating_sub(first_ns);
             let name = topic.name.as_str();
-            if name.starts_with("brush/") && name.ends_with("/state") {
+            if matches(STATES, name) {
                 let (header, state) = typed::<BrushState>(topic, message, &place)?;
                 session.state(header, state);
             } else if name == JOURNAL {
@@ -137,11 +192,12 @@ impl SessionFile {
             done.is_ok()
         })?;
         done?;
-        if to_ns == u64::MAX {
+        // Of a recording that was cut off the last message may be anywhere.
+        if to_ns == u64::MAX && !self.is_cut_off() {
             let end = session.end();
             end.map_err(|fault| broken(&fault, newest_ns))?;
         }
-        match &self.recording.damage {
+        match self.recording.damage() {
             Some(damage) if to_ns == u64::MAX && !self.is_cut_off() => {
                 Err(UserError::usage(format!("the recording is damaged: {damage}")).at(place))
             }
@@ -151,18 +207,8 @@ impl SessionFile {
 
     /// True if it has no index, as after a crash: what it holds is whole.
     fn is_cut_off(&self) -> bool {
-        !self.recording.notes.contains_key("counts")
+        !self.recording.notes().contains_key(COUNTS)
     }
-}
-
-/// True if a file may be a recording: a take that is damaged is told of as a take.
-pub(crate) fn is_recording(path: &Path) -> bool {
-    Recording::open(path).is_ok_and(|recording| {
-        recording
-            .topics()
-            .values()
-            .any(|topic| topic.name == JOURNAL)
-    })
 }
 
 /// Header and body of a message, whatever version recorded it.

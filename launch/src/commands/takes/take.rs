@@ -1,24 +1,33 @@
 //! `maulstick take`: contents of a take, its setup, and the intact part of a damaged one.
 
 use std::collections::BTreeMap;
+use std::io::Error;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use maulstick_device::salvage::salvage;
 use maulstick_device::{Take, TakeSetup};
-use maulstick_rig::files::Kind;
+use maulstick_rig::files::{Kind, write_whole};
 use maulstick_rig::{RigConfig, UserError};
+use maulstick_streams::recovery::DamagedRecording;
+use maulstick_streams::topic_pattern::{matches, parts};
 use maulstick_types::stylus::StylusPose;
+use mcap::McapError;
 use serde_json::json;
 
 use super::from::{self, FromOptions};
-use super::session_file::{Event, PAINTING, SessionFile, is_recording};
+use super::session_file::{Event, PAINTING, SessionFile};
 use crate::cells::picture_settings;
 use crate::commands::{print_json, say, write_take};
 use crate::document::wrong;
 use crate::kit::{kit_of, use_kit};
 use crate::outputs::{UsedFile, check_outputs, named_by};
 use crate::performance::{KitOptions, library_from, painting_setup, refused};
+
+/// Topics of the hands.
+const HANDS: &str = "stylus/*/sample";
+/// What is said of a file without damage.
+const WHOLE: &str = "nothing was damaged";
 
 /// Subcommands of `maulstick take`.
 #[derive(Subcommand, Clone, Debug)]
@@ -31,16 +40,17 @@ pub enum TakeCommand {
         #[arg(long)]
         json: bool,
     },
-    /// Make a take of a recorded session: its strokes and commands, and the painting as it was before
+    /// Make a take of a recorded session, or of what a painting was painted with: strokes and commands, and the painting as
+    /// it was before
     From(FromOptions),
     /// Embed in a take what it is painted with: canvas, palette, brush, paints, light, loads. It then
     /// gives the same painting anywhere
     Embed(EmbedOptions),
-    /// Recover the readable samples of a damaged take
+    /// Recover what can be read of a damaged take or recording, as one that a crash left
     Recover {
-        /// Damaged take, which is not changed
+        /// Damaged take or recording, which is not changed
         take: PathBuf,
-        /// Take to write
+        /// File to write
         #[arg(short, long, value_name = "TAKE")]
         output: PathBuf,
     },
@@ -105,10 +115,7 @@ fn kit_in_words(kit: &TakeSetup) -> String {
 }
 
 /// Shows what a session holds, once all of it was found.
-fn session_info(path: &Path, as_json: bool) -> Result<i32, UserError> {
-    let Some(mut session) = SessionFile::open(path)? else {
-        return Ok(0);
-    };
+fn session_info(mut session: SessionFile, as_json: bool) -> Result<i32, UserError> {
     let folder = tempfile::tempdir().map_err(|error| UserError::failure(error.to_string()))?;
     let begin = folder.path().join(PAINTING);
     session.write_painting(&begin)?;
@@ -118,9 +125,8 @@ fn session_info(path: &Path, as_json: bool) -> Result<i32, UserError> {
         match event {
             Event::Accepted(record) => counts.note(&record),
             Event::Other { topic, .. } => {
-                let device = topic.strip_prefix("stylus/");
-                if let Some(device) = device.and_then(|rest| rest.strip_suffix("/sample")) {
-                    *devices.entry(device.to_owned()).or_default() += 1;
+                if let Some([device]) = parts(HANDS, topic).as_deref() {
+                    *devices.entry((*device).to_owned()).or_default() += 1;
                 }
             }
         }
@@ -152,8 +158,10 @@ pub fn run(command: &TakeCommand) -> Result<i32, UserError> {
     match command {
         TakeCommand::Embed(options) => embed(options),
         TakeCommand::From(options) => from::run(options),
-        TakeCommand::Info { take, json } if is_recording(take) => session_info(take, *json),
         TakeCommand::Info { take, json } => {
+            if let Some(session) = SessionFile::find(take)? {
+                return session_info(session, *json);
+            }
             let take = Take::read(take)?;
             let seconds = take.length_ns() as f64 * 1e-9;
             let rate = (take.samples.len() - 1) as f64 / seconds.max(1e-9);
@@ -184,22 +192,49 @@ pub fn run(command: &TakeCommand) -> Result<i32, UserError> {
             }
             Ok(0)
         }
-        TakeCommand::Recover { take, output } => {
-            check_outputs(
-                &[UsedFile::new("the recovered take", output).of(Kind::Take)],
-                &[UsedFile::new("the damaged take", take)],
-            )?;
-            let salvage = salvage(take)?;
-            salvage.take.write(output)?;
-            let damage = salvage
-                .damage
-                .unwrap_or_else(|| "nothing was damaged".to_owned());
-            say!(
-                "{}: {} samples ({damage})",
-                output.display(),
-                salvage.take.samples.len()
-            );
-            Ok(0)
-        }
+        TakeCommand::Recover { take, output } => recover(take, output),
     }
+}
+
+/// Recovers what can be read of a damaged file.
+fn recover(from: &Path, output: &Path) -> Result<i32, UserError> {
+    check_outputs(
+        &[UsedFile::new("the recovered file", output).of(Kind::Take)],
+        &[UsedFile::new("the damaged file", from)],
+    )?;
+    let recording = DamagedRecording::open(from);
+    let is_recording = |recording: &DamagedRecording| {
+        let others = recording.topics().any(|topic| !matches(HANDS, topic));
+        others || recording.is_of_a_recorder()
+    };
+    if let Some(recording) = recording.ok().filter(is_recording) {
+        let mut recovered = Err(McapError::UnexpectedEof);
+        let written = write_whole(output, Kind::Take, |file| {
+            recovered = recording.recover(file);
+            match &recovered {
+                Ok(_) => Ok(()),
+                Err(McapError::Io(error)) => Err(Error::new(error.kind(), error.to_string())),
+                Err(error) => Err(Error::other(error.to_string())),
+            }
+        });
+        written.map_err(|error| UserError::writing(output, &error))?;
+        let recovered = recovered.unwrap_or_default();
+        say!(
+            "{}: {} messages, {} files ({})",
+            output.display(),
+            recovered.messages,
+            recovered.files,
+            recovered.damage.as_deref().unwrap_or(WHOLE)
+        );
+        return Ok(0);
+    }
+    let salvage = salvage(from)?;
+    salvage.take.write(output)?;
+    say!(
+        "{}: {} samples ({})",
+        output.display(),
+        salvage.take.samples.len(),
+        salvage.damage.as_deref().unwrap_or(WHOLE)
+    );
+    Ok(0)
 }

@@ -40,6 +40,9 @@ impl Supervisor {
                 node.terminate();
                 node.kill();
                 if !node.fail(&mut self.failures) {
+                    if node.spec.role == Role::Recorder {
+                        continue;
+                    }
                     return Err(UserError::failure(format!(
                         "node '{}' does not get ready",
                         node.spec.name

@@ -340,7 +340,9 @@ impl Supervisor {
         match self.nodes[place].spec.role {
             Role::Paint => {}
             Role::Device => return self.device_has_left(place),
-            Role::Brush | Role::Window | Role::Player => return self.start_node(place),
+            Role::Brush | Role::Window | Role::Player | Role::Recorder => {
+                return self.start_node(place);
+            }
         }
         match self.switch.take() {
             Some(Switch {

@@ -11,7 +11,7 @@ use super::{
 use crate::user_error::UserError;
 
 /// Nodes of every rig, and what all brush nodes are called.
-const NODES: [&str; 4] = ["paint", "brush", "ui", "player"];
+const NODES: [&str; 5] = ["paint", "brush", "ui", "player", "recorder"];
 /// A quaternion written by hand counts as a unit one within this.
 const UNIT_TOLERANCE: f64 = 1e-3;
 
@@ -76,6 +76,10 @@ impl RigConfig {
         self.paint
             .room()
             .map_err(|what| fault(what, "[paint]", "").help("write sizes as 512M or 2G"))?;
+        let record = self.record.as_ref();
+        record
+            .map_or(Ok(()), crate::config::RecordSection::check)
+            .map_err(|(key, what, help)| fault(what, key, "").help(help))?;
         let view = &self.view;
         view.check().map_err(|(what, help)| {
             let (key, value) = match GAMUTS.contains(&view.gamut.as_str()) {
@@ -392,6 +396,7 @@ mod tests {
             "paint",
             "ui",
             "player",
+            "recorder",
             "mouse",
             "brush-main",
             "brush-x",

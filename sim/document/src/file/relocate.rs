@@ -5,7 +5,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 
-use maulstick_files::FileId;
+use maulstick_files::{FileId, first_free};
 
 use crate::error::DocumentError;
 use crate::file::database::{Access, Database, companion, is_new, merged, resolved};
@@ -134,14 +134,7 @@ pub(crate) fn free_name_beside(path: &Path) -> PathBuf {
         };
         path.with_file_name(format!("{stem}-kept{number}.{ending}"))
     };
-    let is_free = |path: &PathBuf| {
-        let names = ["", "-wal", "-journal"].map(|suffix| companion(path, suffix));
-        names.iter().all(|name| name.symlink_metadata().is_err())
-    };
-    (1..u32::MAX)
-        .map(named)
-        .find(is_free)
-        .unwrap_or_else(|| named(1))
+    first_free(1, named).1
 }
 
 /// Reverts [`relocate`] at the old path.

@@ -5,6 +5,7 @@
 //! by who executes it again.
 
 pub(crate) mod beginning;
+mod rewind;
 mod transposed;
 
 use std::path::Path;
@@ -21,6 +22,8 @@ use crate::journal;
 use crate::tables::checksum::{journal_checksum, record_checksum};
 use crate::tables::schema::has_record;
 use crate::writing::Writer;
+
+pub use rewind::rewind;
 
 /// zstd's level of a row: a second of painting is some hundred kB, which takes a few ms.
 const LEVEL: i32 = 6;

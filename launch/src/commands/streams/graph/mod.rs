@@ -20,7 +20,7 @@ use maulstick_rig::files::{Kind, write_whole};
 use self::processes::Graph;
 use super::listener::Listener;
 use super::measure::duration;
-use crate::commands::session::Target;
+use crate::commands::client::Target;
 use crate::commands::{print_json, print_text};
 
 /// Options of `maulstick graph`.

@@ -7,23 +7,30 @@ use maulstick_document::{Checkpoint, record};
 use maulstick_rig::UserError;
 use maulstick_types::command::FileCommand;
 
+use super::on_the_way::{OnTheWay, Painted};
+use super::voice::{RecorderNews, Voice};
+use crate::commands::client::{Client, Target};
 use crate::commands::open::{LONGEST, whole};
-use crate::commands::say;
-use crate::commands::session::{Session, Target};
+use crate::commands::streams::listener::ReceivedMessage;
 use crate::commands::takes::from::open_begin;
 use crate::commands::takes::session_file::PAINTING;
 use crate::document::wrong;
 
-/// Brush states that are on their way at the beginning are painted after this time.
+/// Where the credit does not say it, brush states that are on their way at the beginning are painted after this time.
 const SETTLES: Duration = Duration::from_millis(500);
+/// A brush whose states are not painted by then has ended before them.
+const LONGEST_LAG: Duration = Duration::from_secs(10);
 /// Time until the paint node is asked again, where it refused.
 const AGAIN: Duration = Duration::from_secs(2);
+/// Interval at which a copy that is waited for is looked at.
+const LOOK: Duration = Duration::from_millis(20);
 
 /// A copy of the painting, made by a thread of its own while the recording goes on.
 #[derive(Debug)]
 pub(super) struct PaintingCopy {
-    /// When the paint node is asked.
+    /// When the paint node is asked at the latest, unless states are known to be on their way.
     at: Instant,
+    on_the_way: OnTheWay,
     copying: Option<JoinHandle<Result<Vec<u8>, UserError>>>,
     /// True once it was said that it is refused.
     is_refused: bool,
@@ -33,6 +40,7 @@ impl Default for PaintingCopy {
     fn default() -> Self {
         Self {
             at: Instant::now() + SETTLES,
+            on_the_way: OnTheWay::default(),
             copying: None,
             is_refused: false,
         }
@@ -40,13 +48,33 @@ impl Default for PaintingCopy {
 }
 
 impl PaintingCopy {
+    /// Takes in a message of the file.
+    pub(super) fn note(&mut self, received: &ReceivedMessage) {
+        if self.copying.is_none() {
+            self.on_the_way.note(received);
+        }
+    }
+
+    /// True if the painting has all that was sent before the file.
+    fn is_due(&self) -> bool {
+        match self.on_the_way.painted() {
+            Painted::No => Instant::now() >= self.at + LONGEST_LAG,
+            Painted::Yes if !self.is_refused => true,
+            Painted::Yes | Painted::Unknown => Instant::now() >= self.at,
+        }
+    }
+
     /// The painting's file, once it is there. That it is refused is said once.
     ///
     /// # Errors
     /// A [`UserError`] where nothing can be said.
-    pub(super) fn look(&mut self, target: &Target) -> Result<Option<Vec<u8>>, UserError> {
+    pub(super) fn look(
+        &mut self,
+        target: &Target,
+        voice: Voice,
+    ) -> Result<Option<Vec<u8>>, UserError> {
         let Some(copying) = self.copying.take_if(|copying| copying.is_finished()) else {
-            if self.copying.is_none() && Instant::now() >= self.at {
+            if self.copying.is_none() && self.is_due() {
                 let target = target.clone();
                 self.copying = Some(std::thread::spawn(move || copy(&target)));
             }
@@ -59,9 +87,7 @@ impl PaintingCopy {
         };
         self.at = Instant::now() + AGAIN;
         if !std::mem::replace(&mut self.is_refused, true) {
-            say!(
-                "without the painting, {fault}: until it is there, nothing can be painted again from this recording"
-            );
+            voice.say(&RecorderNews::LacksPainting { why: &fault })?;
         }
         Ok(None)
     }
@@ -71,9 +97,16 @@ impl PaintingCopy {
         self.copying.is_some()
     }
 
-    /// Waits for a copy that is being made.
-    pub(super) fn wait(self) -> Option<Vec<u8>> {
-        self.copying?.join().ok()?.ok()
+    /// Waits for a copy that is being made, unless it comes to nothing.
+    pub(super) fn wait(self, is_gone: &dyn Fn() -> bool) -> Option<Vec<u8>> {
+        let copying = self.copying?;
+        while !copying.is_finished() {
+            if is_gone() {
+                return None;
+            }
+            std::thread::sleep(LOOK);
+        }
+        copying.join().ok()?.ok()
     }
 }
 
@@ -85,7 +118,7 @@ fn copy(target: &Target) -> Result<Vec<u8>, UserError> {
     let command = FileCommand::Copy {
         path: whole(&copy)?,
     };
-    Session::open(target)?.send_within(command, LONGEST)?;
+    Client::open(target)?.send_within(command, LONGEST)?;
     // What its journal holds is of this version: another one could not read it.
     let (document, mut sequencer, since) = open_begin(&copy)?;
     document.write_checkpoint(Checkpoint::of(&mut sequencer, since));

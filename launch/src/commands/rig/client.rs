@@ -43,13 +43,13 @@ const PATIENCE: Duration = Duration::from_secs(10);
 
 /// A connection to a rig, closed in the end.
 #[derive(Debug)]
-pub struct Session {
+pub struct Client {
     bus: Arc<ZenohBus>,
     topics: Topics,
     folder: PathBuf,
 }
 
-impl Session {
+impl Client {
     /// Joins a rig that runs.
     ///
     /// # Errors
@@ -162,7 +162,7 @@ impl Session {
     }
 }
 
-impl Drop for Session {
+impl Drop for Client {
     fn drop(&mut self) {
         self.bus.close();
     }

@@ -1,0 +1,124 @@
+//! `[record]`: a recording of each run.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+/// Shortest and longest time of which the newest files are kept, s.
+const LAST_S: std::ops::RangeInclusive<f64> = 10.0..=1e7;
+
+/// `[record]`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RecordSection {
+    /// Folder of the recordings; it is made if it is absent.
+    pub folder: PathBuf,
+    /// Most of all recordings of the rig in that folder, MB; without it all are kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub quota_mb: Option<u64>,
+    /// Of a run only the newest so long: `30s`, `5m`, `2h`; without it all of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub last: Option<String>,
+}
+
+impl RecordSection {
+    /// Time of a run that is kept, if not all of it.
+    ///
+    /// # Errors
+    /// The error, in words.
+    pub fn last(&self) -> Result<Option<Duration>, String> {
+        let Some(text) = &self.last else {
+            return Ok(None);
+        };
+        let last = parse_duration(text).filter(|last| LAST_S.contains(last));
+        match last {
+            Some(seconds) => Ok(Some(Duration::from_secs_f64(seconds))),
+            None => Err(format!("last = '{text}'")),
+        }
+    }
+
+    /// Checks the values: the key of a wrong one, the error, and advice.
+    pub(super) fn check(&self) -> Result<(), (&'static str, String, &'static str)> {
+        if self.folder.as_os_str().is_empty() {
+            let what = "folder = ''".to_owned();
+            return Err((
+                "folder",
+                what,
+                "give a folder, which is made if it is absent",
+            ));
+        }
+        if self.quota_mb == Some(0) {
+            let help = "choose 1 MB or more, or leave it out to keep all";
+            return Err(("quota_mb", "quota_mb = 0".to_owned(), help));
+        }
+        self.last().map(drop).map_err(|what| {
+            (
+                "last",
+                what,
+                "write times as 30s, 5m or 2h: 10 s to 10,000,000 s",
+            )
+        })
+    }
+}
+
+/// Reads a time with its unit (s, m or h), s.
+fn parse_duration(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let factor = match text.chars().last()? {
+        's' => 1.0,
+        'm' => 60.0,
+        'h' => 3600.0,
+        _ => return None,
+    };
+    let number: f64 = text[..text.len() - 1].trim().parse().ok()?;
+    Some(number * factor)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{DEFAULT, RigConfig};
+
+    fn parse(lines: &str) -> Result<RecordSection, String> {
+        let config = RigConfig::parse(&format!("{DEFAULT}\n[record]\n{lines}\n"), "rig.toml");
+        let section = config.map_err(|fault| fault.to_string())?.record;
+        section.ok_or_else(|| "none".to_owned())
+    }
+
+    #[test]
+    fn a_recording_has_a_folder_and_bounds() {
+        assert_eq!(RigConfig::default().record, None);
+        let section = parse("folder = \"r\"\nquota_mb = 500\nlast = \"5m\"").expect("valid");
+        assert_eq!(section.last(), Ok(Some(Duration::from_secs(300))));
+        assert_eq!(section.quota_mb, Some(500));
+        for (last, seconds) in [("10s", 10), (" 1.5 h", 5400), ("1m", 60)] {
+            let section = parse(&format!("folder = \"r\"\nlast = \"{last}\"")).expect(last);
+            assert_eq!(section.last(), Ok(Some(Duration::from_secs(seconds))));
+        }
+    }
+
+    #[test]
+    fn a_wrong_value_gets_its_line_and_advice() {
+        let first = DEFAULT.lines().count() + 3;
+        for (lines, line, words) in [
+            ("folder = \"\"", 0, "give a folder"),
+            ("quota_mb = 5", -1, "folder"),
+            ("folder = \"r\"\nquota_mb = 0", 1, "1 MB or more"),
+            ("folder = \"r\"\nquota_mb = -1", 1, "-1"),
+            ("folder = \"r\"\nlast = \"5\"", 1, "5m"),
+            ("folder = \"r\"\nlast = \"9s\"", 1, "10 s"),
+            ("folder = \"r\"\nlast = \"nanm\"", 1, "10 s"),
+            ("folder = \"r\"\nlast = \"é\"", 1, "10 s"),
+            ("folder = \"r\"\nlast = \"-5m\"", 1, "10 s"),
+            ("folder = \"r\"\nquota = 5", 1, "'quota_mb'"),
+        ] {
+            let told = parse(lines).expect_err(lines);
+            let place = format!("rig.toml:{}", first as i64 + line);
+            assert!(
+                told.contains(words) && told.contains(&place),
+                "{place}: {told}"
+            );
+        }
+    }
+}

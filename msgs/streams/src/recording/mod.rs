@@ -1,0 +1,243 @@
+//! Reads a recording: by its index, or, where it has none as after a crash, by all of its records. JSON channels, which are
+//! for viewers, are left alone, and attached files stay on the disk until they are asked for.
+//!
+//! No length that the file states is believed before it is compared with the file.
+
+mod attachment;
+mod layout;
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use maulstick_rig::UserError;
+use maulstick_types::wire::header::{HEADER_BYTES, Header};
+use mcap::MAGIC;
+use mcap::records::{Record, op};
+
+pub use self::attachment::Attachment;
+use self::layout::Layout;
+use crate::field_table::{FieldTable, TableError};
+use crate::mcap_records::{Found, HEAD, records, unpack};
+use crate::mcap_walk::read_at;
+use crate::value::Value;
+
+/// Largest chunk that is read, bytes; those of a recorder have a quarter of a megabyte before they are compressed.
+const MOST_CHUNK: u64 = 256 << 20;
+
+/// A recording on the disk.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    path: PathBuf,
+    file: Arc<File>,
+    length: u64,
+    layout: Layout,
+}
+
+/// A topic.
+#[derive(Clone, Debug)]
+pub struct Topic {
+    /// Its name, without a rig's prefix.
+    pub name: String,
+    /// Name and version of its messages, where they are known.
+    pub message: Option<String>,
+    /// How its messages are decoded, or why they cannot be.
+    pub table: Result<FieldTable, TableError>,
+}
+
+/// A message of a recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedMessage {
+    /// Number of its channel.
+    pub channel: u16,
+    /// When it arrived, rig clock, ns.
+    pub arrived_ns: u64,
+    /// Its header.
+    pub header: Header,
+    /// Header and body.
+    pub bytes: Vec<u8>,
+}
+
+impl Topic {
+    /// A topic of messages of a table.
+    #[cfg(test)]
+    pub(crate) fn of(table: FieldTable) -> Self {
+        Self {
+            name: String::new(),
+            message: None,
+            table: Ok(table),
+        }
+    }
+
+    /// Name of its messages, where their table is known.
+    pub(crate) fn message_name(&self) -> Option<&str> {
+        self.table.as_ref().ok().map(FieldTable::name)
+    }
+
+    /// True if a message may have a value at a path.
+    #[must_use]
+    pub fn has(&self, path: &str) -> bool {
+        self.table.as_ref().is_ok_and(|table| table.has(path))
+    }
+
+    /// What a message holds.
+    ///
+    /// # Errors
+    /// [`TableError`].
+    pub fn decode(&self, bytes: &[u8]) -> Result<Value, TableError> {
+        let table = self.table.as_ref().map_err(Clone::clone)?;
+        table.decode(bytes.get(HEADER_BYTES..).unwrap_or_default())
+    }
+}
+
+impl Recording {
+    /// Opens a recording.
+    ///
+    /// # Errors
+    /// A [`UserError`] where it cannot be read, or is none.
+    pub fn open(path: &Path) -> Result<Self, UserError> {
+        let reading = |error: std::io::Error| UserError::reading(path, &error);
+        let file = File::open(path).map_err(reading)?;
+        let length = file.metadata().map_err(reading)?.len();
+        if read_at(&file, length, 0, MAGIC.len() as u64).map_err(reading)? != MAGIC {
+            return Err(UserError::usage("this is no MCAP file")
+                .at(path.display().to_string())
+                .help("`maulstick record` writes recordings"));
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            layout: Layout::read(&file, length).map_err(reading)?,
+            file: Arc::new(file),
+            length,
+        })
+    }
+
+    /// Its path.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What it says of itself, by name.
+    #[must_use]
+    pub fn notes(&self) -> &BTreeMap<String, BTreeMap<String, String>> {
+        &self.layout.notes
+    }
+
+    /// Files that it holds, by name.
+    #[must_use]
+    pub fn attachments(&self) -> &BTreeMap<String, Attachment> {
+        &self.layout.attachments
+    }
+
+    /// Writes one of its files to `to`.
+    ///
+    /// # Errors
+    /// The error of the file system; [`ErrorKind::InvalidData`] where the file is damaged, [`ErrorKind::NotFound`] where
+    /// there is none of this name.
+    pub fn copy_attachment(&self, name: &str, to: &mut dyn Write) -> std::io::Result<()> {
+        match self.layout.attachments.get(name) {
+            Some(attachment) => attachment.copy(&self.file, to),
+            None => Err(ErrorKind::NotFound.into()),
+        }
+    }
+
+    /// One of its files; `None` if there is none of this name.
+    ///
+    /// # Errors
+    /// A [`UserError`] where it cannot be read, or is damaged.
+    pub fn attachment(&self, name: &str) -> Result<Option<Vec<u8>>, UserError> {
+        let mut bytes = Vec::new();
+        match self.copy_attachment(name, &mut bytes) {
+            Ok(()) => Ok(Some(bytes)),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(UserError::reading(&self.path, &error)),
+        }
+    }
+
+    /// What is wrong with it, if anything is known.
+    #[must_use]
+    pub fn damage(&self) -> Option<&str> {
+        self.layout.damage.as_deref()
+    }
+
+    /// Its topics, by the numbers of their channels.
+    #[must_use]
+    pub fn topics(&self) -> &BTreeMap<u16, Topic> {
+        &self.layout.topics
+    }
+
+    /// Times of its first and last message, rig clock, ns; `None` if it has none.
+    #[must_use]
+    pub fn times_ns(&self) -> Option<[u64; 2]> {
+        let first = self
+            .layout
+            .chunks
+            .iter()
+            .map(|chunk| chunk.times_ns[0])
+            .min()?;
+        let last = self
+            .layout
+            .chunks
+            .iter()
+            .map(|chunk| chunk.times_ns[1])
+            .max()?;
+        Some([first, last])
+    }
+
+    /// Has `each` see the messages that arrived in a range of times, in the order of the file, until it says false.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the file cannot be read. What is damaged is left out, and noted in [`Self::damage`].
+    pub fn messages(
+        &mut self,
+        [from_ns, to_ns]: [u64; 2],
+        each: &mut dyn FnMut(RecordedMessage) -> bool,
+    ) -> Result<(), UserError> {
+        let Layout { chunks, damage, .. } = &mut self.layout;
+        for chunk in &*chunks {
+            let [first, last] = chunk.times_ns;
+            if last < from_ns || first > to_ns {
+                continue;
+            }
+            if chunk.bytes > MOST_CHUNK {
+                damage.get_or_insert("a chunk is too large to be read".into());
+                continue;
+            }
+            let bytes = read_at(&self.file, self.length, chunk.at, chunk.bytes);
+            let bytes = bytes.map_err(|error| UserError::reading(&self.path, &error))?;
+            let unpacked = unpack(bytes.get(HEAD..).unwrap_or_default());
+            if let Some(found) = unpacked.damage {
+                damage.get_or_insert(found);
+            }
+            for record in records(&unpacked.bytes, 0).filter(|own| own.whole) {
+                let Some(message) = message(&record) else {
+                    continue;
+                };
+                let is_meant = (from_ns..=to_ns).contains(&message.arrived_ns);
+                if is_meant && !each(message) {
+                    return Ok(());
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The message of a record, if it is one of the bus.
+fn message(record: &Found<'_>) -> Option<RecordedMessage> {
+    if record.opcode != op::MESSAGE {
+        return None;
+    }
+    let Ok(Record::Message { header, data }) = mcap::parse_record(op::MESSAGE, record.body) else {
+        return None;
+    };
+    Some(RecordedMessage {
+        channel: header.channel_id,
+        arrived_ns: header.log_time,
+        header: Header::from_bytes(&data).ok()?,
+        bytes: data.into_owned(),
+    })
+}
