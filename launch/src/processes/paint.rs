@@ -19,7 +19,7 @@ use nix::sys::signal::Signal;
 use super::NodeOptions;
 use crate::backend::choose_backend;
 use crate::destination::{VIEW, export};
-use crate::document::{go_on, wrong};
+use crate::document::{go_on_in_rig, wrong};
 use crate::performance::{library_from, painting_setup, refused};
 
 /// A paint node that is to stop takes at most so many turns more: it is waited for.
@@ -101,7 +101,7 @@ fn paint_what_has_come(
 /// The painting that the settings ask for: in its document, or in memory.
 fn painting(config: &RigConfig) -> Result<(Option<Document>, Sequencer, u64), UserError> {
     if let Some(path) = &config.paint.document {
-        let (document, sequencer, since) = go_on(config, path)?;
+        let (document, sequencer, since) = go_on_in_rig(config, path)?;
         return Ok((Some(document), sequencer, since));
     }
     let library = library_from(config.paint.paints.as_deref())?;

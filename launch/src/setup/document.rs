@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use maulstick_canvas::EditError;
 use maulstick_document::{Access, Document, DocumentError, DocumentSettings, Opened, glance};
 use maulstick_painting::{Painting, Sequencer};
 use maulstick_rig::UserError;
@@ -51,6 +52,25 @@ pub fn read(path: &Path) -> Result<(Document, Opened), UserError> {
 /// # Errors
 /// A [`UserError`] where the file cannot be used, or the settings are wrong.
 pub fn go_on(config: &RigConfig, path: &Path) -> Result<(Document, Sequencer, u64), UserError> {
+    go_on_by(config, path, Opened::sequencer)
+}
+
+/// As [`go_on`], for a rig.
+///
+/// # Errors
+/// As [`go_on`].
+pub fn go_on_in_rig(
+    config: &RigConfig,
+    path: &Path,
+) -> Result<(Document, Sequencer, u64), UserError> {
+    go_on_by(config, path, Opened::in_rig)
+}
+
+fn go_on_by(
+    config: &RigConfig,
+    path: &Path,
+    restore: fn(Opened) -> Result<Sequencer, EditError>,
+) -> Result<(Document, Sequencer, u64), UserError> {
     let room = config.paint.room().map_err(|what| {
         UserError::usage(what)
             .at("[paint]")
@@ -64,7 +84,7 @@ pub fn go_on(config: &RigConfig, path: &Path) -> Result<(Document, Sequencer, u6
     let (mut sequencer, since) = match opened {
         Some(opened) => {
             let since = opened.snapshot().versions;
-            (opened.sequencer().map_err(refused)?, since)
+            (restore(opened).map_err(refused)?, since)
         }
         None => {
             let library = library_from(config.paint.paints.as_deref())?;

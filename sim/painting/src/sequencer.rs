@@ -335,7 +335,7 @@ impl Sequencer {
     fn release(&mut self) -> Vec<Replied> {
         let mut replies = Vec::new();
         let mut place = 0;
-        while place < self.waiting.len() {
+        while place < self.waiting.len() && !self.repeats {
             let due = self.waiting[place].after.as_ref().is_none_or(|after| {
                 let origin = Origin {
                     source: after.brush,
@@ -438,7 +438,8 @@ impl Sequencer {
     ) -> Result<(), EditError> {
         let before = self.announced.get(brush).filter(|_| again);
         if let Some(step) = before.map(|take| take.step) {
-            self.painting.undo_to(brush, step)?;
+            let undone = self.painting.undo_to(brush, step);
+            undone.inspect_err(|_| self.painting.break_record())?;
         }
         self.painting.take(brush, loads)?;
         let step = self.painting.newest_step();

@@ -152,4 +152,7 @@ pub struct SequencerSnapshot {
     pub consumed: Vec<(u32, u32, u64)>,
     /// The newest reply to each client.
     pub replies: ReplyCache,
+    /// True in a file that a player has prepared for its session: nobody else paints in it until the player comes.
+    #[serde(default)]
+    pub held: bool,
 }

@@ -176,7 +176,9 @@ impl PaintNode {
             committed: (0, 0),
             ticker: Ticker::default(),
             newer_brushes: BTreeMap::new(),
-            session: None,
+            session: sequencer
+                .is_repeating()
+                .then(|| repeat::Repetition::new(None, b.now_ns())),
             topics: topics.clone(),
             me,
             sequencer,

@@ -11,7 +11,8 @@ const SILENCE_NS: u64 = 10_000_000_000;
 /// A session that is painted again.
 #[derive(Clone, Debug)]
 pub(super) struct Repetition {
-    number: u64,
+    /// Number of the player; `None` until it comes.
+    number: Option<u64>,
     /// Number of the next batch.
     batch: u64,
     /// Answer to the batch before it, which is asked again where it was lost.
@@ -20,18 +21,28 @@ pub(super) struct Repetition {
     heard_ns: u64,
 }
 
+impl Repetition {
+    /// A session at its beginning.
+    pub(super) fn new(number: Option<u64>, now_ns: u64) -> Self {
+        Self {
+            number,
+            batch: 0,
+            answer: Outcome::done(""),
+            heard_ns: now_ns,
+        }
+    }
+}
+
 impl PaintNode {
     /// Carries out a command about a session.
     pub(super) fn repeat(&mut self, command: &SessionCommand, now_ns: u64) -> Outcome {
-        let own = self.session.as_ref().map(|session| session.number);
+        let own = self.session.as_ref().and_then(|session| session.number);
         match command {
             SessionCommand::Begin { session } if own.is_none_or(|own| own == *session) => {
-                self.session.get_or_insert(Repetition {
-                    number: *session,
-                    batch: 0,
-                    answer: Outcome::done(""),
-                    heard_ns: now_ns,
-                });
+                match own {
+                    Some(_) => {}
+                    None => self.session = Some(Repetition::new(Some(*session), now_ns)),
+                }
                 self.sequencer.begin_repeating();
                 Outcome::done("")
             }
@@ -59,14 +70,16 @@ impl PaintNode {
         let Some(session) = &mut self.session else {
             return Outcome::done("");
         };
-        session.heard_ns = now_ns;
         if batch < session.batch {
+            session.heard_ns = now_ns;
             return session.answer.clone();
         }
         session.batch = batch + 1;
         let answer = self.accept_batch(records);
+        // A batch may have taken long.
+        let now_ns = self.bus.now_ns();
         if let Some(session) = &mut self.session {
-            session.answer = answer.clone();
+            (session.answer, session.heard_ns) = (answer.clone(), now_ns);
         }
         answer
     }

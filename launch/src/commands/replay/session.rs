@@ -6,12 +6,13 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::random_u64;
-use maulstick_document::journal;
+use maulstick_document::{Checkpoint, journal};
 use maulstick_painting::sequencer::Record;
 use maulstick_rig::command_client::CommandClient;
 use maulstick_rig::files::first_free;
 use maulstick_rig::user_error::EXIT_FAILURE;
 use maulstick_rig::{NodeHandle, UserError};
+use maulstick_session::RecordedSession;
 use maulstick_types::command::{RIG_NODE, RigCommand, SessionCommand};
 use serde_bytes::ByteBuf;
 use serde_json::json;
@@ -61,15 +62,18 @@ pub(super) fn replay(options: &ReplayOptions, session: &SessionFile) -> Result<i
         batch: 0,
         sent: Instant::now(),
     };
-    player.open(&path)?;
+    let events = player.events()?;
+    player.open(&path, &|| member.stop.requested())?;
     let mut playback = Playback::new(options, range_ns)?;
-    let played = player.play(&mut playback, &path);
+    let played = player.play(&mut playback, &path, events);
     let ended = player.end();
-    played.and(ended)?;
+    let code = playback.end(&member);
+    if !member.stop.requested() {
+        played.and(ended)?;
+    }
     if !options.json {
         say!("painted in {}", path.display());
     }
-    let code = playback.end(&member);
     member.leave();
     Ok(code)
 }
@@ -82,6 +86,15 @@ fn free_beside(recording: &Path) -> PathBuf {
         number => recording.with_file_name(format!("{stem}-replay-{number}.maul")),
     };
     first_free(1, named).1
+}
+
+/// Marks a painting as one in which nobody paints until its player comes.
+fn hold(path: &Path) -> Result<(), UserError> {
+    let (document, mut sequencer, since) = open_begin(path)?;
+    let mut checkpoint = Checkpoint::of(&mut sequencer, since);
+    checkpoint.sequencer.held = true;
+    document.write_checkpoint(checkpoint);
+    document.close().map_err(|error| wrong(path, &error))
 }
 
 /// What paints a session again.
@@ -101,8 +114,12 @@ struct Player<'a> {
 
 impl Player<'_> {
     /// Plays until the end, or until it is told to end.
-    fn play(&mut self, playback: &mut Playback, path: &Path) -> Result<(), UserError> {
-        let mut events = self.events()?;
+    fn play(
+        &mut self,
+        playback: &mut Playback,
+        path: &Path,
+        mut events: Events<Record>,
+    ) -> Result<(), UserError> {
         let mut played_ns = 0;
         while !self.member.stop.requested() {
             let next_ns = events.next_ns()?;
@@ -112,8 +129,8 @@ impl Player<'_> {
                 if is_over {
                     playback.transport.rewind();
                 }
-                self.open_anew(path)?;
                 events = self.events()?;
+                self.open_anew(path)?;
                 played_ns = 0;
                 continue;
             }
@@ -137,20 +154,21 @@ impl Player<'_> {
         Ok(())
     }
 
-    /// What was accepted, as it comes.
+    /// What was accepted, as it comes, once the first of it has come: reading may take longer than the paint node waits.
     fn events(&self) -> Result<Events<Record>, UserError> {
         let mut session = self.session.clone();
         let to_ns = match self.options.end {
             Some(end_s) => (end_s * 1e9) as u64,
             None => u64::MAX,
         };
-        Events::read(move |feed| {
+        let mut events = Events::read(move |feed| {
             let folder =
                 tempfile::tempdir().map_err(|error| UserError::failure(error.to_string()))?;
             let begin = folder.path().join(PAINTING);
             session.write_painting(&begin)?;
             let (document, mut sequencer, _) = open_begin(&begin)?;
-            session.follow(&mut sequencer, to_ns, &mut |_, at_ns, event| {
+            let recorded = RecordedSession::after(&sequencer);
+            session.follow(recorded, &mut sequencer, to_ns, &mut |_, at_ns, event| {
                 let is_wanted = match event {
                     Event::Accepted(record) => feed.push(at_ns, record),
                     Event::Other { .. } => true,
@@ -162,12 +180,14 @@ impl Player<'_> {
                 }
             })?;
             document.close().map_err(|error| wrong(&begin, &error))
-        })
+        })?;
+        events.next_ns()?;
+        Ok(events)
     }
 
     /// Has the rig go on in the painting as it was at the beginning, and the hands wait.
-    fn open(&mut self, path: &Path) -> Result<(), UserError> {
-        self.go_on_in(path, self.options.painting.forget)?;
+    fn open(&mut self, path: &Path, stop: &dyn Fn() -> bool) -> Result<(), UserError> {
+        self.go_on_in(path, self.options.painting.forget, stop)?;
         (self.number, self.batch) = (random_u64(), 0);
         self.command(SessionCommand::Begin {
             session: self.number,
@@ -178,14 +198,19 @@ impl Player<'_> {
         }
     }
 
-    fn go_on_in(&mut self, path: &Path, forget: bool) -> Result<(), UserError> {
+    fn go_on_in(
+        &mut self,
+        path: &Path,
+        forget: bool,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<(), UserError> {
         self.session.write_painting(path)?;
+        hold(path)?;
         let command = RigCommand::Open {
             path: whole(path)?,
             forget,
         };
-        let stop = &self.member.stop;
-        let opened = self.rig.send(command, None, LONGEST, &|| stop.requested());
+        let opened = self.rig.send(command, None, LONGEST, stop);
         // Without an answer the rig may be about to open it.
         if opened
             .as_ref()
@@ -204,9 +229,13 @@ impl Player<'_> {
             .parent()
             .filter(|folder| !folder.as_os_str().is_empty());
         let folder = tempfile::tempdir_in(folder.unwrap_or(Path::new("."))).map_err(failed)?;
-        self.go_on_in(&folder.path().join(PAINTING), false)?;
+        // While the rig may be in it, it stays.
+        let folder = folder.keep();
+        let never = || false;
+        self.go_on_in(&folder.join(PAINTING), false, &never)?;
         std::fs::remove_file(path).map_err(failed)?;
-        self.open(path)
+        self.open(path, &never)?;
+        std::fs::remove_dir_all(&folder).map_err(|error| UserError::writing(&folder, &error))
     }
 
     fn send(&mut self, batch: &[Record]) -> Result<(), UserError> {

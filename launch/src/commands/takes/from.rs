@@ -10,6 +10,7 @@ use maulstick_painting::Sequencer;
 use maulstick_painting::sequencer::{Accepted, Record};
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, is_painting, write_whole};
+use maulstick_session::RecordedSession;
 use maulstick_streams::topic_pattern::matches;
 use maulstick_types::paint::Entry;
 
@@ -184,7 +185,9 @@ impl Source {
         each: &mut dyn FnMut(&mut Sequencer, u64, Event<'_>) -> Result<(), UserError>,
     ) -> Result<(), UserError> {
         match self {
-            Self::Session(session) => session.follow(sequencer, to_ns, each),
+            Self::Session(session) => {
+                session.follow(RecordedSession::after(sequencer), sequencer, to_ns, each)
+            }
             Self::Painting(painting) => painting.follow(sequencer, to_ns, each),
         }
     }

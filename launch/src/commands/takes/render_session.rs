@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use maulstick_paint_node::snapshots::write_snapshot;
 use maulstick_rig::{RigConfig, UserError};
-use maulstick_session::Autosave;
+use maulstick_session::{Autosave, RecordedSession};
 
 use super::from::{Counts, open_begin};
 use super::render::RenderOptions;
@@ -44,22 +44,29 @@ pub(super) fn render_session(
     };
     session.write_painting(&path)?;
     let (document, mut sequencer, since) = open_begin(&path)?;
+    // What is decided here is another entry of the journal.
+    let recorded = RecordedSession::after(&sequencer);
     let backend = painting.backend.as_ref().unwrap_or(&config.paint.backend);
     choose_backend(&mut sequencer, backend)?;
     let mut autosave = Autosave::new(document, &mut sequencer, since);
     let bar = progress_bar(session.length_ns()).with_message("painting");
     sequencer.begin_repeating();
     let (begun, mut counts) = (Instant::now(), Counts::default());
-    session.follow(&mut sequencer, u64::MAX, &mut |sequencer, at_ns, event| {
-        if let Event::Accepted(record) = event {
-            counts.note(&record);
-            sequencer.repeat(record).map_err(refused)?;
-            sequencer.drain_journal();
-            autosave.turn(sequencer, begun.elapsed().as_nanos() as u64);
-            bar.set_position(at_ns / 1_000_000);
-        }
-        Ok(())
-    })?;
+    session.follow(
+        recorded,
+        &mut sequencer,
+        u64::MAX,
+        &mut |sequencer, at_ns, event| {
+            if let Event::Accepted(record) = event {
+                counts.note(&record);
+                sequencer.repeat(record).map_err(refused)?;
+                sequencer.drain_journal();
+                autosave.turn(sequencer, begun.elapsed().as_nanos() as u64);
+                bar.set_position(at_ns / 1_000_000);
+            }
+            Ok(())
+        },
+    )?;
     bar.finish_and_clear();
     sequencer.end_repeating();
     let ledger = painting.ledger.as_deref();

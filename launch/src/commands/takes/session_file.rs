@@ -137,27 +137,31 @@ impl SessionFile {
         last.saturating_sub(first)
     }
 
-    /// Has `each` see what happened since `sequencer`, whose painting is that of the beginning, up to so many ns after the
-    /// beginning: the time since then, ns, and the event.
+    /// Has `each` see what happened since the place of `session`, where the painting of `sequencer` is, up to so many ns
+    /// after the beginning: the time since then, ns, and the event.
     ///
     /// # Errors
     /// A [`UserError`] where the file cannot be read, is damaged, or something is missing in it; that of `each`.
     pub(crate) fn follow(
         &mut self,
+        mut session: RecordedSession,
         sequencer: &mut Sequencer,
         to_ns: u64,
         each: &mut dyn FnMut(&mut Sequencer, u64, Event<'_>) -> Result<(), UserError>,
     ) -> Result<(), UserError> {
-        let mut session = RecordedSession::after(sequencer);
         let topics = self.recording.topics().clone();
         let [first_ns, _] = self.recording.times_ns().unwrap_or_default();
         let place = self.path.display().to_string();
         let broken = |fault: &SessionFault, at_ns: u64| {
-            let at_s = at_ns as f64 * 1e-9;
+            let [at_s, end_s] = [0, 1].map(|less| {
+                let tenths = (at_ns / 100_000_000)
+                    .saturating_sub(less * u64::from(at_ns % 100_000_000 == 0));
+                tenths as f64 * 0.1
+            });
             UserError::usage(format!("at {at_s:.1} s: {fault}"))
                 .at(&place)
                 .help(format!(
-                    "`maulstick take from {place} --end {at_s:.1} -o TAKE` keeps what is before it"
+                    "`maulstick take from {place} --end {end_s:.1} -o TAKE` keeps what is before it"
                 ))
         };
         let (mut newest_ns, mut done) = (0, Ok(()));

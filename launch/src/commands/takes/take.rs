@@ -9,6 +9,7 @@ use maulstick_device::salvage::salvage;
 use maulstick_device::{Take, TakeSetup};
 use maulstick_rig::files::{Kind, write_whole};
 use maulstick_rig::{RigConfig, UserError};
+use maulstick_session::RecordedSession;
 use maulstick_streams::recovery::DamagedRecording;
 use maulstick_streams::topic_pattern::{matches, parts};
 use maulstick_types::stylus::StylusPose;
@@ -121,7 +122,8 @@ fn session_info(mut session: SessionFile, as_json: bool) -> Result<i32, UserErro
     session.write_painting(&begin)?;
     let (document, mut sequencer, _) = from::open_begin(&begin)?;
     let (mut counts, mut devices) = (from::Counts::default(), BTreeMap::<String, u64>::new());
-    session.follow(&mut sequencer, u64::MAX, &mut |_, _, event| {
+    let recorded = RecordedSession::after(&sequencer);
+    session.follow(recorded, &mut sequencer, u64::MAX, &mut |_, _, event| {
         match event {
             Event::Accepted(record) => counts.note(&record),
             Event::Other { topic, .. } => {

@@ -138,6 +138,21 @@ impl Opened {
         Ok(sequencer)
     }
 
+    /// As [`sequencer`](Self::sequencer), for a rig: in a file that a player has prepared for its session brushes stay where
+    /// they are, and all wait for the player.
+    ///
+    /// # Errors
+    /// As [`sequencer`](Self::sequencer).
+    pub fn in_rig(self) -> Result<Sequencer, EditError> {
+        if !self.sequencer.held {
+            return self.sequencer();
+        }
+        let mut sequencer = self.in_its_midst()?;
+        sequencer.record();
+        sequencer.begin_repeating();
+        Ok(sequencer)
+    }
+
     /// The same for records that follow without a break: brushes stay where they are.
     ///
     /// # Errors

@@ -82,6 +82,16 @@ pub(crate) fn advance(
     Ok(())
 }
 
+/// Bytes of the record after a checkpoint; beyond any limit where it was lost, so that it begins anew.
+pub(crate) fn bytes_after(database: &Database, change: &RecordChange) -> u64 {
+    let query = "SELECT EXISTS (SELECT 1 FROM beginning)";
+    let begun = database.connection.query_row(query, [], |row| row.get(0));
+    match (change, begun) {
+        (RecordChange::Continues, Ok(false)) => u64::MAX,
+        _ => bytes(database).unwrap_or_default(),
+    }
+}
+
 /// Discards the record of a closed painting: the next one that opens it begins another.
 ///
 /// # Errors

@@ -347,9 +347,10 @@ impl DocumentThread {
                 self.is_first = false;
                 self.saved_version = checkpoint.painting.kept.versions;
                 // The next look is at the next checkpoint.
-                self.shared
-                    .record_bytes
-                    .store(record::bytes(&self.database).unwrap_or_default(), SeqCst);
+                self.shared.record_bytes.store(
+                    record::bytes_after(&self.database, &checkpoint.record),
+                    SeqCst,
+                );
                 self.shared
                     .committed
                     .fetch_max(checkpoint.sequencer.next, SeqCst);

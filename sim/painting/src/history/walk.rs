@@ -77,13 +77,6 @@ impl History {
         known.then(|| before.count() as u64)
     }
 
-    /// True if a step has changed more than what brushes carry.
-    #[must_use]
-    pub(crate) fn changes_surfaces(&self) -> bool {
-        let changes = |step: &Step| !step.tiles.is_empty() || step.effects.materials.is_some();
-        !self.open.is_empty() || self.steps.values().any(changes)
-    }
-
     /// True for a step that is not finished.
     #[must_use]
     pub fn is_open(&self, id: u64) -> bool {

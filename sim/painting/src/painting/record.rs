@@ -38,9 +38,15 @@ impl RecordState {
         own.chain(named).flatten()
     }
 
-    /// Notes that a step was undone, redone or gone to. One of before the beginning is not there when the record is
-    /// executed again.
-    pub(crate) fn turn(&mut self, step: u64) {
+    /// Notes that a step was undone or redone. One of before the beginning is not there when the record is executed again,
+    /// nor is one that became one with others by the room that there was.
+    pub(crate) fn turn(&mut self, step: &Step) {
+        self.is_broken |= step.operations > 1 && self.beginning.is_some();
+        self.go_to(step.id);
+    }
+
+    /// Notes that a step was gone to.
+    pub(crate) fn go_to(&mut self, step: u64) {
         let begun = self.beginning.as_ref();
         self.is_broken |= begun.is_some_and(|begun| step <= begun.painting.step);
     }

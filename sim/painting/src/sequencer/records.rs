@@ -258,6 +258,7 @@ impl Sequencer {
                 .map(|(origin, next)| (origin.source, origin.epoch, *next))
                 .collect(),
             replies: self.replies.clone(),
+            held: false,
         }
     }
 

@@ -16,6 +16,12 @@ impl Sequencer {
         self.repeats = true;
     }
 
+    /// True while a session is accepted again.
+    #[must_use]
+    pub fn is_repeating(&self) -> bool {
+        self.repeats
+    }
+
     /// Accepts a record of a session as if it had come now: it takes the next place in the journal.
     ///
     /// # Errors

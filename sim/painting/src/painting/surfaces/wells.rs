@@ -113,7 +113,7 @@ impl Painting {
         self.close_windows();
         let moved = self.surfaces[on].with_moved_paint(&ways, &self.surfaces.pager);
         // A palette that is laid out before anything was painted is nothing to undo.
-        let is_step = !moved.is_empty() || self.history.changes_surfaces();
+        let is_step = !moved.is_empty() || !self.surfaces.are_bare();
         if !moved.is_empty() {
             self.clock.stop(Some(surface));
         }

@@ -136,7 +136,9 @@ impl Painting {
                 Direction::Redo => self.redo(None),
             };
             if let Err(error) = went {
-                // Back by the way that was just gone, which nothing lies over.
+                // Back by the way that was just gone, which nothing lies over. No message describes what it leaves: dryings
+                // that were stopped, steps that were ended.
+                self.break_record();
                 for way in gone.into_iter().rev() {
                     drop(match way {
                         Direction::Undo => self.redo(None),
@@ -148,7 +150,7 @@ impl Painting {
             gone.push(way);
         }
         if step > 0 {
-            self.record.turn(step);
+            self.record.go_to(step);
         }
         let newest = self.history.last_done(None);
         Ok(newest.map_or_else(|| "the beginning".to_owned(), |step| step.what.clone()))
@@ -192,7 +194,7 @@ impl Painting {
         let effects = &step.effects;
         // Time would do again what is taken back.
         self.clock.stop(None);
-        self.record.turn(step.id);
+        self.record.turn(step);
         for (place, change) in &*step.tiles {
             self.surfaces.put(*place, change.end(to).clone());
         }
