@@ -12,7 +12,7 @@ use maulstick_rig::UserError;
 #[derive(Args, Clone, Debug)]
 pub struct BenchOptions {
     /// What to measure: brush, bus, document, frames, haptics, idle, latency, looks, optics, paint, pen,
-    /// render, view, window [default: everything]
+    /// recording, render, view, window [default: everything]
     area: Option<String>,
     /// Paint model to measure in `paint` [default: impasto]
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(model_names()))]

@@ -1,6 +1,7 @@
 //! Accepted records as bytes: messages as on the bus, each preceded by its index and its length.
 
 use std::io::Read as _;
+use std::ops::Range;
 
 use maulstick_painting::sequencer::{Accepted, Record};
 use maulstick_types::brush::BrushState;
@@ -22,6 +23,46 @@ const NO_ORIGIN: Origin = Origin {
     source: 0,
     epoch: 0,
 };
+
+/// A row of the journal.
+pub(crate) struct JournalRow {
+    /// Serial numbers of its first and last record.
+    pub(crate) ends: [u64; 2],
+    /// Its records, compressed.
+    pub(crate) data: Vec<u8>,
+    /// True if they match their checksum.
+    pub(crate) is_intact: bool,
+}
+
+/// Reads the rows whose last records have serial numbers in a range, in order, until `each` says false.
+///
+/// # Errors
+/// The error of SQLite; that of `each`.
+pub(crate) fn each_row(
+    database: &Database,
+    last: Range<u64>,
+    mut each: impl FnMut(JournalRow) -> Result<bool, DocumentError>,
+) -> Result<(), DocumentError> {
+    let query =
+        "SELECT id, last, data, sum FROM journal WHERE last >= ?1 AND last < ?2 ORDER BY id";
+    let mut statement = database.connection.prepare_cached(query)?;
+    let bounds = [last.start, last.end].map(|bound| i64::try_from(bound).unwrap_or(i64::MAX));
+    let mut rows = statement.query(bounds)?;
+    while let Some(row) = rows.next()? {
+        let ends = [row.get::<_, i64>(0)?, row.get(1)?].map(|end| end as u64);
+        let data: Vec<u8> = row.get(2)?;
+        let is_intact = journal_checksum(ends, &data) == row.get::<_, i64>(3)?;
+        let row = JournalRow {
+            ends,
+            data,
+            is_intact,
+        };
+        if !each(row)? {
+            break;
+        }
+    }
+    Ok(())
+}
 
 fn damaged(what: impl ToString) -> DocumentError {
     DocumentError::Damaged(format!("its journal: {}", what.to_string()))

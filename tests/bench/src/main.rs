@@ -15,6 +15,7 @@
 //! | [`advection`] | `paint`: the advection by itself, beside a copy |
 //! | [`paint`] | `paint`: steps of the paint model by themselves, beside a copy |
 //! | [`pen`] | `pen`: a pen's sample to the brush node, through the window and through the HID daemon |
+//! | [`recording`] | `recording`: a recording of ten minutes, opened and sought in, beside the `mcap` crate's reader |
 //! | [`render`] | `render`: the 30 s recording, offline |
 //! | [`report`] | rows and their table |
 //! | [`tails`] | `render`: work beside the steps, as shares of it |
@@ -36,6 +37,7 @@ mod optics;
 mod paint;
 mod peers;
 mod pen;
+mod recording;
 mod render;
 mod report;
 mod running;
@@ -56,7 +58,7 @@ use crate::report::Report;
 #[command(name = "maulstick-bench", version)]
 struct Options {
     /// What to measure: brush, bus, document, frames, haptics, idle, latency, looks, optics, paint, pen,
-    /// render, view, window [default: everything]
+    /// recording, render, view, window [default: everything]
     area: Option<String>,
     /// Paint model to measure
     #[arg(long, default_value = "impasto", value_parser = PossibleValuesParser::new(model_names()))]
@@ -81,7 +83,7 @@ type Area = (
     fn(&mut Report, &Options) -> Result<(), UserError>,
 );
 
-const AREAS: [Area; 14] = [
+const AREAS: [Area; 15] = [
     ("brush", |report, _| brush::run(report)),
     ("bus", |report, _| bus::run(report)),
     ("document", |report, _| document::run(report)),
@@ -95,6 +97,7 @@ const AREAS: [Area; 14] = [
         paint::run(report, &options.backend, &options.model)
     }),
     ("pen", |report, _| pen::run(report)),
+    ("recording", |report, _| recording::run(report)),
     ("render", |report, _| render::run(report)),
     ("view", |report, _| view::run(report)),
     ("window", |report, _| window::run(report)),

@@ -2,7 +2,6 @@
 //! states for the paint, contact models for a device.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::time::Instant;
 
 use maulstick_bus::bus::Publish;

@@ -45,7 +45,7 @@ fn write_to(
 ) -> Result<u64, UserError> {
     let writing = |error| fault(path, error);
     let mut writer = RecordingWriter::begin(file).map_err(writing)?;
-    for (name, note) in &recording.notes {
+    for (name, note) in recording.notes() {
         writer.note(name, note.clone()).map_err(writing)?;
     }
     let (mut count, mut wrong) = (0, None);

@@ -24,7 +24,7 @@ use crate::error::DocumentError;
 use crate::file::database::{Access, Database, is_new};
 use crate::journal;
 use crate::record::beginning;
-use crate::tables::checksum::{Checksum, journal_checksum};
+use crate::tables::checksum::Checksum;
 use crate::tables::rows::{COPY, StoredNonTileState, StoredStepEffects, place_of};
 use crate::tables::schema::Table;
 pub use shown::shown_tiles;
@@ -299,19 +299,15 @@ pub fn text(database: &Database, hash: &str) -> Result<String, DocumentError> {
 
 /// Records accepted since the last checkpoint.
 fn records(database: &Database, from: u64) -> Result<Vec<Record>, DocumentError> {
-    let query = "SELECT id, last, data, sum FROM journal ORDER BY id";
-    let mut statement = database.connection.prepare(query)?;
-    let mut rows = statement.query(params![])?;
     let mut records = Vec::new();
-    while let Some(row) = rows.next()? {
-        let (first, last): (i64, i64) = (row.get(0)?, row.get(1)?);
-        let data: Vec<u8> = row.get(2)?;
-        if journal_checksum([first as u64, last as u64], &data) != row.get::<_, i64>(3)? {
+    journal::each_row(database, 0..u64::MAX, |row| {
+        if !row.is_intact {
             return Err(damaged("the journal does not match its checksum"));
         }
-        let read = journal::read(first as u64, &data)?;
+        let read = journal::read(row.ends[0], &row.data)?;
         records.extend(read.into_iter().filter(|record| record.serial >= from));
-    }
+        Ok(true)
+    })?;
     Ok(records)
 }
 

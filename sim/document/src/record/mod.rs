@@ -19,7 +19,7 @@ use crate::checkpoint::Checkpoint;
 use crate::error::DocumentError;
 use crate::file::database::{Access, Database};
 use crate::journal;
-use crate::tables::checksum::{journal_checksum, record_checksum};
+use crate::tables::checksum::record_checksum;
 use crate::tables::schema::has_record;
 use crate::writing::Writer;
 
@@ -111,18 +111,18 @@ fn clear(database: &Database) -> Result<(), DocumentError> {
 /// Adds the rows of the journal before `serial`, and then `records`.
 fn append(database: &Database, serial: u64, records: &[Record]) -> Result<(), DocumentError> {
     let mut open = OpenRow::new(database)?;
-    let query = "SELECT id, last, data, sum FROM journal WHERE last < ?1 ORDER BY id";
-    let mut statement = database.connection.prepare_cached(query)?;
-    let mut rows = statement.query(params![serial as i64])?;
-    while let Some(row) = rows.next()? {
-        let ends = [row.get::<_, i64>(0)?, row.get(1)?].map(|end| end as u64);
-        let data: Vec<u8> = row.get(2)?;
-        if journal_checksum(ends, &data) != row.get::<_, i64>(3)? {
-            // The painting is at a later state: nothing but its record is lost.
-            tracing::warn!("a row of the journal is damaged: the record begins anew");
-            return clear(database);
+    let mut is_intact = true;
+    journal::each_row(database, 0..serial, |row| {
+        is_intact = row.is_intact;
+        if is_intact {
+            open.add(row.ends, &journal::unpacked(&row.data)?)?;
         }
-        open.add(ends, &journal::unpacked(&data)?)?;
+        Ok(is_intact)
+    })?;
+    if !is_intact {
+        // The painting is at a later state: nothing but its record is lost.
+        tracing::warn!("a row of the journal is damaged: the record begins anew");
+        return clear(database);
     }
     for records in records.chunks(journal::ROW_RECORDS) {
         if let (Some(first), Some(last)) = (records.first(), records.last()) {
@@ -281,20 +281,13 @@ pub(crate) fn row_from(
         }
     }
     if found.is_none() {
-        let query = "SELECT id, last, data, sum FROM journal WHERE last >= ?1 ORDER BY id LIMIT 1";
-        let read = |row: &Row<'_>| {
-            let ends: [i64; 2] = [row.get(0)?, row.get(1)?];
-            Ok((ends, row.get::<_, Vec<u8>>(2)?, row.get(3)?))
-        };
-        let row = connection
-            .prepare_cached(query)?
-            .query_row(params![serial as i64], read)
-            .optional()?;
-        if let Some((ends, data, sum)) = row {
-            let ends = ends.map(|end| end as u64);
-            checked(journal_checksum(ends, &data), sum)?;
-            found = Some((ends[0], None, journal::unpacked(&data)?));
-        }
+        journal::each_row(database, serial..u64::MAX, |row| {
+            if !row.is_intact {
+                return Err(damaged("does not match its checksum"));
+            }
+            found = Some((row.ends[0], None, journal::unpacked(&row.data)?));
+            Ok(false)
+        })?;
     }
     let Some((first, time_ms, messages)) = found else {
         return Ok(None);
