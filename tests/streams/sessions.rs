@@ -139,6 +139,11 @@ fn a_session_is_painted_again_to_the_same_picture() {
         place.done(&["render", file, "-o", "again.png", "--overwrite"]);
         assert_same(&place.bytes("again.png"), &painted, file);
     }
+    // What is decided of the backend is an entry of the journal.
+    let gpu = ["--backend", "gpu", "-o", "gpu.png"];
+    let said = place.done(&[&["render", "s.mcap"], gpu.as_slice()].concat());
+    let said = String::from_utf8_lossy(&said.stdout).into_owned();
+    has(&said, &["8 commands"]);
     let half = info["seconds"].as_f64().expect("a number") / 2.0;
     let half = format!("{half:.2}");
     place.done(&[

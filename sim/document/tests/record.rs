@@ -16,9 +16,9 @@ use maulstick_document::{Access, Document, DocumentSettings, DocumentStats};
 use maulstick_painting::history::TilePlace;
 use maulstick_painting::sequencer::{Accepted, Record};
 use maulstick_painting::{LaidTile, Wetness};
-use maulstick_types::edits::{GoTo, Undo};
+use maulstick_types::edits::{GoTo, Undo, Wells};
 use maulstick_types::paint::Entry;
-use maulstick_types::scene::CANVAS;
+use maulstick_types::scene::{CANVAS, PALETTE};
 use proptest::prelude::*;
 use studio::{Act, Dice, Painter, tiles};
 
@@ -173,6 +173,43 @@ fn what_no_message_describes_begins_the_record_anew() {
     easel.close();
     let (_, again) = executed_again(&path, |_| false).expect("a record");
     assert_eq!(again, stored(&path));
+}
+
+#[test]
+fn wells_after_the_beginning_of_a_record_are_undone_when_it_is_executed_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.maul");
+    let mut painter = Painter::new(5);
+    let mut easel = Easel::begin(&settings(&path, Access::Paint));
+    strokes(&mut easel, &mut painter, 3);
+    lay(&mut easel);
+    easel.checkpoint();
+    easel.flush();
+    let surfaces = &easel.sequencer.painting().scene().surfaces;
+    let palette = surfaces.iter().find(|surface| surface.id == PALETTE);
+    let mut wells = palette.expect("a palette").wells.clone();
+    let before = wells.len();
+    wells.pop();
+    let others = Wells::new(PALETTE, wells).expect("wells");
+    easel.sequencer.edit(others).expect("chosen");
+    let undo = Undo { brush: None };
+    easel.sequencer.edit(undo).expect("undone");
+    let surfaces = &easel.sequencer.painting().scene().surfaces;
+    let palette = surfaces.iter().find(|surface| surface.id == PALETTE);
+    assert_eq!(palette.expect("a palette").wells.len(), before);
+    easel.close();
+    let settings = DocumentSettings::new(&path, Access::Read);
+    let (document, opened) = Document::open(&settings).expect("opened");
+    let first = opened.expect("a painting").first().expect("whole");
+    let mut sequencer = first.expect("a record");
+    while let Some(row) = document.record_row(sequencer.serial()).expect("intact") {
+        row.records
+            .into_iter()
+            .for_each(|record| sequencer.replay(record));
+    }
+    let mut surfaces = sequencer.painting().scene().surfaces.iter();
+    let palette = surfaces.find(|surface| surface.id == PALETTE);
+    assert_eq!(palette.expect("a palette").wells.len(), before);
 }
 
 #[test]
