@@ -42,6 +42,10 @@ pub fn schema(table: &FieldTable) -> Vec<u8> {
 pub fn message(header: &Header, arrived_ns: u64, value: &Value) -> Json {
     let mut json = json!(value);
     drop_absent(&mut json);
+    // The table of a foreign file may be one of a plain value.
+    if !json.is_object() {
+        json = json!({ "value": json });
+    }
     let Header { seq, event_ns, .. } = header;
     let since_ms = |then_ns: u64| arrived_ns.wrapping_sub(then_ns).cast_signed() as f64 * 1e-6;
     json[HEADER] = json!({
