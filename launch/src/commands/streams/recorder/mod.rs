@@ -98,18 +98,17 @@ pub(crate) fn record(
     } = settings;
     let voice = settings.voice;
     let begin = |path: &Path, create: Create, listener: &Listener| {
-        let part = Part::begin(path, create, listener, settings.json_hz)?;
-        voice.say(&RecorderNews::Begun { file: path })?;
-        Ok::<Part, UserError>(part)
+        Part::begin(path, create, listener, settings.json_hz)
     };
     let begun = Instant::now();
     let end = settings.lasts.map(|lasts| begun + lasts);
     let mut state = State::default();
     let mut part = begin(ring.newest(), create, listener)?;
+    voice.say(&RecorderNews::Begun { file: part.path() })?;
     ring.trim()?;
     let mut flush_at = begun + FLUSH;
     let paints = matches(&settings.topic, JOURNAL);
-    let mut copy = paints.then(PaintingCopy::default);
+    let mut copy = paints.then(|| PaintingCopy::new(false));
     while !listener.is_over() && end.is_none_or(|end| Instant::now() < end) {
         let until = end.map_or(flush_at, |end| end.min(flush_at));
         if let Some(received) = listener.next(until) {
@@ -148,6 +147,7 @@ pub(crate) fn record(
                 |path| std::fs::File::create_new(path),
                 listener,
             )?;
+            voice.say(&RecorderNews::GoesOn { file: part.path() })?;
             ring.trim()?;
             // What is sent rarely is in each file, from its beginning on.
             let now_ns = listener.member.bus.now_ns();
@@ -156,7 +156,8 @@ pub(crate) fn record(
                 again.message.arrived_ns = now_ns;
                 part.write(&again)?;
             }
-            copy = paints.then(PaintingCopy::default);
+            let is_told = copy.as_ref().is_some_and(PaintingCopy::is_told);
+            copy = paints.then(|| PaintingCopy::new(is_told));
         }
     }
     for received in listener.rest() {

@@ -32,22 +32,24 @@ pub(super) struct PaintingCopy {
     at: Instant,
     on_the_way: OnTheWay,
     copying: Option<JoinHandle<Result<Vec<u8>, UserError>>>,
-    /// True once it was said that it is refused.
+    /// True once it was refused.
     is_refused: bool,
+    /// True once that was said.
+    is_told: bool,
 }
 
-impl Default for PaintingCopy {
-    fn default() -> Self {
+impl PaintingCopy {
+    /// A copy for a file that begins now; `is_told` where it was said of the file before that it lacks the painting.
+    pub(super) fn new(is_told: bool) -> Self {
         Self {
             at: Instant::now() + SETTLES,
             on_the_way: OnTheWay::default(),
             copying: None,
             is_refused: false,
+            is_told,
         }
     }
-}
 
-impl PaintingCopy {
     /// Takes in a message of the file.
     pub(super) fn note(&mut self, received: &ReceivedMessage) {
         if self.copying.is_none() {
@@ -86,10 +88,16 @@ impl PaintingCopy {
             Err(_) => "internal error: the copy panicked".into(),
         };
         self.at = Instant::now() + AGAIN;
-        if !std::mem::replace(&mut self.is_refused, true) {
+        self.is_refused = true;
+        if !std::mem::replace(&mut self.is_told, true) {
             voice.say(&RecorderNews::LacksPainting { why: &fault })?;
         }
         Ok(None)
+    }
+
+    /// True once it was said that it is refused.
+    pub(super) fn is_told(&self) -> bool {
+        self.is_told
     }
 
     /// True while it is being made.

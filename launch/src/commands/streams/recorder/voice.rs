@@ -21,8 +21,13 @@ pub(crate) enum Voice {
 /// What happens to a recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum RecorderNews<'a> {
-    /// A file begins.
+    /// The recording begins.
     Begun {
+        /// The first file.
+        file: &'a Path,
+    },
+    /// It goes on in another file.
+    GoesOn {
         /// The file.
         file: &'a Path,
     },
@@ -66,7 +71,7 @@ impl Voice {
         match self {
             Self::Json => print_json_line(&news.in_json())?,
             Self::Words => match news {
-                RecorderNews::HasPainting { .. } => {}
+                RecorderNews::HasPainting { .. } | RecorderNews::GoesOn { .. } => {}
                 RecorderNews::Begun { .. } => say!("{}; Ctrl-C ends it", news.in_words()),
                 _ => say!("{}", news.in_words()),
             },
@@ -84,7 +89,9 @@ impl Voice {
 impl RecorderNews<'_> {
     fn in_words(&self) -> String {
         match self {
-            Self::Begun { file } => format!("recording into {}", file.display()),
+            Self::Begun { file } | Self::GoesOn { file } => {
+                format!("recording into {}", file.display())
+            }
             Self::HasPainting { file } => format!("{} has the painting", file.display()),
             Self::LacksPainting { why } => format!(
                 "without the painting, {why}: until it is there, nothing can be painted again from this recording"
@@ -106,7 +113,7 @@ impl RecorderNews<'_> {
 
     fn in_json(&self) -> Value {
         match self {
-            Self::Begun { file } => json!({ "recording": file }),
+            Self::Begun { file } | Self::GoesOn { file } => json!({ "recording": file }),
             Self::HasPainting { file } => json!({ "has_painting": file }),
             Self::LacksPainting { why } => json!({ "lacks_painting": why }),
             Self::Ended(summary) => json!({
