@@ -12,6 +12,7 @@ use maulstick_motion::{
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 
+use super::recorded::read_motion;
 use super::{HeadOptions, TakeFiles, parse_place, refused};
 use crate::commands::write_take;
 use crate::outputs::{UsedFile, check_outputs};
@@ -21,6 +22,9 @@ use crate::outputs::{UsedFile, check_outputs};
 pub struct CutOptions {
     #[command(flatten)]
     files: TakeFiles,
+    /// Stylus of a recording whose motion is cut, such as pen [default: the only one of a take]
+    #[arg(long, value_name = "DEVICE")]
+    device: Option<String>,
     /// From so many seconds after its beginning [default: 0]
     #[arg(long, value_name = "S", conflicts_with = "strokes")]
     start: Option<f64>,
@@ -150,7 +154,7 @@ impl TakeFiles {
         &self,
         change: impl FnOnce(&[TakeSample], f64) -> Result<Vec<TakeSample>, MotionError>,
     ) -> Result<i32, UserError> {
-        self.change_all(|take, head_m| {
+        self.change_all(None, |take, head_m| {
             let samples = change(&take.samples, head_m)?;
             Ok(Take { samples, ..take })
         })
@@ -159,13 +163,14 @@ impl TakeFiles {
     /// As [`change`](Self::change), with what the take is painted with.
     fn change_all(
         &self,
+        device: Option<&str>,
         change: impl FnOnce(Take, f64) -> Result<Take, MotionError>,
     ) -> Result<i32, UserError> {
         check_outputs(
             &[UsedFile::new("the take", &self.output).of(Kind::Take)],
             &[UsedFile::new("the take that stays as it is", &self.take)],
         )?;
-        let take = Take::read(&self.take)?;
+        let take = read_motion(&self.take, device)?;
         let head_m = self.head.length_m(&take, &self.take)?;
         let changed = change(take, head_m).map_err(refused(&self.take))?;
         write_take(&changed, &self.output)?;
@@ -196,34 +201,36 @@ pub(super) fn cut(options: &CutOptions) -> Result<i32, UserError> {
             options.end.map_or(Ok(u64::MAX), |end| ns("--end", end))?,
         ]),
     };
-    options.files.change_all(|take, head_m| {
-        let samples = maulstick_motion::cut(&take.samples, &part, head_m)?;
-        let begin_ns = take.samples.first().map_or(0, |first| first.time_ns);
-        let before = match part {
-            Part::Strokes(numbers) => numbers.start() - 1,
-            Part::Times([from_ns, _]) => {
-                let all = strokes(&take.samples, head_m).into_iter();
-                let end = |stroke: &maulstick_motion::Stroke| {
-                    let last = &take.samples[stroke.samples.end - 1];
-                    last.time_ns - begin_ns
-                };
-                all.filter(|stroke| end(stroke) < from_ns).count()
-            }
-        };
-        // Strokes load in turn, and the first that is left keeps its own.
-        let setup = take.setup.map(|mut setup| {
-            if !setup.loads.is_empty() {
-                let by = before % setup.loads.len();
-                setup.loads.rotate_left(by);
-            }
-            setup
-        });
-        Ok(Take {
-            samples,
-            setup,
-            ..take
+    options
+        .files
+        .change_all(options.device.as_deref(), |take, head_m| {
+            let samples = maulstick_motion::cut(&take.samples, &part, head_m)?;
+            let begin_ns = take.samples.first().map_or(0, |first| first.time_ns);
+            let before = match part {
+                Part::Strokes(numbers) => numbers.start() - 1,
+                Part::Times([from_ns, _]) => {
+                    let all = strokes(&take.samples, head_m).into_iter();
+                    let end = |stroke: &maulstick_motion::Stroke| {
+                        let last = &take.samples[stroke.samples.end - 1];
+                        last.time_ns - begin_ns
+                    };
+                    all.filter(|stroke| end(stroke) < from_ns).count()
+                }
+            };
+            // Strokes load in turn, and the first that is left keeps its own.
+            let setup = take.setup.map(|mut setup| {
+                if !setup.loads.is_empty() {
+                    let by = before % setup.loads.len();
+                    setup.loads.rotate_left(by);
+                }
+                setup
+            });
+            Ok(Take {
+                samples,
+                setup,
+                ..take
+            })
         })
-    })
 }
 
 pub(super) fn join(options: &JoinOptions) -> Result<i32, UserError> {

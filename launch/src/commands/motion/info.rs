@@ -10,14 +10,18 @@ use maulstick_rig::UserError;
 use serde_json::json;
 
 use super::HeadOptions;
+use super::recorded::read_motion;
 use crate::commands::table::table;
 use crate::commands::{print_json, print_text, say};
 
 /// Options of `maulstick motion info`.
 #[derive(Args, Clone, Debug)]
 pub struct InfoOptions {
-    /// Take
+    /// Take, or recording
     take: PathBuf,
+    /// Stylus of a recording, such as pen
+    #[arg(long, value_name = "DEVICE")]
+    device: Option<String>,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -54,7 +58,7 @@ impl Measures {
 }
 
 pub(super) fn run(options: &InfoOptions) -> Result<i32, UserError> {
-    let take = Take::read(&options.take)?;
+    let take = read_motion(&options.take, options.device.as_deref())?;
     let head_m = options.head.length_m(&take, &options.take)?;
     let strokes = strokes(&take.samples, head_m);
     let measures = strokes

@@ -3,13 +3,14 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`edits`] | operations on a take |
-//! | [`info`] | strokes of a take |
+//! | [`info`], [`recorded`] | strokes of a take; the motion of one stylus out of a recording |
 //! | [`fill`], [`outline_file`] | an outline filled by example; outlines as files |
 
 mod edits;
 mod fill;
 mod info;
 mod outline_file;
+mod recorded;
 
 use std::path::{Path, PathBuf};
 

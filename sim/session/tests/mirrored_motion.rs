@@ -1,5 +1,6 @@
 //! A mirrored motion paints the mirrored painting, up to what tooth and disorder of the bristles leave to chance.
 
+#[path = "../../motion/tests/hands/mod.rs"]
 mod hands;
 
 use hands::{HEAD_M, along, hatching, pen, six_dof};
