@@ -102,7 +102,7 @@ impl Example {
         let extents = paths.iter().map(|path| extent(path)).collect();
         let is_dabs = pitch_m.is_some_and(|pitch| median(extents) < DAB * pitch);
         let parts = match is_dabs {
-            true => vec![0..paths.len()],
+            true => std::iter::once(0..paths.len()).collect(),
             false => parted(&paths),
         };
         let pass = |part: std::ops::Range<usize>| {
@@ -217,7 +217,7 @@ fn parted(paths: &[Vec<DVec2>]) -> Vec<std::ops::Range<usize>> {
     }
     match parts.iter().all(|part| part.len() >= PASS) {
         true => parts,
-        false => vec![0..paths.len()],
+        false => std::iter::once(0..paths.len()).collect(),
     }
 }
 

@@ -65,7 +65,7 @@ pub fn filled(
     for pass in &measured.passes {
         let [[u0, u1], [v0, v1]] = outline.bounds(pass.frame);
         let estimate = (u1 - u0) * (v1 - v0) / (pass.spacing_m * per_row_m(pass));
-        if !(estimate < MOST as f64) {
+        if estimate.is_nan() || estimate >= MOST as f64 {
             return Err(MotionError::TooMany {
                 count: estimate as usize,
                 spacing_mm: 1e3 * pass.spacing_m,

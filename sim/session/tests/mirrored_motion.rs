@@ -21,6 +21,12 @@ const BLOCK: usize = 4;
 /// Cells of a tile.
 const TILE: usize = 64;
 
+/// A brush of the library, 12 mm wide.
+fn brush(kind: &str) -> BrushFile {
+    let file = BrushFile::library(kind).expect("of the library");
+    file.scaled_to(12.0).expect("a size")
+}
+
 /// Paint in blocks of the canvas, m: rows from below.
 fn painted(motion: &[TakeSample], kind: &str) -> Vec<Vec<f64>> {
     let setup = PaintingSetup {
@@ -29,12 +35,8 @@ fn painted(motion: &[TakeSample], kind: &str) -> Vec<Vec<f64>> {
         ..PaintingSetup::default()
     };
     let painting = Painting::new(&setup, PaintLibrary::measured().expect("whole")).expect("one");
-    let file = BrushFile::library(kind)
-        .expect("of the library")
-        .scaled_to(12.0)
-        .expect("a size");
     let load = "Ultramarine Blue".parse().expect("a mixture");
-    let mut offline = Offline::new(painting, "main", file, 0.5, vec![load]).expect("set up");
+    let mut offline = Offline::new(painting, "main", brush(kind), 0.5, vec![load]).expect("set up");
     let samples: Vec<_> = motion
         .iter()
         .map(|taken| (taken.time_ns, &taken.sample))
@@ -78,12 +80,16 @@ fn off(one: &[Vec<f64>], other: &[Vec<f64>]) -> f64 {
 }
 
 /// A slanted brush drawn in two strokes, by a pen and by a 6-DOF stylus.
-fn hands_of() -> [(&'static str, Vec<TakeSample>); 2] {
+fn hands_of(kind: &str) -> [(&'static str, Vec<TakeSample>); 2] {
+    let length_m = brush(kind).length_m();
+    // The hand knows another head: that of the brush is so much shorter.
+    let lower_m = HEAD_M - length_m;
     let ways = [
         [[-0.035, -0.03], [0.03, -0.01]],
         [[0.02, 0.012], [-0.03, 0.035]],
     ];
-    let six = |at: [f64; 2], pressure: f64| six_dof([at[0], at[1], 0.008 - 0.03 * pressure]);
+    let height_m = |pressure: f64| length_m * (0.3 - 0.8 * pressure) - lower_m;
+    let six = |at: [f64; 2], pressure: f64| six_dof([at[0], at[1], height_m(pressure)]);
     [
         ("pen", along(&ways, 0.1, pen)),
         ("6-DOF", along(&ways, 0.1, six)),
@@ -93,7 +99,7 @@ fn hands_of() -> [(&'static str, Vec<TakeSample>); 2] {
 #[test]
 fn what_is_painted_in_a_mirror_is_the_painting_in_a_mirror() {
     for kind in ["flat", "chisel"] {
-        for (hand, motion) in hands_of() {
+        for (hand, motion) in hands_of(kind) {
             let own = painted(&motion, kind);
             for mirror in [Mirror::X, Mirror::Y] {
                 let shown = painted(
@@ -120,9 +126,9 @@ fn what_is_painted_in_a_mirror_is_the_painting_in_a_mirror() {
                     &painted(&place_alone, kind),
                 );
                 println!("{kind} {hand} {mirror:?}: {right:.3}, handle not mirrored {fault:.3}");
-                assert!(right < 0.1, "{kind} {hand} {mirror:?}: {right}");
+                assert!(right < 0.2, "{kind} {hand} {mirror:?}: {right}");
                 assert!(
-                    fault > 0.2,
+                    fault > 1.5 * right,
                     "{kind} {hand} {mirror:?}: a fault passes: {fault}"
                 );
             }
@@ -142,4 +148,21 @@ fn hatching_in_a_mirror_is_hatching() {
     let fault = off(&own, &shown);
     println!("round hatching: {right:.3}, not mirrored {fault:.3}");
     assert!(right < 0.1 && fault > 0.5, "{right} {fault}");
+}
+
+#[test]
+fn a_slanted_brush_is_mirrored_in_its_broad_side() {
+    let [(_, motion), _] = hands_of("chisel");
+    let own = in_mirror(painted(&motion, "chisel"), Mirror::X);
+    let mut shown = mirrored(&motion, Mirror::X, [0.0; 2]).expect("mirrored");
+    let right = off(&own, &painted(&shown, "chisel"));
+    // Mirrored in its narrow side, the slant would be that of another brush.
+    for taken in &mut shown {
+        if let StylusPose::Contact { twist_rad, .. } = &mut taken.sample.pose {
+            *twist_rad += std::f64::consts::PI;
+        }
+    }
+    let fault = off(&own, &painted(&shown, "chisel"));
+    println!("chisel: {right:.3}, in its narrow side {fault:.3}");
+    assert!(right < 0.2 && fault > 1.5 * right, "{right} {fault}");
 }
