@@ -11,8 +11,8 @@ use crate::advice;
 use crate::commands::measure::Measure;
 use crate::commands::{
     begin, bench, bridge, brush, demo, device, echo, edit, endpoint, export, fit, force, graph,
-    import, light, matching, measure, mix, nodes, open, painting, paints, record, recording,
-    render, replay, save_as, schema, snapshot, take,
+    import, light, matching, measure, mix, motion, nodes, open, painting, paints, record,
+    recording, render, replay, save_as, schema, snapshot, take,
 };
 use crate::doctor;
 use crate::processes::{self, NodeCommand};
@@ -44,6 +44,9 @@ enum Command {
     /// Show or repair takes
     #[command(subcommand)]
     Take(take::TakeCommand),
+    /// Cut, join, place, mirror, retime takes; fill an outline by example
+    #[command(subcommand)]
+    Motion(motion::MotionCommand),
     /// An edit of the painting
     #[command(flatten)]
     Edit(edit::EditCommand),
@@ -122,7 +125,7 @@ const GROUPS: &[(&str, &[&str])] = &[
     ("Layers", &[]),
     ("Brush", &["brush"]),
     ("Colour", &["paints", "mix", "match", "fit"]),
-    ("Takes", &["demo", "import", "render", "take"]),
+    ("Takes", &["demo", "import", "render", "take", "motion"]),
     (
         "Streams",
         &[
@@ -213,6 +216,7 @@ fn carry_out(command: Command) -> Result<i32, UserError> {
         Command::Import(options) => import::run(&options),
         Command::Demo(options) => demo::run(&options),
         Command::Take(command) => take::run(&command),
+        Command::Motion(command) => motion::run(&command),
         Command::Edit(command) => edit::run(&command),
         Command::Light(options) => light::run(&options),
         Command::Snapshot(options) => snapshot::snapshot(&options),

@@ -1,6 +1,7 @@
 //! The command as its users call it: what it makes, and what it says to bad input.
 
 mod inputs;
+mod motions;
 #[path = "../support/mod.rs"]
 mod support;
 

@@ -8,6 +8,7 @@
 //! | [`view`] | the desk seen from above |
 //! | [`render`] | drawing of desk, surfaces and brushes |
 //! | `language` | languages, and the English sentences that are their keys |
+//! | `motions` | takes that are put on the canvas |
 //! | `matching` | from a colour to mixtures of paints |
 //! | `panels` | the panels, a folder each |
 //! | `dialogs` | files in the window: new, open, save, export, dropped files |
@@ -28,6 +29,7 @@ mod background_task;
 mod dialogs;
 mod input;
 mod matching;
+mod motions;
 mod panels;
 mod reference;
 pub mod render;

@@ -7,6 +7,7 @@ pub mod device;
 pub mod edit;
 pub mod export;
 pub mod mode;
+pub mod motion;
 pub mod painting;
 pub mod replay;
 mod rig;

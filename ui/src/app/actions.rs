@@ -30,7 +30,7 @@ impl App {
         // Two fingers move the canvas.
         let fingers = context.input(|input| input.multi_touch().is_some());
         let pen = self.pen.has_pointer(self.bus.now_ns());
-        if fingers || pen || self.navigation.holds() {
+        if fingers || pen || self.navigation.holds() || self.overlay.motions.is_placing() {
             self.pointer_path.lift();
             return Vec::new();
         }
@@ -113,7 +113,8 @@ impl App {
             view,
             surfaces: surfaces.unwrap_or_default(),
             free: self.mouse.is_free(now_ns) && !self.pen.has_pointer(now_ns),
-            over_panel: over_panel(context),
+            // The wheel and the buttons are those of a motion that follows the pointer.
+            over_panel: over_panel(context) || self.overlay.motions.is_placing(),
             keys: &self.preferences.keys,
         };
         let (navigation, requests) = (&mut self.navigation, &mut self.requests);

@@ -24,6 +24,7 @@ const GROUPS: [(&str, &[Action]); 4] = [
             Action::Export,
             Action::Record,
             Action::Play,
+            Action::Motions,
             Action::Undo,
             Action::Redo,
             Action::Dry,

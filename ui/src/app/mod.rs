@@ -387,6 +387,7 @@ impl eframe::App for App {
             let surfaces = self.rig.scene.as_ref().map(|scene| &scene.surfaces[..]);
             let shown = self.view.as_ref().zip(surfaces);
             let brush = self.rig.brush_name();
+            self.pen.set_pointing(self.overlay.motions.is_placing());
             self.pen.show(ui.ctx(), shown, brush, &self.preferences);
             self.pen.draw(ui.ctx());
             let Some(view) = self.view else {
@@ -418,6 +419,17 @@ impl eframe::App for App {
             ui.painter().extend(shapes);
             self.name_wells(ui.painter(), &view, &surfaces);
             self.show_fit(ui.painter(), &view);
+            self.overlay.motions.place(
+                ui.ctx(),
+                ui.painter(),
+                (&view, &surfaces),
+                &mut PanelContext {
+                    rig: &mut self.rig,
+                    requests: &mut self.requests,
+                    preferences: &mut self.preferences,
+                    notifications: &mut self.notifications,
+                },
+            );
             let palette = surfaces.iter().find(|surface| surface.id == PALETTE);
             self.overlay.palette = palette.map(|palette| view.covered(palette));
             self.draw_force(ui.painter(), &view);

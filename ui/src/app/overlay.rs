@@ -19,6 +19,7 @@ use crate::input::presses;
 use crate::input::size_drag::SizeDrag;
 use crate::language::{step, translated};
 use crate::matching::colour_window::ColourWindow;
+use crate::motions::Motions;
 use crate::panels;
 use crate::reference::Reference;
 use crate::rig::dispatcher::Outcome;
@@ -59,6 +60,7 @@ pub(crate) struct Overlay {
     first_run: FirstRun,
     size_drag: SizeDrag,
     transport: TransportBar,
+    pub(crate) motions: Motions,
     /// The part of the window that the palette covers; nothing opens over it.
     pub(crate) palette: Option<Rect>,
     /// True while the canvas is shown without tools, and whether the window was full screen before.
@@ -72,7 +74,7 @@ impl Overlay {
         let context = ui.ctx().clone();
         let mut rest = Vec::new();
         // Keys are a dialog's while one is open.
-        let in_dialog = self.files.is_open() || self.settings.is_open();
+        let in_dialog = self.files.is_open() || self.settings.is_open() || self.motions.is_open();
         if !in_dialog {
             TransportBar::follow_keys(&context, work);
         }
@@ -121,6 +123,7 @@ impl Overlay {
         self.colour.show(&context, work);
         self.files.show(&context, &mut self.reference, work);
         self.settings.show(&context, work);
+        self.motions.show(&context, work);
         self.brush_memory.follow(&context, work);
         work.notifications.show(&context);
         rest
@@ -172,6 +175,9 @@ impl Overlay {
 
     /// Does what a key asks for; `false` where it concerns the desk.
     fn follow(&mut self, context: &Context, act: Action, work: &mut PanelContext<'_>) -> bool {
+        if self.motions.follow(act) {
+            return true;
+        }
         match act {
             Action::Undo => work.requests.send(Undo { brush: None }),
             Action::Redo => work.requests.send(Redo { brush: None }),
@@ -251,6 +257,7 @@ impl Overlay {
             Action::Keys => self.keys = !self.keys,
             Action::Colour => self.colour.toggle(),
             Action::Settings => self.settings.open(),
+            Action::Motions => self.motions.open(work),
             Action::Clean => {
                 let brush = BrushName::new(work.rig.brush_name());
                 ask(work, brush.map(|brush| Clean { brush }));

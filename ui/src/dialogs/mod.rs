@@ -11,7 +11,7 @@
 
 mod browser;
 mod choose;
-mod dialog;
+pub(crate) mod dialog;
 mod discard_prompt;
 mod dropped;
 mod export;

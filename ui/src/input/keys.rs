@@ -23,6 +23,8 @@ pub enum Action {
     Record,
     /// Play a recording.
     Play,
+    /// Choose a motion, and put it on the canvas.
+    Motions,
     /// Show or hide the reference picture beside the canvas.
     Reference,
     /// Choose a picture to trace on the canvas.
@@ -131,7 +133,7 @@ const fn key(act: Action, modifiers: Modifiers, key: Key, words: &'static str) -
 }
 
 /// The keys of a new painter.
-pub(crate) const BINDINGS: [Binding; 40] = [
+pub(crate) const BINDINGS: [Binding; 41] = [
     key(
         Action::Palette,
         Modifiers::NONE,
@@ -278,6 +280,12 @@ pub(crate) const BINDINGS: [Binding; 40] = [
         Modifiers::COMMAND,
         Key::P,
         "Play a recording…",
+    ),
+    key(
+        Action::Motions,
+        Modifiers::COMMAND.plus(Modifiers::SHIFT),
+        Key::M,
+        "Put down a motion…",
     ),
     key(
         Action::Keys,

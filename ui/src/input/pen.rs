@@ -70,6 +70,8 @@ pub(crate) struct WindowPen {
     link: PenLink,
     thread: Option<PenThread>,
     state: PenState,
+    /// True while pens are pointers, whose presses paint nothing.
+    is_pointing: bool,
 }
 
 impl WindowPen {
@@ -90,6 +92,7 @@ impl WindowPen {
             link,
             thread: None,
             state: PenState::default(),
+            is_pointing: false,
         })
     }
 
@@ -129,6 +132,11 @@ impl WindowPen {
         self.thread = None;
     }
 
+    /// Makes pens pointers, or brushes.
+    pub(crate) fn set_pointing(&mut self, is_pointing: bool) {
+        self.is_pointing = is_pointing;
+    }
+
     /// Sets what the window shows of the desk, and the brush in the hand.
     pub(crate) fn show(
         &self,
@@ -143,7 +151,7 @@ impl WindowPen {
             let held = [Action::Size, Action::Zoom];
             let held = held.iter().any(|act| presses::is_down(input, keymap, *act));
             let modifiers = input.modifiers;
-            (modifiers.is_none() || modifiers.shift_only()) && !held
+            (modifiers.is_none() || modifiers.shift_only()) && !held && !self.is_pointing
         });
         let per_point = match self.state.moves_no_pointer {
             true => context.zoom_factor(),

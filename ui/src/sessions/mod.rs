@@ -27,6 +27,8 @@ use crate::widgets::notifications::Notifications;
 
 /// File ending of a recording.
 pub(crate) const RECORDING: &str = "mcap";
+/// Name of the device whose strokes those of a motion are.
+const MOTION: &str = "motion";
 
 /// A request to recorder or player.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +43,17 @@ pub enum SessionOrder {
         recording: PathBuf,
         /// True if the painting on the easel may go, although it is in memory only.
         forget: bool,
+    },
+    /// Plays a take with its middle at a place of the desk.
+    PutDown {
+        /// Its file.
+        take: PathBuf,
+        /// The place, mm from the middle of the desk.
+        at_mm: [f64; 2],
+        /// Factor on its lengths.
+        scale: f64,
+        /// Turn, counter-clockwise, degrees.
+        turn_deg: f64,
     },
     /// An order to what plays.
     Transport(TransportOrder),
@@ -88,6 +101,20 @@ impl SessionProcesses {
                     Player::start(context, command, (recording, forget), rig)
                         .map(|player| self.player = Some(player))
                 }
+                SessionOrder::PutDown {
+                    take,
+                    at_mm: [x, y],
+                    scale,
+                    turn_deg,
+                } if self.player.is_none() => {
+                    let mut command = self.command("replay", rig);
+                    // Under a name of its own: the stylus that it was recorded of may be in the rig.
+                    command.args(["--as", MOTION, "--at", &format!("{x:.4},{y:.4}")]);
+                    command.args(["--scale", &format!("{scale:.6}")]);
+                    command.args(["--turn", &format!("{turn_deg:.4}")]);
+                    Player::start(context, command, (take, false), rig)
+                        .map(|player| self.player = Some(player))
+                }
                 SessionOrder::StopRecording => {
                     self.recorder.iter().for_each(Recorder::stop);
                     Ok(())
@@ -98,7 +125,9 @@ impl SessionProcesses {
                     }
                     Ok(())
                 }
-                SessionOrder::Record | SessionOrder::Play { .. } => Ok(()),
+                SessionOrder::Record | SessionOrder::Play { .. } | SessionOrder::PutDown { .. } => {
+                    Ok(())
+                }
             };
             if let Err(error) = begun {
                 notifications.fault(

@@ -170,6 +170,37 @@ fn no_recording_takes_the_place_of_another_file() {
 }
 
 #[test]
+fn a_motion_is_played_at_its_place_under_a_name_of_its_own() {
+    let mut desk = Desk::new();
+    let take = desk.folder.path().join("sweep.mcap");
+    let arguments = desk.folder.path().join("sweep.mcap.args");
+    desk.turn(vec![SessionOrder::PutDown {
+        take,
+        at_mm: [-12.5, 30.0],
+        scale: 2.0,
+        turn_deg: -15.0,
+    }]);
+    desk.until(|desk| {
+        desk.rig
+            .replay
+            .as_ref()
+            .is_some_and(|replay| replay.position.is_some())
+    });
+    let told = std::fs::read_to_string(arguments).expect("noted");
+    for part in [
+        "--as motion",
+        "--at -12.5",
+        "30.0000",
+        "--scale 2.0",
+        "--turn -15.0",
+    ] {
+        assert!(told.contains(part), "{told}");
+    }
+    desk.turn(vec![SessionOrder::Transport(TransportOrder::End)]);
+    desk.until(|desk| desk.rig.replay.is_none());
+}
+
+#[test]
 fn orders_are_lines_to_the_player_whose_lines_say_where_it_is() {
     let mut desk = Desk::new();
     let recording = desk.folder.path().join("s.mcap");

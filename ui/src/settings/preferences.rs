@@ -63,6 +63,9 @@ pub struct Preferences {
     pub keys: Keymap,
     /// Paintings that were open, the newest first.
     pub recent: Vec<PathBuf>,
+    /// Folder of motions; absent for the usual one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motions: Option<PathBuf>,
     /// The reference picture.
     pub reference: ReferencePreferences,
     /// The painter's own brush files, in the order of the rack.
@@ -105,6 +108,7 @@ impl Default for Preferences {
             units: Units::default(),
             keys: Keymap::default(),
             recent: Vec::new(),
+            motions: None,
             reference: ReferencePreferences::default(),
             own_brushes: Vec::new(),
             loading: BrushLoad::default(),

@@ -5,6 +5,7 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
+pub use maulstick_motion::TakeSample;
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, write_whole};
 use maulstick_types::stylus::StylusSample;
@@ -21,15 +22,6 @@ pub const SCHEMA_ENCODING: &str = "x-maulstick-fields+json";
 
 /// Samples that are compressed together, bytes: so many may be lost where a byte is damaged.
 const CHUNK_BYTES: u64 = 64 << 10;
-
-/// A sample and when it was taken.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TakeSample {
-    /// Since the take's start, ns.
-    pub time_ns: u64,
-    /// The sample.
-    pub sample: StylusSample,
-}
 
 /// The samples of one stylus, in order of time.
 #[derive(Clone, Debug, PartialEq)]

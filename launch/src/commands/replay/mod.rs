@@ -4,11 +4,13 @@
 //! | --- | --- |
 //! | [`session`] | a session is painted again |
 //! | [`streams`] | messages of chosen topics are sent again |
+//! | [`place`] | a take elsewhere on the desk |
 //! | [`transport`], [`orders`] | pause, seek, step, rate |
 //! | [`events`] | what is to come |
 
 mod events;
 mod orders;
+mod place;
 mod session;
 mod streams;
 mod transport;
@@ -24,6 +26,7 @@ use maulstick_streams::Recording;
 use serde_json::json;
 
 use self::orders::{KEYS, Orders};
+use self::place::PlaceOptions;
 use self::transport::{Order, Transport, parse_rate};
 use crate::EXIT_INTERRUPTED;
 use crate::commands::client::Target;
@@ -63,6 +66,8 @@ pub struct ReplayOptions {
     /// Let recorded contact models move the hand that holds this device
     #[arg(long, value_name = "DEVICE")]
     drive: Option<String>,
+    #[command(flatten)]
+    place: PlaceOptions,
     #[command(flatten)]
     painting: PaintingOptions,
     /// Read orders from the standard input (pause, step, seek S, skip S, rate R, end), and print the position as lines of JSON
@@ -121,7 +126,10 @@ impl ReplayOptions {
 /// # Errors
 /// A [`UserError`] where no rig runs, the recording lacks something, or the rig refuses it.
 pub fn run(options: &ReplayOptions) -> Result<i32, UserError> {
-    let sends = !options.topic.is_empty() || options.device.is_some() || options.drive.is_some();
+    let sends = !options.topic.is_empty()
+        || options.device.is_some()
+        || options.drive.is_some()
+        || options.place.is_given();
     let recording = Recording::open(&options.recording)?;
     if !sends
         && recording.attachments().contains_key(PAINTING)

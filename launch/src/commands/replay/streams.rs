@@ -17,6 +17,7 @@ use maulstick_types::wire::header::HEADER_BYTES;
 use maulstick_types::{Flags, Header, Origin, decode, encode, name_hash};
 
 use super::events::Events;
+use super::place::Place;
 use super::{Playback, ReplayOptions, TURN, Turn};
 
 /// Topics that are sent again where none is named.
@@ -61,6 +62,7 @@ pub(super) fn replay(options: &ReplayOptions, recording: &Recording) -> Result<i
             .help(format!("choose one: --topic {one}")));
     }
     let renamed = renamed(&options.remap)?;
+    let place = options.place.of(path)?;
     let [first_ns, last_ns] = recording.times_ns().unwrap_or_default();
     let range_ns = options.range_ns(last_ns.saturating_sub(first_ns))?;
     let member = options.join()?;
@@ -75,6 +77,7 @@ pub(super) fn replay(options: &ReplayOptions, recording: &Recording) -> Result<i
         renamed,
         device: options.device.as_deref(),
         driven,
+        place,
     };
     if let Some(device) = &options.device {
         senders.introduce(recording, device)?;
@@ -222,6 +225,8 @@ struct Senders<'a> {
     renamed: BTreeMap<String, String>,
     device: Option<&'a str>,
     driven: Option<Driven>,
+    /// Where samples of a stylus are put.
+    place: Option<Place>,
 }
 
 impl Senders<'_> {
@@ -301,10 +306,14 @@ impl Senders<'_> {
         let old = message.header;
         let event_ns = now_ns.saturating_sub(old.sent_ns.saturating_sub(old.event_ns));
         let seq = self.senders.get(&topic).map_or(0, |(_, next)| *next);
-        let bytes = match &self.driven {
-            Some(driven) if matches(MODELS, recorded) => {
+        let bytes = match (&self.driven, &self.place) {
+            (Some(driven), _) if matches(MODELS, recorded) => {
                 let model = driven.address(message)?;
                 self.encoded(&topic, Flags::NONE, [seq, event_ns], &model)?
+            }
+            (_, Some(place)) if matches("stylus/*/sample", recorded) => {
+                let sample = place.sample(&message.bytes)?;
+                self.encoded(&topic, Flags::NONE, [seq, event_ns], &sample)?
             }
             _ => {
                 let origin = self.origin(&topic);
