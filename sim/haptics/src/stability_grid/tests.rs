@@ -66,3 +66,30 @@ fn a_servo_that_does_nothing_is_found_out() {
         }
     }
 }
+
+/// The guided runs and how they went.
+fn guided(change: impl Fn(Run) -> Run) -> Vec<(Run, Outcome)> {
+    let go = |run: Run| {
+        let run = change(run);
+        (run, run.go().expect("a wall"))
+    };
+    guided_grid().into_iter().map(go).collect()
+}
+
+#[test]
+fn a_guide_beside_the_wall_shakes_no_hand_and_gives_no_energy() {
+    let all = guided(|run| run);
+    let bad = all.iter().filter(|(run, outcome)| !run.is_good(outcome));
+    for (run, outcome) in bad.take(20) {
+        println!("{run:?}: {outcome:?}");
+    }
+    let worst = Worst::of(&all);
+    println!(
+        "{} runs: wobble {:.3} mm, energy {:.3} µJ, force off by {:.2} % at most",
+        worst.runs,
+        worst.wobble_m * 1e3,
+        worst.net_j * 1e6,
+        worst.force_error * 1e2
+    );
+    assert_eq!((worst.runs, worst.fails), (2160, 0));
+}
