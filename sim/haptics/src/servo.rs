@@ -492,4 +492,6 @@ impl Active {
 #[cfg(test)]
 mod guard_tests;
 #[cfg(test)]
+mod guidance_tests;
+#[cfg(test)]
 mod tests;

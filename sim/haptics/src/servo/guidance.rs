@@ -12,7 +12,7 @@ use super::limits::Limits;
 use super::oscillation::{Oscillation, Touch};
 use super::tick::Sender;
 use crate::contact::HandleState;
-use crate::guide::{Foot, Guide, Pull};
+use crate::guide::{Foot, Guide, GuideBounds, Pull};
 
 /// Time in which a correction as large as the largest guiding force shrinks to nothing, s.
 const RECOVERY_S: f64 = 0.2;
@@ -53,6 +53,20 @@ pub(super) struct Guiding {
     pub(super) conservative: DVec3,
     /// What the guide's force was multiplied by.
     pub(super) share: f64,
+}
+
+impl Active {
+    /// Follows the hand, with a share of the guide's force.
+    fn follow(&mut self, handle: &HandleState, bounds: &GuideBounds, share: f64) {
+        self.foot = self.guide.follow(self.foot, handle);
+        let pull = self.guide.pull(self.foot, handle, bounds);
+        self.asked = Pull {
+            conservative: pull.conservative * share,
+            damping: pull.damping * share,
+            ..pull
+        };
+        self.position = handle.position;
+    }
 }
 
 impl Guidance {
@@ -134,10 +148,7 @@ impl Guidance {
             self.correction = DVec3::ZERO;
             self.engagement = Engagement::ANEW;
         }
-        let (size, shrunk) = (
-            self.correction.length(),
-            limits.guide_n * (dt / RECOVERY_S),
-        );
+        let (size, shrunk) = (self.correction.length(), limits.guide_n * (dt / RECOVERY_S));
         self.correction = match size > shrunk {
             true => self.correction * ((size - shrunk) / size),
             false => DVec3::ZERO,
@@ -152,39 +163,38 @@ impl Guidance {
         dt: f64,
         gives: bool,
     ) -> bool {
-        let before = self.active;
+        let bounds = limits.guide_bounds();
+        let mut change = DVec3::ZERO;
+        if let Some(active) = &mut self.active {
+            let before = *active;
+            active.follow(handle, &bounds, self.share);
+            let way = (active.position - before.position).length();
+            change = active.asked.conservative - before.asked.conservative;
+            change -= change.clamp_length_max(bounds.stiffness_n_m * way);
+        }
         if let Some(guide) = self.arrived.take() {
-            let foot = match &before {
+            let foot = match &self.active {
                 Some(active) => guide.nearest(active.guide.point(active.foot)),
                 None => guide.first(handle),
             };
-            self.active = Some(Active {
+            let mut newest = Active {
                 guide,
                 foot,
                 age_s: dt,
                 asked: Pull::default(),
                 position: handle.position,
-            });
+            };
+            newest.follow(handle, &bounds, self.share);
+            if let Some(before) = &self.active {
+                change += newest.asked.conservative - before.asked.conservative;
+            }
+            self.active = Some(newest);
         }
-        let Some(active) = &mut self.active else {
+        let Some(Active { asked, .. }) = self.active else {
             return false;
         };
-        active.foot = active.guide.follow(active.foot, handle);
-        let bounds = limits.guide_bounds();
-        let pull = active.guide.pull(active.foot, handle, &bounds);
-        let asked = Pull {
-            conservative: pull.conservative * self.share,
-            damping: pull.damping * self.share,
-            ..pull
-        };
-        if let Some(before) = before {
-            let way = (handle.position - before.position).length();
-            let change = asked.conservative - before.asked.conservative;
-            let most = bounds.force_n;
-            let within = change.clamp_length_max(bounds.stiffness_n_m * way);
-            self.correction = (self.correction + within - change).clamp_length_max(most);
-        }
-        (active.asked, active.position) = (asked, handle.position);
+        // From the largest force one way to the largest the other way.
+        self.correction = (self.correction - change).clamp_length_max(2.0 * bounds.force_n);
         let touch = match gives && self.holds(limits) {
             true => Touch::Contact,
             false => Touch::Air,
@@ -197,7 +207,8 @@ impl Guidance {
 
     /// True while the guide asks for a force that is felt.
     pub(super) fn holds(&self, limits: &Limits) -> bool {
-        let is_held = |active: Active| active.asked.conservative.length() > LITTLE * limits.engage_n;
+        let is_held =
+            |active: Active| active.asked.conservative.length() > LITTLE * limits.engage_n;
         self.active.is_some_and(is_held)
     }
 
