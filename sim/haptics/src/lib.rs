@@ -18,8 +18,12 @@ pub mod force_law;
 pub mod friction;
 pub mod grain;
 pub mod guide;
+#[cfg(test)]
+mod guided_hand_tests;
 pub mod plant;
 pub mod recipient;
+#[cfg(test)]
+mod replayed_tests;
 #[cfg(test)]
 mod scaled_tests;
 pub mod servo;

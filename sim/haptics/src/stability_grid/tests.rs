@@ -93,3 +93,31 @@ fn a_guide_beside_the_wall_shakes_no_hand_and_gives_no_energy() {
     );
     assert_eq!((worst.runs, worst.fails), (2160, 0));
 }
+
+/// The seeded fault: a wall of 100 N/m whose force is sent over a network the fingertip bears, but not one with a guide
+/// that pulls along its normal.
+#[test]
+fn a_guide_sent_60_times_a_second_shakes_a_fingertip() {
+    let sent = |guide| Run {
+        hand: Hand::FINGERTIP,
+        stiffness: 100.0,
+        rate_hz: 250.0,
+        jitter: 0.0,
+        motion: Motion::Still,
+        guide,
+        path: Path::Sent,
+    };
+    let wobble_m = |run: Run| run.go().expect("a wall").wobble_m;
+    let guide = GuideLine::strongest(DVec3::X, 0.0);
+    assert!(wobble_m(sent(None)) < STILL_M);
+    assert!(wobble_m(sent(Some(guide))) > 1e-3);
+    // Nor is one found good that is as stiff as twenty.
+    let stiff = GuideLine {
+        stiffness: 20.0 * guide.stiffness,
+        most_n: 3.0,
+        ..guide
+    };
+    let run = sent(Some(stiff));
+    let outcome = run.go().expect("a wall");
+    assert!(!run.is_good(&outcome), "{outcome:?}");
+}
