@@ -244,8 +244,8 @@ impl Servo {
         self.watch(handle, touch, dt);
         let speed = handle.velocity.length() / self.limits.max_speed_m_s;
         self.fast_hand.follow(speed, touch);
-        let gives = self.force != DVec3::ZERO;
-        if self.guidance.follow(handle, &self.limits, dt, gives) {
+        let shakes = self.guidance.follow(handle, &self.limits, dt, self.force);
+        if shakes {
             self.fault = Some(self.fault.unwrap_or(Fault::Oscillation));
         }
         tick.guided = self.guidance.is_alive(&self.limits);
@@ -459,11 +459,12 @@ impl Servo {
         let softer = self.strength * self.oscillation.softness() * self.fast_hand.softness();
         tick.asked_n_m = contact_force.asked_n_m;
         tick.stiffness_n_m = contact_force.stiffness_n_m * softer;
-        let asked_n = (contact_force.force + self.correction).length();
-        // A model that is past its time says nothing of the canvas. Written so that a bound that is no
-        // number lets no force begin.
-        let is_little = asked_n <= self.limits.engage_n && !tick.stale;
-        if self.engagement.waits(is_little) {
+        // A model that is past its time says nothing of the canvas.
+        let asked_n = match tick.stale {
+            true => f64::NAN,
+            false => (contact_force.force + self.correction).length(),
+        };
+        if self.engagement.waits(asked_n, self.limits.engage_n) {
             self.engaged_s = 0.0;
             return None;
         }

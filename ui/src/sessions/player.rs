@@ -100,7 +100,9 @@ impl ReplayProgress {
             Ok(PlayerLine::Painting { painting }) => {
                 (self.painting, self.opens) = (Some(painting), false);
             }
-            Ok(PlayerLine::Opens { .. }) => self.opens = true,
+            Ok(PlayerLine::Opens { opens }) => {
+                (self.painting, self.opens) = (Some(opens), true);
+            }
             Err(_) => {}
         }
     }

@@ -37,6 +37,8 @@ const TIME_TO_LIVE_NS: u64 = 100_000_000;
 const STIFFNESS_N_M: f64 = 100.0;
 const DAMPING_N_S_M: f64 = 0.5;
 const MOST_N: f64 = 0.6;
+/// A brush that is higher above the canvas is let go, m.
+const NEAR_M: f64 = 0.03;
 /// Step of a key that changes the strength.
 pub(super) const STRONGER: f64 = 0.1;
 
@@ -236,8 +238,12 @@ impl<'a> Guiding<'a> {
             }
             return Ok(self.options.again);
         }
-        if sample.message.in_range && !self.paused && self.strength > 0.0 {
-            self.send()?;
+        if !self.paused && self.strength > 0.0 {
+            let strength = match sample.message.in_range && tip.z < NEAR_M {
+                true => self.strength,
+                false => 0.0,
+            };
+            self.send(strength)?;
         }
         if now >= self.report {
             self.tell(now)?;
@@ -261,7 +267,7 @@ impl<'a> Guiding<'a> {
         self.report = Instant::now();
     }
 
-    fn send(&mut self) -> Result<(), UserError> {
+    fn send(&mut self, strength: f64) -> Result<(), UserError> {
         let Some(points_m) = self.traced.piece() else {
             return Ok(());
         };
@@ -272,9 +278,9 @@ impl<'a> Guiding<'a> {
             points_m,
             normal: [0.0, 0.0, 1.0],
             head_length_m: self.brush.head_length_m,
-            stiffness_n_m: STIFFNESS_N_M * self.strength,
-            damping_n_s_m: DAMPING_N_S_M * self.strength,
-            max_force_n: MOST_N * self.strength,
+            stiffness_n_m: STIFFNESS_N_M * strength,
+            damping_n_s_m: DAMPING_N_S_M * strength,
+            max_force_n: MOST_N * strength,
             time_to_live_ns: TIME_TO_LIVE_NS,
         };
         self.guides.send(now_ns, now_ns, &model)?;

@@ -195,7 +195,8 @@ mod tests {
     fn strokes_are_cut_where_the_brush_is_lifted_and_a_dab_is_none() {
         let traced = two();
         assert_eq!(traced.counts(), [2, 0]);
-        assert_eq!(traced.strokes[0].points.len(), 50);
+        // 2 mm, or a sample more.
+        assert!((47..=50).contains(&traced.strokes[0].points.len()));
         let dab = (0..50).map(|i| (i, DVec3::X * 1e-5 * i as f64, Touch::Canvas));
         assert_eq!(Traced::of(dab).counts(), [0, 0]);
     }
@@ -209,7 +210,8 @@ mod tests {
         trace(&mut traced, 0.002, 0.0, 0.05);
         let piece = traced.piece().expect("a piece");
         assert!((piece[5][0] - 0.05).abs() < 1.1e-3, "{piece:?}");
-        assert_eq!(traced.position_ns(), Some(500 * 1_000_000));
+        let s = traced.position_ns().expect("a stroke") as f64 * 1e-9;
+        assert!((s - 0.5).abs() < 0.0111, "{s} s");
         // Lifted in the middle it is still to be traced.
         traced.follow(DVec3::new(0.05, 0.0, 0.01), Touch::Air);
         assert_eq!(traced.counts(), [2, 0]);

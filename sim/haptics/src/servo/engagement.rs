@@ -17,12 +17,13 @@ impl Engagement {
     /// Before any tick.
     pub(super) const ANEW: Self = Self::Waiting(0);
 
-    /// True until force begins, after a tick in which `is_little` was asked for.
-    pub(super) fn waits(&mut self, is_little: bool) -> bool {
+    /// True until force begins, after a tick in which `asked_n` was asked for: not a number if nothing is known of it. Force
+    /// begins where `most_n` at most is asked for; with a bound that is no number it never does.
+    pub(super) fn waits(&mut self, asked_n: f64, most_n: f64) -> bool {
         let Self::Waiting(calm) = *self else {
             return false;
         };
-        *self = match is_little {
+        *self = match asked_n <= most_n {
             true if calm + 1 >= CALM_TICKS => Self::Begun,
             true => Self::Waiting(calm + 1),
             false => Self::ANEW,

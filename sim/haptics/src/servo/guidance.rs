@@ -155,13 +155,13 @@ impl Guidance {
         };
     }
 
-    /// Follows the hand along the newest guide. True if the hand shakes, however soft the guide was made.
+    /// Follows the hand along the newest guide; `given` is the servo's force, N. True if the hand shakes, however soft the guide was made.
     pub(super) fn follow(
         &mut self,
         handle: &HandleState,
         limits: &Limits,
         dt: f64,
-        gives: bool,
+        given: DVec3,
     ) -> bool {
         let bounds = limits.guide_bounds();
         let mut change = DVec3::ZERO;
@@ -195,7 +195,7 @@ impl Guidance {
         };
         // From the largest force one way to the largest the other way.
         self.correction = (self.correction - change).clamp_length_max(2.0 * bounds.force_n);
-        let touch = match gives && self.holds(limits) {
+        let touch = match given != DVec3::ZERO && self.holds(limits) {
             true => Touch::Contact,
             false => Touch::Air,
         };
@@ -219,9 +219,11 @@ impl Guidance {
             return Guiding::default();
         };
         let asked = active.asked.conservative + self.correction;
-        let is_late = active.age_s > active.guide.time_to_live_s;
-        let is_little = asked.length() <= limits.engage_n && !is_late;
-        if self.engagement.waits(is_little) {
+        let asked_n = match active.age_s > active.guide.time_to_live_s {
+            true => f64::NAN,
+            false => asked.length(),
+        };
+        if self.engagement.waits(asked_n, limits.engage_n) {
             self.engaged_s = 0.0;
             self.correction = DVec3::ZERO;
             return Guiding::default();

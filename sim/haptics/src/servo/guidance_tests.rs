@@ -266,6 +266,29 @@ fn a_hand_that_shakes_on_its_guide_is_let_go() {
 }
 
 #[test]
+fn a_fast_stroke_is_let_go_and_latches_nothing_until_it_crosses_the_path() {
+    let mut servo = held(Limits::default());
+    let mut go = |y: f64, speed: f64| {
+        servo.receive_guide(line(0.0), Sender::Same);
+        let hand = at(DVec3::new(0.0, y, 0.01), DVec3::X * speed);
+        let (force, tick) = servo.step(&hand, DT);
+        assert_eq!(tick.fault, None, "{speed} m/s");
+        force.length()
+    };
+    let up = |tick: u32| 0.02 * f64::from(tick);
+    let forces: Vec<f64> = (0..100).map(|tick| go(0.005, up(tick))).collect();
+    assert!(forces.is_sorted_by(|before, after| before >= after));
+    assert!(forces[68..].iter().all(|force| *force == 0.0));
+    let slower = (0..100).rev().map(|tick| go(0.005, up(tick)));
+    assert!(
+        slower.fold(0.0, f64::max) == 0.0,
+        "it would push a hand that slows down"
+    );
+    go(0.0, 0.0);
+    assert!((0..600).map(|_| go(0.005, 0.0)).fold(0.0, f64::max) > 0.39);
+}
+
+#[test]
 fn amplifiers_stay_on_while_a_guide_holds_the_hand_and_rest_beyond_its_reach() {
     let mut servo = held(Limits::default());
     let mut run = |y: f64| {

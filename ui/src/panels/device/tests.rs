@@ -374,11 +374,8 @@ fn guidance_is_offered_while_a_guide_is_alive() {
         found.and_then(|slider| slider.accesskit_node().numeric_value())
     };
     assert_eq!(slider(&harness), None);
-    *status(&mut harness) = StylusStatus {
-        is_guided: true,
-        guidance: 0.5,
-        ..status(&mut harness).clone()
-    };
+    let told = status(&mut harness);
+    (told.is_guided, told.guidance) = (true, 0.5);
     harness.run();
     assert_eq!(slider(&harness), Some(50.0));
     harness
