@@ -458,7 +458,7 @@ fn the_simulated_hand_feels_a_guide_until_force_or_guidance_is_off() {
     for control in [off, unguided] {
         let device = placed(Simulated::at_rest(), Rigid::IDENTITY, 1.0);
         let mut servo = start(device, limits);
-        let mut put = |servo: &mut ServoThread, y: f64, number: u64| {
+        let put = |servo: &mut ServoThread, y: f64, number: u64| {
             servo.guides.write(Delivery {
                 model: Some(guide(y)),
                 sender: None,
