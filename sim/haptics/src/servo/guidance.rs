@@ -195,12 +195,18 @@ impl Guidance {
         };
         // From the largest force one way to the largest the other way.
         self.correction = (self.correction - change).clamp_length_max(2.0 * bounds.force_n);
-        let touch = match given != DVec3::ZERO && self.holds(limits) {
+        let touch = match self.engagement == Engagement::Begun && self.holds(limits) {
             true => Touch::Contact,
             false => Touch::Air,
         };
+        // What a hand that was let go feels again, it feels from the path on, as in a wall.
         let speed = handle.velocity.length() / limits.max_speed_m_s;
         self.fast_hand.follow(speed, touch);
+        // Without force no device shakes it.
+        let touch = match given == DVec3::ZERO {
+            true => Touch::Air,
+            false => touch,
+        };
         self.oscillation
             .watch(asked.left_m, limits.oscillation_m, touch, dt)
     }
