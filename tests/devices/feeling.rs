@@ -85,7 +85,7 @@ fn whichever_of_brush_and_paint_dies_the_force_fades_without_a_leap_and_comes_ba
     bus.close();
 }
 
-/// The largest force of a device in a second after the first one, and whether it leaped.
+/// The largest force of a device in four seconds of samples, N, and whether it leaped.
 fn strongest(samples: &mut Receiver<StylusSample>) -> (f64, bool) {
     let (mut first_ns, mut last, mut most, mut leaped) = (None, None, 0.0f64, false);
     let ended = wait_for(PATIENCE, || {
@@ -119,6 +119,7 @@ fn recorded_models_drive_a_device_by_the_rules_of_its_servo() {
     let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Qos::RealTime);
     let felt = |sample: &StylusSample| size(sample) > 0.1;
     assert!(hear(&mut samples, felt).is_some(), "{}", launcher.said());
+    let (live, _) = strongest(&mut samples);
     place.done(&[
         "record",
         "-o",
@@ -142,9 +143,10 @@ fn recorded_models_drive_a_device_by_the_rules_of_its_servo() {
     drain(&mut samples);
     assert!(hear(&mut samples, felt).is_some(), "{}", player.said());
     let (most, leaped) = strongest(&mut samples);
+    // The same hand presses; it is elsewhere in its stroke than when the models were recorded.
     assert!(
-        most > 0.1 && most <= Limits::default().max_force_n,
-        "{most} N"
+        most > 0.5 * live && most < 1.5 * live,
+        "{most} N, live {live} N"
     );
     assert!(!leaped, "the force leaps");
     player.signal(Signal::SIGINT);

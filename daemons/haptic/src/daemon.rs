@@ -8,11 +8,10 @@ use maulstick_bus::{CreditSender, Qos, Queue, Server};
 use maulstick_device::actions::{Action, Actions, Actor};
 use maulstick_device::device_missing::report_missing;
 use maulstick_device::registration::Registration;
-use maulstick_haptics::contact::Contact;
-use maulstick_haptics::{Limits, Recipient, ServoMemory, Switch};
+use maulstick_haptics::{Contact, Guide, Limits, Recipient, ServoMemory, Switch};
 use maulstick_num::geometry::Rigid;
 use maulstick_rig::{NodeHandle, RigConfig, UserError};
-use maulstick_types::haptics::{ContactModel, ForceOrder, ForceReply, ForceRequest};
+use maulstick_types::haptics::{ContactModel, ForceOrder, ForceReply, ForceRequest, GuideModel};
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus};
 use maulstick_types::{Flags, encode};
 
@@ -65,6 +64,7 @@ struct Daemon {
     recipient: Recipient,
     samples: CreditSender<StylusSample>,
     models: Receiver<ContactModel>,
+    guides: Receiver<GuideModel>,
     orders: Server,
     reader: Reader,
     control: ForceControl,
@@ -122,11 +122,19 @@ impl Daemon {
             },
             samples,
             models: Receiver::new(bus, &topic, Qos::RealTime, Queue::Ring(64), &member.wake)?,
+            guides: Receiver::new(
+                bus,
+                &topics.guide(&device.name),
+                Qos::RealTime,
+                Queue::Ring(16),
+                &member.wake,
+            )?,
             orders: bus.serve(&topics.force(&device.name), 16, &member.wake)?,
             reader: Reader::default(),
             control: ForceControl {
                 switch: state.switch,
                 strength: state.strength,
+                guidance: state.guidance,
                 ..ForceControl::default()
             },
             state_file,
@@ -148,7 +156,7 @@ impl Daemon {
             warned: false,
             bus: member.bus.clone(),
         };
-        (daemon.told.is_on, daemon.told.strength) = (state.switch == Switch::On, state.strength);
+        daemon.tell_control();
         if let Some(fault) = state.fault {
             daemon.latch(fault);
         }
@@ -163,6 +171,7 @@ impl Daemon {
         }
         self.obey(now_ns);
         self.deliver();
+        self.deliver_guide();
         while let Some(Ok(record)) = self.servo.as_mut().map(|servo| servo.ticks.pop()) {
             self.publish(&record, now_ns)?;
         }
@@ -279,7 +288,7 @@ impl Daemon {
         if self.newest.in_range {
             self.send(now_ns, now_ns, away)?;
         }
-        self.told.force_n = 0.0;
+        (self.told.force_n, self.told.is_guided) = (0.0, false);
         self.attempt_ns = now_ns + ATTEMPT_PERIOD_NS;
         let fault = UserError::failure(error.to_string()).help(error.help);
         report_missing(&self.settings.device.name, &fault, &mut self.told);
@@ -296,19 +305,15 @@ impl Daemon {
             match asked.order {
                 ForceOrder::Off => self.control.switch = Switch::Off,
                 ForceOrder::On => self.control.switch = Switch::On,
-                // NaN counts as 0.
-                ForceOrder::Strength { share } if share > 0.0 => {
-                    self.control.strength = share.min(1.0);
-                }
-                ForceOrder::Strength { .. } => self.control.strength = 0.0,
+                ForceOrder::Strength { share } => self.control.strength = share_of(share),
+                ForceOrder::Guidance { share } => self.control.guidance = share_of(share),
                 ForceOrder::Rearm => {
                     self.control.rearms += 1;
                     self.told.faults.clear();
                     self.latched = None;
                 }
             }
-            (self.told.is_on, self.told.strength) =
-                (self.control.switch == Switch::On, self.control.strength);
+            self.tell_control();
             if let Some(servo) = &mut self.servo {
                 servo.controls.write(self.control);
             }
@@ -317,6 +322,7 @@ impl Daemon {
                 is_on: self.control.switch == Switch::On,
                 strength: self.control.strength,
                 fault: self.fault(),
+                guidance: self.control.guidance,
             };
             let me = self.samples.origin();
             match encode(&me, Flags::NONE, 0, now_ns, now_ns, &reply) {
@@ -347,19 +353,52 @@ impl Daemon {
             Ok(contact) => {
                 self.deliveries += 1;
                 servo.models.write(Delivery {
-                    contact: Some(contact),
+                    model: Some(contact),
                     sender: Some(received.header.origin()),
                     number: self.deliveries,
                 });
             }
-            Err(what) => {
-                self.told.foreign_models += 1;
-                if !self.warned {
-                    self.warned = true;
-                    tracing::warn!("{}: a contact model is dropped: {what}", received.key);
-                }
-            }
+            Err(what) => self.refuse(&received.key, "contact model", what),
         }
+    }
+
+    /// Hands the newest guide to the servo, if it is addressed to this device in its current session.
+    fn deliver_guide(&mut self) {
+        let Some(received) = self.guides.newest() else {
+            return;
+        };
+        if !self.recipient.accepts_guide(&received.message) {
+            self.told.foreign_models += 1;
+            return;
+        }
+        let Some(servo) = &mut self.servo else {
+            return;
+        };
+        match Guide::new(&received.message) {
+            Ok(guide) => {
+                self.deliveries += 1;
+                servo.guides.write(Delivery {
+                    model: Some(guide),
+                    sender: Some(received.header.origin()),
+                    number: self.deliveries,
+                });
+            }
+            Err(what) => self.refuse(&received.key, "guide", what),
+        }
+    }
+
+    /// Counts a message that is dropped, and says why of the first.
+    fn refuse(&mut self, key: &str, name: &str, what: &str) {
+        self.told.foreign_models += 1;
+        if !std::mem::replace(&mut self.warned, true) {
+            tracing::warn!("{key}: a {name} is dropped: {what}");
+        }
+    }
+
+    /// Reports the painter's settings.
+    fn tell_control(&mut self) {
+        self.told.is_on = self.control.switch == Switch::On;
+        (self.told.strength, self.told.guidance) = (self.control.strength, self.control.guidance);
     }
 
     fn publish(&mut self, record: &TickRecord, now_ns: u64) -> Result<(), UserError> {
@@ -374,7 +413,7 @@ impl Daemon {
             self.latch(fault);
         }
         let tick = &record.tick;
-        self.told.resting = tick.resting;
+        (self.told.resting, self.told.is_guided) = (tick.resting, tick.guided);
         (self.told.asked_n_m, self.told.stiffness_n_m) = (tick.asked_n_m, tick.stiffness_n_m);
         self.told.cap_n = tick.cap_n;
         let reading = &record.reading;
@@ -424,6 +463,7 @@ impl Daemon {
         let state = ForceState {
             switch: self.control.switch,
             strength: self.control.strength,
+            guidance: self.control.guidance,
             fault: self.latched,
         };
         if let Err(error) = self.state_file.write(&state) {
@@ -447,4 +487,9 @@ impl Daemon {
             false => self.told.faults.join("; "),
         }
     }
+}
+
+/// A share from 0 to 1; NaN counts as 0.
+fn share_of(share: f64) -> f64 {
+    if share > 0.0 { share.min(1.0) } else { 0.0 }
 }

@@ -14,6 +14,8 @@ pub struct ForceState {
     pub switch: Switch,
     /// Share of the models' force that is given, 0 to 1.
     pub strength: f64,
+    /// Share of the guides' force that is given, 0 to 1.
+    pub guidance: f64,
     /// Latched fault.
     pub fault: Option<Fault>,
 }
@@ -23,12 +25,14 @@ impl ForceState {
     pub const INITIAL: Self = Self {
         switch: Switch::On,
         strength: 1.0,
+        guidance: 1.0,
         fault: None,
     };
     /// The state in place of an unreadable file: no force until somebody switches it on and re-arms it.
     const UNKNOWN: Self = Self {
         switch: Switch::Off,
         strength: 1.0,
+        guidance: 1.0,
         fault: Some(Fault::UnknownState),
     };
 }
@@ -73,7 +77,7 @@ impl ForceStateFile {
 
     fn parse(&self, text: &str) -> ForceState {
         let words: Vec<&str> = text.split_whitespace().collect();
-        let [run, switch, strength, fault] = words[..] else {
+        let [run, switch, strength, guidance, fault] = words[..] else {
             return ForceState::UNKNOWN;
         };
         match run.parse::<u64>() {
@@ -88,15 +92,19 @@ impl ForceStateFile {
                 None => return ForceState::UNKNOWN,
             },
         };
-        let share = strength.parse().ok();
-        match (switch, share.filter(|share| (0.0..=1.0).contains(share))) {
-            ("on" | "off", Some(strength)) => ForceState {
+        let share = |word: &str| {
+            let share = word.parse().ok();
+            share.filter(|share| (0.0..=1.0).contains(share))
+        };
+        match (switch, share(strength), share(guidance)) {
+            ("on" | "off", Some(strength), Some(guidance)) => ForceState {
                 switch: if switch == "on" {
                     Switch::On
                 } else {
                     Switch::Off
                 },
                 strength,
+                guidance,
                 fault,
             },
             _ => ForceState::UNKNOWN,
@@ -114,9 +122,9 @@ impl ForceStateFile {
         };
         let fault = FAULTS.iter().find(|(_, fault)| Some(*fault) == state.fault);
         let fault = fault.map_or(NO_FAULT, |(word, _)| word);
-        let (run, strength) = (self.run, state.strength);
+        let (run, strength, guidance) = (self.run, state.strength, state.guidance);
         write_whole(&self.path, Kind::Own, |file| {
-            writeln!(file, "{run} {switch} {strength} {fault}")
+            writeln!(file, "{run} {switch} {strength} {guidance} {fault}")
         })
     }
 }
@@ -140,6 +148,7 @@ mod tests {
             let state = ForceState {
                 switch: Switch::Off,
                 strength: 0.3,
+                guidance: 0.7,
                 fault,
             };
             file.write(&state).expect("written");
@@ -158,13 +167,16 @@ mod tests {
         for text in [
             "",
             "7 on",
-            "7 on 2.0 none",
-            "7 maybe 1 none",
-            "7 on NaN none",
-            "7 on 1 none none",
-            "7 on 1 too-hot",
-            "7 on 1 shakin",
-            "x7 on 1 none",
+            "7 on 1 none",
+            "7 on 2.0 1 none",
+            "7 on 1 2.0 none",
+            "7 maybe 1 1 none",
+            "7 on NaN 1 none",
+            "7 on 1 NaN none",
+            "7 on 1 1 none none",
+            "7 on 1 1 too-hot",
+            "7 on 1 1 shakin",
+            "x7 on 1 1 none",
         ] {
             std::fs::write(&file.path, text).expect("written");
             let state = file.read();

@@ -139,12 +139,17 @@ wire_enum! {
         },
         /// Force again after a fault, from nothing on.
         Rearm,
+        /// Weaker guidance.
+        Guidance {
+            /// Share of the guides' force, 0 to 1.
+            share: f64,
+        },
     }
 }
 
 message! {
     /// Request to a device to change its force; asking again is safe.
-    pub struct ForceRequest [contract of hash 0xf795_6c2b, version 1, at most 256 bytes] {
+    pub struct ForceRequest [contract of hash 0xf795_6c2b, version 2, at most 256 bytes] {
         /// The change.
         pub order: ForceOrder,
     }
@@ -152,14 +157,48 @@ message! {
 
 message! {
     /// State of a device's force after a request.
-    pub struct ForceReply [contract of hash 0x203e_0860, version 1, at most 1024 bytes] {
+    pub struct ForceReply [contract of hash 0x203e_0860, version 2, at most 1024 bytes] {
         /// True if it is switched on.
         pub is_on: bool,
         /// Share of the models' force, 0 to 1.
         pub strength: f64,
         /// Fault that blocks the force until it is armed again, in words; empty without one.
         pub fault: String,
+        /// Share of the guides' force, 0 to 1.
+        pub guidance: f64,
     }
+}
+
+message! {
+    /// Guide of the hand: a piece of path that a soft spring holds the brush to, across the path and within the canvas, until
+    /// the next one; in the desk frame. It neither presses nor moves the brush along the path.
+    pub struct GuideModel [version 1, at most 1024 bytes] {
+        /// The device that it is for: the source of its samples.
+        pub device: u32,
+        /// The device's epoch; another one is dropped.
+        pub device_epoch: u32,
+        /// Points of the path of the undeformed tip, m, 2 to 16; it goes straight on beyond its ends.
+        pub points_m: Vec<[f64; 3]>,
+        /// Unit normal of the canvas, toward the painter.
+        pub normal: [f64; 3],
+        /// Length of the brush head, m.
+        pub head_length_m: f64,
+        /// Stiffness, N/m; the servo bounds it.
+        pub stiffness_n_m: f64,
+        /// Damping across the path, N·s/m; the servo bounds it.
+        pub damping_n_s_m: f64,
+        /// Largest force, N; the servo bounds it.
+        pub max_force_n: f64,
+        /// After this time since its arrival the guide fades, ns, at most a second.
+        pub time_to_live_ns: u64,
+    }
+}
+
+impl GuideModel {
+    /// Most points of a path.
+    pub const POINTS_MOST: usize = 16;
+    /// Longest lifetime of a guide, ns.
+    pub const TIME_TO_LIVE_MOST_NS: u64 = 1_000_000_000;
 }
 
 message! {

@@ -103,6 +103,8 @@ impl StylusStatus {
             stiffness_n_m: 0.0,
             cap_n: 0.0,
             motor_temperature: 0.0,
+            is_guided: false,
+            guidance: 1.0,
         }
     }
 }
@@ -199,7 +201,7 @@ message! {
 
 message! {
     /// Status of a device, ten times a second.
-    pub struct StylusStatus [contract of hash 0x06b9_def3, version 2, at most 4096 bytes] {
+    pub struct StylusStatus [contract of hash 0x06b9_def3, version 3, at most 4096 bytes] {
         /// Samples published since the start.
         pub samples: u64,
         /// Samples that did not fit into the ring to the publisher.
@@ -230,6 +232,10 @@ message! {
         pub cap_n: f64,
         /// The hottest motor, 0 cold to 1 hot.
         pub motor_temperature: f64,
+        /// True while a guide of the hand is alive.
+        pub is_guided: bool,
+        /// Share of the guides' force, 0 to 1.
+        pub guidance: f64,
     }
 }
 

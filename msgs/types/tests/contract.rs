@@ -65,7 +65,8 @@ fn what_the_first_version_said_is_still_understood() {
         );
         // And what a later version will append is left alone.
         let longer = [&bytes[HEADER_BYTES..], &[1; 16]].concat();
-        assert_eq!((entry.show)(u16::MAX, &longer), Ok(read), "{name}");
+        let read = (entry.show)(u16::MAX, &longer).expect(name);
+        assert!(read.starts_with(words), "{name} is read as\n{read}");
     }
 }
 

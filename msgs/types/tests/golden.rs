@@ -7,7 +7,7 @@ use maulstick_types::command::advice::Advice;
 use maulstick_types::command::{After, Command, CommandReply, CommandRequest, GapRequest, Outcome};
 use maulstick_types::edits::{Undo, examples};
 use maulstick_types::haptics::{
-    ContactModel, FluidForce, ForceLaw, ForceOrder, ForceRequest, Grain, HermiteKnot,
+    ContactModel, FluidForce, ForceLaw, ForceOrder, ForceRequest, Grain, GuideModel, HermiteKnot,
 };
 use maulstick_types::paint::{
     BrushCredit, Entry, FrameHolds, FrameReply, FrameRequest, FrameTile, JournalEntry,
@@ -149,6 +149,17 @@ fn all() -> String {
         line(&model(ForceLaw::Rigid {
             stiffness_n_m: 300.0,
         })),
+        line(&GuideModel {
+            device: 1,
+            device_epoch: 2,
+            points_m: vec![[0.1, 0.2, 0.0], [0.11, 0.2, 0.0]],
+            normal: [0.0, 0.0, 1.0],
+            head_length_m: 0.025,
+            stiffness_n_m: 80.0,
+            damping_n_s_m: 0.5,
+            max_force_n: 0.6,
+            time_to_live_ns: 100_000_000,
+        }),
         line(&FluidForce {
             device: 1,
             device_epoch: 2,
@@ -161,6 +172,9 @@ fn all() -> String {
         }),
         line(&ForceRequest {
             order: ForceOrder::Strength { share: 0.5 },
+        }),
+        line(&ForceRequest {
+            order: ForceOrder::Guidance { share: 0.5 },
         }),
         line(&force_reply()),
         line(&BrushDef {

@@ -7,6 +7,7 @@
 //! | [`force_law`] | normal force by depth: eq. 8.1, the Hermite curve, a local force |
 //! | [`friction`], [`grain`] | what is felt across the normal |
 //! | [`contact`] | the force of one contact model at one pose |
+//! | [`guide`] | the force of a guide, which holds the hand to a recorded path |
 //! | [`recipient`] | the device, session and brush that accept a model |
 //! | [`servo`] | one tick: models, ageing, limits |
 //! | [`plant`] | a device and a hand that hold each other, for the simulated stylus and for tests |
@@ -16,8 +17,13 @@ pub mod contact;
 pub mod force_law;
 pub mod friction;
 pub mod grain;
+pub mod guide;
+#[cfg(test)]
+mod guided_hand_tests;
 pub mod plant;
 pub mod recipient;
+#[cfg(test)]
+mod replayed_tests;
 #[cfg(test)]
 mod scaled_tests;
 pub mod servo;
@@ -26,6 +32,7 @@ pub mod stability_grid;
 mod stability_tests;
 
 pub use contact::{Contact, ContactForce};
+pub use guide::Guide;
 pub use plant::{Hand, Plant};
 pub use recipient::Recipient;
 pub use servo::Servo;

@@ -2,7 +2,7 @@
 //! computed for.
 
 use maulstick_types::Origin;
-use maulstick_types::haptics::ContactModel;
+use maulstick_types::haptics::{ContactModel, GuideModel};
 
 /// A device in its current session, and its brush.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -20,6 +20,12 @@ impl Recipient {
         model.device == self.device.source
             && model.device_epoch == self.device.epoch
             && model.brush == self.brush
+    }
+
+    /// True if a guide is addressed to this recipient.
+    #[must_use]
+    pub fn accepts_guide(&self, guide: &GuideModel) -> bool {
+        guide.device == self.device.source && guide.device_epoch == self.device.epoch
     }
 }
 

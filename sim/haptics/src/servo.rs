@@ -13,12 +13,16 @@
 //! | [`fast_hand`] | less force to a fast hand |
 //! | [`motor_thermal`] | thermal model of the motors, which bounds the force |
 //! | [`persistent`] | state that survives the loss of the device |
+//! | `engagement` | force that begins where little is asked for |
+//! | `guidance` | the guide of the hand, beside the contact models |
 //! | [`passivity`] | the energy that sampling gives, taken back |
 //! | [`oscillation`] | detection of a shaking hand, which makes the force softer |
 //! | [`tick`] | input and report of a tick |
 
+mod engagement;
 pub mod fast_hand;
 pub mod fault;
+mod guidance;
 pub mod limits;
 pub mod motor_thermal;
 pub mod oscillation;
@@ -28,8 +32,10 @@ pub mod tick;
 
 use glam::DVec3;
 
+use self::engagement::Engagement;
 use self::fast_hand::FastHand;
 use self::fault::Fault;
+use self::guidance::Guidance;
 use self::limits::Limits;
 use self::motor_thermal::MotorThermal;
 use self::oscillation::{Oscillation, Touch};
@@ -37,20 +43,7 @@ use self::passivity::Passivity;
 use self::persistent::ServoMemory;
 use self::tick::{Sender, Switch, Tick};
 use crate::contact::{Contact, ContactForce, HandleState};
-
-/// Engagement of the force. Given to a hand that is deep in the canvas it would push it out; so it
-/// begins where the models ask for little, and a hand that stays deep feels nothing until it has
-/// come up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Engagement {
-    /// The models have asked for little in so many ticks running.
-    Waiting(u32),
-    /// It has.
-    Begun,
-}
-
-/// Ticks in which little must be asked for before force begins: one alone may be chance.
-const CALM_TICKS: u32 = 4;
+use crate::guide::Guide;
 
 /// The servo's state.
 #[derive(Clone, Copy, Debug)]
@@ -73,6 +66,7 @@ pub struct Servo {
     passivity: Passivity,
     oscillation: Oscillation,
     fast_hand: FastHand,
+    guidance: Guidance,
     last: Option<Last>,
     force: DVec3,
     fault: Option<Fault>,
@@ -89,10 +83,12 @@ struct Active {
 #[derive(Clone, Copy, Debug)]
 struct Last {
     position: DVec3,
-    /// What the models asked for, with all that bounds it, without what depends on velocity, N.
+    /// What models and guide asked for, with all that bounds it, without what depends on velocity, N.
     models: DVec3,
-    /// What that was multiplied by.
+    /// What the models' force was multiplied by.
     share: f64,
+    /// What the guide's force was multiplied by.
+    guided: f64,
     cap_n: f64,
 }
 
@@ -115,13 +111,14 @@ impl Servo {
             arrived: None,
             correction: DVec3::ZERO,
             correction_speed: 0.0,
-            engagement: Engagement::Waiting(0),
+            engagement: Engagement::ANEW,
             engaged_s: 0.0,
             idle_s: 0.0,
             thermal: memory.thermal,
             passivity: Passivity::default(),
             oscillation: Oscillation::default(),
             fast_hand: FastHand::default(),
+            guidance: Guidance::new(),
             last: None,
             force: DVec3::ZERO,
             fault: memory.fault,
@@ -136,32 +133,48 @@ impl Servo {
         self.arrived = Some(contact);
     }
 
+    /// A new guide has arrived; the next step evaluates it.
+    pub fn receive_guide(&mut self, guide: Guide, sender: Sender) {
+        self.guidance.receive(guide, sender);
+    }
+
+    /// Makes the guides' force weaker: a share from 0 to 1.
+    pub fn set_guidance(&mut self, share: f64) {
+        self.guidance.set_share(share_of(share));
+    }
+
     /// Allows force again after a fault; it engages anew.
     pub fn rearm(&mut self) {
         self.fault = None;
         self.thermal.forget_unknown();
         self.oscillation = Oscillation::default();
+        self.guidance.forget();
         self.engage_anew();
     }
 
     /// Switches the force off, at once, or on: it engages anew.
     pub fn switch(&mut self, switch: Switch) {
         self.switch = switch;
-        self.engagement = Engagement::Waiting(0);
+        self.wait();
     }
 
     /// Follows the dead man's switch: let go, there is no force, and it engages anew.
     pub fn permit(&mut self, dead_man: Switch) {
         self.permitted = dead_man;
         if dead_man == Switch::Off {
-            self.engagement = Engagement::Waiting(0);
+            self.wait();
         }
+    }
+
+    /// Both forces begin only where little is asked for.
+    fn wait(&mut self) {
+        self.engagement = Engagement::ANEW;
+        self.guidance.engage_anew();
     }
 
     /// Makes all force weaker: a share from 0 to 1.
     pub fn set_strength(&mut self, share: f64) {
-        // NaN counts as 0.
-        self.strength = if share > 0.0 { share.min(1.0) } else { 0.0 };
+        self.strength = share_of(share);
     }
 
     /// Takes in the temperature of the hottest motor, 0 cold to 1 hot.
@@ -171,7 +184,7 @@ impl Servo {
 
     /// Discards models and correction; the force engages anew.
     fn engage_anew(&mut self) {
-        self.engagement = Engagement::Waiting(0);
+        self.engagement = Engagement::ANEW;
         self.model = None;
         self.arrived = None;
         self.correction = DVec3::ZERO;
@@ -207,12 +220,13 @@ impl Servo {
         if dt > self.limits.longest_tick_s || dt < 0.0 {
             self.force = DVec3::ZERO;
             self.engaged_s = 0.0;
+            self.guidance.ramp_anew();
             self.last = None;
             self.passivity.forgive();
             tick.late = true;
             if dt > self.limits.standstill_s {
                 // Who knows where the hand has gone meanwhile.
-                self.engagement = Engagement::Waiting(0);
+                self.wait();
             }
         }
         let passed_s = dt.max(0.0);
@@ -230,6 +244,11 @@ impl Servo {
         self.watch(handle, touch, dt);
         let speed = handle.velocity.length() / self.limits.max_speed_m_s;
         self.fast_hand.follow(speed, touch);
+        let shakes = self.guidance.follow(handle, &self.limits, dt, self.force);
+        if shakes {
+            self.fault = Some(self.fault.unwrap_or(Fault::Oscillation));
+        }
+        tick.guided = self.guidance.is_alive(&self.limits);
         self.rest(touch, dt);
         let off = [self.switch, self.permitted].contains(&Switch::Off);
         tick.resting = off || self.idle_s >= self.limits.idle_s;
@@ -288,21 +307,21 @@ impl Servo {
     /// Sums the energy of the step that ends, by the force that was held over it and the models as
     /// they were in it.
     fn observe(&mut self, handle: &HandleState, dt: f64) {
-        let (Some(last), Some(model)) = (self.last, &self.model) else {
+        let Some(last) = self.last else {
             return;
         };
-        let contact_force = model
-            .contact
-            .evaluate(handle, self.limits.max_stiffness_n_m);
-        let here = cut(
-            (contact_force.conservative + self.correction) * last.share,
-            last.cap_n,
-        );
+        let mut here = self.guidance.asked(handle, &self.limits) * last.guided;
+        let mut is_free = true;
+        if let Some(contact_force) = self.evaluate_newest(handle) {
+            here += (contact_force.conservative + self.correction) * last.share;
+            is_free = contact_force.depth_m <= 0.0;
+        }
+        let here = here.clamp_length_max(last.cap_n);
         let way = handle.position - last.position;
         let models = (last.models + here) * 0.5;
         let damping = self.limits.damping_n_s_m;
         self.passivity.observe(self.force, models, way, damping, dt);
-        if contact_force.depth_m <= 0.0 && self.force == DVec3::ZERO {
+        if is_free && self.force == DVec3::ZERO {
             self.passivity.forgive();
         }
     }
@@ -310,13 +329,14 @@ impl Servo {
     /// The ramp and the recovery go on by a tick, and models age by all the time that has passed.
     fn age(&mut self, dt: f64, passed_s: f64) {
         self.engaged_s += dt;
+        self.guidance.age(&self.limits, dt, passed_s);
         if let Some(model) = &mut self.model {
             model.age_s += passed_s;
         }
         if self.model.is_some_and(|model| self.fading(&model) <= 0.0) {
             // Nothing of it is felt any more: a hand that has gone deep meanwhile is not to be pushed out as
             // models come again.
-            self.engagement = Engagement::Waiting(0);
+            self.engagement = Engagement::ANEW;
             self.correction = DVec3::ZERO;
         }
         let (size, shrunk) = (self.correction.length(), self.correction_speed * dt);
@@ -384,19 +404,20 @@ impl Servo {
         }
     }
 
-    /// Counts the time without contact; a touch brings the force up anew.
+    /// Counts the time without contact or guide; a touch brings the force up anew.
     fn rest(&mut self, touch: Touch, dt: f64) {
-        if touch == Touch::Air {
+        if touch == Touch::Air && !self.guidance.holds(&self.limits) {
             self.idle_s += dt;
             return;
         }
         if self.idle_s >= self.limits.idle_s {
             self.engaged_s = 0.0;
+            self.guidance.ramp_anew();
         }
         self.idle_s = 0.0;
     }
 
-    /// The force that the models ask for, and the brake.
+    /// The force that models and guide ask for, and the brake.
     fn wanted(
         &mut self,
         handle: &HandleState,
@@ -404,54 +425,62 @@ impl Servo {
         dt: f64,
         tick: &mut Tick,
     ) -> DVec3 {
-        tick.waiting = self.engagement != Engagement::Begun;
-        let (Some(model), Some(contact_force)) = (&self.model, contact_force) else {
+        let contact = self.contact(contact_force, tick);
+        let guiding = self.guidance.give(&self.limits, self.strength);
+        if contact.is_none() && guiding.share == 0.0 {
             self.last = None;
             return DVec3::ZERO;
+        }
+        let (force, conservative, share) = contact.unwrap_or_default();
+        self.last = Some(Last {
+            position: handle.position,
+            models: (conservative + guiding.conservative).clamp_length_max(tick.cap_n),
+            share,
+            guided: guiding.share,
+            cap_n: tick.cap_n,
+        });
+        let brake = self.passivity.brake(dt);
+        tick.braked = brake != DVec3::ZERO;
+        force + guiding.force + brake
+    }
+
+    /// Force of the models, N, the part of it that depends on position alone, and what they were multiplied by; `None` until
+    /// it begins.
+    fn contact(
+        &mut self,
+        contact_force: Option<ContactForce>,
+        tick: &mut Tick,
+    ) -> Option<(DVec3, DVec3, f64)> {
+        tick.waiting = self.engagement != Engagement::Begun;
+        let (Some(model), Some(contact_force)) = (&self.model, contact_force) else {
+            return None;
         };
         tick.stale = model.overdue_s() > 0.0;
         let softer = self.strength * self.oscillation.softness() * self.fast_hand.softness();
         tick.asked_n_m = contact_force.asked_n_m;
         tick.stiffness_n_m = contact_force.stiffness_n_m * softer;
-        let (correction, cap_n) = (self.correction, tick.cap_n);
-        if let Engagement::Waiting(calm) = self.engagement {
-            let asked_n = (contact_force.force + correction).length();
-            // A model that is past its time says nothing of the canvas. Written so that a bound that is no
-            // number lets no force begin.
-            let calm = match asked_n <= self.limits.engage_n && !tick.stale {
-                true => calm + 1,
-                false => 0,
-            };
+        // A model that is past its time says nothing of the canvas.
+        let asked_n = match tick.stale {
+            true => f64::NAN,
+            false => (contact_force.force + self.correction).length(),
+        };
+        if self.engagement.waits(asked_n, self.limits.engage_n) {
             self.engaged_s = 0.0;
-            self.engagement = match calm >= CALM_TICKS {
-                true => Engagement::Begun,
-                false => Engagement::Waiting(calm),
-            };
-            self.last = None;
-            return DVec3::ZERO;
+            return None;
         }
         let ramp = (self.engaged_s / self.limits.engage_s).min(1.0);
         let share = self.fading(model) * ramp * softer;
-        self.last = Some(Last {
-            position: handle.position,
-            models: cut((contact_force.conservative + correction) * share, cap_n),
+        Some((
+            (contact_force.force + self.correction) * share,
+            (contact_force.conservative + self.correction) * share,
             share,
-            cap_n,
-        });
-        let brake = self.passivity.brake(dt);
-        tick.braked = brake != DVec3::ZERO;
-        (contact_force.force + correction) * share + brake
+        ))
     }
 }
 
-/// A force cut to the largest size.
-fn cut(force: DVec3, most_n: f64) -> DVec3 {
-    let size = force.length();
-    if size > most_n {
-        force * (most_n / size)
-    } else {
-        force
-    }
+/// A share from 0 to 1; NaN counts as 0.
+fn share_of(share: f64) -> f64 {
+    if share > 0.0 { share.min(1.0) } else { 0.0 }
 }
 
 impl Active {
@@ -463,5 +492,7 @@ impl Active {
 
 #[cfg(test)]
 mod guard_tests;
+#[cfg(test)]
+mod guidance_tests;
 #[cfg(test)]
 mod tests;

@@ -5,14 +5,16 @@
 //! while the hand holds still, the steady force, and the energy that the hand was given beyond what
 //! the models, felt without samples, would have given: at the grip, with the device's own friction
 //! and mass, and without what a plane does that moves or changes its stiffness. A wall of stiffness K
-//! is passive while K < 2b/T (Colgate and Schenkel 1997): up to there the steady force is judged too.
+//! is passive while K < 2b/T (Colgate and Schenkel 1997): up to there the steady force is judged too. Beside the wall a guide
+//! may hold the hand to a line; then the hand is kicked across that too.
 
 use glam::{DQuat, DVec3};
 use maulstick_num::geometry::rotation;
 use maulstick_num::{cos, sin};
-use maulstick_types::haptics::{ContactModel, ForceLaw};
+use maulstick_types::haptics::{ContactModel, ForceLaw, GuideModel};
 
 use crate::contact::{Contact, HandleState};
+use crate::guide::Guide;
 use crate::plant::{Hand, Plant};
 use crate::servo::Servo;
 use crate::servo::fault::Fault;
@@ -37,6 +39,8 @@ pub const NO_ENERGY_J: f64 = 1e-6;
 pub const FORCE_ERROR: f64 = 0.1;
 
 const HEAD_M: f64 = 0.025;
+/// Friction of the wall without a guide.
+const FRICTION: f64 = 0.2;
 const RECOVERY_S: f64 = 0.015;
 /// The hand touches from here on, s; planes move until the second time; the hand holds still between
 /// the third and the fourth, and is away at the end.
@@ -56,6 +60,66 @@ pub enum Motion {
     Sliding,
     /// It rests, and its stiffness goes up and down.
     Stiffening,
+}
+
+/// Guide beside the wall: a straight line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GuideLine {
+    /// Normal of the plane in which it acts.
+    pub normal: DVec3,
+    /// Stiffness, N/m.
+    pub stiffness: f64,
+    /// Damping, N·s/m.
+    pub damping: f64,
+    /// Largest force, N.
+    pub most_n: f64,
+}
+
+/// Distance of a kicked and of a still hand from the line, m.
+const ASIDE_M: [f64; 2] = [0.001, 0.003];
+
+impl GuideLine {
+    /// As stiff and as strong as guides may be.
+    #[must_use]
+    pub fn strongest(normal: DVec3, damping: f64) -> Self {
+        let limits = Limits::default();
+        Self {
+            normal,
+            stiffness: limits.guide_stiffness_n_m,
+            damping,
+            most_n: limits.guide_n,
+        }
+    }
+
+    /// Direction in which it pulls: the line lies along y, through the place where the hand touches.
+    fn across(&self) -> DVec3 {
+        DVec3::Y.cross(self.normal)
+    }
+
+    fn stored(&self, tip: DVec3) -> f64 {
+        let distance = tip.dot(self.across()).abs();
+        let cut = distance.min(self.most_n / self.stiffness);
+        self.stiffness * cut * (distance - 0.5 * cut)
+    }
+
+    fn force(&self, tip: DVec3) -> DVec3 {
+        let aside = tip.dot(self.across()) * self.stiffness;
+        self.across() * -aside.clamp(-self.most_n, self.most_n)
+    }
+
+    fn guide(&self, time_to_live_s: f64) -> Result<Guide, &'static str> {
+        Guide::new(&GuideModel {
+            device: 0,
+            device_epoch: 0,
+            points_m: vec![[0.0, -0.1, 0.0], [0.0, 0.1, 0.0]],
+            normal: self.normal.to_array(),
+            head_length_m: HEAD_M,
+            stiffness_n_m: self.stiffness,
+            damping_n_s_m: self.damping,
+            max_force_n: self.most_n,
+            time_to_live_ns: (time_to_live_s * 1e9) as u64,
+        })
+    }
 }
 
 /// How the force reaches the motors.
@@ -82,6 +146,8 @@ pub struct Run {
     pub jitter: f64,
     /// What the plane does.
     pub motion: Motion,
+    /// Guide, sent with the models, if there is one.
+    pub guide: Option<GuideLine>,
     /// How the force reaches the motors.
     pub path: Path,
 }
@@ -93,7 +159,7 @@ pub struct Outcome {
     pub wobble_m: f64,
     /// Greatest energy given to the hand that nobody put in, J.
     pub net_j: f64,
-    /// Steady force by stiffness times depth.
+    /// Steady force along the normal, without the guide's, by stiffness times depth.
     pub share: f64,
     /// Stiffness that the servo told, N/m.
     pub told_n_m: f64,
@@ -122,15 +188,15 @@ impl Wall {
         0.5 * self.stiffness * self.depth(tip) * self.depth(tip)
     }
 
-    fn contact(&self, time_to_live_s: f64) -> Result<Contact, &'static str> {
+    fn contact(&self, friction: f64, time_to_live_s: f64) -> Result<Contact, &'static str> {
         let law = ForceLaw::Rigid {
             stiffness_n_m: self.stiffness,
         };
         Contact::new(&ContactModel {
             plane_point_m: self.point.to_array(),
             plane_normal: self.normal.to_array(),
-            friction_static: 0.3,
-            friction_kinetic: 0.2,
+            friction_static: friction,
+            friction_kinetic: friction,
             time_to_live_ns: (time_to_live_s * 1e9) as u64,
             recovery_ns: (RECOVERY_S * 1e9) as u64,
             ..ContactModel::bare(law, HEAD_M)
@@ -203,7 +269,14 @@ impl Run {
             _ if kicked => 0.001,
             _ => 0.003,
         };
-        DVec3::Z * (HEAD_M - depth)
+        let tip = DVec3::Z * -depth;
+        let tip = match self.guide {
+            None => tip,
+            Some(guide) if s >= TOUCH_S => tip + guide.across() * ASIDE_M[usize::from(!kicked)],
+            // On the line, where its force may begin.
+            Some(guide) => tip - guide.across() * tip.dot(guide.across()),
+        };
+        tip + DVec3::Z * HEAD_M
     }
 
     /// Lets the hand go through it all.
@@ -226,6 +299,19 @@ impl Run {
             max_stiffness_n_m: MAX_STIFFNESS_N_M,
             damping_n_s_m: DAMPING_N_S_M,
             ..guarded
+        };
+        let limits = match self.guide {
+            Some(guide) => Limits {
+                guide_n: guide.most_n,
+                guide_stiffness_n_m: guide.stiffness,
+                ..limits
+            },
+            None => limits,
+        };
+        // A hand that is kicked across the wall's friction would hide what the guide gives.
+        let friction = match self.guide {
+            Some(_) => 0.0,
+            None => FRICTION,
         };
         let period_s = 1.0 / self.rate_hz;
         let live_s = (6.0 * period_s).max(0.1);
@@ -261,7 +347,10 @@ impl Run {
             told.age();
             let arrived = under_way.iter().filter(|(at, _)| *at <= s).count();
             if let Some((_, wall)) = under_way.drain(..arrived).next_back() {
-                servo.receive(wall.contact(live_s)?, Sender::Same);
+                servo.receive(wall.contact(friction, live_s)?, Sender::Same);
+                if let Some(guide) = self.guide {
+                    servo.receive_guide(guide.guide(live_s)?, Sender::Same);
+                }
                 let given = Wall {
                     stiffness: wall.stiffness.min(limits.max_stiffness_n_m),
                     ..wall
@@ -280,11 +369,15 @@ impl Run {
             let to = tip(&plant);
             let models =
                 told.wall.stored(from) - told.wall.stored(to) + told.correction.dot(to - from);
-            net_j += plant.given_j() - before_j - models;
+            let guided = self
+                .guide
+                .map_or(0.0, |guide| guide.stored(from) - guide.stored(to));
+            net_j += plant.given_j() - before_j - models - guided;
             most_j = most_j.max(net_j);
             if (STILL_S[0]..STILL_S[1]).contains(&s) {
                 (low, high) = (low.min(to), high.max(to));
-                push += force.dot(told.wall.normal);
+                let guided = self.guide.map_or(DVec3::ZERO, |guide| guide.force(to));
+                push += (force - guided).dot(told.wall.normal);
                 depth += told.wall.depth(to);
                 told_n_m = told_n_m.min(tick.stiffness_n_m);
             }
@@ -347,6 +440,21 @@ impl Worst {
     }
 }
 
+/// The runs of the grid with the strongest guide beside the wall, within its plane and in one tilted by 45°.
+#[must_use]
+pub fn guided_grid() -> Vec<Run> {
+    let tilted = DVec3::new(1.0, 0.0, 1.0).normalize();
+    let mut runs = Vec::new();
+    for normal in [DVec3::Z, tilted] {
+        for run in grid(Path::Servo) {
+            // From none to as much as there may be.
+            let guide = Some(GuideLine::strongest(normal, 4.0 * run.jitter));
+            runs.push(Run { guide, ..run });
+        }
+    }
+    runs
+}
+
 /// All runs of the grid, by one path of the force: 360 for each of [`HANDS`].
 #[must_use]
 pub fn grid(path: Path) -> Vec<Run> {
@@ -367,6 +475,7 @@ pub fn grid(path: Path) -> Vec<Run> {
                             rate_hz,
                             jitter,
                             motion,
+                            guide: None,
                             path,
                         });
                     }

@@ -6,10 +6,10 @@ mod counting;
 use counting::allocations;
 use glam::{DQuat, DVec3};
 use maulstick_haptics::contact::HandleState;
-use maulstick_haptics::{Contact, Limits, Sender, Servo, Switch};
+use maulstick_haptics::{Contact, Guide, Limits, Sender, Servo, Switch};
 use maulstick_num::sin;
 use maulstick_types::Pose;
-use maulstick_types::haptics::{ContactModel, ForceLaw, Grain, HermiteKnot};
+use maulstick_types::haptics::{ContactModel, ForceLaw, Grain, GuideModel, HermiteKnot};
 
 fn contact(law: ForceLaw) -> Contact {
     Contact::new(&ContactModel {
@@ -60,6 +60,18 @@ fn a_tick_allocates_nothing() {
         },
     ];
     let contacts = laws.map(contact);
+    let guide = Guide::new(&GuideModel {
+        device: 0,
+        device_epoch: 0,
+        points_m: vec![[-0.01, 0.002, 0.0], [0.0, 0.004, 0.0], [0.01, 0.002, 0.0]],
+        normal: [0.0, 0.0, 1.0],
+        head_length_m: 0.025,
+        stiffness_n_m: 80.0,
+        damping_n_s_m: 0.5,
+        max_force_n: 0.6,
+        time_to_live_ns: 20_000_000,
+    })
+    .expect("a guide");
     let mut servo = Servo::new(Limits::default());
     let mut pressed = 0;
     let mut run = |servo: &mut Servo| {
@@ -67,6 +79,9 @@ fn a_tick_allocates_nothing() {
             let t = f64::from(tick) * 1e-3;
             if tick % 50 == 0 {
                 servo.receive(contacts[(tick / 50) as usize % 5], Sender::Same);
+            }
+            if tick % 30 == 0 {
+                servo.receive_guide(guide, Sender::Same);
             }
             match tick % 7000 {
                 1000 => servo.measure(0.9),

@@ -75,8 +75,8 @@ impl HealthMonitor {
                 continue;
             }
             let changes = state.changes_devices || state.fit.is_some();
-            // A session is painted again in a painting of its own.
-            let opens = state.switching || state.replay.is_some();
+            // A session is painted again in a painting of its own: what leaves later has failed.
+            let opens = state.switching || state.replay.as_ref().is_some_and(|own| own.opens);
             if opens || changes && state.devices.contains_key(node) {
                 self.expected.insert(node.clone());
                 continue;
@@ -216,6 +216,7 @@ fn decided(what: &str, notifications: &mut Notifications) {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
     use std::sync::Arc;
 
     use maulstick_optics::PaintLibrary;
@@ -223,6 +224,7 @@ mod tests {
 
     use super::*;
     use crate::rig::state::PaintNode;
+    use crate::sessions::player::ReplayProgress;
     use crate::test_support::panel_bench::status;
     use crate::widgets::notifications::Weight;
 
@@ -336,6 +338,24 @@ mod tests {
         assert_eq!(rig.look(), []);
         rig.state.nodes.retain(|node| node != "arm");
         assert_eq!(rig.look().len(), 1, "it is told where nothing is switched");
+    }
+
+    #[test]
+    fn a_replay_hides_who_leaves_for_its_painting_and_nobody_later() {
+        let mut rig = Rig::new();
+        rig.state.replay = Some(ReplayProgress {
+            opens: true,
+            ..ReplayProgress::new(Path::new("sea.mcap"))
+        });
+        rig.state.nodes.retain(|node| node != "paint");
+        assert_eq!(rig.look(), [], "it goes on in another painting");
+        rig.state.nodes.push("paint".to_owned());
+        assert_eq!(rig.look(), []);
+        rig.state.replay = Some(ReplayProgress::new(Path::new("sea.mcap")));
+        for node in ["paint", "brush-main"] {
+            rig.state.nodes.retain(|other| other != node);
+            assert_eq!(rig.look().len(), 1, "{node} failed");
+        }
     }
 
     #[test]

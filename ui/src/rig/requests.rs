@@ -48,6 +48,10 @@ impl Request {
                 device,
                 order: ForceOrder::Strength { .. },
             } => return Some(("strength", device.clone())),
+            Self::Force {
+                device,
+                order: ForceOrder::Guidance { .. },
+            } => return Some(("guidance", device.clone())),
             Self::Force { .. } => return None,
         };
         Some(match command {

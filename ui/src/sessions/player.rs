@@ -25,6 +25,8 @@ pub struct ReplayProgress {
     pub position: Option<Position>,
     /// The painting in which a session is painted again; `None` if streams alone are sent.
     pub painting: Option<PathBuf>,
+    /// True while the rig goes over to that painting: its nodes leave and come back.
+    pub opens: bool,
 }
 
 /// Where a replay is.
@@ -46,6 +48,7 @@ pub struct Position {
 enum PlayerLine {
     Position(Position),
     Painting { painting: PathBuf },
+    Opens { opens: PathBuf },
 }
 
 /// An order to the player.
@@ -86,6 +89,7 @@ impl ReplayProgress {
             recording: recording.to_owned(),
             position: None,
             painting: None,
+            opens: false,
         }
     }
 
@@ -93,7 +97,12 @@ impl ReplayProgress {
     fn read(&mut self, line: &str) {
         match serde_json::from_str(line) {
             Ok(PlayerLine::Position(position)) => self.position = Some(position),
-            Ok(PlayerLine::Painting { painting }) => self.painting = Some(painting),
+            Ok(PlayerLine::Painting { painting }) => {
+                (self.painting, self.opens) = (Some(painting), false);
+            }
+            Ok(PlayerLine::Opens { opens }) => {
+                (self.painting, self.opens) = (Some(opens), true);
+            }
             Err(_) => {}
         }
     }

@@ -4,8 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64};
 
 use glam::DVec3;
-use maulstick_haptics::Tick;
-use maulstick_haptics::contact::Contact;
+use maulstick_haptics::{Contact, Guide, Tick};
 use maulstick_types::Origin;
 
 use super::force_control::ForceControl;
@@ -30,15 +29,25 @@ pub struct TickRecord {
     pub rearms: u64,
 }
 
-/// A contact model for the servo.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Delivery {
+/// A contact model or a guide for the servo.
+#[derive(Clone, Copy, Debug)]
+pub struct Delivery<M> {
     /// The model.
-    pub contact: Option<Contact>,
+    pub model: Option<M>,
     /// Its sender.
     pub sender: Option<Origin>,
     /// Number of the delivery.
     pub number: u64,
+}
+
+impl<M> Default for Delivery<M> {
+    fn default() -> Self {
+        Self {
+            model: None,
+            sender: None,
+            number: 0,
+        }
+    }
 }
 
 /// The servo's ends of the channels.
@@ -46,7 +55,9 @@ pub struct Channels {
     /// Tick records, out.
     pub ticks: rtrb::Producer<TickRecord>,
     /// Newest contact model, in.
-    pub models: triple_buffer::Output<Delivery>,
+    pub models: triple_buffer::Output<Delivery<Contact>>,
+    /// Newest guide, in.
+    pub guides: triple_buffer::Output<Delivery<Guide>>,
     /// Newest force settings, in.
     pub controls: triple_buffer::Output<ForceControl>,
     /// Request to end.

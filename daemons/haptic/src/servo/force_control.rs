@@ -9,6 +9,8 @@ pub struct ForceControl {
     pub switch: Switch,
     /// Share of the models' force that is given, 0 to 1.
     pub strength: f64,
+    /// Share of the guides' force that is given, 0 to 1.
+    pub guidance: f64,
     /// Number of times that the force was re-armed.
     pub rearms: u64,
 }
@@ -18,6 +20,7 @@ impl Default for ForceControl {
         Self {
             switch: Switch::On,
             strength: 1.0,
+            guidance: 1.0,
             rearms: 0,
         }
     }
@@ -31,6 +34,9 @@ impl ForceControl {
         }
         if newest.strength != self.strength {
             servo.set_strength(newest.strength);
+        }
+        if newest.guidance != self.guidance {
+            servo.set_guidance(newest.guidance);
         }
         if newest.rearms != self.rearms {
             servo.rearm();

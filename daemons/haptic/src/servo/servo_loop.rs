@@ -8,7 +8,7 @@ use glam::DVec3;
 use maulstick_haptics::{Limits, Sender, Servo, ServoMemory, Switch};
 use maulstick_types::Origin;
 
-use super::channels::{Channels, TickRecord};
+use super::channels::{Channels, Delivery, TickRecord};
 use super::clock::monotonic_ns;
 use super::force_control::ForceControl;
 use crate::device::driver::DeviceError;
@@ -30,8 +30,8 @@ pub struct ServoLoop {
     servo: Servo,
     longest_s: f64,
     channels: Channels,
-    seen: u64,
-    sender: Option<Origin>,
+    models: Seen,
+    guides: Seen,
     followed: ForceControl,
     amplifiers: Switch,
     read_ns: u64,
@@ -52,8 +52,8 @@ impl ServoLoop {
             servo: Servo::after(limits, previous.memory),
             longest_s: limits.longest_tick_s,
             channels,
-            seen: 0,
-            sender: None,
+            models: Seen::default(),
+            guides: Seen::default(),
             // Earlier re-armings were of another servo, whose fault is to outlast them.
             followed: ForceControl {
                 rearms: previous.rearms,
@@ -143,20 +143,38 @@ impl ServoLoop {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Takes in the newest model and the newest settings.
+    /// Takes in the newest model, the newest guide and the newest settings.
     fn take_in(&mut self) {
-        let delivery = *self.channels.models.read();
-        if delivery.number != self.seen
-            && let Some(contact) = delivery.contact
-        {
-            let sender = match delivery.sender == self.sender {
-                true => Sender::Same,
-                false => Sender::Another,
-            };
+        if let Some((contact, sender)) = self.models.newest(self.channels.models.read()) {
             self.servo.receive(contact, sender);
-            (self.seen, self.sender) = (delivery.number, delivery.sender);
+        }
+        if let Some((guide, sender)) = self.guides.newest(self.channels.guides.read()) {
+            self.servo.receive_guide(guide, sender);
         }
         let control = *self.channels.controls.read();
         self.followed.apply(control, &mut self.servo);
+    }
+}
+
+/// Deliveries of a kind that the servo has seen.
+#[derive(Default)]
+struct Seen {
+    number: u64,
+    sender: Option<Origin>,
+}
+
+impl Seen {
+    /// What is delivered, if it is new.
+    fn newest<M: Copy>(&mut self, delivery: &Delivery<M>) -> Option<(M, Sender)> {
+        let model = delivery.model?;
+        if delivery.number == self.number {
+            return None;
+        }
+        let sender = match delivery.sender == self.sender {
+            true => Sender::Same,
+            false => Sender::Another,
+        };
+        (self.number, self.sender) = (delivery.number, delivery.sender);
+        Some((model, sender))
     }
 }

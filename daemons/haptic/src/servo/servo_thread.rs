@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::Receiver;
 use std::thread::JoinHandle;
 
-use maulstick_haptics::{Limits, ServoMemory};
+use maulstick_haptics::{Contact, Guide, Limits, ServoMemory};
 use thread_priority::unix::{RealtimeThreadSchedulePolicy, ThreadSchedulePolicy};
 use thread_priority::{ThreadPriority, ThreadPriorityValue};
 
@@ -38,7 +38,9 @@ pub struct ServoThread {
     /// Tick records, oldest first.
     pub ticks: rtrb::Consumer<TickRecord>,
     /// Contact models, in.
-    pub models: triple_buffer::Input<Delivery>,
+    pub models: triple_buffer::Input<Delivery<Contact>>,
+    /// Guides, in.
+    pub guides: triple_buffer::Input<Delivery<Guide>>,
     /// Force settings, in.
     pub controls: triple_buffer::Input<ForceControl>,
     /// Obstacles to real-time scheduling.
@@ -113,7 +115,8 @@ impl ServoThread {
         ring: usize,
     ) -> std::io::Result<Self> {
         let (to_publisher, ticks) = rtrb::RingBuffer::new(ring);
-        let (models, from_rig) = triple_buffer::triple_buffer(&Delivery::default());
+        let (models, models_from_rig) = triple_buffer::triple_buffer(&Delivery::default());
+        let (guides, guides_from_rig) = triple_buffer::triple_buffer(&Delivery::default());
         // Until the daemon sends its settings the servo counts as armed as its predecessor was.
         let (controls, from_daemon) = triple_buffer::triple_buffer(&ForceControl {
             rearms: previous.rearms,
@@ -125,7 +128,8 @@ impl ServoThread {
         let dropped = Arc::new(AtomicU64::new(0));
         let channels = Channels {
             ticks: to_publisher,
-            models: from_rig,
+            models: models_from_rig,
+            guides: guides_from_rig,
             controls: from_daemon,
             stop: Arc::clone(&stop),
             dropped: Arc::clone(&dropped),
@@ -147,6 +151,7 @@ impl ServoThread {
         Ok(Self {
             ticks,
             models,
+            guides,
             controls,
             warnings,
             stop,

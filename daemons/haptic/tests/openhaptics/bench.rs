@@ -76,7 +76,7 @@ pub(crate) fn wall(servo: &mut ServoThread) {
     // Nobody sends it again.
     contact.time_to_live_s = f64::INFINITY;
     servo.models.write(Delivery {
-        contact: Some(contact),
+        model: Some(contact),
         sender: None,
         number: 1,
     });

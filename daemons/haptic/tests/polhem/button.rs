@@ -63,10 +63,12 @@ fn a_clutch_at_the_button_holds_for_as_long_as_it_is_pressed() {
     let placed = MountedDevice::new(Box::new(polhem), registration, 1);
     let (ticks, mut told) = rtrb::RingBuffer::new(64);
     let (_, models) = triple_buffer::triple_buffer(&Delivery::default());
+    let (_, guides) = triple_buffer::triple_buffer(&Delivery::default());
     let (_, controls) = triple_buffer::triple_buffer(&ForceControl::default());
     let channels = Channels {
         ticks,
         models,
+        guides,
         controls,
         stop: std::sync::Arc::default(),
         dropped: std::sync::Arc::default(),

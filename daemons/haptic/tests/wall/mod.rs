@@ -43,7 +43,7 @@ pub(crate) fn push(device: &DeviceSection, mut is_felt: impl FnMut() -> bool) ->
     let placed = MountedDevice::new(opened.driver, registration, 0);
     let mut servo = ServoThread::start(placed, opened.clock, limits).expect("started");
     servo.models.write(Delivery {
-        contact: Some(wall()),
+        model: Some(wall()),
         sender: None,
         number: 1,
     });

@@ -28,6 +28,15 @@ pub enum Order {
         #[command(flatten)]
         whose: Whose,
     },
+    /// Give a share of the guides' force
+    Guidance {
+        /// Share of the force: 60% or 0.6
+        #[arg(value_parser = share)]
+        share: f64,
+        /// Of which devices
+        #[command(flatten)]
+        whose: Whose,
+    },
     /// Re-arm the force after a fault
     Rearm(Whose),
 }
@@ -68,6 +77,7 @@ pub fn give(order: &Order) -> Result<i32, UserError> {
         Order::Off(whose) => (whose, ForceOrder::Off),
         Order::On(whose) => (whose, ForceOrder::On),
         Order::Strength { share, whose } => (whose, ForceOrder::Strength { share: *share }),
+        Order::Guidance { share, whose } => (whose, ForceOrder::Guidance { share: *share }),
         Order::Rearm(whose) => (whose, ForceOrder::Rearm),
     };
     let client = Client::open(&whose.target)?;
@@ -146,13 +156,17 @@ fn told(device: &str, reply: &ForceReply) -> String {
         true => format!(", {percent} % when it is on"),
         false => String::new(),
     };
+    let guidance = match reply.guidance < 1.0 {
+        true => format!(", guidance {} %", (reply.guidance * 100.0).round()),
+        false => String::new(),
+    };
     let fault = match reply.fault.as_str() {
         "" => String::new(),
         fault => format!("; {fault}"),
     };
     match reply.is_on {
-        true => format!("{device}: force on, {percent} %{fault}\n"),
-        false => format!("{device}: force off{weaker}{fault}\n"),
+        true => format!("{device}: force on, {percent} %{guidance}{fault}\n"),
+        false => format!("{device}: force off{weaker}{guidance}{fault}\n"),
     }
 }
 
@@ -190,13 +204,15 @@ mod tests {
             is_on: true,
             strength: 0.6,
             fault: String::new(),
+            guidance: 1.0,
         };
         assert_eq!(told("arm", &reply), "arm: force on, 60 %\n");
         reply.fault = "it shakes".into();
         reply.is_on = false;
+        reply.guidance = 0.4;
         assert_eq!(
             told("arm", &reply),
-            "arm: force off, 60 % when it is on; it shakes\n"
+            "arm: force off, 60 % when it is on, guidance 40 %; it shakes\n"
         );
     }
 }

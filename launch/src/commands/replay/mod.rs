@@ -4,15 +4,20 @@
 //! | --- | --- |
 //! | [`session`] | a session is painted again |
 //! | [`streams`] | messages of chosen topics are sent again |
+//! | [`driven`] | the device whose hand feels it |
+//! | [`guide`], [`traced`] | its strokes guide a hand that paints |
 //! | [`place`] | a take elsewhere on the desk |
 //! | [`transport`], [`orders`] | pause, seek, step, rate |
 //! | [`events`] | what is to come |
 
+mod driven;
 mod events;
+mod guide;
 mod orders;
 mod place;
 mod session;
 mod streams;
+mod traced;
 mod transport;
 
 use std::path::PathBuf;
@@ -27,7 +32,7 @@ use serde_json::json;
 
 use self::orders::{KEYS, Orders};
 use self::place::PlaceOptions;
-use self::transport::{Order, Transport, parse_rate};
+use self::transport::{Order, Transport, parse_rate, parse_strength};
 use crate::EXIT_INTERRUPTED;
 use crate::commands::client::Target;
 use crate::commands::print_json_line;
@@ -66,11 +71,17 @@ pub struct ReplayOptions {
     /// Let recorded contact models move the hand that holds this device
     #[arg(long, value_name = "DEVICE")]
     drive: Option<String>,
+    /// Guide the hand that holds this device along the recorded strokes; it paints, and nothing is played
+    #[arg(long, value_name = "DEVICE", conflicts_with_all = ["drive", "device", "remap", "rate", "step"])]
+    guide: Option<String>,
+    /// Strength of the guide, 0 to 1
+    #[arg(long, value_name = "P", default_value_t = 0.5, value_parser = parse_strength, requires = "guide")]
+    strength: f64,
     #[command(flatten)]
     place: PlaceOptions,
     #[command(flatten)]
     painting: PaintingOptions,
-    /// Read orders from the standard input (pause, step, seek S, skip S, rate R, end), and print the position as lines of JSON
+    /// Read orders from the standard input (pause, step, seek S, skip S, rate R, strength P, end), and print the position as lines of JSON
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -126,6 +137,9 @@ impl ReplayOptions {
 /// # Errors
 /// A [`UserError`] where no rig runs, the recording lacks something, or the rig refuses it.
 pub fn run(options: &ReplayOptions) -> Result<i32, UserError> {
+    if let Some(device) = &options.guide {
+        return guide::guide(options, device);
+    }
     let sends = !options.topic.is_empty()
         || options.device.is_some()
         || options.drive.is_some()

@@ -7,6 +7,7 @@ use console::{Key, Term};
 use maulstick_rig::UserError;
 use nix::sys::termios::{SetArg, Termios, tcgetattr, tcsetattr};
 
+use super::guide::STRONGER;
 use super::transport::Order;
 
 /// Seconds that an arrow key goes.
@@ -14,6 +15,10 @@ const SKIP_S: f64 = 5.0;
 /// What the keys do.
 pub(super) const KEYS: &str =
     "space: pause   ← →: 5 s   . : next event   + -: faster, slower   0: beginning   q: end";
+
+/// What the keys do while it guides a hand.
+pub(super) const GUIDE_KEYS: &str =
+    "space: let go   [ ]: softer, stronger   ← →: 5 s   0: beginning   q: end";
 
 /// Orders as they come.
 #[derive(Debug)]
@@ -84,6 +89,8 @@ fn read_keys(send: &Sender<Order>) {
             Key::Char('.') => Order::Step,
             Key::Char('+' | '=') => Order::Faster(2.0),
             Key::Char('-') => Order::Faster(0.5),
+            Key::Char(']') => Order::Stronger(STRONGER),
+            Key::Char('[') => Order::Stronger(-STRONGER),
             Key::Char('0') | Key::Home => Order::Seek(0.0),
             Key::Char('q') | Key::Escape => Order::End,
             _ => continue,

@@ -187,13 +187,19 @@ impl Player<'_> {
 
     /// Has the rig go on in the painting as it was at the beginning, and the hands wait.
     fn open(&mut self, path: &Path, stop: &dyn Fn() -> bool) -> Result<(), UserError> {
+        self.tell("opens", path)?;
         self.go_on_in(path, self.options.painting.forget, stop)?;
         (self.number, self.batch) = (random_u64(), 0);
         self.command(SessionCommand::Begin {
             session: self.number,
         })?;
+        self.tell("painting", path)
+    }
+
+    /// Says with `--json` which painting it opens, or has opened.
+    fn tell(&self, what: &str, path: &Path) -> Result<(), UserError> {
         match self.options.json {
-            true => print_json_line(&json!({"painting": path.display().to_string()})),
+            true => print_json_line(&json!({what: path.display().to_string()})),
             false => Ok(()),
         }
     }
@@ -224,6 +230,7 @@ impl Player<'_> {
     /// The same once more. A file cannot be written anew while it is open: the rig goes on in another one meanwhile.
     fn open_anew(&mut self, path: &Path) -> Result<(), UserError> {
         self.end()?;
+        self.tell("opens", path)?;
         let failed = |error: std::io::Error| UserError::writing(path, &error);
         let folder = path
             .parent()

@@ -2,20 +2,19 @@
 //! states for the paint, contact models for a device.
 
 use std::collections::BTreeMap;
-use std::time::Instant;
 
+use maulstick_bus::Qos;
 use maulstick_bus::bus::Publish;
-use maulstick_bus::typed::{Receiver, random_epoch};
-use maulstick_bus::{Qos, Queue};
+use maulstick_bus::typed::random_epoch;
 use maulstick_rig::{NodeHandle, UserError};
 use maulstick_streams::Recording;
 use maulstick_streams::recording::RecordedMessage;
 use maulstick_streams::topic_pattern::matches;
-use maulstick_types::haptics::ContactModel;
 use maulstick_types::stylus::{StylusInfo, StylusSample};
 use maulstick_types::wire::header::HEADER_BYTES;
 use maulstick_types::{Flags, Header, Origin, decode, encode, name_hash};
 
+use super::driven::Driven;
 use super::events::Events;
 use super::place::Place;
 use super::{Playback, ReplayOptions, TURN, Turn};
@@ -24,8 +23,6 @@ use super::{Playback, ReplayOptions, TURN, Turn};
 const HANDS: [&str; 2] = ["stylus/*/sample", "control/*/sample"];
 /// Topics of contact models.
 const MODELS: &str = "haptics/*/model";
-/// Longest wait for a device that is to be driven, s.
-const PATIENCE_S: u64 = 5;
 
 /// Sends the messages of a recording again.
 ///
@@ -156,65 +153,6 @@ fn events(
             meant.is_none_or(|topic| feed.push(at_ns, (topic.clone(), message)))
         })
     })
-}
-
-/// A device that recorded contact models drive.
-struct Driven {
-    name: String,
-    origin: Origin,
-    brush: String,
-}
-
-impl Driven {
-    /// Finds the device in the rig, in its current session.
-    fn find(member: &NodeHandle, name: &str) -> Result<Self, UserError> {
-        let (bus, topics) = (&*member.bus, &member.topics);
-        let queue = || Queue::Ring(16);
-        let sample = topics.sample(name);
-        let mut samples: Receiver<StylusSample> =
-            Receiver::new(bus, &sample, Qos::RealTime, queue(), &member.wake)?;
-        let info = topics.stylus_info(name);
-        let mut infos: Receiver<StylusInfo> =
-            Receiver::new(bus, &info, Qos::Cached, queue(), &member.wake)?;
-        let give_up = Instant::now() + std::time::Duration::from_secs(PATIENCE_S);
-        let (mut origin, mut brush) = (None, None);
-        while Instant::now() < give_up && !member.stop.requested() {
-            origin = samples
-                .newest()
-                .map(|sample| sample.header.origin())
-                .or(origin);
-            brush = infos.newest().map(|info| info.message.brush).or(brush);
-            if let (Some(origin), Some(brush)) = (origin, &brush) {
-                return Ok(Self {
-                    name: name.to_owned(),
-                    origin,
-                    brush: match brush.is_empty() {
-                        true => "main".to_owned(),
-                        false => brush.clone(),
-                    },
-                });
-            }
-            member.wake.wait(TURN);
-        }
-        Err(
-            UserError::usage(format!("no device called '{name}' is in the rig"))
-                .help("`maulstick device list` shows which are"),
-        )
-    }
-
-    /// A recorded model as one for this device.
-    fn address(&self, message: &RecordedMessage) -> Result<ContactModel, UserError> {
-        let (_, model) = decode::<ContactModel>(&message.bytes).map_err(|error| {
-            UserError::usage(format!("a contact model cannot be read: {error}"))
-                .help("play it with the version of Maulstick that recorded it")
-        })?;
-        Ok(ContactModel {
-            device: self.origin.source,
-            device_epoch: self.origin.epoch,
-            brush: self.brush.clone(),
-            ..model
-        })
-    }
 }
 
 /// Senders by topic, each with the number of its next message.

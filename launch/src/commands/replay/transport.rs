@@ -22,6 +22,10 @@ pub(super) enum Order {
     Rate(Rate),
     /// Goes on so many times as fast.
     Faster(f64),
+    /// Guides with this strength, 0 to 1.
+    Strength(f64),
+    /// Guides with so much more strength.
+    Stronger(f64),
     /// Ends.
     End,
 }
@@ -42,8 +46,9 @@ impl FromStr for Order {
             "seek" => number().map(Self::Seek),
             "skip" => number().map(Self::Skip),
             "rate" => parse_rate(rest.trim()).map(Self::Rate),
+            "strength" => parse_strength(rest.trim()).map(Self::Strength),
             _ => Err(format!(
-                "'{line}' is none of pause, step, seek S, skip S, rate R, end"
+                "'{line}' is none of pause, step, seek S, skip S, rate R, strength P, end"
             )),
         }
     }
@@ -60,6 +65,16 @@ pub(super) fn parse_rate(text: &str) -> Result<Rate, String> {
         }
         rate => Ok(rate),
     }
+}
+
+/// A strength from 0 to 1.
+///
+/// # Errors
+/// What is wrong with it.
+pub(super) fn parse_strength(text: &str) -> Result<f64, String> {
+    let strength = text.parse().ok();
+    let good = strength.filter(|strength| (0.0..=1.0).contains(strength));
+    good.ok_or_else(|| format!("'{text}' is no strength from 0 to 1"))
 }
 
 /// Where a replay is.
@@ -151,7 +166,7 @@ impl Transport {
                 };
                 self.rate = Rate::Times(rate.max(*RATES.start()).min(*RATES.end()));
             }
-            Order::End => {}
+            Order::Strength(_) | Order::Stronger(_) | Order::End => {}
         }
     }
 
@@ -208,6 +223,8 @@ mod tests {
         assert_eq!("seek 3.5".parse(), Ok(Order::Seek(3.5)));
         assert_eq!(" skip -2\n".parse(), Ok(Order::Skip(-2.0)));
         assert_eq!("rate max".parse(), Ok(Order::Rate(Rate::Max)));
+        assert_eq!("strength 0.4".parse(), Ok(Order::Strength(0.4)));
+        assert!("strength 1.1".parse::<Order>().is_err());
         for wrong in ["", "seek", "seek nan", "rate 0", "rate 101", "halt"] {
             assert!(wrong.parse::<Order>().is_err(), "{wrong}");
         }

@@ -50,6 +50,7 @@ pub static CATALOGUE: &[CatalogueEntry] = &[
     entry!(stylus::TakeStatus, "stylus/<device>/take"),
     entry!(control::ControlSample, "control/<device>/sample"),
     entry!(haptics::ContactModel, "haptics/<device>/model"),
+    entry!(haptics::GuideModel, "haptics/<device>/guide"),
     entry!(haptics::FluidForce, "haptics/<device>/fluid"),
     entry!(haptics::ForceRequest, "haptics/<device>/force (query)"),
     entry!(haptics::ForceReply, "haptics/<device>/force (reply)"),

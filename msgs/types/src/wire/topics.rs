@@ -47,6 +47,8 @@ topics! {
     control(device) = "control/{device}/sample";
     /// Contact model for the hand: [`ContactModel`](crate::haptics::ContactModel).
     contact_model(device) = "haptics/{device}/model";
+    /// Guide of the hand: [`GuideModel`](crate::haptics::GuideModel).
+    guide(device) = "haptics/{device}/guide";
     /// Force of moving paint on the hand: [`FluidForce`](crate::haptics::FluidForce).
     fluid_force(device) = "haptics/{device}/fluid";
     /// Switch and strength of a device's force, a query:

@@ -33,6 +33,7 @@ pub(crate) fn force_reply() -> ForceReply {
         is_on: true,
         strength: 0.6,
         fault: "it shakes".into(),
+        guidance: 0.7,
     }
 }
 
@@ -60,6 +61,8 @@ pub(crate) fn status() -> StylusStatus {
         stiffness_n_m: 400.0,
         cap_n: 3.0,
         motor_temperature: 0.2,
+        is_guided: true,
+        guidance: 0.7,
     }
 }
 

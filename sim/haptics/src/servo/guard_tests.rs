@@ -3,6 +3,7 @@
 use glam::DQuat;
 use maulstick_types::haptics::ForceLaw;
 
+use super::engagement::CALM_TICKS;
 use super::*;
 use crate::contact::tests::{linear, model};
 use crate::plant::{Hand, Plant};

@@ -4,6 +4,7 @@ use glam::DQuat;
 use maulstick_types::haptics::ForceLaw;
 use proptest::prelude::*;
 
+use super::engagement::CALM_TICKS;
 use super::*;
 use crate::contact::tests::{linear, model};
 

@@ -25,6 +25,8 @@ pub struct Tick {
     pub resting: bool,
     /// Force has yet to begin: there is no model, or the hand may be so deep that it would be pushed.
     pub waiting: bool,
+    /// A guide of the hand is alive.
+    pub guided: bool,
     /// Largest force now, N.
     pub cap_n: f64,
     /// Stiffness along the normal that the model asks for, N/m.

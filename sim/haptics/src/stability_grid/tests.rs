@@ -66,3 +66,58 @@ fn a_servo_that_does_nothing_is_found_out() {
         }
     }
 }
+
+/// The guided runs and how they went.
+fn guided(change: impl Fn(Run) -> Run) -> Vec<(Run, Outcome)> {
+    let go = |run: Run| {
+        let run = change(run);
+        (run, run.go().expect("a wall"))
+    };
+    guided_grid().into_iter().map(go).collect()
+}
+
+#[test]
+fn a_guide_beside_the_wall_shakes_no_hand_and_gives_no_energy() {
+    let all = guided(|run| run);
+    let bad = all.iter().filter(|(run, outcome)| !run.is_good(outcome));
+    for (run, outcome) in bad.take(20) {
+        println!("{run:?}: {outcome:?}");
+    }
+    let worst = Worst::of(&all);
+    println!(
+        "{} runs: wobble {:.3} mm, energy {:.3} µJ, force off by {:.2} % at most",
+        worst.runs,
+        worst.wobble_m * 1e3,
+        worst.net_j * 1e6,
+        worst.force_error * 1e2
+    );
+    assert_eq!((worst.runs, worst.fails), (2160, 0));
+}
+
+/// The seeded fault: a wall of 100 N/m whose force is sent over a network the fingertip bears, but not one with a guide
+/// that pulls along its normal.
+#[test]
+fn a_guide_sent_60_times_a_second_shakes_a_fingertip() {
+    let sent = |guide| Run {
+        hand: Hand::FINGERTIP,
+        stiffness: 100.0,
+        rate_hz: 250.0,
+        jitter: 0.0,
+        motion: Motion::Still,
+        guide,
+        path: Path::Sent,
+    };
+    let wobble_m = |run: Run| run.go().expect("a wall").wobble_m;
+    let guide = GuideLine::strongest(DVec3::X, 0.0);
+    assert!(wobble_m(sent(None)) < STILL_M);
+    assert!(wobble_m(sent(Some(guide))) > 1e-3);
+    // Nor is one found good that is as stiff as twenty.
+    let stiff = GuideLine {
+        stiffness: 20.0 * guide.stiffness,
+        most_n: 3.0,
+        ..guide
+    };
+    let run = sent(Some(stiff));
+    let outcome = run.go().expect("a wall");
+    assert!(!run.is_good(&outcome), "{outcome:?}");
+}

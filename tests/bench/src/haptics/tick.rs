@@ -75,7 +75,7 @@ pub(super) fn run(report: &mut Report) -> Result<(), UserError> {
     let mut servo = ServoThread::start(placed, Box::new(Timed(to_us)), limits).map_err(fault)?;
     let contact = Contact::new(&model(&brush)).map_err(fault)?;
     let mut delivery = Delivery {
-        contact: Some(contact),
+        model: Some(contact),
         ..Delivery::default()
     };
     let (mut ticks, mut felt, mut heard) = (0, 0, Instant::now());

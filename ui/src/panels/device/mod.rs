@@ -50,11 +50,50 @@ const PATIENCE_NS: u64 = 700_000_000;
 /// The panel.
 #[derive(Debug, Default)]
 pub(crate) struct DevicePanel {
-    /// The device whose strength is being changed, the requested percentage, and the time until which it is shown, ns.
-    asked: Option<(String, f64, u64)>,
+    /// The device of which a share is being changed, the requested percentage, and the time until which it is shown, ns.
+    asked: Option<(String, Share, f64, u64)>,
     edits: Edits,
     /// The device whose test page is open.
     tested: Option<String>,
+}
+
+/// A share of a device's force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Share {
+    /// Of all.
+    Strength,
+    /// Of guides.
+    Guidance,
+}
+
+impl Share {
+    fn of(self, status: &StylusStatus) -> f64 {
+        match self {
+            Self::Strength => status.strength,
+            Self::Guidance => status.guidance,
+        }
+    }
+
+    fn order(self, share: f64) -> ForceOrder {
+        match self {
+            Self::Strength => ForceOrder::Strength { share },
+            Self::Guidance => ForceOrder::Guidance { share },
+        }
+    }
+
+    /// Name and hint.
+    fn words(self) -> [&'static str; 2] {
+        match self {
+            Self::Strength => [
+                tr!("Strength"),
+                tr!("Share of the force that the brush asks for"),
+            ],
+            Self::Guidance => [
+                tr!("Guidance"),
+                tr!("How strongly the recorded strokes hold your hand"),
+            ],
+        }
+    }
 }
 
 impl Panel for DevicePanel {
@@ -192,7 +231,10 @@ impl DevicePanel {
                 work.requests.force(name, ForceOrder::On);
             }
         }
-        self.strength(ui, name, status, work);
+        self.share(ui, name, (Share::Strength, status), work);
+        if status.is_guided {
+            self.share(ui, name, (Share::Guidance, status), work);
+        }
         if !status.faults.is_empty() {
             ui.colored_label(ui.visuals().error_fg_color, status.faults.join("; "));
             let hint = tr!("Lift the brush first: force comes back from nothing on");
@@ -215,30 +257,32 @@ impl DevicePanel {
         health::show(ui, status);
     }
 
-    fn strength(
+    fn share(
         &mut self,
         ui: &mut Ui,
         name: &str,
-        status: &StylusStatus,
+        (share, status): (Share, &StylusStatus),
         work: &mut PanelContext<'_>,
     ) {
         let now_ns = work.rig.now_ns;
-        let told = (100.0 * status.strength).round();
-        self.asked = self.asked.take().filter(|(_, _, until)| now_ns < *until);
-        let asked = self.asked.as_ref().filter(|(device, ..)| device == name);
-        let mut percent = asked.map_or(told, |(_, percent, _)| *percent);
+        let told = (100.0 * share.of(status)).round();
+        self.asked = self.asked.take().filter(|(.., until)| now_ns < *until);
+        let is_this = |asked: &&(String, Share, f64, u64)| asked.0 == name && asked.1 == share;
+        let asked = self.asked.as_ref().filter(is_this);
+        let mut percent = asked.map_or(told, |(_, _, percent, _)| *percent);
+        let [text, hint] = share.words();
         let slider = Slider::new(&mut percent, 0.0..=100.0)
             .integer()
             .suffix(" %")
-            .text(tr!("Strength"));
-        let hint = tr!("Share of the force that the brush asks for");
+            .text(text);
         let response = ui.add(slider).on_hover_text(hint);
         if response.changed() {
-            let share = (percent / 100.0).clamp(0.0, 1.0);
-            work.requests.force(name, ForceOrder::Strength { share });
+            let order = share.order((percent / 100.0).clamp(0.0, 1.0));
+            work.requests.force(name, order);
         }
         if response.changed() || response.dragged() {
-            self.asked = Some((name.to_owned(), percent, now_ns.saturating_add(PATIENCE_NS)));
+            let until = now_ns.saturating_add(PATIENCE_NS);
+            self.asked = Some((name.to_owned(), share, percent, until));
         }
     }
 }

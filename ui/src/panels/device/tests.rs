@@ -367,6 +367,38 @@ fn a_new_strength_is_asked_for_and_shown_until_the_device_has_it() {
 }
 
 #[test]
+fn guidance_is_offered_while_a_guide_is_alive() {
+    let mut harness = harness::<DevicePanel>(devices());
+    let slider = |harness: &Harness<'_, Bench<DevicePanel>>| {
+        let found = harness.query_by_role_and_label(Role::Slider, "Guidance");
+        found.and_then(|slider| slider.accesskit_node().numeric_value())
+    };
+    assert_eq!(slider(&harness), None);
+    let told = status(&mut harness);
+    (told.is_guided, told.guidance) = (true, 0.5);
+    harness.run();
+    assert_eq!(slider(&harness), Some(50.0));
+    harness
+        .get_by_role_and_label(Role::Slider, "Guidance")
+        .focus();
+    harness.run();
+    harness.key_press(eframe::egui::Key::ArrowLeft);
+    harness.run();
+    let requests = asked(&mut harness);
+    let [
+        Request::Force {
+            order: ForceOrder::Guidance { share },
+            ..
+        },
+    ] = requests[..]
+    else {
+        panic!("{requests:?}");
+    };
+    assert!(share < 0.5 && share > 0.4, "{share}");
+    assert_eq!(slider(&harness), Some((100.0 * share).round()));
+}
+
+#[test]
 fn it_looks_like_its_picture() {
     let open = |harness: &mut Harness<'static, Bench<DevicePanel>>| {
         harness.get_by_label("Loop health").click();

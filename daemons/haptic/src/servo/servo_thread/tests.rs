@@ -7,7 +7,7 @@ use maulstick_device::registration::{Registration, Similarity};
 use maulstick_haptics::Switch;
 use maulstick_haptics::contact::{Contact, HandleState};
 use maulstick_num::geometry::{Rigid, canonical, rotation};
-use maulstick_types::haptics::{ContactModel, ForceLaw};
+use maulstick_types::haptics::{ContactModel, ForceLaw, GuideModel};
 
 use super::*;
 use crate::device::driver::{Abilities, Driver, Reading, Wrench};
@@ -304,7 +304,7 @@ fn a_turned_shifted_and_scaled_device_feels_the_desk_where_it_is() {
         };
         let mut servo = start(placed(still, rigid, scale), limits.scaled(scale));
         servo.models.write(Delivery {
-            contact: Some(wall()),
+            model: Some(wall()),
             sender: None,
             number: 1,
         });
@@ -389,7 +389,7 @@ fn a_clutch_in_mid_stroke_takes_the_force_away_until_the_hand_has_come_up() {
         let placed = MountedDevice::new(Box::new(device.clone()), registration, clutch);
         let mut servo = start(placed, limits);
         servo.models.write(Delivery {
-            contact: Some(wall()),
+            model: Some(wall()),
             sender: None,
             number: 1,
         });
@@ -420,5 +420,65 @@ fn a_clutch_in_mid_stroke_takes_the_force_away_until_the_hand_has_come_up() {
         tick(&mut servo, |record| up(record)).expect("come up");
         device.put(0.06, 0);
         tick(&mut servo, pressed).expect("the wall again");
+    }
+}
+
+/// A guide along x through a place, which nobody sends again.
+fn guide(y: f64) -> Guide {
+    let mut guide = Guide::new(&GuideModel {
+        device: 0,
+        device_epoch: 0,
+        points_m: vec![[0.1, y, 0.1], [0.3, y, 0.1]],
+        normal: [0.0, 0.0, 1.0],
+        head_length_m: 0.0,
+        stiffness_n_m: 100.0,
+        damping_n_s_m: 0.0,
+        max_force_n: 0.6,
+        time_to_live_ns: 0,
+    })
+    .expect("a guide");
+    guide.time_to_live_s = f64::INFINITY;
+    guide
+}
+
+#[test]
+fn the_simulated_hand_feels_a_guide_until_force_or_guidance_is_off() {
+    let off = ForceControl {
+        switch: Switch::Off,
+        ..ForceControl::default()
+    };
+    let unguided = ForceControl {
+        guidance: 0.0,
+        ..ForceControl::default()
+    };
+    let limits = Limits {
+        longest_tick_s: 1e3,
+        ..Limits::default()
+    };
+    for control in [off, unguided] {
+        let device = placed(Simulated::at_rest(), Rigid::IDENTITY, 1.0);
+        let mut servo = start(device, limits);
+        let put = |servo: &mut ServoThread, y: f64, number: u64| {
+            servo.guides.write(Delivery {
+                model: Some(guide(y)),
+                sender: None,
+                number,
+            });
+        };
+        // Where the hand rests, and 8 mm aside of it.
+        put(&mut servo, -0.2, 1);
+        tick(&mut servo, |record| record.tick.guided).expect("a guide");
+        let mut ticks = 0;
+        let begun = tick(&mut servo, |_| {
+            ticks += 1;
+            ticks > 20
+        });
+        assert!(begun.is_some_and(|record| record.force.length() < 0.1));
+        put(&mut servo, -0.192, 2);
+        let felt = tick(&mut servo, |record| record.force.y > 0.3).expect("the guide");
+        assert!(felt.tick.guided && !felt.tick.contact && felt.force.x.abs() < 1e-9);
+        servo.controls.write(control);
+        let is_free = |record: &TickRecord| record.force == DVec3::ZERO;
+        assert!(tick(&mut servo, is_free).is_some(), "{control:?}");
     }
 }
