@@ -92,7 +92,10 @@ impl Solids<'_> {
             true => self.probe.share(place, self.cell_m),
             false => 0.0,
         };
-        let hole = self.hole.as_ref().map(|hole| hole.share(place, self.cell_m));
+        let hole = self
+            .hole
+            .as_ref()
+            .map(|hole| hole.share(place, self.cell_m));
         Share {
             probe,
             all: (probe + 1.0 - hole.unwrap_or(1.0)).min(1.0),
@@ -199,7 +202,11 @@ impl Geometry {
             [cell(k.checked_sub(1)), cell(Some(k))]
         };
         let counts = |index: [usize; 2], is: fn(Medium) -> bool| {
-            beside(index).into_iter().flatten().filter(|it| is(*it)).count()
+            beside(index)
+                .into_iter()
+                .flatten()
+                .filter(|it| is(*it))
+                .count()
         };
         let solid = |it: Medium| it != Medium::Fluid;
         let own = counts(index, solid);

@@ -104,7 +104,12 @@ impl Placed {
             return 0.0;
         }
         let a = 0.5 * side;
-        let mut left = vec![[x - a, y - a], [x + a, y - a], [x + a, y + a], [x - a, y + a]];
+        let mut left = vec![
+            [x - a, y - a],
+            [x + a, y - a],
+            [x + a, y + a],
+            [x - a, y + a],
+        ];
         for (from, to) in self.edges() {
             left = cut(&left, from, to);
         }

@@ -85,8 +85,28 @@ impl Flow {
         self.geometry = Geometry::new(grid, vessel, shape, &state, *boundary);
         self.state = state;
         self.advect(dt_s);
+        let pressure = self.pressure.clone();
+        self.press(&pressure, dt_s);
         self.diffuse(dt_s);
         self.project(dt_s);
+    }
+
+    /// Accelerates the fluid by a pressure.
+    fn press(&mut self, pressure: &[f64], dt_s: f64) {
+        let (grid, geometry) = (&self.bench.grid, &self.geometry);
+        let by = dt_s / grid.cell_m;
+        for axis in 0..2 {
+            let [across, _] = grid.faces(axis);
+            for (at, value) in self.velocity[axis].iter_mut().enumerate() {
+                if geometry.is_fixed(axis, at) {
+                    *value = geometry.rigid[axis][at];
+                    continue;
+                }
+                let upper = (at / across) * grid.cells[0] + at % across;
+                let lower = upper - [1, grid.cells[0]][axis];
+                *value -= by * (pressure[upper] - pressure[lower]);
+            }
+        }
     }
 
     /// Each velocity comes from where its fluid was (Stam 1999), found at the middle of its way.
@@ -191,8 +211,7 @@ impl Flow {
             let mut place = grid.face_m(axis, [lower % width, lower / width]);
             place[along] += 0.5 * h;
             let mut force = [0.0; 2];
-            force[axis] =
-                mu * geometry.links[axis][along][lower] * (values[outer] - rigid[outer]);
+            force[axis] = mu * geometry.links[axis][along][lower] * (values[outer] - rigid[outer]);
             let about = self.state.place_m;
             self.viscous
                 .add(force, [place[0] - about[0], place[1] - about[1]]);
@@ -237,24 +256,14 @@ impl Flow {
                 *right_side = 0.0;
             }
         }
-        for (pressure, diagonal) in self.pressure.iter_mut().zip(&system.diagonal) {
-            if *diagonal == 0.0 {
+        let mut change = vec![0.0; grid.count()];
+        system.solve(&right_side, &mut change, TOLERANCE, ITERATIONS);
+        self.press(&change, dt_s);
+        for (at, pressure) in self.pressure.iter_mut().enumerate() {
+            *pressure += change[at];
+            // Within the probe there is none.
+            if system.diagonal[at] == 0.0 {
                 *pressure = 0.0;
-            }
-        }
-        system.solve(&right_side, &mut self.pressure, TOLERANCE, ITERATIONS);
-        let by = dt_s / grid.cell_m;
-        for axis in 0..2 {
-            let [across, _] = grid.faces(axis);
-            for at in 0..self.velocity[axis].len() {
-                if geometry.is_fixed(axis, at) {
-                    self.velocity[axis][at] = geometry.rigid[axis][at];
-                    continue;
-                }
-                let upper = (at / across) * width + at % across;
-                let lower = upper - [1, width][axis];
-                let rise = self.pressure[upper] - self.pressure[lower];
-                self.velocity[axis][at] -= by * rise;
             }
         }
     }

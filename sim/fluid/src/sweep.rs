@@ -135,11 +135,11 @@ const RUN_UP: usize = 24;
 /// Way in these steps, m, across the grid at an angle whose tangent no grid has.
 const WAY_M: f64 = 0.24;
 const WAY_RAD: f64 = 0.36;
-/// Steady speed, m/s; the fluid is so viscous that its flow follows at once (Re .1 by the square).
+/// Steady speed, m/s; the flow is viscous (Re 1 by the square).
 const SPEED_M_S: f64 = 0.05;
 const SLOW: Fluid = Fluid {
     density_kg_m3: 1.0,
-    viscosity_m2_s: 0.1,
+    viscosity_m2_s: 0.01,
 };
 /// Degree of the polynomial that is the force's smooth part.
 const SMOOTH: usize = 6;
@@ -213,14 +213,64 @@ mod tests {
     use super::*;
 
     #[test]
-    #[ignore]
-    fn table() {
-        for cells in [32, 64, 128, 256] {
-            for boundary in [Boundary::Staircase, Boundary::Covered] {
-                let clock = std::time::Instant::now();
-                let n = noise(cells, boundary);
-                println!("{cells} {boundary:?} {n:?} {:.3} %  {:?}", 100.0 * n.noise_n / n.drag_n, clock.elapsed());
-            }
+    fn noise_falls_with_resolution_and_a_covered_square_has_a_quarter_of_a_staircases() {
+        let of = |boundary| {
+            [24, 48].map(|cells| {
+                let noise = noise(cells, boundary);
+                println!(
+                    "{boundary:?} {cells}: drag {:.5} N, noise {:.3} %",
+                    noise.drag_n,
+                    100.0 * noise.noise_n / noise.drag_n
+                );
+                assert!(noise.drag_n > 0.0, "drag is against the motion");
+                noise.noise_n
+            })
+        };
+        let (staircase, covered) = (of(Boundary::Staircase), of(Boundary::Covered));
+        for (covered, staircase) in covered.iter().zip(staircase) {
+            assert!(*covered < 0.25 * staircase);
         }
+        assert!(staircase[1] < 0.7 * staircase[0] && covered[1] < 0.7 * covered[0]);
+    }
+
+    #[test]
+    fn on_the_arc_drag_is_against_the_motion_there_and_back() {
+        for boundary in [Boundary::Staircase, Boundary::Covered] {
+            let sweep = arc_sweep(32, boundary, |_| {});
+            let part = |from: f64, to: f64| {
+                let within = sweep.iter().filter(|it| (from..to).contains(&it.time_s));
+                let (count, sum) =
+                    within.fold((0.0, 0.0), |(n, sum), it| (n + 1.0, sum + it.drag_n));
+                sum / count
+            };
+            let (there, back) = (part(0.4, 1.2), part(2.4, 3.2));
+            println!("{boundary:?}: {there:.4} N, {back:.4} N");
+            assert!(there < -0.01 && back > 0.01);
+            let torque: f64 = sweep[30..60].iter().map(|it| it.torque_n_m).sum();
+            assert!(torque < 0.0, "it turns forward");
+        }
+    }
+
+    #[test]
+    fn the_probe_moves_as_its_velocity_says() {
+        for step in 0..40 {
+            let time = f64::from(step) * 0.1;
+            let [before, now, after] = [time - 1e-5, time, time + 1e-5].map(arc);
+            for i in 0..2 {
+                let speed = (after.place_m[i] - before.place_m[i]) / 2e-5;
+                assert!((speed - now.velocity_m_s[i]).abs() < 1e-6);
+            }
+            let spin = (after.angle_rad - before.angle_rad) / 2e-5;
+            assert!((spin - now.spin_rad_s).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_smooth_curve_has_no_noise_and_a_jag_has() {
+        let curve = |i: i32| f64::from(i * i) * 1e-3 + 2.0;
+        let smooth: Vec<f64> = (0..100).map(curve).collect();
+        let jag: Vec<f64> = (0..100).map(|i| curve(i) + f64::from(i % 2)).collect();
+        assert!(about_smooth(&smooth).1 < 1e-10);
+        assert!((about_smooth(&jag).1 - 0.5).abs() < 0.02);
     }
 }

@@ -62,10 +62,7 @@ fn wall_2d(velocity: fn([f64; 2]) -> [f64; 2], pressure: fn([f64; 2]) -> f64) ->
 }
 
 /// The wrench by what a fault does to each face.
-fn faulty<const D: usize>(
-    fields: &Formula<D>,
-    fault: impl Fn(&mut FaceStress<D>),
-) -> Wrench<D> {
+fn faulty<const D: usize>(fields: &Formula<D>, fault: impl Fn(&mut FaceStress<D>)) -> Wrench<D> {
     let mut faces = face_stresses(fields, FLUID);
     faces.iter_mut().for_each(fault);
     Wrench::of(faces, [0.0; D])
@@ -88,9 +85,14 @@ fn the_shear_of_plane_couette_flow_is_exact() {
         face.viscous_pa = face.viscous_pa.map(|p| -p);
     });
     assert!(!close(inward, expected));
-    assert!(!close(faulty(&couette, |face| face.pressure_pa /= 1200.0), expected));
+    assert!(!close(
+        faulty(&couette, |face| face.pressure_pa /= 1200.0),
+        expected
+    ));
     // The printed eq. 8.18 has ∂v/∂y in the place of the shear: it finds none.
-    let printed = faulty(&couette, |face| face.viscous_pa[0] = face.viscous_pa[1] / 2.0);
+    let printed = faulty(&couette, |face| {
+        face.viscous_pa[0] = face.viscous_pa[1] / 2.0
+    });
     assert!(!close(printed, expected));
 }
 
@@ -100,7 +102,14 @@ fn the_pressure_and_shear_of_plane_poiseuille_flow_are_those_of_the_channel() {
     // ρGw/2; half a cell from the wall u/s falls short by (h/2)/w.
     let flow = |[_, y]: [f64; 2]| {
         let s: f64 = y - 0.02;
-        [if s > 0.0 { 2.0 * s * (0.06 - s) / (2.0 * 3e-3) } else { 0.0 }, 0.0]
+        [
+            if s > 0.0 {
+                2.0 * s * (0.06 - s) / (2.0 * 3e-3)
+            } else {
+                0.0
+            },
+            0.0,
+        ]
     };
     let poiseuille = wall_2d(flow, |[x, _]| -2.0 * x);
     let shear = 1200.0 * 2.0 * 0.06 / 2.0 * 0.08 * (1.0 - 0.005 / 0.06);
@@ -141,7 +150,13 @@ fn a_solid_that_turns_with_its_fluid_feels_no_viscous_force() {
         ..turning
     };
     let turned = Wrench::of(face_stresses(&standing, FLUID), [0.045; 3]).torque_n_m;
-    assert!(turned.iter().zip([1.0, 2.0, 3.0]).all(|(t, axis)| t / axis > 1e-5), "{turned:?}");
+    assert!(
+        turned
+            .iter()
+            .zip([1.0, 2.0, 3.0])
+            .all(|(t, axis)| t / axis > 1e-5),
+        "{turned:?}"
+    );
 }
 
 #[test]
