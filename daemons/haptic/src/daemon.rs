@@ -18,6 +18,7 @@ use maulstick_types::{Flags, encode};
 
 use crate::device::mounted_device::MountedDevice;
 use crate::device::open::{HapticSettings, open};
+use crate::fluid_inlet::{FluidArrival, FluidInlet};
 use crate::force_state_file::{ForceState, ForceStateFile};
 use crate::servo::channels::{Delivery, TickRecord};
 use crate::servo::force_control::ForceControl;
@@ -65,6 +66,7 @@ struct Daemon {
     recipient: Recipient,
     samples: CreditSender<StylusSample>,
     models: Receiver<ContactModel>,
+    fluids: FluidInlet,
     orders: Server,
     reader: Reader,
     control: ForceControl,
@@ -122,6 +124,12 @@ impl Daemon {
             },
             samples,
             models: Receiver::new(bus, &topic, Qos::RealTime, Queue::Ring(64), &member.wake)?,
+            fluids: FluidInlet::new(
+                bus,
+                &topics.fluid_force(&device.name),
+                device.paint_drag,
+                &member.wake,
+            )?,
             orders: bus.serve(&topics.force(&device.name), 16, &member.wake)?,
             reader: Reader::default(),
             control: ForceControl {
@@ -163,6 +171,7 @@ impl Daemon {
         }
         self.obey(now_ns);
         self.deliver();
+        self.deliver_fluid();
         while let Some(Ok(record)) = self.servo.as_mut().map(|servo| servo.ticks.pop()) {
             self.publish(&record, now_ns)?;
         }
@@ -359,6 +368,15 @@ impl Daemon {
                     tracing::warn!("{}: a contact model is dropped: {what}", received.key);
                 }
             }
+        }
+    }
+
+    /// Hands the newest force of paint to the servo.
+    fn deliver_fluid(&mut self) {
+        match (self.fluids.newest(&self.recipient), &mut self.servo) {
+            (FluidArrival::Foreign, _) => self.told.foreign_models += 1,
+            (FluidArrival::Delivery(delivery), Some(servo)) => servo.fluids.write(delivery),
+            (FluidArrival::Nothing, _) | (FluidArrival::Delivery(_), None) => {}
         }
     }
 

@@ -7,12 +7,14 @@
 //! | [`bartlett_hanning`] | the filter between a slow solver and a hand at 1 kHz |
 //! | [`solver`] | Navier-Stokes equations around a probe in two dimensions |
 //! | [`geometry`] | the probe's outline on the grid: a staircase, or shares of nodes and links |
+//! | [`hand`] | a sweep a thousand times a second, raw and filtered |
 //! | [`sweep`] | the sweep along an arc of fig. 8.6-8.8, and the noise of the force along a straight one |
 
 pub mod bartlett_hanning;
 mod five_point;
 pub mod geometry;
 pub mod grid;
+pub mod hand;
 pub mod polygon;
 pub mod solver;
 pub mod stress;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64};
 
 use glam::DVec3;
-use maulstick_haptics::Tick;
+use maulstick_haptics::{Fluid, Tick};
 use maulstick_haptics::contact::Contact;
 use maulstick_types::Origin;
 
@@ -41,12 +41,23 @@ pub struct Delivery {
     pub number: u64,
 }
 
+/// A force of paint for the servo.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FluidDelivery {
+    /// The force.
+    pub fluid: Option<Fluid>,
+    /// Number of the delivery.
+    pub number: u64,
+}
+
 /// The servo's ends of the channels.
 pub struct Channels {
     /// Tick records, out.
     pub ticks: rtrb::Producer<TickRecord>,
     /// Newest contact model, in.
     pub models: triple_buffer::Output<Delivery>,
+    /// Newest force of paint, in.
+    pub fluids: triple_buffer::Output<FluidDelivery>,
     /// Newest force settings, in.
     pub controls: triple_buffer::Output<ForceControl>,
     /// Request to end.

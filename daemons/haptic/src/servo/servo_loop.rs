@@ -31,6 +31,7 @@ pub struct ServoLoop {
     longest_s: f64,
     channels: Channels,
     seen: u64,
+    seen_fluid: u64,
     sender: Option<Origin>,
     followed: ForceControl,
     amplifiers: Switch,
@@ -53,6 +54,7 @@ impl ServoLoop {
             longest_s: limits.longest_tick_s,
             channels,
             seen: 0,
+            seen_fluid: 0,
             sender: None,
             // Earlier re-armings were of another servo, whose fault is to outlast them.
             followed: ForceControl {
@@ -143,7 +145,7 @@ impl ServoLoop {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Takes in the newest model and the newest settings.
+    /// Takes in the newest model, force of paint and settings.
     fn take_in(&mut self) {
         let delivery = *self.channels.models.read();
         if delivery.number != self.seen
@@ -155,6 +157,13 @@ impl ServoLoop {
             };
             self.servo.receive(contact, sender);
             (self.seen, self.sender) = (delivery.number, delivery.sender);
+        }
+        let delivery = *self.channels.fluids.read();
+        if delivery.number != self.seen_fluid
+            && let Some(fluid) = delivery.fluid
+        {
+            self.servo.receive_fluid(fluid);
+            self.seen_fluid = delivery.number;
         }
         let control = *self.channels.controls.read();
         self.followed.apply(control, &mut self.servo);

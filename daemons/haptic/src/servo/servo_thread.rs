@@ -11,7 +11,7 @@ use maulstick_haptics::{Limits, ServoMemory};
 use thread_priority::unix::{RealtimeThreadSchedulePolicy, ThreadSchedulePolicy};
 use thread_priority::{ThreadPriority, ThreadPriorityValue};
 
-use super::channels::{Channels, Delivery, TickRecord};
+use super::channels::{Channels, Delivery, FluidDelivery, TickRecord};
 use super::force_control::ForceControl;
 use super::servo_loop::{PreviousServo, ServoLoop};
 use crate::device::driver::{Caller, DeviceError, ServoClock};
@@ -39,6 +39,8 @@ pub struct ServoThread {
     pub ticks: rtrb::Consumer<TickRecord>,
     /// Contact models, in.
     pub models: triple_buffer::Input<Delivery>,
+    /// Forces of paint, in.
+    pub fluids: triple_buffer::Input<FluidDelivery>,
     /// Force settings, in.
     pub controls: triple_buffer::Input<ForceControl>,
     /// Obstacles to real-time scheduling.
@@ -114,6 +116,7 @@ impl ServoThread {
     ) -> std::io::Result<Self> {
         let (to_publisher, ticks) = rtrb::RingBuffer::new(ring);
         let (models, from_rig) = triple_buffer::triple_buffer(&Delivery::default());
+        let (fluids, fluids_from_rig) = triple_buffer::triple_buffer(&FluidDelivery::default());
         // Until the daemon sends its settings the servo counts as armed as its predecessor was.
         let (controls, from_daemon) = triple_buffer::triple_buffer(&ForceControl {
             rearms: previous.rearms,
@@ -126,6 +129,7 @@ impl ServoThread {
         let channels = Channels {
             ticks: to_publisher,
             models: from_rig,
+            fluids: fluids_from_rig,
             controls: from_daemon,
             stop: Arc::clone(&stop),
             dropped: Arc::clone(&dropped),
@@ -147,6 +151,7 @@ impl ServoThread {
         Ok(Self {
             ticks,
             models,
+            fluids,
             controls,
             warnings,
             stop,

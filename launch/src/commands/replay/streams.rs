@@ -12,7 +12,7 @@ use maulstick_rig::{NodeHandle, UserError};
 use maulstick_streams::Recording;
 use maulstick_streams::recording::RecordedMessage;
 use maulstick_streams::topic_pattern::matches;
-use maulstick_types::haptics::ContactModel;
+use maulstick_types::haptics::{ContactModel, FluidForce};
 use maulstick_types::stylus::{StylusInfo, StylusSample};
 use maulstick_types::wire::header::HEADER_BYTES;
 use maulstick_types::{Flags, Header, Origin, decode, encode, name_hash};
@@ -22,8 +22,10 @@ use super::{Deck, ReplayOptions, TURN, Turn};
 
 /// Topics that are sent again where none is named.
 const HANDS: [&str; 2] = ["stylus/*/sample", "control/*/sample"];
-/// Topics of contact models.
+/// Topics that move the hand at a device: contact models and forces of paint.
+const DRIVING: [&str; 2] = [MODELS, FLUIDS];
 const MODELS: &str = "haptics/*/model";
+const FLUIDS: &str = "haptics/*/fluid";
 /// Longest wait for a device that is to be driven, s.
 const PATIENCE_S: u64 = 5;
 
@@ -35,7 +37,7 @@ pub(super) fn replay(options: &ReplayOptions) -> Result<i32, UserError> {
     let path = &options.recording;
     let recording = Recording::open(path)?;
     let patterns = match options.topic.is_empty() {
-        true if options.drive.is_some() => vec![MODELS.to_owned()],
+        true if options.drive.is_some() => DRIVING.map(str::to_owned).to_vec(),
         true => HANDS.map(str::to_owned).to_vec(),
         false => options.topic.clone(),
     };
@@ -48,19 +50,25 @@ pub(super) fn replay(options: &ReplayOptions) -> Result<i32, UserError> {
             .at(path.display().to_string())
             .help(format!("it has {}", all.join(", "))));
     }
-    let is_model = |topic: &&String| is_meant(topic) && matches(MODELS, topic);
-    let models: Vec<&String> = all.iter().filter(is_model).collect();
-    if !models.is_empty() && options.drive.is_none() {
+    let mut driving: Vec<&String> = all.iter().filter(|topic| is_meant(topic)).collect();
+    driving.retain(|topic| drives(topic));
+    if !driving.is_empty() && options.drive.is_none() {
         return Err(
-            UserError::usage("contact models move the hand that holds the device")
+            UserError::usage("contact models and forces of paint move the hand that holds the device")
                 .help("name the device, with a hand at it that expects it: --drive DEVICE"),
         );
     }
-    if let [one, _, ..] = models.as_slice() {
+    let device = |topic: &str| topic.split('/').nth(1).map(str::to_owned);
+    if let [one, others @ ..] = driving.as_slice()
+        && others.iter().any(|other| device(other) != device(one))
+    {
         let what = "it has the contact models of several devices, and one hand feels one";
         return Err(UserError::usage(what)
             .at(path.display().to_string())
-            .help(format!("choose one: --topic {one}")));
+            .help(format!(
+                "choose one: --topic 'haptics/{}/*'",
+                device(one).unwrap_or_default()
+            )));
     }
     let renamed = renamed(&options.remap)?;
     let [first_ns, last_ns] = recording.times_ns().unwrap_or_default();
@@ -136,6 +144,11 @@ fn renamed(pairs: &[String]) -> Result<BTreeMap<String, String>, UserError> {
     pairs.collect()
 }
 
+/// True if what a topic has moves the hand at a device.
+fn drives(topic: &str) -> bool {
+    DRIVING.iter().any(|pattern| matches(pattern, topic))
+}
+
 /// The messages of the topics of `patterns` within a range of times, as they come.
 fn events(
     path: &Path,
@@ -199,6 +212,19 @@ impl Driven {
             UserError::usage(format!("no device called '{name}' is in the rig"))
                 .help("`maulstick device list` shows which are"),
         )
+    }
+
+    /// A recorded force of paint as one for this device.
+    fn address_fluid(&self, message: &RecordedMessage) -> Result<FluidForce, UserError> {
+        let (_, force) = decode::<FluidForce>(&message.bytes).map_err(|error| {
+            UserError::usage(format!("a force of paint cannot be read: {error}"))
+                .help("play it with the version of Maulstick that recorded it")
+        })?;
+        Ok(FluidForce {
+            device: self.origin.source,
+            device_epoch: self.origin.epoch,
+            ..force
+        })
     }
 
     /// A recorded model as one for this device.
@@ -276,11 +302,11 @@ impl Senders<'_> {
         self.put(&topic, Qos::Cached, bytes)
     }
 
-    /// Sender of a topic: the one that is named in it; of contact models the brush, whose own ones are then set aside.
+    /// Sender of a topic: the one that is named in it; of what drives a device the brush, whose own ones are then set aside.
     fn origin(&self, topic: &str) -> Origin {
         let named = topic.split('/').nth(1).unwrap_or(topic);
         let sender = match &self.driven {
-            Some(driven) if matches(MODELS, topic) => driven.brush.as_str(),
+            Some(driven) if drives(topic) => driven.brush.as_str(),
             _ => named,
         };
         Origin {
@@ -312,6 +338,10 @@ impl Senders<'_> {
             Some(driven) if matches(MODELS, recorded) => {
                 let model = driven.address(message)?;
                 self.encoded(&topic, Flags::NONE, [seq, event_ns], &model)?
+            }
+            Some(driven) if matches(FLUIDS, recorded) => {
+                let force = driven.address_fluid(message)?;
+                self.encoded(&topic, Flags::NONE, [seq, event_ns], &force)?
             }
             _ => {
                 let origin = self.origin(&topic);
