@@ -59,7 +59,9 @@ mod tests {
         let ticks = hand_ticks(&arc_sweep(24, Boundary::Covered, |_| {}));
         assert_eq!(ticks.len(), 4000);
         let jump = |of: fn(&HandTick) -> f64| {
-            let changes = ticks.windows(2).map(|pair| (of(&pair[1]) - of(&pair[0])).abs());
+            let changes = ticks
+                .windows(2)
+                .map(|pair| (of(&pair[1]) - of(&pair[0])).abs());
             changes.fold(0.0, f64::max)
         };
         let (raw, filtered) = (jump(|it| it.raw[0]), jump(|it| it.filtered[0]));

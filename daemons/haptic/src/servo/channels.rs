@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64};
 
 use glam::DVec3;
-use maulstick_haptics::{Fluid, Tick};
 use maulstick_haptics::contact::Contact;
+use maulstick_haptics::{Fluid, Tick};
 use maulstick_types::Origin;
 
 use super::force_control::ForceControl;

@@ -53,10 +53,10 @@ pub(super) fn replay(options: &ReplayOptions) -> Result<i32, UserError> {
     let mut driving: Vec<&String> = all.iter().filter(|topic| is_meant(topic)).collect();
     driving.retain(|topic| drives(topic));
     if !driving.is_empty() && options.drive.is_none() {
-        return Err(
-            UserError::usage("contact models and forces of paint move the hand that holds the device")
-                .help("name the device, with a hand at it that expects it: --drive DEVICE"),
-        );
+        return Err(UserError::usage(
+            "contact models and forces of paint move the hand that holds the device",
+        )
+        .help("name the device, with a hand at it that expects it: --drive DEVICE"));
     }
     let device = |topic: &str| topic.split('/').nth(1).map(str::to_owned);
     if let [one, others @ ..] = driving.as_slice()

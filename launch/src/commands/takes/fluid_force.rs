@@ -13,8 +13,8 @@ use maulstick_rig::files::{Kind, write_whole};
 
 use crate::commands::table::table;
 use crate::commands::{say, write_picture};
-use crate::figures::plot::{Axis, Curve, Panel, plot};
 use crate::outputs::{UsedFile, check_outputs};
+use crate::plot::{Axis, Curve, Panel, plot};
 
 /// Grids where none are named.
 const GRIDS: [u16; 3] = [32, 64, 128];
@@ -179,7 +179,10 @@ mod tests {
         let path = folder.path().join("force.csv");
         std::fs::write(&path, HEAD).expect("written");
         assert!(maulstick_rig::files::gives_way(&path, Kind::Forces));
-        let curves = panels(&[sweep]).iter().map(|it| it.curves.len()).sum::<usize>();
+        let curves = panels(&[sweep])
+            .iter()
+            .map(|it| it.curves.len())
+            .sum::<usize>();
         assert_eq!(curves, 2, "drag and torque");
     }
 }

@@ -134,12 +134,7 @@ mod tests {
                 38,
             ),
             ("pen", "max_force_n = 3.0", "max_force_n = 2.0", 37),
-            (
-                "pen",
-                "max_force_n = 3.0",
-                "paint_drag = 2.0",
-                37,
-            ),
+            ("pen", "max_force_n = 3.0", "paint_drag = 2.0", 37),
             ("spacemouse", "force = \"linear\"", "force = \"local\"", 38),
         ] {
             let text = DEFAULT.replace("driver = \"simulated\"", &format!("driver = \"{driver}\""));

@@ -194,10 +194,7 @@ fn default_paint_drag() -> f64 {
     1.0
 }
 
-#[expect(
-    clippy::trivially_copy_pass_by_ref,
-    reason = "serde hands a reference"
-)]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
 fn is_true_size(paint_drag: &f64) -> bool {
     *paint_drag == default_paint_drag()
 }

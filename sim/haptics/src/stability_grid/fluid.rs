@@ -172,8 +172,7 @@ impl FluidRun {
             net_j += given;
             let way = plant.true_position() - before.2;
             taken_j -= force.truncate().dot(way.truncate());
-            let kept = 0.5 * self.drag * self.carried_s * film.length_squared()
-                + plant.kinetic_j();
+            let kept = 0.5 * self.drag * self.carried_s * film.length_squared() + plant.kinetic_j();
             least_j = least_j.min(net_j + kept);
             most_j = most_j.max(net_j + kept - least_j);
             if s >= STILL_S {
@@ -254,13 +253,19 @@ mod tests {
         };
         let mut message = refused.message(DVec3::X * 0.1, DVec3::ZERO);
         message.jacobian[0][0] = refused.drag;
-        assert!(Fluid::new(&message, 1.0).is_err(), "with its Jacobian it is refused");
+        assert!(
+            Fluid::new(&message, 1.0).is_err(),
+            "with its Jacobian it is refused"
+        );
         for telling in [Telling::Inward, Telling::Held] {
-            let [seen, blind] = [Observer::There, Observer::Blind]
-                .map(|observer| runs(0.0, telling, observer));
+            let [seen, blind] =
+                [Observer::There, Observer::Blind].map(|observer| runs(0.0, telling, observer));
             let bad = seen.iter().filter(|run| !is_good(run)).count();
             let (seen_j, blind_j) = (most_net_j(&seen), most_net_j(&blind));
-            println!("{telling:?}: {bad} of {} bad, {seen_j} J, unseen {blind_j} J", seen.len());
+            println!(
+                "{telling:?}: {bad} of {} bad, {seen_j} J, unseen {blind_j} J",
+                seen.len()
+            );
             assert!(bad > 20 && blind_j > 1e-3 && seen_j < 0.15 * blind_j);
         }
     }
