@@ -7,6 +7,25 @@ use crate::sweep::{ARC_S, RATE_HZ, Sample, arc};
 /// Ticks a second.
 pub const HAND_HZ: f64 = 1000.0;
 
+/// Taps of the filter before the hand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum HandFilter {
+    /// A tap a tick over one period of the solver.
+    #[default]
+    Period,
+    /// The dissertation's eleven, a tick apart.
+    Dissertation,
+}
+
+impl HandFilter {
+    fn filter(self) -> BartlettHanning {
+        match self {
+            Self::Period => BartlettHanning::over(1.0 / RATE_HZ, 1.0 / HAND_HZ),
+            Self::Dissertation => BartlettHanning::dissertation(),
+        }
+    }
+}
+
 /// A tick of the hand; forces are those for a metre of depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandTick {
@@ -16,14 +35,14 @@ pub struct HandTick {
     pub state: ProbeState,
     /// Drag, force across and torque as the solver last told them, N/m and N·m/m.
     pub raw: [f64; 3],
-    /// The same filtered over one period of the solver.
+    /// The same filtered.
     pub filtered: [f64; 3],
 }
 
 /// The ticks of a sweep along the arc.
 #[must_use]
-pub fn hand_ticks(sweep: &[Sample]) -> Vec<HandTick> {
-    let mut filters = [0; 3].map(|_| BartlettHanning::over(1.0 / RATE_HZ, 1.0 / HAND_HZ));
+pub fn hand_ticks(sweep: &[Sample], filter: HandFilter) -> Vec<HandTick> {
+    let mut filters = [0; 3].map(|_| filter.filter());
     let ticks = (ARC_S * HAND_HZ) as usize;
     let told = |tick: usize| {
         let steps = (tick as f64 * RATE_HZ / HAND_HZ) as usize;
@@ -56,7 +75,8 @@ mod tests {
 
     #[test]
     fn filtered_forces_have_no_steps_and_are_half_a_period_late() {
-        let ticks = hand_ticks(&arc_sweep(24, Boundary::Covered, |_| {}));
+        let sweep = arc_sweep(24, Boundary::Covered, |_| {});
+        let ticks = hand_ticks(&sweep, HandFilter::Period);
         assert_eq!(ticks.len(), 4000);
         let jump = |of: fn(&HandTick) -> f64| {
             let changes = ticks

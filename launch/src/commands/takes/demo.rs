@@ -51,6 +51,9 @@ pub struct DemoOptions {
         value_parser = clap::value_parser!(u16).range(16..=512)
     )]
     grid: Vec<u16>,
+    /// Filter of the force before the hand
+    #[arg(long, value_enum, default_value_t, requires = "fluid_force")]
+    filter: fluid_force::Filter,
     /// Draw the force on the square
     #[arg(long, value_name = "PNG", requires = "fluid_force")]
     plot: Option<PathBuf>,
@@ -125,7 +128,12 @@ pub fn run(options: &DemoOptions) -> Result<i32, UserError> {
     }
     options.check_idle()?;
     if let (true, Some(output)) = (options.fluid_force, &options.output) {
-        return fluid_force::run(&options.grid, output, options.plot.as_deref());
+        return fluid_force::run(
+            &options.grid,
+            options.filter,
+            output,
+            options.plot.as_deref(),
+        );
     }
     let take = UsedFile::written("the take", options.output.as_ref(), Kind::Take);
     let sheet = UsedFile::written("the sheet", options.sheet.as_ref(), Kind::Png);

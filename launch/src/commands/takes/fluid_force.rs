@@ -6,7 +6,7 @@ use std::path::Path;
 
 use indicatif::ProgressBar;
 use maulstick_fluid_force::Boundary;
-use maulstick_fluid_force::hand::hand_ticks;
+use maulstick_fluid_force::hand::{HandFilter, hand_ticks};
 use maulstick_fluid_force::sweep::{Sample, arc_steps, arc_sweep, noise};
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, write_whole};
@@ -23,6 +23,16 @@ const BOUNDARIES: [Boundary; 2] = [Boundary::Staircase, Boundary::Covered];
 const HEAD: &str = "grid,boundary,t_s,x_m,y_m,angle_rad,f_drag_n_m,f_perp_n_m,torque_n,\
                     f_drag_filtered_n_m,f_perp_filtered_n_m,torque_filtered_n\n";
 
+/// Filter of the force before the hand.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Filter {
+    /// Bartlett-Hanning over one period of the solver
+    #[default]
+    Period,
+    /// The dissertation's eleven taps, a millisecond apart
+    Dissertation,
+}
+
 /// A sweep on one grid.
 struct Sweep {
     cells: usize,
@@ -34,7 +44,12 @@ struct Sweep {
 ///
 /// # Errors
 /// A [`UserError`] where a file cannot be written.
-pub(super) fn run(grids: &[u16], output: &Path, picture: Option<&Path>) -> Result<i32, UserError> {
+pub(super) fn run(
+    grids: &[u16],
+    filter: Filter,
+    output: &Path,
+    picture: Option<&Path>,
+) -> Result<i32, UserError> {
     let grids = match grids {
         [] => &GRIDS[..],
         some => some,
@@ -78,7 +93,7 @@ pub(super) fn run(grids: &[u16], output: &Path, picture: Option<&Path>) -> Resul
         file.write_all(HEAD.as_bytes())?;
         sweeps
             .iter()
-            .try_for_each(|sweep| file.write_all(rows(sweep).as_bytes()))
+            .try_for_each(|sweep| file.write_all(rows(sweep, filter).as_bytes()))
     })
     .map_err(|error| UserError::writing(output, &error))?;
     if let Some(path) = picture {
@@ -98,9 +113,13 @@ fn name(boundary: Boundary) -> &'static str {
 }
 
 /// Rows of a sweep, one a millisecond.
-fn rows(sweep: &Sweep) -> String {
+fn rows(sweep: &Sweep, filter: Filter) -> String {
+    let filter = match filter {
+        Filter::Period => HandFilter::Period,
+        Filter::Dissertation => HandFilter::Dissertation,
+    };
     let mut text = String::new();
-    for tick in hand_ticks(&sweep.samples) {
+    for tick in hand_ticks(&sweep.samples, filter) {
         let [x, y] = tick.state.place_m;
         let [drag, across, torque] = tick.raw;
         let [smooth_drag, smooth_across, smooth_torque] = tick.filtered;
@@ -171,7 +190,7 @@ mod tests {
             boundary: Boundary::Covered,
             samples: arc_sweep(16, Boundary::Covered, |_| {}),
         };
-        let text = rows(&sweep);
+        let text = rows(&sweep, Filter::Period);
         assert_eq!(text.lines().count(), 4000);
         let columns = HEAD.split(',').count();
         assert!(text.lines().all(|line| line.split(',').count() == columns));
