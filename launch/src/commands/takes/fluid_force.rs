@@ -141,7 +141,7 @@ fn rows(sweep: &Sweep, filter: Filter) -> String {
 fn panels(sweeps: &[Sweep]) -> Vec<Panel> {
     let parts: [(&str, &str, fn(&Sample) -> f64); 2] = [
         ("drag", "force along the way there (N/m)", |it| it.drag_n),
-        ("torque", "torque (N)", |it| it.torque_n_m),
+        ("torque", "torque (N·m/m)", |it| it.torque_n_m),
     ];
     let mut panels = Vec::new();
     for (part, label, value) in parts {
