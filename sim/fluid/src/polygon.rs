@@ -7,8 +7,8 @@ use maulstick_num::sin_cos;
 pub struct Shape {
     /// Corners, counterclockwise, m.
     corners: Vec<[f64; 2]>,
-    /// Largest distance of a corner from the origin, m.
-    radius_m: f64,
+    /// Radii of the circles about the origin within all edges, and around all corners, m.
+    radii_m: [f64; 2],
 }
 
 /// Corners of the polygon that stands for a disc.
@@ -17,9 +17,16 @@ const DISC_CORNERS: usize = 256;
 impl Shape {
     fn new(corners: Vec<[f64; 2]>) -> Self {
         let squares = corners.iter().map(|[x, y]| x * x + y * y);
-        Self {
-            radius_m: squares.fold(0.0, f64::max).sqrt(),
+        let outer = squares.fold(0.0, f64::max).sqrt();
+        let placed = Placed {
             corners,
+            middle: [0.0; 2],
+            radii_m: [0.0, outer],
+        };
+        let inner = placed.edge_depth([0.0; 2]);
+        Self {
+            corners: placed.corners,
+            radii_m: [inner, outer],
         }
     }
 
@@ -51,7 +58,7 @@ impl Shape {
         Placed {
             corners: self.corners.iter().map(turn).collect(),
             middle: [x, y],
-            radius_m: self.radius_m,
+            radii_m: self.radii_m,
         }
     }
 }
@@ -61,18 +68,32 @@ impl Shape {
 pub(crate) struct Placed {
     corners: Vec<[f64; 2]>,
     middle: [f64; 2],
-    radius_m: f64,
+    radii_m: [f64; 2],
 }
 
 impl Placed {
     /// Lower and upper ends of a box that holds the shape, m.
     pub(crate) fn bounds(&self) -> [[f64; 2]; 2] {
-        let ends = |sign: f64| self.middle.map(|at| at + sign * self.radius_m);
+        let ends = |sign: f64| self.middle.map(|at| at + sign * self.radii_m[1]);
         [ends(-1.0), ends(1.0)]
     }
 
+    /// At most the distance of a place from the outline, m; positive within, and exact near it.
+    fn depth(&self, place: [f64; 2], near_m: f64) -> f64 {
+        let [x, y] = [place[0] - self.middle[0], place[1] - self.middle[1]];
+        let off = (x * x + y * y).sqrt();
+        let [inner, outer] = self.radii_m;
+        if off <= inner - near_m {
+            inner - off
+        } else if off >= outer + near_m {
+            outer - off
+        } else {
+            self.edge_depth(place)
+        }
+    }
+
     /// Least distance of a place from the edges' lines, m; positive within.
-    fn depth(&self, [x, y]: [f64; 2]) -> f64 {
+    fn edge_depth(&self, [x, y]: [f64; 2]) -> f64 {
         let mut least = f64::INFINITY;
         for (from, to) in self.edges() {
             let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
@@ -84,7 +105,7 @@ impl Placed {
 
     /// True if a place is within.
     pub(crate) fn contains(&self, place: [f64; 2]) -> bool {
-        self.depth(place) > 0.0
+        self.depth(place, 0.0) > 0.0
     }
 
     fn edges(&self) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
@@ -96,7 +117,7 @@ impl Placed {
     pub(crate) fn share(&self, [x, y]: [f64; 2], side: f64) -> f64 {
         // Half a diagonal.
         let reach = 0.75 * side;
-        let depth = self.depth([x, y]);
+        let depth = self.depth([x, y], reach);
         if depth >= reach {
             return 1.0;
         }

@@ -150,7 +150,7 @@ fn panels(sweeps: &[Sweep]) -> Vec<Panel> {
         for boundary in BOUNDARIES {
             let with = sweeps.iter().filter(|sweep| sweep.boundary == boundary);
             let curve = |sweep: &Sweep| Curve {
-                name: format!("{0}×{0}", sweep.cells),
+                name: format!("{}²", sweep.cells),
                 points: (sweep.samples.iter())
                     .map(|it| [it.time_s, value(it)])
                     .collect(),
