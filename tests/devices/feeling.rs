@@ -6,11 +6,12 @@ mod support;
 use std::time::Duration;
 
 use maulstick_brush::BrushFile;
-use maulstick_bus::Qos;
-use maulstick_bus::typed::Receiver;
+use maulstick_bus::typed::{Receiver, Sender};
+use maulstick_bus::{Bus as _, Qos};
 use maulstick_haptics::Limits;
-use maulstick_types::haptics::{ContactModel, ForceLaw};
-use maulstick_types::stylus::StylusSample;
+use maulstick_types::haptics::{ContactModel, FluidForce, ForceLaw};
+use maulstick_types::stylus::{StylusSample, StylusStatus};
+use maulstick_types::{Origin, Pose};
 use nix::sys::signal::Signal;
 use support::{Launcher, PATIENCE, Place, drain, hear, listen, pressed, signal, wait_for};
 
@@ -155,6 +156,94 @@ fn recorded_models_drive_a_device_by_the_rules_of_its_servo() {
         hear(&mut models, is_free).is_some(),
         "the live brush has it again"
     );
+    bus.close();
+}
+
+/// A force of paint on a hand at rest, along x, whose Jacobian brakes or drives.
+fn paint(device: Origin, along_n: f64, damping_n_s_m: f64) -> FluidForce {
+    let mut jacobian = [[0.0; 6]; 6];
+    jacobian[0][0] = -damping_n_s_m;
+    FluidForce {
+        device: device.source,
+        device_epoch: device.epoch,
+        pose: Pose::IDENTITY,
+        velocity: [0.0; 6],
+        wrench: [along_n, 0.0, 0.0, 0.0, 0.0, 0.0],
+        jacobian,
+        time_to_live_ns: 200_000_000,
+        recovery_ns: 20_000_000,
+    }
+}
+
+#[test]
+fn a_force_of_paint_is_felt_without_a_leap_and_one_that_pushes_is_dropped() {
+    let place = Place::new();
+    support::press_for_minutes(&place.path("press.mcap"));
+    let config = String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
+    let hand = config.replace("# hand = \"demo.mcap\"", "hand = \"press.mcap\"");
+    std::fs::write(place.path("rig.toml"), hand).expect("written");
+    let launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
+    let (bus, topics) = support::join(&place);
+    let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Qos::RealTime);
+    let status = topics.stylus_status("phantom");
+    let mut statuses = listen::<StylusStatus>(&bus, &status, Qos::Background);
+    let pressed = hear(&mut samples, |sample| size(sample) > 0.1);
+    assert!(pressed.is_some(), "no force: {}", launcher.said());
+    let device = wait_for(PATIENCE, || {
+        samples.try_recv().map(|received| received.header.origin())
+    });
+    let device = device.expect("a sample");
+    let me = Origin {
+        source: 7,
+        epoch: 1,
+    };
+    let topic = topics.fluid_force("phantom");
+    let mut sender = Sender::new(&bus, &topic, Qos::RealTime, me).expect("a sender");
+    let mut send = |force: &FluidForce| {
+        let now_ns = bus.now_ns();
+        sender.send(now_ns, now_ns, force).expect("sent");
+    };
+    // Across the stroke, where no friction is: friction along x is less than this.
+    let mut last = None;
+    let pushed = wait_for(PATIENCE, || {
+        send(&paint(device, 0.9, 0.1));
+        while let Some(received) = samples.try_recv() {
+            let (event_ns, force_n) = (received.header.event_ns, received.message.force_n);
+            if let Some((before_ns, before)) = last.replace((event_ns, force_n)) {
+                let s = (event_ns - before_ns) as f64 * 1e-9;
+                let stood = s > Limits::default().longest_tick_s;
+                assert!(
+                    stood || !leaps(&before, &force_n, s),
+                    "{before:?} {force_n:?}"
+                );
+            }
+            if force_n[0] > 0.5 {
+                return Some(());
+            }
+        }
+        None
+    });
+    assert!(
+        pushed.is_some(),
+        "the paint is not felt: {}",
+        launcher.said()
+    );
+    let foreign = hear(&mut statuses, |_| true)
+        .expect("a status")
+        .foreign_models;
+    let counted = wait_for(PATIENCE, || {
+        send(&paint(device, 0.9, -0.1));
+        let newest = statuses.newest()?.message;
+        (newest.foreign_models > foreign + 20).then_some(())
+    });
+    assert!(counted.is_some(), "one that pushes is taken");
+    let said = launcher.said();
+    assert!(said.contains("a force of paint is dropped"), "{said}");
+    drain(&mut samples);
+    let gone = hear(&mut samples, |sample| {
+        size(sample) > 0.1 && sample.force_n[0] < 0.3
+    });
+    assert!(gone.is_some(), "the last good one is held");
     bus.close();
 }
 

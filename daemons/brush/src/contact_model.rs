@@ -7,7 +7,6 @@ use maulstick_brush::{BrushFile, BrushModel};
 use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_types::Origin;
 use maulstick_types::haptics::{ContactModel, ForceLaw, Grain};
-use maulstick_types::paint::BrushCredit;
 use maulstick_types::scene::{CANVAS, Scene};
 
 /// k₂ of eq. 8.1: further force a head's length below, N.
@@ -18,28 +17,6 @@ const K1_MOST_N: f64 = 3.0;
 const TIME_TO_LIVE_NS: u64 = 100_000_000;
 /// A change of model is spread over this time, ns.
 const RECOVERY_NS: u64 = 15_000_000;
-
-/// Density of paint, kg/m³.
-const DENSITY_KG_M3: f64 = 1e3;
-/// Film thickness at which half of the drag acts, m: bristles in a thinner one slide.
-const HALF_FILM_M: f64 = 25e-6;
-/// Drag at most, N·s/m: the servo samples it.
-const DRAG_MOST: f64 = 0.5;
-
-/// Drag of the paint that a brush was last found in, N·s/m: μ·L, the viscous force by velocity on a
-/// contact of length L (Baxter 2004, eq. 8.8), as far as there is a film for it.
-#[must_use]
-pub fn drag(credit: &BrushCredit) -> f64 {
-    let [film, viscosity, contact] = [credit.film_m, credit.viscosity_m2_s, credit.contact_m];
-    let wet = f64::from(film) / (f64::from(film) + HALF_FILM_M);
-    let drag = DENSITY_KG_M3 * f64::from(viscosity) * f64::from(contact) * wet;
-    // A message from the bus may hold any number.
-    if drag.is_finite() {
-        drag.clamp(0.0, DRAG_MOST)
-    } else {
-        0.0
-    }
-}
 
 /// Force law of a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -146,8 +123,6 @@ pub fn grain(scene: &Scene) -> Grain {
 pub struct SurfaceFeel {
     /// Normal force by depth.
     pub law: ForceLaw,
-    /// [`drag`] of the paint, N·s/m.
-    pub drag_n_s_m: f64,
     /// Grain of the canvas.
     pub grain: Grain,
 }
@@ -171,7 +146,8 @@ pub fn contact_model(
         plane_normal: plane.normal().to_array(),
         friction_static: file.contact.friction_static.unwrap_or(friction),
         friction_kinetic: friction,
-        viscous_n_s_m: felt.drag_n_s_m,
+        // Paint drags by the fluid force, once.
+        viscous_n_s_m: 0.0,
         grain: if on_canvas { felt.grain } else { NO_GRAIN },
         law: felt.law,
         head_length_m: file.length_m(),
@@ -191,29 +167,6 @@ mod tests {
         scene.surfaces[0].tooth = tooth.into();
         scene.surfaces[0].zoom = zoom;
         scene
-    }
-
-    fn credit(film_m: f32, viscosity_m2_s: f32) -> BrushCredit {
-        BrushCredit {
-            brush: 1,
-            epoch: 1,
-            next: 1,
-            wetness: 1.0,
-            film_m,
-            viscosity_m2_s,
-            contact_m: 0.01,
-        }
-    }
-
-    #[test]
-    fn stiff_paint_drags_and_thin_or_missing_paint_hardly_does() {
-        let tube = drag(&credit(1e-3, 1e-2));
-        assert!((tube - 0.1 * 1e-3 / 1.025e-3).abs() < 1e-6, "μ·L: {tube}");
-        assert!(drag(&credit(1e-3, 1e-4)) < 0.02 * tube);
-        assert!(drag(&credit(5e-6, 1e-2)) < 0.2 * tube);
-        assert_eq!(drag(&credit(0.0, 0.0)), 0.0);
-        assert_eq!(drag(&credit(f32::NAN, 1.0)), 0.0);
-        assert_eq!(drag(&credit(1.0, f32::MAX)), DRAG_MOST);
     }
 
     #[test]

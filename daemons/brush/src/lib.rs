@@ -9,9 +9,11 @@
 //! | [`path_simplifier`] | samples merged while credit is short |
 //! | [`outbox`] | solved states that wait for credit |
 //! | [`contact_model`] | the contact model for the hand |
+//! | [`fluid_force`] | the drag of the paint on it |
 
 pub mod arbiter;
 pub mod contact_model;
+pub mod fluid_force;
 pub mod node;
 pub mod outbox;
 pub mod path_simplifier;

@@ -17,6 +17,7 @@ use maulstick_types::{Flags, encode};
 
 use crate::device::mounted_device::MountedDevice;
 use crate::device::open::{HapticSettings, open};
+use crate::fluid_inlet::{FluidArrival, FluidInlet};
 use crate::force_state_file::{ForceState, ForceStateFile};
 use crate::servo::channels::{Delivery, TickRecord};
 use crate::servo::force_control::ForceControl;
@@ -65,6 +66,7 @@ struct Daemon {
     samples: CreditSender<StylusSample>,
     models: Receiver<ContactModel>,
     guides: Receiver<GuideModel>,
+    fluids: FluidInlet,
     orders: Server,
     reader: Reader,
     control: ForceControl,
@@ -129,6 +131,12 @@ impl Daemon {
                 Queue::Ring(16),
                 &member.wake,
             )?,
+            fluids: FluidInlet::new(
+                bus,
+                &topics.fluid_force(&device.name),
+                device.paint_drag,
+                &member.wake,
+            )?,
             orders: bus.serve(&topics.force(&device.name), 16, &member.wake)?,
             reader: Reader::default(),
             control: ForceControl {
@@ -172,6 +180,7 @@ impl Daemon {
         self.obey(now_ns);
         self.deliver();
         self.deliver_guide();
+        self.deliver_fluid();
         while let Some(Ok(record)) = self.servo.as_mut().map(|servo| servo.ticks.pop()) {
             self.publish(&record, now_ns)?;
         }
@@ -399,6 +408,15 @@ impl Daemon {
     fn tell_control(&mut self) {
         self.told.is_on = self.control.switch == Switch::On;
         (self.told.strength, self.told.guidance) = (self.control.strength, self.control.guidance);
+    }
+
+    /// Hands the newest force of paint to the servo.
+    fn deliver_fluid(&mut self) {
+        match (self.fluids.newest(&self.recipient), &mut self.servo) {
+            (FluidArrival::Foreign, _) => self.told.foreign_models += 1,
+            (FluidArrival::Delivery(delivery), Some(servo)) => servo.fluids.write(delivery),
+            (FluidArrival::Nothing, _) | (FluidArrival::Delivery(_), None) => {}
+        }
     }
 
     fn publish(&mut self, record: &TickRecord, now_ns: u64) -> Result<(), UserError> {

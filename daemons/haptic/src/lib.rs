@@ -1,8 +1,8 @@
 //! The haptic daemon.
 //!
 //! A real-time thread runs the servo beside the device, a thousand times a second. It touches no
-//! bus, no lock and no allocator: contact models come in through a triple buffer, tick records go out
-//! through a ring, and another thread talks to the rig.
+//! bus, no lock and no allocator: contact models and forces of paint come in through triple buffers, tick
+//! records go out through a ring, and another thread talks to the rig.
 //!
 //! | module | holds |
 //! | --- | --- |
@@ -15,6 +15,7 @@
 pub mod daemon;
 pub mod device;
 pub mod drivers;
+mod fluid_inlet;
 pub mod force_state_file;
 pub mod servo;
 

@@ -12,9 +12,9 @@ use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::command::BrushCommand;
 use maulstick_types::command::{Command, Outcome};
 use maulstick_types::edits::{Load, Tune, Undo};
-use maulstick_types::haptics::{ContactModel, ForceLaw};
+use maulstick_types::haptics::{ContactModel, FluidForce, ForceLaw};
 use maulstick_types::scene::Tuning;
-use maulstick_types::stylus::{StylusInfo, axes};
+use maulstick_types::stylus::{StylusInfo, StylusSample, axes};
 use maulstick_types::values::{BrushName, BrushToml};
 use maulstick_types::{Flags, Origin, name_hash};
 use support::{Device, Live, START_NS, loads, pen, take};
@@ -72,6 +72,55 @@ fn a_force_device_with_a_number_of_its_own_gets_its_model() {
     turn(&mut live);
     let model = models.try_recv().expect("a model").message;
     assert_eq!((model.device, model.device_epoch), (42, 11));
+}
+
+#[test]
+fn wet_paint_drags_a_moving_hand_by_the_fluid_force_and_by_no_model() {
+    let mut live = live();
+    let mut models = models(&live);
+    let topic = live.topics.fluid_force("arm");
+    let (bus, queue) = (live.net.bus(), Queue::Ring(512));
+    let mut forces: Receiver<FluidForce> =
+        Receiver::new(&bus, &topic, Qos::RealTime, queue, &Wake::new()).expect("subscribed");
+    let mut arm = force_device(&live);
+    turn(&mut live);
+    let mut stroke = |live: &mut Live| {
+        for step in 0..40 {
+            arm.send(&StylusSample {
+                velocity_m_s: [0.1, 0.02, 0.0],
+                ..pen(1e-3 * f64::from(step), 0.0, 0.5)
+            });
+            turn(live);
+        }
+        arm.send(&pen(0.04, 0.0, 0.0));
+        (0..20).for_each(|_| turn(live));
+        std::iter::from_fn(|| forces.try_recv())
+            .map(|force| force.message)
+            .collect::<Vec<_>>()
+    };
+    assert!(
+        stroke(&mut live).is_empty(),
+        "a clean brush on a bare canvas"
+    );
+    let load = Command::from(Load {
+        mixture: loads()[0].clone(),
+        beside: None,
+        brush: BrushName::main(),
+    });
+    live.command(1, load);
+    let felt = stroke(&mut live);
+    println!("{} forces", felt.len());
+    let mut dragged = 0;
+    for force in &felt {
+        assert_eq!((force.device, force.device_epoch), (42, 11));
+        maulstick_haptics::Fluid::new(force, 1.0).expect("a servo takes it");
+        let power: f64 = (0..6).map(|i| force.wrench[i] * force.velocity[i]).sum();
+        dragged += usize::from(power < 0.0);
+    }
+    assert!(dragged > 5, "{dragged}");
+    // Never twice in the hand.
+    let all: Vec<_> = std::iter::from_fn(|| models.try_recv()).collect();
+    assert!(!all.is_empty() && all.iter().all(|it| it.message.viscous_n_s_m == 0.0));
 }
 
 #[test]

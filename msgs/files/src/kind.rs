@@ -33,6 +33,8 @@ pub enum Kind {
     Recording,
     /// Messages of a recording, CSV or lines of JSON.
     Messages,
+    /// Table of the force of a fluid, CSV.
+    Forces,
     /// Graph of a rig, SVG or Mermaid.
     Graph,
     /// File that belongs to the program whatever it holds: settings, and what lies in folders of its own.
@@ -86,6 +88,7 @@ impl Kind {
             Self::Brush => "a brush file",
             Self::Recording => "a recording of a device",
             Self::Messages => "exported messages",
+            Self::Forces => "a table of forces",
             Self::Graph => "a graph of a rig",
             Self::Own => "a file of Maulstick",
         }
@@ -111,6 +114,7 @@ impl Kind {
             Self::Messages => [&b"topic,arrived_ns,seq,event_ns,"[..], b"{\"arrived_ns\":"]
                 .iter()
                 .any(|mark| head.starts_with(mark)),
+            Self::Forces => head.starts_with(b"grid,boundary,t_s,"),
             Self::Graph => [&b"<svg xmlns="[..], b"flowchart LR\n"]
                 .iter()
                 .any(|mark| head.starts_with(mark)),
@@ -190,7 +194,7 @@ mod tests {
 
     #[test]
     fn a_file_gives_way_to_its_own_kind_alone() {
-        let kinds: [(Kind, &[u8]); 12] = [
+        let kinds: [(Kind, &[u8]); 13] = [
             (Kind::Png, b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"),
             (Kind::Exr, &[0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0]),
             (
@@ -208,6 +212,7 @@ mod tests {
             ),
             (Kind::Brush, b"kind = \"round\"\n"),
             (Kind::Graph, b"flowchart LR\n    n0[\"paint\"]\n"),
+            (Kind::Forces, b"grid,boundary,t_s,x_m"),
             (Kind::Recording, b"D: 0\nR: 3 05 0d 09\n"),
         ];
         let folder = tempfile::tempdir().expect("a folder");

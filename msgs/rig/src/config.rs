@@ -16,7 +16,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::user_error::UserError;
 
-pub use device::{ACTIONS, DRIVERS, DeviceSection, FORCES, HID_DRIVERS, PEN_DRIVERS};
+pub use device::{
+    ACTIONS, DRIVERS, DeviceSection, FORCES, HID_DRIVERS, MOST_PAINT_DRAG, PEN_DRIVERS,
+};
 pub use light::LightSection;
 pub use paint::{BACKENDS, PaintSection, PaintingRoom};
 pub use palette::{PILES, PaletteSection};

@@ -8,12 +8,14 @@
 //! | [`friction`], [`grain`] | what is felt across the normal |
 //! | [`contact`] | the force of one contact model at one pose |
 //! | [`guide`] | the force of a guide, which holds the hand to a recorded path |
+//! | [`fluid`] | the force of moving paint, from a solver slower than the hand |
 //! | [`recipient`] | the device, session and brush that accept a model |
 //! | [`servo`] | one tick: models, ageing, limits |
 //! | [`plant`] | a device and a hand that hold each other, for the simulated stylus and for tests |
 //! | [`stability_grid`] | hands, walls, rates and losses by the thousand: whether the servo is stable |
 
 pub mod contact;
+pub mod fluid;
 pub mod force_law;
 pub mod friction;
 pub mod grain;
@@ -32,6 +34,7 @@ pub mod stability_grid;
 mod stability_tests;
 
 pub use contact::{Contact, ContactForce};
+pub use fluid::Fluid;
 pub use guide::Guide;
 pub use plant::{Hand, Plant};
 pub use recipient::Recipient;

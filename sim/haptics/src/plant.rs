@@ -114,6 +114,12 @@ impl Plant {
         self.given_j
     }
 
+    /// Energy in the motion of the device's mass, J.
+    #[must_use]
+    pub fn kinetic_j(&self) -> f64 {
+        0.5 * self.mass_kg * self.velocity.length_squared()
+    }
+
     /// Lets `dt` s pass with `force` from the motors on the hand, which wants to be at `target`.
     pub fn advance(&mut self, force: DVec3, target: DVec3, dt: f64) {
         let size = force.length();

@@ -2,7 +2,7 @@
 //! computed for.
 
 use maulstick_types::Origin;
-use maulstick_types::haptics::{ContactModel, GuideModel};
+use maulstick_types::haptics::{ContactModel, FluidForce, GuideModel};
 
 /// A device in its current session, and its brush.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,6 +26,12 @@ impl Recipient {
     #[must_use]
     pub fn accepts_guide(&self, guide: &GuideModel) -> bool {
         guide.device == self.device.source && guide.device_epoch == self.device.epoch
+    }
+
+    /// True if a force of paint is addressed to this device in its current session.
+    #[must_use]
+    pub fn accepts_fluid(&self, fluid: &FluidForce) -> bool {
+        fluid.device == self.device.source && fluid.device_epoch == self.device.epoch
     }
 }
 

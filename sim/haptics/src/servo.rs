@@ -43,6 +43,8 @@ use self::passivity::Passivity;
 use self::persistent::ServoMemory;
 use self::tick::{Sender, Switch, Tick};
 use crate::contact::{Contact, ContactForce, HandleState};
+use crate::fluid::{Fluid, FluidStage};
+use crate::friction::ramp;
 use crate::guide::Guide;
 
 /// The servo's state.
@@ -55,6 +57,7 @@ pub struct Servo {
     model: Option<Active>,
     /// Received since the last step.
     arrived: Option<Contact>,
+    fluid: FluidStage,
     /// What the force still keeps of the models before, N.
     correction: DVec3,
     /// How fast the correction shrinks, N/s.
@@ -109,6 +112,7 @@ impl Servo {
             strength: 1.0,
             model: None,
             arrived: None,
+            fluid: FluidStage::default(),
             correction: DVec3::ZERO,
             correction_speed: 0.0,
             engagement: Engagement::ANEW,
@@ -141,6 +145,11 @@ impl Servo {
     /// Makes the guides' force weaker: a share from 0 to 1.
     pub fn set_guidance(&mut self, share: f64) {
         self.guidance.set_share(share_of(share));
+    }
+
+    /// A new force of paint has arrived; it acts where the head touches.
+    pub fn receive_fluid(&mut self, fluid: Fluid) {
+        self.fluid.receive(fluid, self.limits.fade_s);
     }
 
     /// Allows force again after a fault; it engages anew.
@@ -187,6 +196,7 @@ impl Servo {
         self.engagement = Engagement::ANEW;
         self.model = None;
         self.arrived = None;
+        self.fluid = FluidStage::default();
         self.correction = DVec3::ZERO;
         self.last = None;
         self.passivity.forgive();
@@ -330,6 +340,7 @@ impl Servo {
     fn age(&mut self, dt: f64, passed_s: f64) {
         self.engaged_s += dt;
         self.guidance.age(&self.limits, dt, passed_s);
+        self.fluid.age(passed_s);
         if let Some(model) = &mut self.model {
             model.age_s += passed_s;
         }
@@ -371,14 +382,16 @@ impl Servo {
         }
     }
 
-    /// What the newest model makes the hand feel.
+    /// What the newest model and the paint make the hand feel. Paint is no part of what is conservative, so the observer
+    /// sees all its work.
     fn evaluate_newest(&self, handle: &HandleState) -> Option<ContactForce> {
         let model = self.model.as_ref()?;
-        Some(
-            model
-                .contact
-                .evaluate(handle, self.limits.max_stiffness_n_m),
-        )
+        let mut felt = model
+            .contact
+            .evaluate(handle, self.limits.max_stiffness_n_m);
+        let fluid = self.fluid.force(handle.velocity, self.limits.fade_s);
+        felt.force += fluid * ramp(felt.depth_m);
+        Some(felt)
     }
 
     /// What is left of a model past its time to live.

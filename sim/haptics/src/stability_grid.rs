@@ -8,6 +8,8 @@
 //! is passive while K < 2b/T (Colgate and Schenkel 1997): up to there the steady force is judged too. Beside the wall a guide
 //! may hold the hand to a line; then the hand is kicked across that too.
 
+pub mod fluid;
+
 use glam::{DQuat, DVec3};
 use maulstick_num::geometry::rotation;
 use maulstick_num::{cos, sin};
@@ -28,7 +30,7 @@ pub const MAX_STIFFNESS_N_M: f64 = 500.0;
 /// Viscous friction of its device, N·s/m.
 pub const DAMPING_N_S_M: f64 = 0.3;
 /// Period of its servo, s.
-const DT: f64 = 1e-3;
+pub(crate) const DT: f64 = 1e-3;
 /// Below this stiffness the steady force is judged, 2b/T, N/m.
 pub const BOUND_N_M: f64 = 2.0 * DAMPING_N_S_M / DT;
 /// A tip that wobbles by less is still, m.
@@ -38,7 +40,7 @@ pub const NO_ENERGY_J: f64 = 1e-6;
 /// The steady force may be off by this share.
 pub const FORCE_ERROR: f64 = 0.1;
 
-const HEAD_M: f64 = 0.025;
+pub(crate) const HEAD_M: f64 = 0.025;
 /// Friction of the wall without a guide.
 const FRICTION: f64 = 0.2;
 const RECOVERY_S: f64 = 0.015;
@@ -229,7 +231,7 @@ impl Told {
     }
 }
 
-fn random(state: &mut u64) -> f64 {
+pub(crate) fn random(state: &mut u64) -> f64 {
     *state = state
         .wrapping_mul(6_364_136_223_846_793_005)
         .wrapping_add(1_442_695_040_888_963_407);

@@ -6,10 +6,12 @@ mod counting;
 use counting::allocations;
 use glam::{DQuat, DVec3};
 use maulstick_haptics::contact::HandleState;
-use maulstick_haptics::{Contact, Guide, Limits, Sender, Servo, Switch};
+use maulstick_haptics::{Contact, Fluid, Guide, Limits, Sender, Servo, Switch};
 use maulstick_num::sin;
 use maulstick_types::Pose;
-use maulstick_types::haptics::{ContactModel, ForceLaw, Grain, GuideModel, HermiteKnot};
+use maulstick_types::haptics::{
+    ContactModel, FluidForce, ForceLaw, Grain, GuideModel, HermiteKnot,
+};
 
 fn contact(law: ForceLaw) -> Contact {
     Contact::new(&ContactModel {
@@ -26,6 +28,23 @@ fn contact(law: ForceLaw) -> Contact {
         ..ContactModel::bare(law, 0.025)
     })
     .expect("a model")
+}
+
+fn paint() -> Fluid {
+    Fluid::new(
+        &FluidForce {
+            device: 0,
+            device_epoch: 0,
+            pose: Pose::IDENTITY,
+            velocity: [0.0; 6],
+            wrench: [0.1; 6],
+            jacobian: [[0.0; 6]; 6],
+            time_to_live_ns: 30_000_000,
+            recovery_ns: 20_000_000,
+        },
+        1.0,
+    )
+    .expect("a force")
 }
 
 #[test]
@@ -72,6 +91,7 @@ fn a_tick_allocates_nothing() {
         time_to_live_ns: 20_000_000,
     })
     .expect("a guide");
+    let paint = paint();
     let mut servo = Servo::new(Limits::default());
     let mut pressed = 0;
     let mut run = |servo: &mut Servo| {
@@ -82,6 +102,9 @@ fn a_tick_allocates_nothing() {
             }
             if tick % 30 == 0 {
                 servo.receive_guide(guide, Sender::Same);
+            }
+            if tick % 40 == 0 {
+                servo.receive_fluid(paint);
             }
             match tick % 7000 {
                 1000 => servo.measure(0.9),

@@ -1,14 +1,24 @@
-//! Publisher of contact models for the devices that move the brush.
+//! Publisher of contact models, and of the paint's drag, for the devices that move the brush.
 
+use glam::DVec3;
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{BusError, Qos};
 use maulstick_types::Origin;
+use maulstick_types::haptics::FluidForce;
 
 use super::{BrushNode, Painter};
 use crate::contact_model::{SurfaceFeel, contact_model, law};
+use crate::fluid_force::{Held, PERIOD_NS, fluid_force};
 
 /// Least time between two contact models, ns.
 const MODEL_PERIOD_NS: u64 = 4_000_000;
+
+/// Forces of paint to a device, and the newest one.
+pub(super) struct DragSent {
+    forces: Sender<FluidForce>,
+    sent_ns: u64,
+    drag_n_s_m: f64,
+}
 
 impl BrushNode {
     /// Gives a force-feedback device its contact model.
@@ -16,6 +26,7 @@ impl BrushNode {
         &mut self,
         device: &str,
         origin: Origin,
+        held: &Held,
         now_ns: u64,
     ) -> Result<(), BusError> {
         let drives_force = self
@@ -28,6 +39,7 @@ impl BrushNode {
         let Some(plane) = self.model.plane().copied() else {
             return Ok(());
         };
+        self.drag_at(device, origin, held, plane.normal(), now_ns)?;
         if !self.models.has(device) {
             let topic = self.topics.contact_model(device);
             let me = self.states.origin();
@@ -50,12 +62,45 @@ impl BrushNode {
             .unwrap_or_default();
         let felt = SurfaceFeel {
             law: law(kind, &mut self.model, &plane),
-            drag_n_s_m: self.drag_n_s_m,
             grain: self.grain.clone(),
         };
         let name = &self.settings.name;
         let model = contact_model(origin, name, self.model.file(), &plane, felt);
         sender.send(now_ns, now_ns, &model)?;
+        Ok(())
+    }
+
+    /// Gives it the drag of the paint; where there is none any more, once.
+    fn drag_at(
+        &mut self,
+        device: &str,
+        origin: Origin,
+        held: &Held,
+        normal: DVec3,
+        now_ns: u64,
+    ) -> Result<(), BusError> {
+        let drag_n_s_m = self.drag_n_s_m;
+        if !self.fluids.has(device) {
+            let topic = self.topics.fluid_force(device);
+            let me = self.states.origin();
+            let forces = Sender::new(&*self.bus, &topic, Qos::RealTime, me)?;
+            let sent = DragSent {
+                forces,
+                sent_ns: 0,
+                drag_n_s_m: 0.0,
+            };
+            self.fluids.set(device, sent);
+        }
+        let Some(sent) = self.fluids.get_mut(device) else {
+            return Ok(());
+        };
+        let is_none = drag_n_s_m == 0.0 && sent.drag_n_s_m == 0.0;
+        if is_none || now_ns < sent.sent_ns + PERIOD_NS {
+            return Ok(());
+        }
+        (sent.sent_ns, sent.drag_n_s_m) = (now_ns, drag_n_s_m);
+        let force = fluid_force(origin, held, drag_n_s_m, normal);
+        sent.forces.send(now_ns, now_ns, &force)?;
         Ok(())
     }
 }

@@ -31,10 +31,12 @@ use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin, name_hash};
 
 use crate::arbiter::{Arbiter, Range, Stroke};
-use crate::contact_model::{NO_GRAIN, drag, grain};
+use crate::contact_model::{NO_GRAIN, grain};
+use crate::fluid_force::{Held, drag};
 use crate::outbox::Outbox;
 use crate::path_simplifier::{PathSimplifier, Place, Waiting};
 
+use contact_publisher::DragSent;
 use pace::Pace;
 use progress::Progress;
 pub use settings::{BrushDevices, BrushSettings};
@@ -73,6 +75,7 @@ pub struct BrushNode {
     /// Claims of each device about itself.
     devices: Recent<DeviceClaims>,
     models: Recent<(Sender<ContactModel>, u64)>,
+    fluids: Recent<DragSent>,
     arbiter: Arbiter,
     backlog: PathSimplifier,
     pace: Pace,
@@ -143,6 +146,7 @@ impl BrushNode {
             model: BrushModel::new(settings.file.clone(), settings.depth_share),
             devices: Recent::default(),
             models: Recent::default(),
+            fluids: Recent::default(),
             arbiter: Arbiter::default(),
             backlog: PathSimplifier::new(settings.file.length_m()),
             pace: Pace::default(),
@@ -318,6 +322,7 @@ impl BrushNode {
         {
             tracing::warn!("{}: sample {seq} is dropped: {fault}", received.key);
         }
+        let held = Held::of(&received.message);
         let moved = if received.header.flags.has(Flags::REPLAY) {
             self.replay(&device, &received, now_ns)?
         } else if received.message.fault().is_some() || self.is_held() {
@@ -336,7 +341,7 @@ impl BrushNode {
         if !moved {
             // A hand feels the brush that a take moves.
             return match self.is_held() && !received.header.flags.has(Flags::REPLAY) {
-                true => self.feel(&device, origin, now_ns),
+                true => self.feel(&device, origin, &held, now_ns),
                 false => Ok(()),
             };
         }
@@ -353,7 +358,7 @@ impl BrushNode {
             });
             self.flush(now_ns)?;
         }
-        self.feel(&device, origin, now_ns)
+        self.feel(&device, origin, &held, now_ns)
     }
 
     /// Placement of the brush by a sample: a pen without pressure hovers, a head that is higher than it is long does

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64};
 
 use glam::DVec3;
-use maulstick_haptics::{Contact, Guide, Tick};
+use maulstick_haptics::{Contact, Fluid, Guide, Tick};
 use maulstick_types::Origin;
 
 use super::force_control::ForceControl;
@@ -58,6 +58,8 @@ pub struct Channels {
     pub models: triple_buffer::Output<Delivery<Contact>>,
     /// Newest guide, in.
     pub guides: triple_buffer::Output<Delivery<Guide>>,
+    /// Newest force of paint, in.
+    pub fluids: triple_buffer::Output<Delivery<Fluid>>,
     /// Newest force settings, in.
     pub controls: triple_buffer::Output<ForceControl>,
     /// Request to end.

@@ -32,6 +32,7 @@ pub struct ServoLoop {
     channels: Channels,
     models: Seen,
     guides: Seen,
+    fluids: Seen,
     followed: ForceControl,
     amplifiers: Switch,
     read_ns: u64,
@@ -54,6 +55,7 @@ impl ServoLoop {
             channels,
             models: Seen::default(),
             guides: Seen::default(),
+            fluids: Seen::default(),
             // Earlier re-armings were of another servo, whose fault is to outlast them.
             followed: ForceControl {
                 rearms: previous.rearms,
@@ -143,13 +145,16 @@ impl ServoLoop {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Takes in the newest model, the newest guide and the newest settings.
+    /// Takes in the newest model, guide, force of paint and settings.
     fn take_in(&mut self) {
         if let Some((contact, sender)) = self.models.newest(self.channels.models.read()) {
             self.servo.receive(contact, sender);
         }
         if let Some((guide, sender)) = self.guides.newest(self.channels.guides.read()) {
             self.servo.receive_guide(guide, sender);
+        }
+        if let Some((fluid, _)) = self.fluids.newest(self.channels.fluids.read()) {
+            self.servo.receive_fluid(fluid);
         }
         let control = *self.channels.controls.read();
         self.followed.apply(control, &mut self.servo);

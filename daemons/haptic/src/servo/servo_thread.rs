@@ -41,6 +41,8 @@ pub struct ServoThread {
     pub models: triple_buffer::Input<Delivery<Contact>>,
     /// Guides, in.
     pub guides: triple_buffer::Input<Delivery<Guide>>,
+    /// Forces of paint, in.
+    pub fluids: triple_buffer::Input<Delivery<Fluid>>,
     /// Force settings, in.
     pub controls: triple_buffer::Input<ForceControl>,
     /// Obstacles to real-time scheduling.
@@ -117,6 +119,7 @@ impl ServoThread {
         let (to_publisher, ticks) = rtrb::RingBuffer::new(ring);
         let (models, models_from_rig) = triple_buffer::triple_buffer(&Delivery::default());
         let (guides, guides_from_rig) = triple_buffer::triple_buffer(&Delivery::default());
+        let (fluids, fluids_from_rig) = triple_buffer::triple_buffer(&Delivery::default());
         // Until the daemon sends its settings the servo counts as armed as its predecessor was.
         let (controls, from_daemon) = triple_buffer::triple_buffer(&ForceControl {
             rearms: previous.rearms,
@@ -130,6 +133,7 @@ impl ServoThread {
             ticks: to_publisher,
             models: models_from_rig,
             guides: guides_from_rig,
+            fluids: fluids_from_rig,
             controls: from_daemon,
             stop: Arc::clone(&stop),
             dropped: Arc::clone(&dropped),
@@ -152,6 +156,7 @@ impl ServoThread {
             ticks,
             models,
             guides,
+            fluids,
             controls,
             warnings,
             stop,

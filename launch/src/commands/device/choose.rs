@@ -33,6 +33,9 @@ pub struct UseOptions {
     /// Largest force, N
     #[arg(long, value_name = "N")]
     max_force: Option<f64>,
+    /// Drag of the paint by its true size, 0 to 10
+    #[arg(long, value_name = "TIMES")]
+    paint_drag: Option<f64>,
     #[command(flatten)]
     target: Target,
 }
@@ -96,6 +99,7 @@ pub(super) fn run(options: &UseOptions) -> Result<i32, UserError> {
         },
         switches: options.switches.clone().or(device.switches.clone()),
         max_force_n: options.max_force.unwrap_or(device.max_force_n),
+        paint_drag: options.paint_drag.unwrap_or(device.paint_drag),
         ..device
     };
     let answer = put_in_rig(&options.target, &changed)?;

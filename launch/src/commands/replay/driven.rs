@@ -6,7 +6,7 @@ use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Qos, Queue};
 use maulstick_rig::{NodeHandle, UserError};
 use maulstick_streams::recording::RecordedMessage;
-use maulstick_types::haptics::ContactModel;
+use maulstick_types::haptics::{ContactModel, FluidForce};
 use maulstick_types::stylus::{StylusInfo, StylusSample};
 use maulstick_types::{Origin, decode};
 
@@ -57,6 +57,19 @@ impl Driven {
             UserError::usage(format!("no device called '{name}' is in the rig"))
                 .help("`maulstick device list` shows which are"),
         )
+    }
+
+    /// A recorded force of paint as one for this device.
+    pub(super) fn address_fluid(&self, message: &RecordedMessage) -> Result<FluidForce, UserError> {
+        let (_, force) = decode::<FluidForce>(&message.bytes).map_err(|error| {
+            UserError::usage(format!("a force of paint cannot be read: {error}"))
+                .help("play it with the version of Maulstick that recorded it")
+        })?;
+        Ok(FluidForce {
+            device: self.origin.source,
+            device_epoch: self.origin.epoch,
+            ..force
+        })
     }
 
     /// A recorded model as one for this device.

@@ -21,8 +21,10 @@ use super::{Playback, ReplayOptions, TURN, Turn};
 
 /// Topics that are sent again where none is named.
 const HANDS: [&str; 2] = ["stylus/*/sample", "control/*/sample"];
-/// Topics of contact models.
+/// Topics that move the hand at a device: contact models and forces of paint.
+const DRIVING: [&str; 2] = [MODELS, FLUIDS];
 const MODELS: &str = "haptics/*/model";
+const FLUIDS: &str = "haptics/*/fluid";
 
 /// Sends the messages of a recording again.
 ///
@@ -31,7 +33,7 @@ const MODELS: &str = "haptics/*/model";
 pub(super) fn replay(options: &ReplayOptions, recording: &Recording) -> Result<i32, UserError> {
     let path = recording.path();
     let patterns = match options.topic.is_empty() {
-        true if options.drive.is_some() => vec![MODELS.to_owned()],
+        true if options.drive.is_some() => DRIVING.map(str::to_owned).to_vec(),
         true => HANDS.map(str::to_owned).to_vec(),
         false => options.topic.clone(),
     };
@@ -44,19 +46,25 @@ pub(super) fn replay(options: &ReplayOptions, recording: &Recording) -> Result<i
             .at(path.display().to_string())
             .help(format!("it has {}", all.join(", "))));
     }
-    let is_model = |topic: &&String| is_meant(topic) && matches(MODELS, topic);
-    let models: Vec<&String> = all.iter().filter(is_model).collect();
-    if !models.is_empty() && options.drive.is_none() {
-        return Err(
-            UserError::usage("contact models move the hand that holds the device")
-                .help("name the device, with a hand at it that expects it: --drive DEVICE"),
-        );
+    let mut driving: Vec<&String> = all.iter().filter(|topic| is_meant(topic)).collect();
+    driving.retain(|topic| drives(topic));
+    if !driving.is_empty() && options.drive.is_none() {
+        return Err(UserError::usage(
+            "contact models and forces of paint move the hand that holds the device",
+        )
+        .help("name the device, with a hand at it that expects it: --drive DEVICE"));
     }
-    if let [one, _, ..] = models.as_slice() {
+    let device = |topic: &str| topic.split('/').nth(1).map(str::to_owned);
+    if let [one, others @ ..] = driving.as_slice()
+        && others.iter().any(|other| device(other) != device(one))
+    {
         let what = "it has the contact models of several devices, and one hand feels one";
         return Err(UserError::usage(what)
             .at(path.display().to_string())
-            .help(format!("choose one: --topic {one}")));
+            .help(format!(
+                "choose one: --topic 'haptics/{}/*'",
+                device(one).unwrap_or_default()
+            )));
     }
     let renamed = renamed(&options.remap)?;
     let place = options.place.of(path)?;
@@ -132,6 +140,11 @@ fn renamed(pairs: &[String]) -> Result<BTreeMap<String, String>, UserError> {
         })
     });
     pairs.collect()
+}
+
+/// True if what a topic has moves the hand at a device.
+fn drives(topic: &str) -> bool {
+    DRIVING.iter().any(|pattern| matches(pattern, topic))
 }
 
 /// The messages of the topics of `patterns` within a range of times, as they come.
@@ -212,11 +225,11 @@ impl Senders<'_> {
         self.put(&topic, Qos::Cached, bytes)
     }
 
-    /// Sender of a topic: the one that is named in it; of contact models the brush, whose own ones are then set aside.
+    /// Sender of a topic: the one that is named in it; of what drives a device the brush, whose own ones are then set aside.
     fn origin(&self, topic: &str) -> Origin {
         let named = topic.split('/').nth(1).unwrap_or(topic);
         let sender = match &self.driven {
-            Some(driven) if matches(MODELS, topic) => driven.brush.as_str(),
+            Some(driven) if drives(topic) => driven.brush.as_str(),
             _ => named,
         };
         Origin {
@@ -248,6 +261,10 @@ impl Senders<'_> {
             (Some(driven), _) if matches(MODELS, recorded) => {
                 let model = driven.address(message)?;
                 self.encoded(&topic, Flags::NONE, [seq, event_ns], &model)?
+            }
+            (Some(driven), _) if matches(FLUIDS, recorded) => {
+                let force = driven.address_fluid(message)?;
+                self.encoded(&topic, Flags::NONE, [seq, event_ns], &force)?
             }
             (_, Some(place)) if matches("stylus/*/sample", recorded) => {
                 let sample = place.sample(&message.bytes)?;

@@ -20,10 +20,12 @@ use crate::performance::{library, refused};
 use crate::sheet::Board;
 use crate::sheet::effects::effects;
 
+use super::fluid_force;
+
 /// Options of `maulstick demo`.
 #[derive(Args, Clone, Debug)]
 pub struct DemoOptions {
-    /// Take to write; with --painting the picture, a PNG [default: NAME.png]
+    /// Take to write; with --painting the picture, a PNG [default: NAME.png]; with --fluid-force its table, CSV
     #[arg(short, long, value_name = "FILE", required_unless_present_any = ["sheet", "painting"])]
     output: Option<PathBuf>,
     /// Make strokes of a sheet of marks instead of the flower
@@ -36,6 +38,25 @@ pub struct DemoOptions {
     /// Paint one of the bundled paintings: still-life, flower, landscape
     #[arg(long, value_name = "NAME", conflicts_with_all = ["sheet", "marks", "seed"])]
     painting: Option<String>,
+    /// Sweep a square through a fluid along an arc and write the force on it, raw and filtered for the hand, at
+    /// several resolutions (Baxter 2004, fig. 8.8)
+    #[arg(long, requires = "output", conflicts_with_all = ["sheet", "marks", "seed", "painting"])]
+    fluid_force: bool,
+    /// Cells a side of the fluid's grids [default: 32,64,128]
+    #[arg(
+        long,
+        value_name = "CELLS",
+        value_delimiter = ',',
+        requires = "fluid_force",
+        value_parser = clap::value_parser!(u16).range(16..=512)
+    )]
+    grid: Vec<u16>,
+    /// Filter of the force before the hand
+    #[arg(long, value_enum, default_value_t, requires = "fluid_force")]
+    filter: fluid_force::Filter,
+    /// Draw the force on the square
+    #[arg(long, value_name = "PNG", requires = "fluid_force")]
+    plot: Option<PathBuf>,
     #[command(flatten)]
     cells: SheetCells,
     /// Paint model of a sheet or a painting [default: impasto]
@@ -106,6 +127,14 @@ pub fn run(options: &DemoOptions) -> Result<i32, UserError> {
         return run_painting(name, options);
     }
     options.check_idle()?;
+    if let (true, Some(output)) = (options.fluid_force, &options.output) {
+        return fluid_force::run(
+            &options.grid,
+            options.filter,
+            output,
+            options.plot.as_deref(),
+        );
+    }
     let take = UsedFile::written("the take", options.output.as_ref(), Kind::Take);
     let sheet = UsedFile::written("the sheet", options.sheet.as_ref(), Kind::Png);
     let outputs: Vec<_> = take.into_iter().chain(sheet).collect();

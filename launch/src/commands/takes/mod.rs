@@ -1,6 +1,7 @@
 //! Commands of takes: performances made, imported and painted.
 
 pub mod demo;
+mod fluid_force;
 pub(crate) mod from;
 pub mod import;
 mod painting_record;

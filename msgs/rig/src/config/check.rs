@@ -5,8 +5,8 @@ use maulstick_types::wire::topics::check_name;
 
 use super::check_driver::check_driver;
 use super::{
-    ACTIONS, BACKENDS, BRUSH_NODE, BrushSection, DRIVERS, DeviceSection, FORCES, GAMUTS, RESERVED,
-    RigConfig,
+    ACTIONS, BACKENDS, BRUSH_NODE, BrushSection, DRIVERS, DeviceSection, FORCES, GAMUTS,
+    MOST_PAINT_DRAG, RESERVED, RigConfig,
 };
 use crate::user_error::UserError;
 
@@ -152,6 +152,10 @@ impl RigConfig {
         if !(device.max_force_n.is_finite() && device.max_force_n >= 0.0) {
             let help = "choose 0 or more newtons; the device's own limit holds too";
             return Err(Wrong::value(name, "max_force_n", device.max_force_n, help));
+        }
+        if !(0.0..=MOST_PAINT_DRAG).contains(&device.paint_drag) {
+            let help = "choose 0 to 10 times the paint's own drag; 1 is its true size";
+            return Err(Wrong::value(name, "paint_drag", device.paint_drag, help));
         }
         if let Some(scale) = device.scale
             && !(SCALES[0]..=SCALES[1]).contains(&scale)
@@ -355,6 +359,8 @@ mod tests {
         for (line, help) in [
             ("scale = 0", "0.05"),
             ("scale = nan", "0.05"),
+            ("paint_drag = 11", "true size"),
+            ("paint_drag = nan", "true size"),
             ("ferrule_m = [0, 0, 3]", "half a metre"),
             ("ferrule_m = [0, nan, 0]", "half a metre"),
             ("corners_m = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]", "one line"),

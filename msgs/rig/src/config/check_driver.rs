@@ -55,6 +55,11 @@ pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
             device.max_force_n != usual.max_force_n && device.is_hid(),
             "take it out: this device gives no force",
         ),
+        (
+            "paint_drag",
+            device.paint_drag != usual.paint_drag && device.is_hid(),
+            "take it out: this device gives no force",
+        ),
     ];
     for (key, is_ignored, help) in ignored {
         if is_ignored {
@@ -129,6 +134,7 @@ mod tests {
                 38,
             ),
             ("pen", "max_force_n = 3.0", "max_force_n = 2.0", 37),
+            ("pen", "max_force_n = 3.0", "paint_drag = 2.0", 37),
             ("spacemouse", "force = \"linear\"", "force = \"local\"", 38),
         ] {
             let text = DEFAULT.replace("driver = \"simulated\"", &format!("driver = \"{driver}\""));

@@ -75,6 +75,9 @@ pub struct DeviceSection {
     /// Largest force, N.
     #[serde(default = "default_force")]
     pub max_force_n: f64,
+    /// Drag of the paint on the hand by its true size (Baxter 2004, § 8.9.2), 0 to [`MOST_PAINT_DRAG`].
+    #[serde(default = "default_paint_drag", skip_serializing_if = "is_true_size")]
+    pub paint_drag: f64,
     /// One of [`FORCES`]: how the brush pushes back.
     #[serde(default = "default_law")]
     pub force: String,
@@ -107,6 +110,7 @@ impl DeviceSection {
             corners_m: None,
             ferrule_m: [0.0; 3],
             max_force_n: default_force(),
+            paint_drag: default_paint_drag(),
             force: default_law(),
             pressure_curve: straight(),
             switches: None,
@@ -181,6 +185,18 @@ fn no_turn() -> [f64; 4] {
 
 fn default_force() -> f64 {
     3.0
+}
+
+/// Greatest [`DeviceSection::paint_drag`].
+pub const MOST_PAINT_DRAG: f64 = 10.0;
+
+fn default_paint_drag() -> f64 {
+    1.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
+fn is_true_size(paint_drag: &f64) -> bool {
+    *paint_drag == default_paint_drag()
 }
 
 fn default_law() -> String {

@@ -4,10 +4,12 @@ use std::time::{Duration, Instant};
 
 use glam::{DQuat, DVec3};
 use maulstick_device::registration::{Registration, Similarity};
+use maulstick_haptics::Fluid;
 use maulstick_haptics::Switch;
 use maulstick_haptics::contact::{Contact, HandleState};
 use maulstick_num::geometry::{Rigid, canonical, rotation};
-use maulstick_types::haptics::{ContactModel, ForceLaw, GuideModel};
+use maulstick_types::Pose;
+use maulstick_types::haptics::{ContactModel, FluidForce, ForceLaw, GuideModel};
 
 use super::*;
 use crate::device::driver::{Abilities, Driver, Reading, Wrench};
@@ -331,6 +333,66 @@ fn a_turned_shifted_and_scaled_device_feels_the_desk_where_it_is() {
             (written - to_desk.turn_back(expected)).length() < 1e-12,
             "{written} in the device frame"
         );
+    }
+}
+
+#[test]
+fn a_force_of_paint_follows_the_hand_in_contact_alone() {
+    let row = [-0.3, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let paint = FluidForce {
+        device: 0,
+        device_epoch: 0,
+        pose: Pose::IDENTITY,
+        // Computed for another velocity than the hand's.
+        velocity: [0.4, 0.0, 0.0, 0.0, 0.0, 0.0],
+        wrench: [-0.12, 0.0, 0.0, 0.0, 0.0, 0.0],
+        jacobian: [row, [0.0; 6], [0.0; 6], [0.0; 6], [0.0; 6], [0.0; 6]],
+        time_to_live_ns: 1_000_000_000,
+        recovery_ns: 10_000_000,
+    };
+    for (height_m, expected) in [(0.021, DVec3::new(-0.03, 0.0, 0.4)), (0.026, DVec3::ZERO)] {
+        let still = Still {
+            handle: HandleState {
+                position: DVec3::new(0.0, 0.0, height_m),
+                orientation: DQuat::IDENTITY,
+                velocity: DVec3::X * 0.1,
+            },
+            written: Arc::default(),
+        };
+        let limits = Limits {
+            engage_s: 1e-3,
+            engage_n: f64::INFINITY,
+            longest_tick_s: 1e3,
+            ..Limits::default()
+        };
+        let mut servo = start(placed(still, Rigid::IDENTITY, 1.0), limits);
+        let dry = ContactModel::bare(
+            ForceLaw::Rigid {
+                stiffness_n_m: 100.0,
+            },
+            0.025,
+        );
+        let mut contact = Contact::new(&dry).expect("a model");
+        contact.time_to_live_s = f64::INFINITY;
+        servo.models.write(Delivery {
+            contact: Some(contact),
+            sender: None,
+            number: 1,
+        });
+        let pressed = |record: &TickRecord| (record.force.z - expected.z).abs() < 1e-9;
+        let dry = tick(&mut servo, |record| !record.tick.waiting && pressed(record));
+        assert_eq!(dry.expect("the wall").force.x, 0.0, "a dry wall");
+        servo.fluids.write(Delivery {
+            model: Some(Fluid::new(&paint, 1.0).expect("a force")),
+            sender: None,
+            number: 1,
+        });
+        let mut seen = 0;
+        let felt = tick(&mut servo, |record| {
+            seen += u32::from((record.force - expected).length() < 1e-9);
+            seen == 20
+        });
+        assert!(felt.is_some(), "{expected}");
     }
 }
 

@@ -1,0 +1,27 @@
+//! Force of a viscous flow on a probe in it (Baxter 2004, § 8.8), and the bench on which the dissertation shows it
+//! (§ 8.9.2). Pure, deterministic, SI units.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`stress`] | force and torque on a probe of whole cells, in two and three dimensions, of any staggered fields |
+//! | [`bartlett_hanning`] | the filter between a slow solver and a hand at 1 kHz |
+//! | [`solver`] | Navier-Stokes equations around a probe in two dimensions |
+//! | [`geometry`] | the probe's outline on the grid: a staircase, or shares of nodes and links |
+//! | [`hand`] | a sweep a thousand times a second, raw and filtered |
+//! | [`sweep`] | the sweep along an arc of fig. 8.6-8.8, and the noise of the force along a straight one |
+
+pub mod bartlett_hanning;
+mod five_point;
+pub mod geometry;
+pub mod grid;
+pub mod hand;
+pub mod polygon;
+pub mod solver;
+pub mod stress;
+pub mod sweep;
+
+pub use geometry::{Boundary, ProbeState, Vessel};
+pub use grid::Grid;
+pub use polygon::Shape;
+pub use solver::{Bench, Flow};
+pub use stress::{Fluid, Wrench};
