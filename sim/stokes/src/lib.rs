@@ -1,0 +1,10 @@
+//! Stokes Paint: viscous paint as a volume.
+#![allow(missing_docs)]
+pub mod domain;
+pub mod grid;
+pub mod multigrid;
+pub mod operator;
+pub mod stencil;
+mod transfer;
+pub mod unified;
+pub mod vector;
