@@ -10,7 +10,7 @@
 use crate::grid::{Ends, Grid, Side, others};
 
 /// Fill of a cell from which on it resists pressure.
-pub const LEAST_FILL: f32 = 0.5;
+pub const LEAST_FILL: f32 = 0.1;
 /// Smallest mass of a face.
 const LEAST_MASS: f32 = 0.05;
 /// Smallest distance of a velocity from a wall, in cells.
@@ -96,9 +96,9 @@ pub struct Domain {
 }
 
 impl Domain {
-    /// The window with cells filled to a fraction of what the solids leave open.
+    /// The window with cells filled to a fraction of what the solids leave open; below the least fill a cell is air.
     #[must_use]
-    pub fn new(grid: &Grid, fill: &[f32], solids: &Solids) -> Self {
+    pub fn new(grid: &Grid, fill: &[f32], solids: &Solids, least: f32) -> Self {
         let mut domain = Self {
             grid: *grid,
             wet: grid.field(),
@@ -115,7 +115,7 @@ impl Domain {
         grid.wrap(&mut fill);
         grid.wrap(&mut corners);
         let near = domain.find_faces(&corners);
-        domain.find_cells(&fill, &corners);
+        domain.find_cells(&fill, &corners, least);
         domain.find_free();
         domain.find_edges(&fill, &near);
         domain
@@ -139,6 +139,9 @@ impl Domain {
                     self.area[axis][place] = open(&four);
                 }
             }
+            grid.wrap(&mut near[axis]);
+            grid.wrap(&mut self.part[axis]);
+            grid.wrap(&mut self.area[axis]);
         }
         near
     }
@@ -151,11 +154,11 @@ impl Domain {
     }
 
     /// Cells that resist pressure.
-    fn find_cells(&mut self, fill: &[f32], corners: &[f32]) {
+    fn find_cells(&mut self, fill: &[f32], corners: &[f32], least: f32) {
         let grid = self.grid;
         let [x, y, z] = [0, 1, 2].map(|axis| grid.stride(axis));
         for place in grid.places() {
-            if fill[place] < LEAST_FILL {
+            if fill[place] < least {
                 continue;
             }
             let is_closed = (0..3).all(|axis| {
@@ -190,6 +193,10 @@ impl Domain {
                     self.area[axis][place] = 0.0;
                 }
             }
+            grid.wrap(&mut self.part[axis]);
+            for field in [&mut self.free, &mut self.area, &mut self.mass] {
+                grid.wrap(&mut field[axis]);
+            }
         }
     }
 
@@ -199,7 +206,7 @@ impl Domain {
         for edge in 0..3 {
             let [a, b] = others(edge);
             let [by_a, by_b] = [a, b].map(|axis| grid.stride(axis));
-            for place in grid.range() {
+            for place in grid.block([0; 3], grid.cells.map(|cells| cells as isize + 1)) {
                 // The velocities along a lie beside each other along b.
                 let pairs = [(a, by_b), (b, by_a)].map(|(axis, by)| [place, place - by].map(|at| (axis, at)));
                 let parts = pairs.map(|pair| pair.map(|(axis, at)| self.part[axis][at]));
@@ -224,6 +231,8 @@ impl Domain {
                 }
                 self.edge[edge][place] = share;
             }
+            grid.wrap(&mut self.edge[edge]);
+            self.slope[edge].iter_mut().for_each(|slope| grid.wrap(slope));
         }
     }
 }

@@ -115,7 +115,7 @@ impl Grid {
     }
 
     /// Copies what lies beyond the periodic sides from the opposite side.
-    pub fn wrap(&self, field: &mut [f32]) {
+    pub fn wrap<T: Copy>(&self, field: &mut [T]) {
         for axis in (0..3).filter(|axis| self.is_periodic(*axis)) {
             let cells = self.cells[axis];
             for (to, from) in [(0, cells), (cells + 1, 1), (cells + 2, 1 + 1 % cells)] {

@@ -154,7 +154,7 @@ impl Operator {
         }
         for edge in 0..3 {
             let [a, b] = others(edge).map(|axis| grid.stride(axis));
-            for place in grid.range() {
+            for place in grid.block([0; 3], grid.cells.map(|cells| cells as isize + 1)) {
                 if operator.edge[edge][place] > 0.0 {
                     // Only cells with paint have a viscosity.
                     let around = [0, a, b, a + b].map(|by| place - by);
@@ -163,6 +163,7 @@ impl Operator {
                     operator.edge[edge][place] *= beta * sum / wet.max(1.0);
                 }
             }
+            grid.wrap(&mut operator.edge[edge]);
         }
         operator
     }
@@ -208,6 +209,8 @@ impl Operator {
             let by = [a, b].map(|axis| grid.stride(axis));
             let (weight, slope) = (&self.edge[axis], &self.slope[axis]);
             shear(&mut self.shear[axis], weight, slope, velocity[a], velocity[b], by, span);
+            grid.wrap(&mut self.normal[axis]);
+            grid.wrap(&mut self.shear[axis]);
         }
     }
 
