@@ -61,6 +61,8 @@ pub struct Flow {
     pub scheme: Scheme,
     /// Iterations of a step.
     pub effort: Effort,
+    /// Norms of the residual in the last step, with that of the first guess.
+    pub norms: Vec<f64>,
 }
 
 impl Flow {
@@ -73,6 +75,7 @@ impl Flow {
             pressure: grid.field(),
             scheme: Scheme::default(),
             effort: Effort::default(),
+            norms: Vec::new(),
         }
     }
 
@@ -133,7 +136,7 @@ impl Flow {
         let to_pressure = (conditions.cell_m / (alpha * conditions.seconds)) as f32;
         rescale(&mut self.pressure, &domain.wet, 1.0 / to_pressure);
         let mut x = [u, v, w, &self.pressure].map(Vec::as_slice).concat();
-        equations.solve(&b, &mut x, self.effort.steps);
+        self.norms = equations.solve(&b, &mut x, self.effort.steps);
         equations.project(domain, fields(&b)[3], &mut x, self.effort.projections);
         let [u, v, w, p] = fields_mut(&mut x);
         for (into, from) in self.velocity.iter_mut().zip([u, v, w]) {
