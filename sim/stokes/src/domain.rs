@@ -61,6 +61,23 @@ impl Solids {
     }
 }
 
+impl Solids {
+    /// Open share of each cell.
+    #[must_use]
+    pub fn open(&self, grid: &Grid) -> Vec<f32> {
+        let mut corners = self.distance.clone();
+        grid.wrap(&mut corners);
+        let [x, y, z] = [0, 1, 2].map(|axis| grid.stride(axis));
+        let mut shares = grid.field();
+        for place in grid.places() {
+            let eight = [0, x, y, x + y, z, x + z, y + z, x + y + z];
+            shares[place] = open(&eight.map(|by| corners[place + by]));
+        }
+        grid.wrap(&mut shares);
+        shares
+    }
+}
+
 /// Part that a face has in the flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {

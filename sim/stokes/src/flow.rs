@@ -35,6 +35,9 @@ impl Default for Effort {
     }
 }
 
+/// Part of a cell that it may be fuller or emptier than full.
+const SLACK: f32 = 1e-3;
+
 /// What paint flows as and what pulls at it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
@@ -61,6 +64,8 @@ pub struct Flow {
     pub scheme: Scheme,
     /// Iterations of a step.
     pub effort: Effort,
+    /// Part of what a cell has too much or lacks that leaves or enters it in a step.
+    pub relief: f32,
     /// Norms of the residual in the last step, with that of the first guess.
     pub norms: Vec<f64>,
 }
@@ -75,6 +80,7 @@ impl Flow {
             pressure: grid.field(),
             scheme: Scheme::default(),
             effort: Effort::default(),
+            relief: 0.25,
             norms: Vec::new(),
         }
     }
@@ -105,7 +111,7 @@ impl Flow {
             self.grid.wrap(u);
         }
         match self.scheme {
-            Scheme::Unified => self.unified(&domain, solids, conditions, tau),
+            Scheme::Unified => self.unified(&domain, fill, solids, conditions, tau),
             Scheme::Split => {
                 let pull = pull.map(|pull| (pull * seconds) as f32);
                 let to_pressure = (cell_m / seconds) as f32;
@@ -119,7 +125,7 @@ impl Flow {
         domain
     }
 
-    fn unified(&mut self, domain: &Domain, solids: &Solids, conditions: &Conditions, tau: f64) {
+    fn unified(&mut self, domain: &Domain, fill: &[f32], solids: &Solids, conditions: &Conditions, tau: f64) {
         let paint = &conditions.paint;
         let [u, v, w] = &self.velocity;
         let viscosities = paint.viscosities(domain, [u, v, w], conditions.cell_m);
@@ -130,12 +136,13 @@ impl Flow {
             pulled.collect::<Vec<f32>>()
         });
         let [f, g, h] = &pulled;
-        let b = equations.right_hand_side(domain, [f, g, h], &solids.velocity);
+        let mut b = equations.right_hand_side(domain, [f, g, h], &solids.velocity);
         // The equations know the pressure by the velocity that it makes in a step.
         let alpha = f64::from(weights(tau)[0]);
         let to_pressure = (conditions.cell_m / (alpha * conditions.seconds)) as f32;
         rescale(&mut self.pressure, &domain.wet, 1.0 / to_pressure);
         let mut x = [u, v, w, &self.pressure].map(Vec::as_slice).concat();
+        self.relieve(domain, fill, conditions, &mut b);
         self.norms = equations.solve(&b, &mut x, self.effort.steps);
         equations.project(domain, fields(&b)[3], &mut x, self.effort.projections);
         let [u, v, w, p] = fields_mut(&mut x);
@@ -144,6 +151,22 @@ impl Flow {
         }
         self.pressure.copy_from_slice(p);
         rescale(&mut self.pressure, &domain.wet, to_pressure);
+    }
+
+    /// Lets a cell that is fuller than full, as rounding and moving solids leave it, give a part of that away in a step,
+    /// and one within the paint that is not full take as much in.
+    fn relieve(&self, domain: &Domain, fill: &[f32], conditions: &Conditions, b: &mut [f32]) {
+        let grid = self.grid;
+        let per_step = self.relief * (conditions.cell_m / conditions.seconds) as f32;
+        let [.., displaced] = fields_mut(b);
+        for place in grid.places().filter(|place| domain.wet[*place] > 0.0) {
+            let beside = (0..3).map(|axis| grid.stride(axis)).flat_map(|by| [place - by, place + by]);
+            let is_inside = || beside.into_iter().all(|cell| domain.wet[cell] > 0.0);
+            let excess = fill[place] - 1.0;
+            if excess > SLACK || excess < -SLACK && is_inside() {
+                displaced[place] += per_step * excess.min(1.0);
+            }
+        }
     }
 
     /// Largest divergence of the paint, by the largest velocity and a cell.

@@ -127,6 +127,34 @@ impl Grid {
         }
     }
 
+    /// Place of the cell that a place beyond a periodic side stands for.
+    #[must_use]
+    pub fn wrapped(&self, place: usize) -> usize {
+        let mut cell = self.cell(place);
+        for axis in (0..3).filter(|axis| self.is_periodic(*axis)) {
+            cell[axis] = cell[axis].rem_euclid(self.cells[axis] as isize);
+        }
+        self.at(cell)
+    }
+
+    /// Lower faces across an axis, each once: with the upper side unless it is the lower one.
+    pub fn faces(&self, axis: usize) -> impl Iterator<Item = usize> + use<> {
+        let mut to = self.cells.map(|cells| cells as isize);
+        to[axis] += isize::from(!self.is_periodic(axis));
+        self.block([0; 3], to)
+    }
+
+    /// The cell before a face of [`faces`](Self::faces).
+    #[must_use]
+    pub fn before(&self, axis: usize, face: usize) -> usize {
+        let before = face - self.stride(axis);
+        if self.is_periodic(axis) {
+            self.wrapped(before)
+        } else {
+            before
+        }
+    }
+
     /// Sets what lies beyond the periodic sides to 0, where a flat loop has left what means nothing.
     pub fn clear(&self, field: &mut [f32]) {
         for axis in (0..3).filter(|axis| self.is_periodic(*axis)) {

@@ -11,3 +11,4 @@ pub mod stencil;
 mod transfer;
 pub mod unified;
 pub mod vector;
+pub mod volume;

@@ -47,7 +47,12 @@ struct Down {
 pub struct Multigrid {
     levels: Vec<Level>,
     omegas: [f32; COARSEST_STEPS],
+    /// True if a constant is no residual: no value is known and there is no mass.
+    is_singular: bool,
 }
+
+/// Part of the right-hand side at which a residual is rounding.
+const ROUNDING: f64 = 1e-8;
 
 impl Down {
     fn new(grid: &Grid, along: [Along; 3]) -> Self {
@@ -190,6 +195,7 @@ impl Multigrid {
                 Along::Middles
             }
         });
+        let is_singular = is_singular(grid, &stencil);
         let mut levels = Vec::new();
         let (mut grid, mut stencil) = (*grid, stencil);
         loop {
@@ -211,6 +217,7 @@ impl Multigrid {
         Self {
             levels,
             omegas: coarsest_omegas(),
+            is_singular,
         }
     }
 
@@ -233,10 +240,14 @@ impl Multigrid {
         let grid = self.levels[0].grid;
         let [mut r, mut z, mut q] = [(); 3].map(|()| grid.field());
         self.stencil().residual(&grid, b, x, &mut r);
+        if self.is_singular {
+            self.level_out(&mut r);
+        }
         let mut norms = vec![norm(&r)];
+        let rounding = ROUNDING * norm(b);
         let mut p = grid.field();
         let mut before = 0.0;
-        for _ in 0..iterations {
+        while norms.len() <= iterations && norms[norms.len() - 1] > rounding {
             self.cycle(&r, &mut z);
             let now = dot(&r, &z);
             // Rounding has the last word: what is left is none.
@@ -259,6 +270,31 @@ impl Multigrid {
         grid.wrap(x);
         norms
     }
+
+    /// Takes the mean out of a residual that a constant cannot answer.
+    fn level_out(&self, r: &mut [f32]) {
+        let active = &self.stencil().active;
+        let range = self.levels[0].grid.places();
+        let (mut sum, mut count) = (0.0, 0.0);
+        for place in range.filter(|place| active[*place] > 0.0) {
+            sum += f64::from(r[place]);
+            count += 1.0;
+        }
+        let mean = (sum / f64::max(count, 1.0)) as f32;
+        for (r, active) in r.iter_mut().zip(active) {
+            *r -= mean * active;
+        }
+        self.levels[0].grid.clear(r);
+    }
+}
+
+/// True if every link is one between unknowns and there is no mass.
+fn is_singular(grid: &Grid, stencil: &Stencil) -> bool {
+    let mut ones = stencil.active.clone();
+    let mut rows = grid.field();
+    stencil.apply(grid, &mut ones, &mut rows);
+    let unknowns = grid.places().filter(|place| stencil.active[*place] > 0.0);
+    unknowns.into_iter().all(|place| rows[place].abs() <= 1e-6 * stencil.diagonal[place])
 }
 
 /// A V-cycle from x = 0 on the first level.

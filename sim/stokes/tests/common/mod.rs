@@ -1,5 +1,5 @@
 //! What tests of flows share.
-#![allow(dead_code, reason = "each test uses a part")]
+#![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 
 pub mod pools;
 
