@@ -5,7 +5,7 @@ use crate::grid::Grid;
 use crate::operator::{fields, fields_mut};
 use crate::rheology::Paint;
 use crate::split;
-use crate::unified::{Unified, weights};
+use crate::unified::{Room, Unified, weights};
 
 /// How velocity and pressure are found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -68,6 +68,7 @@ pub struct Flow {
     pub relief: f32,
     /// Norms of the residual in the last step, with that of the first guess.
     pub norms: Vec<f64>,
+    room: Room,
 }
 
 impl Flow {
@@ -82,6 +83,7 @@ impl Flow {
             effort: Effort::default(),
             relief: 0.25,
             norms: Vec::new(),
+            room: Room::default(),
         }
     }
 
@@ -143,7 +145,7 @@ impl Flow {
         rescale(&mut self.pressure, &domain.wet, 1.0 / to_pressure);
         let mut x = [u, v, w, &self.pressure].map(Vec::as_slice).concat();
         self.relieve(domain, fill, conditions, &mut b);
-        self.norms = equations.solve(&b, &mut x, self.effort.steps);
+        self.norms = equations.solve(&b, &mut x, self.effort.steps, &mut self.room);
         equations.project(domain, fields(&b)[3], &mut x, self.effort.projections);
         let [u, v, w, p] = fields_mut(&mut x);
         for (into, from) in self.velocity.iter_mut().zip([u, v, w]) {

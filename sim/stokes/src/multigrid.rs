@@ -271,6 +271,31 @@ impl Multigrid {
         norms
     }
 
+    /// Solves A·x = b in f64 down to a part of the norm of b: rounds of conjugate gradients in f32 on what is left, at
+    /// most so many. Returns the part that is left.
+    pub fn refine(&mut self, b: &[f64], x: &mut [f64], part: f64, rounds: usize) -> f64 {
+        let grid = self.levels[0].grid;
+        let squares = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>().sqrt();
+        let whole = squares(b).max(f64::MIN_POSITIVE);
+        let mut left = 1.0;
+        let mut r = vec![0.0; b.len()];
+        for round in 0..=rounds {
+            self.stencil().residual_f64(&grid, b, x, &mut r);
+            left = squares(&r) / whole;
+            if left <= part || round == rounds {
+                break;
+            }
+            let scale = left * whole;
+            let small: Vec<f32> = r.iter().map(|r| (r / scale) as f32).collect();
+            let mut z = grid.field();
+            self.solve(&small, &mut z, 5);
+            for (x, z) in x.iter_mut().zip(&z) {
+                *x += scale * f64::from(*z);
+            }
+        }
+        left
+    }
+
     /// Takes the mean out of a residual that a constant cannot answer.
     fn level_out(&self, r: &mut [f32]) {
         let active = &self.stencil().active;

@@ -201,6 +201,20 @@ impl Stencil {
         grid.clear(into);
     }
 
+    /// into = b − A·x in f64; x is wrapped.
+    pub(crate) fn residual_f64(&self, grid: &Grid, b: &[f64], x: &mut [f64], into: &mut [f64]) {
+        grid.wrap(x);
+        let strides = [0, 1, 2].map(|axis| grid.stride(axis));
+        for place in grid.places().filter(|place| self.active[*place] > 0.0) {
+            let mut sum = b[place] - f64::from(self.diagonal[place]) * x[place];
+            for (links, by) in self.links.iter().zip(strides) {
+                sum += f64::from(links[place]) * x[place - by];
+                sum += f64::from(links[place + by]) * x[place + by];
+            }
+            into[place] = sum;
+        }
+    }
+
     /// A damped Jacobi step from x, by way of a second field.
     pub(crate) fn relax(
         &self,

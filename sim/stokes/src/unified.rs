@@ -5,6 +5,8 @@
 //! the velocity and, for the pressure, by Cahouet and Chabard (1988): α·L⁻¹ + 2βμ. Walls drag at thin paint as mass would, so
 //! that part is added to α: without it a film under a wide brush takes ten times as many steps.
 
+use maulstick_num::fork_join;
+
 use crate::domain::{Domain, Part};
 use crate::multigrid::Multigrid;
 use crate::operator::{Operator, Unknowns, fields, fields_mut, laplacian};
@@ -14,14 +16,34 @@ use crate::vector::{add_scaled, dot, norm};
 /// Drag of walls on paint of a thickness of one, by its viscosity: between 3 for a film and 12 for a gap.
 const GAP_DRAG: f32 = 6.0;
 /// Directions that a new one is made orthogonal to.
-const MEMORY: usize = 10;
+const MEMORY: usize = 8;
+
+/// Room for the iterations, kept from one step to the next.
+#[derive(Clone, Debug, Default)]
+pub struct Room {
+    residual: Unknowns,
+    fields: [Vec<f32>; 2],
+    /// Directions, what the operator makes of them, and the square of that.
+    directions: Vec<(Unknowns, Unknowns, f64)>,
+}
+
+impl Room {
+    fn fit(&mut self, unknowns: usize) {
+        if self.residual.len() != unknowns {
+            self.residual = vec![0.0; unknowns];
+            self.fields = [(); 2].map(|()| vec![0.0; unknowns / 4]);
+            let empty = || (vec![0.0; unknowns], vec![0.0; unknowns], 0.0);
+            self.directions = (0..MEMORY).map(|_| empty()).collect();
+        }
+    }
+}
 
 /// The equations of one step on one window.
 #[derive(Clone, Debug)]
 pub struct Unified {
     operator: Operator,
-    components: [Multigrid; 3],
-    pressure: Multigrid,
+    /// Of the three components of the velocity and of the pressure.
+    hierarchies: Vec<Multigrid>,
     /// What viscosity answers to volume, by cell.
     bulk: Vec<f32>,
     alpha: f32,
@@ -46,12 +68,15 @@ impl Unified {
         let stencils = [0, 1, 2].map(|axis| operator.component(domain, axis));
         let bulk = bulk(domain, &stencils);
         let thickness = thickness(domain);
-        let mut axis = 0..;
-        let components = stencils.map(|stencil| Multigrid::new(grid, stencil, axis.next()));
+        let [u, v, w] = stencils;
+        let mut hierarchies = [(u, Some(0)), (v, Some(1)), (w, Some(2)), (laplacian(domain), None)]
+            .map(|(stencil, faces)| (Some(stencil), faces, None));
+        fork_join::each(&mut hierarchies, |(stencil, faces, hierarchy)| {
+            *hierarchy = stencil.take().map(|stencil| Multigrid::new(grid, stencil, *faces));
+        });
         Self {
-            components,
+            hierarchies: hierarchies.into_iter().filter_map(|(.., made)| made).collect(),
             bulk,
-            pressure: Multigrid::new(grid, laplacian(domain), None),
             operator,
             alpha,
             drag: alpha + beta * GAP_DRAG / (thickness * thickness),
@@ -59,57 +84,59 @@ impl Unified {
     }
 
     /// z ≈ A⁻¹·r.
-    fn precondition(&mut self, r: &[f32], z: &mut [f32], room: &mut [Vec<f32>; 2]) {
-        let [first, second] = room;
-        let from = fields(r);
+    fn precondition(&mut self, r: &[f32], z: &mut [f32], [first, second]: &mut [Vec<f32>; 2]) {
+        let [from @ .., r_pressure] = fields(r);
         let [u, v, w, p] = fields_mut(z);
         let mut velocity = [u, v, w];
-        for (axis, into) in velocity.iter_mut().enumerate() {
-            self.components[axis].cycle(from[axis], into);
-        }
+        let mut shares: Vec<_> =
+            self.hierarchies.iter_mut().zip(from).zip(velocity.iter_mut()).collect();
+        fork_join::each(&mut shares, |((hierarchy, from), into)| hierarchy.cycle(from, into));
         self.operator.outflow(velocity, first);
-        for (first, r) in first.iter_mut().zip(from[3]) {
+        for (first, r) in first.iter_mut().zip(r_pressure) {
             *first = r - *first;
         }
-        self.pressure.cycle(first, second);
-        for (i, p) in p.iter_mut().enumerate() {
-            *p = self.drag * second[i] + self.bulk[i] * first[i];
+        self.hierarchies[3].cycle(first, second);
+        for (p, (bulk, parts)) in p.iter_mut().zip(self.bulk.iter().zip(first.iter().zip(&*second))) {
+            *p = self.drag * parts.1 + bulk * parts.0;
         }
     }
 
     /// Solves A·x = b by so many steps from x; returns the norm of each residual, with that of the first guess.
-    pub fn solve(&mut self, b: &[f32], x: &mut Unknowns, steps: usize) -> Vec<f64> {
-        let mut r = vec![0.0; x.len()];
-        let mut room = [(); 2].map(|()| vec![0.0; x.len() / 4]);
-        self.operator.apply(x, &mut r);
+    pub fn solve(&mut self, b: &[f32], x: &mut Unknowns, steps: usize, room: &mut Room) -> Vec<f64> {
+        room.fit(x.len());
+        let Room {
+            residual: r,
+            fields,
+            directions,
+        } = room;
+        self.operator.apply(x, r);
         for (r, b) in r.iter_mut().zip(b) {
             *r = b - *r;
         }
-        let mut norms = vec![norm(&r)];
-        let mut directions: Vec<(Unknowns, Unknowns, f64)> = Vec::new();
+        let mut norms = vec![norm(r)];
         for step in 0..steps {
-            let mut z = vec![0.0; x.len()];
-            let mut q = vec![0.0; x.len()];
-            self.precondition(&r, &mut z, &mut room);
+            let (place, kept) = (step % MEMORY, step.min(MEMORY));
+            let (mut z, mut q, _) = std::mem::take(&mut directions[place]);
+            self.precondition(r, &mut z, fields);
             self.operator.apply(&mut z, &mut q);
-            for (direction, image, squared) in &directions {
+            for (_, (direction, image, squared)) in
+                directions.iter().enumerate().take(kept).filter(|(other, _)| *other != place)
+            {
                 let share = (dot(&q, image) / squared) as f32;
                 add_scaled(&mut z, -share, direction);
                 add_scaled(&mut q, -share, image);
             }
             let squared = dot(&q, &q);
-            if !squared.is_finite() || squared <= f64::from(f32::MIN_POSITIVE) {
-                break;
+            let is_none = !squared.is_finite() || squared <= f64::from(f32::MIN_POSITIVE);
+            if !is_none {
+                let share = (dot(r, &q) / squared) as f32;
+                add_scaled(x, share, &z);
+                add_scaled(r, -share, &q);
+                norms.push(norm(r));
             }
-            let share = (dot(&r, &q) / squared) as f32;
-            add_scaled(x, share, &z);
-            add_scaled(&mut r, -share, &q);
-            norms.push(norm(&r));
-            let next = (z, q, squared);
-            if directions.len() < MEMORY {
-                directions.push(next);
-            } else {
-                directions[step % MEMORY] = next;
+            directions[place] = (z, q, squared);
+            if is_none {
+                break;
             }
         }
         norms
@@ -120,17 +147,12 @@ impl Unified {
         let grid = domain.grid;
         let [mut excess, mut phi] = [(); 2].map(|()| grid.field());
         let [u, v, w, p] = fields_mut(x);
-        let velocity = [u, v, w];
-        let velocity = {
-            let [u, v, w] = velocity;
-            self.operator.outflow([u, v, w], &mut excess);
-            [u, v, w]
-        };
+        self.operator.outflow([&mut *u, &mut *v, &mut *w], &mut excess);
         for (excess, b) in excess.iter_mut().zip(b) {
             *excess = b - *excess;
         }
-        self.pressure.solve(&excess, &mut phi, iterations);
-        for (axis, u) in velocity.into_iter().enumerate() {
+        self.hierarchies[3].solve(&excess, &mut phi, iterations);
+        for (axis, u) in [u, v, w].into_iter().enumerate() {
             let by = grid.stride(axis);
             let (area, mass) = (&domain.area[axis], &domain.mass[axis]);
             for place in by..grid.len() {
