@@ -1,7 +1,7 @@
 //! Time of the solver on this thread's processor, one row a line: `cargo run --release -p maulstick-stokes --example speed`.
 
 #[path = "../tests/common/pools.rs"]
-#[allow(dead_code, unreachable_pub, reason = "a pool is what tests share")]
+#[allow(unreachable_pub, reason = "a pool is what tests share")]
 mod pools;
 
 use std::fs;
@@ -17,7 +17,10 @@ use pools::{Pool, pool};
 /// Seconds that this thread has run.
 fn cpu_s() -> f64 {
     let text = fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let first = text.split(' ').next().and_then(|word| word.parse::<f64>().ok());
+    let first = text
+        .split(' ')
+        .next()
+        .and_then(|word| word.parse::<f64>().ok());
     first.unwrap_or(f64::NAN) * 1e-9
 }
 
@@ -46,19 +49,27 @@ fn main() {
         pull: [0.0, 0.0, -9.81],
     };
     let mut x = 6.0;
-    let mut left = 0.0;
+    let (mut left, mut wet) = (0.0, 0.0);
     let step = median(40, || {
         let rod = Rod {
             ends: [[x, 16.0, 4.0], [x, 16.0, 16.0]],
             radius: 3.0,
             velocity: [[0.012, 0.0, 0.0]; 2],
         };
-        stokes.step(&[rod], &conditions);
+        let domain = stokes.step(&[rod], &conditions);
         x += 0.48;
         let norms = &stokes.flow.norms;
         left = norms[norms.len() - 1] / norms[0];
+        wet = domain.wet.iter().sum::<f32>();
     });
-    println!("hz.32x32x16: {:.1} ({:.2} ms; residual {left:.1e})", 1.0 / step, 1e3 * step);
+    println!(
+        "hz.32x32x16: {:.1} ({:.2} ms; residual {left:.1e}, {wet} cells)",
+        1.0 / step,
+        1e3 * step
+    );
+    if std::env::args().any(|word| word == "step") {
+        return;
+    }
     for kind in [Pool::Box, Pool::Rough] {
         for cells in [32, 64, 128] {
             let (grid, stencil, b) = pool(cells, kind);
@@ -75,6 +86,10 @@ fn main() {
         let time = median(5, || {
             left = multigrid.refine(&b, &mut vec![0.0; grid.len()], 1e-8, 20);
         });
-        println!("poisson64.time ({kind:?}): {:.1} ms to {left:.1e}, setup {:.1} ms", 1e3 * time, 1e3 * setup);
+        println!(
+            "poisson64.time ({kind:?}): {:.1} ms to {left:.1e}, setup {:.1} ms",
+            1e3 * time,
+            1e3 * setup
+        );
     }
 }

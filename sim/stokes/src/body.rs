@@ -28,7 +28,11 @@ impl Rod {
             along += way * (point[axis] - from[axis]);
             squared += way * way;
         }
-        let share = if squared > 0.0 { (along / squared).clamp(0.0, 1.0) } else { 0.0 };
+        let share = if squared > 0.0 {
+            (along / squared).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
         let mut away = 0.0;
         for axis in 0..3 {
             let d = point[axis] - from[axis] - share * (to[axis] - from[axis]);

@@ -15,40 +15,26 @@ pub const LEAST_FILL: f32 = 0.1;
 const LEAST_MASS: f32 = 0.05;
 /// Smallest distance of a velocity from a wall, in cells.
 const LEAST_DISTANCE: f32 = 0.1;
+/// Distance where no solid is near, cells.
+const FAR: f32 = 64.0;
 /// Distance at which a face belongs to a solid.
 const TOUCHES: f32 = 1e-4;
 
 /// Solids in a window.
 #[derive(Clone, Debug)]
 pub struct Solids {
-    /// Distance of each lower corner from the nearest solid, cells; negative inside.
+    /// Distance of each lower corner from the nearest solid, cells; negative inside. The grid's sides do not count.
     pub distance: Vec<f32>,
     /// Velocity of the solid at each face, by axis.
     pub velocity: [Vec<f32>; 3],
 }
 
 impl Solids {
-    /// The walls of a grid alone, at rest.
+    /// None but the grid's own sides, at rest.
     #[must_use]
     pub fn walls(grid: &Grid) -> Self {
-        let mut distance = vec![f32::MAX; grid.len()];
-        for (place, distance) in distance.iter_mut().enumerate() {
-            for (axis, at) in grid.cell(place).into_iter().enumerate() {
-                let Ends::Sides([low, high]) = grid.ends[axis] else {
-                    continue;
-                };
-                let far = (grid.cells[axis] + 2) as f32;
-                let from = |side, distance: isize| match side {
-                    Side::NoSlip => distance as f32,
-                    Side::Slip => far,
-                };
-                let near = from(low, at).min(from(high, grid.cells[axis] as isize - at));
-                *distance = distance.min(near);
-            }
-            *distance = distance.min(64.0);
-        }
         Self {
-            distance,
+            distance: vec![FAR; grid.len()],
             velocity: std::array::from_fn(|_| grid.field()),
         }
     }
@@ -149,13 +135,13 @@ impl Domain {
                 let four = [0, b, c, b + c].map(|by| corners[place + by]);
                 let distance = 0.25 * ((four[0] + four[1]) + (four[2] + four[3]));
                 near[axis][place] = distance;
-                let is_side = self.is_side(axis, place);
-                if distance <= TOUCHES || is_side {
+                if distance <= TOUCHES {
                     self.part[axis][place] = Part::Solid;
                 } else {
                     self.area[axis][place] = open(&four);
                 }
             }
+            self.find_sides(axis);
             grid.wrap(&mut near[axis]);
             grid.wrap(&mut self.part[axis]);
             grid.wrap(&mut self.area[axis]);
@@ -163,11 +149,32 @@ impl Domain {
         near
     }
 
-    /// True for the faces of the outermost planes of an axis with sides.
-    fn is_side(&self, axis: usize, place: usize) -> bool {
-        let (stride, layers) = (self.grid.stride(axis), self.grid.cells[axis] + 3);
-        let layer = place / stride % layers;
-        !self.grid.is_periodic(axis) && (layer == 1 || layer == layers - 2)
+    /// Faces across an axis in the sides of the grid and beyond them.
+    fn find_sides(&mut self, axis: usize) {
+        let grid = self.grid;
+        for along in 0..3 {
+            let Ends::Sides([low, high]) = grid.ends[along] else {
+                continue;
+            };
+            let last = grid.cells[along] as isize + isize::from(along == axis);
+            let close = |layer: isize, side: Side, domain: &mut Self| {
+                let is_in_side = along == axis && (layer == 0 || layer == last - 1);
+                if is_in_side || side == Side::NoSlip {
+                    for place in grid.layer_at(along, layer) {
+                        domain.part[axis][place] = Part::Solid;
+                        domain.area[axis][place] = 0.0;
+                    }
+                }
+            };
+            close(-1, low, self);
+            for layer in last..=grid.cells[along] as isize + 1 {
+                close(layer, high, self);
+            }
+            if along == axis {
+                close(0, low, self);
+                close(last - 1, high, self);
+            }
+        }
     }
 
     /// Cells that resist pressure.
@@ -179,7 +186,9 @@ impl Domain {
                 continue;
             }
             let is_closed = (0..3).all(|axis| {
-                [0, grid.stride(axis)].iter().all(|by| self.part[axis][place + by] == Part::Solid)
+                [0, grid.stride(axis)]
+                    .iter()
+                    .all(|by| self.part[axis][place + by] == Part::Solid)
             });
             if !is_closed {
                 let eight = [0, x, y, x + y, z, x + z, y + z, x + y + z];
@@ -225,7 +234,8 @@ impl Domain {
             let [by_a, by_b] = [a, b].map(|axis| grid.stride(axis));
             for place in grid.block([0; 3], grid.cells.map(|cells| cells as isize + 1)) {
                 // The velocities along a lie beside each other along b.
-                let pairs = [(a, by_b), (b, by_a)].map(|(axis, by)| [place, place - by].map(|at| (axis, at)));
+                let pairs = [(a, by_b), (b, by_a)]
+                    .map(|(axis, by)| [place, place - by].map(|at| (axis, at)));
                 let parts = pairs.map(|pair| pair.map(|(axis, at)| self.part[axis][at]));
                 let has = |part| parts.iter().flatten().any(|each| *each == part);
                 if has(Part::Air) || !has(Part::Paint) {
@@ -241,7 +251,12 @@ impl Domain {
                     if one != other {
                         let [d, e] = pair.map(|(axis, at)| near[axis][at]);
                         let (paint, solid) = if one == Part::Paint { (d, e) } else { (e, d) };
-                        let distance = (paint / (paint - solid.min(0.0))).max(LEAST_DISTANCE);
+                        let distance = if solid > TOUCHES {
+                            // The grid's own side lies in the middle.
+                            0.5
+                        } else {
+                            (paint / (paint - solid.min(0.0))).max(LEAST_DISTANCE)
+                        };
                         self.slope[edge][which][place] = 1.0 / distance;
                         share *= distance;
                     }
@@ -249,7 +264,9 @@ impl Domain {
                 self.edge[edge][place] = share;
             }
             grid.wrap(&mut self.edge[edge]);
-            self.slope[edge].iter_mut().for_each(|slope| grid.wrap(slope));
+            self.slope[edge]
+                .iter_mut()
+                .for_each(|slope| grid.wrap(slope));
         }
     }
 }
@@ -258,5 +275,9 @@ impl Domain {
 fn open(corners: &[f32]) -> f32 {
     let sum = |of: fn(f32) -> f32| corners.iter().map(|distance| of(*distance)).sum::<f32>();
     let all = sum(f32::abs);
-    if all > 0.0 { sum(|d| d.max(0.0)) / all } else { 0.0 }
+    if all > 0.0 {
+        sum(|d| d.max(0.0)) / all
+    } else {
+        0.0
+    }
 }

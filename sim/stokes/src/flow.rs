@@ -29,7 +29,7 @@ pub struct Effort {
 impl Default for Effort {
     fn default() -> Self {
         Self {
-            steps: 10,
+            steps: 8,
             projections: 5,
         }
     }
@@ -87,13 +87,38 @@ impl Flow {
         }
     }
 
-    /// One step with cells filled to a fraction, between solids; returns what the equations saw of the window.
+    /// One step with cells filled to a fraction, between solids; returns what the equations saw of the window: its layers
+    /// up to the second above the highest paint.
     pub fn step(&mut self, fill: &[f32], solids: &Solids, conditions: &Conditions) -> Domain {
         let least = match self.scheme {
             Scheme::Unified => LEAST_FILL,
             // Baxter 2004, § 5.3: more than half.
             Scheme::Split => 0.5,
         };
+        let whole = self.grid;
+        self.grid = whole.below(highest(&whole, fill, least) + 2);
+        self.resize();
+        let domain = self.step_within(fill, solids, conditions, least);
+        self.grid = whole;
+        self.resize();
+        domain
+    }
+
+    /// Fits all fields to the grid.
+    fn resize(&mut self) {
+        let len = self.grid.len();
+        for field in self.velocity.iter_mut().chain([&mut self.pressure]) {
+            field.resize(len, 0.0);
+        }
+    }
+
+    fn step_within(
+        &mut self,
+        fill: &[f32],
+        solids: &Solids,
+        conditions: &Conditions,
+        least: f32,
+    ) -> Domain {
         let domain = Domain::new(&self.grid, fill, solids, least);
         let Conditions {
             cell_m,
@@ -119,7 +144,13 @@ impl Flow {
                 let to_pressure = (cell_m / seconds) as f32;
                 let pressure = &mut self.pressure;
                 rescale(pressure, &domain.wet, 1.0 / to_pressure);
-                split::step(&domain, (tau, pull), &mut self.velocity, &solids.velocity, pressure);
+                split::step(
+                    &domain,
+                    (tau, pull),
+                    &mut self.velocity,
+                    &solids.velocity,
+                    pressure,
+                );
                 rescale(pressure, &domain.wet, to_pressure);
             }
         }
@@ -127,7 +158,14 @@ impl Flow {
         domain
     }
 
-    fn unified(&mut self, domain: &Domain, fill: &[f32], solids: &Solids, conditions: &Conditions, tau: f64) {
+    fn unified(
+        &mut self,
+        domain: &Domain,
+        fill: &[f32],
+        solids: &Solids,
+        conditions: &Conditions,
+        tau: f64,
+    ) {
         let paint = &conditions.paint;
         let [u, v, w] = &self.velocity;
         let viscosities = paint.viscosities(domain, [u, v, w], conditions.cell_m);
@@ -162,7 +200,9 @@ impl Flow {
         let per_step = self.relief * (conditions.cell_m / conditions.seconds) as f32;
         let [.., displaced] = fields_mut(b);
         for place in grid.places().filter(|place| domain.wet[*place] > 0.0) {
-            let beside = (0..3).map(|axis| grid.stride(axis)).flat_map(|by| [place - by, place + by]);
+            let beside = (0..3)
+                .map(|axis| grid.stride(axis))
+                .flat_map(|by| [place - by, place + by]);
             let is_inside = || beside.into_iter().all(|cell| domain.wet[cell] > 0.0);
             let excess = fill[place] - 1.0;
             if excess > SLACK || excess < -SLACK && is_inside() {
@@ -183,10 +223,10 @@ impl Flow {
             moves + f64::from((1.0 - area) * solids.velocity[axis][place])
         };
         let leaves = |place: usize| {
-            let axes = (0..3).map(|a| flux(a, place + self.grid.stride(a)) - flux(a, place));
+            let axes = (0..3).map(|a| flux(a, place + domain.grid.stride(a)) - flux(a, place));
             axes.sum::<f64>().abs()
         };
-        let wet = (self.grid.places()).filter(|place| domain.wet[*place] > 0.0);
+        let wet = (domain.grid.places()).filter(|place| domain.wet[*place] > 0.0);
         let most = wet.map(leaves).fold(0.0, f64::max);
         most / self.fastest().max(f64::MIN_POSITIVE)
     }
@@ -204,10 +244,24 @@ impl Flow {
         let axis = |axis: usize| {
             let pairs = self.velocity[axis].iter().zip(&domain.mass[axis]);
             let free = pairs.zip(&domain.free[axis]);
-            free.map(|((u, mass), free)| f64::from(free * mass * u * u)).sum::<f64>()
+            free.map(|((u, mass), free)| f64::from(free * mass * u * u))
+                .sum::<f64>()
         };
         0.5 * (0..3).map(axis).sum::<f64>()
     }
+}
+
+/// Number of layers up to the highest cell that is filled so far.
+fn highest(grid: &Grid, fill: &[f32], least: f32) -> usize {
+    let [width, height, depth] = grid.cells.map(|cells| cells as isize);
+    let has_paint = |z: &isize| {
+        let layer = grid.block([0, 0, *z], [width, height, z + 1]);
+        layer.into_iter().any(|place| fill[place] >= least)
+    };
+    (0..depth)
+        .rev()
+        .find(has_paint)
+        .map_or(0, |z| z as usize + 1)
 }
 
 /// Multiplies a field where it is wet; elsewhere it is 0.

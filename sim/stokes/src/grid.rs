@@ -78,6 +78,21 @@ impl Grid {
         (x + 1) as usize + (y + 1) as usize * self.stride(1) + (z + 1) as usize * self.stride(2)
     }
 
+    /// The lowest layers, an even number of them, with fields that are the beginning of this grid's. Where layers are left
+    /// out, nothing goes through the upper side.
+    #[must_use]
+    pub fn below(&self, layers: usize) -> Self {
+        let layers = layers.next_multiple_of(2);
+        let mut grid = *self;
+        if let Ends::Sides([low, _]) = self.ends[2]
+            && layers < self.cells[2]
+        {
+            grid.cells[2] = layers;
+            grid.ends[2] = Ends::Sides([low, Side::Slip]);
+        }
+        grid
+    }
+
     /// Places of all cells, row after row.
     pub fn places(&self) -> impl Iterator<Item = usize> + use<> {
         self.block([0; 3], self.cells.map(|cells| cells as isize))
@@ -120,8 +135,7 @@ impl Grid {
             let cells = self.cells[axis];
             for (to, from) in [(0, cells), (cells + 1, 1), (cells + 2, 1 + 1 % cells)] {
                 self.layer(axis, |start| {
-                    field[start + to * self.stride(axis)] =
-                        field[start + from * self.stride(axis)];
+                    field[start + to * self.stride(axis)] = field[start + from * self.stride(axis)];
                 });
             }
         }
@@ -163,6 +177,14 @@ impl Grid {
                 self.layer(axis, |start| field[start + to * self.stride(axis)] = 0.0);
             }
         }
+    }
+
+    /// Places of a layer across an axis, with those beyond the sides.
+    pub fn layer_at(&self, axis: usize, layer: isize) -> impl Iterator<Item = usize> + use<> {
+        let mut from = [-1; 3];
+        let mut to = self.cells.map(|cells| cells as isize + 2);
+        (from[axis], to[axis]) = (layer, layer + 1);
+        self.block(from, to)
     }
 
     /// Calls for each place of the lowest layer across an axis.

@@ -3,17 +3,17 @@
 //!
 //! Coarse operators are those of coarse cells: links in series and side by side, and half of every link to a known place
 //! that falls within a coarse cell. Values are interpolated by lines between the places that there are, so that a wall
-//! without a value (Neumann) does not pull at them. A level is smoothed by a Chebyshev polynomial of degree two before and
-//! after; polynomials of one matrix commute, so the cycle is symmetric. All numbers of steps are fixed.
+//! without a value (Neumann) does not pull at them. A level is smoothed by a Chebyshev polynomial before and after; polynomials of one matrix commute, so the cycle is symmetric. All numbers of steps are fixed.
 
 use crate::grid::Grid;
 use crate::stencil::Stencil;
 use crate::transfer::{Along, can_halve, gather, halved, spread};
 use crate::vector::{add_scaled, dot, norm, scale_and_add};
 
-/// Steps of smoothing: inverses of the roots of the Chebyshev polynomial on [1/3, 2], where the spectrum of D⁻¹A lies that
-/// no coarser grid sees.
-const SMOOTHING: [f32; 2] = [0.569_5, 1.732];
+/// Steps of smoothing: inverses of the roots of a Chebyshev polynomial on [1/3, 2], where the spectrum of D⁻¹A lies that
+/// no coarser grid sees; of degree one for a component of the velocity, which is only a part of its operator, of two for the
+/// pressure.
+const SMOOTHING: [&[f32]; 2] = [&[0.857], &[0.569_5, 1.732]];
 /// Steps on the coarsest grid: Chebyshev on [1/50, 2].
 const COARSEST_STEPS: usize = 16;
 /// Cells of an axis of the coarsest grid at most, if it can be halved so far.
@@ -49,6 +49,7 @@ pub struct Multigrid {
     omegas: [f32; COARSEST_STEPS],
     /// True if a constant is no residual: no value is known and there is no mass.
     is_singular: bool,
+    smoothing: &'static [f32],
 }
 
 /// Part of the right-hand side at which a residual is rounding.
@@ -125,7 +126,8 @@ impl Down {
             (&fine.known, &mut into.known),
         ] {
             self.gather(grid, children, &mut from.clone(), into);
-            into.iter_mut().for_each(|value| *value = f32::from(*value > 0.0));
+            into.iter_mut()
+                .for_each(|value| *value = f32::from(*value > 0.0));
         }
         into.finish(&coarse);
         let mut scale = std::mem::take(&mut self.scale);
@@ -151,7 +153,10 @@ impl Down {
                 continue;
             }
             let stride = grid.stride(axis);
-            for place in grid.places().filter(|place| grid.cell(*place)[axis] % 2 == 1) {
+            for place in grid
+                .places()
+                .filter(|place| grid.cell(*place)[axis] % 2 == 1)
+            {
                 let [low, high] = [place - stride, place];
                 let half = 0.5 * fine.links[axis][place];
                 match (fine.active[low] > 0.0, fine.active[high] > 0.0) {
@@ -218,6 +223,7 @@ impl Multigrid {
             levels,
             omegas: coarsest_omegas(),
             is_singular,
+            smoothing: SMOOTHING[usize::from(faces.is_none())],
         }
     }
 
@@ -230,7 +236,7 @@ impl Multigrid {
     /// x ≈ A⁻¹·b by one symmetric V-cycle; b is 0 where there are no unknowns.
     pub fn cycle(&mut self, b: &[f32], x: &mut [f32]) {
         self.levels[0].b.copy_from_slice(b);
-        descend(&mut self.levels, &self.omegas);
+        descend(&mut self.levels, self.smoothing, &self.omegas);
         x.copy_from_slice(&self.levels[0].x);
     }
 
@@ -319,11 +325,13 @@ fn is_singular(grid: &Grid, stencil: &Stencil) -> bool {
     let mut rows = grid.field();
     stencil.apply(grid, &mut ones, &mut rows);
     let unknowns = grid.places().filter(|place| stencil.active[*place] > 0.0);
-    unknowns.into_iter().all(|place| rows[place].abs() <= 1e-6 * stencil.diagonal[place])
+    unknowns
+        .into_iter()
+        .all(|place| rows[place].abs() <= 1e-6 * stencil.diagonal[place])
 }
 
 /// A V-cycle from x = 0 on the first level.
-fn descend(levels: &mut [Level], omegas: &[f32]) {
+fn descend(levels: &mut [Level], smoothing: &[f32], omegas: &[f32]) {
     let Some((level, coarser)) = levels.split_first_mut() else {
         return;
     };
@@ -336,8 +344,10 @@ fn descend(levels: &mut [Level], omegas: &[f32]) {
         }
         return;
     };
-    stencil.begin(b, x, SMOOTHING[0]);
-    stencil.relax(&grid, b, x, spare, SMOOTHING[1]);
+    stencil.begin(b, x, smoothing[0]);
+    for omega in &smoothing[1..] {
+        stencil.relax(&grid, b, x, spare, *omega);
+    }
     stencil.residual(&grid, b, x, spare);
     for (spare, scale) in spare.iter_mut().zip(&down.scale) {
         *spare *= scale;
@@ -345,13 +355,14 @@ fn descend(levels: &mut [Level], omegas: &[f32]) {
     let weights = down.along.map(Along::restriction);
     down.gather(&grid, weights, spare, &mut coarser[0].b);
     mask(&mut coarser[0]);
-    descend(coarser, omegas);
+    descend(coarser, smoothing, omegas);
     down.spread(&grid, &mut coarser[0].x, spare);
     for ((x, spare), scale) in x.iter_mut().zip(&*spare).zip(&down.scale) {
         *x += scale * spare;
     }
-    stencil.relax(&grid, b, x, spare, SMOOTHING[1]);
-    stencil.relax(&grid, b, x, spare, SMOOTHING[0]);
+    for omega in smoothing.iter().rev() {
+        stencil.relax(&grid, b, x, spare, *omega);
+    }
 }
 
 /// Drops what was asked of places that are no unknowns.

@@ -159,7 +159,10 @@ impl Operator {
                     // Only cells with paint have a viscosity.
                     let around = [0, a, b, a + b].map(|by| place - by);
                     let wet: f32 = around.iter().map(|at| domain.wet[*at]).sum();
-                    let sum: f32 = around.iter().map(|at| domain.wet[*at] * viscosity[*at]).sum();
+                    let sum: f32 = around
+                        .iter()
+                        .map(|at| domain.wet[*at] * viscosity[*at])
+                        .sum();
                     operator.edge[edge][place] *= beta * sum / wet.max(1.0);
                 }
             }
@@ -183,7 +186,11 @@ impl Operator {
             let edges = others(axis).map(|along| {
                 let edge = 3 - axis - along;
                 let slope = &self.slope[edge][which(edge, axis)];
-                (self.shear[edge].as_slice(), slope.as_slice(), grid.stride(along))
+                (
+                    self.shear[edge].as_slice(),
+                    slope.as_slice(),
+                    grid.stride(along),
+                )
             });
             let face = Face {
                 mass: &self.mass[axis],
@@ -204,11 +211,25 @@ impl Operator {
     fn stress(&mut self, velocity: [&[f32]; 3]) {
         let (grid, span) = (self.grid, Span::of(&self.grid));
         for axis in 0..3 {
-            stretch(&mut self.normal[axis], &self.stretch, velocity[axis], grid.stride(axis), span);
+            stretch(
+                &mut self.normal[axis],
+                &self.stretch,
+                velocity[axis],
+                grid.stride(axis),
+                span,
+            );
             let [a, b] = others(axis);
             let by = [a, b].map(|axis| grid.stride(axis));
             let (weight, slope) = (&self.edge[axis], &self.slope[axis]);
-            shear(&mut self.shear[axis], weight, slope, velocity[a], velocity[b], by, span);
+            shear(
+                &mut self.shear[axis],
+                weight,
+                slope,
+                velocity[a],
+                velocity[b],
+                by,
+                span,
+            );
             grid.wrap(&mut self.normal[axis]);
             grid.wrap(&mut self.shear[axis]);
         }

@@ -62,7 +62,11 @@ impl Paint {
             return field;
         }
         squared_rates(domain, velocity, &mut field);
-        for place in domain.grid.places().filter(|place| domain.wet[*place] > 0.0) {
+        for place in domain
+            .grid
+            .places()
+            .filter(|place| domain.wet[*place] > 0.0)
+        {
             let rate = f64::from(field[place]).sqrt() / cell_m;
             field[place] = self.relative(rate) as f32;
         }
@@ -83,7 +87,14 @@ fn squared_rates(domain: &Domain, velocity: [&[f32]; 3], into: &mut [f32]) {
         let [a, b] = others(edge);
         let by = [a, b].map(|axis| domain.grid.stride(axis));
         let fields = [velocity[a], velocity[b]];
-        square_shear(&mut shear, &domain.edge[edge], &domain.slope[edge], fields, by, span);
+        square_shear(
+            &mut shear,
+            &domain.edge[edge],
+            &domain.slope[edge],
+            fields,
+            by,
+            span,
+        );
         domain.grid.wrap(&mut shear);
         add_around(into, &shear, by, span);
     }

@@ -49,7 +49,9 @@ pub(crate) fn step(
 fn diffuse(domain: &Domain, axis: usize, (tau, pull): (f32, f32), u: &mut [f32]) {
     let grid = domain.grid;
     let mut stencil = Stencil::new(&grid);
-    let mut faces: Vec<Face> = (0..grid.len()).map(|place| face(domain, axis, place)).collect();
+    let mut faces: Vec<Face> = (0..grid.len())
+        .map(|place| face(domain, axis, place))
+        .collect();
     grid.wrap(&mut faces);
     for (u, face) in u.iter_mut().zip(&faces) {
         if *face == Face::Surface {

@@ -39,7 +39,8 @@ impl Stokes {
         let Conditions {
             seconds, cell_m, ..
         } = *conditions;
-        self.volume.advect(&domain, &open, &self.flow.velocity, seconds, cell_m);
+        self.volume
+            .advect(&domain, &open, &self.flow.velocity, seconds, cell_m);
         domain
     }
 }

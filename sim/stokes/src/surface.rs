@@ -65,7 +65,9 @@ pub fn triangles(grid: &Grid, fill: &[f32]) -> Vec<[[f32; 3]; 3]> {
             (cell.map(|at| at as f32 + 0.5), at(cell))
         };
         let corners = [0, 1, 2, 3, 4, 5, 6, 7].map(corner);
-        if corners.iter().all(|(_, fill)| *fill >= HALF) || corners.iter().all(|(_, fill)| *fill < HALF) {
+        if corners.iter().all(|(_, fill)| *fill >= HALF)
+            || corners.iter().all(|(_, fill)| *fill < HALF)
+        {
             continue;
         }
         for tetrahedron in TETRAHEDRA {
@@ -77,7 +79,11 @@ pub fn triangles(grid: &Grid, fill: &[f32]) -> Vec<[[f32; 3]; 3]> {
 
 /// Place between two corners where the fill is a half; the same from either side.
 fn between(one: ([f32; 3], f32), other: ([f32; 3], f32)) -> [f32; 3] {
-    let (low, high) = if one.1 <= other.1 { (one, other) } else { (other, one) };
+    let (low, high) = if one.1 <= other.1 {
+        (one, other)
+    } else {
+        (other, one)
+    };
     let share = (HALF - low.1) / (high.1 - low.1);
     [0, 1, 2].map(|axis| low.0[axis] + share * (high.0[axis] - low.0[axis]))
 }
@@ -91,7 +97,11 @@ fn cut(corners: [([f32; 3], f32); 4], into: &mut Vec<[[f32; 3]; 3]>) {
         let [a, b, c] = triangle;
         let u = [0, 1, 2].map(|axis| b[axis] - a[axis]);
         let v = [0, 1, 2].map(|axis| c[axis] - a[axis]);
-        let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+        let normal = [
+            u[1] * v[2] - u[2] * v[1],
+            u[2] * v[0] - u[0] * v[2],
+            u[0] * v[1] - u[1] * v[0],
+        ];
         let looks = normal[0] * out[0] + normal[1] * out[1] + normal[2] * out[2];
         into.push(if looks < 0.0 { [a, c, b] } else { triangle });
     };
@@ -100,7 +110,12 @@ fn cut(corners: [([f32; 3], f32); 4], into: &mut Vec<[[f32; 3]; 3]>) {
             add([between(*one, *a), between(*one, *b), between(*one, *c)]);
         }
         ([a, b], [c, d]) => {
-            let four = [between(*a, *c), between(*a, *d), between(*b, *d), between(*b, *c)];
+            let four = [
+                between(*a, *c),
+                between(*a, *d),
+                between(*b, *d),
+                between(*b, *c),
+            ];
             add([four[0], four[1], four[2]]);
             add([four[0], four[2], four[3]]);
         }
@@ -129,7 +144,10 @@ mod tests {
     fn a_slope_has_its_normal() {
         let heights: Vec<f32> = (0..20).map(|i| 0.75 * (i % 5) as f32).collect();
         let normal = normals(5, &heights)[7];
-        let off = [-0.6, 0.0, 0.8].iter().zip(normal).map(|(want, got)| (want - got).abs());
+        let off = [-0.6, 0.0, 0.8]
+            .iter()
+            .zip(normal)
+            .map(|(want, got)| (want - got).abs());
         assert!(off.fold(0.0, f32::max) < 1e-6, "{normal:?}");
     }
 
@@ -138,16 +156,25 @@ mod tests {
     fn the_surface_of_a_ball_is_closed_and_has_its_volume() {
         let grid = Grid::walled([24; 3]);
         let fill = |place: usize| {
-            let squares = grid.cell(place).map(|at| (at as f32 - 11.5) * (at as f32 - 11.5));
+            let squares = grid
+                .cell(place)
+                .map(|at| (at as f32 - 11.5) * (at as f32 - 11.5));
             (8.5 - squares.iter().sum::<f32>().sqrt()).clamp(0.0, 1.0)
         };
         let fill: Vec<f32> = (0..grid.len()).map(fill).collect();
         let triangles = triangles(&grid, &fill);
-        let volume: f64 = triangles.iter().map(|[a, b, c]| {
-            let [a, b, c] = [a, b, c].map(|point| point.map(f64::from));
-            let cross = [b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]];
-            (a[0] * cross[0] + a[1] * cross[1] + a[2] * cross[2]) / 6.0
-        }).sum();
+        let volume: f64 = triangles
+            .iter()
+            .map(|[a, b, c]| {
+                let [a, b, c] = [a, b, c].map(|point| point.map(f64::from));
+                let cross = [
+                    b[1] * c[2] - b[2] * c[1],
+                    b[2] * c[0] - b[0] * c[2],
+                    b[0] * c[1] - b[1] * c[0],
+                ];
+                (a[0] * cross[0] + a[1] * cross[1] + a[2] * cross[2]) / 6.0
+            })
+            .sum();
         let want = 4.0 / 3.0 * std::f64::consts::PI * 512.0;
         assert!((volume / want - 1.0).abs() < 0.02, "{volume} {want}");
         let bits = |point: [f32; 3]| point.map(f32::to_bits);

@@ -16,7 +16,7 @@ use crate::vector::{add_scaled, dot, norm};
 /// Drag of walls on paint of a thickness of one, by its viscosity: between 3 for a film and 12 for a gap.
 const GAP_DRAG: f32 = 6.0;
 /// Directions that a new one is made orthogonal to.
-const MEMORY: usize = 8;
+const MEMORY: usize = 10;
 
 /// Room for the iterations, kept from one step to the next.
 #[derive(Clone, Debug, Default)]
@@ -69,13 +69,23 @@ impl Unified {
         let bulk = bulk(domain, &stencils);
         let thickness = thickness(domain);
         let [u, v, w] = stencils;
-        let mut hierarchies = [(u, Some(0)), (v, Some(1)), (w, Some(2)), (laplacian(domain), None)]
-            .map(|(stencil, faces)| (Some(stencil), faces, None));
+        let mut hierarchies = [
+            (u, Some(0)),
+            (v, Some(1)),
+            (w, Some(2)),
+            (laplacian(domain), None),
+        ]
+        .map(|(stencil, faces)| (Some(stencil), faces, None));
         fork_join::each(&mut hierarchies, |(stencil, faces, hierarchy)| {
-            *hierarchy = stencil.take().map(|stencil| Multigrid::new(grid, stencil, *faces));
+            *hierarchy = stencil
+                .take()
+                .map(|stencil| Multigrid::new(grid, stencil, *faces));
         });
         Self {
-            hierarchies: hierarchies.into_iter().filter_map(|(.., made)| made).collect(),
+            hierarchies: hierarchies
+                .into_iter()
+                .filter_map(|(.., made)| made)
+                .collect(),
             bulk,
             operator,
             alpha,
@@ -88,21 +98,36 @@ impl Unified {
         let [from @ .., r_pressure] = fields(r);
         let [u, v, w, p] = fields_mut(z);
         let mut velocity = [u, v, w];
-        let mut shares: Vec<_> =
-            self.hierarchies.iter_mut().zip(from).zip(velocity.iter_mut()).collect();
-        fork_join::each(&mut shares, |((hierarchy, from), into)| hierarchy.cycle(from, into));
+        let mut shares: Vec<_> = self
+            .hierarchies
+            .iter_mut()
+            .zip(from)
+            .zip(velocity.iter_mut())
+            .collect();
+        fork_join::each(&mut shares, |((hierarchy, from), into)| {
+            hierarchy.cycle(from, into)
+        });
         self.operator.outflow(velocity, first);
         for (first, r) in first.iter_mut().zip(r_pressure) {
             *first = r - *first;
         }
         self.hierarchies[3].cycle(first, second);
-        for (p, (bulk, parts)) in p.iter_mut().zip(self.bulk.iter().zip(first.iter().zip(&*second))) {
+        for (p, (bulk, parts)) in p
+            .iter_mut()
+            .zip(self.bulk.iter().zip(first.iter().zip(&*second)))
+        {
             *p = self.drag * parts.1 + bulk * parts.0;
         }
     }
 
     /// Solves A·x = b by so many steps from x; returns the norm of each residual, with that of the first guess.
-    pub fn solve(&mut self, b: &[f32], x: &mut Unknowns, steps: usize, room: &mut Room) -> Vec<f64> {
+    pub fn solve(
+        &mut self,
+        b: &[f32],
+        x: &mut Unknowns,
+        steps: usize,
+        room: &mut Room,
+    ) -> Vec<f64> {
         room.fit(x.len());
         let Room {
             residual: r,
@@ -119,8 +144,11 @@ impl Unified {
             let (mut z, mut q, _) = std::mem::take(&mut directions[place]);
             self.precondition(r, &mut z, fields);
             self.operator.apply(&mut z, &mut q);
-            for (_, (direction, image, squared)) in
-                directions.iter().enumerate().take(kept).filter(|(other, _)| *other != place)
+            for (_, (direction, image, squared)) in directions
+                .iter()
+                .enumerate()
+                .take(kept)
+                .filter(|(other, _)| *other != place)
             {
                 let share = (dot(&q, image) / squared) as f32;
                 add_scaled(&mut z, -share, direction);
@@ -147,7 +175,8 @@ impl Unified {
         let grid = domain.grid;
         let [mut excess, mut phi] = [(); 2].map(|()| grid.field());
         let [u, v, w, p] = fields_mut(x);
-        self.operator.outflow([&mut *u, &mut *v, &mut *w], &mut excess);
+        self.operator
+            .outflow([&mut *u, &mut *v, &mut *w], &mut excess);
         for (excess, b) in excess.iter_mut().zip(b) {
             *excess = b - *excess;
         }
@@ -167,7 +196,12 @@ impl Unified {
 
     /// The momentum that a velocity has, and the volume that solids displace: the right-hand side.
     #[must_use]
-    pub fn right_hand_side(&self, domain: &Domain, velocity: [&[f32]; 3], solids: &[Vec<f32>; 3]) -> Unknowns {
+    pub fn right_hand_side(
+        &self,
+        domain: &Domain,
+        velocity: [&[f32]; 3],
+        solids: &[Vec<f32>; 3],
+    ) -> Unknowns {
         let grid = domain.grid;
         let mut b = vec![0.0; 4 * grid.len()];
         let fields = fields_mut(&mut b);

@@ -16,7 +16,14 @@ const MOST_PARTS: usize = 40;
 /// Room of a cell that solids fill, by that of an open one.
 const LEAST_ROOM: f32 = 0.3;
 /// Orders of the axes, in turn.
-const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [2, 1, 0], [1, 2, 0], [0, 2, 1], [2, 0, 1], [1, 0, 2]];
+const ORDERS: [[usize; 3]; 6] = [
+    [0, 1, 2],
+    [2, 1, 0],
+    [1, 2, 0],
+    [0, 2, 1],
+    [2, 0, 1],
+    [1, 0, 2],
+];
 /// Gradient of fill below which a cell has no surface.
 const LEAST_GRADIENT: f32 = 1e-3;
 
@@ -31,10 +38,10 @@ pub struct Volume {
     pub paints: Vec<Vec<u32>>,
     /// Quanta of all paints, by cell.
     total: Vec<u32>,
-    /// Quanta that go through each lower face across an axis, up if positive.
-    through: Vec<i32>,
     /// Quanta that are asked of each cell.
     asked: Vec<u32>,
+    /// Donor, taker and quanta of each face that something goes through.
+    moves: Vec<[u32; 3]>,
     /// Quanta of a paint before.
     before: Vec<u32>,
     fill: Vec<f32>,
@@ -51,8 +58,8 @@ impl Volume {
             capacity,
             paints: vec![vec![0; grid.len()]; paints],
             total: vec![0; grid.len()],
-            through: vec![0; grid.len()],
             asked: vec![0; grid.len()],
+            moves: Vec::new(),
             before: vec![0; grid.len()],
             fill: grid.field(),
             turn: 0,
@@ -70,14 +77,21 @@ impl Volume {
 
     /// Quanta that each cell has room for.
     fn rooms(&self, open: &[f32]) -> Vec<f32> {
-        let rooms = open.iter().map(|open| self.capacity as f32 * open.max(LEAST_ROOM));
+        let rooms = open
+            .iter()
+            .map(|open| self.capacity as f32 * open.max(LEAST_ROOM));
         rooms.collect()
     }
 
     /// Quanta of each paint.
     #[must_use]
     pub fn counts(&self) -> Vec<u64> {
-        let sum = |paint: &Vec<u32>| self.grid.places().map(|place| u64::from(paint[place])).sum();
+        let sum = |paint: &Vec<u32>| {
+            self.grid
+                .places()
+                .map(|place| u64::from(paint[place]))
+                .sum()
+        };
         self.paints.iter().map(sum).collect()
     }
 
@@ -112,7 +126,13 @@ impl Volume {
             let mut room = self.rooms(open);
             self.turn = (self.turn + 1) % 6;
             for axis in ORDERS[self.turn] {
-                self.sweep(domain, axis, &velocity[axis], courant / parts as f32, &mut room);
+                self.sweep(
+                    domain,
+                    axis,
+                    &velocity[axis],
+                    courant / parts as f32,
+                    &mut room,
+                );
             }
         }
         parts
@@ -127,13 +147,13 @@ impl Volume {
         courant: f32,
         room: &mut [f32],
     ) {
-        let grid = self.grid;
+        let grid = domain.grid;
         let strides = [0, 1, 2].map(|axis| grid.stride(axis));
         self.add_up();
         for (fill, (total, room)) in self.fill.iter_mut().zip(self.total.iter().zip(&*room)) {
             *fill = *total as f32 / *room;
         }
-        self.through.fill(0);
+        self.moves.clear();
         self.asked.fill(0);
         for place in grid.faces(axis) {
             if domain.part[axis][place] != Part::Paint {
@@ -148,42 +168,35 @@ impl Volume {
             let donor = if c > 0.0 { beside } else { place };
             if self.total[donor] > 0 {
                 let share = leaving(&self.fill, donor, (axis, c), strides);
-                let asks = (share.abs() * self.capacity as f32) as i32;
-                self.through[place] = if c > 0.0 { asks } else { -asks };
-                self.asked[donor] += asks as u32;
+                let asks = (share.abs() * self.capacity as f32) as u32;
+                let taker = if c > 0.0 { place } else { beside };
+                self.asked[donor] += asks;
+                self.moves.push([donor as u32, taker as u32, asks]);
             }
         }
         grid.wrap(room);
-        self.limit(axis);
-        self.carry(axis);
+        self.limit();
+        self.carry();
     }
 
     /// Scales what is asked of a cell down to what it has.
-    fn limit(&mut self, axis: usize) {
-        let grid = self.grid;
-        for place in grid.faces(axis) {
-            let through = &mut self.through[place];
-            let donor = if *through > 0 { grid.before(axis, place) } else { place };
-            let (asked, has) = (self.asked[donor], self.total[donor]);
+    fn limit(&mut self) {
+        for [donor, _, goes] in &mut self.moves {
+            let donor = *donor as usize;
+            let [asks, asked, has] = [*goes, self.asked[donor], self.total[donor]].map(u64::from);
             if asked > has {
-                *through = (i64::from(*through) * i64::from(has) / i64::from(asked)) as i32;
+                *goes = (asks * has / asked) as u32;
             }
         }
     }
 
     /// Moves the paints, each by its share of the cell that gives.
-    fn carry(&mut self, axis: usize) {
-        let grid = self.grid;
+    fn carry(&mut self) {
         for paint in &mut self.paints {
             self.before.copy_from_slice(paint);
-            for place in grid.faces(axis) {
-                let through = self.through[place];
-                if through == 0 {
-                    continue;
-                }
-                let beside = grid.before(axis, place);
-                let (donor, taker) = if through > 0 { (beside, place) } else { (place, beside) };
-                let share = u64::from(through.unsigned_abs()) * u64::from(self.before[donor]);
+            for [donor, taker, goes] in &self.moves {
+                let (donor, taker) = (*donor as usize, *taker as usize);
+                let share = u64::from(*goes) * u64::from(self.before[donor]);
                 let goes = (share / u64::from(self.total[donor].max(1))) as u32;
                 paint[donor] -= goes;
                 paint[taker] += goes;
@@ -198,7 +211,8 @@ fn leaving(fill: &[f32], donor: usize, (axis, c): (usize, f32), strides: [usize;
     if f >= 1.0 {
         return c * f;
     }
-    let slope = |axis: usize| fill[donor + strides[axis]].min(1.0) - fill[donor - strides[axis]].min(1.0);
+    let slope =
+        |axis: usize| fill[donor + strides[axis]].min(1.0) - fill[donor - strides[axis]].min(1.0);
     let slopes = [slope(0), slope(1), slope(2)];
     let sum = slopes[0].abs() + slopes[1].abs() + slopes[2].abs();
     if sum < LEAST_GRADIENT {

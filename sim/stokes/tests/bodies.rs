@@ -72,11 +72,18 @@ fn squeeze(half_gap: usize, radius: f64) -> f64 {
     let fill: Vec<f32> = (0..grid.len()).map(fill).collect();
     let mut flow = Flow::new(&grid);
     flow.effort.steps = 40;
-    flow.step(&fill, &solids, &conditions(Paint::newtonian(1.0), 1e8, [0.0; 3]));
+    flow.step(
+        &fill,
+        &solids,
+        &conditions(Paint::newtonian(1.0), 1e8, [0.0; 3]),
+    );
     let cells = cells as isize;
     let top = half_gap as isize;
     let under = grid.block([0, 0, top - 1], [cells, cells, top]);
-    let force = 4.0 * under.map(|place| f64::from(flow.pressure[place])).sum::<f64>();
+    let force = 4.0
+        * under
+            .map(|place| f64::from(flow.pressure[place]))
+            .sum::<f64>();
     let gap = 2.0 * half_gap as f64;
     force / (3.0 * PI * radius * radius * radius * radius / (2.0 * gap * gap * gap))
 }
@@ -90,14 +97,23 @@ fn a_squeezed_film_pushes_as_reynolds_has_it() {
 
 /// Sum of the squares of all velocities of paint.
 fn squares(flow: &Flow, domain: &Domain) -> f64 {
-    let pairs = flow.velocity.iter().flatten().zip(domain.free.iter().flatten());
-    pairs.map(|(u, free)| f64::from(u * free) * f64::from(*u)).sum()
+    let pairs = flow
+        .velocity
+        .iter()
+        .flatten()
+        .zip(domain.free.iter().flatten());
+    pairs
+        .map(|(u, free)| f64::from(u * free) * f64::from(*u))
+        .sum()
 }
 
 #[test]
 fn energy_never_grows_whatever_the_step() {
     for scheme in [Scheme::Unified, Scheme::Split] {
-        for (top, tau) in [1e-3, 0.1, 10.0, 1e3].into_iter().flat_map(|tau| [(12.0, tau), (7.4, tau)]) {
+        for (top, tau) in [1e-3, 0.1, 10.0, 1e3]
+            .into_iter()
+            .flat_map(|tau| [(12.0, tau), (7.4, tau)])
+        {
             let grid = Grid {
                 cells: [12; 3],
                 ends: [BETWEEN, PERIODIC, BETWEEN],

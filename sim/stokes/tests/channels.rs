@@ -24,7 +24,11 @@ fn channel(cells: usize, scheme: Scheme, paint: Paint, steps: usize) -> Vec<f64>
     flow.scheme = scheme;
     let solids = Solids::walls(&grid);
     for _ in 0..steps {
-        flow.step(&full(&grid), &solids, &conditions(paint, LONG_S, [1.0, 0.0, 0.0]));
+        flow.step(
+            &full(&grid),
+            &solids,
+            &conditions(paint, LONG_S, [1.0, 0.0, 0.0]),
+        );
     }
     let at = |y| f64::from(flow.velocity[0][grid.at([1, y, 1])]);
     (0..cells as isize).map(at).collect()
@@ -41,10 +45,18 @@ fn plane_poiseuille_has_its_parabola() {
                     let y = node as f64 + 0.5;
                     (0.5 * y * (cells as f64 - y) + 0.125) / viscosity
                 };
-                worst(got.iter().enumerate().map(|(node, got)| got / want(node) - 1.0))
+                worst(
+                    got.iter()
+                        .enumerate()
+                        .map(|(node, got)| got / want(node) - 1.0),
+                )
             };
             println!("{scheme:?}, {cells} cells: {:.1e}", off(1.0));
-            let bound = if scheme == Scheme::Unified { 1e-5 } else { 2e-5 };
+            let bound = if scheme == Scheme::Unified {
+                1e-5
+            } else {
+                2e-5
+            };
             assert!(off(1.0) < bound, "{}", off(1.0));
             assert!(off(1.0001) > bound, "another viscosity passes");
         }
@@ -66,7 +78,11 @@ fn a_film_is_exact_wherever_its_surface_lies_in_a_cell() {
         let fill = |place| (height - grid.cell(place)[1] as f64).clamp(0.0, 1.0) as f32;
         let fill: Vec<f32> = (0..grid.len()).map(fill).collect();
         for _ in 0..3 {
-            flow.step(&fill, &solids, &conditions(Paint::newtonian(1.0), LONG_S, [1.0, -1.0, 0.0]));
+            flow.step(
+                &fill,
+                &solids,
+                &conditions(Paint::newtonian(1.0), LONG_S, [1.0, -1.0, 0.0]),
+            );
         }
         let nodes = height as usize;
         let off = |height: f64| {
@@ -111,7 +127,9 @@ fn taylor_green_vortices_decay_as_the_lattice_says() {
         }
         let off = |lambda: f64| {
             let decay = (0..100).fold(1.0, |left, _| left / (1.0 + 0.5 * lambda));
-            let pairs = grid.places().map(|place| [flow.velocity[0][place], start[place]]);
+            let pairs = grid
+                .places()
+                .map(|place| [flow.velocity[0][place], start[place]]);
             worst(pairs.map(|[u, start]| f64::from(u) / decay - f64::from(start)))
         };
         assert!(off(lambda) < 1e-4, "{scheme:?}: {}", off(lambda));

@@ -43,7 +43,11 @@ fn a_ball_that_is_carried_round_keeps_its_shape_and_its_count() {
     }
     assert_eq!(volume.counts(), before);
     let end = volume.fill(&open);
-    let off: f64 = start.iter().zip(&end).map(|(a, b)| f64::from((a - b).abs())).sum();
+    let off: f64 = start
+        .iter()
+        .zip(&end)
+        .map(|(a, b)| f64::from((a - b).abs()))
+        .sum();
     let all: f64 = start.iter().map(|a| f64::from(*a)).sum();
     println!("L1 error {:.3}", off / all);
     assert!(off / all < 0.25, "{}", off / all);

@@ -30,7 +30,10 @@ pub fn pool(cells: usize, pool: Pool) -> (Grid, Stencil, Vec<f32>) {
         }
         let floor = 0.15 + 0.05 * sin(9.0 * x) * sin(13.0 * y);
         let top = 0.7 + 0.08 * sin(14.0 * x + 3.0) * sin(11.0 * y);
-        let ball = [x - 0.5, y - 0.4, z - 0.6].iter().map(|d| d * d).sum::<f64>();
+        let ball = [x - 0.5, y - 0.4, z - 0.6]
+            .iter()
+            .map(|d| d * d)
+            .sum::<f64>();
         match pool {
             Pool::Rough if z < floor || ball < 0.03 => Cell::Solid,
             Pool::Rough if z > top => Cell::Air,

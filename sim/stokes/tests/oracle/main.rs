@@ -60,7 +60,8 @@ fn both(basin: &Basin, fault: Option<Fault>) -> [Vec<f64>; 2] {
     };
     for (axis, u) in flow.velocity.iter_mut().enumerate() {
         for place in grid.faces(axis) {
-            u[place] = basin.before[basin.face(axis, grid.cell(place).map(|at| at as usize))] as f32;
+            u[place] =
+                basin.before[basin.face(axis, grid.cell(place).map(|at| at as usize))] as f32;
         }
     }
     let conditions = Conditions {
@@ -73,16 +74,26 @@ fn both(basin: &Basin, fault: Option<Fault>) -> [Vec<f64>; 2] {
     let velocity = |(axis, cell): &(usize, [usize; 3])| {
         f64::from(flow.velocity[*axis][grid.at(cell.map(|at| at as isize))])
     };
-    let pressure = |cell: &[usize; 3]| f64::from(flow.pressure[grid.at(cell.map(|at| at as isize))]);
-    let fast = slow.faces.iter().map(velocity).chain(slow.wet.iter().map(pressure));
+    let pressure =
+        |cell: &[usize; 3]| f64::from(flow.pressure[grid.at(cell.map(|at| at as isize))]);
+    let fast = slow
+        .faces
+        .iter()
+        .map(velocity)
+        .chain(slow.wet.iter().map(pressure));
     [fast.collect(), slow.values]
 }
 
 /// Largest difference by the largest value.
 fn off([fast, slow]: [Vec<f64>; 2]) -> f64 {
-    let most = slow.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let most = slow
+        .iter()
+        .fold(0.0, |most: f64, value| most.max(value.abs()));
     let pairs = fast.iter().zip(&slow);
-    pairs.map(|(fast, slow)| (fast - slow).abs()).fold(0.0, f64::max) / most
+    pairs
+        .map(|(fast, slow)| (fast - slow).abs())
+        .fold(0.0, f64::max)
+        / most
 }
 
 #[test]
@@ -92,7 +103,12 @@ fn velocities_and_pressures_are_those_of_the_oracle() {
         let right = off(both(&basin, None));
         println!("basin {seed}: {right:.1e}");
         assert!(right < 1e-4, "{right}");
-        for fault in [Fault::WithoutCrossTerm, Fault::FullWalls, Fault::SurfaceSticks, Fault::HalfNormal] {
+        for fault in [
+            Fault::WithoutCrossTerm,
+            Fault::FullWalls,
+            Fault::SurfaceSticks,
+            Fault::HalfNormal,
+        ] {
             let wrong = off(both(&basin, Some(fault)));
             assert!(wrong > 1e-2, "{fault:?} passes: {wrong}");
         }

@@ -97,7 +97,9 @@ impl Basin {
         let mut system = vec![vec![0.0; size + 1]; size];
         let velocity = |axis: usize, cell: [isize; 3]| {
             let at = cell.map(|at| at.max(0) as usize);
-            let found = faces.iter().position(|face| cell.iter().all(|at| *at >= 0) && *face == (axis, at));
+            let found = faces
+                .iter()
+                .position(|face| cell.iter().all(|at| *at >= 0) && *face == (axis, at));
             let beyond = (0..3).any(|a| {
                 cell[a] < 0 || cell[a] >= self.cells[a] as isize || a == axis && cell[a] == 0
             });
@@ -139,7 +141,11 @@ impl Basin {
             let cell_here = cell.map(|at| at as isize);
             let mut before = cell_here;
             before[*axis] -= 1;
-            let paint = |cell| self.filled(cell).filter(|_| self.is_wet(cell)).unwrap_or(0.0);
+            let paint = |cell| {
+                self.filled(cell)
+                    .filter(|_| self.is_wet(cell))
+                    .unwrap_or(0.0)
+            };
             let mass = (0.5 * (paint(cell_here) + paint(before))).max(0.05);
             let u = self.before[self.face(*axis, *cell)] + self.pull[*axis];
             system[number][number] += mass;
@@ -157,11 +163,22 @@ impl Basin {
             cell[axis] += by;
             cell
         };
-        for cell in self.all_cells().into_iter().filter(|cell| self.is_wet(*cell)) {
-            let factor = if fault == Some(Fault::HalfNormal) { 1.0 } else { 2.0 };
+        for cell in self
+            .all_cells()
+            .into_iter()
+            .filter(|cell| self.is_wet(*cell))
+        {
+            let factor = if fault == Some(Fault::HalfNormal) {
+                1.0
+            } else {
+                2.0
+            };
             let weight = factor * self.tau * self.filled(cell).unwrap_or(0.0);
             for axis in 0..3 {
-                let terms = [(velocity(axis, step(cell, axis, 1)), 1.0), (velocity(axis, cell), -1.0)];
+                let terms = [
+                    (velocity(axis, step(cell, axis, 1)), 1.0),
+                    (velocity(axis, cell), -1.0),
+                ];
                 add_square(system, weight, &terms);
             }
         }
@@ -179,15 +196,37 @@ impl Basin {
                     if is_free && fault != Some(Fault::SurfaceSticks) {
                         continue;
                     }
-                    let near = if fault == Some(Fault::FullWalls) { 1.0 } else { 0.5 };
-                    let distance = pairs.map(|[one, other]| if is_wall(&one) == is_wall(&other) { 1.0 } else { near });
-                    let corners = [cell, step(cell, a, -1), step(cell, b, -1), step(step(cell, a, -1), b, -1)];
+                    let near = if fault == Some(Fault::FullWalls) {
+                        1.0
+                    } else {
+                        0.5
+                    };
+                    let distance = pairs.map(|[one, other]| {
+                        if is_wall(&one) == is_wall(&other) {
+                            1.0
+                        } else {
+                            near
+                        }
+                    });
+                    let corners = [
+                        cell,
+                        step(cell, a, -1),
+                        step(cell, b, -1),
+                        step(step(cell, a, -1), b, -1),
+                    ];
                     let paint: f64 = corners.iter().filter_map(|cell| self.filled(*cell)).sum();
-                    let share = if pairs.iter().flatten().any(is_wall) { 1.0 } else { 0.25 * paint };
+                    let share = if pairs.iter().flatten().any(is_wall) {
+                        1.0
+                    } else {
+                        0.25 * paint
+                    };
                     let mut terms = Vec::new();
                     for (which, [one, other]) in pairs.into_iter().enumerate() {
                         if which == 0 || fault != Some(Fault::WithoutCrossTerm) {
-                            terms.extend([(one, 1.0 / distance[which]), (other, -1.0 / distance[which])]);
+                            terms.extend([
+                                (one, 1.0 / distance[which]),
+                                (other, -1.0 / distance[which]),
+                            ]);
                         }
                     }
                     add_square(system, self.tau * share * distance[0] * distance[1], &terms);
@@ -201,7 +240,9 @@ impl Basin {
 fn add_square(system: &mut [Vec<f64>], weight: f64, terms: &[(Velocity, f64)]) {
     let last = system.len();
     for (row, by) in terms {
-        let Velocity::Unknown(row) = row else { continue };
+        let Velocity::Unknown(row) = row else {
+            continue;
+        };
         for (column, other) in terms {
             match column {
                 Velocity::Unknown(column) => system[*row][*column] += weight * by * other,
@@ -217,7 +258,9 @@ fn eliminate(mut system: Vec<Vec<f64>>) -> Vec<f64> {
     let size = system.len();
     for column in 0..size {
         let largest = |a: &usize, b: &usize| {
-            system[*a][column].abs().total_cmp(&system[*b][column].abs())
+            system[*a][column]
+                .abs()
+                .total_cmp(&system[*b][column].abs())
         };
         let pivot = (column..size).max_by(largest).expect("a row");
         system.swap(column, pivot);
@@ -232,7 +275,9 @@ fn eliminate(mut system: Vec<Vec<f64>>) -> Vec<f64> {
     }
     let mut values = vec![0.0; size];
     for row in (0..size).rev() {
-        let known: f64 = (row + 1..size).map(|column| system[row][column] * values[column]).sum();
+        let known: f64 = (row + 1..size)
+            .map(|column| system[row][column] * values[column])
+            .sum();
         values[row] = (system[row][size] - known) / system[row][row];
     }
     values
