@@ -1,0 +1,56 @@
+//! Stokes Paint: viscous paint as a volume (Baxter 2004, ch. 5).
+//!
+//! A window of cells holds paint in counted quanta ([`volume`]). In each step the brush is put among the cells
+//! ([`body`]), velocity and pressure are found on a staggered grid ([`flow`]), and paint is carried along: [`step`] shows
+//! the whole of it. [`surface`] says where the surface lies.
+//!
+//! The solver ([`unified`]) finds velocity and pressure at once, backward in time, so that steps of any length are
+//! stable. What it sees of a window are volume fractions and distances ([`domain`]), on which [`operator`] works;
+//! [`multigrid`] preconditions it. The dissertation's scheme is [`flow::Scheme::Split`]. Stresses are those of a
+//! Herschel-Bulkley fluid ([`rheology`]).
+//!
+//! ```
+//! use maulstick_stokes::body::Rod;
+//! use maulstick_stokes::flow::Conditions;
+//! use maulstick_stokes::grid::Grid;
+//! use maulstick_stokes::rheology::Paint;
+//! use maulstick_stokes::step::Stokes;
+//!
+//! // Eight by eight by six cells of .25 mm, the lower half full of paint, and a rod that is drawn through.
+//! let grid = Grid::walled([8, 8, 6]);
+//! let mut stokes = Stokes::new(&grid, 167_772, 1);
+//! for place in grid.block([0, 0, 0], [8, 8, 3]) {
+//!     stokes.volume.paints[0][place] = 167_772;
+//! }
+//! let before = stokes.volume.counts();
+//! let rod = Rod {
+//!     ends: [[2.0, 4.0, 3.0], [2.0, 4.0, 6.0]],
+//!     radius: 1.0,
+//!     velocity: [[0.01, 0.0, 0.0]; 2],
+//! };
+//! let conditions = Conditions {
+//!     cell_m: 2.5e-4,
+//!     seconds: 0.01,
+//!     paint: Paint::newtonian(1e-2),
+//!     pull: [0.0, 0.0, -9.81],
+//! };
+//! stokes.step(&[rod], &conditions);
+//! assert_eq!(stokes.volume.counts(), before);
+//! assert!(stokes.flow.fastest() > 0.0);
+//! ```
+
+pub mod body;
+pub mod domain;
+pub mod flow;
+pub mod grid;
+pub mod multigrid;
+pub mod operator;
+pub mod rheology;
+mod split;
+pub mod stencil;
+pub mod step;
+pub mod surface;
+mod transfer;
+pub mod unified;
+pub mod vector;
+pub mod volume;
