@@ -108,7 +108,9 @@ fn a_chunk_whose_bytes_changed_is_skipped_and_the_rest_stays() {
         bytes[at..at + 8].iter_mut().for_each(|byte| *byte ^= 0x55);
         std::fs::write(&path, bytes).expect("written");
         let (_, recovered) = recovered(&path);
-        assert!(recovered.damage.is_some(), "{at}");
+        // An index is made anew, so its damage harms nothing.
+        let is_whole = recovered.messages == MESSAGES;
+        assert!(is_whole || recovered.damage.is_some(), "{at}");
         least = least.min(recovered.messages);
         missed += u32::from(recovered.messages < MESSAGES);
     }
