@@ -131,7 +131,7 @@ fn a_file_without_its_beginning_is_mended_and_another_file_is_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(512))]
+    #![proptest_config(ProptestConfig::with_cases(128))]
 
     /// Sizes in a file may be any number: none is believed before it is compared with the file.
     #[test]
