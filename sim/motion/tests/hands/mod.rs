@@ -7,10 +7,10 @@ use maulstick_num::{cos, sin};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
 
 /// Length of the head of the 6-DOF hands, m.
-pub const HEAD_M: f64 = 0.03;
+pub(crate) const HEAD_M: f64 = 0.03;
 
 /// A pen at a place, m.
-pub fn pen(at: [f64; 2], pressure: f64) -> StylusSample {
+pub(crate) fn pen(at: [f64; 2], pressure: f64) -> StylusSample {
     StylusSample {
         senses: axes::POSITION | axes::PRESSURE | axes::TILT,
         pose: StylusPose::Contact {
@@ -25,7 +25,7 @@ pub fn pen(at: [f64; 2], pressure: f64) -> StylusSample {
 }
 
 /// A 6-DOF stylus, leaning, whose point is at a place, m; below 0 it touches.
-pub fn six_dof(at: [f64; 3]) -> StylusSample {
+pub(crate) fn six_dof(at: [f64; 3]) -> StylusSample {
     let rotation = DQuat::from_xyzw(0.2, -0.1, 0.3, 0.9).normalize();
     let point = DVec3::from_array(at);
     let pose = Rigid {
@@ -44,7 +44,7 @@ pub fn six_dof(at: [f64; 3]) -> StylusSample {
 
 /// Strokes along straight ways, each with a slight bow and a pressure that swells; `hand` makes the samples of them from
 /// place and pressure.
-pub fn along(
+pub(crate) fn along(
     ways: &[[[f64; 2]; 2]],
     bow: f64,
     hand: impl Fn([f64; 2], f64) -> StylusSample,
@@ -73,7 +73,12 @@ pub fn along(
 }
 
 /// Hatching: rows from below, each drawn to the right, of this length and distance, m, all turned about the origin.
-pub fn hatching(rows: usize, length_m: f64, spacing_m: f64, turn_rad: f64) -> Vec<TakeSample> {
+pub(crate) fn hatching(
+    rows: usize,
+    length_m: f64,
+    spacing_m: f64,
+    turn_rad: f64,
+) -> Vec<TakeSample> {
     let turned = |[x, y]: [f64; 2]| {
         let (s, c) = (sin(turn_rad), cos(turn_rad));
         [c * x - s * y, s * x + c * y]
