@@ -171,7 +171,7 @@ fn go(
 
 fn record(hand: usize, kind: Kind, stiffness: f64) -> Went {
     go(hand, RECORDED, device(), |tick, place| {
-        (tick % 4 == 0).then(|| felt(kind, stiffness, place))
+        tick.is_multiple_of(4).then(|| felt(kind, stiffness, place))
     })
 }
 

@@ -123,7 +123,7 @@ fn along(mut next: impl FnMut(u32) -> Option<Guide>, y: impl Fn(u32) -> f64) -> 
 fn pieces_of_one_path_join_without_a_change_of_force() {
     let next = |tick: u32| {
         let x = 1e-4 * f64::from(tick) - 0.03;
-        (tick % 10 == 0).then(|| piece(0.0, x))
+        tick.is_multiple_of(10).then(|| piece(0.0, x))
     };
     let (most, last) = along(next, |_| 0.005);
     assert!(most < 1e-9, "{most} N");
@@ -132,7 +132,10 @@ fn pieces_of_one_path_join_without_a_change_of_force() {
 
 #[test]
 fn another_path_takes_over_without_a_knock() {
-    let next = |tick: u32| (tick % 10 == 0).then(|| line(if tick < 500 { 0.0 } else { 0.012 }));
+    let next = |tick: u32| {
+        tick.is_multiple_of(10)
+            .then(|| line(if tick < 500 { 0.0 } else { 0.012 }))
+    };
     let (most, last) = along(next, |_| 0.005);
     // .4 N one way becomes .56 N the other way.
     assert!((last.y - 0.56).abs() < 1e-9, "{last}");
@@ -145,7 +148,7 @@ fn a_hand_across_a_bend_changes_sides_without_a_knock() {
     let bend = [[-0.2, 0.0, 0.0], [0.1, 0.0, 0.0], [0.1, 0.3, 0.0]];
     let guide = Guide::new(&model(&bend)).expect("a guide");
     let (most, last) = along(
-        |tick| (tick % 10 == 0).then_some(guide),
+        |tick| tick.is_multiple_of(10).then_some(guide),
         |tick| 0.005 + 1e-5 * f64::from(tick.min(500)),
     );
     // It has gone on beyond the second leg, out of reach.
