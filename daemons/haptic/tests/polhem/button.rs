@@ -15,7 +15,7 @@ use maulstick_haptic::drivers::polhem::frame::Length;
 use maulstick_haptic::servo::clock::MonotonicClock;
 use maulstick_haptic::servo::force_control::ForceControl;
 use maulstick_haptic::servo::{
-    channels::{Channels, Delivery, TickRecord},
+    channels::{Channels, Delivery, FluidDelivery, TickRecord},
     servo_loop::{PreviousServo, ServoLoop},
 };
 use maulstick_haptics::{Limits, ServoMemory};
@@ -63,10 +63,12 @@ fn a_clutch_at_the_button_holds_for_as_long_as_it_is_pressed() {
     let placed = MountedDevice::new(Box::new(polhem), registration, 1);
     let (ticks, mut told) = rtrb::RingBuffer::new(64);
     let (_, models) = triple_buffer::triple_buffer(&Delivery::default());
+    let (_, fluids) = triple_buffer::triple_buffer(&FluidDelivery::default());
     let (_, controls) = triple_buffer::triple_buffer(&ForceControl::default());
     let channels = Channels {
         ticks,
         models,
+        fluids,
         controls,
         stop: std::sync::Arc::default(),
         dropped: std::sync::Arc::default(),
