@@ -34,7 +34,7 @@ pub fn drag(credit: &BrushCredit) -> f64 {
 }
 
 /// Pose and velocity of a handle, desk frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Held {
     /// Pose of the brush.
     pub pose: Pose,
@@ -47,7 +47,7 @@ impl Held {
     #[must_use]
     pub fn of(sample: &StylusSample) -> Self {
         let pose = match &sample.pose {
-            StylusPose::Ferrule { pose } => *pose,
+            StylusPose::Ferrule { pose } => pose.clone(),
             StylusPose::Contact { point_m, .. } => Pose {
                 position_m: *point_m,
                 ..Pose::IDENTITY
@@ -70,7 +70,7 @@ pub fn fluid_force(device: Origin, held: &Held, drag_n_s_m: f64, normal: DVec3) 
     FluidForce {
         device: device.source,
         device_epoch: device.epoch,
-        pose: held.pose,
+        pose: held.pose.clone(),
         velocity: six(held.velocity_m_s),
         wrench: six(jacobian * held.velocity_m_s),
         jacobian: [row(0), row(1), row(2), [0.0; 6], [0.0; 6], [0.0; 6]],

@@ -390,7 +390,7 @@ mod tests {
             text.contains("no node called 'piant'") && text.contains("did you mean 'paint'"),
             "{text}"
         );
-        assert!(text.contains("rig.toml:86"), "{text}");
+        assert!(text.contains("rig.toml:87"), "{text}");
         let text = error("[node.paint]", "[node.brush-mian]");
         assert!(text.contains("did you mean 'brush-main'"), "{text}");
         for node in ["brush", "brush-main", "ui", "player", "recorder", "phantom"] {
@@ -399,10 +399,10 @@ mod tests {
         }
         let text = error("profile = \"srgb\"", "profile = \"sgrb\"");
         assert!(text.contains("'srgb'") && text.contains("ICC"), "{text}");
-        assert!(text.contains("rig.toml:76"), "{text}");
+        assert!(text.contains("rig.toml:77"), "{text}");
         let text = error("gamut = \"soft\"", "gamut = \"sfot\"");
         assert!(
-            text.contains("did you mean 'soft'") && text.contains("rig.toml:77"),
+            text.contains("did you mean 'soft'") && text.contains("rig.toml:78"),
             "{text}"
         );
     }

@@ -64,11 +64,13 @@ fn a_clutch_at_the_button_holds_for_as_long_as_it_is_pressed() {
     let (ticks, mut told) = rtrb::RingBuffer::new(64);
     let (_, models) = triple_buffer::triple_buffer(&Delivery::default());
     let (_, guides) = triple_buffer::triple_buffer(&Delivery::default());
+    let (_, fluids) = triple_buffer::triple_buffer(&Delivery::default());
     let (_, controls) = triple_buffer::triple_buffer(&ForceControl::default());
     let channels = Channels {
         ticks,
         models,
         guides,
+        fluids,
         controls,
         stop: std::sync::Arc::default(),
         dropped: std::sync::Arc::default(),
