@@ -11,9 +11,8 @@ use crate::transfer::{Along, can_halve, gather, halved, spread};
 use crate::vector::{add_scaled, dot, norm, scale_and_add};
 
 /// Steps of smoothing: inverses of the roots of a Chebyshev polynomial on [1/3, 2], where the spectrum of D⁻¹A lies that
-/// no coarser grid sees; of degree one for a component of the velocity, which is only a part of its operator, of two for the
-/// pressure.
-const SMOOTHING: [&[f32]; 2] = [&[0.857], &[0.569_5, 1.732]];
+/// no coarser grid sees.
+const SMOOTHING: [f32; 2] = [0.569_5, 1.732];
 /// Steps on the coarsest grid: Chebyshev on [1/50, 2].
 const COARSEST_STEPS: usize = 16;
 /// Cells of an axis of the coarsest grid at most, if it can be halved so far.
@@ -49,7 +48,6 @@ pub struct Multigrid {
     omegas: [f32; COARSEST_STEPS],
     /// True if a constant is no residual: no value is known and there is no mass.
     is_singular: bool,
-    smoothing: &'static [f32],
 }
 
 /// Part of the right-hand side at which a residual is rounding.
@@ -223,7 +221,6 @@ impl Multigrid {
             levels,
             omegas: coarsest_omegas(),
             is_singular,
-            smoothing: SMOOTHING[usize::from(faces.is_none())],
         }
     }
 
@@ -236,7 +233,7 @@ impl Multigrid {
     /// x ≈ A⁻¹·b by one symmetric V-cycle; b is 0 where there are no unknowns.
     pub fn cycle(&mut self, b: &[f32], x: &mut [f32]) {
         self.levels[0].b.copy_from_slice(b);
-        descend(&mut self.levels, self.smoothing, &self.omegas);
+        descend(&mut self.levels, &self.omegas);
         x.copy_from_slice(&self.levels[0].x);
     }
 
@@ -331,7 +328,7 @@ fn is_singular(grid: &Grid, stencil: &Stencil) -> bool {
 }
 
 /// A V-cycle from x = 0 on the first level.
-fn descend(levels: &mut [Level], smoothing: &[f32], omegas: &[f32]) {
+fn descend(levels: &mut [Level], omegas: &[f32]) {
     let Some((level, coarser)) = levels.split_first_mut() else {
         return;
     };
@@ -344,8 +341,8 @@ fn descend(levels: &mut [Level], smoothing: &[f32], omegas: &[f32]) {
         }
         return;
     };
-    stencil.begin(b, x, smoothing[0]);
-    for omega in &smoothing[1..] {
+    stencil.begin(b, x, SMOOTHING[0]);
+    for omega in &SMOOTHING[1..] {
         stencil.relax(&grid, b, x, spare, *omega);
     }
     stencil.residual(&grid, b, x, spare);
@@ -355,12 +352,12 @@ fn descend(levels: &mut [Level], smoothing: &[f32], omegas: &[f32]) {
     let weights = down.along.map(Along::restriction);
     down.gather(&grid, weights, spare, &mut coarser[0].b);
     mask(&mut coarser[0]);
-    descend(coarser, smoothing, omegas);
+    descend(coarser, omegas);
     down.spread(&grid, &mut coarser[0].x, spare);
     for ((x, spare), scale) in x.iter_mut().zip(&*spare).zip(&down.scale) {
         *x += scale * spare;
     }
-    for omega in smoothing.iter().rev() {
+    for omega in SMOOTHING.iter().rev() {
         stencil.relax(&grid, b, x, spare, *omega);
     }
 }

@@ -37,7 +37,7 @@ pub(crate) fn step(
     (tau, pull): (f64, [f32; 3]),
     velocity: &mut [Vec<f32>; 3],
     solids: &[Vec<f32>; 3],
-    pressure: &mut Vec<f32>,
+    pressure: &mut [f32],
 ) {
     for axis in 0..3 {
         diffuse(domain, axis, (tau as f32, pull[axis]), &mut velocity[axis]);
@@ -108,7 +108,7 @@ fn project(
     domain: &Domain,
     velocity: &mut [Vec<f32>; 3],
     solids: &[Vec<f32>; 3],
-    pressure: &mut Vec<f32>,
+    pressure: &mut [f32],
 ) {
     let grid = domain.grid;
     let mut stencil = Stencil::new(&grid);

@@ -15,8 +15,8 @@ use crate::vector::{add_scaled, dot, norm};
 
 /// Drag of walls on paint of a thickness of one, by its viscosity: between 3 for a film and 12 for a gap.
 const GAP_DRAG: f32 = 6.0;
-/// Directions that a new one is made orthogonal to.
-const MEMORY: usize = 10;
+/// Directions that a new one is made orthogonal to at most.
+const MEMORY: usize = 24;
 
 /// Room for the iterations, kept from one step to the next.
 #[derive(Clone, Debug, Default)]
@@ -28,13 +28,15 @@ pub struct Room {
 }
 
 impl Room {
-    fn fit(&mut self, unknowns: usize) {
+    fn fit(&mut self, unknowns: usize, steps: usize) {
         if self.residual.len() != unknowns {
             self.residual = vec![0.0; unknowns];
             self.fields = [(); 2].map(|()| vec![0.0; unknowns / 4]);
-            let empty = || (vec![0.0; unknowns], vec![0.0; unknowns], 0.0);
-            self.directions = (0..MEMORY).map(|_| empty()).collect();
+            self.directions.clear();
         }
+        let empty = || (vec![0.0; unknowns], vec![0.0; unknowns], 0.0);
+        let wanted = steps.min(MEMORY).max(self.directions.len());
+        self.directions.resize_with(wanted, empty);
     }
 }
 
@@ -128,7 +130,7 @@ impl Unified {
         steps: usize,
         room: &mut Room,
     ) -> Vec<f64> {
-        room.fit(x.len());
+        room.fit(x.len(), steps);
         let Room {
             residual: r,
             fields,

@@ -6,7 +6,7 @@
 //! flows through its faces along an axis, so that full cells stay full. What is asked of a cell beyond what it has is
 //! scaled down together.
 
-use crate::domain::{Domain, Part};
+use crate::domain::{Domain, LEAST_FILL, Part};
 use crate::grid::Grid;
 
 /// Most of a cell that goes through one face in a part of a step.
@@ -135,7 +135,25 @@ impl Volume {
                 );
             }
         }
+        self.settle(domain, open);
         parts
+    }
+
+    /// Lets drops that are too small to flow sink by a cell, where there is room for them.
+    fn settle(&mut self, domain: &Domain, open: &[f32]) {
+        let fill = self.fill(open);
+        let (grid, by) = (domain.grid, domain.grid.stride(2));
+        for place in grid.places().filter(|place| self.total[*place] > 0) {
+            let below = place - by;
+            let is_drop = domain.wet[place] == 0.0 && fill[place] < LEAST_FILL;
+            let has_room = fill[below] + fill[place] <= 1.0;
+            if is_drop && has_room && domain.part[2][place] != Part::Solid {
+                let below = grid.before(2, place);
+                for paint in &mut self.paints {
+                    paint[below] += std::mem::take(&mut paint[place]);
+                }
+            }
+        }
     }
 
     /// Moves paint along one axis.

@@ -6,7 +6,7 @@
 
 /// A mistake to be noticed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
+pub(crate) enum Fault {
     /// Shear is the gradient of one velocity alone.
     WithoutCrossTerm,
     /// Walls are a whole cell away.
@@ -18,7 +18,7 @@ pub enum Fault {
 }
 
 /// A basin between walls, of which the one at x = 0 moves.
-pub struct Basin {
+pub(crate) struct Basin {
     pub cells: [usize; 3],
     /// Fill of the cells, x fastest.
     pub fill: Vec<f64>,
@@ -33,7 +33,7 @@ pub struct Basin {
 }
 
 /// Unknowns and their values: velocities, then pressures.
-pub struct Solution {
+pub(crate) struct Solution {
     pub faces: Vec<(usize, [usize; 3])>,
     pub wet: Vec<[usize; 3]>,
     pub values: Vec<f64>,
@@ -49,7 +49,7 @@ enum Velocity {
 
 impl Basin {
     /// Number of the lower face of a cell across an axis.
-    pub fn face(&self, axis: usize, cell: [usize; 3]) -> usize {
+    pub(crate) fn face(&self, axis: usize, cell: [usize; 3]) -> usize {
         let [x, y, z] = cell;
         let [nx, ny, nz] = self.cells.map(|cells| cells + 1);
         x + nx * (y + ny * (z + nz * axis))
@@ -78,7 +78,7 @@ impl Basin {
     }
 
     /// The step, by elimination.
-    pub fn solve(&self, fault: Option<Fault>) -> Solution {
+    pub(crate) fn solve(&self, fault: Option<Fault>) -> Solution {
         let mut faces = Vec::new();
         for axis in 0..3 {
             for cell in self.all_cells() {
