@@ -104,7 +104,7 @@ impl Dab {
     /// Algorithm 2, along a parabola if there is one.
     fn stroke_better(&mut self, step: &mut Step<'_>, bend: Option<(&HeadPose, f32)>) -> StepReport {
         let whole = step.sweep;
-        let parts = parts(step);
+        let parts = parts(&whole);
         let mut report = StepReport::default();
         let [mut before, mut after] = std::mem::take(&mut self.poses);
         between(&whole, bend, 0.0, &mut before);

@@ -2,7 +2,7 @@
 
 use maulstick_brush::HeadPose;
 use maulstick_model::brush::head::motion;
-use maulstick_model::interface::{Step, Sweep};
+use maulstick_model::interface::Sweep;
 
 /// A strip lower than this counts for the anchor point, cells.
 const NEAR: f32 = 3.0;
@@ -88,13 +88,12 @@ pub fn places(way: [f32; 2]) -> impl Iterator<Item = [i64; 2]> {
     })
 }
 
-/// Footprints of a step that is interpolated: one each cell, or each quarter of a millimetre where that is more, which a
-/// footprint finds as swept.
+/// Footprints of a step that is interpolated, one each cell: swept ones of longer steps would have every other cell of a
+/// fine canvas always under the same part of a bristle, and leave bare what is under a higher one.
 #[must_use]
-pub fn parts(step: &Step<'_>) -> usize {
-    let each = f64::from(step.traits.step_cells) / f64::from(1u32 << step.traits.doublings);
-    // A step that is as long but for rounding is one.
-    (motion(step.sweep.from, step.sweep.to) / each - 0.05)
+pub fn parts(sweep: &Sweep<'_>) -> usize {
+    // A step that is a cell long but for rounding is one.
+    (motion(sweep.from, sweep.to) - 0.05)
         .ceil()
         .clamp(1.0, 64.0) as usize
 }
