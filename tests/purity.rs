@@ -89,6 +89,7 @@ fn paint_knows_no_brush_a_model_no_light_and_light_no_brush() {
     for (name, unknown) in [
         ("canvas", ["brush", "optics", "impasto", "appearance"]),
         ("impasto", ["optics", "appearance", "painting", "document"]),
+        ("dab", ["impasto", "marker", "painting", "document"]),
         ("appearance", ["brush", "impasto", "painting", "document"]),
     ] {
         for other in unknown {

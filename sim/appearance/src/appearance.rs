@@ -85,6 +85,12 @@ impl Appearance {
         }
     }
 
+    /// Factor on the optical thickness of a dry layer.
+    #[must_use]
+    pub fn opacity(&self, layer: u32) -> f32 {
+        self.opacities.get(&layer).copied().unwrap_or(1.0)
+    }
+
     /// Internal reflectances over `under` with one more dry layer. If the backend fails, which is a fault of the
     /// program, the layer is left out.
     fn with_layer(
@@ -98,7 +104,7 @@ impl Appearance {
             .iter()
             .map(|(slot, film)| (*slot, film.as_slice()))
             .collect();
-        let opacity = self.opacities.get(&layer.number).copied().unwrap_or(1.0);
+        let opacity = self.opacity(layer.number);
         let films = FilmPlanes {
             paints: &paints,
             opacity,

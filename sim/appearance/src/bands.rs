@@ -234,7 +234,7 @@ impl<'a> Banded<'a> {
     #[must_use]
     pub fn shown(&self, id: TileId, tile: Option<&Tile>, bakery: &mut Bakery) -> DisplayTile {
         let ground = self.bare.ground.tile(id);
-        let baked = tile.and_then(Tile::dry).map(|stack| {
+        let baked = self.bare.baked(tile).map(|stack| {
             let mut alone = CpuFilms::with_threads(NonZero::<usize>::MIN);
             bakery.planes((self.look, &mut alone), 0, id, (stack, ground.under()))
         });
@@ -243,7 +243,7 @@ impl<'a> Banded<'a> {
             .map_or_else(|| ground.under(), Under::Planes);
         let films = self.bare.films(tile);
         let unlit = films.shade(&self.look.studio, under);
-        DisplayTile::on(self.bare, id, tile, (&films, unlit), self.look.thinner)
+        DisplayTile::on(self.bare, id, tile, (&films, unlit), self.look)
     }
 }
 

@@ -4,6 +4,7 @@
 
 use std::sync::Arc;
 
+use maulstick_canvas::dry::DryStack;
 use maulstick_canvas::relief::Relief;
 use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_optics::{FilmPlanes, Studio, Under};
@@ -144,10 +145,18 @@ pub struct BlankSurface {
 }
 
 impl BlankSurface {
-    /// The wet films of a tile on it; empty where nothing was painted.
+    /// The wet films of a tile on it that the optics shade; empty where nothing was painted.
     #[must_use]
     pub fn films(&self, tile: Option<&Tile>) -> WetFilms {
+        let tile = tile.filter(|_| !self.shown.has_own_colours());
         tile.map(|tile| self.shown.films(tile)).unwrap_or_default()
+    }
+
+    /// The dry layers of a tile on it that the optics bake.
+    #[must_use]
+    pub fn baked<'a>(&self, tile: Option<&'a Tile>) -> Option<&'a Arc<DryStack>> {
+        let tile = tile.filter(|_| !self.shown.has_own_colours());
+        tile.and_then(Tile::dry)
     }
 
     /// The places in a tile of its cells that lie in a well.

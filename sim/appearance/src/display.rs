@@ -11,8 +11,9 @@ use maulstick_optics::light::gloss::{merged_gloss, roughness};
 use maulstick_optics::{FilmPlanes, Studio, Under};
 use maulstick_types::paint::TILE;
 
-use crate::appearance::thickness;
+use crate::appearance::{Appearance, thickness};
 use crate::blank_surface::BlankSurface;
+use crate::show_paint::Seen;
 
 /// A tile as it is shown, before light.
 #[derive(Clone, Debug, PartialEq)]
@@ -157,11 +158,18 @@ impl DisplayTile {
         id: TileId,
         tile: Option<&Tile>,
         (films, rgb): (&WetFilms, [Vec<f32>; 3]),
-        thinner: Option<usize>,
+        look: &Appearance,
     ) -> Self {
-        let mut shown = Self::of(tile, (films, rgb), thinner);
+        let own = bare.shown.has_own_colours().then(|| WetFilms::of(tile));
+        let mut shown = Self::of(tile, (own.as_ref().unwrap_or(films), rgb), look.thinner);
         if let Some(tile) = tile {
-            bare.shown.finish(tile, &mut shown);
+            let seen = Seen {
+                look,
+                bare,
+                id,
+                tile,
+            };
+            bare.shown.finish(&seen, &mut shown);
         }
         let dry = tile.and_then(Tile::dry);
         for well in bare.in_wells(id) {

@@ -7,6 +7,7 @@ use crate::page::Page;
 use crate::planes::{Planes, TILE_CELLS, painted};
 use crate::quantum::{CELL_MAX, SLOTS};
 use crate::tile::Tile;
+use crate::wet_over::is_wet_over;
 
 /// A tile whose newest layers are wet again.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,8 +72,10 @@ impl Wet {
                 }
             }
         }
-        let rest = rest.into_iter().map(|(slot, plane)| (slot, plane.into()));
-        any.then(|| painted(rest).with_own(layer.own().iter().cloned()))
+        let rest = painted(rest.into_iter().map(|(slot, plane)| (slot, plane.into())));
+        let bare = rest.is_empty();
+        let own = layer.own().iter().filter(|plane| !(bare && is_wet_over(plane)));
+        any.then(|| rest.with_own(own.cloned()))
     }
 }
 

@@ -11,6 +11,8 @@ use crate::brush::traits::BrushTraits;
 /// The motion of a head in one step, in cells of the surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Sweep<'a> {
+    /// Pose at the step before that, if the path began earlier.
+    pub before: Option<&'a HeadPose>,
     /// Pose at the previous step.
     pub from: &'a HeadPose,
     /// Pose now.

@@ -25,6 +25,8 @@ const ROUNDING: f64 = 1e-6;
 /// Cuts the motion of one brush on one surface.
 #[derive(Debug)]
 pub struct PathStepper {
+    /// Its position a step ago, and the head there.
+    before: Option<(Waypoint, HeadPose)>,
     at: Waypoint,
     stepped: HeadPose,
     /// Its position since then, less than a step on.
@@ -40,6 +42,7 @@ impl PathStepper {
         let mut stepped = HeadPose::default();
         at.pose(head, scale, &mut stepped);
         Self {
+            before: None,
             at,
             stepped,
             ahead: None,
@@ -64,19 +67,30 @@ impl PathStepper {
         path
     }
 
-    /// A saved path: position of its last step, and the position since.
+    /// A saved path: position of its last step, the position since, and that of the step before.
     #[must_use]
-    pub fn going_on(head: &Head, (at, ahead): (Waypoint, Option<Waypoint>), scale: Scale) -> Self {
+    pub fn going_on(
+        head: &Head,
+        (at, ahead, before): (Waypoint, Option<Waypoint>, Option<Waypoint>),
+        scale: Scale,
+    ) -> Self {
+        let posed = |place: Waypoint| {
+            let mut pose = HeadPose::default();
+            place.pose(head, scale, &mut pose);
+            (place, pose)
+        };
         Self {
             ahead,
+            before: before.map(posed),
             ..Self::begin(head, at, scale)
         }
     }
 
-    /// Position of the last step, and the position since.
+    /// Position of the last step, the position since, and that of the step before.
     #[must_use]
-    pub fn places(&self) -> (&Waypoint, Option<&Waypoint>) {
-        (&self.at, self.ahead.as_ref())
+    pub fn places(&self) -> (&Waypoint, Option<&Waypoint>, Option<&Waypoint>) {
+        let before = self.before.as_ref().map(|(place, _)| place);
+        (&self.at, self.ahead.as_ref(), before)
     }
 
     /// Scale of the brush's lengths on the surface.
@@ -152,11 +166,14 @@ impl PathStepper {
         let own = self.scale.step_cells(head.is_fine());
         let longer = |doublings: &u32| motion > own * f64::from(1 << doublings) * DOUBLED_FROM;
         let sweep = Sweep {
+            before: self.before.as_ref().map(|(_, pose)| pose),
             from: &self.stepped,
             to: &next,
         };
         step(sweep, (0..MOST_DOUBLINGS).take_while(longer).count() as u32);
-        (self.at, self.stepped) = (to, next);
+        let at = std::mem::replace(&mut self.at, to);
+        let stepped = std::mem::replace(&mut self.stepped, next);
+        self.before = Some((at, stepped));
     }
 }
 
@@ -254,11 +271,14 @@ mod tests {
             let head = Head::of(&BrushFile::library("round").expect("round"));
             let mut path = PathStepper::begin(&head, waypoint(0.1), SCALE);
             path.advance(&head, (waypoint(0.1 + first * 2.5e-4), 0), |_, _| ());
-            let (at, ahead) = path.places();
-            let mut kept = PathStepper::going_on(&head, (at.clone(), ahead.cloned()), SCALE);
+            let (at, ahead, before) = path.places();
+            let places = (at.clone(), ahead.cloned(), before.cloned());
+            let mut kept = PathStepper::going_on(&head, places, SCALE);
             let rest = |path: &mut PathStepper, goes_on: bool| {
                 let mut ends = Vec::new();
-                let mut note = |sweep: Sweep<'_>, _: u32| ends.push(sweep.to.x.clone());
+                let mut note = |sweep: Sweep<'_>, _: u32| {
+                    ends.push((sweep.before.map(|pose| pose.x.clone()), sweep.to.x.clone()));
+                };
                 if goes_on {
                     path.advance(&head, (waypoint(0.1 + second * 2.5e-4), 0), &mut note);
                 }

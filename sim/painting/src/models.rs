@@ -5,6 +5,7 @@ use std::fmt;
 
 use maulstick_appearance::show_paint::{Counted, ShowPaint};
 use maulstick_canvas::EditError;
+use maulstick_dab::{Dab, Layers};
 use maulstick_impasto::Impasto;
 use maulstick_marker::{Marker, Matte};
 use maulstick_model::interface::PaintModel;
@@ -19,12 +20,20 @@ pub struct ModelEntry {
     make: fn() -> Box<dyn PaintModel>,
 }
 
+/// Strength of dAb's embossing, encoded channel by metre.
+const EMBOSS: f32 = 250.0;
+
 /// All paint models.
-pub static MODELS: [ModelEntry; 2] = [
+pub static MODELS: [ModelEntry; 3] = [
     ModelEntry {
         name: "impasto",
         shown: &Counted,
         make: || Box::new(Impasto::default()),
+    },
+    ModelEntry {
+        name: "dab",
+        shown: &Layers { emboss: EMBOSS },
+        make: || Box::new(Dab::default()),
     },
     ModelEntry {
         name: "marker",

@@ -24,6 +24,9 @@ pub struct BrushSnapshot {
     pub stroke: Option<(u32, u64)>,
     /// While it paints, on which surface, where it stepped last, and where it has come to since.
     pub path: Option<(u32, Scale, WaypointSnapshot, Option<WaypointSnapshot>)>,
+    /// See `path`: the step before the last.
+    #[serde(default)]
+    pub before: Option<WaypointSnapshot>,
     /// Loads that its strokes take in turn, and the number of strokes since its take began.
     pub loads: Vec<Mixture>,
     /// See `loads`.

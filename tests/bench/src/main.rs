@@ -19,6 +19,7 @@
 //! | [`render`] | `render`: the 30 s recording, offline |
 //! | [`report`] | rows and their table |
 //! | [`tails`] | `render`: work beside the steps, as shares of it |
+//! | [`texels`] | `paint`: dAb's stroking algorithms by themselves |
 //! | [`thread_cpu`] | time of the processor |
 //! | [`view`] | `view`: frames of the whole desk without a window |
 //! | [`window`] | `window`: memory of the window |
@@ -42,6 +43,7 @@ mod render;
 mod report;
 mod running;
 mod tails;
+mod texels;
 mod thread_cpu;
 mod view;
 mod window;
@@ -98,7 +100,9 @@ const AREAS: [Area; 15] = [
     }),
     ("pen", |report, _| pen::run(report)),
     ("recording", |report, _| recording::run(report)),
-    ("render", |report, _| render::run(report)),
+    ("render", |report, options| {
+        render::run(report, &options.model)
+    }),
     ("view", |report, _| view::run(report)),
     ("window", |report, _| window::run(report)),
 ];

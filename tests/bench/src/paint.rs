@@ -20,6 +20,7 @@ use maulstick_types::values::{BrushName, FilmThickness};
 use crate::advection;
 use crate::header::header_of;
 use crate::report::{Report, quantile, sorted};
+use crate::texels;
 
 const BRUSH: &str = "main";
 /// The paints on the canvas and on the brush.
@@ -201,6 +202,7 @@ pub(crate) fn run(report: &mut Report, backend: &str, model: &str) -> Result<(),
     }
     match model {
         "impasto" => advection::run(report, means.gpu),
+        "dab" => with_threads(cores.min(2), || texels::run(report)),
         _ => Ok(()),
     }
 }

@@ -48,7 +48,7 @@ pub(crate) fn performance(place: &Path) -> Result<(PathBuf, f64), UserError> {
 }
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
+pub(crate) fn run(report: &mut Report, model: &str) -> Result<(), UserError> {
     let fault = |error: std::io::Error| UserError::failure(error.to_string());
     let place = tempfile::tempdir().map_err(fault)?;
     let place = place.path();
@@ -59,7 +59,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     }
     let (mut seconds, mut pairs) = (Vec::new(), Vec::new());
     for _ in 0..RUNS {
-        seconds.push(painted(place, &take, USUAL_MM)?);
+        seconds.push(painted(place, &take, (USUAL_MM, model))?);
         if let Some(peer) = &peer {
             let start = Instant::now();
             peer.paint()?;
@@ -86,21 +86,21 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
         ("recording.0125.time", 0.125),
         ("recording.00625.time", 0.0625),
     ] {
-        report.row(name, painted(place, &take, cell_mm)?, "s");
+        report.row(name, painted(place, &take, (cell_mm, model))?, "s");
     }
     let cells = (SIDE_MM / USUAL_MM).round() as u32;
     tails::run(report, &Take::read(&take)?, &LOADS, (cells, USUAL_MM))
 }
 
-/// Paints the take on cells of a side; how long that takes, s.
-fn painted(place: &Path, take: &Path, cell_mm: f64) -> Result<f64, UserError> {
+/// Paints the take on cells of a side by a model; how long that takes, s.
+fn painted(place: &Path, take: &Path, (cell_mm, model): (f64, &str)) -> Result<f64, UserError> {
     let fault = |error: std::io::Error| UserError::failure(error.to_string());
     let start = Instant::now();
     let side = (SIDE_MM / cell_mm).round();
     let mut command = Command::new(maulstick()?);
     command.arg("render").arg(take).args(["-o", "p.png"]);
     command.args(["--ledger", "l.json", "--cell-mm", &cell_mm.to_string()]);
-    command.args(["--size", &format!("{side}x{side}")]);
+    command.args(["--size", &format!("{side}x{side}"), "--model", model]);
     command.args(LOADS.iter().flat_map(|load| ["--load", load]));
     let status = command.current_dir(place).status().map_err(fault)?;
     match status.success() {

@@ -56,17 +56,17 @@ pub struct FedSurface {
 }
 
 impl FedSurface {
-    /// Dry layers of a tile.
+    /// Dry layers of a tile that the optics bake.
     #[must_use]
     pub fn dry_on(&self, id: TileId) -> Option<&Arc<DryStack>> {
-        self.tiles.get(&id)?.1.as_deref()?.dry()
+        self.bare.baked(self.tiles.get(&id)?.1.as_deref())
     }
 
-    /// The tiles on which something has dried.
+    /// The tiles on which something has dried that the optics bake.
     pub fn dry_tiles(&self) -> impl Iterator<Item = (TileId, &Arc<DryStack>)> {
         self.tiles
             .iter()
-            .filter_map(|(id, (_, tile))| Some((*id, tile.as_deref()?.dry()?)))
+            .filter_map(|(id, (_, tile))| Some((*id, self.bare.baked(tile.as_deref())?)))
     }
 }
 

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use maulstick_appearance::display::{DisplayTile, WetFilms};
 use maulstick_appearance::{Appearance, Bakery};
 use maulstick_canvas::dry::DryStack;
-use maulstick_canvas::tile::{Tile, TileId};
+use maulstick_canvas::tile::TileId;
 use maulstick_document::rows::shown_number;
 use maulstick_document::{ShownTile, TileCache};
 use maulstick_optics::backend::FilmBackend;
@@ -173,7 +173,7 @@ impl Pyramid {
         let grounds: Vec<_> = ids.iter().map(|id| surface.bare.ground.tile(*id)).collect();
         let mut baked = Vec::with_capacity(ids.len());
         for (id, ground) in ids.iter().zip(&grounds) {
-            baked.push(painted(id).and_then(Tile::dry).map(|stack| {
+            baked.push(surface.bare.baked(painted(id)).map(|stack| {
                 let sight = (look, &mut self.films as &mut dyn FilmBackend);
                 self.bakery
                     .planes(sight, number, *id, (stack, ground.under()))
@@ -202,8 +202,7 @@ impl Pyramid {
             }
         };
         for ((id, films), rgb) in ids.iter().zip(&films).zip(colours) {
-            let shown =
-                DisplayTile::on(&surface.bare, *id, painted(id), (films, rgb), look.thinner);
+            let shown = DisplayTile::on(&surface.bare, *id, painted(id), (films, rgb), look);
             let version = Self::painted(surface, 0, *id);
             self.put_aside(look, (number, 0, *id), version, &shown);
             self.keep((number, 0, *id), version, Arc::new(shown));

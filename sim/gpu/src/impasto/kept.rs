@@ -73,6 +73,7 @@ impl KeptSteps {
                 window,
                 head: &self.head,
                 sweep: Sweep {
+                    before: None,
                     from: &kept.from,
                     to: &kept.to,
                 },

@@ -115,6 +115,7 @@ impl Scene {
             window: &mut self.window,
             head: &self.head,
             sweep: Sweep {
+                before: None,
                 from: &self.from,
                 to: &self.to,
             },

@@ -113,7 +113,7 @@ impl Bench {
     fn stroke(&mut self, way: &[HeadPose], windows: Windows) {
         for pair in way.windows(2) {
             let [from, to] = pair else { continue };
-            self.step(Sweep { from, to }, windows);
+            self.step(sweep(from, to), windows);
         }
     }
 
@@ -132,6 +132,14 @@ impl Bench {
             .collect();
         window.close(&mut self.store);
         films
+    }
+}
+
+fn sweep<'a>(from: &'a HeadPose, to: &'a HeadPose) -> Sweep<'a> {
+    Sweep {
+        before: None,
+        from,
+        to,
     }
 }
 
@@ -341,6 +349,7 @@ fn a_step_without_contact_changes_nothing() {
                 window: &mut window,
                 head: &bench.head,
                 sweep: Sweep {
+                    before: None,
                     from: &from,
                     to: &to,
                 },
@@ -371,7 +380,7 @@ fn an_empty_brush_leaves_nothing() {
     for pair in way.windows(2) {
         let (from, to) = (&pair[0], &pair[1]);
         touched += bench
-            .step(Sweep { from, to }, Windows::Narrow)
+            .step(sweep(from, to), Windows::Narrow)
             .footprint_cells;
     }
     assert!(touched > 0);

@@ -19,6 +19,8 @@ pub struct BrushTraits {
     pub step_cells: f32,
     /// In so many parts the paint of a step moves, so that none goes farther than a cell in one.
     pub parts: u32,
+    /// How often the step is doubled, because the machine falls behind.
+    pub doublings: u32,
     /// Half the width of a strip, cells.
     pub half_width: f32,
     /// Share of that width which a strip loses up to its point.
@@ -102,6 +104,7 @@ impl BrushTraits {
         Self {
             step_cells: step_cells as f32,
             parts: step_cells.ceil() as u32,
+            doublings: 0,
             half_width: (0.5 * file.strips.width_mm * seen) as f32,
             taper: file.strips.taper as f32,
             recede: file
@@ -154,6 +157,7 @@ impl BrushTraits {
         }
         self.step_cells *= (1 << doublings) as f32;
         self.parts = self.step_cells.ceil() as u32;
+        self.doublings += doublings;
         self
     }
 }

@@ -2,6 +2,7 @@
 
 mod books;
 mod cut;
+mod dab;
 mod drying;
 mod extremes;
 mod hairline;

@@ -24,15 +24,17 @@ impl Brushes {
     ) -> BTreeMap<String, BrushSnapshot> {
         let brushes = self.iter().map(|brush| {
             let path = brush.path.as_ref().map(|(on, path)| {
-                let (at, ahead) = path.places();
+                let (at, ahead, _) = path.places();
                 let surface = surfaces[*on].id;
                 (surface, path.scale(), at.into(), ahead.map(Into::into))
             });
+            let before = brush.path.as_ref().and_then(|(_, path)| path.places().2);
             let kept = BrushSnapshot {
                 file: brush.file.to_toml().unwrap_or_default(),
                 load: loads.get(&brush.name).map_or(0, Page::id),
                 stroke: brush.stroke,
                 path,
+                before: before.map(Into::into),
                 loads: brush.loads.clone(),
                 strokes: brush.strokes,
                 seed: brush.seed,
@@ -87,7 +89,8 @@ impl PaintingBrush {
         brush.head = brush.disordered();
         brush.path = kept.path.and_then(|(surface, scale, at, ahead)| {
             let on = surfaces.at(surface).ok()?;
-            let places = (Waypoint::from(at), ahead.map(Waypoint::from));
+            let before = kept.before.map(Waypoint::from);
+            let places = (Waypoint::from(at), ahead.map(Waypoint::from), before);
             Some((on, PathStepper::going_on(&brush.head, places, scale)))
         });
         Ok(brush)

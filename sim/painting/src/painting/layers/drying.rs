@@ -157,7 +157,7 @@ impl SurfaceState {
                 return (dried, Some(id.y * self.store.grid()[0] + id.x));
             }
             seen += 1;
-            if let Some(tile) = tile.dried(number, share, &stays) {
+            if let Some(tile) = self.dried_tile(tile, (number, share), &stays) {
                 dried.push((id, Arc::new(tile)));
             }
         }

@@ -117,10 +117,25 @@ impl SurfaceState {
     pub(crate) fn dried(&self, part: &Part, number: u32, share: f32) -> Changed {
         let tiles = self.wet_tiles();
         let dried = tiles.filter_map(|(id, tile)| {
-            let tile = tile.dried(number, share, &self.staying(part, id)?)?;
+            let tile = self.dried_tile(tile, (number, share), &self.staying(part, id)?)?;
             Some((id, Arc::new(tile)))
         });
         dried.collect()
+    }
+
+    /// A tile after the lower share of its wet paint, but for the cells of `stays`, has dried into the layer of this
+    /// number; none where nothing dries.
+    pub(crate) fn dried_tile(
+        &self,
+        tile: &Tile,
+        (number, share): (u32, f32),
+        stays: &[usize],
+    ) -> Option<Tile> {
+        let dried = tile.dried(number, share, stays)?;
+        Some(match self.bare.shown.has_own_colours() {
+            true => dried.with_wet_noted(),
+            false => dried,
+        })
     }
 
     /// The tiles of a part on which something has dried, with the cells that are of the part.

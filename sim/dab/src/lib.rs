@@ -1,0 +1,38 @@
+//! dAb (Baxter 2004, ch. 4): the light paint model. Paint lies on a wet surface and a dry or deep layer, is moved in whole
+//! units, mixes additively, and is not pushed.
+//!
+//! It keeps no planes of its own: additive colour is linear in the volumes of the paints, so counts by slot say what RGB
+//! textures would. [`Dab`] is the step, [`Layers`] how its paint is shown.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`volume`] | units of paint: 8 bits a layer, 32 of the surface in a deep one |
+//! | [`dither`] | volumes below a unit |
+//! | [`transfer`] | what goes from brush to canvas and back |
+//! | [`raster`] | the brush over the cells that it touches |
+//! | [`reservoir`] | the surface of a brush filled again |
+//! | [`relative_height`] | heights as differences of a byte |
+//! | [`stroke`] | stroking algorithms: faster, better, along a spline |
+//! | [`layers`], [`emboss`] | colour and relief |
+//!
+//! ```
+//! use maulstick_dab::Dab;
+//! use maulstick_model::interface::PaintModel as _;
+//!
+//! let dab = Dab::default();
+//! assert_eq!((dab.name(), dab.rest_halo()), ("dab", None));
+//! ```
+
+pub mod dither;
+pub mod emboss;
+pub mod layers;
+pub mod raster;
+pub mod relative_height;
+pub mod reservoir;
+mod step;
+pub mod stroke;
+pub mod transfer;
+pub mod volume;
+
+pub use layers::Layers;
+pub use step::Dab;

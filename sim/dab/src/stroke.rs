@@ -1,0 +1,99 @@
+//! Stroking algorithms (Baxter 2004, § 4.3): how a step's blends follow from the head before it and after it.
+
+use maulstick_brush::HeadPose;
+use maulstick_model::brush::head::motion;
+use maulstick_model::interface::Sweep;
+
+/// A strip lower than this counts for the anchor point, cells.
+const NEAR: f32 = 3.0;
+
+/// Stroking algorithm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stroker {
+    /// Algorithm 1, STROKE-FASTER: the footprint at the end of the step is blended along the way of its anchor point, a
+    /// cell at a time.
+    Faster,
+    /// Algorithm 2, STROKE-BETTER: the head is interpolated a cell at a time, and each has its footprint.
+    Better,
+    /// As [`Better`](Self::Better), but along a parabola through the head of the step before too: the spline of which
+    /// the text says that it would be a natural extension.
+    Spline,
+}
+
+/// The head at `t` of its way, 0 to 1: on the chord, or on the parabola through `before`, which it passed at −`ago`.
+pub fn between(sweep: &Sweep<'_>, bend: Option<(&HeadPose, f32)>, t: f32, into: &mut HeadPose) {
+    let (from, to) = (sweep.from, sweep.to);
+    let mix = |a: f32, b: f32| a + (b - a) * t;
+    let plane = |of: fn(&HeadPose) -> &Vec<f32>, into: &mut Vec<f32>| {
+        let (from, to) = (of(from), of(to));
+        into.clear();
+        into.extend(from.iter().zip(to).map(|(a, b)| mix(*a, *b)));
+        let Some((before, ago)) = bend else { return };
+        // c·t·(t − 1) is nothing at both ends; c from where it was at −ago.
+        let factor = t * (t - 1.0) / (ago * (ago + 1.0));
+        for (value, (before, (from, to))) in into
+            .iter_mut()
+            .zip(of(before).iter().zip(from.iter().zip(to)))
+        {
+            *value += factor * (before - from + ago * (to - from));
+        }
+    };
+    plane(|pose| &pose.x, &mut into.x);
+    plane(|pose| &pose.y, &mut into.y);
+    plane(|pose| &pose.z, &mut into.z);
+    plane(|pose| &pose.skin.x, &mut into.skin.x);
+    plane(|pose| &pose.skin.y, &mut into.skin.y);
+    plane(|pose| &pose.skin.z, &mut into.skin.z);
+    // A head bends round the surface, never into it.
+    for z in into.z.iter_mut().chain(&mut into.skin.z) {
+        *z = z.max(0.0);
+    }
+    into.press = mix(from.press, to.press);
+    into.splay = mix(from.splay, to.splay);
+    into.bend = [0, 1].map(|i| mix(from.bend[i], to.bend[i]));
+}
+
+/// What a step's parabola goes through: the head of the step before, and how long ago that was by the length of this
+/// one. None where either hardly moves.
+#[must_use]
+pub fn bend<'a>(sweep: &Sweep<'a>) -> Option<(&'a HeadPose, f32)> {
+    let before = sweep.before?;
+    let own = motion(sweep.from, sweep.to) as f32;
+    let ago = motion(before, sweep.from) as f32 / own.max(1e-3);
+    (own > 0.5 && (0.2..5.0).contains(&ago)).then_some((before, ago))
+}
+
+/// Way of the anchor point, the mean of what is near the surface after the step, cells.
+#[must_use]
+pub fn anchor_way(sweep: &Sweep<'_>) -> [f32; 2] {
+    let (from, to) = (sweep.from, sweep.to);
+    let (mut sum, mut count) = ([0.0f32; 2], 0.0f32);
+    for i in 0..to.z.len().min(from.z.len()) {
+        if to.z[i] < NEAR {
+            sum[0] += to.x[i] - from.x[i];
+            sum[1] += to.y[i] - from.y[i];
+            count += 1.0;
+        }
+    }
+    sum.map(|sum| sum / count.max(1.0))
+}
+
+/// Places along the way of an anchor point, in whole cells from its end: none at its beginning, where the step before
+/// ended.
+pub fn places(way: [f32; 2]) -> impl Iterator<Item = [i64; 2]> {
+    let count = way[0].abs().max(way[1].abs()).ceil().max(1.0);
+    (1..=count as usize).map(move |place| {
+        let left = place as f32 / count - 1.0;
+        way.map(|way| (way * left).round() as i64)
+    })
+}
+
+/// Footprints of a step that is interpolated, one each cell: swept ones of longer steps would have every other cell of a
+/// fine canvas always under the same part of a bristle, and leave bare what is under a higher one.
+#[must_use]
+pub fn parts(sweep: &Sweep<'_>) -> usize {
+    // A step that is a cell long but for rounding is one.
+    (motion(sweep.from, sweep.to) - 0.05)
+        .ceil()
+        .clamp(1.0, 64.0) as usize
+}

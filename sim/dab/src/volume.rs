@@ -1,0 +1,33 @@
+//! Volumes: whole units of paint on a cell, 8 bits a layer (Baxter 2004, § 4.4).
+//!
+//! Paint is counted in quanta by slot as in every model; dAb moves it in units of [`UNIT`] of them. Additive colour is
+//! linear in the volumes of the paints, so what RGB textures would hold follows from the counts.
+
+/// Quanta of a unit: 3.1 µm on a cell.
+pub const UNIT: f32 = 2048.0;
+/// Most units of a layer.
+pub const MOST: f32 = 255.0;
+/// Units of the surface layer in one of the reservoir.
+pub const DEEP: f32 = 32.0;
+/// Units that hide what lies under them, 1/O_t of eq. 4.1: 49 µm.
+pub const OPAQUE: f32 = 16.0;
+
+/// Units of so many quanta; more than a layer holds count as full.
+#[must_use]
+pub fn units(quanta: f32) -> u8 {
+    (quanta / UNIT) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn volumes_saturate_and_do_not_wrap() {
+        assert_eq!([0.0, UNIT - 1.0, UNIT, 3.5 * UNIT].map(units), [0, 0, 1, 3]);
+        assert_eq!(
+            [255.0 * UNIT, 256.0 * UNIT, 1e12, -5.0].map(units),
+            [255, 255, 255, 0]
+        );
+    }
+}
