@@ -375,7 +375,7 @@ fn a_force_of_paint_follows_the_hand_in_contact_alone() {
         let mut contact = Contact::new(&dry).expect("a model");
         contact.time_to_live_s = f64::INFINITY;
         servo.models.write(Delivery {
-            contact: Some(contact),
+            model: Some(contact),
             sender: None,
             number: 1,
         });
