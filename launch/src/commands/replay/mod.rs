@@ -208,10 +208,14 @@ impl Playback {
                 return Ok(Turn::End);
             }
             leaps |= matches!(order, Order::Seek(_) | Order::Skip(_));
+            self.transport.wait_for(next_ns);
             self.transport.order(order, next_ns);
             self.reported = None;
+            if order == Order::Step {
+                break;
+            }
         }
-        self.report()?;
+        self.report(next_ns)?;
         Ok(match (leaps, self.transport.position_ns() < played_ns) {
             (false, _) => Turn::On,
             (true, true) => Turn::Leap(Leap::Back),
@@ -220,7 +224,7 @@ impl Playback {
     }
 
     /// Says where it is, at most five times a second.
-    fn report(&mut self) -> Result<(), UserError> {
+    fn report(&mut self, next_ns: Option<u64>) -> Result<(), UserError> {
         if self
             .reported
             .is_some_and(|reported| reported.elapsed() < REPORT_PERIOD)
@@ -228,7 +232,8 @@ impl Playback {
             return Ok(());
         }
         self.reported = Some(Instant::now());
-        let s = self.transport.position_ns() as f64 * 1e-9;
+        let position_ns = self.transport.position_ns();
+        let s = next_ns.map_or(position_ns, |next_ns| position_ns.min(next_ns)) as f64 * 1e-9;
         let (rate, paused) = (self.transport.rate(), self.transport.is_paused());
         if self.json {
             let end_s = self.transport.end_ns() as f64 * 1e-9;

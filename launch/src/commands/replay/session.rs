@@ -124,7 +124,8 @@ impl Player<'_> {
         while !self.member.stop.requested() {
             let next_ns = events.next_ns()?;
             let turn = playback.turn(next_ns, played_ns)?;
-            let is_over = next_ns.is_none() && turn == Turn::On;
+            let has_ended = next_ns.is_none() && turn == Turn::On;
+            let is_over = has_ended && (!self.options.again || playback.transport.is_over());
             if turn == Turn::Leap(Leap::Back) || (is_over && self.options.again) {
                 if is_over {
                     playback.transport.rewind();

@@ -93,10 +93,13 @@ pub(super) fn replay(options: &ReplayOptions, recording: &Recording) -> Result<i
     while !member.stop.requested() {
         let next_ns = events.next_ns()?;
         let turn = playback.turn(next_ns, played_ns)?;
-        let is_over = next_ns.is_none() && turn == Turn::On;
+        let has_ended = next_ns.is_none() && turn == Turn::On;
+        let is_over = has_ended && (!options.again || playback.transport.is_over());
         if matches!(turn, Turn::Leap(_)) || (is_over && options.again) {
             if is_over {
                 playback.transport.rewind();
+                // There may be nothing to play.
+                member.wake.wait(TURN);
             }
             senders.lift()?;
             played_ns = playback.transport.position_ns();

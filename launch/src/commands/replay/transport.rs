@@ -141,6 +141,18 @@ impl Transport {
         self.rate
     }
 
+    /// Goes back to before the next event where that is due already: what plays may be slower than the rate.
+    pub(super) fn wait_for(&mut self, next_ns: Option<u64>) {
+        if let Some(next_ns) = next_ns.filter(|next_ns| self.is_due(*next_ns)) {
+            self.go_to(next_ns.saturating_sub(1));
+        }
+    }
+
+    /// True once all is played: at the end of what is played, and not paused.
+    pub(super) fn is_over(&self) -> bool {
+        self.position_ns >= self.range_ns[1] && !self.paused
+    }
+
     /// Carries out an order; `next_ns` is the time of the next event.
     pub(super) fn order(&mut self, order: Order, next_ns: Option<u64>) {
         let before_ns = self.position_ns;
@@ -156,7 +168,7 @@ impl Transport {
             }
             Order::Step => {
                 self.paused = true;
-                self.go_to(next_ns.unwrap_or(before_ns).max(before_ns));
+                self.go_to(next_ns.unwrap_or(before_ns));
             }
             Order::Rate(rate) => self.rate = rate,
             Order::Faster(factor) => {
@@ -216,6 +228,11 @@ mod tests {
         transport.order(Order::Rate(Rate::Max), None);
         transport.look(110 * S + 1);
         assert_eq!(transport.position_ns(), 12 * S);
+        // What plays is at 5 s, and is to stand still there.
+        transport.wait_for(Some(5 * S));
+        transport.order(Order::Pause, Some(5 * S));
+        transport.look(111 * S);
+        assert!(!transport.is_due(5 * S) && !transport.is_over());
     }
 
     #[test]
