@@ -54,9 +54,9 @@ pub(super) fn run(
         [] => &GRIDS[..],
         some => some,
     };
-    let table = UsedFile::new("the table", output).of(Kind::Forces);
+    let forces = UsedFile::new("the table", output).of(Kind::Forces);
     let drawn = UsedFile::written("the plot", picture, Kind::Png);
-    let outputs: Vec<_> = std::iter::once(table).chain(drawn).collect();
+    let outputs: Vec<_> = std::iter::once(forces).chain(drawn).collect();
     check_outputs(&outputs, &[])?;
     let all = grids.iter().flat_map(|cells| {
         let cells = usize::from(*cells);
