@@ -137,9 +137,12 @@ fn rows(sweep: &Sweep, filter: Filter) -> String {
     text
 }
 
+/// A part of a sample.
+type Part = fn(&Sample) -> f64;
+
 /// Drag and torque by time, a panel for each boundary, a curve for each grid.
 fn panels(sweeps: &[Sweep]) -> Vec<Panel> {
-    let parts: [(&str, &str, fn(&Sample) -> f64); 2] = [
+    let parts: [(&str, &str, Part); 2] = [
         ("drag", "force along the way there (N/m)", |it| it.drag_n),
         ("torque", "torque (N·m/m)", |it| it.torque_n_m),
     ];
