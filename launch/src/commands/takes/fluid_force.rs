@@ -54,9 +54,9 @@ pub(super) fn run(
         [] => &GRIDS[..],
         some => some,
     };
-    let written = UsedFile::new("the table", output).of(Kind::Forces);
+    let forces = UsedFile::new("the table", output).of(Kind::Forces);
     let drawn = UsedFile::written("the plot", picture, Kind::Png);
-    let outputs: Vec<_> = std::iter::once(written).chain(drawn).collect();
+    let outputs: Vec<_> = std::iter::once(forces).chain(drawn).collect();
     check_outputs(&outputs, &[])?;
     let all = grids.iter().flat_map(|cells| {
         let cells = usize::from(*cells);
@@ -137,9 +137,12 @@ fn rows(sweep: &Sweep, filter: Filter) -> String {
     text
 }
 
+/// A part of a sample.
+type Part = fn(&Sample) -> f64;
+
 /// Drag and torque by time, a panel for each boundary, a curve for each grid.
 fn panels(sweeps: &[Sweep]) -> Vec<Panel> {
-    let parts: [(&str, &str, fn(&Sample) -> f64); 2] = [
+    let parts: [(&str, &str, Part); 2] = [
         ("drag", "force along the way there (N/m)", |it| it.drag_n),
         ("torque", "torque (N·m/m)", |it| it.torque_n_m),
     ];
