@@ -151,10 +151,8 @@ impl Down {
                 continue;
             }
             let stride = grid.stride(axis);
-            for place in grid
-                .places()
-                .filter(|place| grid.cell(*place)[axis] % 2 == 1)
-            {
+            let odd = (1..grid.cells[axis] as isize).step_by(2);
+            for place in odd.flat_map(|layer| grid.layer_at(axis, layer)) {
                 let [low, high] = [place - stride, place];
                 let half = 0.5 * fine.links[axis][place];
                 match (fine.active[low] > 0.0, fine.active[high] > 0.0) {

@@ -10,7 +10,7 @@ use crate::domain::{Domain, LEAST_FILL, Part};
 use crate::grid::Grid;
 
 /// Most of a cell that goes through one face in a part of a step.
-const LARGEST_COURANT: f32 = 0.25;
+const LARGEST_COURANT: f32 = 0.5;
 /// Parts of a step at most; what is faster goes as far as they bring it.
 const MOST_PARTS: usize = 40;
 /// Room of a cell that solids fill, by that of an open one.
