@@ -168,8 +168,10 @@ impl Volume {
         let grid = domain.grid;
         let strides = [0, 1, 2].map(|axis| grid.stride(axis));
         self.add_up();
+        let least = LEAST_ROOM * self.capacity as f32;
         for (fill, (total, room)) in self.fill.iter_mut().zip(self.total.iter().zip(&*room)) {
-            *fill = *total as f32 / *room;
+            // What came too fast for the other axes to take away leaves no less room than a solid does.
+            *fill = *total as f32 / room.max(least);
         }
         self.moves.clear();
         self.asked.fill(0);
@@ -187,6 +189,7 @@ impl Volume {
             if self.total[donor] > 0 {
                 let share = leaving(&self.fill, donor, (axis, c), strides);
                 let asks = (share.abs() * self.capacity as f32) as u32;
+                let asks = asks.min(self.total[donor]);
                 let taker = if c > 0.0 { place } else { beside };
                 self.asked[donor] += asks;
                 self.moves.push([donor as u32, taker as u32, asks]);
