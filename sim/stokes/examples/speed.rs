@@ -5,7 +5,9 @@
 mod pools;
 
 use std::fs;
+use std::time::Instant;
 
+use maulstick_num::fork_join::with_threads;
 use maulstick_stokes::body::Rod;
 use maulstick_stokes::flow::Conditions;
 use maulstick_stokes::grid::Grid;
@@ -61,6 +63,23 @@ fn main() {
         "hz.32x32x16: {:.1} ({:.2} ms; residual {left:.1e}, {wet} cells)",
         1.0 / step,
         1e3 * step
+    );
+    let begun = Instant::now();
+    with_threads(2, || {
+        for _ in 0..40 {
+            let rod = Rod {
+                ends: [[x, 16.0, 4.0], [x, 16.0, 16.0]],
+                radius: 3.0,
+                velocity: [[-0.012, 0.0, 0.0]; 2],
+            };
+            stokes.step(&[rod], &conditions);
+            x -= 0.48;
+        }
+    });
+    let two = begun.elapsed().as_secs_f64() / 40.0;
+    println!(
+        "hz.32x32x16 with two threads, by the clock: {:.1}",
+        1.0 / two
     );
     if std::env::args().any(|word| word == "step") {
         return;
