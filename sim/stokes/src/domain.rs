@@ -233,6 +233,9 @@ impl Domain {
             let [a, b] = others(edge);
             let [by_a, by_b] = [a, b].map(|axis| grid.stride(axis));
             for place in grid.block([0; 3], grid.cells.map(|cells| cells as isize + 1)) {
+                if self.part[a][place] == Part::Air || self.part[b][place] == Part::Air {
+                    continue;
+                }
                 // The velocities along a lie beside each other along b.
                 let pairs = [(a, by_b), (b, by_a)]
                     .map(|(axis, by)| [place, place - by].map(|at| (axis, at)));
@@ -273,6 +276,10 @@ impl Domain {
 
 /// Open share of a face or a cell by the distances of its corners; exact for a plane along the grid.
 fn open(corners: &[f32]) -> f32 {
+    // Nothing is near.
+    if corners[0] > 2.0 {
+        return 1.0;
+    }
     let sum = |of: fn(f32) -> f32| corners.iter().map(|distance| of(*distance)).sum::<f32>();
     let all = sum(f32::abs);
     if all > 0.0 {

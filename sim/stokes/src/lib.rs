@@ -50,7 +50,6 @@ mod split;
 pub mod stencil;
 pub mod step;
 pub mod surface;
-mod transfer;
 pub mod unified;
 pub mod vector;
 pub mod volume;

@@ -50,14 +50,7 @@ impl Stencil {
         for field in [x, y, z, &mut self.mass, &mut self.active, &mut self.known] {
             grid.wrap(field);
         }
-        let strides = [0, 1, 2].map(|axis| grid.stride(axis));
-        for place in grid.range() {
-            let links = (0..3).map(|a| self.links[a][place] + self.links[a][place + strides[a]]);
-            let sum = self.mass[place] + links.sum::<f32>();
-            let is_unknown = self.active[place] > 0.0 && sum > 0.0;
-            self.diagonal[place] = if is_unknown { sum } else { 0.0 };
-            self.inverse[place] = if is_unknown { 1.0 / sum } else { 0.0 };
-        }
+        sum_links(self, Span::of(grid));
         grid.wrap(&mut self.inverse);
     }
 }
@@ -135,6 +128,25 @@ impl<'a> Around<'a> {
         let [[a, b], [c, d], [e, f]] = self.links;
         let [[l, r], [s, n], [u, o]] = self.x;
         (a[i] * l[i] + b[i] * r[i]) + (c[i] * s[i] + d[i] * n[i]) + (e[i] * u[i] + f[i] * o[i])
+    }
+}
+
+wide! {
+    /// Diagonal and its inverse.
+    fn sum_links(stencil: &mut Stencil, span: Span) {
+        let [x, y, z] = &stencil.links;
+        let (x, x_high) = (span.here(x), span.after(x, 1));
+        let (y, y_high) = (span.here(y), span.after(y, span.row));
+        let (z, z_high) = (span.here(z), span.after(z, span.plane));
+        let (mass, active) = (span.here(&stencil.mass), span.here(&stencil.active));
+        let diagonal = span.here_mut(&mut stencil.diagonal);
+        let inverse = span.here_mut(&mut stencil.inverse);
+        for i in 0..diagonal.len() {
+            let links = (x[i] + x_high[i]) + (y[i] + y_high[i]) + (z[i] + z_high[i]);
+            let sum = active[i] * (mass[i] + links);
+            diagonal[i] = sum;
+            inverse[i] = if sum > 0.0 { 1.0 / sum } else { 0.0 };
+        }
     }
 }
 

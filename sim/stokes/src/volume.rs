@@ -10,7 +10,7 @@ use crate::domain::{Domain, LEAST_FILL, Part};
 use crate::grid::Grid;
 
 /// Most of a cell that goes through one face in a part of a step.
-const LARGEST_COURANT: f32 = 0.25;
+const LARGEST_COURANT: f32 = 0.5;
 /// Parts of a step at most; what is faster goes as far as they bring it.
 const MOST_PARTS: usize = 40;
 /// Room of a cell that solids fill, by that of an open one.
@@ -168,8 +168,10 @@ impl Volume {
         let grid = domain.grid;
         let strides = [0, 1, 2].map(|axis| grid.stride(axis));
         self.add_up();
+        let least = LEAST_ROOM * self.capacity as f32;
         for (fill, (total, room)) in self.fill.iter_mut().zip(self.total.iter().zip(&*room)) {
-            *fill = *total as f32 / *room;
+            // What came too fast for the other axes to take away leaves no less room than a solid does.
+            *fill = *total as f32 / room.max(least);
         }
         self.moves.clear();
         self.asked.fill(0);
@@ -187,6 +189,7 @@ impl Volume {
             if self.total[donor] > 0 {
                 let share = leaving(&self.fill, donor, (axis, c), strides);
                 let asks = (share.abs() * self.capacity as f32) as u32;
+                let asks = asks.min(self.total[donor]);
                 let taker = if c > 0.0 { place } else { beside };
                 self.asked[donor] += asks;
                 self.moves.push([donor as u32, taker as u32, asks]);

@@ -101,6 +101,48 @@ fn a_film_is_exact_wherever_its_surface_lies_in_a_cell() {
     }
 }
 
+/// A canvas whose height lies anywhere in a cell: the film over it flows as if the grid began there, to half the square of
+/// the distance of the lowest velocity.
+#[test]
+fn a_film_knows_where_in_a_cell_its_canvas_lies() {
+    let ends = Ends::Sides([Side::NoSlip, Side::Slip]);
+    let grid = Grid {
+        cells: [4, 16, 4],
+        ends: [PERIODIC, ends, PERIODIC],
+    };
+    let top = 12.0;
+    for (floor, lowest, bound) in [
+        (0.2, 0, 1e-4),
+        (0.4, 0, 1e-4),
+        (0.7, 1, 1e-2),
+        (1.6, 2, 1e-2),
+    ] {
+        let mut flow = Flow::new(&grid);
+        let mut solids = Solids::walls(&grid);
+        solids.add(&grid, |corner| corner[1] - floor as f32);
+        let fill = |place| (top - grid.cell(place)[1] as f64).clamp(0.0, 1.0) as f32;
+        let fill: Vec<f32> = (0..grid.len()).map(fill).collect();
+        let paint = Paint::newtonian(1.0);
+        for _ in 0..3 {
+            flow.step(&fill, &solids, &conditions(paint, LONG_S, [1.0, 0.0, 0.0]));
+        }
+        let off = |floor: f64| {
+            let height = top - floor;
+            let nearest = f64::from(lowest) + 0.5 - floor;
+            let nodes = (lowest..12).map(|node| {
+                let y = f64::from(node) + 0.5 - floor;
+                let want = height * y - 0.5 * y * y + 0.5 * nearest * nearest;
+                let got = f64::from(flow.velocity[0][grid.at([1, node as isize, 1])]);
+                (got - want) / (0.5 * height * height)
+            });
+            worst(nodes)
+        };
+        println!("canvas at {floor}: {:.1e}", off(floor));
+        assert!(off(floor) < bound, "{floor}: {}", off(floor));
+        assert!(off(floor + 0.1) > bound, "another canvas passes");
+    }
+}
+
 /// A row of vortices decays by 1/(1 + νΔt·λ) a step, λ·h² of the lattice.
 #[test]
 fn taylor_green_vortices_decay_as_the_lattice_says() {

@@ -1,5 +1,6 @@
 //! Paint of any viscosity, steps of any length and a brush that does anything: all stays finite, and nothing is lost.
 
+use maulstick_num::fork_join::with_threads;
 use maulstick_stokes::body::{Rod, voxelise};
 use maulstick_stokes::domain::Solids;
 use maulstick_stokes::flow::{Conditions, Flow, Scheme};
@@ -101,6 +102,33 @@ fn the_velocity_is_free_of_divergence() {
             assert!(divergence < 1e-5, "{viscosity}: {divergence:e}");
         }
     }
+}
+
+/// The same bytes with one thread and with three.
+#[test]
+fn threads_change_no_byte() {
+    let grid = Grid::walled([16, 16, 8]);
+    let paint = || {
+        let mut stokes = Stokes::new(&grid, CAPACITY, 1);
+        for place in grid.block([0; 3], [16, 16, 4]) {
+            stokes.volume.paints[0][place] = CAPACITY;
+        }
+        let conditions = Conditions {
+            cell_m: 2.5e-4,
+            seconds: 0.01,
+            paint: Paint::newtonian(1e-2),
+            pull: [0.0, 0.0, -9.81],
+        };
+        for brush in brushes() {
+            stokes.step(&brush, &conditions);
+        }
+        (
+            stokes.flow.velocity,
+            stokes.flow.pressure,
+            stokes.volume.paints,
+        )
+    };
+    assert!(paint() == with_threads(3, paint));
 }
 
 /// A rod that is drawn through paint: the paint ahead of it rises.

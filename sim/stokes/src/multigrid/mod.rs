@@ -5,9 +5,12 @@
 //! that falls within a coarse cell. Values are interpolated by lines between the places that there are, so that a wall
 //! without a value (Neumann) does not pull at them. A level is smoothed by a Chebyshev polynomial before and after; polynomials of one matrix commute, so the cycle is symmetric. All numbers of steps are fixed.
 
+mod transfer;
+
+use transfer::{Along, can_halve, gather, halved, spread};
+
 use crate::grid::Grid;
 use crate::stencil::Stencil;
-use crate::transfer::{Along, can_halve, gather, halved, spread};
 use crate::vector::{add_scaled, dot, norm, scale_and_add};
 
 /// Steps of smoothing: inverses of the roots of a Chebyshev polynomial on [1/3, 2], where the spectrum of D⁻¹A lies that
@@ -151,10 +154,8 @@ impl Down {
                 continue;
             }
             let stride = grid.stride(axis);
-            for place in grid
-                .places()
-                .filter(|place| grid.cell(*place)[axis] % 2 == 1)
-            {
+            let odd = (1..grid.cells[axis] as isize).step_by(2);
+            for place in odd.flat_map(|layer| grid.layer_at(axis, layer)) {
                 let [low, high] = [place - stride, place];
                 let half = 0.5 * fine.links[axis][place];
                 match (fine.active[low] > 0.0, fine.active[high] > 0.0) {
