@@ -74,7 +74,10 @@ impl Wet {
         }
         let rest = painted(rest.into_iter().map(|(slot, plane)| (slot, plane.into())));
         let bare = rest.is_empty();
-        let own = layer.own().iter().filter(|plane| !(bare && is_wet_over(plane)));
+        let own = layer
+            .own()
+            .iter()
+            .filter(|plane| !(bare && is_wet_over(plane)));
         any.then(|| rest.with_own(own.cloned()))
     }
 }

@@ -23,7 +23,11 @@ const SHAPE: OwnShape = OwnShape {
 pub fn wet_over(dried: &Planes) -> Option<Vec<f32>> {
     let plane = dried.own().iter().find(|plane| plane.shape == SHAPE)?;
     let values = plane.bytes.chunks_exact(2);
-    Some(values.map(|two| f32::from(u16::from_le_bytes([two[0], two[1]])) * STEP).collect())
+    Some(
+        values
+            .map(|two| f32::from(u16::from_le_bytes([two[0], two[1]])) * STEP)
+            .collect(),
+    )
 }
 
 /// True if a plane holds what stayed over a layer, and says nothing without the layer.
@@ -42,7 +46,10 @@ impl Tile {
         let planes = layer.planes.get();
         let mut stays = vec![0.0f32; TILE_CELLS];
         for (_, plane) in &*self.wet() {
-            stays.iter_mut().zip(plane.iter()).for_each(|(sum, count)| *sum += count);
+            stays
+                .iter_mut()
+                .zip(plane.iter())
+                .for_each(|(sum, count)| *sum += count);
         }
         let values = stays.iter().map(|quanta| (quanta / STEP) as u16);
         let noted = OwnPlane {
@@ -84,9 +91,15 @@ mod tests {
         let quarter = dried(&wet, 0.25);
         assert_eq!(over(&quarter), Some(1200.0));
         let half = dried(&quarter, 1.0 / 3.0);
-        assert_eq!((over(&half), half.dry().expect("dried").depth()), (Some(800.0), 1));
+        assert_eq!(
+            (over(&half), half.dry().expect("dried").depth()),
+            (Some(800.0), 1)
+        );
         let whole = dried(&half, 1.0);
-        assert_eq!((over(&whole), whole.dry().expect("dried").depth()), (None, 1));
+        assert_eq!(
+            (over(&whole), whole.dry().expect("dried").depth()),
+            (None, 1)
+        );
         let counts = whole.dry().expect("dried").counts();
         assert_eq!(counts[2], 1600 * TILE_CELLS as u64);
         let again = half.rewet(0, &[true; TILE_CELLS]).expect("dried").tile;

@@ -379,9 +379,7 @@ fn an_empty_brush_leaves_nothing() {
     let mut touched = 0;
     for pair in way.windows(2) {
         let (from, to) = (&pair[0], &pair[1]);
-        touched += bench
-            .step(sweep(from, to), Windows::Narrow)
-            .footprint_cells;
+        touched += bench.step(sweep(from, to), Windows::Narrow).footprint_cells;
     }
     assert!(touched > 0);
     assert_eq!(bench.counts(), [0; SLOTS]);
