@@ -158,13 +158,15 @@ impl Raster {
     /// Blends brush and canvas with the raster moved by whole cells.
     pub fn blend(&mut self, step: &mut Step<'_>, shift: [i64; 2], dither: Dither) {
         let limits = Limits::of(step);
+        let within = step.window.area(step.bounds.0, step.bounds.1);
         let (window, area) = (&mut *step.window, self.area);
-        let (width, origin, limit) = (window.width(), window.origin(), window.limit());
-        // The part of the raster that is on the surface there.
+        let (width, origin) = (window.width(), window.origin());
+        // The part of the raster that the step may reach there.
         let span = |i: usize| {
             let from = area.from[i] as i64 + shift[i];
-            let first = (-from).clamp(0, area.size[i] as i64);
-            let last = (limit[i] as i64 - from).clamp(first, area.size[i] as i64);
+            let (low, high) = (within.from[i], within.from[i] + within.size[i]);
+            let first = (low as i64 - from).clamp(0, area.size[i] as i64);
+            let last = (high as i64 - from).clamp(first, area.size[i] as i64);
             (first as usize..last as usize, from)
         };
         let ((columns, left), (rows, bottom)) = (span(0), span(1));

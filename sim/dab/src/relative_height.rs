@@ -36,7 +36,7 @@ impl RelativeHeights {
         }
         self.add(cell, by);
         // The cells that are told by this one.
-        if (cell + 1) % self.columns != 0 {
+        if !(cell + 1).is_multiple_of(self.columns) {
             self.add(cell + 1, -by);
         }
         let above = cell + self.columns;

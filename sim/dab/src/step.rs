@@ -147,13 +147,12 @@ impl Dab {
             return;
         }
         let first = self.footprint.report(&part);
-        let mut reached = self.footprint.around;
-        for place in places {
-            reached = joined(
-                reached,
-                moved(self.footprint.around, *place, part.window.limit()),
-            );
-        }
+        let (around, within) = (
+            self.footprint.around,
+            part.window.area(part.bounds.0, part.bounds.1),
+        );
+        let places_of = places.iter().map(|place| moved(around, *place, within));
+        let reached = places_of.fold(around, joined);
         let counted = sponge || lasting;
         let before = if counted {
             lying(&part, reached)
@@ -186,10 +185,11 @@ impl Dab {
     }
 }
 
-/// An area moved by whole cells, as far as it is within the limit.
-fn moved(area: Area, by: [i64; 2], limit: [usize; 2]) -> Area {
+/// An area moved by whole cells, as far as it is within another.
+fn moved(area: Area, by: [i64; 2], within: Area) -> Area {
     let ends = [0, 1].map(|i| {
-        let place = |at: usize| (at as i64 + by[i]).clamp(0, limit[i] as i64) as usize;
+        let (low, high) = (within.from[i], within.from[i] + within.size[i]);
+        let place = |at: usize| (at as i64 + by[i]).clamp(low as i64, high as i64) as usize;
         [place(area.from[i]), place(area.from[i] + area.size[i])]
     });
     Area {

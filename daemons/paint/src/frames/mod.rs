@@ -66,7 +66,7 @@ impl FedSurface {
     pub fn dry_tiles(&self) -> impl Iterator<Item = (TileId, &Arc<DryStack>)> {
         self.tiles
             .iter()
-            .filter_map(|(id, (_, tile))| Some((*id, self.bare.baked(tile.as_deref())?)))
+            .filter_map(move |(id, (_, tile))| Some((*id, self.bare.baked(tile.as_deref())?)))
     }
 }
 

@@ -7,7 +7,7 @@ use maulstick_canvas::store::TileStore;
 use maulstick_canvas::window::Window;
 use maulstick_dab::Dab;
 use maulstick_dab::stroke::Stroker;
-use maulstick_model::brush::head::{Waypoint, low_bounds};
+use maulstick_model::brush::head::{Waypoint, low_bounds, motion};
 use maulstick_model::brush::load::{BrushLoad, Half};
 use maulstick_model::brush::scale::Scale;
 use maulstick_model::brush::traits::BrushTraits;
@@ -110,6 +110,12 @@ impl Bench {
         for place in 1..way.len() {
             let (from, to) = (&way[place - 1], &way[place]);
             let bounds = low_bounds(&self.head, to, &self.traits, 6.0).expect("down");
+            // Steps may be longer than those of a rig.
+            let longer = motion(from, to).ceil() as i64;
+            let bounds = (
+                bounds.0.map(|at| at - longer),
+                bounds.1.map(|at| at + longer),
+            );
             let area = match narrow {
                 true => (bounds.0.map(|i| i - 8), bounds.1.map(|i| i + 8)),
                 false => ([0; 2], [i64::from(SIDE); 2]),

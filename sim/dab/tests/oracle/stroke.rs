@@ -150,7 +150,7 @@ fn a_stroke_has_no_gap() {
         let painted: Vec<f64> = (0..SIDE as usize).map(column).collect();
         let first = painted.iter().position(|sum| *sum > 0.0).expect("painted");
         let last = painted.iter().rposition(|sum| *sum > 0.0).expect("painted");
-        let gap = painted[first..last].iter().any(|sum| *sum == 0.0);
+        let gap = painted[first..last].contains(&0.0);
         assert!(last > first + 50 && !gap, "{stroker:?} {first} {last}");
     }
 }
