@@ -3,23 +3,25 @@
 use std::time::Duration;
 
 use maulstick_bus::credit::Stamp;
-use maulstick_bus::typed::{Reader, Receiver, Sender};
-use maulstick_bus::{CreditSender, Qos, Queue, Server};
+use maulstick_bus::typed::{Reader, Sender};
+use maulstick_bus::{CreditSender, Qos, Server};
 use maulstick_device::actions::{Action, Actions, Actor};
 use maulstick_device::device_missing::report_missing;
 use maulstick_device::registration::Registration;
-use maulstick_haptics::{Contact, Guide, Limits, Recipient, ServoMemory, Switch};
+use maulstick_haptics::{Contact, Fluid, Guide, Limits, Recipient, ServoMemory, Switch};
 use maulstick_num::geometry::Rigid;
 use maulstick_rig::{NodeHandle, RigConfig, UserError};
-use maulstick_types::haptics::{ContactModel, ForceOrder, ForceReply, ForceRequest, GuideModel};
+use maulstick_types::haptics::{
+    ContactModel, FluidForce, ForceOrder, ForceReply, ForceRequest, GuideModel,
+};
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus};
 use maulstick_types::{Flags, encode};
 
 use crate::device::mounted_device::MountedDevice;
 use crate::device::open::{HapticSettings, open};
-use crate::fluid_inlet::{FluidArrival, FluidInlet};
 use crate::force_state_file::{ForceState, ForceStateFile};
-use crate::servo::channels::{Delivery, TickRecord};
+use crate::inlet::Inlet;
+use crate::servo::channels::TickRecord;
 use crate::servo::force_control::ForceControl;
 use crate::servo::servo_loop::PreviousServo;
 use crate::servo::servo_thread::{BINS, Ended, ServoThread, bin};
@@ -64,9 +66,9 @@ struct Daemon {
     senses: u32,
     recipient: Recipient,
     samples: CreditSender<StylusSample>,
-    models: Receiver<ContactModel>,
-    guides: Receiver<GuideModel>,
-    fluids: FluidInlet,
+    models: Inlet<ContactModel, Contact>,
+    guides: Inlet<GuideModel, Guide>,
+    fluids: Inlet<FluidForce, Fluid>,
     orders: Server,
     reader: Reader,
     control: ForceControl,
@@ -77,12 +79,9 @@ struct Daemon {
     told: StylusStatus,
     /// Tick records dropped with devices that are gone.
     dropped_before: u64,
-    deliveries: u64,
     status_ns: u64,
     published_ns: u64,
     newest: StylusSample,
-    /// True once a bad model has been logged.
-    warned: bool,
 }
 
 impl Daemon {
@@ -100,6 +99,8 @@ impl Daemon {
         let actions = Actions::of(device);
         let actor = Actor::start(member.bus.clone(), topics, &device.brush, actions)?;
         let topic = topics.contact_model(&device.name);
+        let (guides, fluids) = (topics.guide(&device.name), topics.fluid_force(&device.name));
+        let (paint_drag, wake) = (device.paint_drag, &member.wake);
         let samples = CreditSender::new(
             bus,
             topics,
@@ -123,19 +124,13 @@ impl Daemon {
                 brush: device.brush.clone(),
             },
             samples,
-            models: Receiver::new(bus, &topic, Qos::RealTime, Queue::Ring(64), &member.wake)?,
-            guides: Receiver::new(
-                bus,
-                &topics.guide(&device.name),
-                Qos::RealTime,
-                Queue::Ring(16),
-                &member.wake,
-            )?,
-            fluids: FluidInlet::new(
-                bus,
-                &topics.fluid_force(&device.name),
-                device.paint_drag,
-                &member.wake,
+            models: Inlet::new((bus, &topic), Recipient::accepts, Contact::new, wake)?,
+            guides: Inlet::new((bus, &guides), Recipient::accepts_guide, Guide::new, wake)?,
+            fluids: Inlet::new(
+                (bus, &fluids),
+                Recipient::accepts_fluid,
+                move |force| Fluid::new(force, paint_drag),
+                wake,
             )?,
             orders: bus.serve(&topics.force(&device.name), 16, &member.wake)?,
             reader: Reader::default(),
@@ -157,11 +152,9 @@ impl Daemon {
             offset_ns: member.clock.offset_ns(),
             told: StylusStatus::fresh(BINS),
             dropped_before: 0,
-            deliveries: 0,
             status_ns: 0,
             published_ns: 0,
             newest: StylusSample::away(),
-            warned: false,
             bus: member.bus.clone(),
         };
         daemon.tell_control();
@@ -179,8 +172,6 @@ impl Daemon {
         }
         self.obey(now_ns);
         self.deliver();
-        self.deliver_guide();
-        self.deliver_fluid();
         while let Some(Ok(record)) = self.servo.as_mut().map(|servo| servo.ticks.pop()) {
             self.publish(&record, now_ns)?;
         }
@@ -345,62 +336,23 @@ impl Daemon {
         }
     }
 
-    /// Hands the newest model to the servo, if it is addressed to this device in its current session.
+    /// Hands the newest model, guide and force of paint to the servo.
     fn deliver(&mut self) {
-        let Some(received) = self.models.newest() else {
-            return;
-        };
-        let model = received.message;
-        if !self.recipient.accepts(&model) {
-            self.told.foreign_models += 1;
-            return;
-        }
+        let (to, foreign) = (&self.recipient, &mut self.told.foreign_models);
+        let model = self.models.newest(to, foreign);
+        let guide = self.guides.newest(to, foreign);
+        let fluid = self.fluids.newest(to, foreign);
         let Some(servo) = &mut self.servo else {
             return;
         };
-        match Contact::new(&model) {
-            Ok(contact) => {
-                self.deliveries += 1;
-                servo.models.write(Delivery {
-                    model: Some(contact),
-                    sender: Some(received.header.origin()),
-                    number: self.deliveries,
-                });
-            }
-            Err(what) => self.refuse(&received.key, "contact model", what),
+        if let Some(model) = model {
+            servo.models.write(model);
         }
-    }
-
-    /// Hands the newest guide to the servo, if it is addressed to this device in its current session.
-    fn deliver_guide(&mut self) {
-        let Some(received) = self.guides.newest() else {
-            return;
-        };
-        if !self.recipient.accepts_guide(&received.message) {
-            self.told.foreign_models += 1;
-            return;
+        if let Some(guide) = guide {
+            servo.guides.write(guide);
         }
-        let Some(servo) = &mut self.servo else {
-            return;
-        };
-        match Guide::new(&received.message) {
-            Ok(guide) => {
-                self.deliveries += 1;
-                servo.guides.write(Delivery {
-                    model: Some(guide),
-                    sender: Some(received.header.origin()),
-                    number: self.deliveries,
-                });
-            }
-            Err(what) => self.refuse(&received.key, "guide", what),
-        }
-    }
-
-    /// Counts a message that is dropped, and says why of the first.
-    fn refuse(&mut self, key: &str, name: &str, what: &str) {
-        self.told.foreign_models += 1;
-        if !std::mem::replace(&mut self.warned, true) {
-            tracing::warn!("{key}: a {name} is dropped: {what}");
+        if let Some(fluid) = fluid {
+            servo.fluids.write(fluid);
         }
     }
 
@@ -408,15 +360,6 @@ impl Daemon {
     fn tell_control(&mut self) {
         self.told.is_on = self.control.switch == Switch::On;
         (self.told.strength, self.told.guidance) = (self.control.strength, self.control.guidance);
-    }
-
-    /// Hands the newest force of paint to the servo.
-    fn deliver_fluid(&mut self) {
-        match (self.fluids.newest(&self.recipient), &mut self.servo) {
-            (FluidArrival::Foreign, _) => self.told.foreign_models += 1,
-            (FluidArrival::Delivery(delivery), Some(servo)) => servo.fluids.write(delivery),
-            (FluidArrival::Nothing, _) | (FluidArrival::Delivery(_), None) => {}
-        }
     }
 
     fn publish(&mut self, record: &TickRecord, now_ns: u64) -> Result<(), UserError> {

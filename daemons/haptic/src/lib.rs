@@ -15,8 +15,8 @@
 pub mod daemon;
 pub mod device;
 pub mod drivers;
-mod fluid_inlet;
 pub mod force_state_file;
+mod inlet;
 pub mod servo;
 
 pub use device::driver::Driver;

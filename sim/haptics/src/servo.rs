@@ -13,12 +13,14 @@
 //! | [`fast_hand`] | less force to a fast hand |
 //! | [`motor_thermal`] | thermal model of the motors, which bounds the force |
 //! | [`persistent`] | state that survives the loss of the device |
+//! | `active` | a contact model and its age |
 //! | `engagement` | force that begins where little is asked for |
 //! | `guidance` | the guide of the hand, beside the contact models |
 //! | [`passivity`] | the energy that sampling gives, taken back |
 //! | [`oscillation`] | detection of a shaking hand, which makes the force softer |
 //! | [`tick`] | input and report of a tick |
 
+mod active;
 mod engagement;
 pub mod fast_hand;
 pub mod fault;
@@ -32,6 +34,7 @@ pub mod tick;
 
 use glam::DVec3;
 
+use self::active::Active;
 use self::engagement::Engagement;
 use self::fast_hand::FastHand;
 use self::fault::Fault;
@@ -73,13 +76,6 @@ pub struct Servo {
     last: Option<Last>,
     force: DVec3,
     fault: Option<Fault>,
-}
-
-/// A model and how long ago it arrived.
-#[derive(Clone, Copy, Debug)]
-struct Active {
-    contact: Contact,
-    age_s: f64,
 }
 
 /// The end of the tick before.
@@ -344,7 +340,10 @@ impl Servo {
         if let Some(model) = &mut self.model {
             model.age_s += passed_s;
         }
-        if self.model.is_some_and(|model| self.fading(&model) <= 0.0) {
+        if self
+            .model
+            .is_some_and(|model| model.left(&self.limits) <= 0.0)
+        {
             // Nothing of it is felt any more: a hand that has gone deep meanwhile is not to be pushed out as
             // models come again.
             self.engagement = Engagement::ANEW;
@@ -364,10 +363,10 @@ impl Servo {
         let Some(contact) = self.arrived.take() else {
             return;
         };
-        let has_force = |model: &&Active| self.fading(model) > 0.0;
+        let has_force = |model: &&Active| model.left(&self.limits) > 0.0;
         let before = self.model.as_ref().filter(has_force).map(|model| {
             (model.contact.force(handle, self.limits.max_stiffness_n_m) + self.correction)
-                * self.fading(model)
+                * model.left(&self.limits)
         });
         self.model = Some(Active { contact, age_s: dt });
         let now = contact.force(handle, self.limits.max_stiffness_n_m);
@@ -392,11 +391,6 @@ impl Servo {
         let fluid = self.fluid.force(handle.velocity, self.limits.fade_s);
         felt.force += fluid * ramp(felt.depth_m);
         Some(felt)
-    }
-
-    /// What is left of a model past its time to live.
-    fn fading(&self, model: &Active) -> f64 {
-        (1.0 - model.overdue_s().max(0.0) / self.limits.fade_s).max(0.0)
     }
 
     /// Latches a hand that goes on shaking; without force no device shakes it.
@@ -482,7 +476,7 @@ impl Servo {
             return None;
         }
         let ramp = (self.engaged_s / self.limits.engage_s).min(1.0);
-        let share = self.fading(model) * ramp * softer;
+        let share = model.left(&self.limits) * ramp * softer;
         Some((
             (contact_force.force + self.correction) * share,
             (contact_force.conservative + self.correction) * share,
@@ -494,13 +488,6 @@ impl Servo {
 /// A share from 0 to 1; NaN counts as 0.
 fn share_of(share: f64) -> f64 {
     if share > 0.0 { share.min(1.0) } else { 0.0 }
-}
-
-impl Active {
-    /// Time since the end of its time to live, s; negative before.
-    fn overdue_s(&self) -> f64 {
-        self.age_s - self.contact.time_to_live_s
-    }
 }
 
 #[cfg(test)]
