@@ -178,7 +178,7 @@ fn other_commands_write_over_nothing_that_they_read() {
         ),
         (
             &["take", "recover", "t.mcap", "-o", "./t.mcap"],
-            ["the damaged take", "t.mcap"],
+            ["the damaged file", "t.mcap"],
         ),
         (
             &["brush", "import", "own.toml", "-o", "link.toml"],

@@ -121,6 +121,8 @@ fn a_session_is_painted_again_to_the_same_picture() {
     launcher.wait_says("is up");
     let blank = snapshot(&place, "blank.png");
     let mut recorder = recorder(&place, "s.mcap");
+    let taken = fault(&place, &["record", "-o", "s.mcap", "--seconds", "1"], 1);
+    has(&taken, &["another program records into it"]);
     paint(&place);
     let painted = snapshot(&place, "painted.png");
     assert_ne!(painted, blank);

@@ -34,7 +34,7 @@ pub(super) fn run(options: &RecorderOptions) -> Result<i32, UserError> {
     let folder = &section.folder;
     std::fs::create_dir_all(folder).map_err(|error| UserError::writing(folder, &error))?;
     let settings = RecorderSettings {
-        target: Target::named(member.topics.prefix().trim_end_matches('/')),
+        target: Target::named(rig_name(member.topics.prefix())),
         topic: ALL.to_owned(),
         lasts: None,
         division: Division {
@@ -55,4 +55,10 @@ pub(super) fn run(options: &RecorderOptions) -> Result<i32, UserError> {
     })?;
     listener.member.leave();
     Ok(0)
+}
+
+/// Name of the rig whose topics begin with `prefix`.
+fn rig_name(prefix: &str) -> &str {
+    let prefix = prefix.trim_end_matches('/');
+    prefix.rsplit_once('/').map_or(prefix, |(_, name)| name)
 }

@@ -230,6 +230,7 @@ fn shoot(
         }
         Ok(())
     };
+    show(reexecution.sequencer_mut(), 1)?;
     let done = reexecution.run(|sequencer, record| {
         let after_ns = clock.pass(record);
         show(sequencer, after_ns).map_err(ShootError::User)

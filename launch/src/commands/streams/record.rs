@@ -1,7 +1,8 @@
 //! `maulstick record`: the streams of a running rig into a file, by a process of its own that no node waits for.
 
-use std::fs::File;
-use std::path::PathBuf;
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{Error, ErrorKind};
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
@@ -89,6 +90,24 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
     check_outputs(&[output], &[])?;
     let mut listener = Listener::open(&options.target, &options.topic)?;
     let ring = Ring::new(&options.output, settings.division);
-    record(&settings, &mut listener, ring, |path| File::create(path))?;
+    record(&settings, &mut listener, ring, begin_anew)?;
     Ok(0)
+}
+
+/// Opens a file to be written anew, once no other program records into it.
+fn begin_anew(path: &Path) -> std::io::Result<File> {
+    let mut options = OpenOptions::new();
+    let file = options
+        .write(true)
+        .create(true)
+        .truncate(false)
+        .open(path)?;
+    file.try_lock().map_err(|error| match error {
+        TryLockError::WouldBlock => {
+            Error::new(ErrorKind::ResourceBusy, "another program records into it")
+        }
+        TryLockError::Error(error) => error,
+    })?;
+    file.set_len(0)?;
+    Ok(file)
 }

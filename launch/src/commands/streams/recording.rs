@@ -185,12 +185,19 @@ fn export(options: &ExportOptions) -> Result<i32, UserError> {
         &[output],
         &[UsedFile::new("the recording", &options.recording)],
     )?;
-    let topics: BTreeMap<u16, Topic> = recording
-        .topics()
-        .iter()
-        .filter(|(_, topic)| matches(&options.topic, &topic.name))
+    let chosen = recording.topics().iter();
+    let chosen = chosen.filter(|(_, topic)| matches(&options.topic, &topic.name));
+    let is_one = chosen.clone().count() == 1;
+    // Among others, messages that nobody can read are passed by.
+    let (topics, unread): (BTreeMap<u16, Topic>, _) = chosen
         .map(|(channel, topic)| (*channel, topic.clone()))
-        .collect();
+        .partition(|(_, topic)| is_one || topic.table.is_ok());
+    for topic in unread.values() {
+        say!(
+            "without {}: nothing here tells how its messages are read",
+            topic.name
+        );
+    }
     if topics.is_empty() {
         let names: BTreeSet<&str> = recording
             .topics()
@@ -242,22 +249,32 @@ fn export(options: &ExportOptions) -> Result<i32, UserError> {
         messages: 0,
     };
     let mut wrong = None;
-    recording.messages(range, &mut |message| match lines.add(&message) {
-        Ok(()) => true,
-        Err(fault) => {
-            wrong = Some(fault);
-            false
+    let written = write_whole(&options.output, Kind::Messages, |file| {
+        file.write_all(std::mem::take(&mut lines.text).as_bytes())?;
+        let mut done = Ok(());
+        let read = recording.messages(range, &mut |message| {
+            if let Err(fault) = lines.add(&message) {
+                wrong = Some(fault.at(&place));
+                return false;
+            }
+            done = file.write_all(std::mem::take(&mut lines.text).as_bytes());
+            done.is_ok()
+        });
+        wrong = wrong.take().or(read.err());
+        match wrong.is_some() {
+            true => Err(std::io::ErrorKind::InvalidData.into()),
+            false => done,
         }
-    })?;
+    });
     if let Some(fault) = wrong {
-        return Err(fault.at(place));
+        return Err(fault);
     }
-    let (text, count) = (lines.text, lines.messages);
-    write_whole(&options.output, Kind::Messages, |file| {
-        file.write_all(text.as_bytes())
-    })
-    .map_err(|error| UserError::writing(&options.output, &error))?;
-    say!("{count} messages in {}", options.output.display());
+    written.map_err(|error| UserError::writing(&options.output, &error))?;
+    say!(
+        "{} messages in {}",
+        lines.messages,
+        options.output.display()
+    );
     Ok(0)
 }
 

@@ -82,9 +82,13 @@ pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
     let begin = folder.path().join(PAINTING);
     session.write_painting(&begin)?;
     let (document, mut sequencer, since) = open_begin(&begin)?;
+    let mut brushes = Vec::new();
     if start_ns > 0 {
         session.follow(&mut sequencer, start_ns, &mut |sequencer, _, event| {
             if let Event::Accepted(record) = event {
+                if let Accepted::Entry(Entry::Brush { brush, .. }) = &record.what {
+                    brushes.push(brush.clone());
+                }
                 sequencer.replay(record);
             }
             Ok(())
@@ -95,6 +99,7 @@ pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
     let painting = std::fs::read(&begin).map_err(|error| UserError::reading(&begin, &error))?;
     let mut origin = session.origin()?;
     origin.files.insert(PAINTING.to_owned(), painting);
+    origin.brushes.extend(brushes);
     let mut counts = Counts::default();
     let fault = RefCell::new(None);
     let written = write_whole(&options.output, Kind::Take, |file| {

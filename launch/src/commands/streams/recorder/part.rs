@@ -44,6 +44,8 @@ impl Part {
     ) -> Result<Self, UserError> {
         let writing = |error: std::io::Error| UserError::writing(path, &error);
         let file = create(path).map_err(writing)?;
+        // Other recorders are told of it; where a file system has no locks they are not.
+        file.try_lock().ok();
         let member = &listener.member;
         let settings = std::fs::read(member.folder.join(CONFIG_FILE)).unwrap_or_default();
         let now = SystemTime::now()

@@ -60,17 +60,17 @@ impl Ring {
         }
         earlier.sort();
         let stem = format!("{rig} {}", now.strftime(DATED));
-        let named = |number: u32| {
-            let first = folder.join(format!("{stem}.{ENDING}"));
-            match number {
-                1 => first,
-                number => numbered(&first, number),
-            }
+        let first = folder.join(format!("{stem}.{ENDING}"));
+        let named = |number: u32| match number {
+            1 => first.clone(),
+            number => numbered(&first, number),
         };
-        let ring = Self::new(&first_free(1, named).1, division);
+        let (number, newest) = first_free(1, named);
         Ok(Self {
+            number,
+            kept: VecDeque::from([newest]),
             earlier: earlier.into_iter().map(|(_, path)| path).collect(),
-            ..ring
+            ..Self::new(&first, division)
         })
     }
 
