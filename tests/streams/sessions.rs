@@ -85,14 +85,12 @@ fn ordered(place: &Place, name: &str, orders: &Orders) {
     let mut lines = said.lines().map_while(Result::ok);
     let mut paintings = 0;
     let mut until = |is_so: &dyn Fn(&Value) -> bool| {
-        for line in lines.by_ref() {
+        let found = lines.by_ref().any(|line| {
             let line: Value = serde_json::from_str(&line).expect("JSON");
             paintings += u32::from(line["painting"] == name);
-            if is_so(&line) {
-                return;
-            }
-        }
-        panic!("it ended");
+            is_so(&line)
+        });
+        assert!(found, "it ended");
     };
     let mut order = |order: &str| writeln!(input, "{order}").expect("written");
     let position = |line: &Value| line["position_s"].as_f64().unwrap_or(0.0);

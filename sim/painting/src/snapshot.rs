@@ -69,6 +69,9 @@ pub struct PaintingSnapshot {
     pub open_steps: Vec<OpenStepSnapshot>,
     /// Steps that were undone, the last one at the end.
     pub undone: Vec<u64>,
+    /// True if a step has ever changed more than what brushes carry.
+    #[serde(default)]
+    pub has_changed_surfaces: bool,
     /// The version from which the painter goes on.
     pub line: Option<String>,
     /// Steps of the paint model.

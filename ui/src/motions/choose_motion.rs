@@ -83,7 +83,12 @@ impl ChooseMotion {
             };
         }
         let Some(chosen) = self.chosen() else {
-            self.wrong = Some(tr!("Choose one of the motions.").to_owned());
+            let why = match self.marked {
+                None => tr!("Choose one of the motions."),
+                // It is still being read.
+                Some(_) => tr!("Looking …"),
+            };
+            self.wrong = Some(why.to_owned());
             return Chosen::default();
         };
         let is_usual = folder == Library::default_folder();

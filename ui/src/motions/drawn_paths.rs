@@ -6,7 +6,7 @@ use maulstick_motion::strokes;
 use maulstick_motion::strokes::middle;
 
 /// Points of a path are drawn where they lie at least this share of the whole apart.
-const APART: f64 = 0.004;
+const APART: f64 = 0.01;
 /// Points that are drawn of a take at most: of a long one each stroke has fewer.
 const MOST: usize = 6_000;
 /// Least and greatest width of a line, points.

@@ -34,7 +34,7 @@ fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name);
     take().write(&path("sweep.mcap")).expect("written");
-    std::fs::write(path("broken.mcap"), "no take").expect("written");
+    std::fs::write(path("torn.mcap"), "no take").expect("written");
     std::fs::write(path("notes.txt"), "words").expect("written");
     let mut air = take();
     air.samples.truncate(5);
@@ -73,11 +73,11 @@ fn a_folder_has_the_takes_that_paint() {
                 .into_owned()
         })
         .collect();
-    assert_eq!(names, ["air.mcap", "broken.mcap", "sweep.mcap"]);
+    assert_eq!(names, ["air.mcap", "sweep.mcap", "torn.mcap"]);
     let [
         (_, Known::Unusable),
-        (_, Known::Unusable),
         (_, Known::Here(motion)),
+        (_, Known::Unusable),
     ] = &files[..]
     else {
         panic!("{files:?}");
@@ -115,7 +115,7 @@ fn a_motion_is_chosen_by_its_picture_and_follows_the_pointer_then() {
     let mut harness = bench(folder.path());
     ctrl(&mut harness, Key::M, Modifiers::SHIFT);
     until(&mut harness, |harness| {
-        harness.query_by_label("sweep").is_some() && harness.query_by_label("broken").is_none()
+        harness.query_by_label("sweep").is_some() && harness.query_by_label("torn").is_none()
     });
     harness.get_by_label("Put down").click();
     harness.run_steps(3);

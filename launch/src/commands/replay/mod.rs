@@ -72,7 +72,7 @@ pub struct ReplayOptions {
     #[arg(long, value_name = "DEVICE")]
     drive: Option<String>,
     /// Guide the hand that holds this device along the recorded strokes; it paints, and nothing is played
-    #[arg(long, value_name = "DEVICE", conflicts_with_all = ["drive", "device", "remap", "rate", "step"])]
+    #[arg(long, value_name = "DEVICE", conflicts_with_all = ["drive", "device", "remap", "rate", "step", "at", "scale", "turn"])]
     guide: Option<String>,
     /// Strength of the guide, 0 to 1
     #[arg(long, value_name = "P", default_value_t = 0.5, value_parser = parse_strength, requires = "guide")]

@@ -39,6 +39,8 @@ pub struct History {
     touched: BTreeSet<u64>,
     /// See [`part_at`](Self::part_at).
     part: u64,
+    /// True if a step changed more than what brushes carry, be it gone by now; as of the newest checkpoint.
+    changed_surfaces: bool,
     /// Most bytes of the pages that it holds.
     pub(crate) quota: u64,
 }
@@ -67,8 +69,21 @@ impl History {
             undone,
             touched: BTreeSet::new(),
             part: 0,
+            changed_surfaces: false,
             quota,
         }
+    }
+
+    /// True if a step has ever changed more than what brushes carry.
+    #[must_use]
+    pub(crate) fn has_changed_surfaces(&self) -> bool {
+        let changes = |step: &Step| !step.tiles.is_empty() || step.effects.materials.is_some();
+        self.changed_surfaces || !self.open.is_empty() || self.steps.values().any(changes)
+    }
+
+    /// Notes it for good: a checkpoint keeps it, and a history that begins there has none of the steps.
+    pub(crate) fn note_changed_surfaces(&mut self, has_changed: bool) {
+        self.changed_surfaces = has_changed;
     }
 
     /// Begins a step; steps undone by this brush, or by none, are dropped.
@@ -232,6 +247,7 @@ impl History {
     pub fn forget(&mut self) {
         self.open.clear();
         self.undone.clear();
+        self.changed_surfaces = false;
         self.touched
             .extend(std::mem::take(&mut self.steps).into_keys());
     }

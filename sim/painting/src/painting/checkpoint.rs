@@ -59,6 +59,8 @@ impl Painting {
                 }
             }
         }
+        let has_changed = self.history.has_changed_surfaces();
+        self.history.note_changed_surfaces(has_changed);
         let (step, undone) = self.history.position();
         let kept = PaintingSnapshot {
             scene: self.scene.clone(),
@@ -71,6 +73,7 @@ impl Painting {
             step,
             open_steps,
             undone: undone.to_vec(),
+            has_changed_surfaces: has_changed,
             line: self.versions.line.clone(),
             steps: self.accounts.steps,
             footprint_cells: self.accounts.footprint_cells,

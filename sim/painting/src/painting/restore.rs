@@ -103,7 +103,8 @@ impl Painting {
         };
         let open = open.into_iter().map(reopened).collect();
         let position = (kept.step, kept.undone);
-        let history = History::restored(position, steps, open, kept.quota);
+        let mut history = History::restored(position, steps, open, kept.quota);
+        history.note_changed_surfaces(kept.has_changed_surfaces);
         Ok(Self {
             scene,
             optics,

@@ -156,14 +156,9 @@ impl Surfaces {
             let versions = surface.store.iter();
             versions.map(|(id, version)| ((surface.id, id), &version.tile))
         });
-        let painted = tiles.filter(|(_, tile)| !is_bare(tile));
+        let bare = |tile: &TileRef| tile.as_deref().is_none_or(Tile::is_bare);
+        let painted = tiles.filter(|(_, tile)| !bare(tile));
         painted.map(|(place, tile)| (place, tile.clone())).collect()
-    }
-
-    /// True if nothing that was painted is there.
-    pub(crate) fn are_bare(&self) -> bool {
-        let mut versions = self.iter().flat_map(|surface| surface.store.iter());
-        versions.all(|(_, version)| is_bare(&version.tile))
     }
 
     /// Bytes of the pages of the tiles that are shown, and of `others`.
@@ -174,11 +169,6 @@ impl Surfaces {
         let once = pages.filter(|page| counted.insert(page.id()));
         once.map(|page| page.held_bytes() as u64).sum()
     }
-}
-
-/// True for a tile without paint.
-fn is_bare(tile: &TileRef) -> bool {
-    tile.as_deref().is_none_or(Tile::is_bare)
 }
 
 impl Deref for Surfaces {

@@ -113,7 +113,7 @@ impl Painting {
         self.close_windows();
         let moved = self.surfaces[on].with_moved_paint(&ways, &self.surfaces.pager);
         // A palette that is laid out before anything was painted is nothing to undo.
-        let is_step = !moved.is_empty() || !self.surfaces.are_bare();
+        let is_step = !moved.is_empty() || self.history.has_changed_surfaces();
         if !moved.is_empty() {
             self.clock.stop(Some(surface));
         }
