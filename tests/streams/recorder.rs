@@ -123,10 +123,11 @@ fn each_run_has_a_recording_whose_process_may_die_and_the_rig_paints_on() {
     place.done(&["render", text(&second), "-o", "again.png"]);
     assert_same(&place.bytes("again.png"), &painted, "the second file");
 
-    let mut launcher = Launcher::up(&place, &up);
+    let mut launcher = Launcher::up(&place, &["sea.maul", "--rig", "rig.toml"]);
     launcher.wait_says("recording into");
     let third = wait_for(PATIENCE, || recordings(&place).get(2).cloned());
     assert!(third.is_some(), "{}", launcher.said());
+    launcher.wait_says("is up");
     assert_eq!(&recordings(&place)[..2], [first, second]);
     launcher.close(&place);
 }
@@ -213,7 +214,7 @@ fn a_take_of_what_a_painting_was_painted_with_is_painted_to_the_same_bytes() {
     place.done(&["painting", "pack", "sea.maul", "--forget-record"]);
     has(
         &fault(&place, &["take", "from", "sea.maul", "-o", "x.mcap"], 2),
-        &["no record"],
+        &["nothing was painted in it since its beginning"],
     );
 }
 

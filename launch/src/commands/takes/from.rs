@@ -63,7 +63,10 @@ pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
     let mut session = Source::open(path)?;
     let length_s = session.length_ns() as f64 * 1e-9;
     if length_s == 0.0 {
-        return Err(UserError::usage("nothing was painted in it").at(path.display().to_string()));
+        return Err(
+            UserError::usage("nothing was painted in it since its beginning")
+                .at(path.display().to_string()),
+        );
     }
     if bounds[0] >= length_s {
         return Err(

@@ -155,7 +155,7 @@ impl SessionFile {
         let broken = |fault: &SessionFault, at_ns: u64| {
             let [at_s, end_s] = [0, 1].map(|less| {
                 let tenths = (at_ns / 100_000_000)
-                    .saturating_sub(less * u64::from(at_ns % 100_000_000 == 0));
+                    .saturating_sub(less * u64::from(at_ns.is_multiple_of(100_000_000)));
                 tenths as f64 * 0.1
             });
             UserError::usage(format!("at {at_s:.1} s: {fault}"))
