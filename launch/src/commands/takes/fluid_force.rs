@@ -100,7 +100,9 @@ pub(super) fn run(
         write_picture(&plot(&panels(&sweeps))?, path)?;
     }
     let head = ["grid", "boundary", "drag N/m", "noise %"];
-    say!("{}", table(head, &told).trim_end());
+    for line in table(head, &told).lines() {
+        say!("{line}");
+    }
     Ok(0)
 }
 

@@ -23,13 +23,7 @@ fn every_hand_is_still_gets_no_energy_and_feels_its_wall() {
         );
     }
     let worst = Worst::of(&all);
-    println!(
-        "{} runs: wobble {:.3} mm, energy {:.3} µJ, force off by {:.2} % at most",
-        worst.runs,
-        worst.wobble_m * 1e3,
-        worst.net_j * 1e6,
-        worst.force_error * 1e2
-    );
+    print(&worst);
     assert_eq!((worst.runs, worst.fails), (1080, 0));
 }
 
@@ -76,6 +70,16 @@ fn guided(change: impl Fn(Run) -> Run) -> Vec<(Run, Outcome)> {
     guided_grid().into_iter().map(go).collect()
 }
 
+fn print(worst: &Worst) {
+    println!(
+        "{} runs: wobble {:.3} mm, energy {:.3} µJ, force off by {:.2} % at most",
+        worst.runs,
+        worst.wobble_m * 1e3,
+        worst.net_j * 1e6,
+        worst.force_error * 1e2
+    );
+}
+
 #[test]
 fn a_guide_beside_the_wall_shakes_no_hand_and_gives_no_energy() {
     let all = guided(|run| run);
@@ -84,13 +88,7 @@ fn a_guide_beside_the_wall_shakes_no_hand_and_gives_no_energy() {
         println!("{run:?}: {outcome:?}");
     }
     let worst = Worst::of(&all);
-    println!(
-        "{} runs: wobble {:.3} mm, energy {:.3} µJ, force off by {:.2} % at most",
-        worst.runs,
-        worst.wobble_m * 1e3,
-        worst.net_j * 1e6,
-        worst.force_error * 1e2
-    );
+    print(&worst);
     assert_eq!((worst.runs, worst.fails), (2160, 0));
 }
 

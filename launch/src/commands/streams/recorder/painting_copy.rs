@@ -112,6 +112,7 @@ impl PaintingCopy {
             if is_gone() {
                 return None;
             }
+            // Nothing signals that the rig has gone, so both are looked at.
             std::thread::sleep(LOOK);
         }
         copying.join().ok()?.ok()
