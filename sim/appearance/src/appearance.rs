@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use maulstick_canvas::dry::{DryLayer, DryStack};
+use maulstick_canvas::layered::seen_from_above;
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::tile::TileId;
@@ -153,9 +154,12 @@ impl Appearance {
     }
 }
 
-/// Thickness of each paint of planes of counts, m, by slot.
+/// Thickness of each paint of planes of counts, m, by slot; of paint in layers as it is seen from above.
 #[must_use]
 pub(crate) fn thickness(planes: &Planes) -> Vec<(usize, Vec<f32>)> {
+    if let Some(seen) = seen_from_above(planes) {
+        return seen;
+    }
     let film = |plane: &[f32]| plane.iter().map(|count| count * QUANTUM_M as f32).collect();
     planes
         .iter()

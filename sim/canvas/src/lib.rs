@@ -44,6 +44,7 @@
 pub mod assets;
 pub mod dry;
 mod error;
+pub mod layered;
 pub mod own_plane;
 pub mod page;
 pub mod planes;

@@ -236,6 +236,11 @@ impl Window {
         self.own.get(&shape).map(Vec::as_slice)
     }
 
+    /// The planes that the paint model keeps of its own, in order of their shapes.
+    pub fn own_planes(&self) -> impl Iterator<Item = (OwnShape, &[u8])> {
+        self.own.iter().map(|(shape, bytes)| (*shape, &bytes[..]))
+    }
+
     /// The planes in use, in order of slot.
     pub fn planes(&self) -> impl Iterator<Item = (usize, &[f32])> {
         self.wet

@@ -9,6 +9,7 @@ use maulstick_dab::{Dab, Layers};
 use maulstick_impasto::Impasto;
 use maulstick_marker::{Marker, Matte};
 use maulstick_model::interface::PaintModel;
+use maulstick_stokes_paint::StokesPaint;
 
 /// Entry of a paint model in [`MODELS`].
 pub struct ModelEntry {
@@ -24,7 +25,7 @@ pub struct ModelEntry {
 const EMBOSS: f32 = 250.0;
 
 /// All paint models.
-pub static MODELS: [ModelEntry; 3] = [
+pub static MODELS: [ModelEntry; 4] = [
     ModelEntry {
         name: "impasto",
         shown: &Counted,
@@ -34,6 +35,11 @@ pub static MODELS: [ModelEntry; 3] = [
         name: "dab",
         shown: &Layers { emboss: EMBOSS },
         make: || Box::new(Dab::default()),
+    },
+    ModelEntry {
+        name: "stokes",
+        shown: &Counted,
+        make: || Box::new(StokesPaint::default()),
     },
     ModelEntry {
         name: "marker",

@@ -25,8 +25,11 @@ const TOUCHES: f32 = 1e-4;
 pub struct Solids {
     /// Distance of each lower corner from the nearest solid, cells; negative inside. The grid's sides do not count.
     pub distance: Vec<f32>,
-    /// Velocity of the solid at each face, by axis.
+    /// Velocity of the solid at each face, by axis, m/s.
     pub velocity: [Vec<f32>; 3],
+    /// Resistance of bristles at each face, by axis: h²/K with K their permeability. They move with `velocity`, and paint goes
+    /// through them (Brinkman 1949). None where there are no bristles.
+    pub resistance: Option<[Vec<f32>; 3]>,
 }
 
 impl Solids {
@@ -36,6 +39,7 @@ impl Solids {
         Self {
             distance: vec![FAR; grid.len()],
             velocity: std::array::from_fn(|_| grid.field()),
+            resistance: None,
         }
     }
 
@@ -121,6 +125,36 @@ impl Domain {
         domain.find_cells(&fill, &corners, least);
         domain.find_free();
         domain.find_edges(&fill, &near);
+        domain
+    }
+
+    /// What transport needs of the window: its faces, without masses, edges and slopes.
+    #[must_use]
+    pub fn for_transport(grid: &Grid, fill: &[f32], solids: &Solids, least: f32) -> Self {
+        let mut domain = Self {
+            grid: *grid,
+            wet: grid.field(),
+            part: std::array::from_fn(|_| vec![Part::Air; grid.len()]),
+            free: std::array::from_fn(|_| Vec::new()),
+            area: std::array::from_fn(|_| grid.field()),
+            mass: std::array::from_fn(|_| Vec::new()),
+            volume: Vec::new(),
+            edge: std::array::from_fn(|_| Vec::new()),
+            slope: std::array::from_fn(|_| std::array::from_fn(|_| Vec::new())),
+        };
+        domain.find_faces(&solids.distance);
+        for place in grid.places() {
+            domain.wet[place] = f32::from(fill[place] >= least);
+        }
+        for axis in 0..3 {
+            let stride = grid.stride(axis);
+            for place in stride..grid.len() {
+                let is_wet = domain.wet[place] + domain.wet[place - stride] > 0.0;
+                if is_wet && domain.part[axis][place] == Part::Air {
+                    domain.part[axis][place] = Part::Paint;
+                }
+            }
+        }
         domain
     }
 

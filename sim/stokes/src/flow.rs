@@ -119,7 +119,7 @@ impl Flow {
         conditions: &Conditions,
         least: f32,
     ) -> Domain {
-        let domain = Domain::new(&self.grid, fill, solids, least);
+        let mut domain = Domain::new(&self.grid, fill, solids, least);
         let Conditions {
             cell_m,
             seconds,
@@ -138,7 +138,7 @@ impl Flow {
             self.grid.wrap(u);
         }
         match self.scheme {
-            Scheme::Unified => self.unified(&domain, fill, solids, conditions, tau),
+            Scheme::Unified => self.unified(&mut domain, fill, solids, conditions, tau),
             Scheme::Split => {
                 let pull = pull.map(|pull| (pull * seconds) as f32);
                 let to_pressure = (cell_m / seconds) as f32;
@@ -160,21 +160,26 @@ impl Flow {
 
     fn unified(
         &mut self,
-        domain: &Domain,
+        domain: &mut Domain,
         fill: &[f32],
         solids: &Solids,
         conditions: &Conditions,
         tau: f64,
     ) {
+        let pulled: [Vec<f32>; 3] = std::array::from_fn(|axis| {
+            let gains = (conditions.pull[axis] * conditions.seconds) as f32;
+            let mut pulled: Vec<f32> = self.velocity[axis].iter().map(|u| u + gains).collect();
+            if let Some(resistance) = &solids.resistance {
+                let bristles = (&resistance[axis][..], &solids.velocity[axis][..]);
+                drag(domain, (axis, tau as f32), bristles, &mut pulled);
+                self.velocity[axis].copy_from_slice(&pulled);
+            }
+            pulled
+        });
         let paint = &conditions.paint;
         let [u, v, w] = &self.velocity;
         let viscosities = paint.viscosities(domain, [u, v, w], conditions.cell_m);
         let mut equations = Unified::new(domain, tau, &viscosities);
-        let pulled = [0, 1, 2].map(|axis| {
-            let gains = (conditions.pull[axis] * conditions.seconds) as f32;
-            let pulled = self.velocity[axis].iter().map(|u| u + gains);
-            pulled.collect::<Vec<f32>>()
-        });
         let [f, g, h] = &pulled;
         let mut b = equations.right_hand_side(domain, [f, g, h], &solids.velocity);
         // The equations know the pressure by the velocity that it makes in a step.
@@ -262,6 +267,21 @@ fn highest(grid: &Grid, fill: &[f32], least: f32) -> usize {
         .rev()
         .find(has_paint)
         .map_or(0, |z| z as usize + 1)
+}
+
+/// Bristles drag paint along: a face has their velocity by a share τR/(1 + τR), R their resistance, and then resists change by as
+/// much more.
+fn drag(
+    domain: &mut Domain,
+    (axis, tau): (usize, f32),
+    (resistance, velocity): (&[f32], &[f32]),
+    pulled: &mut [f32],
+) {
+    for (place, u) in pulled.iter_mut().enumerate() {
+        let drags = tau * resistance[place] * domain.free[axis][place];
+        *u = (*u + drags * velocity[place]) / (1.0 + drags);
+        domain.mass[axis][place] *= 1.0 + drags;
+    }
 }
 
 /// Multiplies a field where it is wet; elsewhere it is 0.

@@ -270,9 +270,10 @@ impl Operator {
     }
 }
 
-/// The pressure's Laplacian: what leaves a cell by the gradient that a pressure gives to faces with their mass.
+/// The pressure's Laplacian: what leaves a cell by the gradient that a pressure gives to faces with their mass and what walls
+/// drag at them, as if it were mass.
 #[must_use]
-pub fn laplacian(domain: &Domain) -> Stencil {
+pub fn laplacian(domain: &Domain, wall: f32) -> Stencil {
     let grid = domain.grid;
     let mut stencil = Stencil::new(&grid);
     stencil.active.clone_from(&domain.wet);
@@ -282,7 +283,7 @@ pub fn laplacian(domain: &Domain) -> Stencil {
         for place in by..grid.len() {
             let area = domain.area[axis][place];
             if area > 0.0 {
-                stencil.links[axis][place] = area * area / domain.mass[axis][place];
+                stencil.links[axis][place] = area * area / (domain.mass[axis][place] + wall);
                 // Air beside paint has no pressure.
                 stencil.known[place] = 1.0;
                 stencil.known[place - by] = 1.0;

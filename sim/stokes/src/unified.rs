@@ -49,8 +49,8 @@ pub struct Unified {
     /// What viscosity answers to volume, by cell.
     bulk: Vec<f32>,
     alpha: f32,
-    /// α and the drag of walls: what a gradient of pressure has to overcome.
-    drag: f32,
+    /// Drag of walls, by α: what a gradient of pressure has to overcome beside mass.
+    wall: f32,
 }
 
 /// Weights of mass and viscosity for a step of τ = νΔt/h².
@@ -70,12 +70,13 @@ impl Unified {
         let stencils = [0, 1, 2].map(|axis| operator.component(domain, axis));
         let bulk = bulk(domain, &stencils);
         let thickness = thickness(domain);
+        let wall = beta * GAP_DRAG / (alpha * thickness * thickness);
         let [u, v, w] = stencils;
         let mut hierarchies = [
             (u, Some(0)),
             (v, Some(1)),
             (w, Some(2)),
-            (laplacian(domain), None),
+            (laplacian(domain, wall), None),
         ]
         .map(|(stencil, faces)| (Some(stencil), faces, None));
         fork_join::each(&mut hierarchies, |(stencil, faces, hierarchy)| {
@@ -91,7 +92,7 @@ impl Unified {
             bulk,
             operator,
             alpha,
-            drag: alpha + beta * GAP_DRAG / (thickness * thickness),
+            wall,
         }
     }
 
@@ -118,7 +119,7 @@ impl Unified {
             .iter_mut()
             .zip(self.bulk.iter().zip(first.iter().zip(&*second)))
         {
-            *p = self.drag * parts.1 + bulk * parts.0;
+            *p = self.alpha * parts.1 + bulk * parts.0;
         }
     }
 
@@ -188,7 +189,8 @@ impl Unified {
             let (area, mass) = (&domain.area[axis], &domain.mass[axis]);
             for place in by..grid.len() {
                 if area[place] > 0.0 {
-                    u[place] -= area[place] / mass[place] * (phi[place] - phi[place - by]);
+                    u[place] -=
+                        area[place] / (mass[place] + self.wall) * (phi[place] - phi[place - by]);
                 }
             }
             grid.wrap(u);

@@ -1,0 +1,114 @@
+//! Paint dragged along by a brush: its bristles are a porous body that paint goes through with a resistance (Baxter 2004,
+//! § 5.4.2, permeability; Brinkman 1949), and the flow around them is the solver's.
+//!
+//! Paint has no memory from one step to the next: its inertia is a thousandth of what viscosity does to it, and what a step
+//! does follows from the paint and the step alone. For the same reason only the way of a brush counts, not how long it took:
+//! steps are solved at one speed. Under a brush paint is sheared a hundred times in a second, so what stress it yields at
+//! does not matter there.
+
+use maulstick_impasto::stages::levelling::Body;
+use maulstick_model::footprint::Footprint;
+use maulstick_model::footprint::contact::Contact;
+use maulstick_model::interface::Step;
+use maulstick_stokes::domain::{Domain, LEAST_FILL};
+use maulstick_stokes::flow::{Conditions, Flow};
+use maulstick_stokes::rheology::Paint;
+
+use crate::coarse::Coarse;
+use crate::voxels::Voxels;
+
+/// Speed at which a brush is taken to go, m/s.
+const SPEED_M_S: f64 = 0.1;
+/// Density of oil paint, kg/m³.
+const DENSITY_KG_M3: f64 = 1500.0;
+/// Acceleration of gravity, m/s².
+const GRAVITY_M_S2: f64 = 9.81;
+/// Permeability of bristles, m².
+const BRISTLES_M2: f64 = 4e-8;
+/// The same of a blade, through which nothing goes.
+const BLADE_M2: f64 = 2e-10;
+
+/// Moves the paint of an area as the brush's contacts drag it along in a step. After it they are as deep in the paint, or as
+/// high above it, as it then lies.
+pub fn drag(voxels: &mut Voxels, footprint: &mut Footprint, step: &Step<'_>, cell_m: f64) {
+    let way = |moved: [f32; 2]| (moved[0] * moved[0] + moved[1] * moved[1]).sqrt();
+    let ways = footprint.contacts.iter().map(|contact| way(contact.moved));
+    let farthest = ways.fold(0.0, f32::max);
+    if farthest <= 0.0 {
+        return;
+    }
+    let seconds = f64::from(farthest) * cell_m / SPEED_M_S;
+    let fine = voxels.volume.grid;
+    let solids = voxels.solids();
+    let open = solids.open(&fine);
+    let mut coarse = Coarse::of(voxels, &open, voxels.side());
+    let conditions = Conditions {
+        cell_m: cell_m * coarse.side as f64,
+        seconds,
+        paint: Paint::newtonian(Body::TUBE.viscosity_pa_s / DENSITY_KG_M3),
+        pull: [0.0, 0.0, -GRAVITY_M_S2],
+    };
+    let bottoms = bottoms(voxels, footprint, step.window.width());
+    hold(
+        voxels,
+        &mut coarse,
+        (footprint, &bottoms),
+        step,
+        &conditions,
+    );
+    let mut flow = Flow::new(&coarse.grid);
+    flow.step(&coarse.fill, &coarse.solids, &conditions);
+    let velocity = coarse.refine(&flow.velocity, &fine);
+    let fill = voxels.volume.fill(&open);
+    let domain = Domain::for_transport(&fine, &fill, &solids, LEAST_FILL);
+    voxels
+        .volume
+        .advect(&domain, &open, &velocity, seconds, cell_m);
+    let width = step.window.width();
+    for (contact, bottom) in footprint.contacts.iter_mut().zip(bottoms) {
+        let column = voxels.column_of(contact.cell as usize, width);
+        let surface = voxels.surface(column);
+        let wet = surface - voxels.floor_of(column);
+        contact.depth = (surface - bottom).clamp(0.0, wet);
+        contact.gap = (bottom - surface).max(0.0);
+    }
+}
+
+/// Height of the bristle of each contact, in cells of the grid.
+fn bottoms(voxels: &Voxels, footprint: &Footprint, width: usize) -> Vec<f32> {
+    let height = |contact: &Contact| {
+        let surface = voxels.surface(voxels.column_of(contact.cell as usize, width));
+        surface - contact.depth + contact.gap
+    };
+    footprint.contacts.iter().map(height).collect()
+}
+
+/// Puts the bristles of the contacts where they are in the paint: from where each is up.
+fn hold(
+    voxels: &Voxels,
+    coarse: &mut Coarse,
+    (footprint, bottoms): (&Footprint, &[f32]),
+    step: &Step<'_>,
+    conditions: &Conditions,
+) {
+    let grid = voxels.volume.grid;
+    let permeability = if step.traits.floats {
+        BLADE_M2
+    } else {
+        BRISTLES_M2
+    };
+    let whole = (conditions.cell_m * conditions.cell_m / permeability) as f32;
+    let to_m_s = (conditions.cell_m / (conditions.seconds * coarse.side as f64)) as f32;
+    for (contact, bottom) in footprint.contacts.iter().zip(bottoms) {
+        let column = voxels.column_of(contact.cell as usize, step.window.width());
+        for voxel in voxels.column(column) {
+            let cell = grid.cell(voxel);
+            let height = cell[2] as f32;
+            let fill = voxels.total(voxel) as f32 / voxels.volume.capacity as f32;
+            let held = (height + fill - bottom.max(height)).max(0.0);
+            let velocity = contact.moved.map(|moved| moved * to_m_s);
+            coarse.resist(cell, (held, whole * contact.cover), velocity);
+        }
+    }
+    coarse.hold();
+}

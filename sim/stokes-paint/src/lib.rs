@@ -1,0 +1,26 @@
+//! Stokes Paint as a paint model (Baxter 2004, ch. 5): a brush lays paint into voxels, takes it up and drags it along, and the
+//! paint flows as [`maulstick_stokes`] says.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`layers`] | layers of voxels over a surface |
+//! | [`voxels`] | the paint of an area, from the counts of a window and back |
+//! | [`coarse`] | the grid on which the flow is found |
+//! | [`drag`] | bristles as a porous body, and the flow around them |
+//! | [`reach`] | how deep a brush lays and takes up |
+//!
+//! ```
+//! use maulstick_model::interface::PaintModel as _;
+//! use maulstick_stokes_paint::StokesPaint;
+//!
+//! assert_eq!(StokesPaint::default().name(), "stokes");
+//! ```
+
+pub mod coarse;
+pub mod drag;
+pub mod layers;
+pub mod reach;
+mod step;
+pub mod voxels;
+
+pub use step::StokesPaint;

@@ -1,0 +1,132 @@
+//! One step of Stokes Paint.
+
+use maulstick_canvas::quantum::{CELL_MAX, QUANTUM_M};
+use maulstick_canvas::window::Area;
+use maulstick_impasto::stages::bristle_flow::flow;
+use maulstick_impasto::stages::exchange::Exchange;
+use maulstick_impasto::stages::levelling::HALO;
+use maulstick_impasto::stages::rest::level;
+use maulstick_impasto::stages::seep::seep;
+use maulstick_model::footprint::Footprint;
+use maulstick_model::interface::{PaintModel, Rest, Step, StepReport, Transfer};
+use maulstick_model::modes::{sample, vacuum};
+
+use crate::drag::drag;
+use crate::layers::Layers;
+use crate::reach::Reach;
+use crate::voxels::Voxels;
+
+/// Cells around the contacts in which paint flows.
+const AROUND: i64 = 5;
+/// Fill of a voxel from which on paint is dragged along.
+const FLOWS_FROM: f32 = 0.2;
+
+/// The paint model `stokes`, with room for its step.
+#[derive(Debug, Default)]
+pub struct StokesPaint {
+    footprint: Footprint,
+    exchange: Exchange,
+    reach: Reach,
+}
+
+impl PaintModel for StokesPaint {
+    fn name(&self) -> &'static str {
+        "stokes"
+    }
+
+    fn step(&mut self, step: &mut Step<'_>) -> StepReport {
+        self.footprint.find(step);
+        if self.footprint.contacts.is_empty() {
+            return StepReport::default();
+        }
+        let mut report = self.footprint.report(step);
+        match step.handling.transfer {
+            Transfer::Sampler => {
+                report.from_nowhere = sample(&self.footprint, step).into();
+                return report;
+            }
+            Transfer::Vacuum => {
+                let area = self.footprint.around;
+                let layers = Layers::of(step.window, cell_m(step));
+                let mut voxels = Voxels::read(step.window, area, layers, &slots_of(step));
+                report.lifted = vacuum(&self.footprint, step).into();
+                voxels.follow(step.window);
+                voxels.write(step.window);
+                step.window.touch(self.footprint.reached());
+            }
+            _ => self.paint(step, &mut report),
+        }
+        self.footprint.note_left(step);
+        report
+    }
+
+    fn rest_halo(&self) -> Option<usize> {
+        Some(HALO)
+    }
+
+    fn rest(&mut self, rest: &mut Rest<'_>) {
+        let layers = Layers::of(rest.window, rest.cell_m);
+        let slots: Vec<usize> = rest.window.planes().map(|(slot, _)| slot).collect();
+        let mut voxels = Voxels::read(rest.window, rest.area, layers, &slots);
+        level(rest);
+        voxels.follow(rest.window);
+        voxels.write(rest.window);
+    }
+}
+
+impl StokesPaint {
+    fn paint(&mut self, step: &mut Step<'_>, report: &mut StepReport) {
+        let footprint = &mut self.footprint;
+        let cell_m = cell_m(step);
+        let layers = Layers::of(step.window, cell_m);
+        let area = around(footprint, step, layers.side as i64);
+        let slots = slots_of(step);
+        let mut voxels = Voxels::read(step.window, area, layers, &slots);
+        let thickest = footprint
+            .wet
+            .iter()
+            .fold(0.0f32, |most, wet| most.max(*wet));
+        if step.handling.push && thickest > FLOWS_FROM * layers.capacity as f32 {
+            let stays = voxels.set_aside(step.stain);
+            drag(&mut voxels, footprint, step, cell_m);
+            voxels.put_back(&stays);
+        }
+        if step.handling.most >= CELL_MAX as f32 {
+            self.reach.uncover(&voxels, footprint, step);
+        } else {
+            self.reach.uncover_all(&voxels, footprint, step);
+        }
+        report.from_nowhere = self.exchange.run(footprint, step).into();
+        self.reach.cover(&mut voxels, footprint, step.window);
+        voxels.write(step.window);
+        flow(step);
+        seep(step);
+        let Area { from, size } = area;
+        step.window
+            .touch((from, [from[0] + size[0], from[1] + size[1]]));
+    }
+}
+
+/// Side of a cell, m.
+fn cell_m(step: &Step<'_>) -> f64 {
+    QUANTUM_M / f64::from(step.traits.cells_per_quantum)
+}
+
+/// The cells around the contacts.
+fn around(footprint: &Footprint, step: &Step<'_>, side: i64) -> Area {
+    let Area { from, size } = footprint.around;
+    let origin = step.window.origin();
+    let (least, most) = step.bounds;
+    let low = [0, 1].map(|i| (from[i] as i64 + origin[i] - AROUND).max(least[i] - 1));
+    // Cells of the flow are the same wherever the brush is.
+    let low = low.map(|low| low.div_euclid(side) * side);
+    let high = [0, 1].map(|i| ((from[i] + size[i]) as i64 + origin[i] + AROUND).min(most[i] + 1));
+    step.window.area(low, high)
+}
+
+/// Slots of all paints on brush and canvas.
+fn slots_of(step: &Step<'_>) -> Vec<usize> {
+    let on_brush = step.load.counts();
+    let has = |slot: &usize| on_brush[*slot] > 0 || step.window.has(*slot);
+    (0..on_brush.len()).filter(has).collect()
+}

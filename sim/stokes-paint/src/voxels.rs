@@ -1,0 +1,391 @@
+//! The paint of an area in voxels, from the counts of a window and back.
+
+use maulstick_canvas::layered::{place_of, shape_of, value};
+use maulstick_canvas::window::{Area, Window};
+use maulstick_stokes::domain::Solids;
+use maulstick_stokes::grid::Grid;
+use maulstick_stokes::volume::Volume;
+
+use crate::layers::Layers;
+
+/// Layers of air over the highest paint.
+const AIR: usize = 3;
+/// Fill from which on a voxel gives the rest to the one above.
+const OVERFULL: f32 = 1.25;
+
+/// The paint of an area.
+#[derive(Clone, Debug)]
+pub struct Voxels {
+    /// The cells.
+    pub area: Area,
+    /// The paints in use, in the order of [`slots`](Self::slots).
+    pub volume: Volume,
+    /// Slot of each paint.
+    pub slots: Vec<usize>,
+    /// Layers of the surface.
+    layers: Layers,
+    /// The surface's layer that is the grid's lowest.
+    first: usize,
+    /// The grid's lowest layer with room in each column.
+    lowest: Vec<u16>,
+    /// Height of what each column lies on, in cells of the grid.
+    floors: Vec<f32>,
+}
+
+impl Voxels {
+    /// The paint of an area of a window on which this brush's `slots` may be laid.
+    #[must_use]
+    pub fn read(window: &Window, area: Area, layers: Layers, slots: &[usize]) -> Self {
+        let cells: Vec<usize> = area.rows(window.width()).flatten().collect();
+        let floors: Vec<f32> = cells
+            .iter()
+            .map(|cell| layers.floor(window, *cell))
+            .collect();
+        let first = floors
+            .iter()
+            .fold(f32::INFINITY, |least, floor| least.min(*floor)) as usize
+            / layers.side
+            * layers.side;
+        let lowest: Vec<u16> = floors
+            .iter()
+            .map(|floor| (layers.lowest(*floor) - first) as u16)
+            .collect();
+        let columns = Columns {
+            window,
+            layers,
+            cells: &cells,
+            lowest: &lowest,
+            first,
+        };
+        let own = columns.own(slots);
+        let depth = columns.depth(&own) + AIR.max(layers.side + 1);
+        let grid = Grid::walled([area.size[0], area.size[1], depth]);
+        let mut volume = Volume::new(&grid, layers.capacity, slots.len());
+        columns.fill(slots, &own, &mut volume);
+        let floors: Vec<f32> = floors.iter().map(|floor| floor - first as f32).collect();
+        Self {
+            area,
+            volume,
+            slots: slots.to_vec(),
+            layers,
+            first,
+            lowest,
+            floors,
+        }
+    }
+
+    /// The column over a cell of a window of this width, which is in the area.
+    #[must_use]
+    pub fn column_of(&self, cell: usize, width: usize) -> usize {
+        let [x, y] = [
+            cell % width - self.area.from[0],
+            cell / width - self.area.from[1],
+        ];
+        y * self.area.size[0] + x
+    }
+
+    /// Voxels along the side of a cell of the flow.
+    #[must_use]
+    pub fn side(&self) -> usize {
+        self.layers.side
+    }
+
+    /// Height of what a column lies on, in cells of the grid.
+    #[must_use]
+    pub fn floor_of(&self, column: usize) -> f32 {
+        self.floors[column]
+    }
+
+    /// Height of what the paint lies on at a corner between columns, in cells of the grid.
+    #[must_use]
+    pub fn floor_at(&self, [x, y]: [isize; 2]) -> f32 {
+        let [width, height] = self.area.size.map(|cells| cells as isize);
+        let columns = [[x - 1, y - 1], [x, y - 1], [x - 1, y], [x, y]];
+        let floors = columns.map(|[x, y]| {
+            self.floors[(y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize]
+        });
+        0.25 * ((floors[0] + floors[1]) + (floors[2] + floors[3]))
+    }
+
+    /// What the paint lies on.
+    #[must_use]
+    pub fn solids(&self) -> Solids {
+        let grid = self.volume.grid;
+        let mut solids = Solids::walls(&grid);
+        let plane = grid.stride(2);
+        let corner = |place| {
+            let [x, y, _] = grid.cell(place);
+            self.floor_at([x, y])
+        };
+        let corners: Vec<f32> = (0..plane).map(corner).collect();
+        for (place, distance) in solids.distance.iter_mut().enumerate() {
+            *distance = distance.min(grid.cell(place)[2] as f32 - corners[place % plane]);
+        }
+        solids
+    }
+
+    /// Height of the surface of a column as high as its paint is, in cells of the grid.
+    #[must_use]
+    pub fn surface(&self, column: usize) -> f32 {
+        let sum: u32 = self.column(column).map(|voxel| self.total(voxel)).sum();
+        self.floors[column] + sum as f32 / self.layers.capacity as f32
+    }
+
+    /// Voxels of a column with room, from the lowest on.
+    pub fn column(&self, column: usize) -> impl DoubleEndedIterator<Item = usize> + use<> {
+        let (up, bottom) = (self.volume.grid.stride(2), self.bottom(column));
+        let layers = self.volume.grid.cells[2] - usize::from(self.lowest[column]);
+        (0..layers).map(move |layer| bottom + layer * up)
+    }
+
+    /// Adds up what lies in a column down to so many quanta below its top, of each paint.
+    pub fn reach(&self, column: usize, depth: f32, quanta: &mut [u32]) {
+        let mut left = depth;
+        for voxel in self.column(column).rev() {
+            let total = self.total(voxel) as f32;
+            if total == 0.0 {
+                continue;
+            }
+            let share = (left / total).min(1.0);
+            for (quanta, paint) in quanta.iter_mut().zip(&self.volume.paints) {
+                let all = paint[voxel];
+                *quanta += if share < 1.0 {
+                    (all as f32 * share) as u32
+                } else {
+                    all
+                };
+            }
+            left -= total;
+            if left <= 0.0 {
+                return;
+            }
+        }
+    }
+
+    /// Takes so many quanta of a paint, which must be there, from the top of a column.
+    pub fn take(&mut self, column: usize, paint: usize, quanta: u32) {
+        let mut left = quanta;
+        for voxel in self.column(column).rev() {
+            let counts = &mut self.volume.paints[paint];
+            let goes = counts[voxel].min(left);
+            counts[voxel] -= goes;
+            left -= goes;
+        }
+    }
+
+    /// Place of a column's lowest voxel with room.
+    #[must_use]
+    pub fn bottom(&self, column: usize) -> usize {
+        let grid = &self.volume.grid;
+        let width = self.area.size[0];
+        let [x, y] = [column % width, column / width].map(|at| at as isize);
+        grid.at([x, y, self.lowest[column] as isize])
+    }
+
+    /// Highest voxel of a column that is at least half full, or its lowest: specks in the air are not its top.
+    #[must_use]
+    pub fn top(&self, column: usize) -> usize {
+        let mut voxels = self.column(column).rev();
+        let half = self.layers.capacity / 2;
+        voxels
+            .find(|voxel| self.total(*voxel) >= half)
+            .unwrap_or_else(|| self.bottom(column))
+    }
+
+    /// Quanta of all paints in a voxel.
+    #[must_use]
+    pub fn total(&self, voxel: usize) -> u32 {
+        self.volume.paints.iter().map(|paint| paint[voxel]).sum()
+    }
+
+    /// Lays paint on a column: what its highest voxel has no room for goes above it.
+    pub fn lay(&mut self, column: usize, paint: usize, quanta: u32) {
+        let (up, mut voxel) = (self.volume.grid.stride(2), self.top(column));
+        let highest = self.column(column).next_back().unwrap_or(voxel);
+        let mut left = quanta;
+        while left > 0 {
+            let room = self.layers.capacity.saturating_sub(self.total(voxel));
+            let goes = if voxel >= highest {
+                left
+            } else {
+                left.min(room)
+            };
+            self.volume.paints[paint][voxel] += goes;
+            left -= goes;
+            voxel += up;
+        }
+    }
+
+    /// Takes over what has changed in the counts of a window: from the top of its columns.
+    pub fn follow(&mut self, window: &Window) {
+        let cells: Vec<usize> = self.area.rows(window.width()).flatten().collect();
+        for paint in 0..self.slots.len() {
+            let Some(plane) = window.plane(self.slots[paint]) else {
+                continue;
+            };
+            for (column, cell) in cells.iter().enumerate() {
+                let counts = &self.volume.paints[paint];
+                let before: u32 = self.column(column).map(|voxel| counts[voxel]).sum();
+                let now = plane[*cell] as u32;
+                if now > before {
+                    self.lay(column, paint, now - before);
+                } else if now < before {
+                    self.take(column, paint, before - now);
+                }
+            }
+        }
+    }
+
+    /// Sets so many quanta of the lowest voxel of each column aside, of its mixture; what was set aside, paint after paint.
+    #[must_use]
+    pub fn set_aside(&mut self, quanta: f32) -> Vec<u32> {
+        let columns = self.area.cells();
+        let mut aside = vec![0; columns * self.slots.len()];
+        for column in 0..columns {
+            let bottom = self.bottom(column);
+            let share = (quanta / self.total(bottom).max(1) as f32).min(1.0);
+            for (paint, counts) in self.volume.paints.iter_mut().enumerate() {
+                let stays = (counts[bottom] as f32 * share) as u32;
+                counts[bottom] -= stays;
+                aside[paint * columns + column] = stays;
+            }
+        }
+        aside
+    }
+
+    /// Puts back what was set aside.
+    pub fn put_back(&mut self, aside: &[u32]) {
+        let columns = self.area.cells();
+        for column in 0..columns {
+            let bottom = self.bottom(column);
+            for (paint, counts) in self.volume.paints.iter_mut().enumerate() {
+                counts[bottom] += aside[paint * columns + column];
+            }
+        }
+    }
+
+    /// Writes the paint back.
+    pub fn write(&self, window: &mut Window) {
+        let grid = self.volume.grid;
+        let up = grid.stride(2);
+        let cells: Vec<usize> = self.area.rows(window.width()).flatten().collect();
+        for (paint, slot) in self.slots.iter().enumerate() {
+            let counts = &self.volume.paints[paint];
+            let plane = window.plane_mut(*slot);
+            for (column, cell) in cells.iter().enumerate() {
+                let sum: u32 = self.column(column).map(|voxel| counts[voxel]).sum();
+                plane[*cell] = sum as f32;
+            }
+            for layer in 0..grid.cells[2] {
+                let shape = shape_of(*slot, self.first + layer);
+                let is_above = |column: usize| layer > usize::from(self.lowest[column]);
+                let at = |column: usize| {
+                    self.bottom(column) + (layer - usize::from(self.lowest[column])) * up
+                };
+                let has_any =
+                    (0..cells.len()).any(|column| is_above(column) && counts[at(column)] > 0);
+                if !has_any && window.own(shape).is_none() {
+                    continue;
+                }
+                let bytes = window.own_mut(shape);
+                for (column, cell) in cells.iter().enumerate() {
+                    let count = if is_above(column) {
+                        counts[at(column)]
+                    } else {
+                        0
+                    };
+                    bytes[4 * cell..4 * cell + 4].copy_from_slice(&(count as f32).to_le_bytes());
+                }
+            }
+        }
+    }
+}
+
+/// Columns of a window as they are read.
+struct Columns<'a> {
+    window: &'a Window,
+    layers: Layers,
+    cells: &'a [usize],
+    lowest: &'a [u16],
+    first: usize,
+}
+
+/// A plane of the model's own: which of the paints, in which layer of the grid.
+type Own<'a> = (usize, usize, &'a [u8]);
+
+impl Columns<'_> {
+    /// The planes of the paints, from the lowest layer on.
+    fn own(&self, slots: &[usize]) -> Vec<Own<'_>> {
+        let planes = self.window.own_planes();
+        let known = planes.filter_map(|(shape, bytes)| {
+            let (slot, layer) = place_of(shape)?;
+            let paint = slots.iter().position(|known| *known == slot)?;
+            Some((paint, layer.checked_sub(self.first)?, bytes))
+        });
+        known.collect()
+    }
+
+    /// Layers up to the highest paint of the area.
+    fn depth(&self, own: &[Own<'_>]) -> usize {
+        let mut depth = 1;
+        for (column, cell) in self.cells.iter().enumerate() {
+            let stacked = self.window.total(*cell) / self.layers.capacity as f32;
+            depth = depth.max(usize::from(self.lowest[column]) + 1 + stacked as usize);
+        }
+        for (_, layer, bytes) in own {
+            if *layer >= depth && self.cells.iter().any(|cell| value(bytes, *cell) > 0) {
+                depth = layer + 1;
+            }
+        }
+        depth
+    }
+
+    /// Fills the voxels.
+    fn fill(&self, slots: &[usize], own: &[Own<'_>], volume: &mut Volume) {
+        let grid = volume.grid;
+        let (width, up) = (grid.cells[0], grid.stride(2));
+        for (paint, slot) in slots.iter().enumerate() {
+            let plane = self.window.plane(*slot);
+            let counts = &mut volume.paints[paint];
+            for (column, cell) in self.cells.iter().enumerate() {
+                let [x, y] = [column % width, column / width].map(|at| at as isize);
+                let lowest = usize::from(self.lowest[column]);
+                let bottom = grid.at([x, y, lowest as isize]);
+                let mut left = plane.map_or(0, |plane| plane[*cell] as u32);
+                // From the lowest on: what counts no longer hold was taken from the top.
+                for (_, layer, bytes) in own.iter().filter(|(of, ..)| *of == paint) {
+                    if *layer > lowest && *layer < grid.cells[2] {
+                        let lies = value(bytes, *cell).min(left);
+                        counts[bottom + (layer - lowest) * up] = lies;
+                        left -= lies;
+                    }
+                }
+                counts[bottom] = left;
+            }
+        }
+        self.stack(volume, width);
+    }
+
+    /// Lets voxels that are too full give what is too much to the one above, as a mixture.
+    fn stack(&self, volume: &mut Volume, width: usize) {
+        let grid = volume.grid;
+        let (up, capacity) = (grid.stride(2), self.layers.capacity);
+        let most = (OVERFULL * capacity as f32) as u32;
+        for column in 0..self.cells.len() {
+            let [x, y] = [column % width, column / width].map(|at| at as isize);
+            for layer in usize::from(self.lowest[column])..grid.cells[2] - 1 {
+                let voxel = grid.at([x, y, layer as isize]);
+                let total: u32 = volume.paints.iter().map(|paint| paint[voxel]).sum();
+                if total <= most {
+                    continue;
+                }
+                let excess = u64::from(total - capacity);
+                for paint in &mut volume.paints {
+                    let goes = (u64::from(paint[voxel]) * excess / u64::from(total)) as u32;
+                    paint[voxel] -= goes;
+                    paint[voxel + up] += goes;
+                }
+            }
+        }
+    }
+}
