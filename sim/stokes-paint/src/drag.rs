@@ -24,7 +24,7 @@ const DENSITY_KG_M3: f64 = 1500.0;
 /// Acceleration of gravity, m/s².
 const GRAVITY_M_S2: f64 = 9.81;
 /// Permeability of bristles, m².
-const BRISTLES_M2: f64 = 4e-8;
+const BRISTLES_M2: f64 = 6e-8;
 /// The same of a blade, through which nothing goes.
 const BLADE_M2: f64 = 2e-10;
 
@@ -64,6 +64,7 @@ pub fn drag(voxels: &mut Voxels, footprint: &mut Footprint, step: &Step<'_>, cel
     voxels
         .volume
         .advect(&domain, &open, &velocity, seconds, cell_m);
+    voxels.lift();
     let width = step.window.width();
     for (contact, bottom) in footprint.contacts.iter_mut().zip(bottoms) {
         let column = voxels.column_of(contact.cell as usize, width);

@@ -236,6 +236,20 @@ impl Voxels {
         }
     }
 
+    /// Lifts what has sunk below the lowest voxel with room of its column into that.
+    pub fn lift(&mut self) {
+        let grid = self.volume.grid;
+        for column in 0..self.area.cells() {
+            let bottom = self.bottom(column);
+            for below in 1..=usize::from(self.lowest[column]) {
+                let voxel = bottom - below * grid.stride(2);
+                for paint in &mut self.volume.paints {
+                    paint[bottom] += std::mem::take(&mut paint[voxel]);
+                }
+            }
+        }
+    }
+
     /// Sets so many quanta of the lowest voxel of each column aside, of its mixture; what was set aside, paint after paint.
     #[must_use]
     pub fn set_aside(&mut self, quanta: f32) -> Vec<u32> {

@@ -13,9 +13,19 @@ const SCALE: Scale = Scale {
 fn run(model: &mut dyn PaintModel, ground: f32, height: f64, load_it: bool) {
     let file = BrushFile::library("round").unwrap();
     let head = Head::of(&file);
+    let tooth_on = true;
+    let _ = tooth_on;
     let mut store = TileStore::new([192; 2]);
     let all = store.around([0, 0], [192; 2]).unwrap();
-    let mut window = Window::open(&mut store, all, &Relief::flat(SCALE.cell_m)).unwrap();
+    let mut window = Window::open(
+        &mut store,
+        all,
+        &Relief::new(
+            maulstick_canvas::relief::tooth::Tooth::new("linen", 1, SCALE.cell_m).unwrap(),
+            SCALE.cell_m,
+        ),
+    )
+    .unwrap();
     window.plane_mut(3).fill(ground * 167772.0);
     let traits = BrushTraits::of(&file, SCALE.cell_m, SCALE.zoom);
     let mut load = BrushLoad::clean(head.strips());
@@ -38,7 +48,7 @@ fn run(model: &mut dyn PaintModel, ground: f32, height: f64, load_it: bool) {
         };
         Waypoint::of(&solve, SCALE, 1.0)
     };
-    let mut path = PathStepper::begin(&head, at(0.010), SCALE);
+    let mut path = PathStepper::begin(&head, at(0.004), SCALE);
     let t = std::time::Instant::now();
     let mut n = 0;
     path.advance(&head, (at(0.020), 0), |sweep, _| {
@@ -86,9 +96,9 @@ fn run(model: &mut dyn PaintModel, ground: f32, height: f64, load_it: bool) {
             .collect();
         println!("  y{y}: {}", r.join(" "));
     }
-    for x in [56, 64, 72] {
+    for x in [60, 70, 80, 90, 100, 110, 120, 130, 140] {
         let r: Vec<String> = (30..110)
-            .step_by(3)
+            .step_by(2)
             .map(|y| format!("{:.1}", window.total(y * window.width() + x) / 167772.0))
             .collect();
         println!("  x{x}: {}", r.join(" "));
@@ -96,8 +106,8 @@ fn run(model: &mut dyn PaintModel, ground: f32, height: f64, load_it: bool) {
 }
 #[test]
 fn compare() {
-    for (g, h) in [(6.0, 0.75), (2.0, 0.75), (2.0, 0.65), (0.6, 0.65)] {
-        for l in [true, false] {
+    for (g, h) in [(0.0, 0.7), (0.0, 0.6)] {
+        for l in [true] {
             run(&mut maulstick_impasto::Impasto::default(), g, h, l);
             run(&mut maulstick_stokes_paint::StokesPaint::default(), g, h, l);
         }

@@ -7,7 +7,7 @@ use maulstick_canvas::{relief::Relief, store::TileStore, window::Window};
 use maulstick_model::brush::head::Waypoint;
 use maulstick_model::brush::load::{BrushLoad, Half};
 use maulstick_model::brush::{scale::Scale, traits::BrushTraits};
-use maulstick_model::interface::{Handling, PaintModel as _, Step};
+use maulstick_model::interface::{Handling, PaintModel as _, Step, Transfer};
 use maulstick_model::path::PathStepper;
 use maulstick_stokes_paint::StokesPaint;
 use maulstick_types::{Pose, brush::Solve};
@@ -110,6 +110,12 @@ impl Easel {
             .collect()
     }
 
+    /// Quanta of the brush's paint on the surface.
+    fn laid(&self) -> f64 {
+        let plane = self.window.plane(0).expect("laid");
+        plane.iter().map(|count| f64::from(*count)).sum()
+    }
+
     /// Quanta of a slot in a layer of a cell above its lowest.
     fn in_layer(&self, slot: usize, layer: usize, cell: usize) -> u32 {
         let mut planes = self.window.own_planes();
@@ -124,83 +130,89 @@ impl Easel {
 
 #[test]
 fn no_quantum_is_made_or_lost() {
-    let mut easel = Easel::new(128, Some((3, 4.25 * CELL))).load(0);
+    let mut easel = Easel::new(192, Some((3, 4.25 * CELL))).load(0);
     let before = easel.counts();
-    easel.stroke([0.010, 0.020], 0.016, 0.6);
-    easel.stroke([0.020, 0.012], 0.017, 0.5);
+    easel.stroke([0.010, 0.013], 0.016, 0.65);
+    easel.stroke([0.013, 0.011], 0.017, 0.7);
     assert_eq!(easel.counts(), before);
-    let left: f32 = easel.window.plane(0).expect("laid").iter().sum();
-    assert!(left > 0.0);
+    assert!(easel.laid() > 0.0);
+}
+
+/// Heights across a stroke of a brush that gives and takes nothing, by the ground's.
+fn furrow(height: f64) -> Vec<f32> {
+    let ground = 2.0 * CELL;
+    let mut easel = Easel::new(192, Some((3, ground)));
+    easel.handling.transfer = Transfer::Marker { flow: 0.0 };
+    easel.stroke([0.010, 0.018], 0.016, height);
+    let rows = 40..160;
+    rows.map(|y| easel.window.total(easel.cell(115, y)) / ground)
+        .collect()
 }
 
 #[test]
 fn a_brush_ploughs_a_furrow_between_ridges() {
-    let ground = 3.0 * CELL;
-    let mut easel = Easel::new(128, Some((3, ground)));
-    easel.handling.transfer = maulstick_model::interface::Transfer::Marker { flow: 0.0 };
-    easel.stroke([0.008, 0.022], 0.016, 0.55);
-    let across: Vec<f32> = (20..110)
-        .map(|y| easel.window.total(easel.cell(64, y)) / ground)
-        .collect();
+    let across = furrow(0.65);
     let least = across
         .iter()
         .fold(f32::MAX, |least, height| least.min(*height));
     let most = across.iter().fold(0.0f32, |most, height| most.max(*height));
-    assert!(least < 0.8 && most > 1.05, "{least} {most} {across:?}");
+    assert!(least < 0.8 && most > 1.1, "{least} {most} {across:?}");
+    // A brush above the paint leaves it.
+    assert!(furrow(1.5).iter().all(|height| *height == 1.0));
+}
+
+/// Share of the brush's paint that a stroke lays into the lowest layer of a thick ground.
+fn deep(height: f64) -> f64 {
+    let mut easel = Easel::new(192, Some((3, 6.0 * CELL))).load(0);
+    easel.stroke([0.010, 0.014], 0.016, height);
+    let laid = easel.laid();
+    assert!(laid > 0.0);
+    let cells = easel.window.width() * easel.window.height();
+    let above = (0..cells).map(|cell| {
+        let layers = (1..20).map(|layer| easel.in_layer(0, layer, cell));
+        layers.map(f64::from).sum::<f64>()
+    });
+    1.0 - above.sum::<f64>() / laid
 }
 
 #[test]
 fn a_light_stroke_leaves_what_lies_deep() {
-    let mut easel = Easel::new(128, Some((3, 6.0 * CELL))).load(0);
-    easel.stroke([0.010, 0.020], 0.016, 0.75);
-    let blue: f32 = easel.window.plane(0).expect("laid").iter().sum();
-    assert!(blue > 0.0);
-    let cells = easel.window.width() * easel.window.height();
-    let lowest: f64 = (0..cells)
-        .map(|cell| {
-            let above: u32 = (1..12).map(|layer| easel.in_layer(0, layer, cell)).sum();
-            f64::from(easel.window.plane(0).expect("laid")[cell]) - f64::from(above)
-        })
-        .sum();
-    assert!(lowest < 0.02 * f64::from(blue), "{lowest} of {blue}");
+    let (light, heavy) = (deep(0.76), deep(0.6));
+    assert!(light < 0.02 && heavy > 2.0 * light, "{light} {heavy}");
 }
 
 #[test]
 fn a_step_depends_on_the_cells_around_the_brush_alone() {
     let paint = |cells| {
         let mut easel = Easel::new(cells, Some((3, 2.5 * CELL))).load(0);
-        easel.stroke([0.010, 0.016], 0.016, 0.6);
+        easel.stroke([0.010, 0.012], 0.016, 0.65);
+        let width = easel.window.width();
         let planes = easel.window.planes();
         let rows = planes.flat_map(|(_, plane)| {
-            let width = easel.window.width();
-            (0..128).flat_map(move |y| plane[y * width..y * width + 128].to_vec())
+            (0..192).flat_map(move |y| plane[y * width..y * width + 192].to_vec())
         });
         rows.collect::<Vec<f32>>()
     };
-    assert!(paint(128) == paint(192));
+    assert!(paint(192) == paint(256));
 }
 
 #[test]
 fn what_is_committed_is_read_again() {
-    let mut easel = Easel::new(128, Some((3, 3.5 * CELL))).load(0);
-    easel.stroke([0.010, 0.016], 0.016, 0.6);
+    let mut easel = Easel::new(192, Some((3, 3.5 * CELL))).load(0);
+    easel.stroke([0.010, 0.012], 0.016, 0.65);
     let before = easel.counts();
-    let own: Vec<Vec<u8>> = easel
-        .window
-        .own_planes()
-        .map(|(_, bytes)| bytes.to_vec())
-        .collect();
+    let planes = easel.window.own_planes();
+    let own: Vec<Vec<u8>> = planes.map(|(_, bytes)| bytes.to_vec()).collect();
     assert!(!own.is_empty());
     let [width, height] = [easel.window.width(), easel.window.height()];
     easel.window.touch(([0, 0], [width, height]));
-    let mut next = 0;
-    let rect = easel.window.rect();
+    let (mut next, rect) = (0, easel.window.rect());
     easel.window.commit(&mut easel.store, &mut next, |_, _| ());
     easel.window.close(&mut easel.store);
-    easel.window =
-        Window::open(&mut easel.store, rect, &Relief::flat(SCALE.cell_m)).expect("free again");
+    let relief = Relief::flat(SCALE.cell_m);
+    easel.window = Window::open(&mut easel.store, rect, &relief).expect("free again");
     let again = easel.window.own_planes().map(|(_, bytes)| bytes.to_vec());
-    let is_some = |bytes: &Vec<u8>| bytes.iter().any(|byte| *byte != 0);
-    assert!(again.eq(own.into_iter().filter(is_some)));
+    let holds = |bytes: &Vec<u8>| bytes.iter().any(|byte| *byte != 0);
+    assert!(again.eq(own.into_iter().filter(holds)));
     assert_eq!(easel.counts(), before);
 }

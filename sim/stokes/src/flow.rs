@@ -172,7 +172,10 @@ impl Flow {
             if let Some(resistance) = &solids.resistance {
                 let bristles = (&resistance[axis][..], &solids.velocity[axis][..]);
                 drag(domain, (axis, tau as f32), bristles, &mut pulled);
-                self.velocity[axis].copy_from_slice(&pulled);
+                let guesses = self.velocity[axis].iter_mut().zip(&pulled);
+                for ((u, pulled), free) in guesses.zip(&domain.free[axis]) {
+                    *u += free * (pulled - *u);
+                }
             }
             pulled
         });
