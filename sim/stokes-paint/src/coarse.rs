@@ -36,17 +36,23 @@ pub struct Coarse {
 }
 
 impl Coarse {
-    /// The paint of an area, so many voxels to the side of a cell; `open` is the share of each voxel that is.
+    /// The paint of an area, so many voxels to the side of a cell; `open` is the share of each voxel that is, `totals` its
+    /// quanta.
     #[must_use]
-    pub fn of(voxels: &Voxels, open: &[f32], side: usize) -> Self {
+    pub fn of(voxels: &Voxels, (open, totals): (&[f32], &[u32]), side: usize) -> Self {
         let fine = voxels.volume.grid;
         let grid = Grid::walled(fine.cells.map(|cells| cells.div_ceil(side)));
         let capacity = voxels.volume.capacity as f32;
         let (mut filled, mut room) = (grid.field(), grid.field());
-        for place in fine.places() {
-            let coarse = grid.at(fine.cell(place).map(|at| at / side as isize));
-            filled[coarse] += voxels.total(place) as f32 / capacity;
-            room[coarse] += open[place];
+        for z in 0..fine.cells[2] {
+            for y in 0..fine.cells[1] {
+                let from = fine.at([0, y as isize, z as isize]);
+                let to = grid.at([0, (y / side) as isize, (z / side) as isize]);
+                for x in 0..fine.cells[0] {
+                    filled[to + x / side] += totals[from + x] as f32 / capacity;
+                    room[to + x / side] += open[from + x];
+                }
+            }
         }
         let least = 0.05 * (side * side * side) as f32;
         let fill = filled.iter().zip(&room);
@@ -109,31 +115,43 @@ impl Coarse {
         if self.side == 1 {
             return velocity.clone();
         }
-        let side = self.side as f32;
-        let from = self.grid;
+        let [dx, dy, dz] = [0, 1, 2].map(|along| self.grid.stride(along));
         std::array::from_fn(|axis| {
-            // Along its own axis a face lies on a face, across it in the middle of cells.
-            let place = |at: isize, along: usize| {
-                let at = (at as f32 + if along == axis { 0.0 } else { 0.5 }) / side;
-                let at = if along == axis { at } else { at - 0.5 };
-                let low = at.floor();
-                let last = from.cells[along] as isize + 1;
-                let whole = (low as isize).clamp(-1, last - 1);
-                (whole, at - low)
-            };
+            let [xs, ys, zs] = [0, 1, 2].map(|along| self.places(along, axis, fine));
             let field = &velocity[axis];
             let mut refined = fine.field();
-            for face in fine.faces(axis) {
-                let cell = fine.cell(face);
-                let [(x, u), (y, v), (z, w)] = [0, 1, 2].map(|along| place(cell[along], along));
-                let corner = from.at([x, y, z]);
-                let [dx, dy, dz] = [0, 1, 2].map(|along| from.stride(along));
-                let row = |at: usize| field[at] + u * (field[at + dx] - field[at]);
-                let sheet = |at: usize| row(at) + v * (row(at + dy) - row(at));
-                refined[face] = sheet(corner) + w * (sheet(corner + dz) - sheet(corner));
+            for (z, (low_z, w)) in zs.iter().enumerate() {
+                for (y, (low_y, v)) in ys.iter().enumerate() {
+                    let row = self.grid.at([0, *low_y, *low_z]);
+                    let to = fine.at([0, y as isize, z as isize]);
+                    let into = &mut refined[to..to + xs.len()];
+                    for (into, (low_x, u)) in into.iter_mut().zip(&xs) {
+                        let corner = row.wrapping_add_signed(*low_x);
+                        let along = |at: usize| field[at] + u * (field[at + dx] - field[at]);
+                        let across = |at: usize| along(at) + v * (along(at + dy) - along(at));
+                        let (below, above) = (across(corner), across(corner + dz));
+                        *into = below + w * (above - below);
+                    }
+                }
             }
             refined
         })
+    }
+
+    /// For the faces across an axis of voxels along another one: the cell before each, and how far on from that it is.
+    fn places(&self, along: usize, axis: usize, fine: &Grid) -> Vec<(isize, f32)> {
+        let (side, last) = (self.side as f32, self.grid.cells[along] as isize);
+        let count = fine.cells[along] + usize::from(along == axis);
+        let place = |at: usize| {
+            // Along its own axis a face lies on a face, across it in the middle of cells.
+            let at = match along == axis {
+                true => at as f32 / side,
+                false => (at as f32 + 0.5) / side - 0.5,
+            };
+            let low = at.floor();
+            ((low as isize).clamp(-1, last), at - low)
+        };
+        (0..count).map(place).collect()
     }
 }
 
@@ -147,8 +165,11 @@ fn relief(grid: &Grid, side: usize, voxels: &Voxels) -> Solids {
             voxels.floor_at([x, y]) / side as f32
         })
         .collect();
-    for (place, distance) in solids.distance.iter_mut().enumerate() {
-        *distance = distance.min(grid.cell(place)[2] as f32 - corners[place % plane]);
+    for (layer, distances) in solids.distance.chunks_exact_mut(plane).enumerate() {
+        let height = layer as f32 - 1.0;
+        for (distance, corner) in distances.iter_mut().zip(&corners) {
+            *distance = distance.min(height - corner);
+        }
     }
     solids
 }

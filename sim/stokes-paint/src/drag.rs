@@ -19,6 +19,8 @@ use crate::voxels::Voxels;
 
 /// Speed at which a brush is taken to go, m/s.
 const SPEED_M_S: f64 = 0.1;
+/// Steps of a brush for each of the flow: less than a cell of its grid.
+pub const STEPS: u32 = 2;
 /// Density of oil paint, kg/m³.
 const DENSITY_KG_M3: f64 = 1500.0;
 /// Acceleration of gravity, m/s².
@@ -37,11 +39,12 @@ pub fn drag(voxels: &mut Voxels, footprint: &mut Footprint, step: &Step<'_>, cel
     if farthest <= 0.0 {
         return;
     }
-    let seconds = f64::from(farthest) * cell_m / SPEED_M_S;
+    let seconds = f64::from(farthest) * f64::from(STEPS) * cell_m / SPEED_M_S;
     let fine = voxels.volume.grid;
     let solids = voxels.solids();
     let open = solids.open(&fine);
-    let mut coarse = Coarse::of(voxels, &open, voxels.side());
+    let totals = voxels.totals();
+    let mut coarse = Coarse::of(voxels, (&open, &totals), voxels.side());
     let conditions = Conditions {
         cell_m: cell_m * coarse.side as f64,
         seconds,
@@ -49,13 +52,8 @@ pub fn drag(voxels: &mut Voxels, footprint: &mut Footprint, step: &Step<'_>, cel
         pull: [0.0, 0.0, -GRAVITY_M_S2],
     };
     let bottoms = bottoms(voxels, footprint, step.window.width());
-    hold(
-        voxels,
-        &mut coarse,
-        (footprint, &bottoms),
-        step,
-        &conditions,
-    );
+    let contacts = footprint.contacts.iter().zip(&bottoms);
+    hold(voxels, &mut coarse, (contacts, &totals), step, &conditions);
     let mut flow = Flow::new(&coarse.grid);
     flow.step(&coarse.fill, &coarse.solids, &conditions);
     let velocity = coarse.refine(&flow.velocity, &fine);
@@ -85,10 +83,10 @@ fn bottoms(voxels: &Voxels, footprint: &Footprint, width: usize) -> Vec<f32> {
 }
 
 /// Puts the bristles of the contacts where they are in the paint: from where each is up.
-fn hold(
+fn hold<'a>(
     voxels: &Voxels,
     coarse: &mut Coarse,
-    (footprint, bottoms): (&Footprint, &[f32]),
+    (contacts, totals): (impl Iterator<Item = (&'a Contact, &'a f32)>, &[u32]),
     step: &Step<'_>,
     conditions: &Conditions,
 ) {
@@ -99,13 +97,17 @@ fn hold(
         BRISTLES_M2
     };
     let whole = (conditions.cell_m * conditions.cell_m / permeability) as f32;
-    let to_m_s = (conditions.cell_m / (conditions.seconds * coarse.side as f64)) as f32;
-    for (contact, bottom) in footprint.contacts.iter().zip(bottoms) {
+    let way_m = f64::from(STEPS) * conditions.cell_m / coarse.side as f64;
+    let to_m_s = (way_m / conditions.seconds) as f32;
+    for (contact, bottom) in contacts {
         let column = voxels.column_of(contact.cell as usize, step.window.width());
         for voxel in voxels.column(column) {
             let cell = grid.cell(voxel);
             let height = cell[2] as f32;
-            let fill = voxels.total(voxel) as f32 / voxels.volume.capacity as f32;
+            if totals[voxel] == 0 {
+                continue;
+            }
+            let fill = totals[voxel] as f32 / voxels.volume.capacity as f32;
             let held = (height + fill - bottom.max(height)).max(0.0);
             let velocity = contact.moved.map(|moved| moved * to_m_s);
             coarse.resist(cell, (held, whole * contact.cover), velocity);

@@ -11,7 +11,7 @@ use maulstick_model::footprint::Footprint;
 use maulstick_model::interface::{PaintModel, Rest, Step, StepReport, Transfer};
 use maulstick_model::modes::{sample, vacuum};
 
-use crate::drag::drag;
+use crate::drag::{STEPS, drag};
 use crate::layers::Layers;
 use crate::reach::Reach;
 use crate::voxels::Voxels;
@@ -86,7 +86,8 @@ impl StokesPaint {
             .wet
             .iter()
             .fold(0.0f32, |most, wet| most.max(*wet));
-        if step.handling.push && thickest > FLOWS_FROM * layers.capacity as f32 {
+        let flows = step.load.steps().is_multiple_of(u64::from(STEPS));
+        if step.handling.push && flows && thickest > FLOWS_FROM * layers.capacity as f32 {
             let stays = voxels.set_aside(step.stain);
             drag(&mut voxels, footprint, step, cell_m);
             voxels.put_back(&stays);

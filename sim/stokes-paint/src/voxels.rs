@@ -118,8 +118,11 @@ impl Voxels {
             self.floor_at([x, y])
         };
         let corners: Vec<f32> = (0..plane).map(corner).collect();
-        for (place, distance) in solids.distance.iter_mut().enumerate() {
-            *distance = distance.min(grid.cell(place)[2] as f32 - corners[place % plane]);
+        for (layer, distances) in solids.distance.chunks_exact_mut(plane).enumerate() {
+            let height = layer as f32 - 1.0;
+            for (distance, corner) in distances.iter_mut().zip(&corners) {
+                *distance = distance.min(height - corner);
+            }
         }
         solids
     }
@@ -190,6 +193,17 @@ impl Voxels {
         voxels
             .find(|voxel| self.total(*voxel) >= half)
             .unwrap_or_else(|| self.bottom(column))
+    }
+
+    /// Quanta of all paints in each voxel.
+    #[must_use]
+    pub fn totals(&self) -> Vec<u32> {
+        let mut totals = vec![0; self.volume.grid.len()];
+        for paint in &self.volume.paints {
+            let sums = totals.iter_mut().zip(paint);
+            sums.for_each(|(sum, count)| *sum += count);
+        }
+        totals
     }
 
     /// Quanta of all paints in a voxel.

@@ -106,7 +106,7 @@ fn run(model: &mut dyn PaintModel, ground: f32, height: f64, load_it: bool) {
 }
 #[test]
 fn compare() {
-    for (g, h) in [(0.0, 0.7), (0.0, 0.6)] {
+    for (g, h) in [(0.0, 0.65), (2.0, 0.65)] {
         for l in [true] {
             run(&mut maulstick_impasto::Impasto::default(), g, h, l);
             run(&mut maulstick_stokes_paint::StokesPaint::default(), g, h, l);

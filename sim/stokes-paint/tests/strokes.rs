@@ -3,6 +3,7 @@
 use maulstick_brush::{BrushFile, Head};
 use maulstick_canvas::layered::{place_of, value};
 use maulstick_canvas::quantum::SLOTS;
+use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_canvas::{relief::Relief, store::TileStore, window::Window};
 use maulstick_model::brush::head::Waypoint;
 use maulstick_model::brush::load::{BrushLoad, Half};
@@ -29,7 +30,7 @@ struct Easel {
 }
 
 impl Easel {
-    /// A surface of so many cells each way, under wet paint of a slot, quanta.
+    /// A surface of so many cells each way: a level one under wet paint of a slot, quanta, or bare linen.
     fn new(cells: u32, ground: Option<(usize, f32)>) -> Self {
         let file = BrushFile::library("round").expect("a brush of the library");
         let head = Head::of(&file);
@@ -37,8 +38,12 @@ impl Easel {
         let all = store
             .around([0, 0], [i64::from(cells); 2])
             .expect("a surface");
-        let mut window =
-            Window::open(&mut store, all, &Relief::flat(SCALE.cell_m)).expect("not leased");
+        let tooth = Tooth::new("linen", 1, SCALE.cell_m).expect("a tooth");
+        let relief = match ground {
+            Some(_) => Relief::flat(SCALE.cell_m),
+            None => Relief::new(tooth, SCALE.cell_m),
+        };
+        let mut window = Window::open(&mut store, all, &relief).expect("not leased");
         if let Some((slot, quanta)) = ground {
             window.plane_mut(slot).fill(quanta);
         }
@@ -134,6 +139,16 @@ fn no_quantum_is_made_or_lost() {
     let before = easel.counts();
     easel.stroke([0.010, 0.013], 0.016, 0.65);
     easel.stroke([0.013, 0.011], 0.017, 0.7);
+    assert_eq!(easel.counts(), before);
+    assert!(easel.laid() > 0.0);
+}
+
+#[test]
+fn no_quantum_is_lost_in_the_tooth() {
+    let mut easel = Easel::new(192, None).load(0);
+    let before = easel.counts();
+    easel.stroke([0.004, 0.009], 0.016, 0.65);
+    easel.stroke([0.009, 0.006], 0.017, 0.6);
     assert_eq!(easel.counts(), before);
     assert!(easel.laid() > 0.0);
 }
