@@ -1,4 +1,5 @@
 //! Time of the solver on this thread's processor, one row a line: `cargo run --release -p maulstick-stokes --example speed`.
+//! With `step` windows alone, with a number that one alone.
 
 #[path = "../tests/common/pools.rs"]
 #[allow(unreachable_pub, reason = "a pool is what tests share")]
@@ -147,7 +148,12 @@ impl Case {
 }
 
 fn main() {
-    CASES.iter().for_each(Case::measure);
+    let number = std::env::args().find_map(|word| word.parse::<usize>().ok());
+    let wanted = CASES
+        .iter()
+        .enumerate()
+        .filter(|(each, _)| number.is_none_or(|number| number == *each));
+    wanted.for_each(|(_, case)| case.measure());
     if std::env::args().any(|word| word == "step") {
         return;
     }

@@ -4,12 +4,12 @@
 //! within one component of the velocity is a [stencil](Stencil), with which multigrid preconditions; the rest are cross
 //! terms of edges.
 
-use maulstick_num::{fork_join, wide};
+use maulstick_num::wide;
 
 use crate::domain::Domain;
 use crate::grid::others;
 use crate::multigrid::Multigrid;
-use crate::runs::Runs;
+use crate::runs::{Runs, share};
 use crate::stencil::{Span, Stencil};
 
 /// The three components of the velocity, and the pressure.
@@ -178,19 +178,19 @@ impl Operator {
             .iter_mut()
             .zip(self.edge.iter_mut().zip(&mut self.cross))
             .collect();
-        fork_join::each(&mut fields, |(edge, (weight, cross))| {
+        share(len, &mut fields, |(edge, (weight, cross))| {
             let by = others(**edge).map(|axis| grid.stride(axis));
-            let (share, slopes) = (&domain.edge[**edge], &domain.slope[**edge]);
+            let (shares, slopes) = (&domain.edge[**edge], &domain.slope[**edge]);
             weight.resize(len, 0.0);
             cross.resize(len, 0.0);
             let span = Span::of(&grid, by[0] + by[1]..len);
-            weigh_edges(weight, share, beta, &domain.wet, viscosity, by, span);
+            weigh_edges(weight, shares, beta, &domain.wet, viscosity, by, span);
             grid.wrap(weight);
             multiply_three(cross, weight, &slopes[0], &slopes[1]);
         });
         let mut axes: Vec<_> = components.iter_mut().take(3).enumerate().collect();
         let own = &*self;
-        fork_join::each(&mut axes, |(axis, component)| {
+        share(len, &mut axes, |(axis, component)| {
             own.component(domain, *axis, alpha, component.stencil_mut());
         });
     }

@@ -13,6 +13,8 @@ use crate::vector::{Sum, add_products, add_scaled};
 const MEMORY: usize = 24;
 /// Places that loops over many fields go over at a time.
 const TILE: usize = 2048;
+/// Places of all fields and directions from which on cores share a loop over them.
+const WORTH: usize = 1 << 14;
 /// Part of an image's square below which what is left of it is made orthogonal again.
 const CANCELLED: f64 = 1e-3;
 
@@ -81,7 +83,7 @@ impl Residuals {
     pub(crate) fn begin(&mut self, stencils: [&Stencil; 4], b: &Unknowns) -> f64 {
         self.used = 0;
         let mut unused: [Vec<f32>; 4] = std::array::from_fn(|_| Vec::new());
-        let sums = over(stencils, &mut self.residual, &mut unused, |field| {
+        let sums = over((stencils, 1), &mut self.residual, &mut unused, |field| {
             for run in field.stencil.runs.iter() {
                 let r = &mut field.own[run.clone()];
                 subtract_from(r, &b[field.number][run]);
@@ -127,9 +129,14 @@ impl Residuals {
         let (mut squared, mut answers) = (0.0, 0.0);
         for round in 0..2 {
             let (before, _) = self.directions.split_at(number);
-            let products = over(stencils, &mut q, &mut self.residual, |field| {
-                multiply_with(field, before);
-            });
+            let products = over(
+                (stencils, number + 1),
+                &mut q,
+                &mut self.residual,
+                |field| {
+                    multiply_with(field, before);
+                },
+            );
             let shares: Vec<f64> = before
                 .iter()
                 .zip(products)
@@ -137,9 +144,14 @@ impl Residuals {
                 .collect();
             let whole = products[MEMORY];
             if number > 0 {
-                let sums = over(stencils, &mut q, &mut self.residual, |field| {
-                    take_away(field, before, &shares);
-                });
+                let sums = over(
+                    (stencils, number + 1),
+                    &mut q,
+                    &mut self.residual,
+                    |field| {
+                        take_away(field, before, &shares);
+                    },
+                );
                 (squared, answers) = (sums[MEMORY], sums[MEMORY + 1]);
             } else {
                 (squared, answers) = (whole, products[MEMORY + 1]);
@@ -165,7 +177,7 @@ impl Residuals {
         }
         self.used += 1;
         let q = &mut self.directions[number].q;
-        let sums = over(stencils, &mut self.residual, q, |field| {
+        let sums = over((stencils, 1), &mut self.residual, q, |field| {
             for run in field.stencil.runs.iter() {
                 let r = &mut field.own[run.clone()];
                 add_scaled(r, -answers as f32, &field.other[run]);
@@ -187,7 +199,7 @@ impl Residuals {
             weights[number] = directions[number].answers - taken;
         }
         let mut unused: [Vec<f32>; 4] = std::array::from_fn(|_| Vec::new());
-        over(stencils, x, &mut unused, |field| {
+        over((stencils, self.used), x, &mut unused, |field| {
             for tile in tiles(field.stencil) {
                 let x = &mut field.own[tile.clone()];
                 for (direction, weight) in directions.iter().zip(weights) {
@@ -199,9 +211,10 @@ impl Residuals {
     }
 }
 
-/// Calls for each of the four fields, on as many cores as there are; sums are added up in their order.
+/// Calls for each of the four fields, on several cores where so many directions are worth it; sums are added up in their
+/// order.
 fn over(
-    stencils: [&Stencil; 4],
+    (stencils, directions): ([&Stencil; 4], usize),
     own: &mut Unknowns,
     other: &mut Unknowns,
     work: impl Fn(&mut Field<'_>) + Sync,
@@ -219,7 +232,12 @@ fn over(
             sums: [0.0; MEMORY + 2],
         }
     });
-    fork_join::each(&mut fields, &work);
+    let places: usize = stencils.iter().map(|stencil| stencil.runs.len()).sum();
+    if places < WORTH || places * directions < 2 * WORTH {
+        fields.iter_mut().for_each(&work);
+    } else {
+        fork_join::each(&mut fields, &work);
+    }
     let mut total = [0.0; MEMORY + 2];
     for field in &fields {
         total

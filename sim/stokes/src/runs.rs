@@ -11,6 +11,8 @@ const BLOCK: usize = 16;
 const GAP: usize = 32;
 /// Places from which on cores share a loop.
 const WORTH: usize = 4096;
+/// Places of a window from which on cores share what is done with it field by field.
+const WINDOW_WORTH: usize = 14_000;
 /// Parts that all stretches are cut into; the same whatever the number of threads.
 const PARTS: usize = 4;
 
@@ -21,6 +23,15 @@ pub struct Runs {
     /// Number of the first stretch of each part, and that of all.
     cuts: [usize; PARTS + 1],
     len: usize,
+}
+
+/// Does the work on each share of a window of so many places, on several cores where that is worth it.
+pub(crate) fn share<S: Send>(places: usize, shares: &mut [S], work: impl Fn(&mut S) + Sync) {
+    if places < WINDOW_WORTH {
+        shares.iter_mut().for_each(work);
+    } else {
+        fork_join::each(shares, work);
+    }
 }
 
 wide! {

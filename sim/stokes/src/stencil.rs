@@ -160,6 +160,20 @@ impl<'a> Around<'a> {
     }
 }
 
+impl Around<'_> {
+    /// Σ lᵢⱼ·xⱼ·yⱼ with y of another.
+    #[inline(always)]
+    fn pull_times(&self, other: &Self, i: usize) -> f32 {
+        let [[a, b], [c, d], [e, f]] = self.links;
+        let [[l, r], [s, n], [u, o]] = self.x;
+        let [[v, w], [x, y], [z, t]] = other.x;
+        let along_x = a[i] * (l[i] * v[i]) + b[i] * (r[i] * w[i]);
+        let along_y = c[i] * (s[i] * x[i]) + d[i] * (n[i] * y[i]);
+        let along_z = e[i] * (u[i] * z[i]) + f[i] * (o[i] * t[i]);
+        along_x + along_y + along_z
+    }
+}
+
 wide! {
     /// Diagonal and its inverse.
     fn sum_links(stencil: &mut Stencil, span: Span) {
@@ -228,6 +242,23 @@ wide! {
     }
 }
 
+wide! {
+    /// Two steps from x = 0: by ω, then by ψ.
+    fn begin_twice_flat(into: &mut [f32], b: &[f32], omegas: [f32; 2], stencil: &Stencil, span: Span) {
+        let [omega, psi] = omegas;
+        let inverse = &stencil.inverse;
+        let of_b = Around::of(&span, stencil, b);
+        let of_inverse = Around::of(&span, stencil, inverse);
+        let (b, inverse) = (span.here(b), span.here(inverse));
+        let into = span.own(into);
+        for i in 0..into.len() {
+            let first = omega * (inverse[i] * b[i]);
+            let pull = of_b.pull_times(&of_inverse, i);
+            into[i] = first + psi * (inverse[i] * (b[i] + omega * pull) - first);
+        }
+    }
+}
+
 /// What a stencil writes are the places of its unknowns, in stretches; elsewhere a field keeps what it has.
 impl Stencil {
     /// into = A·x; wraps x.
@@ -287,6 +318,24 @@ impl Stencil {
     pub(crate) fn begin(&self, b: &[f32], omega: f32, into: &mut [f32]) {
         self.runs.write([into], |run, [into]| {
             begin_flat(into, &b[run.clone()], omega, &self.inverse[run]);
+        });
+    }
+
+    /// The first two, by way of a second field.
+    pub(crate) fn begin_twice(
+        &self,
+        grid: &Grid,
+        b: &[f32],
+        omegas: [f32; 2],
+        into: &mut [f32],
+        spare: &mut [f32],
+    ) {
+        if (0..3).any(|axis| grid.is_periodic(axis)) {
+            self.begin(b, omegas[0], spare);
+            return self.relax(grid, b, spare, omegas[1], into);
+        }
+        self.runs.write([into], |run, [into]| {
+            begin_twice_flat(into, b, omegas, self, Span::of(grid, run));
         });
     }
 }

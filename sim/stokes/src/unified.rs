@@ -11,11 +11,15 @@ use crate::domain::Domain;
 use crate::multigrid::Multigrid;
 use crate::operator::{Operator, Unknowns, laplacian, outflow};
 use crate::residuals::Residuals;
+use crate::runs::share;
 use crate::stencil::{Span, Stencil};
 use crate::vector::add_scaled;
 
 /// Drag of walls on paint of a thickness of one, by its viscosity: between 3 for a film and 12 for a gap.
 const GAP_DRAG: f32 = 6.0;
+
+/// Unknowns of a component from which on cores share the cycles.
+const WORTH: usize = 3500;
 
 /// The equations of one step on one window, in room that is kept from one step to the next.
 #[derive(Clone, Debug)]
@@ -68,7 +72,7 @@ impl Unified {
         self.operator
             .renew(domain, [alpha, beta], viscosity, components);
         laplacian(domain, pressure.stencil_mut());
-        fork_join::each(&mut self.hierarchies, Multigrid::renew);
+        share(grid.len(), &mut self.hierarchies, Multigrid::renew);
         let thickness = thickness(domain);
         self.alpha = alpha;
         self.drag = alpha + beta * GAP_DRAG / (thickness * thickness);
@@ -96,11 +100,17 @@ impl Unified {
         let [u, v, w, p] = z;
         let [pressure_r] = [&r[3]];
         let [one, two, three, pressure] = &mut self.hierarchies;
+        let unknowns = three.stencil().runs.len();
         // The third one's loops, as those of the pressure, are shared among cores.
         let mut pairs = [(&mut *one, &r[0], &mut *u), (&mut *two, &r[1], &mut *v)];
-        fork_join::each(&mut pairs, |(hierarchy, from, into)| {
+        let work = |(hierarchy, from, into): &mut (&mut Multigrid, &Vec<f32>, &mut Vec<f32>)| {
             hierarchy.cycle(from, into);
-        });
+        };
+        if unknowns < WORTH {
+            pairs.iter_mut().for_each(work);
+        } else {
+            fork_join::each(&mut pairs, work);
+        }
         three.cycle(&r[2], w);
         for field in [&mut *u, &mut *v, &mut *w] {
             grid.wrap(field);

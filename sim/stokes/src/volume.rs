@@ -35,7 +35,7 @@ const ORDERS: [[usize; 3]; 6] = [
 pub struct Volume {
     /// The grid.
     pub grid: Grid,
-    /// Quanta that fill a cell.
+    /// Quanta that fill a cell; below 2²².
     pub capacity: u32,
     /// Quanta of each paint, by cell.
     pub paints: Vec<Vec<u32>>,
@@ -71,6 +71,16 @@ wide! {
         for i in 0..n {
             let open = if open[i] > LEAST_ROOM { open[i] } else { LEAST_ROOM };
             fill[i] = total[i] as f32 / (capacity * open);
+        }
+    }
+}
+
+wide! {
+    fn find_rooms(room: &mut [f32], open: &[f32], capacity: f32) {
+        let open = &open[..room.len()];
+        for i in 0..room.len() {
+            let open = if open[i] > LEAST_ROOM { open[i] } else { LEAST_ROOM };
+            room[i] = capacity * open;
         }
     }
 }
@@ -164,9 +174,7 @@ impl Volume {
         self.sweep.begin(domain, self.capacity);
         for _ in 0..parts {
             // Cells are squeezed along one axis and stretched along another; what is full stays full on the way.
-            for (room, open) in self.room.iter_mut().zip(open) {
-                *room = self.capacity as f32 * open.max(LEAST_ROOM);
-            }
+            find_rooms(&mut self.room, open, self.capacity as f32);
             self.turn = (self.turn + 1) % 6;
             for axis in ORDERS[self.turn] {
                 let courant = courant / parts as f32;

@@ -1,9 +1,10 @@
 //! Shares and slopes of edges.
 
-use maulstick_num::{fork_join, wide};
+use maulstick_num::wide;
 
 use super::{Domain, LEAST_DISTANCE, TOUCHES};
 use crate::grid::others;
+use crate::runs::share;
 use crate::stencil::Span;
 
 /// Of faces beside an edge: those that are unknowns, those of solids, and their distances; the near and the far one.
@@ -93,7 +94,7 @@ impl Domain {
             (edge, std::mem::take(&mut self.edge[edge]), slope)
         });
         let domain = &*self;
-        fork_join::each(&mut edges, |(edge, share, slope)| {
+        share(domain.grid.len(), &mut edges, |(edge, share, slope)| {
             find(domain, fill, *edge, share, slope);
         });
         for (edge, share, slope) in edges {

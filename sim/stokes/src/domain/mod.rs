@@ -11,9 +11,10 @@ mod edges;
 mod faces;
 
 use faces::{find_cells, find_faces, find_sides};
-use maulstick_num::{fork_join, wide};
+use maulstick_num::wide;
 
 use crate::grid::Grid;
+use crate::runs::share;
 use crate::stencil::Span;
 
 /// Fill of a cell from which on it resists pressure.
@@ -242,7 +243,8 @@ fn by_axis<const N: usize>(
             .map(|field| std::mem::take(&mut field[axis]));
         (axis, own)
     });
-    fork_join::each(&mut axes, |(axis, own)| work(*axis, own.each_mut()));
+    let places = axes[0].1.iter().map(Vec::len).max().unwrap_or_default();
+    share(places, &mut axes, |(axis, own)| work(*axis, own.each_mut()));
     for (axis, own) in axes {
         for (field, own) in fields.iter_mut().zip(own) {
             field[axis] = own;

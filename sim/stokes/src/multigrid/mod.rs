@@ -464,8 +464,7 @@ fn descend(levels: &mut [Level], omegas: &[f32], b: &[f32], x: &mut [f32]) {
     let (grid, stencil, spare) = (level.grid, &level.stencil, &mut level.spare);
     let (Some(down), Some(next)) = (&mut level.down, coarser.first_mut()) else {
         // An even number, so the last one ends in x.
-        stencil.begin(b, omegas[0], spare);
-        stencil.relax(&grid, b, spare, omegas[1], x);
+        stencil.begin_twice(&grid, b, [omegas[0], omegas[1]], x, spare);
         for omegas in omegas[2..].chunks(2) {
             stencil.relax(&grid, b, x, omegas[0], spare);
             stencil.relax(&grid, b, spare, omegas[1], x);
@@ -473,8 +472,7 @@ fn descend(levels: &mut [Level], omegas: &[f32], b: &[f32], x: &mut [f32]) {
         return;
     };
     let [first, second] = SMOOTHING;
-    stencil.begin(b, first, spare);
-    stencil.relax(&grid, b, spare, second, x);
+    stencil.begin_twice(&grid, b, SMOOTHING, x, spare);
     stencil.residual(&grid, &down.scale, b, x, spare);
     grid.wrap(spare);
     let weights = down.along.map(Along::restriction);

@@ -103,9 +103,11 @@ wide! {
     fn weigh_row(into: &mut [f32], weights: Weights, from: &[f32]) {
         let last = into.len() - 2;
         let pairs = from.as_chunks::<2>().0;
-        for (two, into) in pairs.windows(2).zip(&mut into[1..last]) {
-            let ([a, b], [c, d]) = (two[0], two[1]);
-            *into = (weights[0] * a + weights[1] * b) + (weights[2] * c + weights[3] * d);
+        let (low, high) = (&pairs[..last - 1], &pairs[1..last]);
+        let cells = &mut into[1..last];
+        for i in 0..cells.len() {
+            let ([a, b], [c, d]) = (low[i], high[i]);
+            cells[i] = (weights[0] * a + weights[1] * b) + (weights[2] * c + weights[3] * d);
         }
         // Above the last cell.
         let places = from[2 * last - 2..].iter().zip(weights);
@@ -116,13 +118,14 @@ wide! {
 wide! {
     /// Both fine places of each coarse one of a row: weights of those before, at and after it.
     fn mix_row(into: &mut [f32], weights: [[f32; 3]; 2], row: &[f32]) {
-        let count = (into.len() - 1) / 2;
-        let pairs = into[1..].as_chunks_mut::<2>().0;
-        let around = row.windows(3).take(count);
-        for (pair, around) in pairs.iter_mut().zip(around) {
-            let [low, high] = weights;
-            pair[0] = low[0] * around[0] + low[1] * around[1] + low[2] * around[2];
-            pair[1] = high[0] * around[0] + high[1] * around[1] + high[2] * around[2];
+        let count = ((into.len() - 1) / 2).min(row.len() - 2);
+        let (before, at, after) = (&row[..count], &row[1..count + 1], &row[2..count + 2]);
+        let pairs = &mut into[1..].as_chunks_mut::<2>().0[..count];
+        let [low, high] = weights;
+        for i in 0..count {
+            let first = low[0] * before[i] + low[1] * at[i] + low[2] * after[i];
+            let second = high[0] * before[i] + high[1] * at[i] + high[2] * after[i];
+            pairs[i] = [first, second];
         }
     }
 }

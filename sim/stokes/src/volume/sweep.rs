@@ -10,6 +10,8 @@ use crate::stencil::Span;
 
 /// Gradient of fill below which a cell has no surface.
 const LEAST_GRADIENT: f32 = 1e-3;
+/// What shares of a cell that two faces take add up to at most, so that rounding never makes them more than the cell.
+const BELOW_ONE: f32 = 1.0 - 4.0 * f32::EPSILON;
 
 /// Room for sweeps.
 #[derive(Clone, Debug)]
@@ -26,7 +28,7 @@ pub(super) struct Sweep {
     /// Quanta that are asked of each face, upward.
     asks: Vec<i32>,
     /// Share of the cell that gives which goes through each face.
-    share: Vec<f64>,
+    share: Vec<f32>,
     /// Quanta of one paint that go through each face.
     goes: Vec<i32>,
 }
@@ -185,10 +187,14 @@ wide! {
         let c = span.here(courant);
         let asks = span.own(asks);
         for i in 0..asks.len() {
+            // All of them first, so that none is looked for by itself.
+            let fills = [f_low[i], f_high[i]];
+            let shares = [a_low[i], a_high[i]];
+            let counts = [t_low[i], t_high[i]];
             let is_up = c[i] > 0.0;
-            let fill = if is_up { f_low[i] } else { f_high[i] };
-            let across = if is_up { a_low[i] } else { a_high[i] };
-            let has = (if is_up { t_low[i] } else { t_high[i] }) as i32;
+            let fill = if is_up { fills[0] } else { fills[1] };
+            let across = if is_up { shares[0] } else { shares[1] };
+            let has = (if is_up { counts[0] } else { counts[1] }) as i32;
             let reach = c[i].abs();
             let least = if reach < fill { reach } else { fill };
             let rest = reach - (1.0 - fill);
@@ -197,7 +203,7 @@ wide! {
             let piled = if (across > 0.0) == is_up { least } else { rest };
             let across = across.abs();
             let share = across * piled + (1.0 - across) * reach * fill;
-            let wanted = (share * capacity) as i32;
+            let wanted = whole(share * capacity);
             let wanted = if wanted < has { wanted } else { has };
             asks[i] = if is_up { wanted } else { -wanted };
         }
@@ -217,33 +223,56 @@ wide! {
 
 wide! {
     /// Shares of what the cells that give have, or of all that is asked of them where that is more.
-    fn find_share(share: &mut [f64], asks: &[i32], total: &[u32], by: usize, span: Span) {
+    fn find_share(share: &mut [f32], asks: &[i32], total: &[u32], by: usize, span: Span) {
         let (before, here, after) = (span.before(asks, by), span.here(asks), span.after(asks, by));
         let (t_low, t_high) = (span.before(total, by), span.here(total));
         let share = span.own(share);
         for i in 0..share.len() {
+            let asks = [-before[i], after[i]];
+            let counts = [t_low[i], t_high[i]];
             let is_up = here[i] > 0;
-            let other = if is_up { -before[i] } else { after[i] };
-            let asked = here[i].wrapping_abs().wrapping_add(if other > 0 { other } else { 0 });
-            let has = (if is_up { t_low[i] } else { t_high[i] }) as i32;
+            let other = if is_up { asks[0] } else { asks[1] };
+            let other = if other > 0 { other } else { 0 };
+            let asked = here[i].wrapping_abs().wrapping_add(other);
+            let has = (if is_up { counts[0] } else { counts[1] }) as i32;
             let whole = if asked > has { asked } else { has };
             let whole = if whole > 1 { whole } else { 1 };
-            share[i] = f64::from(here[i]) / f64::from(whole);
+            let part = here[i] as f32 / whole as f32 * BELOW_ONE;
+            let all = if is_up { 1.0 } else { -1.0 };
+            share[i] = if here[i].wrapping_abs() == whole { all } else { part };
         }
     }
 }
 
 wide! {
-    /// Whole quanta of a paint: together at most what a cell has of it, for shares add up to 1 at most.
-    fn find_goes(goes: &mut [i32], share: &[f64], paint: &[u32], by: usize, span: Span) {
+    /// Whole quanta of a paint: together at most what a cell has of it.
+    fn find_goes(goes: &mut [i32], share: &[f32], paint: &[u32], by: usize, span: Span) {
         let (low, high) = (span.before(paint, by), span.here(paint));
         let share = span.here(share);
         let goes = span.own(goes);
         for i in 0..goes.len() {
-            let has = (if share[i] > 0.0 { low[i] } else { high[i] }) as i32;
-            goes[i] = (share[i] * f64::from(has)) as i32;
+            let counts = [low[i], high[i]];
+            let is_up = share[i] > 0.0;
+            let has = (if is_up { counts[0] } else { counts[1] }) as i32;
+            let size = share[i].abs();
+            let part = if size < 1.0 { whole(size * has as f32) } else { has };
+            goes[i] = if is_up { part } else { -part };
         }
     }
+}
+
+/// Most quanta that go through a face at once.
+const MOST: f32 = 4_194_304.0;
+
+/// The whole part of a number that is not negative, at most [`MOST`]: a cast would be done number by number.
+#[inline(always)]
+fn whole(number: f32) -> i32 {
+    /// From here on to twice that, each number is one more than the one before it.
+    const WHOLE: f32 = 8_388_608.0;
+    let number = if number < MOST { number } else { MOST };
+    let nearest = number + WHOLE;
+    let over = if nearest - WHOLE > number { 1 } else { 0 };
+    nearest.to_bits().wrapping_sub(WHOLE.to_bits()) as i32 - over
 }
 
 wide! {
@@ -255,5 +284,28 @@ wide! {
             paint[i] = paint[i].wrapping_add_signed(gains);
             total[i] = total[i].wrapping_add_signed(gains);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_parts_are_those_of_a_cast() {
+        for number in [
+            0.0,
+            0.4,
+            0.5,
+            0.999_999,
+            1.0,
+            1.5,
+            2.5,
+            167_772.3,
+            4_194_303.8,
+        ] {
+            assert_eq!(whole(number), number as i32, "{number}");
+        }
+        assert_eq!([whole(1e20), whole(f32::NAN)], [MOST as i32; 2]);
     }
 }
