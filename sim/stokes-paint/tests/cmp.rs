@@ -1,3 +1,4 @@
+//! Compared with impasto.
 use maulstick_brush::{BrushFile, Head};
 use maulstick_canvas::{relief::Relief, store::TileStore, window::Window};
 use maulstick_model::brush::head::Waypoint;

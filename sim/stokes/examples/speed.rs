@@ -1,4 +1,5 @@
 //! Time of the solver on this thread's processor, one row a line: `cargo run --release -p maulstick-stokes --example speed`.
+//! With `step` windows alone, with a number that one alone.
 
 #[path = "../tests/common/pools.rs"]
 #[allow(unreachable_pub, reason = "a pool is what tests share")]
@@ -33,54 +34,126 @@ fn mean(count: u32, mut each: impl FnMut()) -> f64 {
     (cpu_s() - begun) / f64::from(count)
 }
 
-fn main() {
-    let grid = Grid::walled([32, 32, 16]);
-    let mut stokes = Stokes::new(&grid, 167_772, 4);
-    for place in grid.block([0; 3], [32, 32, 8]) {
-        stokes.volume.paints[(grid.cell(place)[0] / 8) as usize][place] = 167_772;
-    }
-    let conditions = Conditions {
-        cell_m: 2.5e-4,
-        seconds: 0.01,
-        paint: Paint::newtonian(1e-2),
-        pull: [0.0, 0.0, -9.81],
-    };
-    let mut x = 6.0;
-    let (mut left, mut wet) = (0.0, 0.0);
-    let step = mean(40, || {
-        let rod = Rod {
-            ends: [[x, 16.0, 4.0], [x, 16.0, 16.0]],
-            radius: 3.0,
-            velocity: [[0.012, 0.0, 0.0]; 2],
-        };
-        let domain = stokes.step(&[rod], &conditions);
-        x += 0.48;
-        let norms = &stokes.flow.norms;
-        left = norms[norms.len() - 1] / norms[0];
-        wet = domain.wet.iter().sum::<f32>();
-    });
-    println!(
-        "hz.32x32x16: {:.1} ({:.2} ms; residual {left:.1e}, {wet} cells)",
-        1.0 / step,
-        1e3 * step
-    );
-    let begun = Instant::now();
-    with_threads(2, || {
-        for _ in 0..40 {
-            let rod = Rod {
-                ends: [[x, 16.0, 4.0], [x, 16.0, 16.0]],
-                radius: 3.0,
-                velocity: [[-0.012, 0.0, 0.0]; 2],
-            };
-            stokes.step(&[rod], &conditions);
-            x -= 0.48;
+/// A window, how deep it is filled, and the brush that is drawn through it.
+struct Case {
+    cells: [usize; 3],
+    /// Rows of columns that are filled, and layers.
+    filled: [usize; 2],
+    /// Upright rods, their radius, and where they end.
+    rods: usize,
+    radius: f32,
+    lowest: f32,
+}
+
+const CASES: [Case; 4] = [
+    Case {
+        cells: [32, 32, 16],
+        filled: [32, 8],
+        rods: 1,
+        radius: 3.0,
+        lowest: 4.0,
+    },
+    Case {
+        cells: [40, 40, 4],
+        filled: [40, 2],
+        rods: 8,
+        radius: 1.2,
+        lowest: 0.5,
+    },
+    Case {
+        cells: [40, 40, 4],
+        filled: [40, 1],
+        rods: 8,
+        radius: 1.2,
+        lowest: 0.5,
+    },
+    Case {
+        cells: [64, 64, 8],
+        filled: [12, 2],
+        rods: 8,
+        radius: 1.2,
+        lowest: 0.5,
+    },
+];
+/// Steps that are measured.
+const STEPS: u32 = 40;
+/// Way of a step, cells.
+const WAY: f32 = 0.48;
+
+const CONDITIONS: Conditions = Conditions {
+    cell_m: 2.5e-4,
+    seconds: 0.01,
+    paint: Paint::newtonian(1e-2),
+    pull: [0.0, 0.0, -9.81],
+};
+
+impl Case {
+    fn stokes(&self) -> Stokes {
+        let [width, height, _] = self.cells.map(|cells| cells as isize);
+        let [rows, layers] = self.filled.map(|cells| cells as isize);
+        let grid = Grid::walled(self.cells);
+        let mut stokes = Stokes::new(&grid, 167_772, 4);
+        let low = (height - rows) / 2;
+        for place in grid.block([0, low, 0], [width, low + rows, layers]) {
+            let column = grid.cell(place)[0];
+            stokes.volume.paints[(4 * column / width) as usize][place] = 167_772;
         }
-    });
-    let two = begun.elapsed().as_secs_f64() / 40.0;
-    println!(
-        "hz.32x32x16 with two threads, by the clock: {:.1}",
-        1.0 / two
-    );
+        stokes
+    }
+
+    /// The brush at a place, in motion.
+    fn brush(&self, x: f32, way: f32) -> Vec<Rod> {
+        let middle = 0.5 * self.cells[1] as f32;
+        let rod = |number: usize| {
+            let y = middle + (number as f32 - 0.5 * (self.rods - 1) as f32);
+            let speed = f64::from(way) * CONDITIONS.cell_m / CONDITIONS.seconds;
+            Rod {
+                ends: [[x, y, self.lowest], [x, y, self.cells[2] as f32]],
+                radius: self.radius,
+                velocity: [[speed as f32, 0.0, 0.0]; 2],
+            }
+        };
+        (0..self.rods).map(rod).collect()
+    }
+
+    fn measure(&self) {
+        let mut stokes = self.stokes();
+        let mut x = 6.0;
+        let (mut left, mut wet) = (0.0, 0.0);
+        let step = mean(STEPS, || {
+            let domain = stokes.step(&self.brush(x, WAY), &CONDITIONS);
+            x += WAY;
+            let norms = &stokes.flow.norms;
+            left = norms[norms.len() - 1] / norms[0];
+            wet = domain.wet.iter().sum::<f32>();
+        });
+        let [width, height, depth] = self.cells;
+        let [rows, layers] = self.filled;
+        let name = format!("{width}x{height}x{depth}, {rows} rows of {layers} layers");
+        let rate = 1.0 / step;
+        println!(
+            "hz.{name}: {rate:.1} ({:.2} ms; residual {left:.1e}, {wet} cells)",
+            1e3 * step
+        );
+        let two = with_threads(2, || {
+            let begun = Instant::now();
+            for _ in 0..STEPS {
+                stokes.step(&self.brush(x, -WAY), &CONDITIONS);
+                x -= WAY;
+            }
+            begun.elapsed().as_secs_f64() / f64::from(STEPS)
+        });
+        println!("hz.{name}, two threads, by the clock: {:.1}", 1.0 / two);
+    }
+}
+
+fn main() {
+    let number = std::env::args().find_map(|word| word.parse::<usize>().ok());
+    let wanted = CASES
+        .iter()
+        .enumerate()
+        .filter(|(each, _)| number.is_none_or(|number| number == *each));
+    wanted.for_each(|(_, case)| case.measure());
     if std::env::args().any(|word| word == "step") {
         return;
     }

@@ -1,6 +1,10 @@
 //! A brush among the cells: rods with a velocity at either end, so that a turning brush moves each cell as it turns
 //! (Baxter 2004, § 5.4.1).
 
+use std::ops::Range;
+
+use maulstick_num::wide;
+
 use crate::domain::Solids;
 use crate::grid::Grid;
 
@@ -18,29 +22,43 @@ pub struct Rod {
 /// Cells beyond a rod whose faces have its velocity.
 const BESIDE: f32 = 1.5;
 
-impl Rod {
-    /// Distance from its surface, and how far along it the nearest place lies, from 0 to 1.
-    fn nearest(&self, point: [f32; 3]) -> [f32; 2] {
-        let [from, to] = self.ends;
-        let (mut along, mut squared) = (0.0, 0.0);
-        for axis in 0..3 {
-            let way = to[axis] - from[axis];
-            along += way * (point[axis] - from[axis]);
-            squared += way * way;
+/// A rod's lowest end and the way to the other, with what its distance from places of a row needs.
+#[derive(Clone, Copy)]
+struct Line {
+    from: [f32; 3],
+    way: [f32; 3],
+    /// The inverse of the square of the way; 0 of a ball.
+    inverse: f32,
+    radius: f32,
+}
+
+impl Line {
+    fn of(rod: &Rod) -> Self {
+        let [from, to] = rod.ends;
+        let way = [0, 1, 2].map(|axis| to[axis] - from[axis]);
+        let squared = way.iter().map(|way| way * way).sum::<f32>();
+        Self {
+            from,
+            way,
+            inverse: if squared > 0.0 { 1.0 / squared } else { 0.0 },
+            radius: rod.radius,
         }
-        let share = if squared > 0.0 {
-            (along / squared).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        let mut away = 0.0;
-        for axis in 0..3 {
-            let d = point[axis] - from[axis] - share * (to[axis] - from[axis]);
-            away += d * d;
-        }
-        [away.sqrt() - self.radius, share]
     }
 
+    /// Distance from its surface, and how far along it the nearest place lies, from 0 to 1.
+    #[inline(always)]
+    fn nearest(&self, x: f32, y: f32, z: f32) -> [f32; 2] {
+        let (x, y, z) = (x - self.from[0], y - self.from[1], z - self.from[2]);
+        let [a, b, c] = self.way;
+        let along = ((a * x + b * y) + c * z) * self.inverse;
+        let share = if along > 0.0 { along } else { 0.0 };
+        let share = if share < 1.0 { share } else { 1.0 };
+        let (x, y, z) = (x - share * a, y - share * b, z - share * c);
+        [((x * x + y * y) + z * z).sqrt() - self.radius, share]
+    }
+}
+
+impl Rod {
     /// True if it is somewhere: a rod without finite numbers is nowhere.
     fn is_finite(&self) -> bool {
         let numbers = self.ends.iter().chain(&self.velocity).flatten();
@@ -48,33 +66,86 @@ impl Rod {
     }
 }
 
-/// Adds rods to the solids of a window. Where several are near, the nearest one's velocity counts.
-pub fn voxelise(grid: &Grid, solids: &mut Solids, rods: &[Rod]) {
-    let mut nearest = [(); 3].map(|()| vec![BESIDE; grid.len()]);
-    for rod in rods.iter().filter(|rod| rod.is_finite()) {
-        let reach = rod.radius + BESIDE + 1.0;
-        let bound = |axis: usize, of: fn(f32, f32) -> f32, by: f32| {
-            let most = (grid.cells[axis] + 1) as f32;
-            (of(rod.ends[0][axis], rod.ends[1][axis]) + by).clamp(-1.0, most) as isize
-        };
-        let from = [0, 1, 2].map(|axis| bound(axis, f32::min, -reach));
-        let to = [0, 1, 2].map(|axis| bound(axis, f32::max, reach) + 1);
-        for place in grid.block(from, to) {
-            let corner = grid.cell(place).map(|at| at as f32);
-            let near = &mut solids.distance[place];
-            *near = near.min(rod.nearest(corner)[0]);
-            for axis in 0..3 {
-                let mut middle = corner.map(|at| at + 0.5);
-                middle[axis] = corner[axis];
-                let [distance, share] = rod.nearest(middle);
-                if distance < nearest[axis][place] {
-                    nearest[axis][place] = distance;
-                    let [first, last] = rod.velocity.map(|velocity| velocity[axis]);
-                    solids.velocity[axis][place] = first + share * (last - first);
+wide! {
+    /// Corners of a row that begins at a place.
+    fn near_corners(distance: &mut [f32], line: Line, start: [f32; 3]) {
+        let [x, y, z] = start;
+        for i in 0..distance.len() {
+            let [found, _] = line.nearest(x + i as i32 as f32, y, z);
+            distance[i] = if found < distance[i] { found } else { distance[i] };
+        }
+    }
+}
+
+wide! {
+    /// Middles of faces of a row, the first of which lies at a place.
+    fn near_faces(nearest: &mut [f32], velocity: &mut [f32], line: Line, ends: [f32; 2], start: [f32; 3]) {
+        let [x, y, z] = start;
+        let [first, last] = ends;
+        let velocity = &mut velocity[..nearest.len()];
+        for i in 0..nearest.len() {
+            let [found, share] = line.nearest(x + i as i32 as f32, y, z);
+            let is_nearer = found < nearest[i];
+            nearest[i] = if is_nearer { found } else { nearest[i] };
+            velocity[i] = if is_nearer { first + share * (last - first) } else { velocity[i] };
+        }
+    }
+}
+
+/// Room for rods among the cells.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Voxels {
+    /// Distance of the nearest rod from each face, by axis; [`BESIDE`] between steps.
+    nearest: [Vec<f32>; 3],
+    /// Rows that were written.
+    rows: Vec<Range<usize>>,
+}
+
+impl Voxels {
+    /// Adds rods to the solids of a window. Where several are near, the nearest one's velocity counts.
+    pub(crate) fn add(&mut self, grid: &Grid, solids: &mut Solids, rods: &[Rod]) {
+        for nearest in &mut self.nearest {
+            nearest.resize(grid.len(), BESIDE);
+        }
+        self.rows.clear();
+        for rod in rods.iter().filter(|rod| rod.is_finite()) {
+            let reach = rod.radius + BESIDE + 1.0;
+            let bound = |axis: usize, of: fn(f32, f32) -> f32, by: f32| {
+                let most = (grid.cells[axis] + 1) as f32;
+                (of(rod.ends[0][axis], rod.ends[1][axis]) + by).clamp(-1.0, most) as isize
+            };
+            let from = [0, 1, 2].map(|axis| bound(axis, f32::min, -reach));
+            let to = [0, 1, 2].map(|axis| bound(axis, f32::max, reach) + 1);
+            let line = Line::of(rod);
+            for z in from[2]..to[2] {
+                for y in from[1]..to[1] {
+                    let start = grid.at([from[0], y, z]);
+                    let row = start..start + (to[0] - from[0]).max(0) as usize;
+                    self.rows.push(row.clone());
+                    let corner = [from[0], y, z].map(|at| at as f32);
+                    near_corners(&mut solids.distance[row.clone()], line, corner);
+                    for axis in 0..3 {
+                        let mut middle = corner.map(|at| at + 0.5);
+                        middle[axis] = corner[axis];
+                        let nearest = &mut self.nearest[axis][row.clone()];
+                        let velocity = &mut solids.velocity[axis][row.clone()];
+                        let ends = rod.velocity.map(|velocity| velocity[axis]);
+                        near_faces(nearest, velocity, line, ends, middle);
+                    }
                 }
             }
         }
+        for row in self.rows.drain(..) {
+            for nearest in &mut self.nearest {
+                nearest[row.clone()].fill(BESIDE);
+            }
+        }
     }
+}
+
+/// Adds rods to the solids of a window. Where several are near, the nearest one's velocity counts.
+pub fn voxelise(grid: &Grid, solids: &mut Solids, rods: &[Rod]) {
+    Voxels::default().add(grid, solids, rods);
 }
 
 #[cfg(test)]

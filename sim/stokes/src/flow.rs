@@ -1,11 +1,16 @@
 //! Flow of the paint in a window: velocity and pressure from one step to the next.
 
+mod flat;
+
+use std::sync::Arc;
+
 use crate::domain::{Domain, LEAST_FILL, Part, Solids};
 use crate::grid::Grid;
-use crate::operator::{fields, fields_mut};
+use crate::operator::Unknowns;
 use crate::rheology::Paint;
 use crate::split;
-use crate::unified::{Room, Unified, weights};
+use crate::stencil::Span;
+use crate::unified::{Unified, weights};
 
 /// How velocity and pressure are found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,9 +39,6 @@ impl Default for Effort {
         }
     }
 }
-
-/// Part of a cell that it may be fuller or emptier than full.
-const SLACK: f32 = 1e-3;
 
 /// What paint flows as and what pulls at it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +70,17 @@ pub struct Flow {
     pub relief: f32,
     /// Norms of the residual in the last step, with that of the first guess.
     pub norms: Vec<f64>,
-    room: Room,
+    room: Option<Room>,
+}
+
+/// What is kept from one step to the next so that a step allocates nothing.
+#[derive(Clone, Debug)]
+struct Room {
+    domain: Arc<Domain>,
+    equations: Unified,
+    right: Unknowns,
+    viscosities: Vec<f32>,
+    spare: Vec<f32>,
 }
 
 impl Flow {
@@ -83,13 +95,13 @@ impl Flow {
             effort: Effort::default(),
             relief: 0.25,
             norms: Vec::new(),
-            room: Room::default(),
+            room: None,
         }
     }
 
     /// One step with cells filled to a fraction, between solids; returns what the equations saw of the window: its layers
-    /// up to the second above the highest paint.
-    pub fn step(&mut self, fill: &[f32], solids: &Solids, conditions: &Conditions) -> Domain {
+    /// up to the second above the highest paint. Once the caller has dropped it, its room serves the next step.
+    pub fn step(&mut self, fill: &[f32], solids: &Solids, conditions: &Conditions) -> Arc<Domain> {
         let least = match self.scheme {
             Scheme::Unified => LEAST_FILL,
             // Baxter 2004, § 5.3: more than half.
@@ -98,10 +110,50 @@ impl Flow {
         let whole = self.grid;
         self.grid = whole.below(highest(&whole, fill, least) + 2);
         self.resize();
-        let domain = self.step_within(fill, solids, conditions, least);
+        let mut room = match self.room.take() {
+            Some(mut room) => {
+                if Arc::get_mut(&mut room.domain).is_none() {
+                    room.domain = Arc::new(Domain::clone(&room.domain));
+                }
+                if let Some(domain) = Arc::get_mut(&mut room.domain) {
+                    domain.renew(&self.grid, fill, solids, least);
+                }
+                room
+            }
+            None => Room::new(Domain::new(&self.grid, fill, solids, least)),
+        };
+        if let Some(domain) = Arc::get_mut(&mut room.domain) {
+            self.drag(domain, solids, conditions);
+        }
+        let domain = Arc::clone(&room.domain);
+        self.step_within(&domain, &mut room, fill, solids, conditions);
+        self.room = Some(room);
         self.grid = whole;
         self.resize();
         domain
+    }
+
+    /// Bristles drag paint along: a face has their velocity by a share d/(1 + d) with d = τR, R their resistance, and then
+    /// resists change by as much more. What pulls at paint does not pull at them.
+    fn drag(&mut self, domain: &mut Domain, solids: &Solids, conditions: &Conditions) {
+        let Some(resistance) = &solids.resistance else {
+            return;
+        };
+        let Conditions {
+            cell_m, seconds, ..
+        } = conditions;
+        let tau = (conditions.paint.viscosity * seconds / (cell_m * cell_m)) as f32;
+        for axis in 0..3 {
+            let pull = (conditions.pull[axis] * seconds) as f32;
+            let (free, mass) = (&domain.free[axis], &mut domain.mass[axis]);
+            let bristles = resistance[axis].iter().zip(&solids.velocity[axis]);
+            let faces = self.velocity[axis].iter_mut().zip(mass).zip(free);
+            for (((u, mass), free), (resistance, velocity)) in faces.zip(bristles) {
+                let drags = tau * resistance * free;
+                *u = (*u + drags * (velocity - pull)) / (1.0 + drags);
+                *mass *= 1.0 + drags;
+            }
+        }
     }
 
     /// Fits all fields to the grid.
@@ -114,12 +166,12 @@ impl Flow {
 
     fn step_within(
         &mut self,
+        domain: &Domain,
+        room: &mut Room,
         fill: &[f32],
         solids: &Solids,
         conditions: &Conditions,
-        least: f32,
-    ) -> Domain {
-        let mut domain = Domain::new(&self.grid, fill, solids, least);
+    ) {
         let Conditions {
             cell_m,
             seconds,
@@ -128,94 +180,96 @@ impl Flow {
         } = conditions;
         let tau = paint.viscosity * seconds / (cell_m * cell_m);
         for (axis, u) in self.velocity.iter_mut().enumerate() {
-            for (place, u) in u.iter_mut().enumerate() {
-                *u = match domain.part[axis][place] {
-                    Part::Solid => solids.velocity[axis][place],
-                    Part::Paint => *u,
-                    Part::Air => 0.0,
-                };
-            }
+            let (free, solid) = (&domain.free[axis], &domain.solid[axis]);
+            flat::choose(u, free, solid, &solids.velocity[axis]);
             self.grid.wrap(u);
         }
         match self.scheme {
-            Scheme::Unified => self.unified(&mut domain, fill, solids, conditions, tau),
+            Scheme::Unified => self.unified(domain, room, fill, solids, conditions, tau),
             Scheme::Split => {
                 let pull = pull.map(|pull| (pull * seconds) as f32);
                 let to_pressure = (cell_m / seconds) as f32;
                 let pressure = &mut self.pressure;
-                rescale(pressure, &domain.wet, 1.0 / to_pressure);
+                flat::rescale(pressure, &domain.wet, 1.0 / to_pressure);
                 split::step(
-                    &domain,
+                    domain,
                     (tau, pull),
                     &mut self.velocity,
                     &solids.velocity,
                     pressure,
                 );
-                rescale(pressure, &domain.wet, to_pressure);
+                flat::rescale(pressure, &domain.wet, to_pressure);
             }
         }
-        extrapolate(&domain, &mut self.velocity);
-        domain
+        self.extrapolate(domain, &mut room.spare);
     }
 
     fn unified(
         &mut self,
-        domain: &mut Domain,
+        domain: &Domain,
+        room: &mut Room,
         fill: &[f32],
         solids: &Solids,
         conditions: &Conditions,
         tau: f64,
     ) {
-        let pulled: [Vec<f32>; 3] = std::array::from_fn(|axis| {
-            let gains = (conditions.pull[axis] * conditions.seconds) as f32;
-            let mut pulled: Vec<f32> = self.velocity[axis].iter().map(|u| u + gains).collect();
-            if let Some(resistance) = &solids.resistance {
-                let bristles = (&resistance[axis][..], &solids.velocity[axis][..]);
-                drag(domain, (axis, tau as f32), bristles, &mut pulled);
-                let guesses = self.velocity[axis].iter_mut().zip(&pulled);
-                for ((u, pulled), free) in guesses.zip(&domain.free[axis]) {
-                    *u += free * (pulled - *u);
-                }
-            }
-            pulled
-        });
         let paint = &conditions.paint;
         let [u, v, w] = &self.velocity;
-        let viscosities = paint.viscosities(domain, [u, v, w], conditions.cell_m);
-        let mut equations = Unified::new(domain, tau, &viscosities);
-        let [f, g, h] = &pulled;
-        let mut b = equations.right_hand_side(domain, [f, g, h], &solids.velocity);
+        paint.viscosities(
+            domain,
+            [u, v, w],
+            conditions.cell_m,
+            (&mut room.viscosities, &mut room.spare),
+        );
+        room.equations.renew(domain, tau, &room.viscosities);
+        let pull = conditions
+            .pull
+            .map(|pull| (pull * conditions.seconds) as f32);
+        room.equations.right_hand_side(
+            domain,
+            ([u, v, w], pull),
+            &solids.velocity,
+            &mut room.right,
+        );
         // The equations know the pressure by the velocity that it makes in a step.
         let alpha = f64::from(weights(tau)[0]);
         let to_pressure = (conditions.cell_m / (alpha * conditions.seconds)) as f32;
-        rescale(&mut self.pressure, &domain.wet, 1.0 / to_pressure);
-        let mut x = [u, v, w, &self.pressure].map(Vec::as_slice).concat();
-        self.relieve(domain, fill, conditions, &mut b);
-        self.norms = equations.solve(&b, &mut x, self.effort.steps, &mut self.room);
-        equations.project(domain, fields(&b)[3], &mut x, self.effort.projections);
-        let [u, v, w, p] = fields_mut(&mut x);
-        for (into, from) in self.velocity.iter_mut().zip([u, v, w]) {
-            into.copy_from_slice(from);
-        }
-        self.pressure.copy_from_slice(p);
-        rescale(&mut self.pressure, &domain.wet, to_pressure);
+        flat::rescale(&mut self.pressure, &domain.wet, 1.0 / to_pressure);
+        self.relieve(domain, fill, conditions, &mut room.right[3]);
+        let [u, v, w] = std::mem::take(&mut self.velocity);
+        let mut x = [u, v, w, std::mem::take(&mut self.pressure)];
+        let Effort { steps, projections } = self.effort;
+        self.norms = room.equations.solve(domain, &room.right, &mut x, steps);
+        room.equations
+            .project(domain, &room.right, &mut x, projections);
+        let [u, v, w, p] = x;
+        self.velocity = [u, v, w];
+        self.pressure = p;
+        flat::rescale(&mut self.pressure, &domain.wet, to_pressure);
     }
 
     /// Lets a cell that is fuller than full, as rounding and moving solids leave it, give a part of that away in a step,
     /// and one within the paint that is not full take as much in.
-    fn relieve(&self, domain: &Domain, fill: &[f32], conditions: &Conditions, b: &mut [f32]) {
-        let grid = self.grid;
+    fn relieve(
+        &self,
+        domain: &Domain,
+        fill: &[f32],
+        conditions: &Conditions,
+        displaced: &mut [f32],
+    ) {
         let per_step = self.relief * (conditions.cell_m / conditions.seconds) as f32;
-        let [.., displaced] = fields_mut(b);
-        for place in grid.places().filter(|place| domain.wet[*place] > 0.0) {
-            let beside = (0..3)
-                .map(|axis| grid.stride(axis))
-                .flat_map(|by| [place - by, place + by]);
-            let is_inside = || beside.into_iter().all(|cell| domain.wet[cell] > 0.0);
-            let excess = fill[place] - 1.0;
-            if excess > SLACK || excess < -SLACK && is_inside() {
-                displaced[place] += per_step * excess.min(1.0);
-            }
+        let span = Span::of(&self.grid, self.grid.range());
+        flat::relieve(displaced, &domain.wet, fill, per_step, span);
+    }
+
+    /// Velocities of air beside paint: the mean of those around it, so that paint that comes there moves on with it.
+    fn extrapolate(&mut self, domain: &Domain, spare: &mut Vec<f32>) {
+        let span = Span::of(&self.grid, self.grid.range());
+        for (axis, u) in self.velocity.iter_mut().enumerate() {
+            spare.clear();
+            spare.extend_from_slice(u);
+            flat::extrapolate(u, spare, &domain.free[axis], &domain.solid[axis], span);
+            self.grid.wrap(u);
         }
     }
 
@@ -223,7 +277,7 @@ impl Flow {
     #[must_use]
     pub fn divergence(&self, domain: &Domain, solids: &Solids) -> f64 {
         let flux = |axis: usize, place: usize| {
-            let area = match domain.part[axis][place] {
+            let area = match domain.part(axis, place) {
                 Part::Solid => 0.0,
                 Part::Paint | Part::Air => domain.area[axis][place],
             };
@@ -263,8 +317,9 @@ impl Flow {
 fn highest(grid: &Grid, fill: &[f32], least: f32) -> usize {
     let [width, height, depth] = grid.cells.map(|cells| cells as isize);
     let has_paint = |z: &isize| {
-        let layer = grid.block([0, 0, *z], [width, height, z + 1]);
-        layer.into_iter().any(|place| fill[place] >= least)
+        let starts = (0..height).map(|y| grid.at([0, y, *z]));
+        let mut rows = starts.map(|start| &fill[start..start + width as usize]);
+        rows.any(|row| row.iter().any(|fill| *fill >= least))
     };
     (0..depth)
         .rev()
@@ -272,48 +327,14 @@ fn highest(grid: &Grid, fill: &[f32], least: f32) -> usize {
         .map_or(0, |z| z as usize + 1)
 }
 
-/// Bristles drag paint along: a face has their velocity by a share τR/(1 + τR), R their resistance, and then resists change by as
-/// much more.
-fn drag(
-    domain: &mut Domain,
-    (axis, tau): (usize, f32),
-    (resistance, velocity): (&[f32], &[f32]),
-    pulled: &mut [f32],
-) {
-    for (place, u) in pulled.iter_mut().enumerate() {
-        let drags = tau * resistance[place] * domain.free[axis][place];
-        *u = (*u + drags * velocity[place]) / (1.0 + drags);
-        domain.mass[axis][place] *= 1.0 + drags;
-    }
-}
-
-/// Multiplies a field where it is wet; elsewhere it is 0.
-fn rescale(field: &mut [f32], wet: &[f32], by: f32) {
-    for (value, wet) in field.iter_mut().zip(wet) {
-        *value = if *wet > 0.0 { *value * by } else { 0.0 };
-    }
-}
-
-/// Velocities of air beside paint: the mean of those around it, so that paint that comes there moves on with it.
-fn extrapolate(domain: &Domain, velocity: &mut [Vec<f32>; 3]) {
-    let grid = domain.grid;
-    for (axis, u) in velocity.iter_mut().enumerate() {
-        let part = &domain.part[axis];
-        let strides = [0, 1, 2].map(|axis| grid.stride(axis));
-        for place in grid.range().filter(|place| part[*place] == Part::Air) {
-            let (mut sum, mut count) = (0.0, 0.0);
-            for by in strides {
-                for beside in [place - by, place + by] {
-                    if part[beside] == Part::Paint {
-                        sum += u[beside];
-                        count += 1.0;
-                    }
-                }
-            }
-            if count > 0.0 {
-                u[place] = sum / count;
-            }
+impl Room {
+    fn new(domain: Domain) -> Self {
+        Self {
+            equations: Unified::new(&domain),
+            domain: Arc::new(domain),
+            right: Unknowns::default(),
+            viscosities: Vec::new(),
+            spare: Vec::new(),
         }
-        grid.wrap(u);
     }
 }

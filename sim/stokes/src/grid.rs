@@ -179,12 +179,34 @@ impl Grid {
         }
     }
 
-    /// Places of a layer across an axis, with those beyond the sides.
-    pub fn layer_at(&self, axis: usize, layer: isize) -> impl Iterator<Item = usize> + use<> {
-        let mut from = [-1; 3];
-        let mut to = self.cells.map(|cells| cells as isize + 2);
-        (from[axis], to[axis]) = (layer, layer + 1);
-        self.block(from, to)
+    /// Writes a layer across an axis, with what lies beyond the sides; −1 is the layer below the first.
+    pub fn fill_layer(&self, field: &mut [f32], axis: usize, layer: isize, value: f32) {
+        let start = (layer + 1) as usize * self.stride(axis);
+        match axis {
+            0 => {
+                let row = self.stride(1);
+                field[start..]
+                    .iter_mut()
+                    .step_by(row)
+                    .for_each(|each| *each = value);
+            }
+            1 => {
+                for plane in field.chunks_mut(self.stride(2)) {
+                    plane[start..start + self.stride(1)].fill(value);
+                }
+            }
+            _ => field[start..start + self.stride(2)].fill(value),
+        }
+    }
+
+    /// Sets what lies beyond the cells on all sides to 0.
+    pub fn clear_beyond(&self, field: &mut [f32]) {
+        for axis in 0..3 {
+            let cells = self.cells[axis] as isize;
+            for layer in [-1, cells, cells + 1] {
+                self.fill_layer(field, axis, layer, 0.0);
+            }
+        }
     }
 
     /// Calls for each place of the lowest layer across an axis.

@@ -6,7 +6,7 @@
 use maulstick_num::{powf, wide};
 
 use crate::domain::Domain;
-use crate::grid::{Grid, others};
+use crate::grid::others;
 use crate::stencil::Span;
 
 /// Largest viscosity, by that of sheared paint.
@@ -53,50 +53,74 @@ impl Paint {
         (thins + yields).clamp(THINNEST, STIFFEST)
     }
 
-    /// Relative viscosity of each cell for velocities in m/s on cells of `cell_m`.
-    #[must_use]
-    pub fn viscosities(&self, domain: &Domain, velocity: [&[f32]; 3], cell_m: f64) -> Vec<f32> {
-        let mut field = domain.grid.field();
-        if self.yields == 0.0 && self.index == 1.0 {
-            field.fill(1.0);
-            return field;
+    /// Writes the relative viscosity of each cell for velocities in m/s on cells of `cell_m`, by way of a field of room.
+    pub fn viscosities(
+        &self,
+        domain: &Domain,
+        velocity: [&[f32]; 3],
+        cell_m: f64,
+        (field, spare): (&mut Vec<f32>, &mut Vec<f32>),
+    ) {
+        let is_newtonian = self.yields == 0.0 && self.index == 1.0;
+        for field in [&mut *field, &mut *spare] {
+            field.clear();
+            field.resize(domain.grid.len(), if is_newtonian { 1.0 } else { 0.0 });
         }
-        squared_rates(domain, velocity, &mut field);
-        for place in domain
-            .grid
-            .places()
-            .filter(|place| domain.wet[*place] > 0.0)
-        {
-            let rate = f64::from(field[place]).sqrt() / cell_m;
-            field[place] = self.relative(rate) as f32;
+        if is_newtonian {
+            return;
         }
-        domain.grid.wrap(&mut field);
-        field
+        squared_rates(domain, velocity, field, spare);
+        if self.index == 1.0 {
+            let yields = self.yields / self.viscosity;
+            bingham(field, yields, cell_m);
+        } else {
+            for place in domain
+                .grid
+                .places()
+                .filter(|place| domain.wet[*place] > 0.0)
+            {
+                let rate = f64::from(field[place]).sqrt() / cell_m;
+                field[place] = self.relative(rate) as f32;
+            }
+        }
+        domain.grid.wrap(field);
+    }
+}
+
+wide! {
+    /// As [`Paint::relative`] does where n = 1, of squared rates in velocities per cell.
+    fn bingham(field: &mut [f32], yields: f64, cell_m: f64) {
+        let least = yields / STIFFEST;
+        for value in field {
+            let rate = f64::from(*value).sqrt() / cell_m;
+            let rate = if rate > least { rate } else { least };
+            let rate = if rate > 1e-12 { rate } else { 1e-12 };
+            let relative = 1.0 + yields / rate;
+            *value = if relative < STIFFEST { relative } else { STIFFEST } as f32;
+        }
     }
 }
 
 /// Square of the shear rate of each cell, 2·E:E, in velocities per cell; an edge counts for the four cells around it.
-fn squared_rates(domain: &Domain, velocity: [&[f32]; 3], into: &mut [f32]) {
-    let Grid { .. } = domain.grid;
-    let span = Span::of(&domain.grid);
+fn squared_rates(domain: &Domain, velocity: [&[f32]; 3], into: &mut [f32], shear: &mut [f32]) {
+    let span = Span::of(&domain.grid, domain.grid.range());
     for (axis, u) in velocity.into_iter().enumerate() {
         add_stretch(into, u, domain.grid.stride(axis), span);
     }
-    let mut shear = domain.grid.field();
     for edge in 0..3 {
         let [a, b] = others(edge);
         let by = [a, b].map(|axis| domain.grid.stride(axis));
         let fields = [velocity[a], velocity[b]];
         square_shear(
-            &mut shear,
+            shear,
             &domain.edge[edge],
             &domain.slope[edge],
             fields,
             by,
             span,
         );
-        domain.grid.wrap(&mut shear);
-        add_around(into, &shear, by, span);
+        domain.grid.wrap(shear);
+        add_around(into, shear, by, span);
     }
 }
 

@@ -22,7 +22,7 @@ enum Face {
 
 fn face(domain: &Domain, axis: usize, place: usize) -> Face {
     let beside = [place.saturating_sub(domain.grid.stride(axis)), place];
-    match domain.part[axis][place] {
+    match domain.part(axis, place) {
         Part::Solid => Face::Solid,
         Part::Air => Face::Air,
         Part::Paint if beside.iter().all(|cell| domain.wet[*cell] > 0.0) => Face::Inside,
@@ -118,7 +118,7 @@ fn project(
     for axis in 0..3 {
         let by = grid.stride(axis);
         for place in grid.range() {
-            let part = domain.part[axis][place];
+            let part = domain.part(axis, place);
             let u = match part {
                 Part::Solid => solids[axis][place],
                 Part::Paint | Part::Air => velocity[axis][place],
@@ -141,7 +141,7 @@ fn project(
     for (axis, u) in velocity.iter_mut().enumerate() {
         let by = grid.stride(axis);
         for place in grid.range() {
-            if domain.part[axis][place] == Part::Paint {
+            if domain.part(axis, place) == Part::Paint {
                 u[place] -= pressure[place] - pressure[place - by];
             }
         }

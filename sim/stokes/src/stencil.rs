@@ -3,12 +3,15 @@
 //!
 //! (A·x)ᵢ = dᵢ·xᵢ − Σ lᵢⱼ·xⱼ with d the mass and all links l. A link to a place that is not active is one to the value 0.
 
+use std::ops::Range;
+
 use maulstick_num::wide;
 
 use crate::grid::Grid;
+use crate::runs::Runs;
 
 /// A seven-point operator, times the volume of a cell, in cells.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Stencil {
     /// By axis, the link of each place with the one before it.
     pub links: [Vec<f32>; 3],
@@ -22,19 +25,28 @@ pub struct Stencil {
     pub(crate) diagonal: Vec<f32>,
     /// Its inverse, 0 where not active.
     pub(crate) inverse: Vec<f32>,
+    /// Where unknowns are.
+    pub(crate) runs: Runs,
+    /// Where they were before.
+    runs_before: Runs,
 }
 
 impl Stencil {
     /// One without links.
     #[must_use]
     pub fn new(grid: &Grid) -> Self {
-        Self {
-            links: std::array::from_fn(|_| grid.field()),
-            mass: grid.field(),
-            active: grid.field(),
-            known: grid.field(),
-            diagonal: grid.field(),
-            inverse: grid.field(),
+        let mut stencil = Self::default();
+        stencil.fit(grid);
+        stencil
+    }
+
+    /// Fits all fields to a grid; what they hold is to be written anew.
+    pub(crate) fn fit(&mut self, grid: &Grid) {
+        let [x, y, z] = &mut self.links;
+        let (mass, active, known) = (&mut self.mass, &mut self.active, &mut self.known);
+        let (diagonal, inverse) = (&mut self.diagonal, &mut self.inverse);
+        for field in [x, y, z, mass, active, known, diagonal, inverse] {
+            field.resize(grid.len(), 0.0);
         }
     }
 
@@ -50,8 +62,19 @@ impl Stencil {
         for field in [x, y, z, &mut self.mass, &mut self.active, &mut self.known] {
             grid.wrap(field);
         }
-        sum_links(self, Span::of(grid));
+        sum_links(self, Span::of(grid, grid.range()));
         grid.wrap(&mut self.inverse);
+        std::mem::swap(&mut self.runs, &mut self.runs_before);
+        self.runs.find(grid.range(), &self.active);
+    }
+
+    /// Sets a field that is 0 but where unknowns were before to 0 where there is none any more.
+    pub(crate) fn clear_left(&self, field: &mut [f32]) {
+        if self.runs != self.runs_before {
+            for run in self.runs_before.without(&self.runs) {
+                field[run].fill(0.0);
+            }
+        }
     }
 }
 
@@ -65,11 +88,11 @@ pub(crate) struct Span {
 }
 
 impl Span {
-    pub(crate) fn of(grid: &Grid) -> Self {
-        let range = grid.range();
+    /// A stretch of a grid.
+    pub(crate) const fn of(grid: &Grid, run: Range<usize>) -> Self {
         Self {
-            from: range.start,
-            to: range.end,
+            from: run.start,
+            to: run.end,
             row: grid.stride(1),
             plane: grid.stride(2),
         }
@@ -77,25 +100,31 @@ impl Span {
 
     /// The places of the loop.
     #[inline(always)]
-    pub(crate) fn here<'a>(&self, field: &'a [f32]) -> &'a [f32] {
+    pub(crate) fn here<'a, T>(&self, field: &'a [T]) -> &'a [T] {
         &field[self.from..self.to]
     }
 
     /// The same, of a field that is written.
     #[inline(always)]
-    pub(crate) fn here_mut<'a>(&self, field: &'a mut [f32]) -> &'a mut [f32] {
+    pub(crate) fn here_mut<'a, T>(&self, field: &'a mut [T]) -> &'a mut [T] {
         &mut field[self.from..self.to]
+    }
+
+    /// All of a field that has only the places of the loop.
+    #[inline(always)]
+    pub(crate) fn own<'a, T>(&self, field: &'a mut [T]) -> &'a mut [T] {
+        &mut field[..self.to - self.from]
     }
 
     /// Places so far before those of the loop.
     #[inline(always)]
-    pub(crate) fn before<'a>(&self, field: &'a [f32], by: usize) -> &'a [f32] {
+    pub(crate) fn before<'a, T>(&self, field: &'a [T], by: usize) -> &'a [T] {
         &field[self.from - by..self.to - by]
     }
 
     /// Places so far after those of the loop.
     #[inline(always)]
-    pub(crate) fn after<'a>(&self, field: &'a [f32], by: usize) -> &'a [f32] {
+    pub(crate) fn after<'a, T>(&self, field: &'a [T], by: usize) -> &'a [T] {
         &field[self.from + by..self.to + by]
     }
 }
@@ -131,6 +160,20 @@ impl<'a> Around<'a> {
     }
 }
 
+impl Around<'_> {
+    /// Σ lᵢⱼ·xⱼ·yⱼ with y of another.
+    #[inline(always)]
+    fn pull_times(&self, other: &Self, i: usize) -> f32 {
+        let [[a, b], [c, d], [e, f]] = self.links;
+        let [[l, r], [s, n], [u, o]] = self.x;
+        let [[v, w], [x, y], [z, t]] = other.x;
+        let along_x = a[i] * (l[i] * v[i]) + b[i] * (r[i] * w[i]);
+        let along_y = c[i] * (s[i] * x[i]) + d[i] * (n[i] * y[i]);
+        let along_z = e[i] * (u[i] * z[i]) + f[i] * (o[i] * t[i]);
+        along_x + along_y + along_z
+    }
+}
+
 wide! {
     /// Diagonal and its inverse.
     fn sum_links(stencil: &mut Stencil, span: Span) {
@@ -151,14 +194,14 @@ wide! {
 }
 
 wide! {
-    /// into = b − A·x.
-    fn residual_flat(into: &mut [f32], b: &[f32], x: &[f32], stencil: &Stencil, span: Span) {
+    /// into = weight·(b − A·x), where the weight is 0 of what is not active.
+    fn residual_flat(into: &mut [f32], weight: &[f32], b: &[f32], x: &[f32], stencil: &Stencil, span: Span) {
         let around = Around::of(&span, stencil, x);
-        let (b, x) = (span.here(b), span.here(x));
-        let (diagonal, active) = (span.here(&stencil.diagonal), span.here(&stencil.active));
-        let into = span.here_mut(into);
+        let (b, x, weight) = (span.here(b), span.here(x), span.here(weight));
+        let diagonal = span.here(&stencil.diagonal);
+        let into = span.own(into);
         for i in 0..into.len() {
-            into[i] = b[i] - diagonal[i] * x[i] + active[i] * around.pull(i);
+            into[i] = weight[i] * (b[i] - diagonal[i] * x[i] + around.pull(i));
         }
     }
 }
@@ -169,7 +212,7 @@ wide! {
         let around = Around::of(&span, stencil, x);
         let x = span.here(x);
         let (diagonal, active) = (span.here(&stencil.diagonal), span.here(&stencil.active));
-        let into = span.here_mut(into);
+        let into = span.own(into);
         for i in 0..into.len() {
             into[i] = diagonal[i] * x[i] - active[i] * around.pull(i);
         }
@@ -182,7 +225,7 @@ wide! {
         let around = Around::of(&span, stencil, x);
         let (b, x) = (span.here(b), span.here(x));
         let inverse = span.here(&stencil.inverse);
-        let into = span.here_mut(into);
+        let into = span.own(into);
         for i in 0..into.len() {
             into[i] = x[i] + omega * (inverse[i] * (b[i] + around.pull(i)) - x[i]);
         }
@@ -192,25 +235,54 @@ wide! {
 wide! {
     /// x = ω·D⁻¹·b.
     fn begin_flat(x: &mut [f32], b: &[f32], omega: f32, inverse: &[f32]) {
-        for (x, (b, inverse)) in x.iter_mut().zip(b.iter().zip(inverse)) {
-            *x = omega * (*b * *inverse);
+        let (b, inverse) = (&b[..x.len()], &inverse[..x.len()]);
+        for i in 0..x.len() {
+            x[i] = omega * (b[i] * inverse[i]);
         }
     }
 }
 
+wide! {
+    /// Two steps from x = 0: by ω, then by ψ.
+    fn begin_twice_flat(into: &mut [f32], b: &[f32], omegas: [f32; 2], stencil: &Stencil, span: Span) {
+        let [omega, psi] = omegas;
+        let inverse = &stencil.inverse;
+        let of_b = Around::of(&span, stencil, b);
+        let of_inverse = Around::of(&span, stencil, inverse);
+        let (b, inverse) = (span.here(b), span.here(inverse));
+        let into = span.own(into);
+        for i in 0..into.len() {
+            let first = omega * (inverse[i] * b[i]);
+            let pull = of_b.pull_times(&of_inverse, i);
+            into[i] = first + psi * (inverse[i] * (b[i] + omega * pull) - first);
+        }
+    }
+}
+
+/// What a stencil writes are the places of its unknowns, in stretches; elsewhere a field keeps what it has.
 impl Stencil {
     /// into = A·x; wraps x.
     pub fn apply(&self, grid: &Grid, x: &mut [f32], into: &mut [f32]) {
         grid.wrap(x);
-        apply_flat(into, x, self, Span::of(grid));
+        self.runs.write([&mut *into], |run, [into]| {
+            apply_flat(into, x, self, Span::of(grid, run));
+        });
         grid.clear(into);
     }
 
-    /// into = b − A·x; wraps x.
-    pub fn residual(&self, grid: &Grid, b: &[f32], x: &mut [f32], into: &mut [f32]) {
+    /// into = weight·(b − A·x), where the weight is 0 of what is not active; wraps x.
+    pub(crate) fn residual(
+        &self,
+        grid: &Grid,
+        weight: &[f32],
+        b: &[f32],
+        x: &mut [f32],
+        into: &mut [f32],
+    ) {
         grid.wrap(x);
-        residual_flat(into, b, x, self, Span::of(grid));
-        grid.clear(into);
+        self.runs.write([into], |run, [into]| {
+            residual_flat(into, weight, b, x, self, Span::of(grid, run));
+        });
     }
 
     /// into = b − A·x in f64; x is wrapped.
@@ -227,22 +299,43 @@ impl Stencil {
         }
     }
 
-    /// A damped Jacobi step from x, by way of a second field.
+    /// A damped Jacobi step from x.
     pub(crate) fn relax(
         &self,
         grid: &Grid,
         b: &[f32],
-        x: &mut Vec<f32>,
-        spare: &mut Vec<f32>,
+        x: &mut [f32],
         omega: f32,
+        into: &mut [f32],
     ) {
         grid.wrap(x);
-        relax_flat(spare, b, x, omega, self, Span::of(grid));
-        std::mem::swap(x, spare);
+        self.runs.write([into], |run, [into]| {
+            relax_flat(into, b, x, omega, self, Span::of(grid, run));
+        });
     }
 
     /// The first one, from x = 0.
-    pub(crate) fn begin(&self, b: &[f32], x: &mut [f32], omega: f32) {
-        begin_flat(x, b, omega, &self.inverse);
+    pub(crate) fn begin(&self, b: &[f32], omega: f32, into: &mut [f32]) {
+        self.runs.write([into], |run, [into]| {
+            begin_flat(into, &b[run.clone()], omega, &self.inverse[run]);
+        });
+    }
+
+    /// The first two, by way of a second field.
+    pub(crate) fn begin_twice(
+        &self,
+        grid: &Grid,
+        b: &[f32],
+        omegas: [f32; 2],
+        into: &mut [f32],
+        spare: &mut [f32],
+    ) {
+        if (0..3).any(|axis| grid.is_periodic(axis)) {
+            self.begin(b, omegas[0], spare);
+            return self.relax(grid, b, spare, omegas[1], into);
+        }
+        self.runs.write([into], |run, [into]| {
+            begin_twice_flat(into, b, omegas, self, Span::of(grid, run));
+        });
     }
 }

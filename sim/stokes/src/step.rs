@@ -1,6 +1,8 @@
 //! One step of the paint in a window.
 
-use crate::body::{Rod, voxelise};
+use std::sync::Arc;
+
+use crate::body::{Rod, Voxels};
 use crate::domain::{Domain, Solids};
 use crate::flow::{Conditions, Flow};
 use crate::grid::Grid;
@@ -16,6 +18,11 @@ pub struct Stokes {
     pub flow: Flow,
     /// What does not move: canvas and walls.
     pub base: Solids,
+    /// Base and brush, the open share of each cell, how full it is, and room.
+    solids: Solids,
+    open: Vec<f32>,
+    fill: Vec<f32>,
+    voxels: Voxels,
 }
 
 impl Stokes {
@@ -26,22 +33,27 @@ impl Stokes {
             volume: Volume::new(grid, capacity, paints),
             flow: Flow::new(grid),
             base: Solids::walls(grid),
+            solids: Solids::walls(grid),
+            open: grid.field(),
+            fill: grid.field(),
+            voxels: Voxels::default(),
         }
     }
 
-    /// Moves the paint for one step of a brush; returns what the equations saw.
-    pub fn step(&mut self, brush: &[Rod], conditions: &Conditions) -> Domain {
+    /// Moves the paint for one step of a brush; returns what the equations saw, in room that serves the next step once it
+    /// is dropped.
+    pub fn step(&mut self, brush: &[Rod], conditions: &Conditions) -> Arc<Domain> {
         let grid = self.volume.grid;
-        let mut solids = self.base.clone();
-        voxelise(&grid, &mut solids, brush);
-        let open = solids.open(&grid);
-        let fill = self.volume.fill(&open);
-        let domain = self.flow.step(&fill, &solids, conditions);
+        self.solids.copy_from(&self.base);
+        self.voxels.add(&grid, &mut self.solids, brush);
+        self.solids.open_into(&grid, &mut self.open);
+        self.volume.fill_into(&self.open, &mut self.fill);
+        let domain = self.flow.step(&self.fill, &self.solids, conditions);
         let Conditions {
             seconds, cell_m, ..
         } = *conditions;
         self.volume
-            .advect(&domain, &open, &self.flow.velocity, seconds, cell_m);
+            .advect(&domain, &self.open, &self.flow.velocity, seconds, cell_m);
         domain
     }
 

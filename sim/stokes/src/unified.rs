@@ -5,52 +5,36 @@
 //! the velocity and, for the pressure, by Cahouet and Chabard (1988): α·L⁻¹ + 2βμ. Walls drag at thin paint as mass would, so
 //! that part is added to α: without it a film under a wide brush takes ten times as many steps.
 
-use maulstick_num::fork_join;
+use maulstick_num::{fork_join, wide};
 
-use crate::domain::{Domain, Part};
+use crate::domain::Domain;
 use crate::multigrid::Multigrid;
-use crate::operator::{Operator, Unknowns, fields, fields_mut, laplacian};
-use crate::stencil::Stencil;
-use crate::vector::{add_scaled, dot, norm};
+use crate::operator::{Operator, Unknowns, laplacian, outflow};
+use crate::residuals::Residuals;
+use crate::runs::share;
+use crate::stencil::{Span, Stencil};
+use crate::vector::add_scaled;
 
 /// Drag of walls on paint of a thickness of one, by its viscosity: between 3 for a film and 12 for a gap.
 const GAP_DRAG: f32 = 6.0;
-/// Directions that a new one is made orthogonal to at most.
-const MEMORY: usize = 24;
 
-/// Room for the iterations, kept from one step to the next.
-#[derive(Clone, Debug, Default)]
-pub struct Room {
-    residual: Unknowns,
-    fields: [Vec<f32>; 2],
-    /// Directions, what the operator makes of them, and the square of that.
-    directions: Vec<(Unknowns, Unknowns, f64)>,
-}
+/// Unknowns of a component from which on cores share the cycles.
+const WORTH: usize = 3500;
 
-impl Room {
-    fn fit(&mut self, unknowns: usize, steps: usize) {
-        if self.residual.len() != unknowns {
-            self.residual = vec![0.0; unknowns];
-            self.fields = [(); 2].map(|()| vec![0.0; unknowns / 4]);
-            self.directions.clear();
-        }
-        let empty = || (vec![0.0; unknowns], vec![0.0; unknowns], 0.0);
-        let wanted = steps.min(MEMORY).max(self.directions.len());
-        self.directions.resize_with(wanted, empty);
-    }
-}
-
-/// The equations of one step on one window.
+/// The equations of one step on one window, in room that is kept from one step to the next.
 #[derive(Clone, Debug)]
 pub struct Unified {
     operator: Operator,
     /// Of the three components of the velocity and of the pressure.
-    hierarchies: Vec<Multigrid>,
+    hierarchies: [Multigrid; 4],
     /// What viscosity answers to volume, by cell.
     bulk: Vec<f32>,
     alpha: f32,
     /// Drag of walls, by α: what a gradient of pressure has to overcome beside mass.
     wall: f32,
+    residuals: Residuals,
+    /// Volume that is lacking, and the pressure that it makes.
+    lacking: [Vec<f32>; 2],
 }
 
 /// Weights of mass and viscosity for a step of τ = νΔt/h².
@@ -61,209 +45,276 @@ pub fn weights(tau: f64) -> [f32; 2] {
 }
 
 impl Unified {
-    /// The equations for a step of τ = νΔt/h² with ν times a field of relative viscosities.
+    /// Room for the equations of a window.
     #[must_use]
-    pub fn new(domain: &Domain, tau: f64, viscosity: &[f32]) -> Self {
-        let [alpha, beta] = weights(tau);
-        let operator = Operator::new(domain, alpha, beta, viscosity);
+    pub fn new(domain: &Domain) -> Self {
         let grid = &domain.grid;
-        let stencils = [0, 1, 2].map(|axis| operator.component(domain, axis));
-        let bulk = bulk(domain, &stencils);
-        let thickness = thickness(domain);
-        let wall = beta * GAP_DRAG / (alpha * thickness * thickness);
-        let [u, v, w] = stencils;
-        let mut hierarchies = [
-            (u, Some(0)),
-            (v, Some(1)),
-            (w, Some(2)),
-            (laplacian(domain, wall), None),
-        ]
-        .map(|(stencil, faces)| (Some(stencil), faces, None));
-        fork_join::each(&mut hierarchies, |(stencil, faces, hierarchy)| {
-            *hierarchy = stencil
-                .take()
-                .map(|stencil| Multigrid::new(grid, stencil, *faces));
-        });
         Self {
-            hierarchies: hierarchies
-                .into_iter()
-                .filter_map(|(.., made)| made)
-                .collect(),
-            bulk,
-            operator,
-            alpha,
-            wall,
+            operator: Operator::default(),
+            hierarchies: [Some(0), Some(1), Some(2), None]
+                .map(|faces| Multigrid::empty(grid, faces)),
+            bulk: Vec::new(),
+            alpha: 0.0,
+            wall: 0.0,
+            residuals: Residuals::default(),
+            lacking: [Vec::new(), Vec::new()],
         }
     }
 
-    /// z ≈ A⁻¹·r.
-    fn precondition(&mut self, r: &[f32], z: &mut [f32], [first, second]: &mut [Vec<f32>; 2]) {
-        let [from @ .., r_pressure] = fields(r);
-        let [u, v, w, p] = fields_mut(z);
-        let mut velocity = [u, v, w];
-        let mut shares: Vec<_> = self
-            .hierarchies
-            .iter_mut()
-            .zip(from)
-            .zip(velocity.iter_mut())
-            .collect();
-        fork_join::each(&mut shares, |((hierarchy, from), into)| {
-            hierarchy.cycle(from, into)
+    /// The equations for a step of τ = νΔt/h² with ν times a field of relative viscosities.
+    pub fn renew(&mut self, domain: &Domain, tau: f64, viscosity: &[f32]) {
+        let grid = &domain.grid;
+        let [alpha, beta] = weights(tau);
+        for hierarchy in &mut self.hierarchies {
+            hierarchy.fit(grid);
+        }
+        let [components @ .., pressure] = &mut self.hierarchies;
+        self.operator
+            .renew(domain, [alpha, beta], viscosity, components);
+        let thickness = thickness(domain);
+        self.wall = beta * GAP_DRAG / (alpha * thickness * thickness);
+        laplacian(domain, self.wall, pressure.stencil_mut());
+        share(grid.len(), &mut self.hierarchies, Multigrid::renew);
+        self.alpha = alpha;
+        self.bulk.resize(grid.len(), 0.0);
+        let [u, v, w, p] = self.hierarchies.each_ref().map(Multigrid::stencil);
+        let components = [u, v, w];
+        p.runs.write([&mut *self.bulk], |run, [bulk]| {
+            answer(bulk, domain, components, Span::of(grid, run));
         });
-        self.operator.outflow(velocity, first);
-        for (first, r) in first.iter_mut().zip(r_pressure) {
-            *first = r - *first;
+        for field in &mut self.lacking {
+            if field.len() == grid.len() {
+                p.clear_left(field);
+            } else {
+                field.clear();
+                field.resize(grid.len(), 0.0);
+            }
         }
-        self.hierarchies[3].cycle(first, second);
-        for (p, (bulk, parts)) in p
-            .iter_mut()
-            .zip(self.bulk.iter().zip(first.iter().zip(&*second)))
-        {
-            *p = self.alpha * parts.1 + bulk * parts.0;
+        self.residuals
+            .fit(self.hierarchies.each_ref().map(Multigrid::stencil));
+    }
+
+    /// z ≈ A⁻¹·r.
+    fn precondition(&mut self, domain: &Domain, r: &Unknowns, z: &mut Unknowns) {
+        let grid = domain.grid;
+        let [u, v, w, p] = z;
+        let [pressure_r] = [&r[3]];
+        let [one, two, three, pressure] = &mut self.hierarchies;
+        let unknowns = three.stencil().runs.len();
+        // The third one's loops, as those of the pressure, are shared among cores.
+        let mut pairs = [(&mut *one, &r[0], &mut *u), (&mut *two, &r[1], &mut *v)];
+        let work = |(hierarchy, from, into): &mut (&mut Multigrid, &Vec<f32>, &mut Vec<f32>)| {
+            hierarchy.cycle(from, into);
+        };
+        if unknowns < WORTH {
+            pairs.iter_mut().for_each(work);
+        } else {
+            fork_join::each(&mut pairs, work);
         }
+        three.cycle(&r[2], w);
+        for field in [&mut *u, &mut *v, &mut *w] {
+            grid.wrap(field);
+        }
+        let [lacking, answer] = &mut self.lacking;
+        let runs = &pressure.stencil().runs;
+        outflow(domain, runs, [u, v, w], ([1.0, -1.0], pressure_r), lacking);
+        pressure.cycle(lacking, answer);
+        let (bulk, alpha) = (&self.bulk, self.alpha);
+        pressure.stencil().runs.write([&mut **p], |run, [p]| {
+            mix(
+                p,
+                alpha,
+                &answer[run.clone()],
+                &bulk[run.clone()],
+                &lacking[run],
+            );
+        });
     }
 
     /// Solves A·x = b by so many steps from x; returns the norm of each residual, with that of the first guess.
     pub fn solve(
         &mut self,
-        b: &[f32],
+        domain: &Domain,
+        b: &Unknowns,
         x: &mut Unknowns,
         steps: usize,
-        room: &mut Room,
     ) -> Vec<f64> {
-        room.fit(x.len(), steps);
-        let Room {
-            residual: r,
-            fields,
-            directions,
-        } = room;
-        self.operator.apply(x, r);
-        for (r, b) in r.iter_mut().zip(b) {
-            *r = b - *r;
-        }
-        let mut norms = vec![norm(r)];
-        for step in 0..steps {
-            let (place, kept) = (step % MEMORY, step.min(MEMORY));
-            let (mut z, mut q, _) = std::mem::take(&mut directions[place]);
-            self.precondition(r, &mut z, fields);
-            self.operator.apply(&mut z, &mut q);
-            for (_, (direction, image, squared)) in directions
-                .iter()
-                .enumerate()
-                .take(kept)
-                .filter(|(other, _)| *other != place)
-            {
-                let share = (dot(&q, image) / squared) as f32;
-                add_scaled(&mut z, -share, direction);
-                add_scaled(&mut q, -share, image);
-            }
-            let squared = dot(&q, &q);
-            let is_none = !squared.is_finite() || squared <= f64::from(f32::MIN_POSITIVE);
-            if !is_none {
-                let share = (dot(r, &q) / squared) as f32;
-                add_scaled(x, share, &z);
-                add_scaled(r, -share, &q);
-                norms.push(norm(r));
-            }
-            directions[place] = (z, q, squared);
-            if is_none {
+        let mut residuals = std::mem::take(&mut self.residuals);
+        self.operator
+            .apply(domain, &self.hierarchies, x, residuals.residual_mut());
+        let mut norms = Vec::with_capacity(steps + 1);
+        norms.push(residuals.begin(self.stencils(), b));
+        for _ in 0..steps {
+            let (r, mut z, mut q) = residuals.next(self.stencils(), x);
+            self.precondition(domain, &r, &mut z);
+            self.operator
+                .apply(domain, &self.hierarchies, &mut z, &mut q);
+            let Some(norm) = residuals.add(self.stencils(), r, z, q) else {
                 break;
-            }
+            };
+            norms.push(norm);
         }
+        residuals.end(self.stencils(), x);
+        self.residuals = residuals;
         norms
     }
 
-    /// Takes what volume is still gained or lost out of a velocity, by so many conjugate gradients.
-    pub fn project(&mut self, domain: &Domain, b: &[f32], x: &mut Unknowns, iterations: usize) {
-        let grid = domain.grid;
-        let [mut excess, mut phi] = [(); 2].map(|()| grid.field());
-        let [u, v, w, p] = fields_mut(x);
-        self.operator
-            .outflow([&mut *u, &mut *v, &mut *w], &mut excess);
-        for (excess, b) in excess.iter_mut().zip(b) {
-            *excess = b - *excess;
-        }
-        self.hierarchies[3].solve(&excess, &mut phi, iterations);
-        for (axis, u) in [u, v, w].into_iter().enumerate() {
-            let by = grid.stride(axis);
-            let (area, mass) = (&domain.area[axis], &domain.mass[axis]);
-            for place in by..grid.len() {
-                if area[place] > 0.0 {
-                    u[place] -=
-                        area[place] / (mass[place] + self.wall) * (phi[place] - phi[place - by]);
-                }
-            }
-            grid.wrap(u);
-        }
-        add_scaled(p, self.alpha, &phi);
+    fn stencils(&self) -> [&Stencil; 4] {
+        self.hierarchies.each_ref().map(Multigrid::stencil)
     }
 
-    /// The momentum that a velocity has, and the volume that solids displace: the right-hand side.
-    #[must_use]
+    /// Takes what volume is still gained or lost out of a velocity, by so many conjugate gradients.
+    pub fn project(&mut self, domain: &Domain, b: &Unknowns, x: &mut Unknowns, iterations: usize) {
+        let grid = domain.grid;
+        let [u, v, w, p] = x;
+        for field in [&mut *u, &mut *v, &mut *w] {
+            grid.wrap(field);
+        }
+        let [excess, phi] = &mut self.lacking;
+        let [components @ .., pressure] = &mut self.hierarchies;
+        let runs = &pressure.stencil().runs;
+        outflow(domain, runs, [u, v, w], ([1.0, -1.0], &b[3]), excess);
+        runs.iter().for_each(|run| phi[run].fill(0.0));
+        pressure.solve(excess, phi, iterations);
+        for (axis, u) in [u, v, w].into_iter().enumerate() {
+            let (area, mass) = (&domain.area[axis], &domain.mass[axis]);
+            components[axis]
+                .stencil()
+                .runs
+                .write([&mut **u], |run, [u]| {
+                    let span = Span::of(&grid, run);
+                    correct(u, area, (mass, self.wall), phi, grid.stride(axis), span);
+                });
+            grid.wrap(u);
+        }
+        let runs = &pressure.stencil().runs;
+        runs.write([&mut **p], |run, [p]| add_scaled(p, self.alpha, &phi[run]));
+    }
+
+    /// The momentum that a velocity with what the pull adds has, and the volume that solids displace: the right-hand
+    /// side.
     pub fn right_hand_side(
         &self,
         domain: &Domain,
-        velocity: [&[f32]; 3],
+        (velocity, pull): ([&[f32]; 3], [f32; 3]),
         solids: &[Vec<f32>; 3],
-    ) -> Unknowns {
+        b: &mut Unknowns,
+    ) {
         let grid = domain.grid;
-        let mut b = vec![0.0; 4 * grid.len()];
-        let fields = fields_mut(&mut b);
-        let [f, g, h, displaced] = fields;
-        for (axis, into) in [f, g, h].into_iter().enumerate() {
-            let (mass, u) = (&domain.mass[axis], velocity[axis]);
-            for (place, into) in into.iter_mut().enumerate() {
-                *into = self.alpha * mass[place] * u[place];
-            }
-            grid.clear(into);
-            let by = grid.stride(axis);
-            let flux = |place: usize| {
-                let shut = match domain.part[axis][place] {
-                    Part::Solid => 1.0,
-                    Part::Paint => 1.0 - domain.area[axis][place],
-                    Part::Air => 0.0,
-                };
-                shut * solids[axis][place]
-            };
-            for place in grid.places().filter(|place| domain.wet[*place] > 0.0) {
-                displaced[place] -= flux(place + by) - flux(place);
-            }
+        for field in &mut *b {
+            field.resize(grid.len(), 0.0);
         }
-        b
+        for axis in 0..3 {
+            let stencil = self.hierarchies[axis].stencil();
+            stencil.runs.write([&mut *b[axis]], |run, [b]| {
+                let mass = &stencil.mass[run.clone()];
+                momentum(b, mass, &velocity[axis][run], pull[axis]);
+            });
+            grid.clear(&mut b[axis]);
+        }
+        let runs = &self.hierarchies[3].stencil().runs;
+        runs.iter().for_each(|run| b[3][run].fill(0.0));
+        for axis in 0..3 {
+            runs.write([&mut *b[3]], |run, [b]| {
+                let span = Span::of(&grid, run);
+                displace(b, domain, axis, &solids[axis], span);
+            });
+        }
     }
 }
 
-/// The viscous part of the inverse Schur complement by cell: far from all sides 2βμ. Elsewhere the velocities around a
-/// cell answer as their diagonals say, which is more beside a wall and less beside air.
-fn bulk(domain: &Domain, stencils: &[Stencil; 3]) -> Vec<f32> {
-    let grid = domain.grid;
-    let mut bulk = grid.field();
-    for place in grid.places().filter(|place| domain.wet[*place] > 0.0) {
-        let mut yields = 0.0;
-        for (axis, stencil) in stencils.iter().enumerate() {
-            for face in [place, place + grid.stride(axis)] {
-                let viscous = stencil.diagonal[face] - stencil.mass[face];
-                if domain.area[axis][face] > 0.0 && viscous > 0.0 {
-                    yields += domain.area[axis][face] * domain.area[axis][face] / viscous;
-                }
+wide! {
+    fn mix(p: &mut [f32], alpha: f32, answer: &[f32], bulk: &[f32], lacking: &[f32]) {
+        let n = p.len();
+        let (answer, bulk, lacking) = (&answer[..n], &bulk[..n], &lacking[..n]);
+        for i in 0..n {
+            p[i] = alpha * answer[i] + bulk[i] * lacking[i];
+        }
+    }
+}
+
+wide! {
+    fn correct(u: &mut [f32], area: &[f32], heft: (&[f32], f32), phi: &[f32], by: usize, span: Span) {
+        let (area, mass, wall) = (span.here(area), span.here(heft.0), heft.1);
+        let (low, high) = (span.before(phi, by), span.here(phi));
+        let u = span.own(u);
+        for i in 0..u.len() {
+            let share = if area[i] > 0.0 { area[i] / (mass[i] + wall) } else { 0.0 };
+            u[i] -= share * (high[i] - low[i]);
+        }
+    }
+}
+
+wide! {
+    fn momentum(b: &mut [f32], mass: &[f32], u: &[f32], pull: f32) {
+        let n = b.len();
+        let (mass, u) = (&mass[..n], &u[..n]);
+        for i in 0..n {
+            b[i] = mass[i] * (u[i] + pull);
+        }
+    }
+}
+
+wide! {
+    /// Takes what solids bring into wet cells across an axis.
+    fn displace(b: &mut [f32], domain: &Domain, axis: usize, u: &[f32], span: Span) {
+        let by = [1, span.row, span.plane][axis];
+        let (solid, free, area) = (&domain.solid[axis], &domain.free[axis], &domain.area[axis]);
+        let (s, f, a, u_low) = (span.here(solid), span.here(free), span.here(area), span.here(u));
+        let (t, g, c, u_high) = (span.after(solid, by), span.after(free, by), span.after(area, by), span.after(u, by));
+        let wet = span.here(&domain.wet);
+        let b = span.own(b);
+        for i in 0..b.len() {
+            let low = (s[i] + f[i] * (1.0 - a[i])) * u_low[i];
+            let high = (t[i] + g[i] * (1.0 - c[i])) * u_high[i];
+            b[i] -= wet[i] * (high - low);
+        }
+    }
+}
+
+wide! {
+    /// The viscous part of the inverse Schur complement by cell: far from all sides 2βμ. Elsewhere the velocities around a
+    /// cell answer as their diagonals say, which is more beside a wall and less beside air.
+    fn answer(bulk: &mut [f32], domain: &Domain, stencils: [&Stencil; 3], span: Span) {
+        let wet = span.here(&domain.wet);
+        let bulk = span.own(bulk);
+        bulk.fill(0.0);
+        for axis in 0..3 {
+            let by = [1, span.row, span.plane][axis];
+            let area = &domain.area[axis];
+            let (diagonal, mass) = (&stencils[axis].diagonal, &stencils[axis].mass);
+            let (a, d, m) = (span.here(area), span.here(diagonal), span.here(mass));
+            let (b, e, n) = (span.after(area, by), span.after(diagonal, by), span.after(mass, by));
+            for i in 0..bulk.len() {
+                let (low, high) = (d[i] - m[i], e[i] - n[i]);
+                let low = if low > 0.0 { a[i] * a[i] / low } else { 0.0 };
+                let high = if high > 0.0 { b[i] * b[i] / high } else { 0.0 };
+                bulk[i] += low + high;
             }
         }
-        // Six faces, each with a diagonal of 8βμ, make 2βμ.
-        bulk[place] = if yields > 0.0 { 1.5 / yields } else { 0.0 };
+        for i in 0..bulk.len() {
+            // Six faces, each with a diagonal of 8βμ, make 2βμ.
+            bulk[i] = if bulk[i] > 0.0 { wet[i] * 1.5 / bulk[i] } else { 0.0 };
+        }
     }
-    bulk
 }
 
 /// Mean thickness of the paint, cells: how many lie above each other.
 fn thickness(domain: &Domain) -> f32 {
     let grid = domain.grid;
-    let [width, height, depth] = grid.cells.map(|cells| cells as isize);
+    let [width, height, depth] = grid.cells;
     let (mut wet, mut columns) = (0.0, 0.0);
-    for base in grid.block([0; 3], [width, height, 1]) {
-        let column = (0..depth as usize).map(|z| domain.wet[base + z * grid.stride(2)]);
-        let cells: f32 = column.sum();
-        wet += cells;
-        columns += cells.min(1.0);
+    let mut row = vec![0.0; width];
+    for y in 0..height as isize {
+        row.fill(0.0);
+        for z in 0..depth as isize {
+            let start = grid.at([0, y, z]);
+            add_scaled(&mut row, 1.0, &domain.wet[start..start + width]);
+        }
+        for cells in &row {
+            wet += cells;
+            columns += if *cells > 0.0 { 1.0 } else { 0.0 };
+        }
     }
     if columns > 0.0 { wet / columns } else { 1.0 }
 }

@@ -1,32 +1,47 @@
-//! Sums over fields. Every sum is of 8 partial sums of f64 in a fixed order, so all registers give the same bytes.
+//! Sums over fields. Every sum is of 16 partial sums of f64, each of a few numbers in f32, in a fixed order, so all registers give the same bytes, and
+//! parts of [stretches](Runs) are added up in their order, so any number of threads does.
 
 use maulstick_num::wide;
 
+use crate::runs::Runs;
+
 /// Partial sums.
-const PARTS: usize = 8;
+const PARTS: usize = 16;
+/// Numbers whose products are added up in f32, by eights, before they are in f64.
+const BLOCK: usize = 8 * PARTS;
+
+/// A sum in the making.
+pub(crate) type Sum = [f64; PARTS];
 
 wide! {
-    fn add_products(sums: &mut [f64; PARTS], a: &[f32], b: &[f32]) {
-        let (a, a_rest) = a.as_chunks::<PARTS>();
-        let (b, b_rest) = b.as_chunks::<PARTS>();
-        let mut local = *sums;
-        for (a, b) in a.iter().zip(b) {
+    pub(crate) fn add_products(sums: &mut Sum, a: &[f32], b: &[f32]) {
+        let mut whole = *sums;
+        for (a, b) in a.chunks(BLOCK).zip(b.chunks(BLOCK)) {
+            let (a, a_rest) = a.as_chunks::<PARTS>();
+            let (b, b_rest) = b.as_chunks::<PARTS>();
+            let mut few = [0.0; PARTS];
+            for (a, b) in a.iter().zip(b) {
+                for part in 0..PARTS {
+                    few[part] += a[part] * b[part];
+                }
+            }
+            for (part, (a, b)) in a_rest.iter().zip(b_rest).enumerate() {
+                few[part] += a * b;
+            }
             for part in 0..PARTS {
-                local[part] += f64::from(a[part]) * f64::from(b[part]);
+                whole[part] += f64::from(few[part]);
             }
         }
-        for (part, (a, b)) in a_rest.iter().zip(b_rest).enumerate() {
-            local[part] += f64::from(*a) * f64::from(*b);
-        }
-        *sums = local;
+        *sums = whole;
     }
 }
 
 wide! {
     /// Adds a multiple of a field.
     pub fn add_scaled(into: &mut [f32], by: f32, other: &[f32]) {
-        for (into, other) in into.iter_mut().zip(other) {
-            *into += by * *other;
+        let other = &other[..into.len()];
+        for i in 0..into.len() {
+            into[i] += by * other[i];
         }
     }
 }
@@ -34,22 +49,22 @@ wide! {
 wide! {
     /// Multiplies by a number and adds a field.
     pub fn scale_and_add(into: &mut [f32], by: f32, other: &[f32]) {
-        for (into, other) in into.iter_mut().zip(other) {
-            *into = by * *into + *other;
+        let other = &other[..into.len()];
+        for i in 0..into.len() {
+            into[i] = by * into[i] + other[i];
         }
     }
 }
 
-/// Scalar product.
+/// Scalar product within stretches.
 #[must_use]
-pub fn dot(a: &[f32], b: &[f32]) -> f64 {
-    let mut sums = [0.0; PARTS];
-    add_products(&mut sums, a, b);
-    sums.iter().sum()
-}
-
-/// Euclidean norm.
-#[must_use]
-pub fn norm(a: &[f32]) -> f64 {
-    dot(a, a).sqrt()
+pub fn dot_in(runs: &Runs, a: &[f32], b: &[f32]) -> f64 {
+    let [sum] = runs.sum(|runs| {
+        let mut sums = [0.0; PARTS];
+        for run in runs {
+            add_products(&mut sums, &a[run.clone()], &b[run.clone()]);
+        }
+        [sums.iter().sum()]
+    });
+    sum
 }

@@ -6,8 +6,13 @@
 //! flows through its faces along an axis, so that full cells stay full. What is asked of a cell beyond what it has is
 //! scaled down together.
 
-use crate::domain::{Domain, LEAST_FILL, Part};
+mod sweep;
+
+use maulstick_num::wide;
+
+use crate::domain::{Domain, LEAST_FILL};
 use crate::grid::Grid;
+use sweep::Sweep;
 
 /// Most of a cell that goes through one face in a part of a step.
 const LARGEST_COURANT: f32 = 0.5;
@@ -24,29 +29,73 @@ const ORDERS: [[usize; 3]; 6] = [
     [2, 0, 1],
     [1, 0, 2],
 ];
-/// Gradient of fill below which a cell has no surface.
-const LEAST_GRADIENT: f32 = 1e-3;
 
 /// Paints of a window.
 #[derive(Clone, Debug)]
 pub struct Volume {
     /// The grid.
     pub grid: Grid,
-    /// Quanta that fill a cell.
+    /// Quanta that fill a cell; below 2²².
     pub capacity: u32,
     /// Quanta of each paint, by cell.
     pub paints: Vec<Vec<u32>>,
     /// Quanta of all paints, by cell.
     total: Vec<u32>,
-    /// Quanta that are asked of each cell.
-    asked: Vec<u32>,
-    /// Donor, taker and quanta of each face that something goes through.
-    moves: Vec<[u32; 3]>,
-    /// Quanta of a paint before.
-    before: Vec<u32>,
+    /// True of each paint that there is any of.
+    present: Vec<bool>,
+    /// Quanta that each cell has room for.
+    room: Vec<f32>,
     fill: Vec<f32>,
+    sweep: Sweep,
     /// Number of the next order of axes.
     turn: usize,
+}
+
+wide! {
+    /// Adds a paint to all others; any of its bits.
+    fn add(total: &mut [u32], paint: &[u32], bits: &mut u32) {
+        let paint = &paint[..total.len()];
+        let mut any = 0;
+        for i in 0..total.len() {
+            total[i] = total[i].wrapping_add(paint[i]);
+            any |= paint[i];
+        }
+        *bits = any;
+    }
+}
+
+wide! {
+    fn fill_flat(fill: &mut [f32], total: &[u32], open: &[f32], capacity: f32) {
+        let n = fill.len();
+        let (total, open) = (&total[..n], &open[..n]);
+        for i in 0..n {
+            let open = if open[i] > LEAST_ROOM { open[i] } else { LEAST_ROOM };
+            fill[i] = total[i] as f32 / (capacity * open);
+        }
+    }
+}
+
+wide! {
+    fn find_rooms(room: &mut [f32], open: &[f32], capacity: f32) {
+        let open = &open[..room.len()];
+        for i in 0..room.len() {
+            let open = if open[i] > LEAST_ROOM { open[i] } else { LEAST_ROOM };
+            room[i] = capacity * open;
+        }
+    }
+}
+
+wide! {
+    /// Largest component without its sign, as bits, of velocities that are unknowns.
+    fn find_fastest(most: &mut u32, u: &[f32], free: &[f32]) {
+        let free = &free[..u.len()];
+        let mut fastest = 0;
+        for i in 0..u.len() {
+            let bits = (free[i] * u[i].abs()).to_bits();
+            fastest = if bits > fastest { bits } else { fastest };
+        }
+        *most = fastest;
+    }
 }
 
 impl Volume {
@@ -58,10 +107,10 @@ impl Volume {
             capacity,
             paints: vec![vec![0; grid.len()]; paints],
             total: vec![0; grid.len()],
-            asked: vec![0; grid.len()],
-            moves: Vec::new(),
-            before: vec![0; grid.len()],
+            present: vec![false; paints],
+            room: grid.field(),
             fill: grid.field(),
+            sweep: Sweep::new(grid),
             turn: 0,
         }
     }
@@ -69,18 +118,15 @@ impl Volume {
     /// Fraction of each cell that is filled, of what solids leave open of it.
     #[must_use]
     pub fn fill(&mut self, open: &[f32]) -> Vec<f32> {
-        self.add_up();
-        let rooms = self.rooms(open);
-        let cells = self.total.iter().zip(rooms);
-        cells.map(|(total, room)| *total as f32 / room).collect()
+        let mut fill = self.grid.field();
+        self.fill_into(open, &mut fill);
+        fill
     }
 
-    /// Quanta that each cell has room for.
-    fn rooms(&self, open: &[f32]) -> Vec<f32> {
-        let rooms = open
-            .iter()
-            .map(|open| self.capacity as f32 * open.max(LEAST_ROOM));
-        rooms.collect()
+    /// The same, into a field.
+    pub fn fill_into(&mut self, open: &[f32], fill: &mut [f32]) {
+        self.add_up();
+        fill_flat(fill, &self.total, open, self.capacity as f32);
     }
 
     /// Quanta of each paint.
@@ -97,10 +143,11 @@ impl Volume {
 
     fn add_up(&mut self) {
         self.total.fill(0);
+        self.present.clear();
         for paint in &self.paints {
-            for (total, count) in self.total.iter_mut().zip(paint) {
-                *total += count;
-            }
+            let mut bits = 0;
+            add(&mut self.total, paint, &mut bits);
+            self.present.push(bits != 0);
         }
         self.grid.wrap(&mut self.total);
     }
@@ -115,24 +162,27 @@ impl Volume {
         cell_m: f64,
     ) -> usize {
         let courant = (seconds / cell_m) as f32;
-        let fastest = (0..3).flat_map(|axis| {
-            let free = domain.part[axis].iter().zip(&velocity[axis]);
-            free.map(|(part, u)| if *part == Part::Paint { u.abs() } else { 0.0 })
+        let fastest = [0, 1, 2].map(|axis| {
+            let mut most = 0;
+            let len = domain.grid.len();
+            find_fastest(&mut most, &velocity[axis][..len], &domain.free[axis]);
+            f32::from_bits(most)
         });
-        let most = fastest.fold(0.0, f32::max) * courant;
+        let most = fastest.into_iter().fold(0.0, f32::max) * courant;
         let parts = ((most / LARGEST_COURANT).ceil() as usize).clamp(1, MOST_PARTS);
+        self.add_up();
+        self.sweep.begin(domain, self.capacity);
         for _ in 0..parts {
             // Cells are squeezed along one axis and stretched along another; what is full stays full on the way.
-            let mut room = self.rooms(open);
+            find_rooms(&mut self.room, open, self.capacity as f32);
             self.turn = (self.turn + 1) % 6;
             for axis in ORDERS[self.turn] {
-                self.sweep(
-                    domain,
-                    axis,
-                    &velocity[axis],
-                    courant / parts as f32,
-                    &mut room,
-                );
+                let courant = courant / parts as f32;
+                let cells = (&mut *self.total, &mut *self.room);
+                let paints = self.paints.iter_mut().zip(&self.present);
+                let paints = paints.filter_map(|(paint, is_present)| is_present.then_some(paint));
+                self.sweep
+                    .along(domain, (axis, courant), &velocity[axis], cells, paints);
             }
         }
         self.settle(domain, open);
@@ -141,111 +191,37 @@ impl Volume {
 
     /// Lets drops that are too small to flow sink by a cell, where there is room for them.
     fn settle(&mut self, domain: &Domain, open: &[f32]) {
-        let fill = self.fill(open);
+        let mut fill = std::mem::take(&mut self.fill);
+        fill_flat(&mut fill, &self.total, open, self.capacity as f32);
         let (grid, by) = (domain.grid, domain.grid.stride(2));
-        for place in grid.places().filter(|place| self.total[*place] > 0) {
-            let below = place - by;
-            let is_drop = domain.wet[place] == 0.0 && fill[place] < LEAST_FILL;
-            let has_room = fill[below] + fill[place] <= 1.0;
-            if is_drop && has_room && domain.part[2][place] != Part::Solid {
-                let below = grid.before(2, place);
-                for paint in &mut self.paints {
-                    paint[below] += std::mem::take(&mut paint[place]);
+        let [width, height, depth] = grid.cells;
+        for row in 0..height * depth {
+            let start = grid.at([0, (row % height) as isize, (row / height) as isize]);
+            let cells = start..start + width;
+            if !has_drops(&self.total[cells.clone()], &domain.wet[cells.clone()]) {
+                continue;
+            }
+            for place in cells {
+                let below = place - by;
+                let is_drop = domain.wet[place] == 0.0 && fill[place] < LEAST_FILL;
+                let has_room = fill[below] + fill[place] <= 1.0;
+                if is_drop && has_room && domain.solid[2][place] == 0.0 {
+                    let below = grid.before(2, place);
+                    for paint in &mut self.paints {
+                        paint[below] += std::mem::take(&mut paint[place]);
+                    }
                 }
             }
         }
-    }
-
-    /// Moves paint along one axis.
-    fn sweep(
-        &mut self,
-        domain: &Domain,
-        axis: usize,
-        velocity: &[f32],
-        courant: f32,
-        room: &mut [f32],
-    ) {
-        let grid = domain.grid;
-        let strides = [0, 1, 2].map(|axis| grid.stride(axis));
-        self.add_up();
-        let least = LEAST_ROOM * self.capacity as f32;
-        for (fill, (total, room)) in self.fill.iter_mut().zip(self.total.iter().zip(&*room)) {
-            // What came too fast for the other axes to take away leaves no less room than a solid does.
-            *fill = *total as f32 / room.max(least);
-        }
-        self.moves.clear();
-        self.asked.fill(0);
-        for place in grid.faces(axis) {
-            if domain.part[axis][place] != Part::Paint {
-                continue;
-            }
-            let c = domain.area[axis][place] * courant * velocity[place];
-            let c = c.clamp(-LARGEST_COURANT, LARGEST_COURANT);
-            let beside = grid.before(axis, place);
-            let moved = c * self.capacity as f32;
-            room[beside] -= moved;
-            room[place] += moved;
-            let donor = if c > 0.0 { beside } else { place };
-            if self.total[donor] > 0 {
-                let share = leaving(&self.fill, donor, (axis, c), strides);
-                let asks = (share.abs() * self.capacity as f32) as u32;
-                let asks = asks.min(self.total[donor]);
-                let taker = if c > 0.0 { place } else { beside };
-                self.asked[donor] += asks;
-                self.moves.push([donor as u32, taker as u32, asks]);
-            }
-        }
-        grid.wrap(room);
-        self.limit();
-        self.carry();
-    }
-
-    /// Scales what is asked of a cell down to what it has.
-    fn limit(&mut self) {
-        for [donor, _, goes] in &mut self.moves {
-            let donor = *donor as usize;
-            let [asks, asked, has] = [*goes, self.asked[donor], self.total[donor]].map(u64::from);
-            if asked > has {
-                *goes = (asks * has / asked) as u32;
-            }
-        }
-    }
-
-    /// Moves the paints, each by its share of the cell that gives.
-    fn carry(&mut self) {
-        for paint in &mut self.paints {
-            self.before.copy_from_slice(paint);
-            for [donor, taker, goes] in &self.moves {
-                let (donor, taker) = (*donor as usize, *taker as usize);
-                let share = u64::from(*goes) * u64::from(self.before[donor]);
-                let goes = (share / u64::from(self.total[donor].max(1))) as u32;
-                paint[donor] -= goes;
-                paint[taker] += goes;
-            }
-        }
+        self.fill = fill;
     }
 }
 
-/// Share of a cell that leaves a donor along an axis for a Courant number.
-fn leaving(fill: &[f32], donor: usize, (axis, c): (usize, f32), strides: [usize; 3]) -> f32 {
-    let f = fill[donor];
-    if f >= 1.0 {
-        return c * f;
+/// True if there is paint in a row that does not flow.
+fn has_drops(total: &[u32], wet: &[f32]) -> bool {
+    let mut found = 0;
+    for (total, wet) in total.iter().zip(wet) {
+        found |= if *wet == 0.0 { *total } else { 0 };
     }
-    let slope =
-        |axis: usize| fill[donor + strides[axis]].min(1.0) - fill[donor - strides[axis]].min(1.0);
-    let slopes = [slope(0), slope(1), slope(2)];
-    let sum = slopes[0].abs() + slopes[1].abs() + slopes[2].abs();
-    if sum < LEAST_GRADIENT {
-        return c * f;
-    }
-    let across = slopes[axis].abs() / sum;
-    let reach = c.abs();
-    // Paint lies on the side that it leaves to, or behind air.
-    let piled = if (slopes[axis] > 0.0) == (c > 0.0) {
-        reach.min(f)
-    } else {
-        (reach - (1.0 - f)).max(0.0)
-    };
-    across * piled + (1.0 - across) * reach * f
+    found > 0
 }

@@ -7,11 +7,12 @@
 
 mod transfer;
 
-use transfer::{Along, can_halve, gather, halved, spread};
+use maulstick_num::wide;
+use transfer::{Along, Layers, Room, all_layers, can_halve, gather, halved, spread};
 
 use crate::grid::Grid;
 use crate::stencil::Stencil;
-use crate::vector::{add_scaled, dot, norm, scale_and_add};
+use crate::vector::{add_scaled, dot_in, scale_and_add};
 
 /// Steps of smoothing: inverses of the roots of a Chebyshev polynomial on [1/3, 2], where the spectrum of D⁻¹A lies that
 /// no coarser grid sees.
@@ -26,10 +27,13 @@ const COARSEST_CELLS: usize = 4;
 struct Level {
     grid: Grid,
     stencil: Stencil,
-    /// Solution, right-hand side, and room.
+    /// Solution and right-hand side, on all but the first level.
     x: Vec<f32>,
     b: Vec<f32>,
+    /// Room, 0 where there are no unknowns.
     spare: Vec<f32>,
+    /// Layers with unknowns.
+    layers: Layers,
     /// What brings this level to the next; none on the coarsest.
     down: Option<Down>,
 }
@@ -48,9 +52,10 @@ struct Down {
 #[derive(Clone, Debug)]
 pub struct Multigrid {
     levels: Vec<Level>,
+    along: [Along; 3],
     omegas: [f32; COARSEST_STEPS],
-    /// True if a constant is no residual: no value is known and there is no mass.
-    is_singular: bool,
+    /// Residual, preconditioned residual, direction and its image.
+    gradients: [Vec<f32>; 4],
 }
 
 /// Part of the right-hand side at which a residual is rounding.
@@ -80,92 +85,128 @@ impl Down {
         &self.grids[2]
     }
 
-    /// Sums by weights of each axis, x first.
-    fn gather(&mut self, grid: &Grid, weights: [[f32; 4]; 3], from: &mut [f32], into: &mut [f32]) {
-        let [z, y, x] = self.grids;
+    fn room(&mut self) -> Room<'_> {
         let [by_z, by_y] = &mut self.fields;
-        grid.wrap(from);
-        gather(2, weights[2], (grid, from), (&z, by_z));
-        z.wrap(by_z);
-        gather(1, weights[1], (&z, by_z), (&y, by_y));
-        y.wrap(by_y);
-        gather(0, weights[0], (&y, by_y), (&x, into));
-        x.clear(into);
-    }
-
-    /// Interpolates.
-    fn spread(&mut self, grid: &Grid, from: &mut [f32], into: &mut [f32]) {
-        let [z, y, x] = self.grids;
-        let [by_z, by_y] = &mut self.fields;
-        x.wrap(from);
-        spread(0, self.along[0], (&x, from), (&y, by_y));
-        y.wrap(by_y);
-        spread(1, self.along[1], (&y, by_y), (&z, by_z));
-        z.wrap(by_z);
-        spread(2, self.along[2], (&z, by_z), (grid, into));
+        Room {
+            grids: &self.grids,
+            by_z,
+            by_y,
+        }
     }
 
     /// Operator of the coarse grid.
-    fn coarsen(&mut self, grid: &Grid, fine: &Stencil) -> Stencil {
+    fn coarsen(&mut self, grid: &Grid, fine: &Stencil, into: &mut Stencil) {
         let coarse = *self.coarse();
-        let mut into = Stencil::new(&coarse);
+        let layers = all_layers(&coarse);
         // An axis that is not halved keeps its links and sums.
-        let weights = |of: fn(Along) -> [f32; 4]| self.along.map(of);
-        let (sums, children) = (weights(Along::sum), weights(Along::children));
         let along = self.along;
+        let weights = |of: fn(Along) -> [f32; 4]| along.map(of);
+        let (sums, children) = (weights(Along::sum), weights(Along::children));
         for axis in 0..3 {
             let mut weights = sums;
             weights[axis] = along[axis].link();
-            let mut links = fine.links[axis].clone();
-            self.gather(grid, weights, &mut links, &mut into.links[axis]);
+            let links = (grid, fine.links[axis].as_slice());
+            gather(
+                weights,
+                links,
+                &mut into.links[axis],
+                &layers,
+                &mut self.room(),
+            );
         }
-        let mut lost = self.lost_links(grid, fine);
-        add_scaled(&mut lost, 1.0, &fine.mass);
-        self.gather(grid, sums, &mut lost, &mut into.mass);
+        let mut lost = std::mem::take(&mut self.scale);
+        self.lost_links(grid, fine, &mut lost);
+        gather(
+            sums,
+            (grid, &lost),
+            &mut into.mass,
+            &layers,
+            &mut self.room(),
+        );
+        self.scale = lost;
         for (from, into) in [
             (&fine.active, &mut into.active),
             (&fine.known, &mut into.known),
         ] {
-            self.gather(grid, children, &mut from.clone(), into);
+            gather(children, (grid, from), into, &layers, &mut self.room());
             into.iter_mut()
-                .for_each(|value| *value = f32::from(*value > 0.0));
+                .for_each(|value| *value = if *value > 0.0 { 1.0 } else { 0.0 });
         }
         into.finish(&coarse);
         let mut scale = std::mem::take(&mut self.scale);
-        self.spread(grid, &mut into.known.clone(), &mut scale);
-        for (scale, active) in scale.iter_mut().zip(&fine.active) {
-            *scale = if *active > 0.0 && *scale > 0.0 {
-                1.0 / *scale
-            } else {
-                0.0
-            };
+        scale.fill(0.0);
+        let layers = all_layers(grid);
+        let known = (grid, scale.as_mut_slice(), fine.active.as_slice());
+        spread(along, &into.known, known, &layers, &mut self.room());
+        for scale in &mut scale {
+            *scale = if *scale > 0.0 { 1.0 / *scale } else { 0.0 };
         }
-        grid.clear(&mut scale);
         self.scale = scale;
-        into
     }
 
-    /// Half of the links with known places that fall within one coarse cell, by the place that is an unknown.
-    fn lost_links(&self, grid: &Grid, fine: &Stencil) -> Vec<f32> {
-        let mut lost = grid.field();
+    /// Mass, and half of the links with known places that fall within one coarse cell, by the place that is an unknown.
+    fn lost_links(&self, grid: &Grid, fine: &Stencil, lost: &mut [f32]) {
+        lost.copy_from_slice(&fine.mass);
+        let rows = grid.len() / grid.stride(1);
+        let width = grid.stride(1);
         for axis in 0..3 {
             let is_halved = self.coarse().cells[axis] != grid.cells[axis];
             if self.along[axis] == Along::Faces || !is_halved {
                 continue;
             }
-            let stride = grid.stride(axis);
-            let odd = (1..grid.cells[axis] as isize).step_by(2);
-            for place in odd.flat_map(|layer| grid.layer_at(axis, layer)) {
-                let [low, high] = [place - stride, place];
-                let half = 0.5 * fine.links[axis][place];
-                match (fine.active[low] > 0.0, fine.active[high] > 0.0) {
-                    (true, false) => lost[low] += half,
-                    (false, true) => lost[high] += half,
-                    _ => {}
+            let (links, active) = (&fine.links[axis], &fine.active);
+            for row in 0..rows {
+                let start = row * width;
+                if axis == 0 {
+                    let own = start + 1..start + 1 + (width - 3).next_multiple_of(2).min(width - 1);
+                    let (links, active) = (&links[own.clone()], &active[own.clone()]);
+                    lose_along(&mut lost[own], links, active, grid.cells[0]);
+                    continue;
+                }
+                let [number, per] = if axis == 1 {
+                    [row % (grid.cells[1] + 3), grid.cells[1]]
+                } else {
+                    [row / (grid.cells[1] + 3), grid.cells[2]]
+                };
+                // The second cell of a coarse one.
+                if number >= 2 && number.is_multiple_of(2) && number < per + 1 {
+                    let stride = grid.stride(axis);
+                    let (low, high) = lost.split_at_mut(start);
+                    let low = &mut low[start - stride..start - stride + width];
+                    let links = &links[start..start + width];
+                    let active = [start - stride, start].map(|at| &active[at..at + width]);
+                    lose(low, &mut high[..width], links, active);
                 }
             }
         }
-        lost
+        grid.wrap(lost);
+    }
+}
+
+wide! {
+    fn lose(low: &mut [f32], high: &mut [f32], links: &[f32], active: [&[f32]; 2]) {
+        let n = low.len();
+        let (high, links, a, b) = (&mut high[..n], &links[..n], &active[0][..n], &active[1][..n]);
+        for i in 0..n {
+            let half = 0.5 * links[i];
+            low[i] += a[i] * (1.0 - b[i]) * half;
+            high[i] += b[i] * (1.0 - a[i]) * half;
+        }
+    }
+}
+
+wide! {
+    /// The same along a row that begins with its first cell.
+    fn lose_along(lost: &mut [f32], links: &[f32], active: &[f32], cells: usize) {
+        let pairs = lost.as_chunks_mut::<2>().0.iter_mut();
+        let links = links.as_chunks::<2>().0;
+        let active = active.as_chunks::<2>().0;
+        for (lost, (link, active)) in pairs.zip(links.iter().zip(active)).take(cells / 2) {
+            let half = 0.5 * link[1];
+            let [a, b] = *active;
+            lost[0] += a * (1.0 - b) * half;
+            lost[1] += b * (1.0 - a) * half;
+        }
     }
 }
 
@@ -192,6 +233,15 @@ impl Multigrid {
     /// The hierarchy of an operator whose values lie in the middle of cells, or on the faces across an axis.
     #[must_use]
     pub fn new(grid: &Grid, stencil: Stencil, faces: Option<usize>) -> Self {
+        let mut multigrid = Self::empty(grid, faces);
+        multigrid.levels[0].stencil = stencil;
+        multigrid.renew();
+        multigrid
+    }
+
+    /// A hierarchy of grids whose [operator](Self::stencil_mut) is still to be written.
+    #[must_use]
+    pub fn empty(grid: &Grid, faces: Option<usize>) -> Self {
         let along = [0, 1, 2].map(|axis| {
             if faces == Some(axis) {
                 Along::Faces
@@ -199,29 +249,73 @@ impl Multigrid {
                 Along::Middles
             }
         });
-        let is_singular = is_singular(grid, &stencil);
-        let mut levels = Vec::new();
-        let (mut grid, mut stencil) = (*grid, stencil);
+        let mut multigrid = Self {
+            levels: Vec::new(),
+            along,
+            omegas: coarsest_omegas(),
+            gradients: std::array::from_fn(|_| Vec::new()),
+        };
+        multigrid.fit(grid);
+        multigrid
+    }
+
+    /// Fits the hierarchy to another grid.
+    pub fn fit(&mut self, grid: &Grid) {
+        if self.levels.first().is_some_and(|level| level.grid == *grid) {
+            return;
+        }
+        self.levels.clear();
+        let mut grid = *grid;
         loop {
             let is_coarsest = grid.cells.iter().all(|cells| *cells <= COARSEST_CELLS)
                 || (0..3).all(|axis| !can_halve(&grid, axis));
-            let mut down = (!is_coarsest).then(|| Down::new(&grid, along));
-            let next = (down.as_mut()).map(|down| (*down.coarse(), down.coarsen(&grid, &stencil)));
-            levels.push(Level {
+            let down = (!is_coarsest).then(|| Down::new(&grid, self.along));
+            let next = down.as_ref().map(|down| *down.coarse());
+            let own = || {
+                if self.levels.is_empty() {
+                    Vec::new()
+                } else {
+                    grid.field()
+                }
+            };
+            let level = Level {
                 grid,
-                stencil,
-                x: grid.field(),
-                b: grid.field(),
+                stencil: Stencil::new(&grid),
+                x: own(),
+                b: own(),
                 spare: grid.field(),
+                layers: [0..0, 0..0],
                 down,
-            });
+            };
+            self.levels.push(level);
             let Some(next) = next else { break };
-            (grid, stencil) = next;
+            grid = next;
         }
-        Self {
-            levels,
-            omegas: coarsest_omegas(),
-            is_singular,
+    }
+
+    /// Finds the diagonal of the operator, and that of each coarser grid.
+    pub fn renew(&mut self) {
+        let mut rest = self.levels.as_mut_slice();
+        if let Some(first) = rest.first_mut() {
+            first.stencil.finish(&first.grid);
+            for field in &mut self.gradients {
+                if field.len() == first.grid.len() {
+                    first.stencil.clear_left(field);
+                } else {
+                    field.clear();
+                    field.resize(first.grid.len(), 0.0);
+                }
+            }
+        }
+        while let Some((level, coarser)) = rest.split_first_mut() {
+            let grid = level.grid;
+            level.layers = layers(&grid, &level.stencil);
+            if let (Some(down), Some(next)) = (&mut level.down, coarser.first_mut()) {
+                down.coarsen(&grid, &level.stencil, &mut next.stencil);
+                next.stencil.clear_left(&mut next.x);
+            }
+            level.stencil.clear_left(&mut level.spare);
+            rest = coarser;
         }
     }
 
@@ -231,47 +325,57 @@ impl Multigrid {
         &self.levels[0].stencil
     }
 
-    /// x ≈ A⁻¹·b by one symmetric V-cycle; b is 0 where there are no unknowns.
-    pub fn cycle(&mut self, b: &[f32], x: &mut [f32]) {
-        self.levels[0].b.copy_from_slice(b);
-        descend(&mut self.levels, &self.omegas);
-        x.copy_from_slice(&self.levels[0].x);
+    /// The operator, to be written; [`renew`](Self::renew) takes it up.
+    #[must_use]
+    pub fn stencil_mut(&mut self) -> &mut Stencil {
+        &mut self.levels[0].stencil
     }
 
-    /// Solves A·x = b by so many preconditioned conjugate gradients from x; returns the norm of each residual, with that
-    /// of the first guess.
+    /// x ≈ A⁻¹·b by one symmetric V-cycle. Where there are no unknowns x is 0 before and after.
+    pub fn cycle(&mut self, b: &[f32], x: &mut [f32]) {
+        descend(&mut self.levels, &self.omegas, b, x);
+    }
+
+    /// Solves A·x = b by so many preconditioned conjugate gradients from x, which is 0 where there are no unknowns;
+    /// returns the norm of each residual, with that of the first guess.
     pub fn solve(&mut self, b: &[f32], x: &mut [f32], iterations: usize) -> Vec<f64> {
         let grid = self.levels[0].grid;
-        let [mut r, mut z, mut q] = [(); 3].map(|()| grid.field());
-        self.stencil().residual(&grid, b, x, &mut r);
-        if self.is_singular {
+        let [mut r, mut z, mut q, mut p] = std::mem::take(&mut self.gradients);
+        let stencil = self.stencil();
+        stencil.residual(&grid, &stencil.active, b, x, &mut r);
+        grid.clear(&mut r);
+        if is_singular(&grid, stencil) {
             self.level_out(&mut r);
         }
-        let mut norms = vec![norm(&r)];
-        let rounding = ROUNDING * norm(b);
-        let mut p = grid.field();
+        let runs = self.stencil().runs.clone();
+        let mut norms = Vec::with_capacity(iterations + 1);
+        norms.push(dot_in(&runs, &r, &r).sqrt());
+        let rounding = ROUNDING * dot_in(&runs, b, b).sqrt();
         let mut before = 0.0;
         while norms.len() <= iterations && norms[norms.len() - 1] > rounding {
             self.cycle(&r, &mut z);
-            let now = dot(&r, &z);
+            let now = dot_in(&runs, &r, &z);
             // Rounding has the last word: what is left is none.
             if !now.is_finite() || now <= 0.0 {
                 break;
             }
             let beta = if before > 0.0 { now / before } else { 0.0 };
-            scale_and_add(&mut p, beta as f32, &z);
+            runs.write([&mut *p], |run, [p]| scale_and_add(p, beta as f32, &z[run]));
             self.stencil().apply(&grid, &mut p, &mut q);
-            let curvature = dot(&p, &q);
+            let curvature = dot_in(&runs, &p, &q);
             if !curvature.is_finite() || curvature <= 0.0 {
                 break;
             }
             let alpha = (now / curvature) as f32;
-            add_scaled(x, alpha, &p);
-            add_scaled(&mut r, -alpha, &q);
+            runs.write([&mut *x, &mut *r], |run, [x, r]| {
+                add_scaled(x, alpha, &p[run.clone()]);
+                add_scaled(r, -alpha, &q[run]);
+            });
             before = now;
-            norms.push(norm(&r));
+            norms.push(dot_in(&runs, &r, &r).sqrt());
         }
         grid.wrap(x);
+        self.gradients = [r, z, q, p];
         norms
     }
 
@@ -319,53 +423,77 @@ impl Multigrid {
 
 /// True if every link is one between unknowns and there is no mass.
 fn is_singular(grid: &Grid, stencil: &Stencil) -> bool {
-    let mut ones = stencil.active.clone();
-    let mut rows = grid.field();
-    stencil.apply(grid, &mut ones, &mut rows);
-    let unknowns = grid.places().filter(|place| stencil.active[*place] > 0.0);
-    unknowns
-        .into_iter()
-        .all(|place| rows[place].abs() <= 1e-6 * stencil.diagonal[place])
+    let strides = [0, 1, 2].map(|axis| grid.stride(axis));
+    let active = &stencil.active;
+    let mut unknowns = grid.places().filter(|place| active[*place] > 0.0);
+    unknowns.all(|place| {
+        let mut left = stencil.diagonal[place];
+        for (links, by) in stencil.links.iter().zip(strides) {
+            left -= links[place] * active[place - by] + links[place + by] * active[place + by];
+        }
+        left.abs() <= 1e-6 * stencil.diagonal[place]
+    })
 }
 
-/// A V-cycle from x = 0 on the first level.
-fn descend(levels: &mut [Level], omegas: &[f32]) {
+/// Layers in which unknowns lie.
+fn layers(grid: &Grid, stencil: &Stencil) -> Layers {
+    let [row, plane] = [1, 2].map(|axis| grid.stride(axis));
+    let mut layers = [usize::MAX..0, usize::MAX..0];
+    for run in stencil.runs.iter() {
+        let [low, high] = [run.start / plane, (run.end - 1) / plane];
+        let rows = if low == high {
+            run.start % plane / row..(run.end - 1) % plane / row + 1
+        } else {
+            0..grid.cells[1] + 3
+        };
+        for (layers, found) in layers.iter_mut().zip([rows, low..high + 1]) {
+            *layers = layers.start.min(found.start)..layers.end.max(found.end);
+        }
+    }
+    let [all_rows, all_planes] = all_layers(grid);
+    let [rows, planes] = layers;
+    [(rows, all_rows), (planes, all_planes)]
+        .map(|(some, all)| some.start.clamp(all.start, all.end)..some.end.min(all.end))
+}
+
+/// A V-cycle from x = 0.
+fn descend(levels: &mut [Level], omegas: &[f32], b: &[f32], x: &mut [f32]) {
     let Some((level, coarser)) = levels.split_first_mut() else {
         return;
     };
-    let (grid, stencil) = (level.grid, &level.stencil);
-    let (x, spare, b) = (&mut level.x, &mut level.spare, &level.b);
-    let Some(down) = &mut level.down else {
-        stencil.begin(b, x, omegas[0]);
-        for omega in &omegas[1..] {
-            stencil.relax(&grid, b, x, spare, *omega);
+    let (grid, stencil, spare) = (level.grid, &level.stencil, &mut level.spare);
+    let (Some(down), Some(next)) = (&mut level.down, coarser.first_mut()) else {
+        // An even number, so the last one ends in x.
+        stencil.begin_twice(&grid, b, [omegas[0], omegas[1]], x, spare);
+        for omegas in omegas[2..].chunks(2) {
+            stencil.relax(&grid, b, x, omegas[0], spare);
+            stencil.relax(&grid, b, spare, omegas[1], x);
         }
         return;
     };
-    stencil.begin(b, x, SMOOTHING[0]);
-    for omega in &SMOOTHING[1..] {
-        stencil.relax(&grid, b, x, spare, *omega);
-    }
-    stencil.residual(&grid, b, x, spare);
-    for (spare, scale) in spare.iter_mut().zip(&down.scale) {
-        *spare *= scale;
-    }
+    let [first, second] = SMOOTHING;
+    stencil.begin_twice(&grid, b, SMOOTHING, x, spare);
+    stencil.residual(&grid, &down.scale, b, x, spare);
+    grid.wrap(spare);
     let weights = down.along.map(Along::restriction);
-    down.gather(&grid, weights, spare, &mut coarser[0].b);
-    mask(&mut coarser[0]);
-    descend(coarser, omegas);
-    down.spread(&grid, &mut coarser[0].x, spare);
-    for ((x, spare), scale) in x.iter_mut().zip(&*spare).zip(&down.scale) {
-        *x += scale * spare;
+    let (mut coarse_x, mut coarse_b) = (std::mem::take(&mut next.x), std::mem::take(&mut next.b));
+    gather(
+        weights,
+        (&grid, spare),
+        &mut coarse_b,
+        &next.layers,
+        &mut down.room(),
+    );
+    descend(coarser, omegas, &coarse_b, &mut coarse_x);
+    let coarse = *down.coarse();
+    coarse.wrap(&mut coarse_x);
+    let scale = std::mem::take(&mut down.scale);
+    let into = (&grid, &mut *x, scale.as_slice());
+    spread(down.along, &coarse_x, into, &level.layers, &mut down.room());
+    down.scale = scale;
+    if let Some(next) = coarser.first_mut() {
+        (next.x, next.b) = (coarse_x, coarse_b);
     }
-    for omega in SMOOTHING.iter().rev() {
-        stencil.relax(&grid, b, x, spare, *omega);
-    }
-}
-
-/// Drops what was asked of places that are no unknowns.
-fn mask(level: &mut Level) {
-    for (b, active) in level.b.iter_mut().zip(&level.stencil.active) {
-        *b *= active;
-    }
+    stencil.relax(&grid, b, x, second, spare);
+    stencil.relax(&grid, b, spare, first, x);
 }

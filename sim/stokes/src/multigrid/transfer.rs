@@ -2,6 +2,10 @@
 //!
 //! Coarse cell C covers the fine cells 2C and 2C + 1. Along the axis across which a component's faces lie, coarse face C is
 //! the fine face 2C, so values there are interpolated between nodes; everywhere else between middles of cells.
+//!
+//! Fields are wrapped on both sides, so what is found of layers beyond the sides is right too.
+
+use std::ops::Range;
 
 use maulstick_num::wide;
 
@@ -51,6 +55,16 @@ impl Along {
             Self::Faces => [0.0, 1.0, 0.0, 0.0],
         }
     }
+
+    /// The two coarse layers beside a fine one, and their weights.
+    const fn beside(self, at: usize) -> ([usize; 2], [f32; 2]) {
+        match (self, at % 2) {
+            (Self::Middles, 1) => ([at.div_ceil(2), at / 2], [0.75, 0.25]),
+            (Self::Middles, _) => ([at / 2, at / 2 + 1], [0.75, 0.25]),
+            (Self::Faces, 1) => ([at.div_ceil(2), at.div_ceil(2)], [1.0, 0.0]),
+            (Self::Faces, _) => ([at / 2, at / 2 + 1], [0.5, 0.5]),
+        }
+    }
 }
 
 /// A grid half as fine along one axis.
@@ -64,6 +78,14 @@ pub(crate) fn halved(grid: &Grid, axis: usize) -> Grid {
 pub(crate) fn can_halve(grid: &Grid, axis: usize) -> bool {
     let cells = grid.cells[axis];
     cells > 1 && (cells.is_multiple_of(2) || grid.ends[axis] != Ends::Periodic)
+}
+
+/// Layers of the two upper axes, y and z, counted from the first of the field on.
+pub(crate) type Layers = [Range<usize>; 2];
+
+/// Layers that a coarse grid's cells and upper faces lie in.
+pub(crate) fn all_layers(grid: &Grid) -> Layers {
+    [1, 2].map(|axis| 1..grid.cells[axis] + 2)
 }
 
 wide! {
@@ -81,9 +103,11 @@ wide! {
     fn weigh_row(into: &mut [f32], weights: Weights, from: &[f32]) {
         let last = into.len() - 2;
         let pairs = from.as_chunks::<2>().0;
-        for (two, into) in pairs.windows(2).zip(&mut into[1..last]) {
-            let ([a, b], [c, d]) = (two[0], two[1]);
-            *into = (weights[0] * a + weights[1] * b) + (weights[2] * c + weights[3] * d);
+        let (low, high) = (&pairs[..last - 1], &pairs[1..last]);
+        let cells = &mut into[1..last];
+        for i in 0..cells.len() {
+            let ([a, b], [c, d]) = (low[i], high[i]);
+            cells[i] = (weights[0] * a + weights[1] * b) + (weights[2] * c + weights[3] * d);
         }
         // Above the last cell.
         let places = from[2 * last - 2..].iter().zip(weights);
@@ -94,47 +118,14 @@ wide! {
 wide! {
     /// Both fine places of each coarse one of a row: weights of those before, at and after it.
     fn mix_row(into: &mut [f32], weights: [[f32; 3]; 2], row: &[f32]) {
-        let count = (into.len() - 1) / 2;
-        let pairs = into[1..].as_chunks_mut::<2>().0;
-        let around = row.windows(3).take(count);
-        for (pair, around) in pairs.iter_mut().zip(around) {
-            let [low, high] = weights;
-            pair[0] = low[0] * around[0] + low[1] * around[1] + low[2] * around[2];
-            pair[1] = high[0] * around[0] + high[1] * around[1] + high[2] * around[2];
-        }
-    }
-}
-
-/// Sums over four fine places around each coarse one along an axis; the fine field is wrapped.
-pub(crate) fn gather(
-    axis: usize,
-    weights: Weights,
-    (fine, from): (&Grid, &[f32]),
-    (coarse, into): (&Grid, &mut [f32]),
-) {
-    if fine.cells == coarse.cells {
-        return into.copy_from_slice(from);
-    }
-    let [rows, planes] = [1, 2].map(|axis| coarse.cells[axis] + 3);
-    let [width, width_from] = [coarse.stride(1), fine.stride(1)];
-    let halves = |a: usize, at: usize| if a == axis { 2 * at - 2 } else { at };
-    for z in 1..planes - 1 {
-        for y in 1..rows - 1 {
-            let to = y * coarse.stride(1) + z * coarse.stride(2);
-            let first = halves(1, y) * fine.stride(1) + halves(2, z) * fine.stride(2);
-            let into = &mut into[to..to + width];
-            if axis == 0 {
-                weigh_row(into, weights, &from[first..first + width_from]);
-            } else {
-                let step = fine.stride(axis);
-                let row = |i: usize| {
-                    let at = first + i * step;
-                    // Beyond the last layer there is nothing that has weight.
-                    let at = if at + width > from.len() { first } else { at };
-                    &from[at..at + width]
-                };
-                weigh(into, weights, row(0), row(1), row(2), row(3));
-            }
+        let count = ((into.len() - 1) / 2).min(row.len() - 2);
+        let (before, at, after) = (&row[..count], &row[1..count + 1], &row[2..count + 2]);
+        let pairs = &mut into[1..].as_chunks_mut::<2>().0[..count];
+        let [low, high] = weights;
+        for i in 0..count {
+            let first = low[0] * before[i] + low[1] * at[i] + low[2] * after[i];
+            let second = high[0] * before[i] + high[1] * at[i] + high[2] * after[i];
+            pairs[i] = [first, second];
         }
     }
 }
@@ -149,47 +140,160 @@ wide! {
     }
 }
 
-/// Interpolates along an axis; the coarse field is wrapped.
-pub(crate) fn spread(
-    axis: usize,
-    along: Along,
-    (coarse, from): (&Grid, &[f32]),
-    (fine, into): (&Grid, &mut [f32]),
-) {
-    if fine.cells == coarse.cells {
-        return into.copy_from_slice(from);
+wide! {
+    fn add_mixed(into: &mut [f32], scale: &[f32], weights: [f32; 2], a: &[f32], b: &[f32]) {
+        let n = into.len();
+        let (a, b, scale) = (&a[..n], &b[..n], &scale[..n]);
+        for i in 0..n {
+            into[i] += scale[i] * (weights[0] * a[i] + weights[1] * b[i]);
+        }
     }
-    // A fine place at `at` lies beside coarse ones, with these weights.
-    let beside = |at: usize| match (along, at % 2) {
-        (Along::Middles, 1) => ([at.div_ceil(2), at / 2], [0.75, 0.25]),
-        (Along::Middles, _) => ([at / 2, at / 2 + 1], [0.75, 0.25]),
-        (Along::Faces, 1) => ([at.div_ceil(2), at.div_ceil(2)], [1.0, 0.0]),
-        (Along::Faces, _) => ([at / 2, at / 2 + 1], [0.5, 0.5]),
+}
+
+/// Fine layers around a coarse one: the second before its first child and on. Beyond the last one there is nothing that
+/// has weight.
+fn four(at: usize, cells: usize) -> [usize; 4] {
+    [2 * at - 2, 2 * at - 1, 2 * at, 2 * at + 1].map(|at| at.min(cells + 2))
+}
+
+/// Room between two grids: by z the field of the grid that is halved along z alone, by y along y and z.
+pub(crate) struct Room<'a> {
+    pub(crate) grids: &'a [Grid; 3],
+    pub(crate) by_z: &'a mut [f32],
+    pub(crate) by_y: &'a mut [f32],
+}
+
+/// Sums over four fine places around each coarse one along each axis, for some layers of the coarse grid; the fine field is
+/// wrapped.
+pub(crate) fn gather(
+    weights: [Weights; 3],
+    (fine, from): (&Grid, &[f32]),
+    into: &mut [f32],
+    [rows, planes]: &Layers,
+    room: &mut Room<'_>,
+) {
+    let [z_grid, y_grid, coarse] = room.grids;
+    let (width, plane) = (fine.stride(1), fine.stride(2));
+    let is_halved = |axis: usize| fine.cells[axis] != coarse.cells[axis];
+    if rows.is_empty() {
+        return;
+    }
+    // What the rows need of the fine ones.
+    let fine_rows = if is_halved(1) {
+        2 * rows.start - 2..(2 * rows.end).min(fine.cells[1] + 3)
+    } else {
+        rows.clone()
     };
-    let [columns, rows, planes] = fine.cells.map(|cells| cells + 3);
-    let width = coarse.stride(1);
-    for z in 1..planes - 1 {
-        for y in 1..rows - 1 {
-            let to = y * fine.stride(1) + z * fine.stride(2);
-            let into = &mut into[to..to + columns];
-            if axis == 0 {
-                let first = y * width + z * coarse.stride(2);
-                let row = &from[first..first + width];
-                let weights = match along {
-                    Along::Middles => [[0.25, 0.75, 0.0], [0.0, 0.75, 0.25]],
-                    Along::Faces => [[0.0, 1.0, 0.0], [0.0, 0.5, 0.5]],
-                };
-                mix_row(into, weights, row);
+    let flat = fine_rows.start * width..fine_rows.end * width;
+    for z in planes.clone() {
+        let source = if is_halved(2) {
+            let [a, b, c, d] =
+                four(z, fine.cells[2]).map(|z| &from[z * plane + flat.start..z * plane + flat.end]);
+            let start = z * z_grid.stride(2);
+            weigh(
+                &mut room.by_z[start + flat.start..start + flat.end],
+                weights[2],
+                a,
+                b,
+                c,
+                d,
+            );
+            &room.by_z[start..start + plane]
+        } else {
+            &from[z * plane..(z + 1) * plane]
+        };
+        for y in rows.clone() {
+            let row = |y: usize| &source[y * width..(y + 1) * width];
+            let start = y * y_grid.stride(1) + z * y_grid.stride(2);
+            let row = if is_halved(1) {
+                let [a, b, c, d] = four(y, fine.cells[1]).map(row);
+                let into = &mut room.by_y[start..start + width];
+                weigh(into, weights[1], a, b, c, d);
+                &*into
             } else {
-                let ([a, b], weights) = beside(if axis == 1 { y } else { z });
-                let other = if axis == 1 { z } else { y };
-                let step = coarse.stride(3 - axis);
-                let row = |at: usize| {
-                    let first = at * coarse.stride(axis) + other * step;
-                    &from[first..first + width]
-                };
-                mix(into, weights, row(a), row(b));
+                row(y)
+            };
+            let start = y * coarse.stride(1) + z * coarse.stride(2);
+            let into = &mut into[start..start + coarse.stride(1)];
+            if is_halved(0) {
+                weigh_row(into, weights[0], row);
+            } else {
+                into.copy_from_slice(row);
             }
         }
+    }
+}
+
+/// Adds what is interpolated, times a scale, in some layers of the fine grid; the coarse field is wrapped.
+pub(crate) fn spread(
+    along: [Along; 3],
+    from: &[f32],
+    (fine, into, scale): (&Grid, &mut [f32], &[f32]),
+    [rows, planes]: &Layers,
+    room: &mut Room<'_>,
+) {
+    let [z_grid, y_grid, coarse] = room.grids;
+    let width = fine.stride(1);
+    let is_halved = |axis: usize| fine.cells[axis] != coarse.cells[axis];
+    if rows.is_empty() || planes.is_empty() {
+        return;
+    }
+    // Coarse layers beside fine ones.
+    let beside = |axis: usize, layers: &Range<usize>| {
+        if is_halved(axis) {
+            layers.start / 2..(layers.end - 1) / 2 + 2
+        } else {
+            layers.clone()
+        }
+    };
+    let (coarse_rows, coarse_planes) = (beside(1, rows), beside(2, planes));
+    let weights = match along[0] {
+        Along::Middles => [[0.25, 0.75, 0.0], [0.0, 0.75, 0.25]],
+        Along::Faces => [[0.0, 1.0, 0.0], [0.0, 0.5, 0.5]],
+    };
+    for z in coarse_planes {
+        for y in coarse_rows.clone() {
+            let start = y * coarse.stride(1) + z * coarse.stride(2);
+            let row = &from[start..start + coarse.stride(1)];
+            let start = y * y_grid.stride(1) + z * y_grid.stride(2);
+            let into = &mut room.by_y[start..start + width];
+            if is_halved(0) {
+                mix_row(into, weights, row);
+            } else {
+                into.copy_from_slice(row);
+            }
+        }
+        let source = &room.by_y[z * y_grid.stride(2)..(z + 1) * y_grid.stride(2)];
+        for y in rows.clone() {
+            let row = |y: usize| &source[y * width..(y + 1) * width];
+            let start = y * width + z * z_grid.stride(2);
+            let into = &mut room.by_z[start..start + width];
+            if is_halved(1) {
+                let ([a, b], weights) = along[1].beside(y);
+                mix(into, weights, row(a), row(b));
+            } else {
+                into.copy_from_slice(row(y));
+            }
+        }
+    }
+    let flat = rows.start * width..rows.end * width;
+    for z in planes.clone() {
+        let ([a, b], weights) = if is_halved(2) {
+            along[2].beside(z)
+        } else {
+            ([z; 2], [1.0, 0.0])
+        };
+        let layer = |z: usize| {
+            let start = z * z_grid.stride(2);
+            &room.by_z[start + flat.start..start + flat.end]
+        };
+        let own = z * fine.stride(2) + flat.start..z * fine.stride(2) + flat.end;
+        add_mixed(
+            &mut into[own.clone()],
+            &scale[own],
+            weights,
+            layer(a),
+            layer(b),
+        );
     }
 }
