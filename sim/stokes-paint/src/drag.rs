@@ -32,7 +32,13 @@ const BLADE_M2: f64 = 2e-10;
 
 /// Moves the paint of an area as the brush's contacts drag it along in a step. After it they are as deep in the paint, or as
 /// high above it, as it then lies.
-pub fn drag(voxels: &mut Voxels, footprint: &mut Footprint, step: &Step<'_>, cell_m: f64) {
+pub fn drag(
+    flow: &mut Option<Flow>,
+    voxels: &mut Voxels,
+    footprint: &mut Footprint,
+    step: &Step<'_>,
+    cell_m: f64,
+) {
     let way = |moved: [f32; 2]| (moved[0] * moved[0] + moved[1] * moved[1]).sqrt();
     let ways = footprint.contacts.iter().map(|contact| way(contact.moved));
     let farthest = ways.fold(0.0, f32::max);
@@ -54,7 +60,8 @@ pub fn drag(voxels: &mut Voxels, footprint: &mut Footprint, step: &Step<'_>, cel
     let bottoms = bottoms(voxels, footprint, step.window.width());
     let contacts = footprint.contacts.iter().zip(&bottoms);
     hold(voxels, &mut coarse, (contacts, &totals), step, &conditions);
-    let mut flow = Flow::new(&coarse.grid);
+    let flow = flow.get_or_insert_with(|| Flow::new(&coarse.grid));
+    flow.restart(&coarse.grid);
     flow.step(&coarse.fill, &coarse.solids, &conditions);
     let velocity = coarse.refine(&flow.velocity, &fine);
     let fill = voxels.volume.fill(&open);

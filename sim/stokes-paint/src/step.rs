@@ -10,6 +10,7 @@ use maulstick_impasto::stages::seep::seep;
 use maulstick_model::footprint::Footprint;
 use maulstick_model::interface::{PaintModel, Rest, Step, StepReport, Transfer};
 use maulstick_model::modes::{sample, vacuum};
+use maulstick_stokes::flow::Flow;
 
 use crate::drag::{STEPS, drag};
 use crate::layers::Layers;
@@ -27,6 +28,8 @@ pub struct StokesPaint {
     footprint: Footprint,
     exchange: Exchange,
     reach: Reach,
+    /// Room for the flow of a step; nothing of it lasts.
+    flow: Option<Flow>,
 }
 
 impl PaintModel for StokesPaint {
@@ -89,7 +92,7 @@ impl StokesPaint {
         let flows = step.load.steps().is_multiple_of(u64::from(STEPS));
         if step.handling.push && flows && thickest > FLOWS_FROM * layers.capacity as f32 {
             let stays = voxels.set_aside(step.stain);
-            drag(&mut voxels, footprint, step, cell_m);
+            drag(&mut self.flow, &mut voxels, footprint, step, cell_m);
             voxels.put_back(&stays);
         }
         if step.handling.most >= CELL_MAX as f32 {

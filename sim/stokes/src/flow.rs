@@ -99,6 +99,15 @@ impl Flow {
         }
     }
 
+    /// Paint at rest on another grid, in the same room.
+    pub fn restart(&mut self, grid: &Grid) {
+        self.grid = *grid;
+        for field in self.velocity.iter_mut().chain([&mut self.pressure]) {
+            field.clear();
+            field.resize(grid.len(), 0.0);
+        }
+    }
+
     /// One step with cells filled to a fraction, between solids; returns what the equations saw of the window: its layers
     /// up to the second above the highest paint. Once the caller has dropped it, its room serves the next step.
     pub fn step(&mut self, fill: &[f32], solids: &Solids, conditions: &Conditions) -> Arc<Domain> {
