@@ -117,8 +117,8 @@ wide! {
 
 wide! {
     /// Both fine places of each coarse one of a row: weights of those before, at and after it.
-    fn mix_row(into: &mut [f32], weights: [[f32; 3]; 2], row: &[f32]) {
-        let count = ((into.len() - 1) / 2).min(row.len() - 2);
+    fn mix_row(into: &mut [f32], weights: [[f32; 3]; 2], row: &[f32], pairs: usize) {
+        let count = pairs.next_multiple_of(LANES).min((into.len() - 1) / 2).min(row.len() - 2);
         let (before, at, after) = (&row[..count], &row[1..count + 1], &row[2..count + 2]);
         let pairs = &mut into[1..].as_chunks_mut::<2>().0[..count];
         let [low, high] = weights;
@@ -154,6 +154,20 @@ wide! {
 /// has weight.
 fn four(at: usize, cells: usize) -> [usize; 4] {
     [2 * at - 2, 2 * at - 1, 2 * at, 2 * at + 1].map(|at| at.min(cells + 2))
+}
+
+/// Numbers that rows are worked on together: what lies behind a row's end is written before the next row is.
+const LANES: usize = 16;
+
+/// The beginnings of rows as far as they all go, at most to a whole number of [`LANES`].
+fn padded<'a, const N: usize>(
+    width: usize,
+    into: &'a mut [f32],
+    rows: [&'a [f32]; N],
+) -> (&'a mut [f32], [&'a [f32]; N]) {
+    let all = rows.iter().map(|row| row.len()).min().unwrap_or(width);
+    let len = width.next_multiple_of(LANES).min(all).min(into.len());
+    (&mut into[..len], rows.map(|row| &row[..len]))
 }
 
 /// Room between two grids: by z the field of the grid that is halved along z alone, by y along y and z.
@@ -198,20 +212,20 @@ pub(crate) fn gather(
                 c,
                 d,
             );
-            &room.by_z[start..start + plane]
+            &room.by_z[start..]
         } else {
-            &from[z * plane..(z + 1) * plane]
+            &from[z * plane..]
         };
         for y in rows.clone() {
-            let row = |y: usize| &source[y * width..(y + 1) * width];
+            let row = |y: usize| &source[y * width..];
             let start = y * y_grid.stride(1) + z * y_grid.stride(2);
             let row = if is_halved(1) {
-                let [a, b, c, d] = four(y, fine.cells[1]).map(row);
-                let into = &mut room.by_y[start..start + width];
+                let four = four(y, fine.cells[1]).map(row);
+                let (into, [a, b, c, d]) = padded(width, &mut room.by_y[start..], four);
                 weigh(into, weights[1], a, b, c, d);
-                &*into
+                &into[..width]
             } else {
-                row(y)
+                &row(y)[..width]
             };
             let start = y * coarse.stride(1) + z * coarse.stride(2);
             let into = &mut into[start..start + coarse.stride(1)];
@@ -254,25 +268,26 @@ pub(crate) fn spread(
     for z in coarse_planes {
         for y in coarse_rows.clone() {
             let start = y * coarse.stride(1) + z * coarse.stride(2);
-            let row = &from[start..start + coarse.stride(1)];
+            let row = &from[start..];
             let start = y * y_grid.stride(1) + z * y_grid.stride(2);
-            let into = &mut room.by_y[start..start + width];
+            let into = &mut room.by_y[start..];
             if is_halved(0) {
-                mix_row(into, weights, row);
+                mix_row(into, weights, row, (width - 1) / 2);
             } else {
-                into.copy_from_slice(row);
+                into[..width].copy_from_slice(&row[..width]);
             }
         }
-        let source = &room.by_y[z * y_grid.stride(2)..(z + 1) * y_grid.stride(2)];
+        let source = &room.by_y[z * y_grid.stride(2)..];
         for y in rows.clone() {
-            let row = |y: usize| &source[y * width..(y + 1) * width];
+            let row = |y: usize| &source[y * width..];
             let start = y * width + z * z_grid.stride(2);
-            let into = &mut room.by_z[start..start + width];
+            let into = &mut room.by_z[start..];
             if is_halved(1) {
                 let ([a, b], weights) = along[1].beside(y);
-                mix(into, weights, row(a), row(b));
+                let (into, [a, b]) = padded(width, into, [row(a), row(b)]);
+                mix(into, weights, a, b);
             } else {
-                into.copy_from_slice(row(y));
+                into[..width].copy_from_slice(&row(y)[..width]);
             }
         }
     }
