@@ -181,8 +181,13 @@ impl Volume {
                 let cells = (&mut *self.total, &mut *self.room);
                 let paints = self.paints.iter_mut().zip(&self.present);
                 let paints = paints.filter_map(|(paint, is_present)| is_present.then_some(paint));
-                self.sweep
-                    .along(domain, (axis, courant), &velocity[axis], cells, paints);
+                self.sweep.along(
+                    domain,
+                    (axis, courant),
+                    (&velocity[axis], open),
+                    cells,
+                    paints,
+                );
             }
         }
         self.settle(domain, open);

@@ -21,6 +21,8 @@ pub(super) struct Sweep {
     runs: Runs,
     mask: Vec<f32>,
     fill: Vec<f32>,
+    /// Share of each cell that paint or a solid takes.
+    taken: Vec<f32>,
     /// Share of the axis in a cell's normal, with its sign; 0 where there is no surface.
     across: Vec<f32>,
     /// Part of a cell that is to go through each face, upward.
@@ -41,6 +43,7 @@ impl Sweep {
             runs: Runs::default(),
             mask: vec![0.0; len],
             fill: vec![0.0; len],
+            taken: vec![0.0; len],
             across: vec![0.0; len],
             courant: vec![0.0; len],
             asks: vec![0; len],
@@ -73,7 +76,7 @@ impl Sweep {
         &mut self,
         domain: &Domain,
         (axis, courant): (usize, f32),
-        velocity: &[f32],
+        (velocity, open): (&[f32], &[f32]),
         (total, room): (&mut [u32], &mut [f32]),
         paints: impl Iterator<Item = &'a mut Vec<u32>>,
     ) {
@@ -84,9 +87,10 @@ impl Sweep {
         let len = grid.len();
         // What came too fast for the other axes to take away leaves no less room than a solid does.
         fill_flat(&mut self.fill[..len], &*total, room, LEAST_ROOM * capacity);
-        let fill = &self.fill;
+        take(&mut self.taken[..len], &self.fill, open);
+        let (fill, taken) = (&self.fill, &self.taken);
         self.runs.write([&mut *self.across], |run, [across]| {
-            find_across(across, fill, axis, Span::of(&grid, run));
+            find_across(across, fill, taken, axis, Span::of(&grid, run));
         });
         grid.wrap(&mut self.across[..len]);
         self.runs.write([&mut *self.courant], |run, [c]| {
@@ -146,16 +150,27 @@ wide! {
 }
 
 wide! {
-    fn find_across(across: &mut [f32], fill: &[f32], axis: usize, span: Span) {
-        let (west, east) = (span.before(fill, 1), span.after(fill, 1));
-        let (south, north) = (span.before(fill, span.row), span.after(fill, span.row));
-        let (down, up) = (span.before(fill, span.plane), span.after(fill, span.plane));
+    /// Paint and what it lies on have one surface: without that a film thinner than a cell would have none above it, and be
+    /// torn along itself.
+    fn take(taken: &mut [f32], fill: &[f32], open: &[f32]) {
+        let n = taken.len();
+        let (fill, open) = (&fill[..n], &open[..n]);
+        for i in 0..n {
+            let filled = if fill[i] < 1.0 { fill[i] } else { 1.0 };
+            taken[i] = 1.0 - open[i] * (1.0 - filled);
+        }
+    }
+}
+
+wide! {
+    fn find_across(across: &mut [f32], fill: &[f32], taken: &[f32], axis: usize, span: Span) {
+        let (west, east) = (span.before(taken, 1), span.after(taken, 1));
+        let (south, north) = (span.before(taken, span.row), span.after(taken, span.row));
+        let (down, up) = (span.before(taken, span.plane), span.after(taken, span.plane));
         let fill = span.here(fill);
         let across = span.own(across);
         for i in 0..across.len() {
-            let x = east[i].min(1.0) - west[i].min(1.0);
-            let y = north[i].min(1.0) - south[i].min(1.0);
-            let z = up[i].min(1.0) - down[i].min(1.0);
+            let (x, y, z) = (east[i] - west[i], north[i] - south[i], up[i] - down[i]);
             let own = if axis == 0 { x } else if axis == 1 { y } else { z };
             let sum = (x.abs() + y.abs()) + z.abs();
             let has_surface = (sum >= LEAST_GRADIENT) & (fill[i] < 1.0);
