@@ -40,8 +40,11 @@ impl Dither {
     }
 }
 
+/// As `value − ⌊value⌋`, which is a call where the target has no register for it.
 fn fraction(value: f64) -> f64 {
-    value - value.floor()
+    let whole = value as i64 as f64;
+    let rest = value - whole;
+    if rest < 0.0 { rest + 1.0 } else { rest }
 }
 
 fn below_one(value: f64) -> f32 {

@@ -89,18 +89,29 @@ pub fn leaving(meeting: &Meeting, limits: &Limits, threshold: f32) -> [f32; 2] {
     [given, taken]
 }
 
+/// Sums of all paints on the cells of a run.
 #[inline(always)]
-fn least(a: f32, b: f32) -> f32 {
+pub(crate) fn sums(planes: &[&mut [f32]], at: usize, len: usize) -> [f32; RUN] {
+    let mut sums = [0.0f32; RUN];
+    for plane in planes {
+        let counts = run(plane, at, len);
+        (0..RUN).for_each(|i| sums[i] += counts[i]);
+    }
+    sums
+}
+
+#[inline(always)]
+pub(crate) fn least(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
 #[inline(always)]
-fn most(a: f32, b: f32) -> f32 {
+pub(crate) fn most(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
 /// Cells that are done together.
-const RUN: usize = 16;
+pub(crate) const RUN: usize = 16;
 
 /// Cells of a row where the head is: how brush and canvas meet, a plane each.
 #[derive(Debug)]
@@ -119,15 +130,16 @@ pub struct Row<'a> {
 #[derive(Debug)]
 pub struct Paints<'a, 'b> {
     /// Of the brush.
-    pub brush: &'a mut [(usize, Vec<f32>)],
+    pub brush: &'a mut [&'b mut [f32]],
     /// Of the canvas, in the same order.
-    pub canvas: &'a mut [&'b mut Vec<f32>],
+    pub canvas: &'a mut [&'b mut [f32]],
     /// Where the row begins in those of the brush, and in those of the canvas.
     pub starts: [usize; 2],
 }
 
+/// The cells of a run; 0 beyond `len`.
 #[inline(always)]
-fn run(plane: &[f32], at: usize, len: usize) -> [f32; RUN] {
+pub(crate) fn run(plane: &[f32], at: usize, len: usize) -> [f32; RUN] {
     match plane[at..at + len].first_chunk() {
         Some(run) => *run,
         None => {
@@ -150,15 +162,8 @@ wide! {
                 continue;
             }
             let [reach, gap] = [row.reach, row.gap].map(|plane| run(plane, at, len));
-            let [mut brush, mut canvas] = [[0.0f32; RUN]; 2];
-            for (_, film) in &*paints.brush {
-                let film = run(film, on_brush + at, len);
-                (0..RUN).for_each(|i| brush[i] += film[i]);
-            }
-            for plane in &*paints.canvas {
-                let lies = run(plane, on_canvas + at, len);
-                (0..RUN).for_each(|i| canvas[i] += lies[i]);
-            }
+            let brush = sums(paints.brush, on_brush + at, len);
+            let canvas = sums(paints.canvas, on_canvas + at, len);
             let [mut gives, mut takes, mut leaves] = [[0.0f32; RUN]; 3];
             for i in 0..RUN {
                 let sum = first + (at + i) as f32 * Dither::ACROSS;
@@ -176,7 +181,7 @@ wide! {
                 let lost = if limits.lasting { least(given, taken) } else { taken };
                 leaves[i] = lost / most(taken, 1.0);
             }
-            for ((_, film), plane) in paints.brush.iter_mut().zip(&mut *paints.canvas) {
+            for (film, plane) in paints.brush.iter_mut().zip(&mut *paints.canvas) {
                 let film = &mut film[on_brush + at..][..len];
                 let plane = &mut plane[on_canvas + at..][..len];
                 let [mut held, mut lies] = [run(film, 0, len), run(plane, 0, len)];

@@ -173,6 +173,16 @@ impl Over<'_> {
         rests - sink + self.piece.bottom + self.piece.round * self.across * self.across
     }
 
+    /// Height of the bristle's middle line, cells.
+    pub(super) fn height(&self) -> f32 {
+        self.piece.z[0] + self.t * self.piece.z[1]
+    }
+
+    /// Height of its lower side over its middle line, cells.
+    pub(super) fn clearance(&self) -> f32 {
+        self.piece.bottom + self.piece.round * self.across * self.across
+    }
+
     /// The texel.
     pub(super) fn texel(&self) -> u32 {
         let along = (self.piece.along[0] + self.t * self.piece.along[1]) as usize;
