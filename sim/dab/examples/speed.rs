@@ -1,6 +1,6 @@
 //! Speed of dAb's stroking algorithms along two kinds of path (Baxter 2004, table 4.2), and of a step of `dab` beside one of
 //! `impasto` on fine cells, on the number of threads that is given, one and two in turn if none is; one by its time of the
-//! processor, more by the clock: `cargo run --release -p maulstick-dab --example speed [THREADS]`.
+//! processor, more by the clock: `cargo run --release -p maulstick-dab --example speed [THREADS [PART OF A NAME]]`.
 
 use std::time::Instant;
 
@@ -144,7 +144,7 @@ impl Bench {
     }
 }
 
-fn texels() {
+fn texels(only: &str) {
     let mut bench = Bench::new(96, 2.5e-4);
     for (name, stroker) in [
         ("faster", Stroker::Faster),
@@ -160,6 +160,9 @@ fn texels() {
             if path == "oblique" {
                 let place = |i: usize| [150.0 + 18.5 * i as f64, 300.0 + 7.6 * i as f64];
                 poses = (0..40).map(|i| bench.pose(place(i))).collect();
+            }
+            if !format!("{name}.{path}").contains(only) {
+                continue;
             }
             let mut model = Dab::stroking(stroker);
             let (mut cells, mut seconds) = (0, 0.0);
@@ -204,12 +207,16 @@ fn models() {
 }
 
 fn main() {
-    let threads = std::env::args().nth(1).and_then(|count| count.parse().ok());
+    let mut arguments = std::env::args().skip(1);
+    let threads = arguments.next().and_then(|count| count.parse().ok());
+    let only = arguments.next().unwrap_or_default();
     for count in threads.map_or(vec![1, 2], |count| vec![count]) {
         println!("{count} threads");
         with_threads(count, || {
-            texels();
-            models();
+            texels(&only);
+            if "models".contains(&only) {
+                models();
+            }
         });
     }
 }

@@ -32,6 +32,12 @@ impl Dither {
         }
     }
 
+    /// Thresholds of a cell and of those on its right.
+    #[must_use]
+    pub fn along<const N: usize>(&self, [x, y]: [i64; 2]) -> [f32; N] {
+        std::array::from_fn(|right| self.at([x + right as i64, y]))
+    }
+
     /// Threshold of a cell of the surface.
     #[must_use]
     pub fn at(&self, [x, y]: [i64; 2]) -> f32 {

@@ -74,6 +74,8 @@ pub struct Raster {
     lenders: Vec<Lender>,
     /// The place of each texel among the lenders.
     place_of: Vec<u32>,
+    /// That of each cell's texel; the number of lenders where there is none.
+    place: Vec<u32>,
     /// Of one paint: quanta that come back to each lender.
     back: Vec<i64>,
     /// One for each core.
@@ -140,7 +142,7 @@ impl Raster {
             own.lent.clear();
             let Some(film) = load.film_of(*slot) else {
                 own.plane.resize(cells, 0.0);
-                own.lent.resize(self.lenders.len(), 0);
+                own.lent.resize(self.lenders.len() + 1, 0);
                 continue;
             };
             let lends = |lender: &Lender| {
@@ -148,12 +150,9 @@ impl Raster {
                 (held * lender.share) as u32
             };
             own.lent.extend(self.lenders.iter().map(lends));
-            own.plane.extend(self.drawn.texel.iter().map(|texel| {
-                match self.place_of.get(*texel as usize) {
-                    Some(place) => own.lent[*place as usize] as f32,
-                    None => 0.0,
-                }
-            }));
+            own.lent.push(0);
+            let lent = self.place.iter().map(|place| own.lent[*place as usize]);
+            own.plane.extend(lent.map(|quanta| quanta as f32));
         }
     }
 
@@ -184,8 +183,10 @@ impl Raster {
             }
         }
         self.place_of.resize(texels, Drawn::ABSENT);
+        self.place.clear();
         for texel in &self.drawn.texel {
             let Some(place) = self.place_of.get_mut(*texel as usize) else {
+                self.place.push(Drawn::ABSENT);
                 continue;
             };
             if *place == Drawn::ABSENT {
@@ -196,8 +197,12 @@ impl Raster {
                     share: 0.0,
                 });
             }
+            self.place.push(*place);
             self.lenders[*place as usize].cells += 1;
         }
+        let lenders = self.lenders.len() as u32;
+        let places = self.place.iter_mut();
+        places.for_each(|place| *place = lenders.min(*place));
         // Cells that a texel's film is as large as.
         let large = 1.0 / (QUANTA_PER_UNIT * f64::from(traits.film_units_per_quantum));
         for lender in &mut self.lenders {
@@ -284,7 +289,7 @@ impl Raster {
             share.touching.begin(columns);
             for row in rows.clone() {
                 let first = row * drawn.stride + on[0];
-                let own = first..first + columns;
+                let own = first..(row + 1) * drawn.stride;
                 let y = under.from[1] + row - on[1];
                 let ground = y * width + under.from[0];
                 let starts = [
@@ -292,6 +297,7 @@ impl Raster {
                     (row - rows.start) * width + under.from[0],
                 ];
                 let over = Brush {
+                    count: columns,
                     cover: &drawn.cover[own.clone()],
                     rate: &rate[own.clone()],
                     way: &way[own.clone()],
@@ -302,8 +308,8 @@ impl Raster {
                     sink,
                 };
                 let below = Canvas {
-                    base: &base[ground..ground + columns],
-                    ride: &ride[ground..ground + columns],
+                    base: &base[ground..],
+                    ride: &ride[ground..],
                     wet: &share.canvas,
                     thinner,
                     start: starts[1],
@@ -317,10 +323,10 @@ impl Raster {
                 share.met = Some([share.met.map_or(y, |[first, _]| first), y]);
                 let found = &*share.touching;
                 let meetings = Row {
-                    rate: &found.rate[..columns],
-                    way: &found.way[..columns],
-                    reach: &found.reach[..columns],
-                    gap: &found.gap[..columns],
+                    rate: &found.rate,
+                    way: &found.way,
+                    reach: &found.reach,
+                    gap: &found.gap,
                 };
                 let mut paints = Paints {
                     brush: &mut share.brush,
@@ -356,11 +362,9 @@ impl Raster {
         let mut gained = [0; SLOTS];
         for film in &self.films[..self.used] {
             self.back.clear();
-            self.back.resize(self.lenders.len(), 0);
-            for (texel, quanta) in self.drawn.texel.iter().zip(&film.plane) {
-                if let Some(place) = self.place_of.get(*texel as usize) {
-                    self.back[*place as usize] += *quanta as i64;
-                }
+            self.back.resize(self.lenders.len() + 1, 0);
+            for (place, quanta) in self.place.iter().zip(&film.plane) {
+                self.back[*place as usize] += i64::from(*quanta as i32);
             }
             let lent = film.lent.iter().zip(&self.back);
             for (lender, (lent, back)) in self.lenders.iter().zip(lent) {

@@ -67,29 +67,25 @@ impl Refill {
 }
 
 /// Moves paint between the reservoirs and the surfaces of these strips, and down the strips, as chance has it in the step
-/// of these thresholds.
-pub fn refill(load: &mut BrushLoad, refill: &Refill, mut strips: Vec<usize>, dither: Dither) {
-    strips.sort_unstable();
-    strips.dedup();
-    let (films, paints) = load.parts_mut();
+/// of these thresholds. The load's films are to be [counted](BrushLoad::count_films) afterwards.
+pub fn refill(
+    load: &mut BrushLoad,
+    refill: &Refill,
+    strips: impl IntoIterator<Item = usize>,
+    dither: Dither,
+) {
+    let (_, paints) = load.parts_mut();
     let mut paints: Vec<_> = paints.collect();
     for strip in strips {
         let first = strip * TEXELS_PER_STRIP;
-        let mut on = [[0.0; 2]; TEXELS_PER_STRIP];
-        for (place, on) in on.iter_mut().enumerate() {
-            *on = held(&paints, first + place);
-        }
+        let mut on = held(&paints, first);
+        let thresholds: [[f32; TEXELS_PER_STRIP]; 2] = [0, 1].map(|row| dither.along([first as i64, row]));
         // From the point up: what runs down in one step goes a texel far.
         for place in (0..TEXELS_PER_STRIP).rev() {
             let texel = first + place;
-            let threshold = |row| dither.at([texel as i64, row]);
             let [surface, inside] = on[place];
-            let flow = flows(
-                on[place],
-                refill.full,
-                refill.deep,
-                (refill.rate, threshold(0)),
-            );
+            let chance = (refill.rate, thresholds[0][place]);
+            let flow = flows(on[place], refill.full, refill.deep, chance);
             if flow != 0.0 {
                 for paint in &mut paints {
                     let (film, inside_of) = (&mut paint.film[texel], &mut paint.inside[texel]);
@@ -99,35 +95,34 @@ pub fn refill(load: &mut BrushLoad, refill: &Refill, mut strips: Vec<usize>, dit
                         share_out(film, inside_of, -flow / surface);
                     }
                 }
-                on[place] = held(&paints, texel);
+                on = held(&paints, first);
             }
             if place == 0 {
                 continue;
             }
             let both = [on[place - 1][0], on[place][0]];
-            let flow = runs(both, refill.deep, (refill.rate, threshold(1)));
+            let flow = runs(both, refill.deep, (refill.rate, thresholds[1][place]));
             if flow > 0.0 {
                 for paint in &mut paints {
                     let (above, below) = paint.film.split_at_mut(texel);
                     share_out(&mut above[texel - 1], &mut below[0], flow / both[0]);
                 }
-                on[place] = held(&paints, texel);
-                on[place - 1] = held(&paints, texel - 1);
+                on = held(&paints, first);
             }
-        }
-        for texel in first..first + TEXELS_PER_STRIP {
-            films[texel] = paints.iter().map(|paint| paint.film[texel]).sum();
         }
     }
 }
 
-/// Quanta of all paints on a texel's surface and inside it.
-fn held(paints: &[PaintOnBrush<'_>], texel: usize) -> [f64; 2] {
-    let sum = |of: fn(&PaintOnBrush<'_>, usize) -> u32| -> f64 {
-        paints.iter().map(|paint| f64::from(of(paint, texel))).sum()
-    };
-    [
-        sum(|paint, at| paint.film[at]),
-        sum(|paint, at| paint.inside[at]),
-    ]
+/// Quanta of all paints on the surface and inside of a strip's texels.
+fn held(paints: &[PaintOnBrush<'_>], first: usize) -> [[f64; 2]; TEXELS_PER_STRIP] {
+    let mut held = [[0.0; 2]; TEXELS_PER_STRIP];
+    for paint in paints {
+        let texels = first..first + TEXELS_PER_STRIP;
+        let both = paint.film[texels.clone()].iter().zip(&paint.inside[texels]);
+        for (held, (film, inside)) in held.iter_mut().zip(both) {
+            held[0] += f64::from(*film);
+            held[1] += f64::from(*inside);
+        }
+    }
+    held
 }

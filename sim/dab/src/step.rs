@@ -4,6 +4,7 @@ use maulstick_brush::HeadPose;
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_canvas::window::Area;
 use maulstick_model::brush::head::low_bounds;
+use maulstick_model::brush::traits::BrushTraits;
 use maulstick_model::footprint::Footprint;
 use maulstick_model::footprint::lying::Lying;
 use maulstick_model::interface::{PaintModel, Step, StepReport, Sweep, Transfer};
@@ -66,8 +67,8 @@ struct Stroke {
     number: u64,
     /// The cells that may have changed.
     reached: Area,
-    /// The strips over the canvas.
-    strips: Vec<usize>,
+    /// By strip, whether it was over the canvas.
+    strips: Vec<bool>,
     report: StepReport,
 }
 
@@ -110,7 +111,7 @@ impl Dab {
             slots: paints(step, within),
             number,
             reached: Area::default(),
-            strips: Vec::new(),
+            strips: vec![false; step.head.strips()],
             report: StepReport::default(),
         };
         let cells = match self.stroker.unwrap_or_else(|| Stroker::of(step)) {
@@ -123,12 +124,14 @@ impl Dab {
         }
         if step.handling.transfer != Transfer::Sponge {
             let dither = Dither::new(step.load.seed(), number);
-            refill(
-                step.load,
-                &Refill::of(&step.traits, cells),
-                stroke.strips,
-                dither,
-            );
+            // Paint flows within a strip once in so many steps, in others at another, so that strokes show none.
+            const STEPS: usize = BrushTraits::FLOW_STEPS as usize;
+            let turn = step.load.steps() as usize % STEPS;
+            let strips = stroke.strips.iter().enumerate();
+            let strips = strips.filter(|(strip, over)| **over && strip % STEPS == turn);
+            let refilled = Refill::of(&step.traits, STEPS as f32 * cells);
+            refill(step.load, &refilled, strips.map(|(strip, _)| strip), dither);
+            step.load.count_films();
         }
         self.lying.weigh(stroke.reached, step);
         let Area { from, size } = stroke.reached;
@@ -246,7 +249,9 @@ impl Dab {
         let mut from_nowhere = [0; SLOTS];
         if !sponge {
             from_nowhere = raster.give_back(part.load);
-            stroke.strips.extend(raster.strips());
+            for strip in raster.strips() {
+                stroke.strips[strip] = true;
+            }
         }
         if counted {
             let after = lying(&part, under);

@@ -9,9 +9,11 @@ use crate::transfer::{RUN, least, most, run, sums};
 /// the hollows between them.
 pub const BRIDGED: f32 = 0.4;
 
-/// The brush over the cells of a row.
+/// The brush over the cells of a row; planes may go on beyond it.
 #[derive(Debug)]
 pub struct Brush<'a> {
+    /// Cells of the row.
+    pub count: usize,
     /// Share of the cell that is covered.
     pub cover: &'a [f32],
     /// Share of either side that goes over where they touch, and way, as of a [meeting](crate::transfer::Meeting).
@@ -65,7 +67,7 @@ pub struct Touching {
 }
 
 impl Touching {
-    /// Room for a row of so many cells; nothing is counted.
+    /// Room for a row of so many cells and the rest of its last run; nothing is counted.
     pub fn begin(&mut self, cells: usize) {
         for plane in [
             &mut self.rate,
@@ -85,27 +87,27 @@ wide! {
     /// A pressed bristle has its solved height at 0: it follows the ride into the valleys of the tooth, and is lifted by
     /// higher parts.
     pub fn touch(brush: &Brush<'_>, canvas: &Canvas<'_>, found: &mut Touching) {
-        let count = brush.cover.len();
+        let count = brush.count;
         let to_cells = canvas.cells_per_quantum;
         let to_bridge = BRIDGED / to_cells;
         let [mut cells, mut quanta, mut thin] = [[0.0f64; RUN]; 3];
         for at in (0..count).step_by(RUN) {
-            let len = RUN.min(count - at);
-            let cover = run(brush.cover, at, len);
+            let inside = count - at;
+            let cover = run(brush.cover, at);
             let [mut rates, mut ways, mut reaches, mut gaps] = [[0.0f32; RUN]; 4];
             if cover.iter().any(|share| *share > 0.0) {
-                let [height, clearance] = [brush.height, brush.clearance].map(|plane| run(plane, at, len));
-                let [base, ride] = [canvas.base, canvas.ride].map(|plane| run(plane, at, len));
-                let [rate, way] = [brush.rate, brush.way].map(|plane| run(plane, at, len));
+                let [height, clearance] = [brush.height, brush.clearance].map(|plane| run(plane, at));
+                let [base, ride] = [canvas.base, canvas.ride].map(|plane| run(plane, at));
+                let [rate, way] = [brush.rate, brush.way].map(|plane| run(plane, at));
                 let mut touches = [0.0f32; RUN];
-                let film = sums(brush.film, brush.start + at, len);
-                let lies = sums(canvas.wet, canvas.start + at, len);
+                let film = sums(brush.film, brush.start + at);
+                let lies = sums(canvas.wet, canvas.start + at);
                 for i in 0..RUN {
                     let wet = lies[i] * to_cells;
                     let rests = most(height[i] + least(ride[i], 0.0), ride[i]);
                     let reach = base[i] + wet - (rests - brush.sink + clearance[i]);
                     let near = reach + film[i] * to_cells > 0.0;
-                    touches[i] = if near && cover[i] > 0.0 { 1.0 } else { 0.0 };
+                    touches[i] = if near && cover[i] > 0.0 && i < inside { 1.0 } else { 0.0 };
                     let depth = least(most(reach, 0.0), wet);
                     reaches[i] = if wet > 0.0 { depth / wet } else { 0.0 };
                     gaps[i] = most(-reach, 0.0) * to_bridge;
@@ -115,7 +117,7 @@ wide! {
                     quanta[i] += f64::from(touches[i] * lies[i]);
                 }
                 if let Some(thinner) = canvas.thinner {
-                    let lies = run(&canvas.wet[thinner][..], canvas.start + at, len);
+                    let lies = run(&canvas.wet[thinner][..], canvas.start + at);
                     (0..RUN).for_each(|i| thin[i] += f64::from(touches[i] * lies[i]));
                 }
             }

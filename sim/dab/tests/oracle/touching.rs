@@ -105,6 +105,7 @@ fn a_row_touches_as_its_cells_do_and_each_fault_is_found() {
     found.begin(cells.len());
     touch(
         &Brush {
+            count: cells.len(),
             cover: &planes[0],
             rate: &planes[0],
             way: &way,

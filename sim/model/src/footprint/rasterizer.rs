@@ -131,6 +131,7 @@ impl Line {
     }
 
     /// The places along and across the piece of a cell.
+    #[inline]
     fn place(&self, cell: [f32; 2]) -> [f32; 2] {
         let (t, middle) = self.at(cell[self.major]);
         let off = (cell[1 - self.major] - middle).abs() * self.cosine;
@@ -234,6 +235,7 @@ impl Drawing {
     }
 
     /// The part of the head over a cell of these rows.
+    #[inline]
     pub(super) fn over(&self, x: usize, y: usize) -> Option<Over<'_>> {
         let at = (y - self.rows.start) * self.stride + x;
         let number = self.number[at];
