@@ -44,8 +44,8 @@ struct Film {
     slot: usize,
     /// Quanta by cell.
     plane: Vec<f32>,
-    /// Quanta that each lender has given to each of its cells.
-    lent: Vec<u32>,
+    /// Quanta that each lender has given to each of its cells; 0 at last, for the cells that have none.
+    lent: Vec<f32>,
 }
 
 /// What a blend met.
@@ -142,17 +142,17 @@ impl Raster {
             own.lent.clear();
             let Some(film) = load.film_of(*slot) else {
                 own.plane.resize(cells, 0.0);
-                own.lent.resize(self.lenders.len() + 1, 0);
+                own.lent.resize(self.lenders.len() + 1, 0.0);
                 continue;
             };
             let lends = |lender: &Lender| {
                 let held = f64::from(film[lender.texel as usize]);
-                (held * lender.share) as u32
+                (held * lender.share) as u32 as f32
             };
             own.lent.extend(self.lenders.iter().map(lends));
-            own.lent.push(0);
+            own.lent.push(0.0);
             let lent = self.place.iter().map(|place| own.lent[*place as usize]);
-            own.plane.extend(lent.map(|quanta| quanta as f32));
+            own.plane.extend(lent);
         }
     }
 
@@ -288,8 +288,7 @@ impl Raster {
             let rows = share.rows.clone();
             share.touching.begin(columns);
             for row in rows.clone() {
-                let first = row * drawn.stride + on[0];
-                let own = first..(row + 1) * drawn.stride;
+                let own = row * drawn.stride + on[0]..;
                 let y = under.from[1] + row - on[1];
                 let ground = y * width + under.from[0];
                 let starts = [
@@ -368,7 +367,7 @@ impl Raster {
             }
             let lent = film.lent.iter().zip(&self.back);
             for (lender, (lent, back)) in self.lenders.iter().zip(lent) {
-                let change = back - i64::from(*lent) * i64::from(lender.cells);
+                let change = back - *lent as i64 * i64::from(lender.cells);
                 if change != 0 {
                     load.change_film(film.slot, lender.texel as usize, change as i32);
                     gained[film.slot] += change;

@@ -79,7 +79,8 @@ pub fn refill(
     for strip in strips {
         let first = strip * TEXELS_PER_STRIP;
         let mut on = held(&paints, first);
-        let thresholds: [[f32; TEXELS_PER_STRIP]; 2] = [0, 1].map(|row| dither.along([first as i64, row]));
+        let thresholds: [[f32; TEXELS_PER_STRIP]; 2] =
+            [0, 1].map(|row| dither.along([first as i64, row]));
         // From the point up: what runs down in one step goes a texel far.
         for place in (0..TEXELS_PER_STRIP).rev() {
             let texel = first + place;
