@@ -94,6 +94,88 @@ struct Share<'a> {
     sums: [f64; 3],
 }
 
+/// A raster over a window.
+struct Place<'a> {
+    /// Of the raster: cover, rate, way, height and clearance.
+    over: [&'a [f32]; 5],
+    /// Of the window: what catches paint, and what bristles ride on.
+    ground: [&'a [f32]; 2],
+    /// Cells from row to row, of the raster and of the window.
+    strides: [usize; 2],
+    /// Where the cells begin that are blended, on the raster.
+    on: [usize; 2],
+    /// They, on the window.
+    under: Area,
+    /// The surface's cell at the window's corner.
+    origin: [i64; 2],
+    sink: f32,
+    cells_per_quantum: f32,
+    thinner: Option<usize>,
+    limits: Limits,
+    dither: Dither,
+}
+
+impl Share<'_> {
+    /// Blends its rows.
+    fn blend(&mut self, place: &Place<'_>) {
+        let columns = place.under.size[0];
+        self.touching.begin(columns);
+        for row in self.rows.clone() {
+            let y = place.under.from[1] + row - place.on[1];
+            let left = [place.on[0], place.under.from[0]];
+            // Its planes begin with its own first row.
+            let first = row - self.rows.start;
+            let starts = [0, 1].map(|i| first * place.strides[i] + left[i]);
+            let over = row * place.strides[0] + left[0];
+            let [cover, rate, way, height, clearance] = place.over.map(|plane| &plane[over..]);
+            let under = y * place.strides[1] + left[1];
+            let [base, ride] = place.ground.map(|plane| &plane[under..]);
+            let brush = Brush {
+                count: columns,
+                cover,
+                rate,
+                way,
+                height,
+                clearance,
+                film: &self.brush,
+                start: starts[0],
+                sink: place.sink,
+            };
+            let canvas = Canvas {
+                base,
+                ride,
+                wet: &self.canvas,
+                thinner: place.thinner,
+                start: starts[1],
+                cells_per_quantum: place.cells_per_quantum,
+            };
+            let before = self.touching.cells;
+            touch(&brush, &canvas, self.touching);
+            if self.touching.cells == before {
+                continue;
+            }
+            self.met = Some([self.met.map_or(y, |[first, _]| first), y]);
+            let found = &*self.touching;
+            let meetings = Row {
+                rate: &found.rate,
+                way: &found.way,
+                reach: &found.reach,
+                gap: &found.gap,
+            };
+            let mut paints = Paints {
+                brush: &mut self.brush,
+                canvas: &mut self.canvas,
+                starts,
+            };
+            let at = [left[1], y];
+            let at = [0, 1].map(|i| place.origin[i] + at[i] as i64);
+            blend(&meetings, &place.limits, place.dither.at(at), &mut paints);
+        }
+        let found = &*self.touching;
+        self.sums = [found.cells, found.wet[0], found.wet[1]];
+    }
+}
+
 wide! {
     /// By cell, the share that goes over and the way, by how much of the cell is covered. The way of a strip is by `by` and
     /// `even` what it travels.
@@ -280,64 +362,26 @@ impl Raster {
                 sums: [0.0; 3],
             })
             .collect();
-        let sink = step.traits.sink * step.sweep.to.press;
-        let cells_per_quantum = step.traits.cells_per_quantum;
-        let (rate, way) = (&self.rate[..], &self.way[..]);
-        let columns = under.size[0];
-        each(&mut shares, |share| {
-            let rows = share.rows.clone();
-            share.touching.begin(columns);
-            for row in rows.clone() {
-                let own = row * drawn.stride + on[0]..;
-                let y = under.from[1] + row - on[1];
-                let ground = y * width + under.from[0];
-                let starts = [
-                    (row - rows.start) * drawn.stride + on[0],
-                    (row - rows.start) * width + under.from[0],
-                ];
-                let over = Brush {
-                    count: columns,
-                    cover: &drawn.cover[own.clone()],
-                    rate: &rate[own.clone()],
-                    way: &way[own.clone()],
-                    height: &drawn.height[own.clone()],
-                    clearance: &drawn.clearance[own],
-                    film: &share.brush,
-                    start: starts[0],
-                    sink,
-                };
-                let below = Canvas {
-                    base: &base[ground..],
-                    ride: &ride[ground..],
-                    wet: &share.canvas,
-                    thinner,
-                    start: starts[1],
-                    cells_per_quantum,
-                };
-                let before = share.touching.cells;
-                touch(&over, &below, share.touching);
-                if share.touching.cells == before {
-                    continue;
-                }
-                share.met = Some([share.met.map_or(y, |[first, _]| first), y]);
-                let found = &*share.touching;
-                let meetings = Row {
-                    rate: &found.rate,
-                    way: &found.way,
-                    reach: &found.reach,
-                    gap: &found.gap,
-                };
-                let mut paints = Paints {
-                    brush: &mut share.brush,
-                    canvas: &mut share.canvas,
-                    starts,
-                };
-                let place = [origin[0] + under.from[0] as i64, origin[1] + y as i64];
-                blend(&meetings, &limits, dither.at(place), &mut paints);
-            }
-            let found = &*share.touching;
-            share.sums = [found.cells, found.wet[0], found.wet[1]];
-        });
+        let place = Place {
+            over: [
+                &drawn.cover,
+                &self.rate,
+                &self.way,
+                &drawn.height,
+                &drawn.clearance,
+            ],
+            ground: [base, ride],
+            strides: [drawn.stride, width],
+            on,
+            under,
+            origin,
+            sink: step.traits.sink * step.sweep.to.press,
+            cells_per_quantum: step.traits.cells_per_quantum,
+            thinner,
+            limits,
+            dither,
+        };
+        each(&mut shares, |share| share.blend(&place));
         let mut met = Met::default();
         for share in &shares {
             let [cells, wet, thinner] = share.sums.map(|sum| sum as u64);
