@@ -25,6 +25,7 @@ pub struct Appearance {
     pub thinner: Option<usize>,
     /// Factor on the optical thickness of dry layers by number, where it is not 1.
     opacities: BTreeMap<u32, f32>,
+    relief: f32,
     generation: u64,
     print: i64,
 }
@@ -37,6 +38,7 @@ impl Appearance {
             studio,
             thinner: None,
             opacities: BTreeMap::new(),
+            relief: 1.0,
             generation: 0,
             print: 0,
         }
@@ -74,6 +76,20 @@ impl Appearance {
     /// The look of surfaces that were made anew.
     pub fn renew(&mut self) {
         self.generation += 1;
+    }
+
+    /// Factor on the slopes of a relief that is part of the colours, as where it is embossed (Baxter 2004, § 4.6.2).
+    #[must_use]
+    pub fn relief(&self) -> f32 {
+        self.relief
+    }
+
+    /// Sets that factor.
+    pub fn set_relief(&mut self, relief: f32) {
+        if self.relief != relief {
+            self.relief = relief;
+            self.generation += 1;
+        }
     }
 
     /// Takes over the opacities of `layers`.

@@ -257,6 +257,16 @@ impl Window {
             .filter_map(|(slot, plane)| Some((slot, plane.as_mut()?)))
     }
 
+    /// Height of what catches paint and of a pressed bristle on it, as [`base`](Self::base) and [`ride`](Self::ride); and the planes in
+    /// use, in order of slot.
+    pub fn ground_and_planes_mut(
+        &mut self,
+    ) -> ([&[f32]; 2], impl Iterator<Item = (usize, &mut Vec<f32>)>) {
+        let planes = self.wet.iter_mut().enumerate();
+        let planes = planes.filter_map(|(slot, plane)| Some((slot, plane.as_mut()?)));
+        ([&self.base[..], &self.ride[..]], planes)
+    }
+
     /// The planes in use in at most so many parts, none of which has two more than another.
     pub fn planes_in_parts(&mut self, count: usize) -> Vec<Vec<&mut Vec<f32>>> {
         let mut parts = Vec::new();

@@ -32,6 +32,12 @@ impl Dither {
         }
     }
 
+    /// Thresholds of a cell and of those on its right.
+    #[must_use]
+    pub fn along<const N: usize>(&self, [x, y]: [i64; 2]) -> [f32; N] {
+        std::array::from_fn(|right| self.at([x + right as i64, y]))
+    }
+
     /// Threshold of a cell of the surface.
     #[must_use]
     pub fn at(&self, [x, y]: [i64; 2]) -> f32 {
@@ -40,8 +46,11 @@ impl Dither {
     }
 }
 
+/// As `value − ⌊value⌋`, which is a call where the target has no register for it.
 fn fraction(value: f64) -> f64 {
-    value - value.floor()
+    let whole = value as i64 as f64;
+    let rest = value - whole;
+    if rest < 0.0 { rest + 1.0 } else { rest }
 }
 
 fn below_one(value: f64) -> f32 {

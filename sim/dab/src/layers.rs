@@ -24,7 +24,8 @@ const TABLE: usize = 4096;
 /// How dAb's paint is shown.
 #[derive(Clone, Copy, Debug)]
 pub struct Layers {
-    /// Strength of the embossing, encoded channel by metre of height.
+    /// Strength of the embossing, encoded channel by metre of height, where the light's relief is 1: that is the text's
+    /// bumpiness.
     pub emboss: f32,
 }
 
@@ -147,13 +148,14 @@ impl ShowPaint for Layers {
         });
         let heights = self.height(seen.tile);
         // The palette is drawn without relief.
-        let raised = match seen.bare.wells.is_empty() && self.emboss != 0.0 {
+        let strength = self.emboss * seen.look.relief();
+        let raised = match seen.bare.wells.is_empty() && strength != 0.0 {
             true => emboss(&heights),
             false => vec![0.0; TILE_CELLS],
         };
         for (own, (mixed, ground)) in shown.rgb.iter_mut().zip(rgb.iter().zip(&ground)) {
             for cell in 0..TILE_CELLS {
-                let lit = self.emboss * raised[cell];
+                let lit = strength * raised[cell];
                 if lit != 0.0 || mixed[cell] != ground[cell] {
                     own[cell] = CURVES[1].at(mixed[cell] + lit);
                 }

@@ -8,6 +8,7 @@
 //! | --- | --- |
 //! | [`volume`] | units of paint: 8 bits a layer, 32 of the surface in a deep one |
 //! | [`dither`] | volumes below a unit |
+//! | [`touching`] | where brush and canvas meet |
 //! | [`transfer`] | what goes from brush to canvas and back |
 //! | [`raster`] | the brush over the cells that it touches |
 //! | [`reservoir`] | the surface of a brush filled again |
@@ -31,6 +32,7 @@ pub mod relative_height;
 pub mod reservoir;
 mod step;
 pub mod stroke;
+pub mod touching;
 pub mod transfer;
 pub mod volume;
 

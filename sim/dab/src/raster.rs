@@ -1,21 +1,23 @@
 //! The brush as a raster of the canvas's cells (Baxter 2004, § 4.5.1, 4.5.3): the film of each texel is parted among the
-//! cells that it touches, blended there as if the raster were the brush, and goes back to its texel.
+//! cells that it covers, blended there as if the raster were the brush, at one place or several, and goes back to its
+//! texel.
+
+use std::ops::Range;
 
 use maulstick_canvas::quantum::{QUANTA_PER_UNIT, SLOTS};
 use maulstick_canvas::window::Area;
 use maulstick_model::brush::load::BrushLoad;
-use maulstick_model::footprint::Footprint;
+use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
+use maulstick_model::footprint::drawn::Drawn;
+use maulstick_model::footprint::shares_of;
 use maulstick_model::interface::Step;
+use maulstick_model::transfer::Exchanging;
+use maulstick_num::fork_join::each;
+use maulstick_num::wide;
 
 use crate::dither::Dither;
+use crate::touching::{Brush, Canvas, Touching, touch};
 use crate::transfer::{Limits, Paints, Row, blend};
-
-/// The place of a texel that does not touch.
-const ABSENT: u32 = u32::MAX;
-
-/// Share of a gap between brush and canvas up to which the brush's paint only bridges it: what lies on ridges sags into
-/// the hollows between them.
-const BRIDGED: f32 = 0.4;
 
 /// How far a blend goes.
 #[derive(Clone, Copy, Debug)]
@@ -26,204 +28,393 @@ pub enum Way {
     Cells(f32),
 }
 
-/// A touching texel while its film is on the raster.
+/// A texel over the canvas while its film is on the raster.
 #[derive(Clone, Copy, Debug)]
 struct Lender {
     texel: u32,
-    /// Cells that it touches.
+    /// Cells that it covers.
     cells: u32,
+    /// Share of its film on each of them.
+    share: f64,
 }
 
-/// The brush over the cells around a footprint.
+/// A paint on the raster.
+#[derive(Debug, Default)]
+struct Film {
+    slot: usize,
+    /// Quanta by cell.
+    plane: Vec<f32>,
+    /// Quanta that each lender has given to each of its cells; 0 at last, for the cells that have none.
+    lent: Vec<f32>,
+}
+
+/// What a blend met.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Met {
+    /// Cells that touched.
+    pub cells: u64,
+    /// Wet quanta on them before.
+    pub wet: u64,
+    /// Those of them that are thinner.
+    pub thinner: u64,
+    /// The cells of the window that it may have changed.
+    pub reached: Area,
+}
+
+/// The brush over the cells below it.
 #[derive(Debug, Default)]
 pub struct Raster {
-    /// The cells of the window.
-    area: Area,
+    /// The head.
+    pub drawn: Drawn,
     rate: Vec<f32>,
     way: Vec<f32>,
-    reach: Vec<f32>,
-    gap: Vec<f32>,
-    /// The brush's paint by slot, quanta a cell.
-    film: Vec<(usize, Vec<f32>)>,
+    /// The brush's paints by slot, as many as there are in use.
+    films: Vec<Film>,
+    used: usize,
     lenders: Vec<Lender>,
     /// The place of each texel among the lenders.
     place_of: Vec<u32>,
-    /// Of one paint: quanta that each lender's cells have.
-    lent: Vec<u32>,
+    /// That of each cell's texel; the number of lenders where there is none.
+    place: Vec<u32>,
     /// Of one paint: quanta that come back to each lender.
     back: Vec<i64>,
+    /// One for each core.
+    touching: Vec<Touching>,
+}
+
+/// The rows that one core blends.
+struct Share<'a> {
+    /// Of the raster.
+    rows: Range<usize>,
+    touching: &'a mut Touching,
+    brush: Vec<&'a mut [f32]>,
+    canvas: Vec<&'a mut [f32]>,
+    /// The first and the last of the rows that touch.
+    met: Option<[usize; 2]>,
+    sums: [f64; 3],
+}
+
+/// A raster over a window.
+struct Place<'a> {
+    /// Of the raster: cover, rate, way, height and clearance.
+    over: [&'a [f32]; 5],
+    /// Of the window: what catches paint, and what bristles ride on.
+    ground: [&'a [f32]; 2],
+    /// Cells from row to row, of the raster and of the window.
+    strides: [usize; 2],
+    /// Where the cells begin that are blended, on the raster.
+    on: [usize; 2],
+    /// They, on the window.
+    under: Area,
+    /// The surface's cell at the window's corner.
+    origin: [i64; 2],
+    sink: f32,
+    cells_per_quantum: f32,
+    thinner: Option<usize>,
+    limits: Limits,
+    dither: Dither,
+}
+
+impl Share<'_> {
+    /// Blends its rows.
+    fn blend(&mut self, place: &Place<'_>) {
+        let columns = place.under.size[0];
+        self.touching.begin(columns);
+        for row in self.rows.clone() {
+            let y = place.under.from[1] + row - place.on[1];
+            let left = [place.on[0], place.under.from[0]];
+            // Its planes begin with its own first row.
+            let first = row - self.rows.start;
+            let starts = [0, 1].map(|i| first * place.strides[i] + left[i]);
+            let over = row * place.strides[0] + left[0];
+            let [cover, rate, way, height, clearance] = place.over.map(|plane| &plane[over..]);
+            let under = y * place.strides[1] + left[1];
+            let [base, ride] = place.ground.map(|plane| &plane[under..]);
+            let brush = Brush {
+                count: columns,
+                cover,
+                rate,
+                way,
+                height,
+                clearance,
+                film: &self.brush,
+                start: starts[0],
+                sink: place.sink,
+            };
+            let canvas = Canvas {
+                base,
+                ride,
+                wet: &self.canvas,
+                thinner: place.thinner,
+                start: starts[1],
+                cells_per_quantum: place.cells_per_quantum,
+            };
+            let before = self.touching.cells;
+            touch(&brush, &canvas, self.touching);
+            if self.touching.cells == before {
+                continue;
+            }
+            self.met = Some([self.met.map_or(y, |[first, _]| first), y]);
+            let found = &*self.touching;
+            let meetings = Row {
+                rate: &found.rate,
+                way: &found.way,
+                reach: &found.reach,
+                gap: &found.gap,
+            };
+            let mut paints = Paints {
+                brush: &mut self.brush,
+                canvas: &mut self.canvas,
+                starts,
+            };
+            let at = [left[1], y];
+            let at = [0, 1].map(|i| place.origin[i] + at[i] as i64);
+            blend(&meetings, &place.limits, place.dither.at(at), &mut paints);
+        }
+        let found = &*self.touching;
+        self.sums = [found.cells, found.wet[0], found.wet[1]];
+    }
+}
+
+wide! {
+    /// By cell, the share that goes over and the way, by how much of the cell is covered. The way of a strip is by `by` and
+    /// `even` what it travels.
+    fn shares(
+        exchanging: &Exchanging, by_even: [f32; 2], cover_travel: [&[f32]; 2], rate_way: [&mut [f32]; 2],
+    ) {
+        let [by, even] = by_even;
+        let [cover, travel] = cover_travel;
+        let [rate, way] = rate_way;
+        let cells = cover.iter().zip(travel).zip(rate.iter_mut().zip(way));
+        for ((cover, travel), (rate, way)) in cells {
+            let own = travel * by + even;
+            *rate = exchanging.share(own) * cover;
+            *way = own * cover;
+        }
+    }
 }
 
 impl Raster {
-    /// The texels that touch.
-    pub fn texels(&self) -> impl Iterator<Item = u32> + '_ {
-        self.lenders.iter().map(|lender| lender.texel)
+    /// Quanta of a paint on each cell of the raster, as [drawn](Self::drawn).
+    #[must_use]
+    pub fn film(&self, slot: usize) -> Option<&[f32]> {
+        let mut films = self.films[..self.used].iter();
+        let film = films.find(|film| film.slot == slot);
+        film.map(|film| &film.plane[..])
     }
 
-    /// Parts the films of the touching texels among their cells; they stay in the load until they come
-    /// [back](Self::give_back).
-    pub fn lend(&mut self, footprint: &Footprint, step: &Step<'_>, way: Way) {
-        self.area = footprint.around;
-        self.meet(footprint, step, way);
-        self.find_lenders(footprint, step.load.texels());
-        let texel_cells = texel_cells(step);
-        let mut planes = std::mem::take(&mut self.film);
-        planes.truncate(SLOTS);
-        let slots = (0..SLOTS).filter(|slot| step.load.has(*slot) || step.window.has(*slot));
-        let mut used = 0;
-        for slot in slots {
-            if planes.len() == used {
-                planes.push((slot, Vec::new()));
-            }
-            let (own, plane) = &mut planes[used];
-            *own = slot;
-            plane.clear();
-            plane.resize(self.area.cells(), 0.0);
-            used += 1;
-            let Some(film) = step.load.film_of(slot) else {
+    /// The strips that the head has over the canvas, some of them more than once.
+    pub fn strips(&self) -> impl Iterator<Item = usize> + '_ {
+        let texels = self.lenders.iter().map(|lender| lender.texel as usize);
+        texels.map(|texel| texel / TEXELS_PER_STRIP)
+    }
+
+    /// Parts the films of the texels over the canvas among the cells that they cover; they stay in the load until they
+    /// come [back](Self::give_back). `slots` are the paints that brush or canvas may have.
+    pub fn lend(&mut self, load: &BrushLoad, traits: &BrushTraits, slots: &[usize], way: Way) {
+        self.find_ways(traits, way);
+        self.find_lenders(load.texels(), traits);
+        let cells = self.drawn.texel.len();
+        self.used = slots.len();
+        let films = self.films.len().max(slots.len());
+        self.films.resize_with(films, Film::default);
+        for (own, slot) in self.films.iter_mut().zip(slots) {
+            own.slot = *slot;
+            own.plane.clear();
+            own.lent.clear();
+            let Some(film) = load.film_of(*slot) else {
+                own.plane.resize(cells, 0.0);
+                own.lent.resize(self.lenders.len() + 1, 0.0);
                 continue;
             };
-            self.lent.clear();
-            self.lent.extend(self.lenders.iter().map(|lender| {
+            let lends = |lender: &Lender| {
                 let held = f64::from(film[lender.texel as usize]);
-                (held / texel_cells.max(f64::from(lender.cells))) as u32
-            }));
-            for contact in &footprint.contacts {
-                let place = self.place_of[contact.texel as usize];
-                plane[contact.local as usize] = self.lent[place as usize] as f32;
-            }
+                (held * lender.share) as u32 as f32
+            };
+            own.lent.extend(self.lenders.iter().map(lends));
+            own.lent.push(0.0);
+            let lent = self.place.iter().map(|place| own.lent[*place as usize]);
+            own.plane.extend(lent);
         }
-        planes.truncate(used);
-        self.film = planes;
     }
 
-    /// Where, how far and how deep brush and canvas meet.
-    fn meet(&mut self, footprint: &Footprint, step: &Step<'_>, way: Way) {
-        let cells = self.area.cells();
-        let traits = &step.traits;
-        let planes = [
-            &mut self.rate,
-            &mut self.way,
-            &mut self.reach,
-            &mut self.gap,
-        ];
-        for plane in planes {
+    /// How far each cell of the brush goes, and what share goes over on the way.
+    fn find_ways(&mut self, traits: &BrushTraits, way: Way) {
+        let cells = self.drawn.texel.len();
+        for plane in [&mut self.rate, &mut self.way] {
             plane.clear();
             plane.resize(cells, 0.0);
         }
-        let even = match way {
-            Way::OfStrips => None,
-            Way::Cells(cells) => {
-                let travel = cells * traits.cell_per_reference;
-                Some((travel, traits.exchanging.share(travel)))
-            }
+        let reference = traits.cell_per_reference;
+        let by_even = match way {
+            Way::OfStrips => [reference, 0.0],
+            Way::Cells(cells) => [0.0, cells * reference],
         };
-        let quanta_per_cell = 1.0 / traits.cells_per_quantum;
-        for contact in &footprint.contacts {
-            let place = contact.local as usize;
-            let (travel, share) = even.unwrap_or_else(|| {
-                let travel = contact.travel(traits);
-                (travel, traits.exchanging.share(travel))
-            });
-            self.rate[place] = share * contact.cover;
-            self.way[place] = travel * contact.cover;
-            self.reach[place] = match way {
-                Way::OfStrips => contact.fraction,
-                Way::Cells(_) => 1.0,
+        shares(
+            &traits.exchanging,
+            by_even,
+            [&self.drawn.cover, &self.drawn.travel],
+            [&mut self.rate, &mut self.way],
+        );
+    }
+
+    fn find_lenders(&mut self, texels: usize, traits: &BrushTraits) {
+        for lender in self.lenders.drain(..) {
+            if let Some(place) = self.place_of.get_mut(lender.texel as usize) {
+                *place = Drawn::ABSENT;
+            }
+        }
+        self.place_of.resize(texels, Drawn::ABSENT);
+        self.place.clear();
+        for texel in &self.drawn.texel {
+            let Some(place) = self.place_of.get_mut(*texel as usize) else {
+                self.place.push(Drawn::ABSENT);
+                continue;
             };
-            self.gap[place] = BRIDGED * contact.gap * quanta_per_cell;
+            if *place == Drawn::ABSENT {
+                *place = self.lenders.len() as u32;
+                self.lenders.push(Lender {
+                    texel: *texel,
+                    cells: 0,
+                    share: 0.0,
+                });
+            }
+            self.place.push(*place);
+            self.lenders[*place as usize].cells += 1;
+        }
+        let lenders = self.lenders.len() as u32;
+        let places = self.place.iter_mut();
+        places.for_each(|place| *place = lenders.min(*place));
+        // Cells that a texel's film is as large as.
+        let large = 1.0 / (QUANTA_PER_UNIT * f64::from(traits.film_units_per_quantum));
+        for lender in &mut self.lenders {
+            lender.share = 1.0 / large.max(f64::from(lender.cells));
         }
     }
 
-    fn find_lenders(&mut self, footprint: &Footprint, texels: usize) {
-        for lender in self.lenders.drain(..) {
-            if let Some(place) = self.place_of.get_mut(lender.texel as usize) {
-                *place = ABSENT;
-            }
-        }
-        self.place_of.resize(texels, ABSENT);
-        for contact in &footprint.contacts {
-            let place = &mut self.place_of[contact.texel as usize];
-            if *place == ABSENT {
-                *place = self.lenders.len() as u32;
-                self.lenders.push(Lender {
-                    texel: contact.texel,
-                    cells: 0,
-                });
-            }
-            self.lenders[*place as usize].cells += 1;
+    /// The cells of a window, of those `within`, that are under the raster moved by whole cells.
+    #[must_use]
+    pub fn under(&self, origin: [i64; 2], within: Area, shift: [i64; 2]) -> Area {
+        let (low, high) = self.drawn.reach;
+        let span = [0, 1].map(|i| {
+            let from = self.drawn.origin[i] - origin[i] + shift[i];
+            let clamped = |at: usize| {
+                let (least, most) = (within.from[i], within.from[i] + within.size[i]);
+                (from + at as i64).clamp(least as i64, most as i64) as usize
+            };
+            [clamped(low[i]), clamped(high[i])]
+        });
+        Area {
+            from: span.map(|[from, _]| from),
+            size: span.map(|[from, to]| to - from),
         }
     }
 
     /// Blends brush and canvas with the raster moved by whole cells.
-    pub fn blend(&mut self, step: &mut Step<'_>, shift: [i64; 2], dither: Dither) {
+    pub fn blend(&mut self, step: &mut Step<'_>, shift: [i64; 2], dither: Dither) -> Met {
         let limits = Limits::of(step);
-        let within = step.window.area(step.bounds.0, step.bounds.1);
-        let (window, area) = (&mut *step.window, self.area);
+        let window = &mut *step.window;
+        let within = window.area(step.bounds.0, step.bounds.1);
         let (width, origin) = (window.width(), window.origin());
-        // The part of the raster that the step may reach there.
-        let span = |i: usize| {
-            let from = area.from[i] as i64 + shift[i];
-            let (low, high) = (within.from[i], within.from[i] + within.size[i]);
-            let first = (low as i64 - from).clamp(0, area.size[i] as i64);
-            let last = (high as i64 - from).clamp(first, area.size[i] as i64);
-            (first as usize..last as usize, from)
-        };
-        let ((columns, left), (rows, bottom)) = (span(0), span(1));
-        if columns.is_empty() {
-            return;
+        let under = self.under(origin, within, shift);
+        if under.is_empty() {
+            return Met::default();
         }
-        for (slot, _) in &self.film {
-            window.plane_mut(*slot);
+        let drawn = &self.drawn;
+        // Where the cells under it are on the raster.
+        let on = [0, 1].map(|i| {
+            let from = drawn.origin[i] - origin[i] + shift[i];
+            (under.from[i] as i64 - from) as usize
+        });
+        let films = &mut self.films[..self.used];
+        for film in &*films {
+            window.plane_mut(film.slot);
         }
-        let slots = self.film.iter().map(|(slot, _)| *slot);
-        let mut slots = slots.peekable();
-        let planes = window.planes_mut();
+        let thinner = films
+            .iter()
+            .position(|film| Some(film.slot) == step.thinner);
+        let ([base, ride], planes) = window.ground_and_planes_mut();
+        let mut slots = films.iter().map(|film| film.slot).peekable();
         let planes = planes.filter(|(slot, _)| slots.next_if_eq(slot).is_some());
-        let mut canvas: Vec<&mut Vec<f32>> = planes.map(|(_, plane)| plane).collect();
-        for row in rows {
-            let first = row * area.size[0];
-            let own = first + columns.start..first + columns.end;
-            let (x, y) = (left + columns.start as i64, bottom + row as i64);
-            let meetings = Row {
-                rate: &self.rate[own.clone()],
-                way: &self.way[own.clone()],
-                reach: &self.reach[own.clone()],
-                gap: &self.gap[own.clone()],
-            };
-            let mut paints = Paints {
-                brush: &mut self.film,
-                canvas: &mut canvas,
-                starts: [own.start, y as usize * width + x as usize],
-            };
-            let threshold = dither.at([origin[0] + x, origin[1] + y]);
-            blend(&meetings, &limits, threshold, &mut paints);
+        let mut canvas: Vec<&mut [f32]> = planes
+            .map(|(_, plane)| &mut plane[under.from[1] * width..])
+            .collect();
+        let mut brush: Vec<&mut [f32]> = films
+            .iter_mut()
+            .map(|film| &mut film.plane[on[1] * drawn.stride..])
+            .collect();
+        let count = shares_of(under.cells());
+        let touching = self.touching.len().max(count);
+        self.touching.resize_with(touching, Touching::default);
+        let parts = Area {
+            from: on,
+            size: under.size,
         }
+        .parts(count);
+        let mut shares: Vec<Share<'_>> = parts
+            .zip(&mut self.touching)
+            .map(|(part, touching)| Share {
+                rows: part.from[1]..part.from[1] + part.size[1],
+                touching,
+                brush: split(&mut brush, part.size[1] * drawn.stride),
+                canvas: split(&mut canvas, part.size[1] * width),
+                met: None,
+                sums: [0.0; 3],
+            })
+            .collect();
+        let place = Place {
+            over: [
+                &drawn.cover,
+                &self.rate,
+                &self.way,
+                &drawn.height,
+                &drawn.clearance,
+            ],
+            ground: [base, ride],
+            strides: [drawn.stride, width],
+            on,
+            under,
+            origin,
+            sink: step.traits.sink * step.sweep.to.press,
+            cells_per_quantum: step.traits.cells_per_quantum,
+            thinner,
+            limits,
+            dither,
+        };
+        each(&mut shares, |share| share.blend(&place));
+        let mut met = Met::default();
+        for share in &shares {
+            let [cells, wet, thinner] = share.sums.map(|sum| sum as u64);
+            met.cells += cells;
+            met.wet += wet;
+            met.thinner += thinner;
+        }
+        let rows = shares.iter().filter_map(|share| share.met);
+        let rows = rows.reduce(|[first, _], [_, last]| [first, last]);
+        if let Some([first, last]) = rows {
+            met.reached = Area {
+                from: [under.from[0], first],
+                size: [under.size[0], last + 1 - first],
+            };
+        }
+        met
     }
 
     /// Gives each texel what its cells hold now. By slot, what the brush has more than before.
-    pub fn give_back(&mut self, footprint: &Footprint, step: &mut Step<'_>) -> [i64; SLOTS] {
+    pub fn give_back(&mut self, load: &mut BrushLoad) -> [i64; SLOTS] {
         let mut gained = [0; SLOTS];
-        let texel_cells = texel_cells(step);
-        for (slot, plane) in &self.film {
+        for film in &self.films[..self.used] {
             self.back.clear();
-            self.back.resize(self.lenders.len(), 0);
-            for contact in &footprint.contacts {
-                let place = self.place_of[contact.texel as usize];
-                self.back[place as usize] += plane[contact.local as usize] as i64;
+            self.back.resize(self.lenders.len() + 1, 0);
+            for (place, quanta) in self.place.iter().zip(&film.plane) {
+                self.back[*place as usize] += i64::from(*quanta as i32);
             }
-            let held = |load: &BrushLoad, texel: u32| {
-                let film = load.film_of(*slot);
-                f64::from(film.map_or(0, |film| film[texel as usize]))
-            };
-            for (lender, back) in self.lenders.iter().zip(&self.back) {
-                let share =
-                    held(step.load, lender.texel) / texel_cells.max(f64::from(lender.cells));
-                let change = back - i64::from(share as u32) * i64::from(lender.cells);
+            let lent = film.lent.iter().zip(&self.back);
+            for (lender, (lent, back)) in self.lenders.iter().zip(lent) {
+                let change = back - *lent as i64 * i64::from(lender.cells);
                 if change != 0 {
-                    step.load
-                        .change_film(*slot, lender.texel as usize, change as i32);
-                    gained[*slot] += change;
+                    load.change_film(film.slot, lender.texel as usize, change as i32);
+                    gained[film.slot] += change;
                 }
             }
         }
@@ -231,7 +422,11 @@ impl Raster {
     }
 }
 
-/// Cells that a texel's film is as large as.
-fn texel_cells(step: &Step<'_>) -> f64 {
-    1.0 / (QUANTA_PER_UNIT * f64::from(step.traits.film_units_per_quantum))
+/// So many cells from the beginning of each plane, which is left without them.
+fn split<'a>(planes: &mut [&'a mut [f32]], cells: usize) -> Vec<&'a mut [f32]> {
+    let first = planes.iter_mut().map(|plane| {
+        let cells = cells.min(plane.len());
+        plane.split_off_mut(..cells).unwrap_or_default()
+    });
+    first.collect()
 }

@@ -3,9 +3,8 @@
 //! it is used, as from a reservoir.
 
 use maulstick_canvas::quantum::QUANTA_PER_UNIT;
-use maulstick_model::brush::load::PaintOnBrush;
-use maulstick_model::brush::traits::TEXELS_PER_STRIP;
-use maulstick_model::interface::Step;
+use maulstick_model::brush::load::{BrushLoad, PaintOnBrush};
+use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 
 use crate::dither::{Dither, whole};
 use crate::volume::{DEEP, UNIT};
@@ -40,60 +39,91 @@ fn share_out(from: &mut u32, to: &mut u32, share: f64) {
     (*from, *to) = (*from - goes, to.saturating_add(goes));
 }
 
-/// Moves paint between the reservoirs and the surfaces of the strips of these texels, and down the strips, as chance has
-/// it in the step of these thresholds.
-pub fn refill(step: &mut Step<'_>, texels: impl Iterator<Item = u32>, dither: Dither) {
-    let traits = &step.traits;
-    let deep =
-        f64::from(DEEP * UNIT) / (QUANTA_PER_UNIT * f64::from(traits.film_units_per_quantum));
-    // The rate is that of two steps.
-    let rate = 1.0 - (1.0 - traits.refill).max(0.0).sqrt();
-    let full = [traits.film_full, traits.inside_full];
-    let mut strips: Vec<usize> = texels
-        .map(|texel| texel as usize / TEXELS_PER_STRIP)
-        .collect();
-    strips.sort_unstable();
-    strips.dedup();
-    let (films, paints) = step.load.parts_mut();
+/// How a brush's surface is filled again on a way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Refill {
+    /// Quanta of a deep unit of a texel.
+    pub deep: f64,
+    /// What surface and inside of a texel hold on a full brush.
+    pub full: [f64; 2],
+    /// Share of what is lacking that comes.
+    pub rate: f64,
+}
+
+impl Refill {
+    /// That of a brush with these traits on a way of so many cells.
+    #[must_use]
+    pub fn of(traits: &BrushTraits, cells: f32) -> Self {
+        let units = QUANTA_PER_UNIT * f64::from(traits.film_units_per_quantum);
+        // What a trait says is of so many steps.
+        let steps = f64::from(cells / traits.step_cells) / BrushTraits::FLOW_STEPS as f64;
+        let kept = (1.0 - traits.refill).max(1e-9);
+        Self {
+            deep: f64::from(DEEP * UNIT) / units,
+            full: [traits.film_full, traits.inside_full],
+            rate: 1.0 - maulstick_num::powf(kept, steps),
+        }
+    }
+}
+
+/// Moves paint between the reservoirs and the surfaces of these strips, and down the strips, as chance has it in the step
+/// of these thresholds. The load's films are to be [counted](BrushLoad::count_films) afterwards.
+pub fn refill(
+    load: &mut BrushLoad,
+    refill: &Refill,
+    strips: impl IntoIterator<Item = usize>,
+    dither: Dither,
+) {
+    let (_, paints) = load.parts_mut();
     let mut paints: Vec<_> = paints.collect();
     for strip in strips {
         let first = strip * TEXELS_PER_STRIP;
-        let on = |paints: &[PaintOnBrush<'_>], texel: usize| {
-            let sum = |of: fn(&PaintOnBrush<'_>, usize) -> u32| -> f64 {
-                paints.iter().map(|paint| f64::from(of(paint, texel))).sum()
-            };
-            [
-                sum(|paint, at| paint.film[at]),
-                sum(|paint, at| paint.inside[at]),
-            ]
-        };
+        let mut on = held(&paints, first);
+        let thresholds: [[f32; TEXELS_PER_STRIP]; 2] =
+            [0, 1].map(|row| dither.along([first as i64, row]));
         // From the point up: what runs down in one step goes a texel far.
-        for texel in (first..first + TEXELS_PER_STRIP).rev() {
-            let threshold = |row| dither.at([texel as i64, row]);
-            let [surface, inside] = on(&paints, texel);
-            let flow = flows([surface, inside], full, deep, (rate, threshold(0)));
-            for paint in &mut paints {
-                let (film, inside_of) = (&mut paint.film[texel], &mut paint.inside[texel]);
-                if flow > 0.0 {
-                    share_out(inside_of, film, flow / inside);
-                } else if flow < 0.0 {
-                    share_out(film, inside_of, -flow / surface);
-                }
-            }
-            if texel > first {
-                let [lower, _] = on(&paints, texel);
-                let [upper, _] = on(&paints, texel - 1);
-                let flow = runs([upper, lower], deep, (rate, threshold(1)));
+        for place in (0..TEXELS_PER_STRIP).rev() {
+            let texel = first + place;
+            let [surface, inside] = on[place];
+            let chance = (refill.rate, thresholds[0][place]);
+            let flow = flows(on[place], refill.full, refill.deep, chance);
+            if flow != 0.0 {
                 for paint in &mut paints {
-                    let (above, below) = paint.film.split_at_mut(texel);
+                    let (film, inside_of) = (&mut paint.film[texel], &mut paint.inside[texel]);
                     if flow > 0.0 {
-                        share_out(&mut above[texel - 1], &mut below[0], flow / upper);
+                        share_out(inside_of, film, flow / inside);
+                    } else {
+                        share_out(film, inside_of, -flow / surface);
                     }
                 }
+                on = held(&paints, first);
+            }
+            if place == 0 {
+                continue;
+            }
+            let both = [on[place - 1][0], on[place][0]];
+            let flow = runs(both, refill.deep, (refill.rate, thresholds[1][place]));
+            if flow > 0.0 {
+                for paint in &mut paints {
+                    let (above, below) = paint.film.split_at_mut(texel);
+                    share_out(&mut above[texel - 1], &mut below[0], flow / both[0]);
+                }
+                on = held(&paints, first);
             }
         }
-        for texel in first..first + TEXELS_PER_STRIP {
-            films[texel] = paints.iter().map(|paint| paint.film[texel]).sum();
+    }
+}
+
+/// Quanta of all paints on the surface and inside of a strip's texels.
+fn held(paints: &[PaintOnBrush<'_>], first: usize) -> [[f64; 2]; TEXELS_PER_STRIP] {
+    let mut held = [[0.0; 2]; TEXELS_PER_STRIP];
+    for paint in paints {
+        let texels = first..first + TEXELS_PER_STRIP;
+        let both = paint.film[texels.clone()].iter().zip(&paint.inside[texels]);
+        for (held, (film, inside)) in held.iter_mut().zip(both) {
+            held[0] += f64::from(*film);
+            held[1] += f64::from(*inside);
         }
     }
+    held
 }

@@ -3,14 +3,17 @@
 use maulstick_brush::HeadPose;
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_canvas::window::Area;
+use maulstick_model::brush::head::low_bounds;
+use maulstick_model::brush::traits::BrushTraits;
 use maulstick_model::footprint::Footprint;
+use maulstick_model::footprint::lying::Lying;
 use maulstick_model::interface::{PaintModel, Step, StepReport, Sweep, Transfer};
 use maulstick_model::modes::{sample, vacuum};
 
 use crate::dither::Dither;
 use crate::raster::{Raster, Way};
-use crate::reservoir::refill;
-use crate::stroke::{Stroker, anchor_way, bend, between, parts, places};
+use crate::reservoir::{Refill, refill};
+use crate::stroke::{Course, Stroker, bend, between, parts, places};
 
 /// Blends of a step at most, for their numbers.
 const BLENDS: u64 = 256;
@@ -19,6 +22,7 @@ const BLENDS: u64 = 256;
 #[derive(Debug, Default)]
 pub struct Dab {
     footprint: Footprint,
+    lying: Lying,
     raster: Raster,
     poses: [HeadPose; 2],
     /// The algorithm of all steps; by the load on the machine where there is none.
@@ -34,11 +38,7 @@ impl PaintModel for Dab {
         match step.handling.transfer {
             Transfer::Sampler | Transfer::Vacuum => self.without_paint(step),
             _ => {
-                let report = match self.stroker.unwrap_or_else(|| Stroker::of(step)) {
-                    Stroker::Faster => self.stroke_faster(step),
-                    Stroker::Better => self.stroke_better(step, None),
-                    Stroker::Spline => self.stroke_better(step, bend(&step.sweep)),
-                };
+                let report = self.stroke(step);
                 step.load.count_step();
                 report
             }
@@ -55,6 +55,21 @@ impl Stroker {
             _ => Self::Faster,
         }
     }
+}
+
+/// What the blends of a step share.
+struct Stroke {
+    /// How high wet paint stands before it, and what comes lower can touch it; cells.
+    top: f32,
+    /// The paints that brush or canvas have there.
+    slots: Vec<usize>,
+    /// The number of the next blend.
+    number: u64,
+    /// The cells that may have changed.
+    reached: Area,
+    /// By strip, whether it was over the canvas.
+    strips: Vec<bool>,
+    report: StepReport,
 }
 
 impl Dab {
@@ -85,56 +100,108 @@ impl Dab {
         report
     }
 
-    /// Algorithm 1.
-    fn stroke_faster(&mut self, step: &mut Step<'_>) -> StepReport {
-        let way = anchor_way(&step.sweep);
+    fn stroke(&mut self, step: &mut Step<'_>) -> StepReport {
+        let within = step.window.area(step.bounds.0, step.bounds.1);
+        if within.is_empty() {
+            return StepReport::default();
+        }
+        let number = step.load.steps().wrapping_mul(BLENDS);
+        let mut stroke = Stroke {
+            top: self.lying.weigh(within, step),
+            slots: paints(step, within),
+            number,
+            reached: Area::default(),
+            strips: vec![false; step.head.strips()],
+            report: StepReport::default(),
+        };
+        let cells = match self.stroker.unwrap_or_else(|| Stroker::of(step)) {
+            Stroker::Faster => self.stroke_faster(step, &mut stroke),
+            Stroker::Better => self.stroke_better(step, None, &mut stroke),
+            Stroker::Spline => self.stroke_better(step, bend(&step.sweep), &mut stroke),
+        };
+        if stroke.report.footprint_cells == 0 {
+            return StepReport::default();
+        }
+        if step.handling.transfer != Transfer::Sponge {
+            let dither = Dither::new(step.load.seed(), number);
+            // Paint flows within a strip once in so many steps, in others at another, so that strokes show none.
+            const STEPS: usize = BrushTraits::FLOW_STEPS as usize;
+            let turn = step.load.steps() as usize % STEPS;
+            let strips = stroke.strips.iter().enumerate();
+            let strips = strips.filter(|(strip, over)| **over && strip % STEPS == turn);
+            let refilled = Refill::of(&step.traits, STEPS as f32 * cells);
+            refill(step.load, &refilled, strips.map(|(strip, _)| strip), dither);
+            step.load.count_films();
+        }
+        self.lying.weigh(stroke.reached, step);
+        let Area { from, size } = stroke.reached;
+        step.window
+            .touch((from, [from[0] + size[0], from[1] + size[1]]));
+        stroke.report
+    }
+
+    /// Algorithm 1. The way of the anchor point, cells.
+    fn stroke_faster(&mut self, step: &mut Step<'_>, stroke: &mut Stroke) -> f32 {
+        let way = Course::of(&step.sweep, None).way;
         let places: Vec<[i64; 2]> = places(way).collect();
-        let each = (way[0] * way[0] + way[1] * way[1]).sqrt() / places.len() as f32;
+        let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
         let to = step.sweep.to;
-        let mut report = StepReport::default();
         let rests = Sweep {
             before: None,
             from: to,
             to,
         };
-        self.blend(step, rests, &places, Way::Cells(each), &mut report);
-        report
+        let each = Way::Cells(length / places.len() as f32);
+        self.blend(step, rests, &places, each, stroke);
+        length
     }
 
-    /// Algorithm 2, along a parabola if there is one.
-    fn stroke_better(&mut self, step: &mut Step<'_>, bend: Option<(&HeadPose, f32)>) -> StepReport {
+    /// Algorithm 2, along a parabola if there is one. The way of the anchor point, cells.
+    fn stroke_better(
+        &mut self,
+        step: &mut Step<'_>,
+        bend: Option<(&HeadPose, f32)>,
+        stroke: &mut Stroke,
+    ) -> f32 {
         let whole = step.sweep;
-        let parts = parts(&whole);
-        let mut report = StepReport::default();
+        let course = Course::of(&whole, bend);
         let [mut before, mut after] = std::mem::take(&mut self.poses);
-        between(&whole, bend, 0.0, &mut before);
-        for part in 1..=parts {
-            between(&whole, bend, part as f32 / parts as f32, &mut after);
+        for run in course.runs(parts(&whole)) {
+            between(&whole, bend, run.part[0], &mut before);
+            between(&whole, bend, run.part[1], &mut after);
             let sweep = Sweep {
                 before: None,
                 from: &before,
                 to: &after,
             };
-            self.blend(step, sweep, &[[0; 2]], Way::OfStrips, &mut report);
-            std::mem::swap(&mut before, &mut after);
+            self.blend(step, sweep, &run.shifts, Way::OfStrips, stroke);
         }
         self.poses = [before, after];
-        report
+        let [x, y] = course.way;
+        (x * x + y * y).sqrt()
     }
 
-    /// Blends the footprint of a motion at places beside it, and adds to the report.
+    /// Draws the head in the middle of a motion, and blends it with the canvas at places beside it.
     fn blend(
         &mut self,
         step: &mut Step<'_>,
         sweep: Sweep<'_>,
         places: &[[i64; 2]],
         way: Way,
-        report: &mut StepReport,
+        stroke: &mut Stroke,
     ) {
-        let lasting = step.lasting;
-        let sponge = step.handling.transfer == Transfer::Sponge;
-        let number = step.load.steps().wrapping_mul(BLENDS) + report.footprint_cells % BLENDS;
-        let seed = step.load.seed();
+        let (load, traits) = (&*step.load, &step.traits);
+        // The pressed head lies lower than it was solved by as much as the ride does.
+        let low = stroke.top + traits.sink * sweep.to.press + step.window.ride_below();
+        let film = load.thickest() as f32 * traits.film_cells_per_quantum;
+        let Some((from, to)) = low_bounds(step.head, sweep.to, traits, low + film) else {
+            return;
+        };
+        let from = [0, 1].map(|i| from[i].max(step.bounds.0[i]));
+        let size = [0, 1].map(|i| (to[i].min(step.bounds.1[i]) - from[i]).max(0) as usize);
+        if size.contains(&0) {
+            return;
+        }
         let mut part = Step {
             window: &mut *step.window,
             head: step.head,
@@ -142,66 +209,83 @@ impl Dab {
             load: &mut *step.load,
             ..*step
         };
-        self.footprint.find(&mut part);
-        if self.footprint.contacts.is_empty() {
+        let raster = &mut self.raster;
+        raster.drawn.draw(&part, from, size, low);
+        if raster.drawn.is_empty() {
             return;
         }
-        let first = self.footprint.report(&part);
-        let (around, within) = (
-            self.footprint.around,
-            part.window.area(part.bounds.0, part.bounds.1),
-        );
-        let places_of = places.iter().map(|place| moved(around, *place, within));
-        let reached = places_of.fold(around, joined);
-        let counted = sponge || lasting;
+        let sponge = part.handling.transfer == Transfer::Sponge;
+        let counted = sponge || part.lasting;
+        let within = part.window.area(part.bounds.0, part.bounds.1);
+        let origin = part.window.origin();
+        let under = places
+            .iter()
+            .map(|place| raster.under(origin, within, *place));
+        let under = under.reduce(joined).unwrap_or_default();
         let before = if counted {
-            lying(&part, reached)
+            lying(&part, under)
         } else {
             [0; SLOTS]
         };
-        self.raster.lend(&self.footprint, &part, way);
-        for (blend, place) in places.iter().enumerate() {
-            let dither = Dither::new(seed, number.wrapping_add(blend as u64));
-            self.raster.blend(&mut part, *place, dither);
+        raster.lend(part.load, &part.traits, &stroke.slots, way);
+        let seed = part.load.seed();
+        let mut touched = false;
+        for place in places {
+            let dither = Dither::new(seed, stroke.number);
+            stroke.number = stroke.number.wrapping_add(1);
+            let met = raster.blend(&mut part, *place, dither);
+            if met.cells == 0 {
+                continue;
+            }
+            touched = true;
+            stroke.reached = joined(stroke.reached, met.reached);
+            stroke.report.footprint_cells += met.cells;
+            stroke.report.wet += met.wet;
+            stroke.report.thinner += met.thinner;
+        }
+        if !touched {
+            return;
         }
         let mut from_nowhere = [0; SLOTS];
         if !sponge {
-            from_nowhere = self.raster.give_back(&self.footprint, &mut part);
-            refill(&mut part, self.raster.texels(), Dither::new(seed, number));
-        }
-        report.add(&StepReport {
-            footprint_cells: first.footprint_cells * places.len() as u64,
-            ..first
-        });
-        if counted {
-            let after = lying(&part, reached);
-            for slot in 0..SLOTS {
-                report.from_nowhere[slot] += after[slot] - before[slot] + from_nowhere[slot];
+            from_nowhere = raster.give_back(part.load);
+            for strip in raster.strips() {
+                stroke.strips[strip] = true;
             }
         }
-        self.footprint.around = reached;
-        self.footprint.note_left(&mut part);
-        part.window.touch(self.footprint.reached());
+        if counted {
+            let after = lying(&part, under);
+            for slot in 0..SLOTS {
+                stroke.report.from_nowhere[slot] += after[slot] - before[slot] + from_nowhere[slot];
+            }
+        }
     }
 }
 
-/// An area moved by whole cells, as far as it is within another.
-fn moved(area: Area, by: [i64; 2], within: Area) -> Area {
-    let ends = [0, 1].map(|i| {
-        let (low, high) = (within.from[i], within.from[i] + within.size[i]);
-        let place = |at: usize| (at as i64 + by[i]).clamp(low as i64, high as i64) as usize;
-        [place(area.from[i]), place(area.from[i] + area.size[i])]
-    });
-    Area {
-        from: ends.map(|[from, _]| from),
-        size: ends.map(|[from, to]| to - from),
-    }
+/// The paints of which there is any on the brush's surface or on an area of the canvas.
+fn paints(step: &Step<'_>, area: Area) -> Vec<usize> {
+    let lies = |slot: usize| {
+        step.window.plane(slot).is_some_and(|plane| {
+            let mut rows = area.rows(step.window.width());
+            rows.any(|row| plane[row].iter().any(|count| *count > 0.0))
+        })
+    };
+    let carried = |slot: usize| {
+        let film = step.load.film_of(slot);
+        film.is_some_and(|film| film.iter().any(|count| *count > 0))
+    };
+    (0..SLOTS)
+        .filter(|slot| lies(*slot) || carried(*slot))
+        .collect()
 }
 
 /// The least area that holds both.
 fn joined(one: Area, other: Area) -> Area {
     if other.is_empty() {
         return one;
+    }
+    if one.is_empty() {
+        return other;
     }
     let from = [0, 1].map(|i| one.from[i].min(other.from[i]));
     let to = [0, 1].map(|i| (one.from[i] + one.size[i]).max(other.from[i] + other.size[i]));

@@ -6,6 +6,10 @@ use maulstick_model::interface::Sweep;
 
 /// A strip lower than this counts for the anchor point, cells.
 const NEAR: f32 = 3.0;
+/// What is near the surface may be beside its place in a drawing by so much, cells.
+pub const SLACK: f32 = 0.5;
+/// A change of height counts so many times as much as one along the surface.
+pub const STEEP: f32 = 4.0;
 
 /// Stroking algorithm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,7 +17,8 @@ pub enum Stroker {
     /// Algorithm 1, STROKE-FASTER: the footprint at the end of the step is blended along the way of its anchor point, a
     /// cell at a time.
     Faster,
-    /// Algorithm 2, STROKE-BETTER: the head is interpolated a cell at a time, and each has its footprint.
+    /// Algorithm 2, STROKE-BETTER: the head is interpolated a cell at a time, and each has its footprint. Where all of it goes
+    /// the same way, the drawing of one serves for those beside it ([`Course::runs`]).
     Better,
     /// As [`Better`](Self::Better), but along a parabola through the head of the step before too: the spline of which
     /// the text says that it would be a natural extension.
@@ -63,19 +68,89 @@ pub fn bend<'a>(sweep: &Sweep<'a>) -> Option<(&'a HeadPose, f32)> {
     (own > 0.5 && (0.2..5.0).contains(&ago)).then_some((before, ago))
 }
 
-/// Way of the anchor point, the mean of what is near the surface after the step, cells.
-#[must_use]
-pub fn anchor_way(sweep: &Sweep<'_>) -> [f32; 2] {
-    let (from, to) = (sweep.from, sweep.to);
-    let (mut sum, mut count) = ([0.0f32; 2], 0.0f32);
-    for i in 0..to.z.len().min(from.z.len()) {
-        if to.z[i] < NEAR {
-            sum[0] += to.x[i] - from.x[i];
-            sum[1] += to.y[i] - from.y[i];
-            count += 1.0;
+/// Way of a head in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Course {
+    /// Way of the anchor point, the mean of what is near the surface after the step, cells.
+    pub way: [f32; 2],
+    /// Of its parabola: at t it is by t·(t − 1) times this beside the chord, cells.
+    pub bulge: [f32; 2],
+    /// The farthest that anything near the surface goes another way than the anchor point, cells; of height
+    /// [`STEEP`] times.
+    pub sway: f32,
+}
+
+impl Course {
+    /// That of a step.
+    #[must_use]
+    pub fn of(sweep: &Sweep<'_>, bend: Option<(&HeadPose, f32)>) -> Self {
+        let (from, to) = (sweep.from, sweep.to);
+        let near: Vec<usize> = (0..to.z.len().min(from.z.len()))
+            .filter(|i| to.z[*i] < NEAR)
+            .collect();
+        let mean = |of: &dyn Fn(usize) -> f32| {
+            near.iter().map(|i| of(*i)).sum::<f32>() / (near.len() as f32).max(1.0)
+        };
+        let chord = |of: fn(&HeadPose) -> &Vec<f32>, i: usize| of(to)[i] - of(from)[i];
+        let bulge = |of: fn(&HeadPose) -> &Vec<f32>, i: usize| {
+            bend.map_or(0.0, |(before, ago)| {
+                (of(before)[i] - of(from)[i] + ago * chord(of, i)) / (ago * (ago + 1.0))
+            })
+        };
+        let axes: [fn(&HeadPose) -> &Vec<f32>; 2] = [|pose| &pose.x, |pose| &pose.y];
+        let way = axes.map(|of| mean(&|i| chord(of, i)));
+        let bulges = axes.map(|of| mean(&|i| bulge(of, i)));
+        let sway = |i: &usize| {
+            let aside = |axis: usize| {
+                let off = chord(axes[axis], *i) - way[axis];
+                off.abs() + (bulge(axes[axis], *i) - bulges[axis]).abs()
+            };
+            aside(0)
+                .max(aside(1))
+                .max(STEEP * chord(|pose| &pose.z, *i).abs())
+        };
+        Self {
+            way,
+            bulge: bulges,
+            sway: near.iter().map(sway).fold(0.0, f32::max),
         }
     }
-    sum.map(|sum| sum / count.max(1.0))
+
+    /// Where the anchor point is at `t`, 0 to 1, from where the step began, cells.
+    #[must_use]
+    pub fn at(&self, t: f32) -> [f32; 2] {
+        [0, 1].map(|i| self.way[i] * t + self.bulge[i] * (t * (t - 1.0)))
+    }
+
+    /// The runs of a step of so many parts: as many as keep what is near the surface within [`SLACK`] of its place in the
+    /// drawing that serves for all of a run.
+    pub fn runs(&self, parts: usize) -> impl Iterator<Item = Run> + use<> {
+        let course = *self;
+        let runs = ((course.sway * (0.5 / SLACK)).ceil() as usize).clamp(1, parts.max(1));
+        (0..runs).map(move |run| {
+            let (first, last) = (parts * run / runs, parts * (run + 1) / runs);
+            let drawn = (first + last - 1) / 2;
+            let middle = |part: usize| course.at((part as f32 + 0.5) / parts as f32);
+            let from = middle(drawn);
+            let shift = |part| {
+                let at = middle(part);
+                [0, 1].map(|i| (at[i] - from[i]).round() as i64)
+            };
+            Run {
+                part: [drawn, drawn + 1].map(|part| part as f32 / parts as f32),
+                shifts: (first..last).map(shift).collect(),
+            }
+        })
+    }
+}
+
+/// Parts of a step for which one drawing of the head serves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Where the part begins and ends in which the head is drawn, 0 to 1.
+    pub part: [f32; 2],
+    /// Where the head is in each of the parts, whole cells from there.
+    pub shifts: Vec<[i64; 2]>,
 }
 
 /// Places along the way of an anchor point, in whole cells from its end: none at its beginning, where the step before

@@ -90,17 +90,17 @@ pub fn leaving(meeting: &Meeting, limits: &Limits, threshold: f32) -> [f32; 2] {
 }
 
 #[inline(always)]
-fn least(a: f32, b: f32) -> f32 {
+pub(crate) fn least(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
 #[inline(always)]
-fn most(a: f32, b: f32) -> f32 {
+pub(crate) fn most(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
 /// Cells that are done together.
-const RUN: usize = 16;
+pub(crate) const RUN: usize = 16;
 
 /// Cells of a row where the head is: how brush and canvas meet, a plane each.
 #[derive(Debug)]
@@ -119,46 +119,61 @@ pub struct Row<'a> {
 #[derive(Debug)]
 pub struct Paints<'a, 'b> {
     /// Of the brush.
-    pub brush: &'a mut [(usize, Vec<f32>)],
+    pub brush: &'a mut [&'b mut [f32]],
     /// Of the canvas, in the same order.
-    pub canvas: &'a mut [&'b mut Vec<f32>],
+    pub canvas: &'a mut [&'b mut [f32]],
     /// Where the row begins in those of the brush, and in those of the canvas.
     pub starts: [usize; 2],
 }
 
+/// The cells of a run; 0 beyond the plane's end.
 #[inline(always)]
-fn run(plane: &[f32], at: usize, len: usize) -> [f32; RUN] {
-    match plane[at..at + len].first_chunk() {
+pub(crate) fn run(plane: &[f32], at: usize) -> [f32; RUN] {
+    let rest = plane.get(at..).unwrap_or_default();
+    match rest.first_chunk() {
         Some(run) => *run,
         None => {
             let mut run = [0.0; RUN];
-            run[..len].copy_from_slice(&plane[at..at + len]);
+            run[..rest.len()].copy_from_slice(rest);
             run
         }
     }
 }
 
+/// Puts the cells of a run where they were, as far as the plane goes.
+#[inline(always)]
+fn put(plane: &mut [f32], at: usize, values: &[f32; RUN]) {
+    let rest = plane.get_mut(at..).unwrap_or_default();
+    match rest.first_chunk_mut() {
+        Some(run) => *run = *values,
+        None => rest.copy_from_slice(&values[..rest.len()]),
+    }
+}
+
+/// Sums of all paints on the cells of a run.
+#[inline(always)]
+pub(crate) fn sums(planes: &[&mut [f32]], at: usize) -> [f32; RUN] {
+    let mut sums = [0.0f32; RUN];
+    for plane in planes {
+        let counts = run(plane, at);
+        (0..RUN).for_each(|i| sums[i] += counts[i]);
+    }
+    sums
+}
+
 wide! {
-    /// Blends a row whose first cell has this threshold: all paints of a side alike.
+    /// Blends a row whose first cell has this threshold: all paints of a side alike. Cells of the planes beyond the row stay.
     pub fn blend(row: &Row<'_>, limits: &Limits, first: f32, paints: &mut Paints<'_, '_>) {
         let count = row.rate.len();
         let [on_brush, on_canvas] = paints.starts;
         for at in (0..count).step_by(RUN) {
-            let len = RUN.min(count - at);
-            let [rate, way] = [row.rate, row.way].map(|plane| run(plane, at, len));
+            let [rate, way] = [row.rate, row.way].map(|plane| run(plane, at));
             if rate.iter().chain(&way).all(|share| *share == 0.0) {
                 continue;
             }
-            let [reach, gap] = [row.reach, row.gap].map(|plane| run(plane, at, len));
-            let [mut brush, mut canvas] = [[0.0f32; RUN]; 2];
-            for (_, film) in &*paints.brush {
-                let film = run(film, on_brush + at, len);
-                (0..RUN).for_each(|i| brush[i] += film[i]);
-            }
-            for plane in &*paints.canvas {
-                let lies = run(plane, on_canvas + at, len);
-                (0..RUN).for_each(|i| canvas[i] += lies[i]);
-            }
+            let [reach, gap] = [row.reach, row.gap].map(|plane| run(plane, at));
+            let brush = sums(paints.brush, on_brush + at);
+            let canvas = sums(paints.canvas, on_canvas + at);
             let [mut gives, mut takes, mut leaves] = [[0.0f32; RUN]; 3];
             for i in 0..RUN {
                 let sum = first + (at + i) as f32 * Dither::ACROSS;
@@ -176,18 +191,17 @@ wide! {
                 let lost = if limits.lasting { least(given, taken) } else { taken };
                 leaves[i] = lost / most(taken, 1.0);
             }
-            for ((_, film), plane) in paints.brush.iter_mut().zip(&mut *paints.canvas) {
-                let film = &mut film[on_brush + at..][..len];
-                let plane = &mut plane[on_canvas + at..][..len];
-                let [mut held, mut lies] = [run(film, 0, len), run(plane, 0, len)];
+            for (film, plane) in paints.brush.iter_mut().zip(&mut *paints.canvas) {
+                let mut held = run(film, on_brush + at);
+                let mut lies = run(plane, on_canvas + at);
                 for i in 0..RUN {
                     let given = (held[i] * gives[i]).floor();
                     let taken = (lies[i] * takes[i]).floor();
                     held[i] += taken - given;
                     lies[i] += given - (taken * leaves[i]).floor();
                 }
-                film.copy_from_slice(&held[..len]);
-                plane.copy_from_slice(&lies[..len]);
+                put(film, on_brush + at, &held);
+                put(plane, on_canvas + at, &lies);
             }
         }
     }

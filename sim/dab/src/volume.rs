@@ -3,14 +3,14 @@
 //! Paint is counted in quanta by slot as in every model; dAb moves it in units of [`UNIT`] of them. Additive colour is
 //! linear in the volumes of the paints, so what RGB textures would hold follows from the counts.
 
-/// Quanta of a unit: 3.1 µm on a cell.
-pub const UNIT: f32 = 2048.0;
-/// Most units of a layer.
+/// Quanta of a unit: .76 µm on a cell. A unit more or less shall not be seen.
+pub const UNIT: f32 = 512.0;
+/// Most units of a layer: 195 µm. What a brush has on its surface beyond that waits there as in the reservoir.
 pub const MOST: f32 = 255.0;
 /// Units of the surface layer in one of the reservoir.
 pub const DEEP: f32 = 32.0;
-/// Units that hide what lies under them, 1/O_t of eq. 4.1: 49 µm.
-pub const OPAQUE: f32 = 16.0;
+/// Units that hide what lies under them, 1/O_t of eq. 4.1: 31 µm.
+pub const OPAQUE: f32 = 40.0;
 
 /// Units of so many quanta; more than a layer holds count as full.
 #[must_use]

@@ -1,7 +1,9 @@
 //! Each stage of dAb's step against a plain oracle in f64, and whole strokes against what must hold of them. Beside each
 //! comparison stands a seeded fault that it must find.
 
+mod raster;
 mod reservoir;
 mod scene;
 mod stroke;
+mod touching;
 mod transfer;

@@ -4,7 +4,7 @@ use maulstick_dab::reservoir::{flows, runs};
 use proptest::prelude::*;
 
 /// Quanta of a deep unit of a texel of 3.5 cells.
-const DEEP: f64 = 32.0 * 2048.0 * 3.5;
+const DEEP: f64 = 32.0 * 512.0 * 3.5;
 
 fn mean(both: [f64; 2], full: [f64; 2], rate: f64) -> f64 {
     let flow = |i: i32| flows(both, full, DEEP, (rate, (i as f32 + 0.5) / 2048.0));

@@ -143,6 +143,29 @@ impl Bench {
         }
     }
 
+    /// Lets `look` have a step from a head to another, in a window on all of the surface.
+    pub(crate) fn with_step(&mut self, poses: &[HeadPose; 2], look: impl FnOnce(&mut Step<'_>)) {
+        let sweep = Sweep {
+            before: None,
+            from: &poses[0],
+            to: &poses[1],
+        };
+        self.window([0; 2], [i64::from(SIDE); 2], |own, window| {
+            look(&mut Step {
+                window,
+                head: &own.head,
+                sweep,
+                bounds: ([0; 2], [i64::from(SIDE); 2]),
+                load: &mut own.load,
+                traits: own.traits,
+                handling: own.handling,
+                stain: 0.0,
+                lasting: own.lasting,
+                thinner: None,
+            });
+        });
+    }
+
     pub(crate) fn lying(&self) -> Counts {
         self.store.counts()
     }

@@ -3,8 +3,9 @@
 use maulstick_brush::HeadPose;
 use maulstick_canvas::quantum::{CELL_MAX, SLOTS};
 use maulstick_dab::dither::Dither;
-use maulstick_dab::stroke::{Stroker, bend, between, places};
+use maulstick_dab::stroke::{Course, SLACK, Stroker, bend, between, places};
 use maulstick_model::interface::{Handling, Sweep, Transfer};
+use maulstick_num::fork_join::with_threads;
 
 use crate::scene::{Bench, SIDE};
 
@@ -105,6 +106,82 @@ fn what_else_a_window_holds_does_not_matter() {
             bench.films()
         });
         assert!(films[0] == films[1], "{stroker:?}");
+    }
+}
+
+#[test]
+fn threads_change_no_byte() {
+    for stroker in STROKERS {
+        let painted = |threads: usize, seed: u64| {
+            let mut bench = Bench::new(stroker);
+            bench.load.disorder(seed);
+            bench.fill(7, 50_000.0);
+            let way = straight(&bench, 50, 3.0);
+            with_threads(threads, || bench.stroke(&way, true));
+            (bench.films(), bench.load)
+        };
+        let alone = painted(1, 2);
+        for threads in [2, 3, 8] {
+            assert!(
+                painted(threads, 2) == alone,
+                "{stroker:?}, {threads} threads"
+            );
+        }
+        assert!(painted(1, 3) != alone, "a fault passes");
+    }
+}
+
+/// A head that deforms is drawn anew as often as keeps it within the slack; one that does not, once.
+#[test]
+fn one_drawing_serves_while_all_of_the_head_goes_the_same_way() {
+    let bench = Bench::new(Stroker::Better);
+    let from = bench.pose([60.0, 60.0]);
+    let to = bench.pose([72.0, 63.0]);
+    let mut opened = to.clone();
+    let low: Vec<usize> = (0..to.z.len()).filter(|i| to.z[*i] < 3.0).collect();
+    for i in &low {
+        opened.x[*i] += 0.3 * (to.x[*i] - 72.0);
+    }
+    for (to, at_least, most) in [(&to, 1, 1), (&opened, 2, 12)] {
+        let sweep = Sweep {
+            before: None,
+            from: &from,
+            to,
+        };
+        let runs: Vec<_> = Course::of(&sweep, None).runs(12).collect();
+        assert!((at_least..=most).contains(&runs.len()), "{}", runs.len());
+        let parts: usize = runs.iter().map(|run| run.shifts.len()).sum();
+        assert_eq!(parts, 12);
+        // Where each point is in each part, and where the run's drawing has it.
+        let mut worst = [0.0f32; 2];
+        let mut part = 0;
+        for run in &runs {
+            let middle = 0.5 * (run.part[0] + run.part[1]);
+            for shift in &run.shifts {
+                let t = (part as f32 + 0.5) / 12.0;
+                for i in &low {
+                    let at = |t: f32| {
+                        [
+                            from.x[*i] + t * (to.x[*i] - from.x[*i]),
+                            from.y[*i] + t * (to.y[*i] - from.y[*i]),
+                        ]
+                    };
+                    let (own, drawn) = (at(t), at(middle));
+                    for axis in 0..2 {
+                        let off = (drawn[axis] + shift[axis] as f32 - own[axis]).abs();
+                        worst[0] = worst[0].max(off);
+                        worst[1] = worst[1].max((drawn[axis] - own[axis]).abs());
+                    }
+                }
+                part += 1;
+            }
+        }
+        // The slack, and half a cell of rounding.
+        assert!(worst[0] <= SLACK + 0.51, "{worst:?}");
+        assert!(
+            worst[1] > SLACK + 0.51,
+            "a drawing that stays passes: {worst:?}"
+        );
     }
 }
 

@@ -2,13 +2,14 @@
 
 use maulstick_dab::transfer::{Limits, Meeting, Paints, Row, blend, leaving};
 use proptest::prelude::*;
+use rand_pcg::Pcg32;
 
 /// Quanta of a unit, and units of a full layer, as the documents have them.
-const UNIT: f64 = 2048.0;
+const UNIT: f64 = 512.0;
 const FULL: f64 = 255.0;
 
 const FREE: Limits = Limits {
-    most: 255.0 * 2048.0,
+    most: 255.0 * 512.0,
     stain: 0.0,
     exchanges: 1.0,
     flow: 0.0,
@@ -88,7 +89,7 @@ proptest! {
         most in 0.0..255.0f32, stain in 0.0..20.0f32,
     ) {
         let both = [brush * UNIT, canvas * UNIT].map(f64::floor);
-        let limits = Limits { most: (most * 2048.0).floor(), stain: (stain * 2048.0).floor(), ..FREE };
+        let limits = Limits { most: (most * 512.0).floor(), stain: (stain * 512.0).floor(), ..FREE };
         let meeting = Meeting { rate, ..meeting(both, 0.1, 1.0) };
         let [given, taken] = leaving(&meeting, &limits, threshold);
         let (brush, canvas) = (both[0] as f32, both[1] as f32);
@@ -98,15 +99,103 @@ proptest! {
     }
 }
 
+/// What an oracle of saturation leaves out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fault {
+    None,
+    /// The brush takes up more than it holds.
+    FullBrush,
+    /// The canvas gets more than it holds.
+    FullCanvas,
+    /// What is beyond 255 units begins at 0 again.
+    Wraps,
+    /// The stain goes with the rest.
+    Stain,
+}
+
+/// Quanta that go over in f64: whole units, as far as there are any and there is room for them.
+fn goes(
+    [brush, canvas]: [f64; 2],
+    rate: f64,
+    limits: [f64; 2],
+    threshold: f64,
+    fault: Fault,
+) -> [f64; 2] {
+    let [most, stain] = limits;
+    let full = FULL * UNIT;
+    let layer = |quanta: f64| match fault {
+        Fault::Wraps => quanta % (full + UNIT),
+        _ => quanta.min(full),
+    };
+    let stays = if fault == Fault::Stain { 0.0 } else { stain };
+    let loose = (canvas - stays).max(0.0);
+    let opposite = (threshold + 0.5).fract();
+    let units = |quanta: f64, threshold: f64| (quanta * rate / UNIT + threshold).floor() * UNIT;
+    let given = units(layer(brush), threshold).min(layer(brush));
+    let taken = units(layer(canvas).min(loose), opposite).min(loose);
+    let taken = match fault {
+        Fault::FullBrush => taken,
+        _ => taken.min((full - brush).max(0.0) + given),
+    };
+    let given = match fault {
+        Fault::FullCanvas => given,
+        _ => given.min((most - canvas).max(0.0) + taken),
+    };
+    [given, taken]
+}
+
+#[test]
+fn saturation_is_that_of_the_oracle_and_each_fault_is_found() {
+    let mut random = Pcg32::new(7, 1);
+    let mut unit = || f64::from(random.next_u32()) / 4_294_967_296.0;
+    let cases: Vec<_> = (0..4000)
+        .map(|_| {
+            let both = [unit(), unit()].map(|share| (share * 400.0 * UNIT).floor());
+            let limits = [255.0 * unit(), 40.0 * unit()].map(|units| (units * UNIT).floor());
+            (both, unit(), limits, unit())
+        })
+        .collect();
+    let off = |fault: Fault| {
+        let wrong = cases.iter().filter(|(both, rate, limits, threshold)| {
+            let [most, stain] = limits.map(|quanta| quanta as f32);
+            let limits_of = Limits {
+                most,
+                stain,
+                ..FREE
+            };
+            let meeting = Meeting {
+                rate: *rate as f32,
+                ..meeting(*both, 0.1, 1.0)
+            };
+            let got = leaving(&meeting, &limits_of, *threshold as f32).map(f64::from);
+            let expected = goes(*both, *rate, *limits, f64::from(*threshold as f32), fault);
+            got != expected
+        });
+        wrong.count()
+    };
+    // Where a volume and its threshold make a whole unit but for rounding.
+    let rounded = off(Fault::None);
+    assert!(rounded < 20, "{rounded}");
+    for fault in [
+        Fault::FullBrush,
+        Fault::FullCanvas,
+        Fault::Wraps,
+        Fault::Stain,
+    ] {
+        let found = off(fault);
+        println!("{fault:?} {found}");
+        assert!(found > 80, "{fault:?}: {found}");
+    }
+}
+
 /// A row of two paints: what one side loses the other gains, and both colours go over as the sides have them.
 #[test]
 fn paints_go_over_alike_and_none_is_lost() {
     let cells = 500;
     let number = |i: usize, factor: usize| (i * factor % 997) as f32 * 300.0;
     let plane = |factor: usize| (0..cells).map(|i| number(i, factor)).collect::<Vec<f32>>();
-    let mut held = [(0, plane(7)), (4, plane(13))];
+    let mut held = [plane(7), plane(13)];
     let mut canvas = [plane(3), plane(29)];
-    let on_brush = |held: &[(usize, Vec<f32>); 2]| [held[0].1.clone(), held[1].1.clone()];
     let sum = |planes: &[Vec<f32>; 2]| -> Vec<f32> {
         planes[0]
             .iter()
@@ -114,7 +203,7 @@ fn paints_go_over_alike_and_none_is_lost() {
             .map(|(a, b)| a + b)
             .collect()
     };
-    let before = (on_brush(&held), canvas.clone());
+    let before = (held.clone(), canvas.clone());
     let totals = (sum(&before.0), sum(&before.1));
     let even = |value: f32| vec![value; cells];
     let planes = [even(0.19), even(2.0), even(1.0), even(0.0)];
@@ -124,14 +213,13 @@ fn paints_go_over_alike_and_none_is_lost() {
         reach: &planes[2],
         gap: &planes[3],
     };
-    let [one, other] = &mut canvas;
     let mut paints = Paints {
-        brush: &mut held,
-        canvas: &mut [one, other],
+        brush: &mut held.each_mut().map(|plane| &mut plane[..]),
+        canvas: &mut canvas.each_mut().map(|plane| &mut plane[..]),
         starts: [0; 2],
     };
     blend(&row, &FREE, 0.4, &mut paints);
-    let brush = on_brush(&held);
+    let brush = held;
     let mut mixed = 0;
     for i in 0..cells {
         for slot in 0..2 {

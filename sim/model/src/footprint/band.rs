@@ -53,7 +53,7 @@ impl Point {
 }
 
 wide! {
-    pub(super) fn draw_strips<L>(band: &mut Band, step: &Step<'_>, top: f32, loose: f32) {
+    fn draw_strips<L>(band: &mut Band, step: &Step<'_>, top: f32, loose: f32) {
         let (lift, turned) = (step.head.lift(), step.load.seed() as usize);
         for strip in 0..step.head.strips() {
             let ribbon = Ribbon {
@@ -103,6 +103,14 @@ impl Band {
         self.grid = grid;
         self.offset = offset;
         self.drawing.begin(grid.size, rows);
+    }
+
+    /// Draws those parts of the head that, with their paint, come below `top`, cells.
+    pub(super) fn draw_head(&mut self, step: &Step<'_>, top: f32) {
+        let (traits, to) = (&step.traits, step.sweep.to);
+        let film = step.load.thickest() as f32 * traits.film_cells_per_quantum;
+        self.draw_skin(step, top + film, traits.recede * to.splay);
+        draw_strips(self, step, top, traits.loose(to.press));
     }
 
     /// Draws those segments of a strip that come below `height`.

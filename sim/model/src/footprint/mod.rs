@@ -7,13 +7,16 @@
 pub mod band;
 pub mod contact;
 mod draw_skin;
+pub mod drawn;
+pub mod lying;
 mod rasterizer;
 
 use maulstick_canvas::window::{Area, Window};
-use maulstick_num::fork_join::{Balance, each, threads};
+use maulstick_num::fork_join::{Balance, threads};
 
-use band::{Band, draw_strips};
+use band::Band;
 use contact::Contact;
+use lying::Lying;
 
 use crate::interface::{Step, StepReport};
 
@@ -44,7 +47,7 @@ pub struct Footprint {
     /// Wet quanta of all paints on each contact, before the step.
     pub wet: Vec<f32>,
     /// The same on the cells of the grid, and afterwards on those around.
-    lying: Vec<f32>,
+    lying: Lying,
     /// One for each core, in order of their rows.
     bands: Vec<Band>,
     balance: Balance,
@@ -61,21 +64,17 @@ impl Footprint {
             return;
         }
         // Of the cells around the brush alone: what else the window holds must not matter.
-        let top = self.weigh(self.grid, step);
-        let loose = traits.loose(step.sweep.to.press);
+        let top = self.lying.weigh(self.grid, step);
         // The pressed head lies lower than it was solved by as much as the ride does.
         let low = top + sink + step.window.ride_below();
-        let film = step.load.thickest() as f32 * traits.film_cells_per_quantum;
-        let recede = traits.recede * step.sweep.to.splay;
         // Strips are drawn in the coordinates of the surface.
         let origin = step.window.origin();
         let offset = [0, 1].map(|i| (origin[i] + self.grid.from[i] as i64) as f32);
-        let (grid, lying, height) = (self.grid, &self.lying, self.grid.size[1]);
+        let (grid, lying, height) = (self.grid, &self.lying.quanta[..], self.grid.size[1]);
         let step = &*step;
         let find = |band: &mut Band, rows| {
             band.begin(grid, offset, rows);
-            band.draw_skin(step, low + film, recede);
-            draw_strips(band, step, low, loose);
+            band.draw_head(step, low);
             band.touch(step, lying, sink);
         };
         let rows = self.balance.cut(height, shares_of(grid.cells()));
@@ -88,30 +87,9 @@ impl Footprint {
         self.gather(step.window);
     }
 
-    /// Weighs the wet paint of an area, and notes and returns how high it stands, cells.
-    fn weigh(&mut self, area: Area, step: &mut Step<'_>) -> f32 {
-        let (window, to_cells) = (&*step.window, step.traits.cells_per_quantum);
-        self.lying.resize(area.cells(), 0.0);
-        let weigh = |area: &Area, lying: &mut [f32]| {
-            window.weigh(area, lying);
-            highest(lying, area, window, to_cells)
-        };
-        let mut lying = &mut self.lying[..];
-        let parts = area.parts(shares_of(area.cells()));
-        let parts = parts.map(|part| {
-            let own = lying.split_off_mut(..part.cells());
-            (part, own.unwrap_or_default(), 0.0f32)
-        });
-        let mut parts: Vec<_> = parts.collect();
-        each(&mut parts, |(part, lying, top)| *top = weigh(part, lying));
-        let top = parts.iter().fold(0.0f32, |most, (.., top)| most.max(*top));
-        step.window.note_top(top / to_cells);
-        top
-    }
-
     /// Notes how high paint stands where the brush has left it.
     pub fn note_left(&mut self, step: &mut Step<'_>) {
-        self.weigh(self.around, step);
+        self.lying.weigh(self.around, step);
     }
 
     /// Gathers the contacts of the bands, and lays the cells around them.
@@ -170,32 +148,4 @@ impl Footprint {
         let Area { from, size } = self.around;
         (from, [from[0] + size[0], from[1] + size[1]])
     }
-}
-
-/// The highest that paint of `lying` quanta stands on the cells of an area, cells; 0 where none does.
-fn highest(lying: &[f32], area: &Area, window: &Window, to_cells: f32) -> f32 {
-    let rows = area.rows(window.width());
-    let lying = lying.chunks_exact(area.size[0].max(1));
-    rows.zip(lying).fold(0.0, |most, (row, lying)| {
-        highest_of(lying, &window.base()[row], to_cells).max(most)
-    })
-}
-
-/// The highest that paint of `lying` quanta stands on `base`, cells; 0 where none does.
-fn highest_of(lying: &[f32], base: &[f32], to_cells: f32) -> f32 {
-    let mut highest = [0.0f32; 8];
-    let (runs, bases) = (lying.chunks_exact(8), base.chunks_exact(8));
-    let rest = runs.remainder().iter().zip(bases.remainder());
-    for (lying, base) in runs.zip(bases) {
-        for i in 0..8 {
-            let height = base[i] + lying[i] * to_cells;
-            highest[i] = if height > highest[i] {
-                height
-            } else {
-                highest[i]
-            };
-        }
-    }
-    let rest = rest.map(|(lying, base)| base + lying * to_cells);
-    rest.chain(highest).fold(0.0, f32::max)
 }

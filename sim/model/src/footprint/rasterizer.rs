@@ -131,6 +131,7 @@ impl Line {
     }
 
     /// The places along and across the piece of a cell.
+    #[inline]
     fn place(&self, cell: [f32; 2]) -> [f32; 2] {
         let (t, middle) = self.at(cell[self.major]);
         let off = (cell[1 - self.major] - middle).abs() * self.cosine;
@@ -171,6 +172,16 @@ impl Over<'_> {
         let z = self.piece.z[0] + self.t * self.piece.z[1];
         let rests = (z + ride.min(0.0)).max(ride);
         rests - sink + self.piece.bottom + self.piece.round * self.across * self.across
+    }
+
+    /// Height of the bristle's middle line, cells.
+    pub(super) fn height(&self) -> f32 {
+        self.piece.z[0] + self.t * self.piece.z[1]
+    }
+
+    /// Height of its lower side over its middle line, cells.
+    pub(super) fn clearance(&self) -> f32 {
+        self.piece.bottom + self.piece.round * self.across * self.across
     }
 
     /// The texel.
@@ -224,6 +235,7 @@ impl Drawing {
     }
 
     /// The part of the head over a cell of these rows.
+    #[inline]
     pub(super) fn over(&self, x: usize, y: usize) -> Option<Over<'_>> {
         let at = (y - self.rows.start) * self.stride + x;
         let number = self.number[at];

@@ -62,6 +62,7 @@ impl Optics {
             assets,
         };
         optics.set_layers(scene);
+        optics.emboss(scene);
         Ok(optics)
     }
 
@@ -184,6 +185,14 @@ impl Optics {
         self.note(scene);
     }
 
+    /// Takes over how strongly relief is embossed where it is part of the colours.
+    fn emboss(&mut self, scene: &Scene) {
+        if embosses(scene) {
+            Arc::make_mut(&mut self.look).set_relief(scene.light.relief as f32);
+            self.note(scene);
+        }
+    }
+
     /// Counts all that was shown of the scene as outdated.
     pub(crate) fn renew(&mut self, scene: &Scene) {
         Arc::make_mut(&mut self.look).renew();
@@ -197,7 +206,11 @@ impl Optics {
             exposure: 1.0,
             intensity: 1.0,
             direction: [0.0, 0.0, 1.0],
-            relief: 1.0,
+            relief: if embosses(scene) {
+                scene.light.relief
+            } else {
+                1.0
+            },
             softness: 0.0,
             ..scene.light.clone()
         };
@@ -209,6 +222,12 @@ impl Optics {
         let made_of = format!("5 {light:?} {veiled:?} {materials:?} {hash}");
         Arc::make_mut(&mut self.look).note(&made_of);
     }
+}
+
+/// True if the relief of a surface is part of its colours.
+fn embosses(scene: &Scene) -> bool {
+    let mut models = scene.surfaces.iter().map(|own| model_called(&own.model));
+    models.any(|model| model.is_ok_and(|model| model.shown.has_own_colours()))
 }
 
 /// Slot of a paint in a scene.
@@ -259,6 +278,7 @@ impl Painting {
         }
         self.scene.light = light.clone();
         self.scene.version += 1;
+        self.optics.emboss(&self.scene);
         self.optics.note(&self.scene);
         Ok(())
     }

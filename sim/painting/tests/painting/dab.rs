@@ -1,10 +1,10 @@
 //! dAb in a painting: colours that drying keeps, and a palette of its own.
 
-use maulstick_painting::picture::picture;
+use maulstick_painting::picture::{picture, unlit_picture};
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::Solve;
 use maulstick_types::edits::Dry;
-use maulstick_types::scene::{CANVAS, PALETTE};
+use maulstick_types::scene::{CANVAS, Light, PALETTE};
 use maulstick_types::values::Share;
 
 use crate::studio::{BRUSH, fill, load, mixture, painting, round, solve, state};
@@ -77,6 +77,42 @@ fn what_dries_in_parts_looks_as_before() {
         "a fault would pass: drying shows under new paint"
     );
     assert_eq!(painting.report().quanta_missing, 0);
+}
+
+/// The text's bumpiness is the relief of the scene's light.
+#[test]
+fn the_lights_relief_is_how_strongly_paint_is_embossed() {
+    let relit = |painting: &mut Painting, relief: f64| {
+        let light = Light {
+            relief,
+            ..painting.scene().light.clone()
+        };
+        painting.relight(&light).expect("a light");
+        (painting.look().generation(), painting.look().print())
+    };
+    let mut painting = easel("impasto");
+    painting.apply(load(BLUE)).expect("loaded");
+    stroke(&mut painting, 1, CANVAS, &[4.0, 12.0, 22.0], 6.0);
+    let [flat, embossed, strongly] = [0.0, 1.0, 3.0].map(|relief| {
+        let look = relit(&mut painting, relief);
+        assert_eq!(look, relit(&mut painting, relief), "nothing changes");
+        (look, unlit_picture(&mut painting, CANVAS))
+    });
+    let by = [&embossed, &strongly].map(|(_, picture)| apart(&picture.rgb, &flat.1.rgb));
+    println!("{by:?}");
+    assert!(by[0] > 5 && by[1] > by[0], "{by:?}");
+    assert!(flat.0.0 < embossed.0.0 && flat.0.1 != embossed.0.1);
+    // The colours of other models have no relief, and stay.
+    let mut oil = painting_of_oil();
+    let [flat, strongly] = [0.0, 3.0].map(|relief| relit(&mut oil, relief));
+    assert_eq!(flat, strongly);
+}
+
+fn painting_of_oil() -> Painting {
+    painting(&PaintingSetup {
+        cells: [150, 100],
+        ..PaintingSetup::default()
+    })
 }
 
 #[test]

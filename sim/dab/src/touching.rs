@@ -1,0 +1,133 @@
+//! Where and how deep brush and canvas meet (Baxter 2004, § 4.2): what of the brush is near enough to the top of the surface,
+//! with the film that it carries.
+
+use maulstick_num::wide;
+
+use crate::transfer::{RUN, least, most, run, sums};
+
+/// Share of a gap between brush and canvas up to which the brush's paint only bridges it: what lies on ridges sags into
+/// the hollows between them.
+pub const BRIDGED: f32 = 0.4;
+
+/// The brush over the cells of a row; planes may go on beyond it.
+#[derive(Debug)]
+pub struct Brush<'a> {
+    /// Cells of the row.
+    pub count: usize,
+    /// Share of the cell that is covered.
+    pub cover: &'a [f32],
+    /// Share of either side that goes over where they touch, and way, as of a [meeting](crate::transfer::Meeting).
+    pub rate: &'a [f32],
+    /// As there.
+    pub way: &'a [f32],
+    /// Height of the middle line of the bristle as it was solved, cells.
+    pub height: &'a [f32],
+    /// Height of its lower side over that, cells.
+    pub clearance: &'a [f32],
+    /// Its paints, quanta; from where the row begins.
+    pub film: &'a [&'a mut [f32]],
+    /// Where the row begins in them.
+    pub start: usize,
+    /// Depth to which it sinks into what it lies on, cells.
+    pub sink: f32,
+}
+
+/// The canvas under it.
+#[derive(Debug)]
+pub struct Canvas<'a> {
+    /// Height of what catches paint, cells.
+    pub base: &'a [f32],
+    /// Height of a bristle on it, cells.
+    pub ride: &'a [f32],
+    /// Its wet paints, quanta.
+    pub wet: &'a [&'a mut [f32]],
+    /// Which of them is thinner.
+    pub thinner: Option<usize>,
+    /// Where the row begins in them.
+    pub start: usize,
+    /// Height of wet paint by its count, cells.
+    pub cells_per_quantum: f32,
+}
+
+/// How they meet, a number for each cell of the row; see [`Meeting`](crate::transfer::Meeting).
+#[derive(Clone, Debug, Default)]
+pub struct Touching {
+    /// Share that goes over; 0 where they do not touch.
+    pub rate: Vec<f32>,
+    /// Way; 0 where they do not touch.
+    pub way: Vec<f32>,
+    /// Share of the canvas's paint that the brush reaches.
+    pub reach: Vec<f32>,
+    /// Gap that the brush's paint bridges, quanta.
+    pub gap: Vec<f32>,
+    /// The cells that touch.
+    pub cells: f64,
+    /// Wet quanta on them, and those of them that are thinner.
+    pub wet: [f64; 2],
+}
+
+impl Touching {
+    /// Room for a row of so many cells and the rest of its last run; nothing is counted.
+    pub fn begin(&mut self, cells: usize) {
+        for plane in [
+            &mut self.rate,
+            &mut self.way,
+            &mut self.reach,
+            &mut self.gap,
+        ] {
+            plane.resize(cells.next_multiple_of(RUN), 0.0);
+        }
+        (self.cells, self.wet) = (0.0, [0.0; 2]);
+    }
+}
+
+wide! {
+    /// Finds where brush and canvas touch on a row, and counts it.
+    ///
+    /// A pressed bristle has its solved height at 0: it follows the ride into the valleys of the tooth, and is lifted by
+    /// higher parts.
+    pub fn touch(brush: &Brush<'_>, canvas: &Canvas<'_>, found: &mut Touching) {
+        let count = brush.count;
+        let to_cells = canvas.cells_per_quantum;
+        let to_bridge = BRIDGED / to_cells;
+        let [mut cells, mut quanta, mut thin] = [[0.0f64; RUN]; 3];
+        for at in (0..count).step_by(RUN) {
+            let inside = count - at;
+            let cover = run(brush.cover, at);
+            let [mut rates, mut ways, mut reaches, mut gaps] = [[0.0f32; RUN]; 4];
+            if cover.iter().any(|share| *share > 0.0) {
+                let [height, clearance] = [brush.height, brush.clearance].map(|plane| run(plane, at));
+                let [base, ride] = [canvas.base, canvas.ride].map(|plane| run(plane, at));
+                let [rate, way] = [brush.rate, brush.way].map(|plane| run(plane, at));
+                let mut touches = [0.0f32; RUN];
+                let film = sums(brush.film, brush.start + at);
+                let lies = sums(canvas.wet, canvas.start + at);
+                for i in 0..RUN {
+                    let wet = lies[i] * to_cells;
+                    let rests = most(height[i] + least(ride[i], 0.0), ride[i]);
+                    let reach = base[i] + wet - (rests - brush.sink + clearance[i]);
+                    let near = reach + film[i] * to_cells > 0.0;
+                    touches[i] = if near && cover[i] > 0.0 && i < inside { 1.0 } else { 0.0 };
+                    let depth = least(most(reach, 0.0), wet);
+                    reaches[i] = if wet > 0.0 { depth / wet } else { 0.0 };
+                    gaps[i] = most(-reach, 0.0) * to_bridge;
+                    rates[i] = rate[i] * touches[i];
+                    ways[i] = way[i] * touches[i];
+                    cells[i] += f64::from(touches[i]);
+                    quanta[i] += f64::from(touches[i] * lies[i]);
+                }
+                if let Some(thinner) = canvas.thinner {
+                    let lies = run(&canvas.wet[thinner][..], canvas.start + at);
+                    (0..RUN).for_each(|i| thin[i] += f64::from(touches[i] * lies[i]));
+                }
+            }
+            found.rate[at..at + RUN].copy_from_slice(&rates);
+            found.way[at..at + RUN].copy_from_slice(&ways);
+            found.reach[at..at + RUN].copy_from_slice(&reaches);
+            found.gap[at..at + RUN].copy_from_slice(&gaps);
+        }
+        found.cells += cells.iter().sum::<f64>();
+        found.wet[0] += quanta.iter().sum::<f64>();
+        found.wet[1] += thin.iter().sum::<f64>();
+    }
+}

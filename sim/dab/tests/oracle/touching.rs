@@ -1,0 +1,161 @@
+//! § 4.2: the brush touches where it is near enough to the top of the surface, with the film that it carries.
+
+use maulstick_dab::touching::{BRIDGED, Brush, Canvas, Touching, touch};
+use rand_pcg::Pcg32;
+use rand_pcg::rand_core::Rng as _;
+
+/// Height of a quantum on its cell, cells.
+const CELLS: f64 = 1.5e-9 / 1.25e-4;
+const SINK: f64 = 0.3;
+
+/// What an oracle does otherwise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fault {
+    None,
+    /// The film of the brush does not count.
+    Bare,
+    /// A bristle does not follow the ride into valleys.
+    Stiff,
+    /// It does not sink in.
+    Floats,
+    /// Dry relief does not count.
+    Flat,
+    /// Wet paint does not count.
+    Dry,
+}
+
+/// A cell: cover, height, clearance, base, ride, quanta on the brush and on the canvas.
+type Cell = [f64; 7];
+
+/// Whether a cell touches, share of the wet paint that is reached, and the gap, quanta.
+fn meets(
+    [cover, height, clearance, base, ride, film, lies]: Cell,
+    fault: Fault,
+) -> (bool, f64, f64) {
+    let has = |what: Fault, value: f64| if fault == what { 0.0 } else { value };
+    let wet = has(Fault::Dry, lies * CELLS);
+    let below = if fault == Fault::Stiff {
+        0.0
+    } else {
+        ride.min(0.0)
+    };
+    let rests = (height + below).max(ride);
+    let reach = has(Fault::Flat, base) + wet - rests + has(Fault::Floats, SINK) - clearance;
+    let touches = cover > 0.0 && reach + has(Fault::Bare, film * CELLS) > 0.0;
+    let share = if lies > 0.0 {
+        reach.clamp(0.0, wet) / wet.max(1e-30)
+    } else {
+        0.0
+    };
+    (
+        touches,
+        share,
+        f64::from(BRIDGED) * (-reach).max(0.0) / CELLS,
+    )
+}
+
+#[test]
+fn a_row_touches_as_its_cells_do_and_each_fault_is_found() {
+    let mut random = Pcg32::new(11, 3);
+    let mut unit = || f64::from(random.next_u32()) / 4_294_967_296.0;
+    let mut cells: Vec<Cell> = (0..997)
+        .map(|_| {
+            let cover = if unit() < 0.2 { 0.0 } else { unit() };
+            let [height, clearance] = [unit(), 0.6 * unit()];
+            let ride = 0.8 * (unit() - 0.5);
+            let base = ride - 0.3 * unit();
+            let film = (unit() * 60_000.0).floor();
+            let lies = if unit() < 0.1 {
+                0.0
+            } else {
+                (unit() * 60_000.0).floor()
+            };
+            [cover, height, clearance, base, ride, film, lies]
+        })
+        .collect();
+    for cell in &mut cells {
+        *cell = cell.map(|value| f64::from(value as f32));
+    }
+    let plane = |i: usize| {
+        cells
+            .iter()
+            .map(|cell| cell[i] as f32)
+            .collect::<Vec<f32>>()
+    };
+    let planes: Vec<Vec<f32>> = (0..7).map(plane).collect();
+    // Two paints a side: a third and the rest.
+    let parted = |plane: &[f32]| {
+        let third: Vec<f32> = plane.iter().map(|count| (count / 3.0).floor()).collect();
+        let rest = plane
+            .iter()
+            .zip(&third)
+            .map(|(all, part)| all - part)
+            .collect();
+        [third, rest]
+    };
+    let (mut film, mut lies) = (parted(&planes[5]), parted(&planes[6]));
+    let thinner: f64 = lies[1]
+        .iter()
+        .zip(&cells)
+        .filter(|(_, cell)| meets(**cell, Fault::None).0)
+        .map(|(count, _)| f64::from(*count))
+        .sum();
+    let way: Vec<f32> = planes[0].iter().map(|cover| 2.0 * cover).collect();
+    let mut found = Touching::default();
+    found.begin(cells.len());
+    touch(
+        &Brush {
+            count: cells.len(),
+            cover: &planes[0],
+            rate: &planes[0],
+            way: &way,
+            height: &planes[1],
+            clearance: &planes[2],
+            film: &film.each_mut().map(|plane| &mut plane[..]),
+            start: 0,
+            sink: SINK as f32,
+        },
+        &Canvas {
+            base: &planes[3],
+            ride: &planes[4],
+            wet: &lies.each_mut().map(|plane| &mut plane[..]),
+            thinner: Some(1),
+            start: 0,
+            cells_per_quantum: CELLS as f32,
+        },
+        &mut found,
+    );
+    let off = |fault: Fault| {
+        let wrong = cells.iter().enumerate().filter(|(i, cell)| {
+            let (touches, reach, gap) = meets(**cell, fault);
+            let [rate, way] = [1.0, 2.0].map(|factor| if touches { factor * cell[0] } else { 0.0 });
+            let near = |got: f32, want: f64, by: f64| (f64::from(got) - want).abs() < by;
+            !near(found.rate[*i], rate, 1e-6)
+                || !near(found.way[*i], way, 1e-6)
+                || cell[0] > 0.0 && !near(found.reach[*i], reach, 1e-3)
+                || cell[0] > 0.0 && !near(found.gap[*i], gap, 2.0 + 1e-5 * gap)
+        });
+        wrong.count()
+    };
+    assert_eq!(off(Fault::None), 0);
+    for fault in [
+        Fault::Bare,
+        Fault::Stiff,
+        Fault::Floats,
+        Fault::Flat,
+        Fault::Dry,
+    ] {
+        let found = off(fault);
+        println!("{fault:?} {found}");
+        assert!(found > 20, "{fault:?}: {found}");
+    }
+    let touching: Vec<&Cell> = cells
+        .iter()
+        .filter(|cell| meets(**cell, Fault::None).0)
+        .collect();
+    let wet: f64 = touching.iter().map(|cell| cell[6]).sum();
+    assert_eq!(
+        (found.cells, found.wet),
+        (touching.len() as f64, [wet, thinner])
+    );
+}
