@@ -5,6 +5,7 @@ use std::fmt;
 
 use maulstick_appearance::show_paint::{Counted, ShowPaint};
 use maulstick_canvas::EditError;
+use maulstick_convert::Colouring;
 use maulstick_dab::{Dab, Layers};
 use maulstick_impasto::Impasto;
 use maulstick_marker::{Marker, Matte};
@@ -16,6 +17,8 @@ pub struct ModelEntry {
     pub name: &'static str,
     /// How its paint is shown.
     pub shown: &'static dyn ShowPaint,
+    /// How its counts become colours: between models that differ in it, conversions fit colours.
+    pub colouring: Colouring,
     /// Makes one that runs on the processor.
     make: fn() -> Box<dyn PaintModel>,
 }
@@ -28,16 +31,19 @@ pub static MODELS: [ModelEntry; 3] = [
     ModelEntry {
         name: "impasto",
         shown: &Counted,
+        colouring: Colouring::Films,
         make: || Box::new(Impasto::default()),
     },
     ModelEntry {
         name: "dab",
         shown: &Layers { emboss: EMBOSS },
+        colouring: Colouring::Volumes,
         make: || Box::new(Dab::default()),
     },
     ModelEntry {
         name: "marker",
         shown: &Matte,
+        colouring: Colouring::Films,
         make: || Box::new(Marker::default()),
     },
 ];
