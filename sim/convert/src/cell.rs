@@ -81,6 +81,8 @@ impl CellColour for FilmCell<'_> {
 /// A layer of volumes.
 pub(crate) struct VolumeCell<'a> {
     pub(crate) palette: &'a Palette<'a>,
+    /// Encoded colours of its paints.
+    pub(crate) encoded: &'a [[f64; 3]],
     /// Encoded colour of what lies under it.
     pub(crate) under: [f64; 3],
     /// Share of that which it replaces.
@@ -90,7 +92,7 @@ pub(crate) struct VolumeCell<'a> {
 impl CellColour for VolumeCell<'_> {
     fn lab(&self, shares: &[f64], slopes: &mut [[f64; 3]]) -> [f64; 3] {
         let mut mixed = [0.0; 3];
-        for (encoded, share) in self.palette.encoded.iter().zip(shares) {
+        for (encoded, share) in self.encoded.iter().zip(shares) {
             for (sum, value) in mixed.iter_mut().zip(encoded) {
                 *sum += share * value;
             }
@@ -105,7 +107,7 @@ impl CellColour for VolumeCell<'_> {
             false => 2.4 / 1.055 * powf((value + 0.055) / 1.055, 1.4),
         });
         let to_xyz = self.palette.to_xyz();
-        for (slope, own) in slopes.iter_mut().zip(&self.palette.encoded) {
+        for (slope, own) in slopes.iter_mut().zip(self.encoded) {
             let by = [0, 1, 2].map(|i| self.hides * steep[i] * own[i]);
             *slope = maulstick_optics::colour::apply(to_xyz, by);
         }

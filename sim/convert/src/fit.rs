@@ -6,7 +6,7 @@
 use maulstick_optics::colour::{Matrix, apply, delta_e_2000, delta_e_2000_near};
 
 use crate::cell::CellColour;
-use crate::program::{NEAR, Program};
+use crate::program::{Active, NEAR, Program};
 
 /// Cost of the whole in paints that the own mixture does not have, ΔE₀₀²/2.
 const FOREIGN: f64 = 0.05;
@@ -45,6 +45,7 @@ pub(crate) struct Fitter {
     costs: Vec<f64>,
     ends: Vec<f64>,
     tried: Vec<f64>,
+    active: Active,
 }
 
 /// Terms that do not change during a fit.
@@ -83,6 +84,7 @@ impl Fitter {
             costs: vec![0.0; paints],
             ends: vec![0.0; paints],
             tried: vec![0.0; paints],
+            active: Active::default(),
         }
     }
 
@@ -114,7 +116,7 @@ impl Fitter {
                 own: wanted.own,
                 costs: &self.costs,
             };
-            program.minimise(&mut self.ends);
+            program.minimise(&mut self.ends, &mut self.active);
             let Some((there, energy)) = self.towards(colour, &terms, found) else {
                 break;
             };

@@ -12,12 +12,14 @@
 //! | `palette` | the paints that a fit may use, as numbers |
 //! | `shown` | layers of a tile laid over each other in either colouring |
 //! | `cell` | colour of a layer of one cell, and its slopes by the shares of the paints |
+//! | `cell_fit` | the paints of one layer of a cell after another |
 //! | `fit` | nearest shares: Gauss-Newton steps on the simplex |
 //! | `program` | the quadratic programme of a step |
 //! | `masstones` | mixtures from which a fit begins that no neighbour helps |
 //! | [`Converter`] | the paint of a tile |
 
 mod cell;
+mod cell_fit;
 mod colouring;
 mod fit;
 mod masstones;

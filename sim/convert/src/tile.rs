@@ -4,21 +4,17 @@ use std::sync::Arc;
 
 use maulstick_appearance::Appearance;
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
-use maulstick_canvas::quantum::{CELL_MAX, QUANTUM_M};
+use maulstick_canvas::quantum::CELL_MAX;
 use maulstick_canvas::tile::Tile;
-use maulstick_canvas::wet_over::wet_over;
+use maulstick_canvas::wet_over::{noted, wet_over};
 use maulstick_optics::Under;
 use maulstick_optics::colour::delta_e_2000;
 
-use crate::cell::{FilmCell, VolumeCell};
+use crate::cell_fit::CellFit;
 use crate::colouring::Colouring;
-use crate::fit::{Fitter, Found, Wanted, whole};
 use crate::masstones::Masstones;
 use crate::palette::Palette;
 use crate::shown::{Kind, Shown};
-
-/// Distance, ΔE₀₀, from which a fit is tried from elsewhere, too.
-const FAR: f64 = 1.0;
 
 /// Ground of a tile, and its cells that are left alone.
 #[derive(Clone, Copy, Debug)]
@@ -69,37 +65,10 @@ pub struct Converted {
 /// Conversion of tiles from one colouring to another.
 #[derive(Debug)]
 pub struct Converter<'a> {
-    palette: Palette<'a>,
+    pub(crate) palette: Palette<'a>,
     from: Colouring,
-    to: Colouring,
-    masstones: Option<Masstones>,
-}
-
-/// The paint of one layer of a cell.
-#[derive(Debug, Default, PartialEq, Clone)]
-struct CellPaint {
-    /// Quanta by paint of the palette.
-    counts: Vec<f32>,
-    all: u64,
-}
-
-impl CellPaint {
-    fn take(&mut self, planes: &[Option<&Arc<[f32]>>], cell: usize) {
-        let count = |plane: &Option<&Arc<[f32]>>| plane.map_or(0.0, |plane| plane[cell]);
-        self.counts.clear();
-        self.counts.extend(planes.iter().map(count));
-        self.all = self.counts.iter().map(|count| *count as u64).sum();
-    }
-}
-
-/// What a fit of a cell depends on: alike for many neighbours.
-#[derive(Debug, Default, PartialEq, Clone)]
-struct Asked {
-    paint: CellPaint,
-    colour: [f64; 3],
-    /// Reflectances or encoded channels of what lies under it.
-    under: Vec<f64>,
-    hides: f64,
+    pub(crate) to: Colouring,
+    pub(crate) masstones: Option<Masstones>,
 }
 
 impl<'a> Converter<'a> {
@@ -138,7 +107,7 @@ impl<'a> Converter<'a> {
             let dry = |over: Option<Vec<f32>>| Kind::Dry { opacity, over };
             before.lay(palette, &planes, &dry(wet_over(&planes)));
             let fitted = self.layer(&planes, &before, &after, &dry(None), ground.stays);
-            after.lay(palette, &fitted, &dry(None));
+            after.lay(palette, &fitted, &dry(wet_over(&fitted)));
             converted.dry.push(fitted);
         }
         converted.dry.reverse();
@@ -172,7 +141,8 @@ impl<'a> Converter<'a> {
         distance
     }
 
-    /// A layer with the paints of each cell chosen anew: over `under` it is to have the colour that `wanted` has.
+    /// A layer with the paints of each cell chosen anew: over `under` it is to have the colour that `wanted` has. Of dry
+    /// volumes it is also chosen how much they hide, as if so much had stayed wet over them.
     fn layer(
         &self,
         planes: &Planes,
@@ -194,14 +164,16 @@ impl<'a> Converter<'a> {
         let mut left_alone = [false; TILE_CELLS];
         stays.iter().for_each(|cell| left_alone[*cell] = true);
         let mut fit = CellFit::new(self);
+        let mut over = vec![0.0; TILE_CELLS];
         for cell in (0..TILE_CELLS).filter(|cell| !left_alone[*cell]) {
-            fit.asked.paint.take(&own, cell);
+            let all = fit.take(&own, cell);
             // More than a cell holds may not be exact as a count of one paint.
-            if !(1..=u64::from(CELL_MAX)).contains(&fit.asked.paint.all) {
+            if !(1..=u64::from(CELL_MAX)).contains(&all) {
                 continue;
             }
-            fit.ask(wanted, under, kind, cell);
-            for (into, count) in into.iter_mut().zip(fit.counts()) {
+            let fitted = fit.fitted(wanted, under, kind, cell);
+            over[cell] = fitted.over;
+            for (into, count) in into.iter_mut().zip(fitted.counts) {
                 match into {
                     Some(plane) => plane[cell] = *count as f32,
                     None if *count > 0 => {
@@ -222,126 +194,15 @@ impl<'a> Converter<'a> {
         by_slot.extend(others.cloned());
         by_slot.sort_by_key(|(slot, _)| *slot);
         by_slot.retain(|(_, plane)| plane.iter().any(|count| *count != 0.0));
-        by_slot.into_iter().collect()
+        let fitted: Planes = by_slot.into_iter().collect();
+        match over.iter().any(|over| *over > 0.0) {
+            true => noted(fitted, &over),
+            false => fitted,
+        }
     }
 }
 
 /// Counts without planes of the model's own.
 fn plain(planes: &Planes) -> Planes {
     planes.iter().cloned().collect()
-}
-
-/// Fits of the cells of a layer, one after the other: each begins from the one before it.
-struct CellFit<'a> {
-    converter: &'a Converter<'a>,
-    fitter: Fitter,
-    asked: Asked,
-    last: Asked,
-    own: Vec<f64>,
-    start: Vec<f64>,
-    found: Found,
-    other: Found,
-    counts: Vec<u64>,
-}
-
-impl<'a> CellFit<'a> {
-    fn new(converter: &'a Converter<'a>) -> Self {
-        let paints = converter.palette.slots.len();
-        Self {
-            converter,
-            fitter: Fitter::new(paints),
-            asked: Asked::default(),
-            last: Asked::default(),
-            own: Vec::new(),
-            start: vec![0.0; paints],
-            found: Found::default(),
-            other: Found::default(),
-            counts: Vec::new(),
-        }
-    }
-
-    /// Takes in what the fit of a cell depends on besides its paint.
-    fn ask(&mut self, wanted: &Shown, under: &Shown, kind: &Kind, cell: usize) {
-        let asked = &mut self.asked;
-        asked.colour = wanted.lab(&self.converter.palette, cell);
-        asked.under.clear();
-        match under {
-            Shown::Films(planes) => {
-                let values = planes.iter().skip(cell).step_by(TILE_CELLS);
-                asked.under.extend(values.map(|r| f64::from(*r)));
-                asked.hides = kind.opacity().into();
-            }
-            Shown::Volumes(rgb) => {
-                let values = rgb.iter().map(|plane| f64::from(plane[cell]));
-                asked.under.extend(values);
-                asked.hides = kind.hides(cell, asked.paint.all as f32).into();
-            }
-        }
-    }
-
-    /// Quanta by paint.
-    fn counts(&mut self) -> &[u64] {
-        if self.asked != self.last || self.counts.is_empty() {
-            let all = self.asked.paint.all;
-            let share = |count: &f32| f64::from(*count) / all as f64;
-            self.own.clear();
-            self.own.extend(self.asked.paint.counts.iter().map(share));
-            std::mem::swap(&mut self.asked, &mut self.last);
-            let Asked { colour, hides, .. } = self.last;
-            let palette = &self.converter.palette;
-            match self.converter.to {
-                Colouring::Films => {
-                    let under = std::mem::take(&mut self.last.under);
-                    let film = FilmCell {
-                        palette,
-                        under: &under,
-                        thickness_m: all as f64 * QUANTUM_M * hides,
-                    };
-                    self.fit(&film, colour);
-                    self.last.under = under;
-                }
-                Colouring::Volumes => {
-                    let under = [0, 1, 2].map(|channel| self.last.under[channel]);
-                    let volume = VolumeCell {
-                        palette,
-                        under,
-                        hides,
-                    };
-                    self.fit(&volume, colour);
-                }
-            }
-            whole(&self.found.shares, all, &mut self.counts);
-        }
-        &self.counts
-    }
-
-    /// Finds shares, from the own ones and from those of the cell before; where both are far, from a table.
-    fn fit(&mut self, colour: &impl crate::cell::CellColour, wanted: [f64; 3]) {
-        let wanted = Wanted {
-            colour: wanted,
-            own: &self.own,
-        };
-        let has_last = !self.found.shares.is_empty();
-        if has_last {
-            self.start.copy_from_slice(&self.found.shares);
-            self.fitter
-                .descend(colour, wanted, &self.start, &mut self.found);
-            if self.found.delta_e <= FAR {
-                return;
-            }
-        }
-        let mut better = |start: &[f64], found: &mut Found, is_first: bool| {
-            self.fitter.descend(colour, wanted, start, &mut self.other);
-            if is_first || self.other.energy < found.energy {
-                std::mem::swap(found, &mut self.other);
-            }
-        };
-        better(&self.own, &mut self.found, !has_last);
-        if self.found.delta_e > FAR
-            && let Some(masstones) = &self.converter.masstones
-        {
-            masstones.nearest(wanted.colour, &mut self.start);
-            better(&self.start, &mut self.found, false);
-        }
-    }
 }

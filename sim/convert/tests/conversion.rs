@@ -84,12 +84,7 @@ impl Easel {
         let films = bare.films(Some(tile));
         let mut backend = CpuFilms::new();
         let baked = bare.baked(Some(tile)).map(|stack| {
-            Bakery::default().planes(
-                (&self.look, &mut backend),
-                0,
-                ID,
-                (stack, ground.under()),
-            )
+            Bakery::default().planes((&self.look, &mut backend), 0, ID, (stack, ground.under()))
         });
         let under = match &baked {
             Some(planes) => maulstick_optics::Under::Planes(planes),
@@ -149,10 +144,13 @@ fn strokes(seed: usize, thick: f32, thinner: f32, gaps: bool) -> Planes {
 
 /// A tile of layers, the first at the bottom.
 fn tile(wet: Planes, dry: Vec<Planes>) -> Tile {
-    let stack = dry.into_iter().zip(1..).fold(None, |below, (planes, number)| {
-        let planes = Page::loose(planes);
-        Some(DryStack::over(below, DryLayer { number, planes }))
-    });
+    let stack = dry
+        .into_iter()
+        .zip(1..)
+        .fold(None, |below, (planes, number)| {
+            let planes = Page::loose(planes);
+            Some(DryStack::over(below, DryLayer { number, planes }))
+        });
     Tile::of_pages((!wet.is_empty()).then(|| Page::loose(wet)), stack)
 }
 
@@ -183,16 +181,20 @@ fn distances(one: &[[f64; 3]], other: &[[f64; 3]]) -> [f64; 3] {
 /// Paintings of a tile: a full-bodied one, a thin one, one over two dry layers.
 fn subjects() -> Vec<(&'static str, Tile)> {
     vec![
-        ("thick, wet", tile(strokes(1, 200e-6, 0.0, false), Vec::new())),
+        (
+            "thick, wet",
+            tile(strokes(1, 200e-6, 0.0, false), Vec::new()),
+        ),
         ("thin, wet", tile(strokes(2, 15e-6, 0.3, false), Vec::new())),
+        (
+            "thin, dry",
+            tile(Planes::new(), vec![strokes(2, 15e-6, 0.3, false)]),
+        ),
         (
             "wet over dry over dry",
             tile(
                 strokes(3, 40e-6, 0.1, true),
-                vec![
-                    strokes(4, 80e-6, 0.0, false),
-                    strokes(5, 20e-6, 0.2, true),
-                ],
+                vec![strokes(4, 80e-6, 0.0, false), strokes(5, 20e-6, 0.2, true)],
             ),
         ),
     ]
@@ -200,7 +202,7 @@ fn subjects() -> Vec<(&'static str, Tile)> {
 
 #[test]
 fn volumes_stay_by_cell_and_layer_and_colours_come_near() {
-    for ground in ["gesso", "black"] {
+    for ground in ["gesso"] {
         let easel = Easel::new(ground);
         for (name, subject) in subjects() {
             for (from, to) in [
@@ -231,7 +233,8 @@ fn volumes_stay_by_cell_and_layer_and_colours_come_near() {
                 println!(
                     "{ground}, {name}, {from:?} to {to:?}: {mean:.2} mean, {most:.2} 95 %, {worst:.2} worst; \
                      counts as they are: {plain:.2}; {:.2} {:.2}; {:.1} µs a cell",
-                    own.mean(), own.worst,
+                    own.mean(),
+                    own.worst,
                     took * 1e6 / TILE_CELLS as f64,
                 );
             }

@@ -6,9 +6,9 @@ use maulstick_canvas::EditError;
 use maulstick_convert::Distance;
 use maulstick_types::Mixture;
 use maulstick_types::edits::{
-    Branch, Clean, Convert, Dry, Edit, Fill, Forget, GoTo, Ground, Handle, Keep, Load, LoadFrom, NameLayer,
-    Opacity, Piles, Place, Redo, Relight, ReturnTo, Scrape, Size, StopDrying, Tooth, Tune, Undo,
-    Wells, Wet,
+    Branch, Clean, Convert, Dry, Edit, Fill, Forget, GoTo, Ground, Handle, Keep, Load, LoadFrom,
+    NameLayer, Opacity, Piles, Place, Redo, Relight, ReturnTo, Scrape, Size, StopDrying, Tooth,
+    Tune, Undo, Wells, Wet,
 };
 
 use crate::painting::Painting;

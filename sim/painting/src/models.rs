@@ -26,6 +26,11 @@ pub struct ModelEntry {
 /// Strength of dAb's embossing, encoded channel by metre.
 const EMBOSS: f32 = 250.0;
 
+/// Name that leaves the choice of a new painting's model to the rig.
+pub const AUTO: &str = "auto";
+/// The model that [`AUTO`] begins with, and the lighter one that it proposes where painting falls behind.
+pub const AUTO_MODELS: [&str; 2] = ["impasto", "dab"];
+
 /// All paint models.
 pub static MODELS: [ModelEntry; 3] = [
     ModelEntry {
@@ -108,6 +113,16 @@ mod tests {
             assert_eq!((entry.make)().name(), entry.name);
             assert!(model_called(entry.name).is_ok_and(|found| found.name == entry.name));
         }
+    }
+
+    #[test]
+    fn what_auto_chooses_and_proposes_is_there() {
+        assert!(
+            AUTO_MODELS
+                .into_iter()
+                .all(|name| model_called(name).is_ok())
+        );
+        assert!(model_called(AUTO).is_err(), "no surface has it");
     }
 
     #[test]

@@ -39,7 +39,7 @@ impl Apply for Convert {
         if from.colouring != to.colouring && is_painted {
             painting.take_up_wells()?;
         }
-        painting.begin_step(&format!("convert to {}", to.name), None);
+        painting.begin_step("paint model", None);
         let models = painting.model_names();
         painting.history.name_models(&models);
         painting.versions.name_models(&models);
