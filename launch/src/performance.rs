@@ -385,7 +385,10 @@ mod tests {
         let marker = ["marker", "impasto"].map(str::to_owned);
         let auto = ["impasto", "impasto"].map(str::to_owned);
         assert_eq!(setup("auto", "impasto"), Ok(auto));
-        assert!(setup("impasto", "auto").is_err(), "nobody falls behind on a palette");
+        assert!(
+            setup("impasto", "auto").is_err(),
+            "nobody falls behind on a palette"
+        );
         assert_eq!(setup("marker", "impasto"), Ok(marker));
         for (canvas, palette, place) in [
             ("makrer", "impasto", "model of [paint], or --model"),

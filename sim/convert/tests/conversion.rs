@@ -312,15 +312,15 @@ fn cells_of_wells_and_tiles_of_the_same_colouring_keep_each_count() {
     };
     let converter = Converter::new(&easel.look, Colouring::Volumes, Colouring::Films);
     let converted = converter.tile(&tile, ground);
+    let wet = tile.wet();
     let changed = |cell: usize| {
         let slots = 0..PAINTS.len();
-        let mut pairs =
-            slots.map(|slot| [&tile.wet(), &converted.wet].map(|own| count(own, slot, cell)));
+        let mut pairs = slots.map(|slot| [&*wet, &converted.wet].map(|own| count(own, slot, cell)));
         pairs.any(|[one, other]| one != other)
     };
     assert!(stays.iter().all(|cell| !changed(*cell)));
     assert!((0..TILE_CELLS).any(changed), "a fault would pass");
     let same = Converter::new(&easel.look, Colouring::Films, Colouring::Films);
     let same = same.tile(&tile, ground);
-    assert!(same.wet == *tile.wet() && same.distance.cells == 0);
+    assert!(same.wet == *wet && same.distance.cells == 0);
 }

@@ -47,8 +47,7 @@ pub(super) fn run(options: &ConvertOptions) -> Result<i32, UserError> {
         return Err(wrong(output, &DocumentError::Taken));
     }
     let surface = if options.palette { PALETTE } else { CANVAS };
-    let at = |fault: UserError| fault.at(path.display().to_string());
-    let refuse = |error: EditError| at(refused(error));
+    let refuse = |error: EditError| refused(error).at(path.display().to_string());
     let model = model_called(&options.model).map_err(refuse)?;
     // Says so where it is open in another program.
     let (document, opened) = read(path)?;
@@ -69,22 +68,25 @@ pub(super) fn run(options: &ConvertOptions) -> Result<i32, UserError> {
         model: ModelName::new(model.name).map_err(|error| refuse(error.into()))?,
         surface,
     };
-    let applied = converted(&part, edit, output).map_err(at)?;
+    let applied = converted(&part, edit, output)?.map_err(refuse)?;
     place(&part, output)?;
     say!("written   {}", output.display());
     say!("          {applied}");
     Ok(0)
 }
 
-/// Converts a painting in its file.
-fn converted(part: &Path, edit: Convert, output: &Path) -> Result<Applied, UserError> {
+/// Converts a painting in its file, unless the painting refuses it.
+fn converted(
+    part: &Path,
+    edit: Convert,
+    output: &Path,
+) -> Result<Result<Applied, EditError>, UserError> {
     let (document, mut sequencer, since) = go_on(&RigConfig::default(), part)?;
     let autosave = Autosave::new(document, &mut sequencer, since);
-    let applied = with_cores_beyond(0, || sequencer.edit(edit)).map_err(refused);
-    autosave
-        .close(&mut sequencer)
-        .map_err(|error| wrong(output, &error))?;
-    applied
+    let applied = with_cores_beyond(0, || sequencer.edit(edit));
+    let closed = autosave.close(&mut sequencer);
+    closed.map_err(|error| wrong(output, &error))?;
+    Ok(applied)
 }
 
 /// Gives a file its name, which no other has.
