@@ -6,7 +6,7 @@ use clap::Args;
 use maulstick_brush::BrushFile;
 use maulstick_canvas::EditError;
 use maulstick_optics::{Illuminant, PaintError, PaintLibrary};
-use maulstick_painting::models::model_called;
+use maulstick_painting::models::{AUTO, AUTO_MODELS, model_called};
 use maulstick_painting::{PaintingSetup, paint_error};
 use maulstick_rig::UserError;
 use maulstick_rig::config::{BACKENDS, BrushSection, LightSection, RigConfig};
@@ -70,8 +70,8 @@ pub struct PaintingOptions {
     /// of rig.toml]
     #[arg(long, value_name = "NAME", value_parser = BACKENDS)]
     pub backend: Option<String>,
-    /// Paint model of a new painting's canvas: impasto, or marker, an even film that nothing pushes or takes up
-    /// [default: that of rig.toml]
+    /// Paint model of a new painting's canvas: impasto; dab, the light one; marker, an even film that nothing pushes or
+    /// takes up; or auto, which is impasto and proposes dab where painting falls behind [default: that of rig.toml]
     #[arg(long, value_name = "NAME")]
     pub model: Option<String>,
     /// Ledger of the paint to write, JSON
@@ -308,6 +308,14 @@ fn wells(config: &RigConfig, library: &PaintLibrary) -> Vec<String> {
     names.take(default.len()).collect()
 }
 
+/// The name of the canvas's paint model: `auto` begins with one that it may propose to change later.
+fn canvas_model(name: &str) -> Result<String, UserError> {
+    match name {
+        AUTO => Ok(AUTO_MODELS[0].to_owned()),
+        name => model(name, "model of [paint], or --model"),
+    }
+}
+
 /// The name of a paint model.
 fn model(name: &str, place: &str) -> Result<String, UserError> {
     let entry = model_called(name).map_err(|error| refused(error).at(place))?;
@@ -341,7 +349,7 @@ pub fn painting_setup(
         wells,
         light: light(&config.light)?,
         exposure: config.light.exposure,
-        model: model(&config.paint.model, "model of [paint], or --model")?,
+        model: canvas_model(&config.paint.model)?,
         palette_model: model(&config.palette.model, "model of [palette]")?,
         ..PaintingSetup::default()
     };
@@ -375,6 +383,12 @@ mod tests {
             painting_setup(&config, &library()?).map(|setup| [setup.model, setup.palette_model])
         };
         let marker = ["marker", "impasto"].map(str::to_owned);
+        let auto = ["impasto", "impasto"].map(str::to_owned);
+        assert_eq!(setup("auto", "impasto"), Ok(auto));
+        assert!(
+            setup("impasto", "auto").is_err(),
+            "nobody falls behind on a palette"
+        );
         assert_eq!(setup("marker", "impasto"), Ok(marker));
         for (canvas, palette, place) in [
             ("makrer", "impasto", "model of [paint], or --model"),

@@ -91,6 +91,7 @@ fn word(edit: &Edit) -> Option<&'static str> {
         Edit::Dry(_) => Some("dried: "),
         Edit::StopDrying(_) => Some("the drying is ended"),
         Edit::Wet(_) => Some("wet again: "),
+        Edit::Convert(_) => Some("converted: "),
         Edit::Undo(_) => Some("undone: "),
         Edit::Redo(_) => Some("redone: "),
         Edit::LoadFrom(_) => Some("loaded: "),

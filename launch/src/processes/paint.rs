@@ -11,6 +11,7 @@ use maulstick_optics::backend::{CpuFilms, FilmBackend};
 use maulstick_paint_node::frames::FrameServer;
 use maulstick_paint_node::worker::WorkerPanicked;
 use maulstick_paint_node::{PaintNode, Worker};
+use maulstick_painting::models::AUTO;
 use maulstick_painting::{Painting, Sequencer};
 use maulstick_rig::config::RigConfig;
 use maulstick_rig::{NodeHandle, UserError};
@@ -49,6 +50,9 @@ pub(super) fn run(options: &PaintOptions) -> Result<i32, UserError> {
     if let Some(document) = document {
         frames = frames.with_tile_cache(document.tile_cache());
         node = node.keeping(document, since);
+    }
+    if member.config.paint.model == AUTO {
+        node = node.proposing_models();
     }
     let stop = member.stop.clone();
     let backend = member.config.paint.backend.clone();

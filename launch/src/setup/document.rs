@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use maulstick_canvas::EditError;
+use maulstick_document::file::database::companion;
 use maulstick_document::{Access, Document, DocumentError, DocumentSettings, Opened, glance};
 use maulstick_painting::{Painting, Sequencer};
 use maulstick_rig::UserError;
@@ -44,6 +45,20 @@ pub fn read(path: &Path) -> Result<(Document, Opened), UserError> {
     let (document, opened) = Document::open(&settings).map_err(|error| wrong(path, &error))?;
     let opened = opened.ok_or_else(|| wrong(path, &DocumentError::NoPainting))?;
     Ok((document, opened))
+}
+
+/// Copies a painting that nobody has open, with what a crash left beside it.
+///
+/// # Errors
+/// A [`UserError`] where it cannot be read, or the copy not be written.
+pub fn copy_closed(from: &Path, to: &Path) -> Result<(), UserError> {
+    for suffix in ["", "-wal"] {
+        let [from, to] = [from, to].map(|path| companion(path, suffix));
+        if suffix.is_empty() || from.exists() {
+            std::fs::copy(&from, &to).map_err(|error| UserError::reading(&from, &error))?;
+        }
+    }
+    Ok(())
 }
 
 /// A painting that goes on: as its file has it, or begun there as the settings say. Also tile versions

@@ -179,6 +179,9 @@ pub enum EditError {
         /// Those that there are.
         known: Vec<&'static str>,
     },
+    /// A surface that has this paint model already.
+    #[error("this surface has the paint model '{0}' already")]
+    SameModel(&'static str),
     /// An unknown tooth.
     #[error("there is no tooth called '{name}'")]
     NoTooth {
@@ -304,6 +307,7 @@ impl EditError {
             Self::NoGround { name, known }
             | Self::NoModel { name, known }
             | Self::NoTooth { name, known } => Advice::say(choice(name, known.iter().copied())),
+            Self::SameModel(_) => say("choose another one"),
             Self::ToothName { .. } => {
                 say("write image:HASH@120mm,80um: a picture 120 mm wide, 80 µm deep")
             }

@@ -30,6 +30,20 @@ pub fn wet_over(dried: &Planes) -> Option<Vec<f32>> {
     )
 }
 
+/// Dried planes with so many wet quanta noted over each cell, in steps of 16.
+#[must_use]
+pub fn noted(dried: Planes, stays: &[f32]) -> Planes {
+    let most = f32::from(u16::MAX);
+    let values = stays.iter().map(|quanta| (quanta / STEP).min(most) as u16);
+    let note = OwnPlane {
+        shape: SHAPE,
+        bytes: values.flat_map(u16::to_le_bytes).collect(),
+    };
+    let others = dried.own().iter().filter(|plane| !is_wet_over(plane));
+    let own: Vec<OwnPlane> = others.cloned().chain([note]).collect();
+    dried.with_own(own)
+}
+
 /// True if a plane holds what stayed over a layer, and says nothing without the layer.
 pub(crate) fn is_wet_over(plane: &OwnPlane) -> bool {
     plane.shape == SHAPE
@@ -51,14 +65,7 @@ impl Tile {
                 .zip(plane.iter())
                 .for_each(|(sum, count)| *sum += count);
         }
-        let values = stays.iter().map(|quanta| (quanta / STEP) as u16);
-        let noted = OwnPlane {
-            shape: SHAPE,
-            bytes: values.flat_map(u16::to_le_bytes).collect(),
-        };
-        let others = planes.own().iter().filter(|plane| !is_wet_over(plane));
-        let own: Vec<OwnPlane> = others.cloned().chain([noted]).collect();
-        let planes = (*planes).clone().with_own(own);
+        let planes = noted((*planes).clone(), &stays);
         if planes == *layer.planes.get() {
             return self;
         }

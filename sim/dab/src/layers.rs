@@ -4,6 +4,7 @@
 //! paint of volume V hides α = min(V·O_t, 1) of what lies under it (eq. 4.1). What dries under wet paint has the colour
 //! that leaves all as it was: with α' of what stays wet, C'_d = (α·C_w + (1 − α)·C_d − α'·C_w)/(1 − α').
 
+use maulstick_appearance::Appearance;
 use maulstick_appearance::display::DisplayTile;
 use maulstick_appearance::show_paint::{Seen, ShowPaint};
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
@@ -74,12 +75,13 @@ static CURVES: std::sync::LazyLock<[Curve; 2]> =
     std::sync::LazyLock::new(|| [Curve::of(srgb_encode), Curve::of(srgb_decode)]);
 
 /// Encoded colours of the paints by slot; none of the thinner, which hides nothing.
-fn colours(seen: &Seen<'_>) -> Vec<Option<[f32; 3]>> {
-    let studio = &seen.look.studio;
+#[must_use]
+pub fn colours(look: &Appearance) -> Vec<Option<[f32; 3]>> {
+    let studio = &look.studio;
     let white = vec![WHITE; studio.wavelengths()];
     let colour = |slot: usize| {
         let film = studio.colour(&[(slot, SHOWN_M)], &white);
-        (seen.look.thinner != Some(slot)).then(|| film.map(|channel| srgb_encode(channel) as f32))
+        (look.thinner != Some(slot)).then(|| film.map(|channel| srgb_encode(channel) as f32))
     };
     (0..studio.slots()).map(colour).collect()
 }
@@ -102,8 +104,8 @@ fn mixed(planes: &Planes, colours: &[Option<[f32; 3]>]) -> [Vec<f32>; 4] {
     mixed
 }
 
-/// Lays a layer over the colours of a tile: of a volume of paint, the share that it replaces.
-fn lay(
+/// Lays a layer over the encoded colours of a tile; `share` is what a volume of so many quanta replaces in a cell.
+pub fn lay(
     rgb: &mut [Vec<f32>; 3],
     planes: &Planes,
     colours: &[Option<[f32; 3]>],
@@ -127,7 +129,7 @@ impl ShowPaint for Layers {
     }
 
     fn finish(&self, seen: &Seen<'_>, shown: &mut DisplayTile) {
-        let colours = colours(seen);
+        let colours = colours(seen.look);
         let mut rgb = shown
             .rgb
             .each_ref()

@@ -3,11 +3,12 @@
 use std::fmt;
 
 use maulstick_canvas::EditError;
+use maulstick_convert::Distance;
 use maulstick_types::Mixture;
 use maulstick_types::edits::{
-    Branch, Clean, Dry, Edit, Fill, Forget, GoTo, Ground, Handle, Keep, Load, LoadFrom, NameLayer,
-    Opacity, Piles, Place, Redo, Relight, ReturnTo, Scrape, Size, StopDrying, Tooth, Tune, Undo,
-    Wells, Wet,
+    Branch, Clean, Convert, Dry, Edit, Fill, Forget, GoTo, Ground, Handle, Keep, Load, LoadFrom,
+    NameLayer, Opacity, Piles, Place, Redo, Relight, ReturnTo, Scrape, Size, StopDrying, Tooth,
+    Tune, Undo, Wells, Wet,
 };
 
 use crate::painting::Painting;
@@ -43,6 +44,8 @@ pub enum Applied {
     Loaded(Mixture),
     /// A file is written.
     Written(String),
+    /// A surface has another paint model: how near its colours come to those of before.
+    Converted(Distance),
 }
 
 impl fmt::Display for Applied {
@@ -66,6 +69,13 @@ impl fmt::Display for Applied {
                 }
                 Ok(())
             }
+            Self::Converted(distance) if distance.cells == 0 => f.write_str("colours as before"),
+            Self::Converted(distance) => write!(
+                f,
+                "colours within \u{394}E\u{2080}\u{2080} {:.2} in the mean, {:.1} at most",
+                distance.mean(),
+                distance.worst
+            ),
             Self::Step(what) | Self::Written(what) => f.write_str(what),
         }
     }

@@ -14,7 +14,8 @@ use serde::Serialize;
 pub struct Ledger {
     tube: BySlot<u64>,
     cleaner: BySlot<u64>,
-    /// Paint given by modes less paint taken by them.
+    /// Paint given by modes less paint taken by them; a conversion to another paint model takes one paint and gives as
+    /// much of another.
     #[serde(default)]
     mode: BySlot<i64>,
 }

@@ -5,6 +5,7 @@ use std::fmt;
 
 use maulstick_appearance::show_paint::{Counted, ShowPaint};
 use maulstick_canvas::EditError;
+use maulstick_convert::Colouring;
 use maulstick_dab::{Dab, Layers};
 use maulstick_impasto::Impasto;
 use maulstick_marker::{Marker, Matte};
@@ -17,6 +18,8 @@ pub struct ModelEntry {
     pub name: &'static str,
     /// How its paint is shown.
     pub shown: &'static dyn ShowPaint,
+    /// How its counts become colours: between models that differ in it, conversions fit colours.
+    pub colouring: Colouring,
     /// Makes one that runs on the processor.
     make: fn() -> Box<dyn PaintModel>,
 }
@@ -24,16 +27,23 @@ pub struct ModelEntry {
 /// Strength of dAb's embossing, encoded channel by metre.
 const EMBOSS: f32 = 250.0;
 
+/// Name that leaves the choice of a new painting's model to the rig.
+pub const AUTO: &str = "auto";
+/// The model that [`AUTO`] begins with, and the lighter one that it proposes where painting falls behind.
+pub const AUTO_MODELS: [&str; 2] = ["impasto", "dab"];
+
 /// All paint models.
 pub static MODELS: [ModelEntry; 4] = [
     ModelEntry {
         name: "impasto",
         shown: &Counted,
+        colouring: Colouring::Films,
         make: || Box::new(Impasto::default()),
     },
     ModelEntry {
         name: "dab",
         shown: &Layers { emboss: EMBOSS },
+        colouring: Colouring::Volumes,
         make: || Box::new(Dab::default()),
     },
     ModelEntry {
@@ -44,6 +54,7 @@ pub static MODELS: [ModelEntry; 4] = [
     ModelEntry {
         name: "marker",
         shown: &Matte,
+        colouring: Colouring::Films,
         make: || Box::new(Marker::default()),
     },
 ];
@@ -108,6 +119,16 @@ mod tests {
             assert_eq!((entry.make)().name(), entry.name);
             assert!(model_called(entry.name).is_ok_and(|found| found.name == entry.name));
         }
+    }
+
+    #[test]
+    fn what_auto_chooses_and_proposes_is_there() {
+        assert!(
+            AUTO_MODELS
+                .into_iter()
+                .all(|name| model_called(name).is_ok())
+        );
+        assert!(model_called(AUTO).is_err(), "no surface has it");
     }
 
     #[test]

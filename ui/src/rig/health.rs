@@ -24,6 +24,9 @@ fn stopped(who: &str) -> String {
 /// Prefix of the decision that the processor takes over from the graphics card.
 const FALL: &str = "backend cpu: ";
 
+/// Decision that proposes the light paint model.
+const LIGHTER: &str = "model dab proposed";
+
 /// An event that changes nothing in the state of the rig.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RigEvent {
@@ -200,6 +203,12 @@ fn who(node: &str, state: &RigState) -> Option<(String, Option<&'static str>)> {
 
 /// Tells of a decision that the painter ought to know.
 fn decided(what: &str, notifications: &mut Notifications) {
+    if what == LIGHTER {
+        notifications.note(tr!(
+            "Painting falls behind on this machine. The light paint model dAb is faster: `maulstick convert dab` converts \
+             this painting, and that can be undone."
+        ));
+    }
     if let Some(why) = what.strip_prefix(FALL) {
         notifications.fault(
             tr!(

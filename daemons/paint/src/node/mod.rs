@@ -2,6 +2,7 @@
 
 mod commands;
 mod frame_feed;
+mod proposal;
 mod repeat;
 mod save_as;
 mod status;
@@ -96,6 +97,8 @@ pub struct PaintNode {
     newer_brushes: BTreeMap<String, BrushFile>,
     /// The recorded session that is painted again.
     session: Option<repeat::Repetition>,
+    /// Watches whether a lighter paint model is to be proposed, where it may be.
+    proposal: Option<proposal::Proposal>,
 }
 
 impl PaintNode {
@@ -179,6 +182,7 @@ impl PaintNode {
             session: sequencer
                 .is_repeating()
                 .then(|| repeat::Repetition::new(None, b.now_ns())),
+            proposal: None,
             topics: topics.clone(),
             me,
             sequencer,
@@ -286,6 +290,7 @@ impl PaintNode {
             }
             is_more = self.next_state(now_ns)?;
         }
+        self.propose_model();
         self.tell_again |= !self.states.unheard().is_empty();
         self.tell(now_ns)?;
         for entry in self.sequencer.drain_journal() {

@@ -83,6 +83,7 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, UserError> {
             "cells_per_mm": per_mm,
             "ground": canvas.ground,
             "tooth": canvas.tooth,
+            "model": canvas.model,
             "paints": names,
             "layers": layers,
             "undo": undo,
@@ -106,6 +107,7 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, UserError> {
         canvas.cells[1]
     );
     say!("ground    {ground}, {tooth} tooth");
+    say!("model     {}", canvas.model);
     say!(
         "paints    {}",
         if names.is_empty() {

@@ -1,6 +1,7 @@
 //! `maulstick painting`: paintings in files.
 
 mod compare;
+mod convert;
 mod export;
 mod film_file;
 mod import;
@@ -28,6 +29,8 @@ pub enum PaintingCommand {
     Export(export::ExportOptions),
     /// Import a picture as underpainting, ground or tooth
     Import(import::ImportOptions),
+    /// Write a copy with another paint model
+    Convert(convert::ConvertOptions),
     /// Recover what is intact in a damaged painting
     Recover(recover::RecoverOptions),
     /// List, keep, compare versions of a painting, or return to one
@@ -49,6 +52,7 @@ pub fn run(command: &PaintingCommand) -> Result<i32, UserError> {
         PaintingCommand::Info(options) => info::run(options),
         PaintingCommand::Export(options) => export::run(options),
         PaintingCommand::Import(options) => import::run(options),
+        PaintingCommand::Convert(options) => convert::run(options),
         PaintingCommand::Recover(options) => recover::run(options),
         PaintingCommand::Versions(options) => versions::run(options),
         PaintingCommand::Pack(options) => pack::run(options),

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use maulstick_document::file::database::companion;
 use maulstick_document::{Document, DocumentError, record};
 use maulstick_painting::Sequencer;
 use maulstick_rig::UserError;
@@ -12,7 +11,7 @@ use maulstick_session::{WorkClock, each_record};
 use super::session_file::Event;
 use super::take_writer::TakeOrigin;
 use crate::commands::painting::no_record;
-use crate::document::{read, wrong};
+use crate::document::{copy_closed, read, wrong};
 
 /// A painting that has a record.
 #[derive(Debug)]
@@ -59,8 +58,8 @@ impl PaintingRecord {
         let failed = |error: std::io::Error| UserError::failure(error.to_string());
         let folder = tempfile::tempdir().map_err(failed)?;
         let [record, begin] = ["record.maul", "begin.maul"].map(|name| folder.path().join(name));
-        copy(path, &record)?;
-        copy(path, &begin)?;
+        copy_closed(path, &record)?;
+        copy_closed(path, &begin)?;
         let (document, opened) = read(&record)?;
         let beginning = opened.beginning().ok_or_else(|| no_record(path))?;
         let mut record = Self {
@@ -145,15 +144,4 @@ impl PaintingRecord {
             brushes: self.brushes.clone(),
         }
     }
-}
-
-/// Copies a painting that nobody has open, with what a crash left beside it.
-fn copy(from: &Path, to: &Path) -> Result<(), UserError> {
-    for suffix in ["", "-wal"] {
-        let [from, to] = [from, to].map(|path| companion(path, suffix));
-        if suffix.is_empty() || from.exists() {
-            std::fs::copy(&from, &to).map_err(|error| UserError::reading(&from, &error))?;
-        }
-    }
-    Ok(())
 }

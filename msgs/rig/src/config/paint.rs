@@ -14,7 +14,7 @@ pub const BACKENDS: [&str; 3] = ["auto", "cpu", "gpu"];
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PaintSection {
-    /// Paint model of the canvas of a new painting; its name is checked where that is begun.
+    /// Paint model of the canvas of a new painting, or `auto`; its name is checked where that is begun.
     pub model: String,
     /// One of [`BACKENDS`].
     pub backend: String,

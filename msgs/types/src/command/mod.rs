@@ -371,7 +371,7 @@ impl Command {
 
 message! {
     /// A command with its sender and number; sending it again with the same number is safe.
-    pub struct CommandRequest [version 10, at most 1048576 bytes] {
+    pub struct CommandRequest [version 11, at most 1048576 bytes] {
         /// A number that the client drew at random.
         pub client: u64,
         /// Counts the client's commands.

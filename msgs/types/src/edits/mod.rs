@@ -21,8 +21,8 @@ pub use form::{Form, StepForm};
 pub use history::{Branch, Forget, GoTo, Keep, Redo, ReturnTo, Undo};
 pub use layer::{Dry, LayerRef, NameLayer, Opacity, StopDrying, Wet};
 pub use surface::{
-    Exposure, Fill, FillPaint, Ground, GroundSource, LightChange, Piles, Place, Relight, Scrape,
-    Size, Tooth, Wells,
+    Convert, Exposure, Fill, FillPaint, Ground, GroundSource, LightChange, Piles, Place, Relight,
+    Scrape, Size, Tooth, Wells,
 };
 
 /// Hands the list of all edits to a macro.
@@ -33,7 +33,8 @@ macro_rules! for_each_edit {
             Load, LoadFrom, Clean, Tune, Handle,
             Dry, StopDrying, Wet, Opacity, NameLayer,
             Place, Relight, Ground, Tooth, Size, Piles, Fill, Scrape, Wells,
-            Undo, Redo, Keep, ReturnTo, Branch, Forget, GoTo
+            Undo, Redo, Keep, ReturnTo, Branch, Forget, GoTo,
+            Convert
         }
     };
 }

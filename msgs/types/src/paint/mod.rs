@@ -100,7 +100,7 @@ wire_enum! {
 
 message! {
     /// An entry of the journal, in order; it has room for the largest command with its index.
-    pub struct JournalEntry [version 10, at most 1049600 bytes] {
+    pub struct JournalEntry [version 11, at most 1049600 bytes] {
         /// From 0, without gaps.
         pub index: u64,
         /// The record.

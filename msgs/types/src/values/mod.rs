@@ -15,7 +15,7 @@ pub use numbers::{
     ThinnerShare, Wetness, Zoom,
 };
 pub use texts::{
-    BrushName, BrushToml, DeviceName, DeviceToml, LayerName, MaterialName, SpectrumText,
+    BrushName, BrushToml, DeviceName, DeviceToml, LayerName, MaterialName, ModelName, SpectrumText,
     VersionName, WholePath,
 };
 pub use ticks::{TICKS_A_SECOND, Ticks, ticks_in};

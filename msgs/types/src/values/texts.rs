@@ -175,6 +175,10 @@ text! {
     MaterialName: |name| readable("ground's or tooth's name", name, PATH_MAX)
 }
 text! {
+    /// Name of a paint model.
+    ModelName: |name| readable("paint model's name", name, PAINT_NAME_MAX)
+}
+text! {
     /// Reflectances, a CSV file of nm,reflectance.
     SpectrumText: |text| bounded("spectrum", text, SPECTRUM_MAX)
 }

@@ -7,10 +7,10 @@
 mod step;
 mod walk;
 
-pub(crate) use step::OpenStep;
 pub use step::{
     Change, NonTileState, Step, StepEffects, SurfaceMaterial, TilePlace, TileRef, same,
 };
+pub(crate) use step::{OpenStep, name_models};
 pub use walk::ListedStep;
 pub(crate) use walk::{Direction, placed};
 
@@ -241,6 +241,21 @@ impl History {
     /// Counts all steps as changed.
     pub(crate) fn touch_all(&mut self) {
         self.touched.extend(self.steps.keys());
+    }
+
+    /// Names the models of surfaces in steps that do not: those of a document from before they could change.
+    pub(crate) fn name_models(&mut self, models: &BTreeMap<u32, &str>) {
+        for (id, step) in &mut self.steps {
+            let ends = step.effects.materials.as_ref();
+            let mut ends = ends.into_iter().flatten().flatten();
+            if ends.any(|material| material.model.is_empty()) {
+                let effects = Arc::make_mut(&mut step.effects);
+                for materials in effects.materials.iter_mut().flatten() {
+                    name_models(materials, models);
+                }
+                self.touched.insert(*id);
+            }
+        }
     }
 
     /// Forgets all steps.

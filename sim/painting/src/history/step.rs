@@ -50,8 +50,8 @@ impl Change {
     }
 }
 
-/// Materials of a surface, as far as a step can change them.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// Materials of a surface, as far as a step can change them. An unnamed model equals any.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SurfaceMaterial {
     /// The surface.
     pub surface: u32,
@@ -63,6 +63,33 @@ pub struct SurfaceMaterial {
     pub tooth_seed: u64,
     /// Its wells.
     pub wells: Vec<Well>,
+    /// Name of the model of its paint; empty in documents from before a surface could have another one: that which it has.
+    #[serde(default)]
+    pub model: String,
+}
+
+impl PartialEq for SurfaceMaterial {
+    fn eq(&self, other: &Self) -> bool {
+        let is_model = self.model == other.model || self.model.is_empty() || other.model.is_empty();
+        is_model
+            && self.surface == other.surface
+            && self.tooth_seed == other.tooth_seed
+            && self.ground == other.ground
+            && self.tooth == other.tooth
+            && self.wells == other.wells
+    }
+}
+
+/// Names the models of materials that do not.
+pub(crate) fn name_models(materials: &mut [SurfaceMaterial], models: &BTreeMap<u32, &str>) -> bool {
+    let mut named = false;
+    for material in materials.iter_mut().filter(|own| own.model.is_empty()) {
+        if let Some(model) = models.get(&material.surface) {
+            (*model).clone_into(&mut material.model);
+            named = true;
+        }
+    }
+    named
 }
 
 /// State of a painting besides its tiles, as far as a step can change it.

@@ -1,6 +1,7 @@
 //! Tests of whole paintings, by subject.
 
 mod books;
+mod converting;
 mod cut;
 mod dab;
 mod drying;

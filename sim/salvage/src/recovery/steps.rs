@@ -59,6 +59,7 @@ pub(super) fn materials(scene: &Scene) -> Vec<SurfaceMaterial> {
         tooth: surface.tooth.clone(),
         tooth_seed: surface.tooth_seed,
         wells: surface.wells.clone(),
+        model: surface.model.clone(),
     });
     materials.collect()
 }

@@ -14,7 +14,7 @@ use crate::input::keys::{BINDINGS, HELD};
 use crate::language::{FILES, Language, all};
 
 /// Steps of the history as the paint engine names them.
-const STEPS: [&str; 14] = [
+const STEPS: [&str; 15] = [
     "dry",
     "drying",
     "layer opacity",
@@ -27,6 +27,7 @@ const STEPS: [&str; 14] = [
     "fill",
     "ground",
     "tooth",
+    "paint model",
     "the beginning",
     "a stroke that was not painted yet",
 ];

@@ -1,5 +1,6 @@
 //! Edits of a surface: its place, its light, what it is made of, films and wells.
 
+mod convert;
 mod fill;
 mod ground;
 mod piles;
@@ -10,6 +11,7 @@ mod size;
 mod tooth;
 mod wells;
 
+pub use convert::Convert;
 pub use fill::{Fill, FillPaint};
 pub use ground::{Ground, GroundSource};
 pub use piles::Piles;

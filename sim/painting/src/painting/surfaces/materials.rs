@@ -10,6 +10,7 @@ use maulstick_types::scene::Surface;
 
 use crate::apply::{Applied, Apply};
 use crate::history::SurfaceMaterial;
+use crate::models::model_called;
 use crate::painting::Painting;
 use crate::painting::undo::materials;
 use crate::setup::relief_called;
@@ -100,9 +101,17 @@ impl Painting {
             let (surface, own) = (&mut self.scene.surfaces[on], &mut self.surfaces[on]);
             let tooth =
                 (&surface.tooth, surface.tooth_seed) != (&material.tooth, material.tooth_seed);
-            if !tooth && surface.ground == material.ground && surface.wells == material.wells {
+            let model = match material.model.is_empty() {
+                true => own.model,
+                false => model_called(&material.model).unwrap_or(own.model),
+            };
+            let is_model = std::ptr::eq(model, own.model);
+            let is_ground = surface.ground == material.ground;
+            if !tooth && is_model && is_ground && surface.wells == material.wells {
                 continue;
             }
+            own.model = model;
+            model.name.clone_into(&mut surface.model);
             surface.wells.clone_from(&material.wells);
             surface.ground.clone_from(&material.ground);
             surface.tooth.clone_from(&material.tooth);

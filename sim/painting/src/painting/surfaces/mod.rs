@@ -1,5 +1,6 @@
 //! Surfaces: their tiles, the models of their paint, the grounds under them.
 
+mod converting;
 mod counts_at;
 mod film;
 mod materials;

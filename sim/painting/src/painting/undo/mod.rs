@@ -21,6 +21,7 @@ pub(crate) fn materials(scene: &Scene) -> Vec<SurfaceMaterial> {
             tooth: surface.tooth.clone(),
             tooth_seed: surface.tooth_seed,
             wells: surface.wells.clone(),
+            model: surface.model.clone(),
         })
         .collect()
 }

@@ -138,6 +138,15 @@ impl Versions {
         entries.collect()
     }
 
+    /// Names the models of surfaces in versions that do not: those of a document from before they could change.
+    pub(crate) fn name_models(&mut self, models: &BTreeMap<u32, &str>) {
+        for (name, version) in &mut self.named {
+            if crate::history::name_models(&mut version.rest.materials, models) {
+                self.touched.insert(name.clone());
+            }
+        }
+    }
+
     /// Counts all as changed.
     pub(crate) fn touch_all(&mut self) {
         self.touched.extend(self.named.keys().cloned());

@@ -40,6 +40,7 @@ pub(super) enum Act {
     Scrape(u32),
     Prepare(u32, bool),
     Wells(usize),
+    Convert(u32, usize),
     Undo,
     Redo,
     GoTo(u64),
@@ -73,6 +74,7 @@ pub(super) fn act() -> impl Strategy<Value = Act> {
         1 => (CANVAS..=PALETTE, any::<bool>()).prop_map(|(s, last)| Act::Prepare(s, last)),
         1 => (CANVAS..=PALETTE).prop_map(Act::Scrape),
         2 => (0..4usize).prop_map(Act::Wells),
+        1 => (CANVAS..=PALETTE, 0..3usize).prop_map(|(s, model)| Act::Convert(s, model)),
         3 => Just(Act::Undo),
         2 => Just(Act::Redo),
         1 => (0..12u64).prop_map(Act::GoTo),
@@ -156,6 +158,11 @@ pub(super) fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act
                 .collect();
             lay(painting, wells_of(&mixtures, palette.cells, palette.cell_m));
         }
+        // It may have that model.
+        Act::Convert(surface, model) => drop(painting.apply(Convert {
+            model: ModelName::new(["impasto", "dab", "marker"][*model]).expect("valid"),
+            surface: *surface,
+        })),
         Act::GoTo(step) => drop(painting.go_to(*step)),
         Act::Undo => drop(painting.undo(None)),
         Act::Redo => drop(painting.redo(None)),

@@ -11,11 +11,12 @@ use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::Mixture;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
 use maulstick_types::edits::{
-    Clean, Dry, Fill, FillPaint, Handle, LayerRef, Load, Opacity, Piles, Scrape, Size, Wells,
+    Clean, Convert, Dry, Fill, FillPaint, Handle, LayerRef, Load, Opacity, Piles, Scrape, Size,
+    Wells,
 };
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE, Well};
 use maulstick_types::values::{
-    BrushName, FilmThickness, LayerName, OpacityFactor, Share, StainThickness,
+    BrushName, FilmThickness, LayerName, ModelName, OpacityFactor, Share, StainThickness,
 };
 use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;

@@ -1,0 +1,217 @@
+//! The paints of one layer of a cell after another, each fitted from the one before it.
+
+use std::sync::Arc;
+
+use maulstick_canvas::planes::TILE_CELLS;
+use maulstick_canvas::quantum::QUANTUM_M;
+use maulstick_dab::volume::{OPAQUE, UNIT};
+
+use crate::cell::{CellColour, FilmCell, VolumeCell};
+use crate::colouring::Colouring;
+use crate::fit::{Fitter, Found, Wanted, whole};
+use crate::shown::{Kind, Shown};
+use crate::tile::Converter;
+
+/// Distance, ΔE₀₀, from which a fit is tried from elsewhere, too.
+const FAR: f64 = 1.0;
+
+/// What a fit depends on: alike for many neighbours.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Asked {
+    /// Quanta by paint of the palette, and their sum.
+    counts: Vec<f32>,
+    all: u64,
+    /// Colour wanted, CIELAB.
+    colour: [f64; 3],
+    /// Reflectances or encoded channels of what lies under it.
+    under: Vec<f64>,
+    /// Opacity of the layer, and the least share of what is below that its volume replaces.
+    opacity: f64,
+    hides: f64,
+}
+
+/// Paints of a layer of a cell.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fitted<'a> {
+    /// Quanta by paint of the palette.
+    pub(crate) counts: &'a [u64],
+    /// Quanta over a dry layer with which it hides as much as it is to; 0 where that needs none.
+    pub(crate) over: f32,
+}
+
+/// Fits of cells.
+pub(crate) struct CellFit<'a> {
+    converter: &'a Converter<'a>,
+    fitter: Fitter,
+    /// As `fitter`, with what lies below as one more paint.
+    blender: Fitter,
+    asked: Asked,
+    last: Asked,
+    own: Vec<f64>,
+    start: Vec<f64>,
+    found: Found,
+    other: Found,
+    counts: Vec<u64>,
+    over: f32,
+}
+
+impl<'a> CellFit<'a> {
+    pub(crate) fn new(converter: &'a Converter<'a>) -> Self {
+        let paints = converter.palette.slots.len();
+        Self {
+            converter,
+            fitter: Fitter::new(paints),
+            blender: Fitter::new(paints + 1),
+            asked: Asked::default(),
+            last: Asked::default(),
+            own: Vec::new(),
+            start: Vec::new(),
+            found: Found::default(),
+            other: Found::default(),
+            counts: Vec::new(),
+            over: 0.0,
+        }
+    }
+
+    /// Takes in the paint of a cell, a plane for each of the palette; returns its quanta.
+    pub(crate) fn take(&mut self, planes: &[Option<&Arc<[f32]>>], cell: usize) -> u64 {
+        let count = |plane: &Option<&Arc<[f32]>>| plane.map_or(0.0, |plane| plane[cell]);
+        let asked = &mut self.asked;
+        asked.counts.clear();
+        asked.counts.extend(planes.iter().map(count));
+        asked.all = asked.counts.iter().map(|count| *count as u64).sum();
+        asked.all
+    }
+
+    /// The paints with which it has the colour that is `wanted`, over what lies `under` it.
+    pub(crate) fn fitted(
+        &mut self,
+        wanted: &Shown,
+        under: &Shown,
+        kind: &Kind,
+        cell: usize,
+    ) -> Fitted<'_> {
+        let asked = &mut self.asked;
+        asked.colour = wanted.lab(&self.converter.palette, cell);
+        asked.under.clear();
+        asked.opacity = kind.opacity().into();
+        match under {
+            Shown::Films(planes) => {
+                let values = planes.iter().skip(cell).step_by(TILE_CELLS);
+                asked.under.extend(values.map(|r| f64::from(*r)));
+            }
+            Shown::Volumes(rgb) => {
+                let values = rgb.iter().map(|plane| f64::from(plane[cell]));
+                asked.under.extend(values);
+                asked.hides = kind.hides(cell, asked.all as f32).into();
+            }
+        }
+        if self.asked != self.last || self.counts.is_empty() {
+            self.fit(kind);
+            std::mem::swap(&mut self.asked, &mut self.last);
+        }
+        Fitted {
+            counts: &self.counts,
+            over: self.over,
+        }
+    }
+
+    fn fit(&mut self, kind: &Kind) {
+        let asked = std::mem::take(&mut self.asked);
+        let share = |count: &f32| f64::from(*count) / asked.all as f64;
+        self.own.clear();
+        self.own.extend(asked.counts.iter().map(share));
+        let palette = &self.converter.palette;
+        self.over = 0.0;
+        match self.converter.to {
+            Colouring::Films => {
+                let film = FilmCell {
+                    palette,
+                    under: &asked.under,
+                    thickness_m: asked.all as f64 * QUANTUM_M * asked.opacity,
+                };
+                self.shares(&film, asked.colour);
+            }
+            Colouring::Volumes => {
+                let under = [0, 1, 2].map(|channel| asked.under[channel]);
+                let most = match kind {
+                    Kind::Wet => asked.hides,
+                    Kind::Dry { .. } => asked.opacity.min(1.0),
+                };
+                let hides = match asked.hides < most {
+                    true => self.blended(&asked, under, most),
+                    false => asked.hides,
+                };
+                let volume = VolumeCell {
+                    palette,
+                    encoded: &palette.encoded,
+                    under,
+                    hides,
+                };
+                self.shares(&volume, asked.colour);
+                if hides > asked.hides {
+                    let part = (hides / asked.opacity).min(1.0);
+                    let stays = f64::from(OPAQUE * UNIT) - asked.all as f64 / part;
+                    self.over = stays.max(0.0) as f32;
+                }
+            }
+        }
+        whole(&self.found.shares, asked.all, &mut self.counts);
+        self.asked = asked;
+    }
+
+    /// Share of what is below that a dry layer is to replace, between what its volume hides and `most`: what lies below
+    /// counts as one of its paints.
+    fn blended(&mut self, asked: &Asked, under: [f64; 3], most: f64) -> f64 {
+        let palette = &self.converter.palette;
+        let encoded: Vec<[f64; 3]> = palette.encoded.iter().copied().chain([under]).collect();
+        let volume = VolumeCell {
+            palette,
+            encoded: &encoded,
+            under,
+            hides: 1.0,
+        };
+        let own = self.own.iter().map(|share| share * asked.hides);
+        let own: Vec<f64> = own.chain([1.0 - asked.hides]).collect();
+        let wanted = Wanted {
+            colour: asked.colour,
+            own: &own,
+        };
+        self.blender.descend(&volume, wanted, &own, &mut self.other);
+        let left = self.other.shares.last().copied().unwrap_or(0.0);
+        (1.0 - left).clamp(asked.hides, most)
+    }
+
+    /// Finds shares, from those of the cell before and from the own ones; where both are far, from a table.
+    fn shares(&mut self, colour: &impl CellColour, wanted: [f64; 3]) {
+        let wanted = Wanted {
+            colour: wanted,
+            own: &self.own,
+        };
+        let has_last = !self.found.shares.is_empty();
+        if has_last {
+            self.start.clone_from(&self.found.shares);
+            self.fitter
+                .descend(colour, wanted, &self.start, &mut self.found);
+            if self.found.delta_e <= FAR {
+                return;
+            }
+        }
+        self.fitter
+            .descend(colour, wanted, &self.own, &mut self.other);
+        if !has_last || self.other.energy < self.found.energy {
+            std::mem::swap(&mut self.found, &mut self.other);
+        }
+        if self.found.delta_e > FAR
+            && let Some(masstones) = &self.converter.masstones
+        {
+            self.start.resize(self.own.len(), 0.0);
+            masstones.nearest(wanted.colour, &mut self.start);
+            self.fitter
+                .descend(colour, wanted, &self.start, &mut self.other);
+            if self.other.energy < self.found.energy {
+                std::mem::swap(&mut self.found, &mut self.other);
+            }
+        }
+    }
+}

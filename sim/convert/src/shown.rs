@@ -1,0 +1,138 @@
+//! Layers of a tile laid over each other, in either colouring.
+
+use maulstick_canvas::planes::{Planes, TILE_CELLS};
+use maulstick_canvas::quantum::QUANTUM_M;
+use maulstick_dab::layers::{dry_share, hides, lay};
+use maulstick_optics::colour::srgb_decode;
+use maulstick_optics::{FilmPlanes, Under};
+
+use crate::cell::encoded;
+use crate::colouring::Colouring;
+use crate::palette::Palette;
+
+/// Layer of a tile, as it lies over what is below.
+#[derive(Clone, Debug)]
+pub(crate) enum Kind {
+    /// Wet paint.
+    Wet,
+    /// Dried paint.
+    Dry {
+        /// Factor on its optical thickness.
+        opacity: f32,
+        /// Quanta that stayed wet over it when it dried, a cell, where that is known.
+        over: Option<Vec<f32>>,
+    },
+}
+
+impl Kind {
+    /// Factor on the optical thickness of a film.
+    pub(crate) fn opacity(&self) -> f32 {
+        match self {
+            Self::Wet => 1.0,
+            Self::Dry { opacity, .. } => *opacity,
+        }
+    }
+
+    /// Share that so many quanta replace as a volume in a cell.
+    pub(crate) fn hides(&self, cell: usize, quanta: f32) -> f32 {
+        match self {
+            Self::Wet => hides(quanta),
+            Self::Dry { opacity, over } => {
+                let stays = over.as_ref().map_or(0.0, |over| over[cell]);
+                (dry_share(quanta, stays) * opacity).min(1.0)
+            }
+        }
+    }
+}
+
+/// What is seen of a tile so far.
+#[derive(Clone, Debug)]
+pub(crate) enum Shown {
+    /// Internal reflectances, a plane a wavelength.
+    Films(Vec<f32>),
+    /// Encoded red, green and blue.
+    Volumes([Vec<f32>; 3]),
+}
+
+impl Shown {
+    /// The ground alone.
+    pub(crate) fn ground(colouring: Colouring, palette: &Palette<'_>, ground: Under<'_>) -> Self {
+        match colouring {
+            Colouring::Films => Self::Films(match ground {
+                Under::Planes(planes) => planes.to_vec(),
+                Under::Even(values) => {
+                    let plane = |value: &f32| std::iter::repeat_n(*value, TILE_CELLS);
+                    values.iter().flat_map(plane).collect()
+                }
+            }),
+            Colouring::Volumes => {
+                let mut rgb = [const { Vec::new() }; 3];
+                rgb.iter_mut()
+                    .for_each(|plane| plane.resize(TILE_CELLS, 0.0f32));
+                let [red, green, blue] = &mut rgb;
+                let bare = FilmPlanes {
+                    paints: &[],
+                    opacity: 1.0,
+                    under: ground,
+                };
+                palette.look.studio.shade(&bare, [red, green, blue]);
+                let even = matches!(ground, Under::Even(_));
+                for value in rgb.iter_mut().flat_map(|plane| match even {
+                    true => plane[..1].iter_mut(),
+                    false => plane.iter_mut(),
+                }) {
+                    *value = encoded(*value);
+                }
+                if even {
+                    for plane in &mut rgb {
+                        let value = plane[0];
+                        plane.fill(value);
+                    }
+                }
+                Self::Volumes(rgb)
+            }
+        }
+    }
+
+    /// Lays a layer over it.
+    pub(crate) fn lay(&mut self, palette: &Palette<'_>, planes: &Planes, kind: &Kind) {
+        match self {
+            Self::Films(under) => {
+                let films: Vec<(usize, Vec<f32>)> = planes
+                    .iter()
+                    .map(|(slot, plane)| {
+                        let film = plane.iter().map(|count| count * QUANTUM_M as f32);
+                        (*slot, film.collect())
+                    })
+                    .collect();
+                let paints: Vec<(usize, &[f32])> =
+                    films.iter().map(|(slot, film)| (*slot, &**film)).collect();
+                let film = FilmPlanes {
+                    paints: &paints,
+                    opacity: kind.opacity(),
+                    under: Under::Planes(under),
+                };
+                *under = palette.look.studio.bake(&film, TILE_CELLS);
+            }
+            Self::Volumes(rgb) => {
+                let share = |cell: usize, volume: f32| kind.hides(cell, volume);
+                lay(rgb, planes, &palette.by_slot, share);
+            }
+        }
+    }
+
+    /// CIELAB of a cell, gloss included.
+    pub(crate) fn lab(&self, palette: &Palette<'_>, cell: usize) -> [f64; 3] {
+        let xyz = match self {
+            Self::Films(planes) => {
+                let cells = planes.iter().skip(cell).step_by(TILE_CELLS);
+                palette.xyz_of(cells.map(|r| f64::from(*r)))
+            }
+            Self::Volumes(rgb) => {
+                let rgb = [0, 1, 2].map(|i| f64::from(rgb[i][cell]).clamp(0.0, 1.0));
+                palette.xyz(rgb.map(srgb_decode))
+            }
+        };
+        palette.lab(xyz)
+    }
+}

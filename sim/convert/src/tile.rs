@@ -1,0 +1,208 @@
+//! The paint of a tile in the colours of another model.
+
+use std::sync::Arc;
+
+use maulstick_appearance::Appearance;
+use maulstick_canvas::planes::{Planes, TILE_CELLS};
+use maulstick_canvas::quantum::CELL_MAX;
+use maulstick_canvas::tile::Tile;
+use maulstick_canvas::wet_over::{noted, wet_over};
+use maulstick_optics::Under;
+use maulstick_optics::colour::delta_e_2000;
+
+use crate::cell_fit::CellFit;
+use crate::colouring::Colouring;
+use crate::masstones::Masstones;
+use crate::palette::Palette;
+use crate::shown::{Kind, Shown};
+
+/// Ground of a tile, and its cells that are left alone.
+#[derive(Clone, Copy, Debug)]
+pub struct TileGround<'a> {
+    /// Internal reflectances.
+    pub under: Under<'a>,
+    /// Cells whose paint stays as it is: those of wells.
+    pub stays: &'a [usize],
+}
+
+/// Distances between what is seen of cells before and after, ΔE₀₀.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Distance {
+    /// Sum over the cells.
+    pub sum: f64,
+    /// The farthest.
+    pub worst: f64,
+    /// Number of cells.
+    pub cells: u64,
+}
+
+impl Distance {
+    /// Takes another one in.
+    pub fn add(&mut self, other: &Self) {
+        self.sum += other.sum;
+        self.worst = self.worst.max(other.worst);
+        self.cells += other.cells;
+    }
+
+    /// The mean; 0 of no cell.
+    #[must_use]
+    pub fn mean(&self) -> f64 {
+        self.sum / self.cells.max(1) as f64
+    }
+}
+
+/// Paint of a tile in other colours.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Converted {
+    /// Wet planes; empty where nothing is wet.
+    pub wet: Planes,
+    /// Planes of the dry layers, the newest first.
+    pub dry: Vec<Planes>,
+    /// How near its painted cells come to what was seen.
+    pub distance: Distance,
+}
+
+/// Conversion of tiles from one colouring to another.
+#[derive(Debug)]
+pub struct Converter<'a> {
+    pub(crate) palette: Palette<'a>,
+    from: Colouring,
+    pub(crate) to: Colouring,
+    pub(crate) masstones: Option<Masstones>,
+}
+
+impl<'a> Converter<'a> {
+    /// A conversion under a look, whose paints it may use.
+    #[must_use]
+    pub fn new(look: &'a Appearance, from: Colouring, to: Colouring) -> Self {
+        let palette = Palette::new(look);
+        let masstones = (from != to && to == Colouring::Films).then(|| Masstones::new(&palette));
+        Self {
+            palette,
+            from,
+            to,
+            masstones,
+        }
+    }
+
+    /// The paint of a tile in the other colours. Planes of the model's own are left out. What a tile becomes depends on it
+    /// and its ground alone.
+    #[must_use]
+    pub fn tile(&self, tile: &Tile, ground: TileGround<'_>) -> Converted {
+        let stack = tile.dry();
+        let layers: Vec<_> = stack.into_iter().flat_map(|stack| stack.layers()).collect();
+        let mut converted = Converted::default();
+        if self.from == self.to {
+            converted.wet = plain(&tile.wet());
+            let dry = layers.iter().map(|layer| plain(&layer.planes.get()));
+            converted.dry = dry.collect();
+            return converted;
+        }
+        let palette = &self.palette;
+        let mut before = Shown::ground(self.from, palette, ground.under);
+        let mut after = Shown::ground(self.to, palette, ground.under);
+        for layer in layers.iter().rev() {
+            let planes = layer.planes.get();
+            let opacity = palette.look.opacity(layer.number);
+            let dry = |over: Option<Vec<f32>>| Kind::Dry { opacity, over };
+            before.lay(palette, &planes, &dry(wet_over(&planes)));
+            let fitted = self.layer(&planes, &before, &after, &dry(None), ground.stays);
+            after.lay(palette, &fitted, &dry(wet_over(&fitted)));
+            converted.dry.push(fitted);
+        }
+        converted.dry.reverse();
+        let wet = tile.wet();
+        if !wet.is_empty() {
+            before.lay(palette, &wet, &Kind::Wet);
+            converted.wet = self.layer(&wet, &before, &after, &Kind::Wet, ground.stays);
+            after.lay(palette, &converted.wet, &Kind::Wet);
+        }
+        converted.distance = self.distance(tile, &before, &after);
+        converted
+    }
+
+    /// How near what is seen now comes to what was seen, over the painted cells.
+    fn distance(&self, tile: &Tile, before: &Shown, after: &Shown) -> Distance {
+        let wet = tile.wet();
+        let dry = tile.dry().map(|stack| stack.height());
+        let mut distance = Distance::default();
+        for cell in 0..TILE_CELLS {
+            let is_dry = dry.as_ref().is_some_and(|dry| dry[cell] > 0.0);
+            if is_dry || wet.iter().any(|(_, plane)| plane[cell] > 0.0) {
+                let [one, other] = [before, after].map(|shown| shown.lab(&self.palette, cell));
+                let delta_e = delta_e_2000(one, other);
+                distance.add(&Distance {
+                    sum: delta_e,
+                    worst: delta_e,
+                    cells: 1,
+                });
+            }
+        }
+        distance
+    }
+
+    /// A layer with the paints of each cell chosen anew: over `under` it is to have the colour that `wanted` has. Of dry
+    /// volumes it is also chosen how much they hide, as if so much had stayed wet over them.
+    fn layer(
+        &self,
+        planes: &Planes,
+        wanted: &Shown,
+        under: &Shown,
+        kind: &Kind,
+        stays: &[usize],
+    ) -> Planes {
+        let slots = &self.palette.slots;
+        let plane_of = |slot: &usize| {
+            let found = planes.iter().find(|(own, _)| own == slot);
+            found.map(|(_, plane)| plane)
+        };
+        let own: Vec<Option<&Arc<[f32]>>> = slots.iter().map(plane_of).collect();
+        let mut into: Vec<Option<Vec<f32>>> = own
+            .iter()
+            .map(|plane| plane.map(|plane| plane.to_vec()))
+            .collect();
+        let mut left_alone = [false; TILE_CELLS];
+        stays.iter().for_each(|cell| left_alone[*cell] = true);
+        let mut fit = CellFit::new(self);
+        let mut over = vec![0.0; TILE_CELLS];
+        for cell in (0..TILE_CELLS).filter(|cell| !left_alone[*cell]) {
+            let all = fit.take(&own, cell);
+            // More than a cell holds may not be exact as a count of one paint.
+            if !(1..=u64::from(CELL_MAX)).contains(&all) {
+                continue;
+            }
+            let fitted = fit.fitted(wanted, under, kind, cell);
+            over[cell] = fitted.over;
+            for (into, count) in into.iter_mut().zip(fitted.counts) {
+                match into {
+                    Some(plane) => plane[cell] = *count as f32,
+                    None if *count > 0 => {
+                        let mut plane = vec![0.0; TILE_CELLS];
+                        plane[cell] = *count as f32;
+                        *into = Some(plane);
+                    }
+                    None => {}
+                }
+            }
+        }
+        let mut by_slot: Vec<(usize, Arc<[f32]>)> = slots
+            .iter()
+            .zip(into)
+            .filter_map(|(slot, plane)| Some((*slot, plane?.into())))
+            .collect();
+        let others = planes.iter().filter(|(slot, _)| !slots.contains(slot));
+        by_slot.extend(others.cloned());
+        by_slot.sort_by_key(|(slot, _)| *slot);
+        by_slot.retain(|(_, plane)| plane.iter().any(|count| *count != 0.0));
+        let fitted: Planes = by_slot.into_iter().collect();
+        match over.iter().any(|over| *over > 0.0) {
+            true => noted(fitted, &over),
+            false => fitted,
+        }
+    }
+}
+
+/// Counts without planes of the model's own.
+fn plain(planes: &Planes) -> Planes {
+    planes.iter().cloned().collect()
+}
