@@ -49,6 +49,7 @@ pub static MODELS: [ModelEntry; 4] = [
     ModelEntry {
         name: "stokes",
         shown: &Counted,
+        colouring: Colouring::Films,
         make: || Box::new(StokesPaint::default()),
     },
     ModelEntry {
