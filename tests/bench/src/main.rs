@@ -18,6 +18,7 @@
 //! | [`recording`] | `recording`: a recording of ten minutes, opened and sought in, beside the `mcap` crate's reader |
 //! | [`render`] | `render`: the 30 s recording, offline |
 //! | [`report`] | rows and their table |
+//! | [`stokes`] | `paint`: the solver of Stokes Paint by itself |
 //! | [`tails`] | `render`: work beside the steps, as shares of it |
 //! | [`texels`] | `paint`: dAb's stroking algorithms by themselves |
 //! | [`thread_cpu`] | time of the processor |
@@ -42,6 +43,7 @@ mod recording;
 mod render;
 mod report;
 mod running;
+mod stokes;
 mod tails;
 mod texels;
 mod thread_cpu;
@@ -63,7 +65,7 @@ struct Options {
     /// recording, render, view, window [default: everything]
     area: Option<String>,
     /// Paint model to measure
-    #[arg(long, default_value = "impasto", value_parser = PossibleValuesParser::new(model_names()))]
+    #[arg(long, default_value = "impasto", value_parser = PossibleValuesParser::new(models()))]
     model: String,
     /// Where its steps are computed
     #[arg(long, default_value = "cpu", value_parser = ["cpu", "gpu"])]
@@ -77,6 +79,12 @@ struct Options {
     /// A process of the pen benchmark
     #[arg(long, hide = true)]
     pen: Option<String>,
+}
+
+/// Paint models, and what is measured by itself until a surface can have it.
+fn models() -> impl Iterator<Item = &'static str> {
+    let alone = std::iter::once(paint::SOLVER);
+    model_names().chain(alone.filter(|name| model_names().all(|model| model != *name)))
 }
 
 /// An area's name and what measures it.
