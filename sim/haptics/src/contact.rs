@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3};
 use maulstick_types::haptics::ContactModel;
 
 use crate::force_law::{Law, Normal, Penetration};
-use crate::friction::{Grip, STUCK_SHARE, Stiction, breakaway, drag, friction, ramp};
+use crate::friction::{Grip, STUCK_SHARE, Stiction, drag, friction, ramp};
 use crate::grain::Texture;
 use crate::relief::{Height, Relief, light};
 
@@ -253,12 +253,13 @@ impl Contact {
         let moving_n = (self.friction * normal.force_n * ramp).min(still_n);
         let grip = Grip {
             normal: n,
-            bound_n: breakaway(still_n, moving_n, velocity.length()),
+            still_n,
+            moving_n,
             stiffness_n_m: stuck_n_m,
         };
         let stuck = stiction.force(handle.position, &grip);
         let sliding =
-            (stuck + friction(velocity, moving_n)).clamp_length_max(grip.bound_n.max(0.0));
+            (stuck + friction(velocity, moving_n)).clamp_length_max(stiction.bound_n(&grip));
         let grain = self.grain.force(
             tip - self.point,
             n,

@@ -7,13 +7,15 @@
 //! such bound: a film drags however lightly it is touched. All come up over the first half millimetre.
 
 use glam::DVec3;
-use maulstick_num::exp;
 
 /// Friction and drag grow to their full size over this depth, m.
 pub const RAMP_M: f64 = 5e-4;
-/// Speed at which friction reaches its bound, m/s: k_t = μ·f_n by this. Friction at rest falls to that in motion by it, too
-/// (Stribeck 1902).
+/// Speed at which friction reaches its bound, m/s: k_t = μ·f_n by this.
 const FULL_SPEED: f64 = 0.02;
+/// Way over which friction at rest falls to that in motion, m.
+const SLID_M: f64 = 5e-4;
+/// Time in which bristles that slide no more stick as before, s.
+const STICKING_S: f64 = 0.05;
 /// Stiffness of bristles that stick by the greatest that the device bears.
 pub const STUCK_SHARE: f64 = 0.2;
 
@@ -40,47 +42,66 @@ pub fn drag(across: DVec3, viscous: f64) -> DVec3 {
     -across * viscous
 }
 
-/// Bound of friction at a speed, N: at rest `still_n`, in motion `moving_n`.
-#[must_use]
-pub fn breakaway(still_n: f64, moving_n: f64, speed: f64) -> f64 {
-    let share = speed / FULL_SPEED;
-    moving_n + (still_n - moving_n).max(0.0) * exp(-share * share)
-}
-
 /// Hold of the bristles on the surface at a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Grip {
     /// Unit normal.
     pub normal: DVec3,
-    /// Force at which they give way, N.
-    pub bound_n: f64,
+    /// Force at which bristles that stick give way, N.
+    pub still_n: f64,
+    /// Force at which they go on giving way, N; not more.
+    pub moving_n: f64,
     /// Stiffness, N/m.
     pub stiffness_n_m: f64,
 }
 
-/// Bristles that stick: the place of the ferrule at which they pull nowhere.
+/// Bristles that stick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stiction {
+    /// Place of the ferrule at which they pull nowhere.
     anchor: Option<DVec3>,
+    /// From 0, where they stick, to 1, where they slide. By the way that they slid and not by the speed, which encoders give in
+    /// steps: a hand that is still would seem to move.
+    sliding: f64,
 }
 
 impl Stiction {
+    /// Force at which they give way now, N.
+    #[must_use]
+    pub fn bound_n(&self, grip: &Grip) -> f64 {
+        let bound = grip.still_n + (grip.moving_n - grip.still_n) * self.sliding;
+        bound.max(0.0)
+    }
+
     /// Force on a ferrule at `position`, m, N.
     #[must_use]
     pub fn force(&self, position: DVec3, grip: &Grip) -> DVec3 {
-        let Some(anchor) = self.anchor else {
-            return DVec3::ZERO;
-        };
-        let way = anchor - position;
-        let across = way - grip.normal * way.dot(grip.normal);
-        (across * grip.stiffness_n_m).clamp_length_max(grip.bound_n.max(0.0))
+        self.pull(position, grip)
+            .clamp_length_max(self.bound_n(grip))
     }
 
-    /// The end of a tick with the ferrule at `position`, m: what pulls by more than its bound has given way. Without a grip
-    /// nothing sticks.
-    pub fn follow(&mut self, position: DVec3, grip: Option<&Grip>) {
-        let held = grip.filter(|grip| grip.stiffness_n_m > 0.0);
-        self.anchor = held.map(|grip| position + self.force(position, grip) / grip.stiffness_n_m);
+    /// The force if nothing gave way, N.
+    fn pull(&self, position: DVec3, grip: &Grip) -> DVec3 {
+        let way = self.anchor.map_or(DVec3::ZERO, |anchor| anchor - position);
+        (way - grip.normal * way.dot(grip.normal)) * grip.stiffness_n_m
+    }
+
+    /// The end of a tick of `dt` s with the ferrule at `position`, m: what pulls by more than its bound has given way. Without
+    /// a grip nothing sticks.
+    pub fn follow(&mut self, position: DVec3, grip: Option<&Grip>, dt: f64) {
+        let Some(grip) = grip.filter(|grip| grip.stiffness_n_m > 0.0) else {
+            *self = Self::default();
+            return;
+        };
+        let force = self.force(position, grip);
+        let slid_m = (self.pull(position, grip) - force).length() / grip.stiffness_n_m;
+        self.anchor = Some(position + force / grip.stiffness_n_m);
+        let change = if slid_m > 0.0 {
+            slid_m / SLID_M
+        } else {
+            -dt / STICKING_S
+        };
+        self.sliding = (self.sliding + change).clamp(0.0, 1.0);
     }
 }
 

@@ -20,7 +20,7 @@
 
 mod smoothing;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use glam::DVec3;
 use maulstick_num::exp;

@@ -229,7 +229,7 @@ impl Servo {
             return self.nothing(tick);
         }
         tick.cap_n = cap_n;
-        self.hold(handle, contact_force.as_ref());
+        self.hold(handle, contact_force.as_ref(), dt);
         let wanted = self.wanted(handle, contact_force, dt, &mut tick);
         let size = wanted.length();
         tick.clamped = size > tick.cap_n;
@@ -371,11 +371,11 @@ impl Servo {
     }
 
     /// Bristles that touch stick, and give way to a hand that pulls; until force begins nothing holds it.
-    fn hold(&mut self, handle: &HandleState, contact_force: Option<&ContactForce>) {
+    fn hold(&mut self, handle: &HandleState, contact_force: Option<&ContactForce>, dt: f64) {
         let begun = self.engagement == Engagement::Begun;
         let touching = contact_force.filter(|felt| begun && felt.depth_m > 0.0);
         let grip = touching.map(|felt| &felt.grip);
-        self.stiction.follow(handle.position, grip);
+        self.stiction.follow(handle.position, grip, dt);
     }
 
     /// Latches a hand that goes on shaking; without force no device shakes it.
@@ -474,5 +474,7 @@ impl Servo {
 mod guard_tests;
 #[cfg(test)]
 mod guidance_tests;
+#[cfg(test)]
+mod relief_tests;
 #[cfg(test)]
 mod tests;

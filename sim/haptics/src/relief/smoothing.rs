@@ -1,12 +1,12 @@
 //! Heights that no device shakes at: their slope and curvature are bounded.
 //!
-//! Steps become ramps (the mean of the envelopes from above and from below under cones of the greatest slope), then binomial
-//! filters take the curvature away, as a head does that rests on several millimetres at once; what is still too sharp is
-//! lower. Each of these depends continuously on the heights.
+//! Steps become ramps beside what is high (the upper envelope under pyramids of the greatest slope, as a bristle lies on
+//! peaks), then binomial filters take the curvature away, as a head does that rests on several millimetres at once; what is
+//! still too sharp is lower. Each of these depends continuously on the heights.
 
 use super::{Heights, SIDE};
 
-/// Slope at most: that of a ramp of 27°.
+/// Slope along each axis at most.
 const SLOPE_MOST: f64 = 0.5;
 /// Curvature at most, 1/m: a ridge of 5 mm may be .5 mm high.
 const CURVATURE_MOST: f64 = 200.0;
@@ -15,10 +15,7 @@ const FILTERS: usize = 8;
 
 /// The heights with bounded slope and curvature.
 pub(super) fn smoothed(heights: &Heights, cell_m: f64) -> Heights {
-    let step = SLOPE_MOST * std::f64::consts::FRAC_1_SQRT_2 * cell_m;
-    let above = enveloped(heights, |height, other| height.max(other - step));
-    let below = enveloped(heights, |height, other| height.min(other + step));
-    let mut heights = mixed(&above, &below, 0.5);
+    let mut heights = enveloped(heights, SLOPE_MOST * cell_m);
     for _ in 0..FILTERS {
         let sharp = curvature(&heights, cell_m);
         if sharp <= CURVATURE_MOST {
@@ -72,16 +69,16 @@ fn beside(i: usize) -> [usize; 2] {
     [i.saturating_sub(1), (i + 1).min(SIDE - 1)]
 }
 
-/// Heights after `raise` has gone over them along rows and columns, to and fro.
-fn enveloped(heights: &Heights, raise: impl Fn(f64, f64) -> f64) -> Heights {
+/// The lowest heights that are nowhere lower and fall by `step` a cell at most.
+fn enveloped(heights: &Heights, step: f64) -> Heights {
     let mut heights = *heights;
     for _ in 0..2 {
         for row in &mut heights {
             for i in 1..SIDE {
-                row[i] = raise(row[i], row[i - 1]);
+                row[i] = row[i].max(row[i - 1] - step);
             }
             for i in (1..SIDE).rev() {
-                row[i - 1] = raise(row[i - 1], row[i]);
+                row[i - 1] = row[i - 1].max(row[i] - step);
             }
         }
         heights = turned(&heights);

@@ -11,6 +11,7 @@ mod loading_from;
 mod models;
 mod modes;
 mod pauses;
+mod relief;
 mod scraping;
 mod sequencer;
 mod studio;

@@ -303,7 +303,9 @@ fn a_force_at_the_ferrule_turns_the_hand_as_far_as_the_device_can() {
     assert!((written.force - DVec3::X).length() < 1e-15);
     assert!((written.torque + DVec3::Y * 0.05).length() < 1e-15);
     // The brush's own is a quarter as large in the hand: force and lever are halves.
-    placed.write(DVec3::X * 2.0, DVec3::new(0.1, 0.0, 0.04)).expect("there");
+    placed
+        .write(DVec3::X * 2.0, DVec3::new(0.1, 0.0, 0.04))
+        .expect("there");
     let torque = put.bench().written.torque;
     let expected = DVec3::new(0.025, -0.05, 0.01);
     assert!((torque - expected).length() < 1e-15, "{torque}");
