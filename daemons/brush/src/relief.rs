@@ -111,7 +111,7 @@ impl Told {
 
 #[cfg(test)]
 mod tests {
-    use maulstick_haptics::{Contact, Limits};
+    use maulstick_haptics::Contact;
     use maulstick_painting::PaintingSetup;
     use maulstick_types::haptics::{ContactModel, ForceLaw};
     use maulstick_types::scene::{PALETTE, Scene};
@@ -144,13 +144,12 @@ mod tests {
             ..ContactModel::bare(law, 0.025)
         });
         let contact = contact.expect("a servo takes it");
-        let most = Limits::default().max_stiffness_n_m;
         let handle = maulstick_haptics::contact::HandleState {
             position: at + DVec3::Z * 0.025,
             orientation: glam::DQuat::IDENTITY,
             velocity: DVec3::ZERO,
         };
-        let depth = contact.evaluate(&handle, most).depth_m;
+        let depth = contact.evaluate(&handle, 1e9).depth_m;
         depth + (at - plane.to_desk.point(DVec3::ZERO)).dot(plane.normal())
     }
 
@@ -209,7 +208,7 @@ mod tests {
         let ridge = told(CANVAS, [88, 88], |i, _| {
             if (98..102).contains(&i) { 300 } else { 0 }
         });
-        for (turn, zoom) in [(0.0, 1.0), (0.9, 1.0), (0.4, 2.0)] {
+        for (turn, zoom) in [(0.0, 1.0), (0.3, 1.0), (0.4, 2.0)] {
             let rotation = maulstick_num::geometry::rotation(DVec3::Z, turn);
             scene.surfaces[0].pose.orientation = rotation.to_array();
             scene.surfaces[0].zoom = zoom;

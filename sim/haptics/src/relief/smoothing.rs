@@ -16,11 +16,11 @@ const FILTERS: usize = 8;
 /// The heights with bounded slope and curvature.
 pub(super) fn smoothed(heights: &Heights, cell_m: f64) -> Heights {
     let mut heights = enveloped(heights, SLOPE_MOST * cell_m);
+    let mut sharp = curvature(&heights, cell_m);
+    if sharp <= CURVATURE_MOST {
+        return heights;
+    }
     for _ in 0..FILTERS {
-        let sharp = curvature(&heights, cell_m);
-        if sharp <= CURVATURE_MOST {
-            return heights;
-        }
         let softer = filtered(&heights);
         let soft = curvature(&softer, cell_m);
         if soft <= CURVATURE_MOST {
@@ -28,9 +28,8 @@ pub(super) fn smoothed(heights: &Heights, cell_m: f64) -> Heights {
             let share = (sharp - CURVATURE_MOST) / (sharp - soft);
             return mixed(&heights, &softer, share);
         }
-        heights = softer;
+        (heights, sharp) = (softer, soft);
     }
-    let sharp = curvature(&heights, cell_m);
     mixed(&heights, &[[0.0; SIDE]; SIDE], 1.0 - CURVATURE_MOST / sharp)
 }
 

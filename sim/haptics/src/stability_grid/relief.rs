@@ -21,6 +21,10 @@ use crate::servo::tick::Sender;
 
 /// Side of a cell, m.
 const CELL_M: f64 = 1e-3;
+/// Coulomb friction of its device, N.
+const COULOMB_N: f64 = 0.06;
+/// Stiffnesses of its walls, N/m.
+const WALLS_N_M: [f64; 5] = [100.0, 300.0, 500.0, 800.0, 1000.0];
 /// The hand is drawn across the relief by so much to each side, and holds still on a flank, m.
 const DRAWN_M: f64 = 4e-3;
 const FLANK_M: f64 = 1.3e-3;
@@ -28,8 +32,6 @@ const FLANK_M: f64 = 1.3e-3;
 /// What lies on the plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {
-    /// Nothing: the plane alone.
-    Flat,
     /// Lumps without order, 4 mm wide, to .8 mm up and down.
     Rough,
     /// A ridge of .9 mm.
@@ -42,7 +44,6 @@ impl Ground {
     /// Height of a cell, µm.
     fn height_um(self, column: i64, row: i64) -> i16 {
         match self {
-            Self::Flat => 0,
             Self::Rough => {
                 let lump = [column, row].map(|cell| cell.div_euclid(4));
                 let mut state = (lump[0] * 7919 + lump[1] * 104_729) as u64;
@@ -100,6 +101,8 @@ pub struct ReliefRun {
     pub tilt: Tilt,
     /// Friction, at rest half as much again.
     pub friction: f64,
+    /// Coulomb friction of the device, N, which hides what a hand is given that moves.
+    pub coulomb_n: f64,
 }
 
 /// How it went.
@@ -136,7 +139,8 @@ fn at(position: DVec3) -> HandleState {
 
 impl Booked {
     fn force(&self, position: DVec3) -> DVec3 {
-        self.contact.force(&at(position), MAX_STIFFNESS_N_M)
+        let felt = self.contact.evaluate(&at(position), MAX_STIFFNESS_N_M);
+        felt.conservative
     }
 
     fn age(&mut self) {
@@ -164,13 +168,7 @@ impl Booked {
 }
 
 impl ReliefRun {
-    fn contact(
-        &self,
-        wall: &Wall,
-        ground: Ground,
-        around: DVec3,
-        friction: f64,
-    ) -> Result<Contact, &'static str> {
+    fn contact(&self, wall: &Wall, patch: HeightPatch) -> Result<Contact, &'static str> {
         let law = ForceLaw::Rigid {
             stiffness_n_m: wall.stiffness,
         };
@@ -178,11 +176,11 @@ impl ReliefRun {
         Contact::new(&ContactModel {
             plane_point_m: wall.point.to_array(),
             plane_normal: wall.normal.to_array(),
-            friction_static: 1.5 * friction,
-            friction_kinetic: friction,
+            friction_static: 1.5 * self.friction,
+            friction_kinetic: self.friction,
             time_to_live_ns: (live_s * 1e9) as u64,
             recovery_ns: (RECOVERY_S * 1e9) as u64,
-            relief: ground.patch(wall, around),
+            relief: patch,
             ..ContactModel::bare(law, HEAD_M)
         })
     }
@@ -208,8 +206,8 @@ impl ReliefRun {
     /// # Errors
     /// What is wrong with a wall that makes no contact model.
     pub fn go(&self) -> Result<ReliefOutcome, &'static str> {
-        let sent = self.run.path == Path::Sent;
-        let guard = |usual: f64| if sent { f64::INFINITY } else { usual };
+        let unguarded = self.run.path == Path::Sent;
+        let guard = |usual: f64| if unguarded { f64::INFINITY } else { usual };
         let usual = Limits::default();
         let mut servo = Servo::new(Limits {
             max_force_n: 3.3,
@@ -221,9 +219,13 @@ impl ReliefRun {
             ..usual
         });
         let mut plant = Plant::omni(self.run.hand, self.target(0.0));
-        let first = self.run.wall(0.0);
+        plant.coulomb_n = self.coulomb_n;
+        let (mut contact, mut sent) = (
+            self.contact(&self.run.wall(0.0), HeightPatch::flat())?,
+            None,
+        );
         let mut booked = Booked {
-            contact: self.contact(&first, Ground::Flat, DVec3::ZERO, 0.0)?,
+            contact,
             correction: DVec3::ZERO,
             speed: 0.0,
         };
@@ -254,9 +256,13 @@ impl ReliefRun {
             booked.age();
             let arrived = under_way.iter().filter(|(at, ..)| *at <= s).count();
             if let Some((_, wall, around)) = under_way.drain(..arrived).next_back() {
-                let contact = self.contact(&wall, self.ground, around, self.friction)?;
+                let patch = self.ground.patch(&wall, around);
+                // Over a wall that rests most patches are the one before.
+                if self.run.motion != Motion::Still || sent.as_ref() != Some(&patch) {
+                    contact = self.contact(&wall, patch.clone())?;
+                    sent = Some(patch);
+                }
                 servo.receive(contact, Sender::Same);
-                let contact = self.contact(&wall, self.ground, around, 0.0)?;
                 booked.change(contact, handle.position);
             }
             let (wanted, tick) = servo.step(&handle, DT);
@@ -312,7 +318,8 @@ impl ReliefRun {
 pub fn relief_grid(path: Path) -> Vec<ReliefRun> {
     let mut runs = Vec::new();
     for ground in [Ground::Rough, Ground::Ridge, Ground::Edge] {
-        for run in grid(path) {
+        let walls = grid(path).into_iter();
+        for run in walls.filter(|run| WALLS_N_M.contains(&run.stiffness)) {
             for friction in [0.0, 0.2] {
                 if friction == 0.0 || run.motion == Motion::Still {
                     runs.push(ReliefRun {
@@ -320,6 +327,7 @@ pub fn relief_grid(path: Path) -> Vec<ReliefRun> {
                         ground,
                         tilt: Tilt::BySlope,
                         friction,
+                        coulomb_n: COULOMB_N,
                     });
                 }
             }
@@ -353,23 +361,22 @@ mod tests {
             k if k < super::super::BOUND_N_M => (it.share - 1.0).abs(),
             _ => 0.0,
         };
+        let moved: Vec<_> = all
+            .iter()
+            .filter(|(run, _)| run.friction == 0.0)
+            .copied()
+            .collect();
         println!(
             "{ground:?}: {} runs, {} bad: wobble {:.3} mm, energy {:.3} µJ, {:.3} µJ from some time on, force off by {:.2} %, {:.2} N across at most",
             all.len(),
             bad.len(),
             most(&all, |it| it.wobble_m) * 1e3,
             most(&all, |it| it.net_j) * 1e6,
-            most(
-                &all.iter()
-                    .filter(|(run, _)| run.friction == 0.0)
-                    .copied()
-                    .collect::<Vec<_>>(),
-                |it| it.rise_j
-            ) * 1e6,
+            most(&moved, |it| it.rise_j) * 1e6,
             all.iter().map(soft).fold(0.0, f64::max) * 1e2,
             most(&all, |it| it.across_n)
         );
-        assert_eq!((all.len(), bad.len()), (1350, 0), "{ground:?}");
+        assert_eq!((all.len(), bad.len()), (675, 0), "{ground:?}");
     }
 
     #[test]
@@ -410,18 +417,22 @@ mod tests {
             for (run, outcome) in still {
                 assert!(!run.is_good(outcome), "{run:?}: {outcome:?}");
             }
-            let upright = went(some(300.0, ground, Path::Servo).map(|it| ReliefRun {
-                tilt: Tilt::Upright,
-                ..it
-            }));
-            let bad = upright.iter().filter(|(run, it)| !run.is_good(it)).count();
-            let net_j = most(&upright, |it| it.net_j);
+            let without_friction = |tilt| {
+                let runs = some(300.0, ground, Path::Servo).map(move |it| ReliefRun {
+                    tilt,
+                    coulomb_n: 0.0,
+                    ..it
+                });
+                let all = went(runs.filter(|it| it.run.motion == Motion::Still));
+                most(&all, |it| it.rise_j)
+            };
+            let [tilted_j, upright_j] = [Tilt::BySlope, Tilt::Upright].map(without_friction);
             println!(
-                "{ground:?}: {bad} of {} found out, {:.0} µJ",
-                upright.len(),
-                net_j * 1e6
+                "{ground:?}: tilted {:.2} µJ, upright {:.0} µJ",
+                tilted_j * 1e6,
+                upright_j * 1e6
             );
-            assert!(2 * bad > upright.len() && net_j > 10.0 * NO_ENERGY_J);
+            assert!(tilted_j <= NO_ENERGY_J && upright_j > 10.0 * NO_ENERGY_J);
         }
     }
 }

@@ -79,8 +79,14 @@ fn heights_lie_where_they_were_painted_and_go_no_farther_than_the_canvas() {
         assert!(is_on == (um > 150) && (is_on || um == 0), "{x} {y}: {um}");
     }
     // Patches of two places agree where both are.
-    let (one, other) = (relief(&painting, [20.2, 30.0]), relief(&painting, [23.9, 33.0]));
-    assert_eq!([other.first[0] - one.first[0], other.first[1] - one.first[1]], [3, 3]);
+    let (one, other) = (
+        relief(&painting, [20.2, 30.0]),
+        relief(&painting, [23.9, 33.0]),
+    );
+    assert_eq!(
+        [other.first[0] - one.first[0], other.first[1] - one.first[1]],
+        [3, 3]
+    );
     let height = |relief: &BrushRelief, x: i32, y: i32| {
         let at = (y - relief.first[1]) * 24 + x - relief.first[0];
         heights_um(&relief.heights_um).nth(at as usize)
@@ -106,6 +112,8 @@ fn a_brush_far_away_or_unknown_has_no_relief_below_it() {
     assert_eq!(painting.relief_below(BRUSH, &nowhere), None);
     let mut beside = over([30.0, 30.0]);
     beside.pose.position_m[0] = 90.0;
-    let beside = painting.relief_below(BRUSH, &beside).expect("above the plane");
+    let beside = painting
+        .relief_below(BRUSH, &beside)
+        .expect("above the plane");
     assert!(heights_um(&beside.heights_um).all(|um| um == 0));
 }
