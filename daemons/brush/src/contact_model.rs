@@ -6,7 +6,7 @@ use maulstick_brush::head_stiffness::Press;
 use maulstick_brush::{BrushFile, BrushModel};
 use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_types::Origin;
-use maulstick_types::haptics::{ContactModel, ForceLaw, Grain};
+use maulstick_types::haptics::{ContactModel, ForceLaw, Grain, HeightPatch};
 use maulstick_types::scene::{CANVAS, Scene};
 
 /// k₂ of eq. 8.1: further force a head's length below, N.
@@ -125,6 +125,8 @@ pub struct SurfaceFeel {
     pub law: ForceLaw,
     /// Grain of the canvas.
     pub grain: Grain,
+    /// Relief around the brush.
+    pub relief: HeightPatch,
 }
 
 /// Contact model of a surface under a brush.
@@ -153,6 +155,7 @@ pub fn contact_model(
         head_length_m: file.length_m(),
         time_to_live_ns: TIME_TO_LIVE_NS,
         recovery_ns: RECOVERY_NS,
+        relief: felt.relief,
     }
 }
 

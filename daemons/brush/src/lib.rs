@@ -10,6 +10,7 @@
 //! | [`outbox`] | solved states that wait for credit |
 //! | [`contact_model`] | the contact model for the hand |
 //! | [`fluid_force`] | the drag of the paint on it |
+//! | [`relief`] | the relief around the brush that it feels |
 
 pub mod arbiter;
 pub mod contact_model;
@@ -17,5 +18,6 @@ pub mod fluid_force;
 pub mod node;
 pub mod outbox;
 pub mod path_simplifier;
+pub mod relief;
 
 pub use node::{BrushDevices, BrushNode, BrushSettings};

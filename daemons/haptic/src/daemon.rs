@@ -100,7 +100,7 @@ impl Daemon {
         let actor = Actor::start(member.bus.clone(), topics, &device.brush, actions)?;
         let topic = topics.contact_model(&device.name);
         let (guides, fluids) = (topics.guide(&device.name), topics.fluid_force(&device.name));
-        let (paint_drag, wake) = (device.paint_drag, &member.wake);
+        let (paint_drag, relief, wake) = (device.paint_drag, device.relief, &member.wake);
         let samples = CreditSender::new(
             bus,
             topics,
@@ -124,7 +124,12 @@ impl Daemon {
                 brush: device.brush.clone(),
             },
             samples,
-            models: Inlet::new((bus, &topic), Recipient::accepts, Contact::new, wake)?,
+            models: Inlet::new(
+                (bus, &topic),
+                Recipient::accepts,
+                move |model| Contact::with_relief(model, relief),
+                wake,
+            )?,
             guides: Inlet::new((bus, &guides), Recipient::accepts_guide, Guide::new, wake)?,
             fluids: Inlet::new(
                 (bus, &fluids),

@@ -11,11 +11,11 @@ use maulstick_painting::picture::picture;
 use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::command::BrushCommand;
 use maulstick_types::command::{Command, Outcome};
-use maulstick_types::edits::{Load, Tune, Undo};
-use maulstick_types::haptics::{ContactModel, FluidForce, ForceLaw};
-use maulstick_types::scene::Tuning;
+use maulstick_types::edits::{Dry, Fill, FillPaint, Load, Tune, Undo};
+use maulstick_types::haptics::{ContactModel, FluidForce, ForceLaw, heights_um};
+use maulstick_types::scene::{CANVAS, Tuning};
 use maulstick_types::stylus::{StylusInfo, StylusSample, axes};
-use maulstick_types::values::{BrushName, BrushToml};
+use maulstick_types::values::{BrushName, BrushToml, FilmThickness};
 use maulstick_types::{Flags, Origin, name_hash};
 use support::{Device, Live, START_NS, loads, pen, take};
 
@@ -121,6 +121,43 @@ fn wet_paint_drags_a_moving_hand_by_the_fluid_force_and_by_no_model() {
     // Never twice in the hand.
     let all: Vec<_> = std::iter::from_fn(|| models.try_recv()).collect();
     assert!(!all.is_empty() && all.iter().all(|it| it.message.viscous_n_s_m == 0.0));
+}
+
+/// Mean height of the newest relief that a servo takes, µm.
+fn felt_um(live: &mut Live, arm: &mut Device, models: &mut Receiver<ContactModel>) -> f64 {
+    for step in 0..60 {
+        arm.send(&pen(1e-5 * f64::from(step), 0.0, 0.1));
+        turn(live);
+    }
+    let newest = models.newest().expect("a model").message;
+    maulstick_haptics::Contact::new(&newest).expect("a servo takes it");
+    let heights: Vec<i16> = heights_um(&newest.relief.heights_um).collect();
+    assert_eq!(heights.len(), 256, "{:?}", newest.relief);
+    heights.iter().map(|um| f64::from(*um)).sum::<f64>() / 256.0
+}
+
+#[test]
+fn dried_paint_is_felt_and_wet_paint_hardly() {
+    let mut live = live();
+    let mut models = models(&live);
+    let mut arm = force_device(&live);
+    turn(&mut live);
+    let ground = felt_um(&mut live, &mut arm, &mut models);
+    // Linen is 80 µm deep.
+    assert!((-80.0..0.0).contains(&ground), "{ground}");
+    let lay = Fill {
+        paint: FillPaint::Mixture {
+            mixture: loads()[0].clone(),
+        },
+        thickness: FilmThickness::new(3e-4).expect("in range"),
+        surface: CANVAS,
+    };
+    live.command(1, lay.into());
+    let wet = felt_um(&mut live, &mut arm, &mut models) - ground;
+    live.command(2, Dry::whole(CANVAS).into());
+    let dry = felt_um(&mut live, &mut arm, &mut models) - ground;
+    println!("{ground:.0} µm of ground, {wet:.0} µm of wet paint, {dry:.0} µm of dry");
+    assert!((dry - 300.0).abs() < 20.0 && (0.0..100.0).contains(&wet));
 }
 
 #[test]

@@ -175,6 +175,44 @@ message! {
     }
 }
 
+message! {
+    /// Relief of the surface below a brush, for the hand; while its states come, at most each 15 ms, and again each .5 s
+    /// where it stays as it is.
+    pub struct BrushRelief [version 1, at most 4096 bytes] {
+        /// The surface.
+        pub surface: u32,
+        /// Side of a cell in the surface's own lengths, m.
+        pub cell_m: f64,
+        /// Cells along a side.
+        pub side: u32,
+        /// Column and row of the first cell, counted from the surface's corner.
+        pub first: [i32; 2],
+        /// Height of each cell in µm of the surface's own lengths, little endian i16, row after row; 0 is the level of the
+        /// highest peaks of its bare ground.
+        pub heights_um: serde_bytes::ByteBuf,
+    }
+}
+
+impl BrushRelief {
+    /// Cells along a side at most.
+    pub const SIDE_MOST: u32 = 32;
+    /// Sides of a cell in the surface's own lengths, m.
+    pub const CELLS_M: std::ops::RangeInclusive<f64> = 1e-6..=1.0;
+
+    /// Fault of its numbers, if there is one.
+    #[must_use]
+    pub fn fault(&self) -> Option<&'static str> {
+        let side = self.side as usize;
+        if !(1..=Self::SIDE_MOST).contains(&self.side) || self.heights_um.len() != 2 * side * side {
+            Some("a relief has other heights than its side says")
+        } else if !Self::CELLS_M.contains(&self.cell_m) {
+            Some("a cell of a relief is not of 1 µm to 1 m")
+        } else {
+            None
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -61,9 +61,62 @@ wire_enum! {
     }
 }
 
+wire_struct! {
+    /// Relief around the brush: heights over the plane on [`SIDE`](Self::SIDE)² cells, desk frame. Beyond its edge the
+    /// outermost heights go on.
+    pub struct HeightPatch {
+        /// Corner of the first cell, m.
+        pub corner_m: [f64; 3],
+        /// Unit vector along a row, in the plane; rows follow each other along normal × this.
+        pub along: [f64; 3],
+        /// Side of a cell, m, .25 to 25 mm.
+        pub cell_m: f64,
+        /// Heights in µm, −5000 to 5000, of the middles of the cells: little endian i16, row after row; empty for a flat
+        /// surface.
+        pub heights_um: serde_bytes::ByteBuf,
+    }
+}
+
+impl HeightPatch {
+    /// Cells along a side.
+    pub const SIDE: usize = 16;
+    /// Height or depth at most, µm.
+    pub const MOST_UM: i16 = 5000;
+
+    /// A surface without relief.
+    #[must_use]
+    pub fn flat() -> Self {
+        Self {
+            corner_m: [0.0; 3],
+            along: [0.0; 3],
+            cell_m: 0.0,
+            heights_um: serde_bytes::ByteBuf::new(),
+        }
+    }
+
+    /// True if there is no relief.
+    #[must_use]
+    pub fn is_flat(&self) -> bool {
+        self.heights_um.is_empty()
+    }
+}
+
+/// Bytes of heights in µm, row after row.
+#[must_use]
+pub fn height_bytes(heights_um: impl IntoIterator<Item = i16>) -> serde_bytes::ByteBuf {
+    let bytes = heights_um.into_iter().flat_map(i16::to_le_bytes);
+    serde_bytes::ByteBuf::from(bytes.collect::<Vec<u8>>())
+}
+
+/// Heights in µm of their bytes, row after row.
+pub fn heights_um(bytes: &[u8]) -> impl Iterator<Item = i16> {
+    let pairs = bytes.chunks_exact(2);
+    pairs.map(|pair| i16::from_le_bytes([pair[0], pair[1]]))
+}
+
 message! {
     /// Contact force on the handle until the next model, evaluated at the device's own rate; in the desk frame.
-    pub struct ContactModel [contract of hash 0xf3eb_8772, version 1, at most 4096 bytes] {
+    pub struct ContactModel [contract of hash 0xf3eb_8772, version 2, at most 4096 bytes] {
         /// The device that it is for: the source of its samples.
         pub device: u32,
         /// The device's epoch; another one is dropped.
@@ -90,6 +143,8 @@ message! {
         pub time_to_live_ns: u64,
         /// A change of model is spread over this time, ns, at most a second.
         pub recovery_ns: u64,
+        /// Relief around the brush.
+        pub relief: HeightPatch,
     }
 }
 
@@ -121,6 +176,7 @@ impl ContactModel {
             head_length_m,
             time_to_live_ns: Self::TIME_TO_LIVE_MOST_NS,
             recovery_ns: 0,
+            relief: HeightPatch::flat(),
         }
     }
 }

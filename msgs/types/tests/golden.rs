@@ -2,12 +2,15 @@
 
 mod parts;
 
-use maulstick_types::brush::{BrushConsumed, BrushDef, BrushLook, BrushState, Contact, Solve};
+use maulstick_types::brush::{
+    BrushConsumed, BrushDef, BrushLook, BrushRelief, BrushState, Contact, Solve,
+};
 use maulstick_types::command::advice::Advice;
 use maulstick_types::command::{After, Command, CommandReply, CommandRequest, GapRequest, Outcome};
 use maulstick_types::edits::{Undo, examples};
 use maulstick_types::haptics::{
-    ContactModel, FluidForce, ForceLaw, ForceOrder, ForceRequest, Grain, GuideModel, HermiteKnot,
+    ContactModel, FluidForce, ForceLaw, ForceOrder, ForceRequest, Grain, GuideModel, HeightPatch,
+    HermiteKnot, height_bytes,
 };
 use maulstick_types::paint::{
     BrushCredit, Entry, FrameHolds, FrameReply, FrameRequest, FrameTile, JournalEntry,
@@ -93,6 +96,12 @@ fn all() -> String {
         head_length_m: 0.025,
         time_to_live_ns: 5,
         recovery_ns: 6,
+        relief: HeightPatch {
+            corner_m: [0.1, 0.2, 0.3],
+            along: [1.0, 0.0, 0.0],
+            cell_m: 0.001,
+            heights_um: height_bytes([7, -8, 300]),
+        },
     };
     let knot = HermiteKnot {
         depth: 0.5,
@@ -213,6 +222,13 @@ fn all() -> String {
             along: 1,
             samples: vec![0, 60, 0, 56, 0, 52, 0, 60].into(),
             load_share: 0.5,
+        }),
+        line(&BrushRelief {
+            surface: 1,
+            cell_m: 0.001,
+            side: 2,
+            first: [-3, 4],
+            heights_um: height_bytes([5, -6, 700, 8]),
         }),
         line(&PaintConsumed {
             brushes: vec![BrushCredit {

@@ -4,8 +4,9 @@ use glam::{DQuat, DVec3};
 use maulstick_types::haptics::ContactModel;
 
 use crate::force_law::{Law, Normal, Penetration};
-use crate::friction::{drag, friction, ramp};
+use crate::friction::{Grip, STUCK_SHARE, Stiction, drag, friction, ramp};
 use crate::grain::Texture;
+use crate::relief::{Height, Relief, light};
 
 /// State of the handle in the hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +29,7 @@ pub struct Contact {
     sticking: f64,
     viscous: f64,
     grain: Texture,
+    relief: Option<Relief>,
     law: Law,
     head_length: f64,
     /// Age beyond which it decays, s.
@@ -41,10 +43,14 @@ pub struct Contact {
 pub struct ContactForce {
     /// Whole force on the hand, N.
     pub force: DVec3,
-    /// Part that depends on position alone, N: without friction and drag.
+    /// Part that depends on position alone, N: without drag, and without friction but what stuck bristles store.
     pub conservative: DVec3,
-    /// Depth of the undeformed point below the plane, m; negative above it.
+    /// Depth of the undeformed point below the surface, m; negative above it.
     pub depth_m: f64,
+    /// Hold of the bristles on the surface.
+    pub grip: Grip,
+    /// Lever of the force: from the ferrule to the undeformed point, m, coming up with the depth as friction does.
+    pub lever: DVec3,
     /// Stiffness along the normal that the model asks for, N/m.
     pub asked_n_m: f64,
     /// Stiffness along the normal that is given, N/m.
@@ -60,9 +66,17 @@ impl Contact {
     ///
     /// # Errors
     /// What is wrong with it: a number that is not finite, a normal that is not a unit vector, a
-    /// negative stiffness, a force that falls with depth, more than five knots, a grain out of range, a
-    /// time to live or a recovery of more than a second.
+    /// negative stiffness, a force that falls with depth, more than five knots, a grain or a relief out of
+    /// range, a time to live or a recovery of more than a second.
     pub fn new(model: &ContactModel) -> Result<Self, &'static str> {
+        Self::with_relief(model, 1.0)
+    }
+
+    /// Reads a model whose relief is felt as high as this share of it, 0 to 1.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_relief(model: &ContactModel, share: f64) -> Result<Self, &'static str> {
         let point = DVec3::from_array(model.plane_point_m);
         let normal = DVec3::from_array(model.plane_normal);
         let scalars = [
@@ -92,11 +106,18 @@ impl Contact {
             sticking: model.friction_static.max(model.friction_kinetic),
             viscous: model.viscous_n_s_m,
             grain: Texture::new(&model.grain)?,
+            relief: Relief::new(&model.relief, normal, share)?,
             law: Law::new(&model.law)?,
             head_length: model.head_length_m,
             time_to_live_s: model.time_to_live_ns as f64 * 1e-9,
             recovery_s: model.recovery_ns as f64 * 1e-9,
         })
+    }
+
+    /// Puts another relief in the place of its own.
+    #[cfg(test)]
+    pub(crate) fn set_relief(&mut self, relief: Relief) {
+        self.relief = Some(relief);
     }
 
     /// The plane's unit normal, toward the painter.
@@ -121,54 +142,139 @@ impl Contact {
         }
     }
 
-    /// The force on the handle; stiffness never exceeds `max_stiffness`, N/m.
+    /// Force of the law along the normal at a depth, over relief of a height, m.
+    fn normal_force(
+        &self,
+        handle: &HandleState,
+        at: &Penetration,
+        height_m: f64,
+        most: f64,
+    ) -> Normal {
+        let Law::Local(local) = &self.law else {
+            return self.law.normal(at, most);
+        };
+        let n = self.normal;
+        let force_n = local.force(handle.position - n * height_m, most).dot(n);
+        Normal {
+            // A force that is there at the first touch would be a step in the hand.
+            force_n: force_n.max(0.0).min(most * at.depth_m.max(0.0)),
+            stiffness_n_m: local.stiffness_along(n, most),
+        }
+    }
+
+    /// Stiffness along the normal without a bound, N/m.
+    fn asked(&self, at: &Penetration) -> f64 {
+        match &self.law {
+            Law::Local(local) => local.stiffness_along(self.normal, f64::INFINITY),
+            law => law.normal(at, f64::INFINITY).stiffness_n_m,
+        }
+    }
+
+    /// Force of the law on a relief, N, and the size of it that presses.
+    fn pressing(
+        &self,
+        handle: &HandleState,
+        height: &Height,
+        across: f64,
+        most: f64,
+    ) -> (DVec3, Normal) {
+        let plane = self.penetration(handle);
+        let Some(relief) = &self.relief else {
+            let normal = self.normal_force(handle, &plane, 0.0, most);
+            return (self.normal * normal.force_n, normal);
+        };
+        let surface = Penetration {
+            depth_m: plane.depth_m + height.height_m,
+            ..plane
+        };
+        let most = relief.law_stiffness(across, most);
+        let on_relief = self.normal_force(handle, &surface, height.height_m, most);
+        let on_plane = self.normal_force(handle, &plane, 0.0, most);
+        let [felt_n, felt_share] = light(on_relief.force_n);
+        let [flat_n, flat_share] = light(on_plane.force_n);
+        let deep_n = on_plane.force_n - flat_n;
+        let force = (self.normal - height.slope) * felt_n + self.normal * deep_n;
+        let stiffness_n_m =
+            on_relief.stiffness_n_m * felt_share + on_plane.stiffness_n_m * (1.0 - flat_share);
+        let force_n = felt_n + deep_n;
+        (
+            force,
+            Normal {
+                force_n,
+                stiffness_n_m,
+            },
+        )
+    }
+
+    /// The force on the handle where no bristle sticks; stiffness never exceeds `max_stiffness`, N/m.
     #[must_use]
     pub fn evaluate(&self, handle: &HandleState, max_stiffness: f64) -> ContactForce {
-        let penetration = self.penetration(handle);
-        let depth_m = penetration.depth_m;
+        self.evaluate_stuck(handle, &Stiction::default(), max_stiffness)
+    }
+
+    /// The force on the handle; stiffness never exceeds `max_stiffness`, N/m.
+    #[must_use]
+    pub fn evaluate_stuck(
+        &self,
+        handle: &HandleState,
+        stiction: &Stiction,
+        max_stiffness: f64,
+    ) -> ContactForce {
+        let (tip, plane) = (self.tip(handle), self.penetration(handle));
+        let relief = self.relief.as_ref();
+        let height = relief.map_or_else(Height::default, |relief| relief.at(tip, max_stiffness));
+        let depth_m = plane.depth_m + height.height_m;
         let none = ContactForce {
             depth_m,
             ..ContactForce::default()
         };
-        if depth_m <= 0.0 {
+        if depth_m <= 0.0 && plane.depth_m <= 0.0 {
             return none;
         }
-        let n = self.normal;
-        let (normal, asked_n_m, leaning) = match &self.law {
+        let (n, ramp) = (self.normal, ramp(depth_m));
+        let stuck_n_m = if self.sticking > 0.0 {
+            STUCK_SHARE * max_stiffness
+        } else {
+            0.0
+        };
+        let across = stuck_n_m + self.grain.stiffness(max_stiffness);
+        let (pressing, normal) = self.pressing(handle, &height, across, max_stiffness);
+        let velocity = handle.velocity - n * handle.velocity.dot(n);
+        let still_n = self.sticking * normal.force_n * ramp;
+        let leaning = match &self.law {
             Law::Local(local) => {
                 let force = local.force(handle.position, max_stiffness);
-                // A force that is there at the first touch would be a step in the hand.
-                let force_n = force.dot(n).max(0.0).min(max_stiffness * depth_m);
-                let normal = Normal {
-                    force_n,
-                    stiffness_n_m: local.stiffness_along(n, max_stiffness),
-                };
-                let asked = local.stiffness_along(n, f64::INFINITY);
-                (normal, asked, force - n * force.dot(n))
+                (force - n * force.dot(n)).clamp_length_max(still_n)
             }
-            law => (
-                law.normal(&penetration, max_stiffness),
-                law.normal(&penetration, f64::INFINITY).stiffness_n_m,
-                DVec3::ZERO,
-            ),
+            _ => DVec3::ZERO,
         };
-        let velocity = handle.velocity - n * handle.velocity.dot(n);
-        let ramp = ramp(depth_m);
-        let leaning = leaning.clamp_length_max(self.sticking * normal.force_n * ramp);
         // What leans already sticks the less.
-        let bound = (self.friction * normal.force_n * ramp)
-            .min(self.sticking * normal.force_n * ramp - leaning.length());
-        let sliding = friction(velocity, bound) + drag(velocity, self.viscous * ramp);
-        let place = self.tip(handle) - self.point;
-        let grain = self
-            .grain
-            .force(place, n, velocity, normal.force_n * ramp, max_stiffness);
-        let conservative = n * normal.force_n + leaning + grain;
+        let still_n = still_n - leaning.length();
+        let moving_n = (self.friction * normal.force_n * ramp).min(still_n);
+        let grip = Grip {
+            normal: n,
+            still_n,
+            moving_n,
+            stiffness_n_m: stuck_n_m,
+        };
+        let stuck = stiction.force(handle.position, &grip);
+        let sliding =
+            (stuck + friction(velocity, moving_n)).clamp_length_max(stiction.bound_n(&grip));
+        let grain = self.grain.force(
+            tip - self.point,
+            n,
+            velocity,
+            normal.force_n * ramp,
+            max_stiffness,
+        );
+        let steady = pressing + leaning + grain;
         ContactForce {
-            force: conservative + sliding,
-            conservative,
-            asked_n_m,
+            force: steady + sliding + drag(velocity, self.viscous * ramp),
+            conservative: steady + stuck,
+            asked_n_m: self.asked(&Penetration { depth_m, ..plane }),
             stiffness_n_m: normal.stiffness_n_m,
+            grip,
+            lever: (tip - handle.position) * ramp,
             ..none
         }
     }

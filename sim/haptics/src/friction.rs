@@ -1,8 +1,10 @@
-//! Forces across the normal (Baxter 2004, § 8.7.2 and eq. 8.8): friction, and the drag of paint.
+//! Forces across the normal (Baxter 2004, § 8.7.2 and eq. 8.8): friction at rest and in motion, and the drag of paint.
 //!
 //! The text's f_t = k_t·(v − n(n·v)) would push the hand on; it opposes the motion, acts in contact
-//! alone, and is bounded by μ·f_n. The drag μ_p·L·v of eq. 8.8 has no such bound: a film drags
-//! however lightly it is touched. Both come up over the first half millimetre.
+//! alone, and is bounded by μ·f_n. At rest it would be nothing, and a brush that is pulled gently would creep: there bristles
+//! stick, a spring from the place where they took hold, which gives way where it would pull by more than μ_s·f_n (Dahl 1968;
+//! Hayward and Armstrong 2000). What it stores it gives back, and what gives way is lost. The drag μ_p·L·v of eq. 8.8 has no
+//! such bound: a film drags however lightly it is touched. All come up over the first half millimetre.
 
 use glam::DVec3;
 
@@ -10,6 +12,12 @@ use glam::DVec3;
 pub const RAMP_M: f64 = 5e-4;
 /// Speed at which friction reaches its bound, m/s: k_t = μ·f_n by this.
 const FULL_SPEED: f64 = 0.02;
+/// Way over which friction at rest falls to that in motion, m.
+const SLID_M: f64 = 5e-4;
+/// Time in which bristles that slide no more stick as before, s.
+const STICKING_S: f64 = 0.05;
+/// Stiffness of bristles that stick by the greatest that the device bears.
+pub const STUCK_SHARE: f64 = 0.2;
 
 /// How far a depth has brought friction up, 0 to 1.
 #[must_use]
@@ -34,21 +42,68 @@ pub fn drag(across: DVec3, viscous: f64) -> DVec3 {
     -across * viscous
 }
 
-#[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
+/// Hold of the bristles on the surface at a tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Grip {
+    /// Unit normal.
+    pub normal: DVec3,
+    /// Force at which bristles that stick give way, N.
+    pub still_n: f64,
+    /// Force at which they go on giving way, N; not more.
+    pub moving_n: f64,
+    /// Stiffness, N/m.
+    pub stiffness_n_m: f64,
+}
 
-    use super::*;
+/// Bristles that stick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stiction {
+    /// Place of the ferrule at which they pull nowhere.
+    anchor: Option<DVec3>,
+    /// From 0, where they stick, to 1, where they slide. By the way that they slid and not by the speed, which encoders give in
+    /// steps: a hand that is still would seem to move.
+    sliding: f64,
+}
 
-    proptest! {
-        #[test]
-        fn friction_opposes_motion_within_its_bound(
-            x in -2.0..2.0f64, y in -2.0..2.0f64, bound in 0.0..3.0f64,
-        ) {
-            let across = DVec3::new(x, y, 0.0);
-            let force = friction(across, bound);
-            prop_assert!(force.dot(across) <= 0.0 && force.length() <= bound * (1.0 + 1e-12));
-            prop_assert!(across.length() < FULL_SPEED || force.length() >= bound * (1.0 - 1e-12));
-        }
+impl Stiction {
+    /// Force at which they give way now, N.
+    #[must_use]
+    pub fn bound_n(&self, grip: &Grip) -> f64 {
+        let bound = grip.still_n + (grip.moving_n - grip.still_n) * self.sliding;
+        bound.max(0.0)
+    }
+
+    /// Force on a ferrule at `position`, m, N.
+    #[must_use]
+    pub fn force(&self, position: DVec3, grip: &Grip) -> DVec3 {
+        self.pull(position, grip)
+            .clamp_length_max(self.bound_n(grip))
+    }
+
+    /// The force if nothing gave way, N.
+    fn pull(&self, position: DVec3, grip: &Grip) -> DVec3 {
+        let way = self.anchor.map_or(DVec3::ZERO, |anchor| anchor - position);
+        (way - grip.normal * way.dot(grip.normal)) * grip.stiffness_n_m
+    }
+
+    /// The end of a tick of `dt` s with the ferrule at `position`, m: what pulls by more than its bound has given way. Without
+    /// a grip nothing sticks.
+    pub fn follow(&mut self, position: DVec3, grip: Option<&Grip>, dt: f64) {
+        let Some(grip) = grip.filter(|grip| grip.stiffness_n_m > 0.0) else {
+            *self = Self::default();
+            return;
+        };
+        let force = self.force(position, grip);
+        let slid_m = (self.pull(position, grip) - force).length() / grip.stiffness_n_m;
+        self.anchor = Some(position + force / grip.stiffness_n_m);
+        let change = if slid_m > 0.0 {
+            slid_m / SLID_M
+        } else {
+            -dt / STICKING_S
+        };
+        self.sliding = (self.sliding + change).clamp(0.0, 1.0);
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -64,6 +64,16 @@ impl Texture {
         })
     }
 
+    /// Stiffness at most on a device of this greatest stiffness, N/m.
+    #[must_use]
+    pub fn stiffness(&self, max_stiffness: f64) -> f64 {
+        if self.amplitude > 0.0 {
+            STIFFNESS_SHARE * max_stiffness
+        } else {
+            0.0
+        }
+    }
+
     /// The force at a place relative to the plane's point, m, on a hand that goes `across` the
     /// normal, m/s; its size is at most the amplitude by `normal_n`.
     #[must_use]

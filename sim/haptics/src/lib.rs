@@ -6,6 +6,7 @@
 //! | --- | --- |
 //! | [`force_law`] | normal force by depth: eq. 8.1, the Hermite curve, a local force |
 //! | [`friction`], [`grain`] | what is felt across the normal |
+//! | [`relief`] | heights over the plane: force by depth and slope, stiffness within bounds |
 //! | [`contact`] | the force of one contact model at one pose |
 //! | [`guide`] | the force of a guide, which holds the hand to a recorded path |
 //! | [`fluid`] | the force of moving paint, from a solver slower than the hand |
@@ -24,6 +25,7 @@ pub mod guide;
 mod guided_hand_tests;
 pub mod plant;
 pub mod recipient;
+pub mod relief;
 #[cfg(test)]
 mod replayed_tests;
 #[cfg(test)]

@@ -16,6 +16,8 @@
 //! | `active` | a contact model and its age |
 //! | `engagement` | force that begins where little is asked for |
 //! | `guidance` | the guide of the hand, beside the contact models |
+//! | `orders` | what painter and device say: switches, strength, heat |
+//! | `torque` | torque of the brush about its ferrule |
 //! | [`passivity`] | the energy that sampling gives, taken back |
 //! | [`oscillation`] | detection of a shaking hand, which makes the force softer |
 //! | [`tick`] | input and report of a tick |
@@ -27,10 +29,12 @@ pub mod fault;
 mod guidance;
 pub mod limits;
 pub mod motor_thermal;
+mod orders;
 pub mod oscillation;
 pub mod passivity;
 pub mod persistent;
 pub mod tick;
+mod torque;
 
 use glam::DVec3;
 
@@ -45,9 +49,10 @@ use self::oscillation::{Oscillation, Touch};
 use self::passivity::Passivity;
 use self::persistent::ServoMemory;
 use self::tick::{Sender, Switch, Tick};
+use self::torque::Torque;
 use crate::contact::{Contact, ContactForce, HandleState};
 use crate::fluid::{Fluid, FluidStage};
-use crate::friction::ramp;
+use crate::friction::{Stiction, ramp};
 use crate::guide::Guide;
 
 /// The servo's state.
@@ -61,6 +66,8 @@ pub struct Servo {
     /// Received since the last step.
     arrived: Option<Contact>,
     fluid: FluidStage,
+    stiction: Stiction,
+    torque: Torque,
     /// What the force still keeps of the models before, N.
     correction: DVec3,
     /// How fast the correction shrinks, N/s.
@@ -109,6 +116,8 @@ impl Servo {
             model: None,
             arrived: None,
             fluid: FluidStage::default(),
+            stiction: Stiction::default(),
+            torque: Torque::default(),
             correction: DVec3::ZERO,
             correction_speed: 0.0,
             engagement: Engagement::ANEW,
@@ -138,53 +147,9 @@ impl Servo {
         self.guidance.receive(guide, sender);
     }
 
-    /// Makes the guides' force weaker: a share from 0 to 1.
-    pub fn set_guidance(&mut self, share: f64) {
-        self.guidance.set_share(share_of(share));
-    }
-
     /// A new force of paint has arrived; it acts where the head touches.
     pub fn receive_fluid(&mut self, fluid: Fluid) {
         self.fluid.receive(fluid, self.limits.fade_s);
-    }
-
-    /// Allows force again after a fault; it engages anew.
-    pub fn rearm(&mut self) {
-        self.fault = None;
-        self.thermal.forget_unknown();
-        self.oscillation = Oscillation::default();
-        self.guidance.forget();
-        self.engage_anew();
-    }
-
-    /// Switches the force off, at once, or on: it engages anew.
-    pub fn switch(&mut self, switch: Switch) {
-        self.switch = switch;
-        self.wait();
-    }
-
-    /// Follows the dead man's switch: let go, there is no force, and it engages anew.
-    pub fn permit(&mut self, dead_man: Switch) {
-        self.permitted = dead_man;
-        if dead_man == Switch::Off {
-            self.wait();
-        }
-    }
-
-    /// Both forces begin only where little is asked for.
-    fn wait(&mut self) {
-        self.engagement = Engagement::ANEW;
-        self.guidance.engage_anew();
-    }
-
-    /// Makes all force weaker: a share from 0 to 1.
-    pub fn set_strength(&mut self, share: f64) {
-        self.strength = share_of(share);
-    }
-
-    /// Takes in the temperature of the hottest motor, 0 cold to 1 hot.
-    pub fn measure(&mut self, temperature: f64) {
-        self.thermal.measure(temperature);
     }
 
     /// Discards models and correction; the force engages anew.
@@ -193,6 +158,7 @@ impl Servo {
         self.model = None;
         self.arrived = None;
         self.fluid = FluidStage::default();
+        self.stiction = Stiction::default();
         self.correction = DVec3::ZERO;
         self.last = None;
         self.passivity.forgive();
@@ -225,6 +191,7 @@ impl Servo {
         }
         if dt > self.limits.longest_tick_s || dt < 0.0 {
             self.force = DVec3::ZERO;
+            self.torque = Torque::default();
             self.engaged_s = 0.0;
             self.guidance.ramp_anew();
             self.last = None;
@@ -262,6 +229,7 @@ impl Servo {
             return self.nothing(tick);
         }
         tick.cap_n = cap_n;
+        self.hold(handle, contact_force.as_ref(), dt);
         let wanted = self.wanted(handle, contact_force, dt, &mut tick);
         let size = wanted.length();
         tick.clamped = size > tick.cap_n;
@@ -283,12 +251,16 @@ impl Servo {
             self.fault = Some(Fault::NotANumber);
             return self.nothing(tick);
         }
+        let lever = contact_force.map_or(DVec3::ZERO, |contact| contact.lever);
+        tick.torque_n_m = self.torque.follow(lever, self.force, &self.limits, dt);
         (self.force, tick)
     }
 
     /// No force, and why.
     fn nothing(&mut self, tick: Tick) -> (DVec3, Tick) {
         self.force = DVec3::ZERO;
+        self.torque = Torque::default();
+        self.stiction = Stiction::default();
         self.last = None;
         self.passivity.forgive();
         let fault = self.fault;
@@ -364,12 +336,18 @@ impl Servo {
             return;
         };
         let has_force = |model: &&Active| model.left(&self.limits) > 0.0;
-        let before = self.model.as_ref().filter(has_force).map(|model| {
-            (model.contact.force(handle, self.limits.max_stiffness_n_m) + self.correction)
-                * model.left(&self.limits)
-        });
+        let most = self.limits.max_stiffness_n_m;
+        let force = |contact: &Contact| {
+            let felt = contact.evaluate_stuck(handle, &self.stiction, most);
+            felt.force
+        };
+        let before = self
+            .model
+            .as_ref()
+            .filter(has_force)
+            .map(|model| (force(&model.contact) + self.correction) * model.left(&self.limits));
+        let now = force(&contact);
         self.model = Some(Active { contact, age_s: dt });
-        let now = contact.force(handle, self.limits.max_stiffness_n_m);
         if let Some(before) = before
             && contact.recovery_s > 0.0
             && before != now + self.correction
@@ -385,12 +363,19 @@ impl Servo {
     /// sees all its work.
     fn evaluate_newest(&self, handle: &HandleState) -> Option<ContactForce> {
         let model = self.model.as_ref()?;
-        let mut felt = model
-            .contact
-            .evaluate(handle, self.limits.max_stiffness_n_m);
+        let most = self.limits.max_stiffness_n_m;
+        let mut felt = model.contact.evaluate_stuck(handle, &self.stiction, most);
         let fluid = self.fluid.force(handle.velocity, self.limits.fade_s);
         felt.force += fluid * ramp(felt.depth_m);
         Some(felt)
+    }
+
+    /// Bristles that touch stick, and give way to a hand that pulls; until force begins nothing holds it.
+    fn hold(&mut self, handle: &HandleState, contact_force: Option<&ContactForce>, dt: f64) {
+        let begun = self.engagement == Engagement::Begun;
+        let touching = contact_force.filter(|felt| begun && felt.depth_m > 0.0);
+        let grip = touching.map(|felt| &felt.grip);
+        self.stiction.follow(handle.position, grip, dt);
     }
 
     /// Latches a hand that goes on shaking; without force no device shakes it.
@@ -485,14 +470,11 @@ impl Servo {
     }
 }
 
-/// A share from 0 to 1; NaN counts as 0.
-fn share_of(share: f64) -> f64 {
-    if share > 0.0 { share.min(1.0) } else { 0.0 }
-}
-
 #[cfg(test)]
 mod guard_tests;
 #[cfg(test)]
 mod guidance_tests;
+#[cfg(test)]
+mod relief_tests;
 #[cfg(test)]
 mod tests;

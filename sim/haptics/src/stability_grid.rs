@@ -9,6 +9,7 @@
 //! may hold the hand to a line; then the hand is kicked across that too.
 
 pub mod fluid;
+pub mod relief;
 
 use glam::{DQuat, DVec3};
 use maulstick_num::geometry::rotation;

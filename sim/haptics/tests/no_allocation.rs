@@ -10,7 +10,7 @@ use maulstick_haptics::{Contact, Fluid, Guide, Limits, Sender, Servo, Switch};
 use maulstick_num::sin;
 use maulstick_types::Pose;
 use maulstick_types::haptics::{
-    ContactModel, FluidForce, ForceLaw, Grain, GuideModel, HermiteKnot,
+    ContactModel, FluidForce, ForceLaw, Grain, GuideModel, HeightPatch, HermiteKnot, height_bytes,
 };
 
 fn contact(law: ForceLaw) -> Contact {
@@ -25,6 +25,12 @@ fn contact(law: ForceLaw) -> Contact {
         },
         time_to_live_ns: 20_000_000,
         recovery_ns: 15_000_000,
+        relief: HeightPatch {
+            corner_m: [-8e-3, -8e-3, 0.0],
+            along: [1.0, 0.0, 0.0],
+            cell_m: 1e-3,
+            heights_um: height_bytes((0..256).map(|cell| cell % 7 * 50)),
+        },
         ..ContactModel::bare(law, 0.025)
     })
     .expect("a model")

@@ -3,12 +3,14 @@
 use glam::DVec3;
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{BusError, Qos};
+use maulstick_num::geometry::Rigid;
 use maulstick_types::Origin;
-use maulstick_types::haptics::FluidForce;
+use maulstick_types::haptics::{FluidForce, HeightPatch};
 
 use super::{BrushNode, Painter};
 use crate::contact_model::{SurfaceFeel, contact_model, law};
 use crate::fluid_force::{Held, PERIOD_NS, fluid_force};
+use crate::relief::height_patch;
 
 /// Least time between two contact models, ns.
 const MODEL_PERIOD_NS: u64 = 4_000_000;
@@ -60,9 +62,16 @@ impl BrushNode {
             .get(device)
             .copied()
             .unwrap_or_default();
+        let head = DVec3::NEG_Z * self.model.file().length_m();
+        let tip = Rigid::from(&held.pose).point(head);
+        let desk = self.model.desk();
+        let relief = desk.map_or_else(HeightPatch::flat, |desk| {
+            height_patch(desk, &plane, tip, self.relief.as_ref())
+        });
         let felt = SurfaceFeel {
             law: law(kind, &mut self.model, &plane),
             grain: self.grain.clone(),
+            relief,
         };
         let name = &self.settings.name;
         let model = contact_model(origin, name, self.model.file(), &plane, felt);

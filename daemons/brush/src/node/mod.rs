@@ -21,7 +21,7 @@ use maulstick_bus::{
     Announcer, Bus, BusError, CreditReceiver, CreditSender, Qos, Queue, Recent, Server,
     Subscription, Wake,
 };
-use maulstick_types::brush::{BrushConsumed, BrushDef, BrushState, Solve};
+use maulstick_types::brush::{BrushConsumed, BrushDef, BrushRelief, BrushState, Solve};
 use maulstick_types::command::reply_cache::ReplyCache;
 use maulstick_types::haptics::{ContactModel, Grain};
 use maulstick_types::paint::PaintConsumed;
@@ -93,6 +93,9 @@ pub struct BrushNode {
     drag_n_s_m: f64,
     /// Grain of the canvas.
     grain: Grain,
+    reliefs: Receiver<BrushRelief>,
+    /// The newest relief below the brush.
+    relief: Option<BrushRelief>,
     /// Number of the newest state that touches.
     newest_contact: Option<u64>,
     /// Devices of whose faulty samples it was said.
@@ -159,6 +162,15 @@ impl BrushNode {
             touching: false,
             drag_n_s_m: 0.0,
             grain: NO_GRAIN,
+            reliefs: Receiver::new(
+                b,
+                &topics.brush_relief(name),
+                Qos::RealTime,
+                Queue::Ring(4),
+                wake,
+            )?
+            .checking(BrushRelief::fault),
+            relief: None,
             newest_contact: None,
             faulty: Once::default(),
             def,
@@ -260,6 +272,9 @@ impl BrushNode {
                 self.states.consumed(brush.epoch, brush.next, now_ns);
                 self.drag_n_s_m = drag(brush);
             }
+        }
+        if let Some(relief) = self.reliefs.newest() {
+            self.relief = Some(relief.message);
         }
         while let Some(info) = self.infos.try_recv() {
             let device = self.topics.middle(&info.key).unwrap_or_default();

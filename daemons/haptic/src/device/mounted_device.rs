@@ -160,14 +160,17 @@ impl MountedDevice {
         force / self.scale()
     }
 
-    /// Sets the force at the ferrule, N, desk frame. A device that drives torque also gives the force's
-    /// torque about the sensed point, up to its largest.
+    /// Sets the force at the ferrule, N, and the brush's torque about it, N·m, desk frame. A device that drives torque
+    /// gives that and the force's torque about the sensed point, together up to its largest. Force and lever are both s
+    /// times as large on the desk, so torque is s² times.
     ///
     /// # Errors
     /// As [`Driver::write`].
-    pub fn write(&mut self, force: DVec3) -> Result<(), DeviceError> {
-        let force = self.registration.to_desk.turn_back(self.on_hand(force));
-        let torque = self.lever.arm.cross(force);
+    pub fn write(&mut self, force: DVec3, torque: DVec3) -> Result<(), DeviceError> {
+        let to_desk = &self.registration.to_desk;
+        let force = to_desk.turn_back(self.on_hand(force));
+        let own = to_desk.turn_back(torque / (self.scale() * self.scale()));
+        let torque = self.lever.arm.cross(force) + own;
         self.driver.write(Wrench {
             force,
             torque: torque.clamp_length_max(self.max_torque_nm),

@@ -54,7 +54,9 @@ pub fn probe(
                 let now_ns = monotonic_ns();
                 let dt = now_ns.saturating_sub(last_ns) as f64 * 1e-9;
                 let read = device.read(dt).and_then(|reading| match reading {
-                    Some(reading) => device.write(DVec3::ZERO).map(|()| Some(reading)),
+                    Some(reading) => device
+                        .write(DVec3::ZERO, DVec3::ZERO)
+                        .map(|()| Some(reading)),
                     None => Ok(None),
                 });
                 match read {

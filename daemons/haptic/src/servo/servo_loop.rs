@@ -97,7 +97,7 @@ impl ServoLoop {
 
     fn last_tick(&mut self) -> Result<ControlFlow<()>, DeviceError> {
         self.device.read(0.0)?;
-        self.device.write(DVec3::ZERO)?;
+        self.device.write(DVec3::ZERO, DVec3::ZERO)?;
         Ok(ControlFlow::Break(()))
     }
 
@@ -107,7 +107,7 @@ impl ServoLoop {
         self.take_in();
         let Some(reading) = self.device.read(dt)? else {
             if dt > self.longest_s {
-                self.device.write(DVec3::ZERO)?;
+                self.device.write(DVec3::ZERO, DVec3::ZERO)?;
             }
             return Ok(ControlFlow::Continue(()));
         };
@@ -118,7 +118,7 @@ impl ServoLoop {
             false => Switch::Off,
         });
         let (force, mut tick) = self.servo.step(&reading.handle, dt);
-        self.device.write(force)?;
+        self.device.write(force, tick.torque_n_m)?;
         tick.cap_n /= self.device.scale();
         // A clutch or a dead man's switch ends the force, but its amplifiers do not rest.
         let wanted = match (tick.fault, tick.resting, reading.is_permitted) {

@@ -1,5 +1,6 @@
 //! The paint node: brush states and commands in; journal, credit, scene and frames out.
 
+mod brush_reliefs;
 mod commands;
 mod frame_feed;
 mod proposal;
@@ -32,6 +33,7 @@ use crate::exporter::{Asker, Exporter};
 use crate::frames::Feed;
 use crate::snapshots::Snapshots;
 use crate::thumbnails::Thumbnails;
+use brush_reliefs::BrushReliefs;
 use frame_feed::FEED_PERIOD_NS;
 use maulstick_session::Autosave;
 use maulstick_session::ticker::Ticker;
@@ -67,6 +69,7 @@ pub struct PaintNode {
     reader: Reader,
     journal: Sender<JournalEntry>,
     consumed: Sender<PaintConsumed>,
+    reliefs: BrushReliefs,
     scene: Announcer<Scene>,
     status: Sender<PaintStatus>,
     /// The status that was sent last, and its time, ns.
@@ -156,6 +159,7 @@ impl PaintNode {
             reader: Reader::default(),
             journal: Sender::new(b, &topics.journal(), Qos::Data, me)?,
             consumed: Sender::new(b, &topics.paint_consumed(), Qos::Control, me)?,
+            reliefs: BrushReliefs::new(b, topics, wake)?,
             status: Sender::new(b, &topics.paint_status(), Qos::Background, me)?,
             scene,
             feed: Feed::new(),
@@ -293,6 +297,7 @@ impl PaintNode {
         self.propose_model();
         self.tell_again |= !self.states.unheard().is_empty();
         self.tell(now_ns)?;
+        self.reliefs.tell(self.sequencer.painting(), now_ns)?;
         for entry in self.sequencer.drain_journal() {
             self.journal.send(now_ns, now_ns, &entry)?;
         }
@@ -376,6 +381,8 @@ impl PaintNode {
             return Ok(true);
         }
         self.take_up_brushes();
+        let newest = received.message.solves.last();
+        self.reliefs.note(&*self.bus, self.me, &brush, newest)?;
         let (replies, painted) = self
             .sequencer
             .state(&brush, &received.header, &received.message);

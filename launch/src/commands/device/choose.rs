@@ -36,6 +36,9 @@ pub struct UseOptions {
     /// Drag of the paint by its true size, 0 to 10
     #[arg(long, value_name = "TIMES")]
     paint_drag: Option<f64>,
+    /// Height of the relief that the hand feels by its true height, 0 to 1
+    #[arg(long, value_name = "SHARE")]
+    relief: Option<f64>,
     #[command(flatten)]
     target: Target,
 }
@@ -100,6 +103,7 @@ pub(super) fn run(options: &UseOptions) -> Result<i32, UserError> {
         switches: options.switches.clone().or(device.switches.clone()),
         max_force_n: options.max_force.unwrap_or(device.max_force_n),
         paint_drag: options.paint_drag.unwrap_or(device.paint_drag),
+        relief: options.relief.unwrap_or(device.relief),
         ..device
     };
     let answer = put_in_rig(&options.target, &changed)?;

@@ -157,6 +157,10 @@ impl RigConfig {
             let help = "choose 0 to 10 times the paint's own drag; 1 is its true size";
             return Err(Wrong::value(name, "paint_drag", device.paint_drag, help));
         }
+        if !(0.0..=1.0).contains(&device.relief) {
+            let help = "choose 0, a flat canvas, to 1, relief of its true height";
+            return Err(Wrong::value(name, "relief", device.relief, help));
+        }
         if let Some(scale) = device.scale
             && !(SCALES[0]..=SCALES[1]).contains(&scale)
         {
@@ -361,6 +365,9 @@ mod tests {
             ("scale = nan", "0.05"),
             ("paint_drag = 11", "true size"),
             ("paint_drag = nan", "true size"),
+            ("relief = 1.1", "true height"),
+            ("relief = -0.1", "true height"),
+            ("relief = nan", "true height"),
             ("ferrule_m = [0, 0, 3]", "half a metre"),
             ("ferrule_m = [0, nan, 0]", "half a metre"),
             ("corners_m = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]", "one line"),

@@ -60,6 +60,11 @@ pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
             device.paint_drag != usual.paint_drag && device.is_hid(),
             "take it out: this device gives no force",
         ),
+        (
+            "relief",
+            device.relief != usual.relief && device.is_hid(),
+            "take it out: this device gives no force",
+        ),
     ];
     for (key, is_ignored, help) in ignored {
         if is_ignored {
@@ -135,6 +140,7 @@ mod tests {
             ),
             ("pen", "max_force_n = 3.0", "max_force_n = 2.0", 37),
             ("pen", "max_force_n = 3.0", "paint_drag = 2.0", 37),
+            ("pen", "max_force_n = 3.0", "relief = 0.5", 37),
             ("spacemouse", "force = \"linear\"", "force = \"local\"", 38),
         ] {
             let text = DEFAULT.replace("driver = \"simulated\"", &format!("driver = \"{driver}\""));

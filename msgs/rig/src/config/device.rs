@@ -78,6 +78,9 @@ pub struct DeviceSection {
     /// Drag of the paint on the hand by its true size (Baxter 2004, § 8.9.2), 0 to [`MOST_PAINT_DRAG`].
     #[serde(default = "default_paint_drag", skip_serializing_if = "is_true_size")]
     pub paint_drag: f64,
+    /// Height of the relief that the hand feels, of dried and stiff paint, tooth and edges, by its true height, 0 to 1.
+    #[serde(default = "default_relief", skip_serializing_if = "is_true_height")]
+    pub relief: f64,
     /// One of [`FORCES`]: how the brush pushes back.
     #[serde(default = "default_law")]
     pub force: String,
@@ -111,6 +114,7 @@ impl DeviceSection {
             ferrule_m: [0.0; 3],
             max_force_n: default_force(),
             paint_drag: default_paint_drag(),
+            relief: default_relief(),
             force: default_law(),
             pressure_curve: straight(),
             switches: None,
@@ -197,6 +201,15 @@ fn default_paint_drag() -> f64 {
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
 fn is_true_size(paint_drag: &f64) -> bool {
     *paint_drag == default_paint_drag()
+}
+
+fn default_relief() -> f64 {
+    1.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
+fn is_true_height(relief: &f64) -> bool {
+    *relief == default_relief()
 }
 
 fn default_law() -> String {

@@ -58,6 +58,7 @@ pub static CATALOGUE: &[CatalogueEntry] = &[
     entry!(brush::BrushState, "brush/<brush>/state"),
     entry!(brush::BrushConsumed, "brush/<brush>/consumed"),
     entry!(brush::BrushLook, "brush/<brush>/look"),
+    entry!(brush::BrushRelief, "brush/<brush>/relief"),
     entry!(paint::PaintConsumed, "paint/consumed"),
     entry!(scene::Scene, "scene"),
     entry!(paint::JournalEntry, "paint/journal"),

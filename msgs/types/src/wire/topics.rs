@@ -62,6 +62,8 @@ topics! {
     brush_consumed(brush) = "brush/{brush}/consumed";
     /// The paint on a brush: [`BrushLook`](crate::brush::BrushLook), cached.
     brush_look(brush) = "brush/{brush}/look";
+    /// Relief below a brush: [`BrushRelief`](crate::brush::BrushRelief).
+    brush_relief(brush) = "brush/{brush}/relief";
     /// Credit to brushes: [`PaintConsumed`](crate::paint::PaintConsumed).
     paint_consumed() = "paint/consumed";
     /// The desk: [`Scene`](crate::scene::Scene), cached.

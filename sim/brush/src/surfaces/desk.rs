@@ -160,6 +160,12 @@ impl Desk {
         std::iter::once(own).chain(others).collect()
     }
 
+    /// Its surfaces, the palette before the canvas.
+    #[must_use]
+    pub fn planes(&self) -> &[Plane] {
+        &self.planes
+    }
+
     /// The surface called `id`.
     #[must_use]
     pub fn plane(&self, id: u32) -> Option<&Plane> {

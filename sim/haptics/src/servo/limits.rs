@@ -21,6 +21,8 @@ pub struct Limits {
     pub damping_n_s_m: f64,
     /// Fastest change of the force, N/s.
     pub slew_n_s: f64,
+    /// Longest lever by which a brush turns the hand, m.
+    pub lever_m: f64,
     /// A hand that is faster than this with force on it is driven by the device, m/s.
     pub max_speed_m_s: f64,
     /// A shaking hand turns round by at least this much, m.
@@ -53,6 +55,7 @@ impl Default for Limits {
             max_stiffness_n_m: 400.0,
             damping_n_s_m: 0.1,
             slew_n_s: 400.0,
+            lever_m: 0.05,
             max_speed_m_s: 1.5,
             oscillation_m: 3e-4,
             fade_s: 0.075,
@@ -83,6 +86,7 @@ impl Limits {
             max_force_n: scale * self.max_force_n,
             continuous_force_n: scale * self.continuous_force_n,
             slew_n_s: scale * self.slew_n_s,
+            lever_m: scale * self.lever_m,
             max_speed_m_s: scale * self.max_speed_m_s,
             oscillation_m: scale * self.oscillation_m,
             engage_n: scale * self.engage_n,

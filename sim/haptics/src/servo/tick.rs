@@ -1,5 +1,7 @@
 //! Input and report of a servo tick.
 
+use glam::DVec3;
+
 use super::fault::Fault;
 
 /// Report of a tick.
@@ -27,6 +29,8 @@ pub struct Tick {
     pub waiting: bool,
     /// A guide of the hand is alive.
     pub guided: bool,
+    /// Torque of the brush about its ferrule, N·m.
+    pub torque_n_m: DVec3,
     /// Largest force now, N.
     pub cap_n: f64,
     /// Stiffness along the normal that the model asks for, N/m.

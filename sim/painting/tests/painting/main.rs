@@ -12,6 +12,7 @@ mod loading_from;
 mod models;
 mod modes;
 mod pauses;
+mod relief;
 mod scraping;
 mod sequencer;
 mod studio;

@@ -136,7 +136,7 @@ proptest! {
         let handle = read(&mut placed).handle;
         let (k, b) = (400.0, 3.0);
         let force = (handle.position - rigid.translation) * -k - handle.velocity * b;
-        placed.write(force).expect("there");
+        placed.write(force, DVec3::ZERO).expect("there");
         let written = put.bench().written.force;
         let expected = along * (-k * y - b * speed);
         prop_assert!((written - expected).length() < 1e-9, "{written} {expected}");
@@ -297,12 +297,19 @@ fn a_force_at_the_ferrule_turns_the_hand_as_far_as_the_device_can() {
     let to_desk = registration(Rigid::IDENTITY, 2.0, DVec3::new(0.0, 0.0, -0.05));
     let mut placed = MountedDevice::new(Box::new(put.clone()), to_desk, 0);
     read(&mut placed);
-    placed.write(DVec3::X * 2.0).expect("there");
+    placed.write(DVec3::X * 2.0, DVec3::ZERO).expect("there");
     let written = put.bench().written;
     // r × F = −.05·z × 1·x = −.05·y.
     assert!((written.force - DVec3::X).length() < 1e-15);
     assert!((written.torque + DVec3::Y * 0.05).length() < 1e-15);
-    placed.write(DVec3::X * 6.0).expect("there");
+    // The brush's own is a quarter as large in the hand: force and lever are halves.
+    placed
+        .write(DVec3::X * 2.0, DVec3::new(0.1, 0.0, 0.04))
+        .expect("there");
+    let torque = put.bench().written.torque;
+    let expected = DVec3::new(0.025, -0.05, 0.01);
+    assert!((torque - expected).length() < 1e-15, "{torque}");
+    placed.write(DVec3::X * 6.0, DVec3::ZERO).expect("there");
     let torque = put.bench().written.torque;
     assert!((torque + DVec3::Y * 0.1).length() < 1e-12, "{torque}");
     // One that drives none is asked for none, and so is one that says nonsense.
@@ -310,7 +317,7 @@ fn a_force_at_the_ferrule_turns_the_hand_as_far_as_the_device_can() {
         put.bench().max_torque_nm = none;
         let mut placed = MountedDevice::new(Box::new(put.clone()), to_desk, 0);
         read(&mut placed);
-        placed.write(DVec3::X * 6.0).expect("there");
+        placed.write(DVec3::X * 6.0, DVec3::Z).expect("there");
         assert_eq!(put.bench().written.torque, DVec3::ZERO);
     }
 }

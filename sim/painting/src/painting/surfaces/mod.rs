@@ -6,6 +6,7 @@ mod film;
 mod materials;
 mod part;
 pub(crate) mod preparation;
+mod relief_below;
 mod scraping;
 pub(crate) mod underpainting;
 mod well_moves;

@@ -1,0 +1,57 @@
+//! Orders of the painter and of the device: switches, strength, heat.
+
+use super::Servo;
+use super::engagement::Engagement;
+use super::oscillation::Oscillation;
+use super::tick::Switch;
+
+impl Servo {
+    /// Makes the guides' force weaker: a share from 0 to 1.
+    pub fn set_guidance(&mut self, share: f64) {
+        self.guidance.set_share(share_of(share));
+    }
+
+    /// Allows force again after a fault; it engages anew.
+    pub fn rearm(&mut self) {
+        self.fault = None;
+        self.thermal.forget_unknown();
+        self.oscillation = Oscillation::default();
+        self.guidance.forget();
+        self.engage_anew();
+    }
+
+    /// Switches the force off, at once, or on: it engages anew.
+    pub fn switch(&mut self, switch: Switch) {
+        self.switch = switch;
+        self.wait();
+    }
+
+    /// Follows the dead man's switch: let go, there is no force, and it engages anew.
+    pub fn permit(&mut self, dead_man: Switch) {
+        self.permitted = dead_man;
+        if dead_man == Switch::Off {
+            self.wait();
+        }
+    }
+
+    /// Both forces begin only where little is asked for.
+    pub(super) fn wait(&mut self) {
+        self.engagement = Engagement::ANEW;
+        self.guidance.engage_anew();
+    }
+
+    /// Makes all force weaker: a share from 0 to 1.
+    pub fn set_strength(&mut self, share: f64) {
+        self.strength = share_of(share);
+    }
+
+    /// Takes in the temperature of the hottest motor, 0 cold to 1 hot.
+    pub fn measure(&mut self, temperature: f64) {
+        self.thermal.measure(temperature);
+    }
+}
+
+/// A share from 0 to 1; NaN counts as 0.
+fn share_of(share: f64) -> f64 {
+    if share > 0.0 { share.min(1.0) } else { 0.0 }
+}
