@@ -1,6 +1,6 @@
 //! Speed of dAb's stroking algorithms along two kinds of path (Baxter 2004, table 4.2), and of a step of `dab` beside one of
 //! `impasto` on fine cells, on the number of threads that is given, one and two in turn if none is; one by its time of the
-//! processor, more by the clock: `cargo run --release -p maulstick-dab --example speed [THREADS [PART OF A NAME]]`.
+//! processor, more by the clock: `cargo run --release -p maulstick-dab --example texels_per_s [THREADS [PART OF A NAME]]`.
 
 mod scene;
 
