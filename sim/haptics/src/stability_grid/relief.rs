@@ -112,7 +112,7 @@ pub struct ReliefOutcome {
     pub wobble_m: f64,
     /// Greatest energy given to the hand that nobody put in, J.
     pub net_j: f64,
-    /// Greatest energy given from some time on, J.
+    /// Greatest energy given to hand and device from some time on, J.
     pub rise_j: f64,
     /// Steady force along the normal by that of the model at the tip's true place.
     pub share: f64,
@@ -282,8 +282,10 @@ impl ReliefRun {
             let to = plant.true_position();
             net_j += plant.given_j() - before_j - booked.work(from, to);
             most_j = most_j.max(net_j);
-            least_j = least_j.min(net_j);
-            rise_j = rise_j.max(net_j - least_j);
+            // What the device's mass keeps it has not given yet.
+            let with_motion_j = net_j + plant.kinetic_j();
+            least_j = least_j.min(with_motion_j);
+            rise_j = rise_j.max(with_motion_j - least_j);
             across_n = across_n.max((force - normal * force.dot(normal)).length());
             if (STILL_S[0]..STILL_S[1]).contains(&s) {
                 (low, high) = (low.min(to), high.max(to));
