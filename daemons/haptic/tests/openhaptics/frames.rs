@@ -119,7 +119,7 @@ fn a_force_on_the_desk_arrives_in_newtons_in_the_base_s_frame() {
                 placed.read(1e-3).expect("there");
                 match forces.pop() {
                     Some(force) => {
-                        placed.write(force * 1.5).expect("written");
+                        placed.write(force * 1.5, DVec3::ZERO).expect("written");
                         ControlFlow::Continue(())
                     }
                     None => ControlFlow::Break(()),
