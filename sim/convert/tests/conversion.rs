@@ -332,7 +332,7 @@ fn common_mixtures_are_met_and_what_is_out_of_gamut_is_told() {
     let easel = Easel::new("gesso");
     let even = |parts: &[(usize, f32)], um: f32| -> Tile {
         let all = um * 1e-6 / QUANTUM_M as f32;
-        let plane = |share: f32| vec![(all * share).floor(); TILE_CELLS].into();
+        let plane = |share: f32| -> Arc<[f32]> { vec![(all * share).floor(); TILE_CELLS].into() };
         let planes = parts.iter().map(|(slot, share)| (*slot, plane(*share)));
         tile(planes.collect(), Vec::new())
     };
