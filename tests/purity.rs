@@ -90,6 +90,7 @@ fn paint_knows_no_brush_a_model_no_light_and_light_no_brush() {
         ("canvas", ["brush", "optics", "impasto", "appearance"]),
         ("impasto", ["optics", "appearance", "painting", "document"]),
         ("dab", ["impasto", "marker", "painting", "document"]),
+        ("convert", ["impasto", "marker", "painting", "document"]),
         ("appearance", ["brush", "impasto", "painting", "document"]),
     ] {
         for other in unknown {

@@ -324,3 +324,42 @@ fn cells_of_wells_and_tiles_of_the_same_colouring_keep_each_count() {
     let same = same.tile(&tile, ground);
     assert!(same.wet == *wet && same.distance.cells == 0);
 }
+
+/// Pure paints and mixtures of a common palette, whatever the thickness, and a mixture that these paints cannot show.
+#[test]
+fn common_mixtures_are_met_and_what_is_out_of_gamut_is_told() {
+    const NEAR: f64 = 0.5;
+    let easel = Easel::new("gesso");
+    let even = |parts: &[(usize, f32)], um: f32| -> Tile {
+        let all = um * 1e-6 / QUANTUM_M as f32;
+        let plane = |share: f32| -> Arc<[f32]> { vec![(all * share).floor(); TILE_CELLS].into() };
+        let planes = parts.iter().map(|(slot, share)| (*slot, plane(*share)));
+        tile(planes.collect(), Vec::new())
+    };
+    for um in [20.0, 35.0, 70.0, 200.0] {
+        for parts in [
+            &[(0, 0.8), (5, 0.2)][..],
+            &[(0, 0.5), (8, 0.5)][..],
+            &[(3, 0.6), (0, 0.4)][..],
+            &[(1, 0.6), (5, 0.4)][..],
+            &[(0, 1.0)][..],
+        ] {
+            let subject = even(parts, um);
+            let converted = easel.converted(&subject, Colouring::Volumes, Colouring::Films);
+            let off = converted.distance.worst;
+            println!("{um} µm of {parts:?}: {off:.2}");
+            assert!(off < NEAR, "{off}");
+        }
+    }
+    // Thick phthalo is nearly black as a film: no volume is as dark and as green.
+    let subject = even(&[(7, 0.7), (10, 0.3)], 200.0);
+    let converted = easel.converted(&subject, Colouring::Volumes, Colouring::Films);
+    let other = tile_of(converted.clone());
+    let [one, two] = [
+        easel.seen(&subject, Colouring::Volumes),
+        easel.seen(&other, Colouring::Films),
+    ];
+    let off = delta_e_2000(one[0], two[0]);
+    println!("phthalo green and black: {off:.2}");
+    assert!((off - converted.distance.worst).abs() < 0.05, "it is told");
+}
