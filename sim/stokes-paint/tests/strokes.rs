@@ -127,10 +127,6 @@ impl Easel {
         let own = planes.find(|(shape, _)| place_of(*shape) == Some((slot, layer)));
         own.map_or(0, |(_, bytes)| value(bytes, cell))
     }
-
-    fn cell(&self, x: usize, y: usize) -> usize {
-        y * self.window.width() + x
-    }
 }
 
 #[test]
