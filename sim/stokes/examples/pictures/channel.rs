@@ -58,8 +58,8 @@ fn panel(image: &mut Image, left: f64, computed: &[f64], plug: f64) {
         image.fill([left, top + 0.5 * (height - high), width, high], PALE);
     }
     axes.frame(image, [0.2, 0.25], [1, 2]);
-    image.fill([left, top - 12.0, width, 12.0], GREY);
-    image.fill([left, top + height + 1.0, width, 5.0], GREY);
+    image.fill([left, top - 8.0, width, 8.0], GREY);
+    image.fill([left, top + height + 1.0, width, 8.0], GREY);
     let curve: Vec<[f64; 2]> = (0..=480)
         .map(|number| {
             let up = f64::from(number) / 480.0;
@@ -69,13 +69,14 @@ fn panel(image: &mut Image, left: f64, computed: &[f64], plug: f64) {
     axes.curve(image, &curve, 1.6, RED);
     let marks: Vec<[f64; 2]> = (computed.iter().enumerate())
         .map(|(node, u)| [u / fastest, (node as f64 + 0.5) / cells])
+        .step_by(computed.len() / 16)
         .collect();
     axes.marks(image, &marks, BLUE);
 }
 
 pub(crate) fn draw(folder: &Path) -> Drawn {
     let mut image = Image::new(1000, 580);
-    let plug = 8.0;
+    let plug = 16.0;
     let bingham = Paint {
         yields: plug,
         ..Paint::newtonian(1.0)
@@ -86,6 +87,6 @@ pub(crate) fn draw(folder: &Path) -> Drawn {
         &channel(16, Paint::newtonian(1.0), 3),
         0.0,
     );
-    panel(&mut image, 560.0, &channel(32, bingham, 60), plug);
+    panel(&mut image, 560.0, &channel(64, bingham, 60), plug);
     image.save(&folder.join("channel.png"))
 }

@@ -16,9 +16,9 @@ use crate::plot::Axes;
 use crate::{CAPACITY, Drawn};
 
 /// One swell, its depth and height above it, cells.
-const LENGTH: usize = 64;
-const DEPTH: f64 = 8.0;
-const SWELL: f64 = 1.2;
+const LENGTH: usize = 128;
+const DEPTH: f64 = 16.0;
+const SWELL: f64 = 2.4;
 const GRAVITY: f64 = 9.81;
 const STEPS: usize = 60;
 
@@ -26,9 +26,19 @@ fn wave(x: usize) -> f64 {
     cos(2.0 * PI * (x as f64 + 0.5) / LENGTH as f64)
 }
 
+/// Paint of each column, cells.
+fn heights(stokes: &Stokes) -> Vec<f64> {
+    let mut heights = vec![0.0; LENGTH];
+    for place in stokes.volume.grid.places() {
+        let x = stokes.volume.grid.cell(place)[0] as usize;
+        heights[x] += f64::from(stokes.volume.paints[0][place]) / f64::from(CAPACITY);
+    }
+    heights
+}
+
 pub(crate) fn draw(folder: &Path) -> Drawn {
     let grid = Grid {
-        cells: [LENGTH, 1, 16],
+        cells: [LENGTH, 1, 24],
         ends: [
             Ends::Periodic,
             Ends::Periodic,
@@ -43,35 +53,33 @@ pub(crate) fn draw(folder: &Path) -> Drawn {
     }
     // .5 Pa·s at 1200 kg/m³.
     let conditions = Conditions {
-        cell_m: 2.5e-4,
+        cell_m: 1.25e-4,
         seconds: 0.01,
         paint: Paint::newtonian(0.5 / 1200.0),
         pull: [0.0, 0.0, -GRAVITY],
     };
     let cell_mm = 1e3 * conditions.cell_m;
     let mut image = Image::new(1180, 480);
-    let heights = Axes {
+    let pool = Axes {
         area: [70.0, 30.0, 560.0, 400.0],
         x: [0.0, LENGTH as f64 * cell_mm],
         y: [1.6, 2.4],
     };
-    heights.frame(&mut image, [2.0, 0.2], [0, 1]);
+    pool.frame(&mut image, [2.0, 0.2], [0, 1]);
     let mut swells = Vec::new();
     for step in 0..=STEPS {
-        let surface = stokes.heights();
+        let surface = heights(&stokes);
         let parts = surface
             .iter()
             .enumerate()
-            .map(|(x, height)| f64::from(*height) * wave(x));
+            .map(|(x, height)| height * wave(x));
         let swell = 2.0 * parts.sum::<f64>() / LENGTH as f64;
         swells.push([step as f64 * conditions.seconds, swell / SWELL]);
         if step.is_multiple_of(6) {
-            let point = |(x, height): (usize, &f32)| {
-                [(x as f64 + 0.5) * cell_mm, f64::from(*height) * cell_mm]
-            };
+            let point = |(x, height): (usize, &f64)| [(x as f64 + 0.5) * cell_mm, height * cell_mm];
             let curve: Vec<[f64; 2]> = surface.iter().enumerate().map(point).collect();
             let colour = viridis(0.9 * step as f64 / STEPS as f64);
-            heights.curve(&mut image, &curve, 1.6, colour);
+            pool.curve(&mut image, &curve, 1.6, colour);
         }
         stokes.step(&[], &conditions);
     }

@@ -1,5 +1,6 @@
-//! A rod is drawn through paint and lifted out: stiff paint at the left keeps the ridge that overhangs, paint without a
-//! yield stress at the right sinks. Slices from above downward; the last are a second and three seconds after the stroke.
+//! A rod is pushed sideways through paint and then drawn out endwise: stiff paint at the left keeps the ridge that
+//! overhangs, paint without a yield stress at the right sinks. Slices from above downward; the last three are right after
+//! the rod has gone, half a second and two seconds later.
 
 use std::path::Path;
 
@@ -14,37 +15,35 @@ use crate::plot::Axes;
 use crate::slice::{Corners, paints};
 use crate::{CAPACITY, Drawn};
 
-const CELLS: [usize; 3] = [96, 1, 36];
+const CELLS: [usize; 3] = [96, 1, 28];
 const ZOOM: usize = 5;
 const RADIUS: f32 = 4.0;
-/// Steps of the rod along the canvas, with its lift, and all.
+/// Cells that the rod goes in a step.
+const WAY: f32 = 0.5;
+/// Steps until the rod stands, until it has been drawn out, and those that are drawn.
 const ALONG: usize = 70;
-const LIFTED: usize = 130;
-const STEPS: [usize; 6] = [0, 35, 70, 95, 330, 730];
+const GONE: usize = 80;
+const STEPS: [usize; 6] = [0, 35, 70, 80, 180, 480];
 const SECONDS: f64 = 5e-3;
 
-/// Middle of the rod at a step and its way to the next, cells.
-fn rod(step: usize) -> [[f32; 2]; 2] {
-    let along = step.min(ALONG) as f32;
-    let lifted = (step - step.min(ALONG)) as f32;
-    let way = if step < ALONG {
-        [0.5, 0.0]
-    } else {
-        [0.15, 0.6]
-    };
-    let at = [14.0 + 0.5 * along + 0.15 * lifted, 5.5 + 0.6 * lifted];
-    [at, way]
+/// Middle of the rod at a step, cells.
+fn middle(step: usize) -> [f32; 2] {
+    [12.0 + WAY * step.min(ALONG) as f32, 5.5]
 }
 
 fn body(step: usize) -> Vec<Rod> {
-    let [[x, z], way] = rod(step);
-    let metres = |cells: f32| (f64::from(cells) * 2.5e-4 / SECONDS) as f32;
+    let [x, z] = middle(step);
+    let speed = (f64::from(WAY) * 2.5e-4 / SECONDS) as f32;
     let rod = Rod {
         ends: [[x, -20.0, z], [x, 20.0, z]],
         radius: RADIUS,
-        velocity: [[metres(way[0]), 0.0, metres(way[1])]; 2],
+        velocity: if step < ALONG {
+            [[speed, 0.0, 0.0]; 2]
+        } else {
+            [[0.0, speed, 0.0]; 2]
+        },
     };
-    if step < LIFTED { vec![rod] } else { Vec::new() }
+    if step < GONE { vec![rod] } else { Vec::new() }
 }
 
 /// Columns in which paint lies above air.
@@ -87,13 +86,8 @@ fn series(paint: Paint, name: &str) -> Vec<Image> {
         ends: [walls, Ends::Periodic, walls],
     };
     let mut stokes = Stokes::new(&grid, CAPACITY, 1);
-    for place in grid.block([10, 0, 0], [80, 1, 9]) {
-        let [x, _, z] = grid.cell(place).map(|at| at as f32 + 0.5);
-        let [[rod_x, rod_z], _] = rod(0);
-        let apart = (x - rod_x) * (x - rod_x) + (z - rod_z) * (z - rod_z);
-        if apart > RADIUS * RADIUS {
-            stokes.volume.paints[0][place] = CAPACITY;
-        }
+    for place in grid.block([18, 0, 0], [80, 1, 9]) {
+        stokes.volume.paints[0][place] = CAPACITY;
     }
     let conditions = Conditions {
         cell_m: 2.5e-4,
@@ -104,8 +98,13 @@ fn series(paint: Paint, name: &str) -> Vec<Image> {
     let mut images = Vec::new();
     for step in 0..=STEPS[STEPS.len() - 1] {
         if STEPS.contains(&step) {
-            let mut image = paints(&stokes, &body(step), 0, ZOOM);
+            let mut image = paints(&stokes, &[], 0, ZOOM);
             surface(&stokes, &mut image);
+            if step < GONE {
+                let [x, z] = middle(step).map(|at| ZOOM as f64 * f64::from(at));
+                let radius = ZOOM as f64 * f64::from(RADIUS);
+                image.disc([x, image.height as f64 - z], radius, GREY);
+            }
             println!(
                 "ridge, {name}, step {step}: {} columns overhang",
                 overhangs(&stokes)

@@ -95,11 +95,9 @@ pub(crate) fn paints(stokes: &Stokes, brush: &[Rod], y: isize, zoom: usize) -> I
             let share = |paint: &Vec<u32>| paint[place] as f32 / CAPACITY as f32;
             let shares: Vec<f32> = stokes.volume.paints.iter().map(share).collect();
             let left = (1.0 - shares.iter().sum::<f32>()).max(0.0);
-            let air = if solids.distance[place] < 0.0 {
-                BODY
-            } else {
-                AIR
-            };
+            let corners = [0, 1, grid.stride(2), 1 + grid.stride(2)];
+            let distance: f32 = corners.map(|by| solids.distance[place + by]).iter().sum();
+            let air = if distance < 0.0 { BODY } else { AIR };
             let colour = [0, 1, 2].map(|channel| {
                 let paints = shares.iter().zip(COLOURS);
                 let paint: f32 = paints.map(|(share, of)| share * of[channel]).sum();

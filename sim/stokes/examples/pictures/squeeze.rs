@@ -14,8 +14,8 @@ use crate::plot::{Axes, colour_bar};
 use crate::slice::{speed, stream};
 
 /// Half of the plate and the gap, cells.
-const HALF: usize = 128;
-const GAP: usize = 8;
+const HALF: usize = 256;
+const GAP: usize = 16;
 
 /// Flow under the right half of a plate of velocity −1, whose middle is a plane of symmetry.
 fn flow() -> Flow {
@@ -100,7 +100,7 @@ pub(crate) fn draw(folder: &Path) -> Drawn {
         under(0)
     );
     let computed: Vec<[f64; 2]> = (0..HALF)
-        .step_by(4)
+        .step_by(8)
         .flat_map(|x| [-1.0, 1.0].map(|side| [side * (x as f64 + 0.5) / half, under(x)]))
         .collect();
     pressure.marks(&mut image, &computed, BLUE);
