@@ -69,7 +69,7 @@ fn panel(image: &mut Image, left: f64, computed: &[f64], plug: f64) {
     axes.curve(image, &curve, 1.6, RED);
     let marks: Vec<[f64; 2]> = (computed.iter().enumerate())
         .map(|(node, u)| [u / fastest, (node as f64 + 0.5) / cells])
-        .step_by(computed.len() / 16)
+        .step_by(computed.len().div_ceil(32))
         .collect();
     axes.marks(image, &marks, BLUE);
 }

@@ -17,7 +17,7 @@ use crate::{CAPACITY, Drawn};
 
 /// One swell, its depth and height above it, cells.
 const LENGTH: usize = 128;
-const DEPTH: f64 = 16.0;
+const DEPTH: f64 = 16.4;
 const SWELL: f64 = 2.4;
 const GRAVITY: f64 = 9.81;
 const STEPS: usize = 60;

@@ -99,7 +99,7 @@ pub(crate) fn draw(folder: &Path) -> Drawn {
         "squeeze: pressure in the middle {:.4} of Reynolds'",
         under(0)
     );
-    let computed: Vec<[f64; 2]> = (0..HALF)
+    let computed: Vec<[f64; 2]> = (4..HALF)
         .step_by(8)
         .flat_map(|x| [-1.0, 1.0].map(|side| [side * (x as f64 + 0.5) / half, under(x)]))
         .collect();
