@@ -90,10 +90,6 @@ impl Image {
         }
     }
 
-    pub(crate) fn disc(&mut self, at: [f64; 2], radius: f64, colour: Colour) {
-        self.line(at, at, 2.0 * radius, colour);
-    }
-
     /// An arrow with a head at its end.
     pub(crate) fn arrow(&mut self, from: [f64; 2], to: [f64; 2], colour: Colour) {
         self.line(from, to, 2.0, colour);

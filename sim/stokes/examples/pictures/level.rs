@@ -1,6 +1,7 @@
 //! A thinned pool that levels under its weight: heights in mm over 16 mm at the left, from the first (dark) to the last; at
-//! the right the swell's height by its first over seconds (rings) beside exp(−σt) (line), with
-//! σ = g/(2νk)·(sinh kh·cosh kh − kh)/(cosh² kh + (kh)²) of a viscous layer of depth h (known from Orchard 1963).
+//! the right what is left of the swell over seconds (rings) beside exp(−σt) (line), with
+//! σ = g/(2νk)·(sinh kh·cosh kh − kh)/(cosh² kh + (kh)²) for a viscous layer of depth h (Orchard 1963, with weight in place of
+//! surface tension).
 
 use std::f64::consts::PI;
 use std::path::Path;

@@ -17,6 +17,8 @@ use std::error::Error;
 use std::path::Path;
 
 type Drawn = Result<(), Box<dyn Error>>;
+/// Draws pictures into a folder.
+type Draw = fn(&Path) -> Drawn;
 
 /// Quanta that fill a cell.
 const CAPACITY: u32 = 167_772;
@@ -25,7 +27,7 @@ fn main() -> Drawn {
     let mut arguments = std::env::args().skip(1);
     let folder = arguments.next().ok_or("which folder?")?;
     let names: Vec<String> = arguments.collect();
-    let pictures: [(&str, fn(&Path) -> Drawn); 6] = [
+    let pictures: [(&str, Draw); 6] = [
         ("cavity", cavity::draw),
         ("channel", channel::draw),
         ("squeeze", squeeze::draw),

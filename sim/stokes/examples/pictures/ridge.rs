@@ -1,10 +1,10 @@
-//! A rod is pushed sideways through paint and then drawn out endwise: stiff paint at the left keeps the ridge that
-//! overhangs, paint without a yield stress at the right sinks. Slices from above downward; the last three are right after
-//! the rod has gone, half a second and two seconds later.
+//! A blunt blade is pushed sideways through paint and then drawn out endwise with the paint in its cells: stiff paint at
+//! the left keeps the ridge that overhangs, paint without a yield stress at the right sinks. Slices from above downward; the
+//! last three are right after the blade has gone, half a second and two seconds later.
 
 use std::path::Path;
 
-use maulstick_stokes::body::Rod;
+use maulstick_stokes::body::{Rod, voxelise};
 use maulstick_stokes::flow::Conditions;
 use maulstick_stokes::grid::{Ends, Grid, Side};
 use maulstick_stokes::rheology::Paint;
@@ -17,16 +17,19 @@ use crate::{CAPACITY, Drawn};
 
 const CELLS: [usize; 3] = [96, 1, 28];
 const ZOOM: usize = 5;
-const RADIUS: f32 = 4.0;
-/// Cells that the rod goes in a step.
+const RADIUS: f32 = 3.5;
+const LENGTH: f32 = 80.0;
+/// Cells that the blade goes in a step.
 const WAY: f32 = 0.5;
-/// Steps until the rod stands, until it has been drawn out, and those that are drawn.
+/// Steps until the blade stands, until it has been drawn out, and those that are drawn.
 const ALONG: usize = 70;
 const GONE: usize = 80;
-const STEPS: [usize; 6] = [0, 35, 70, 80, 180, 480];
+const STEPS: [usize; 6] = [0, 35, 70, 80, 130, 280];
+/// Length of a step with and without the blade, s.
 const SECONDS: f64 = 5e-3;
+const AFTER_SECONDS: f64 = 1e-2;
 
-/// Middle of the rod at a step, cells.
+/// Middle of the blade's round edge at a step, cells.
 fn middle(step: usize) -> [f32; 2] {
     [12.0 + WAY * step.min(ALONG) as f32, 5.5]
 }
@@ -35,7 +38,7 @@ fn body(step: usize) -> Vec<Rod> {
     let [x, z] = middle(step);
     let speed = (f64::from(WAY) * 2.5e-4 / SECONDS) as f32;
     let rod = Rod {
-        ends: [[x, -20.0, z], [x, 20.0, z]],
+        ends: [[x, 0.5, z], [x - LENGTH, 0.5, z]],
         radius: RADIUS,
         velocity: if step < ALONG {
             [[speed, 0.0, 0.0]; 2]
@@ -44,6 +47,26 @@ fn body(step: usize) -> Vec<Rod> {
         },
     };
     if step < GONE { vec![rod] } else { Vec::new() }
+}
+
+/// Takes the paint away that is in the blade's cells, where transport leaves some of what it overtakes; returns how much,
+/// cells.
+fn take_along(stokes: &mut Stokes) -> f64 {
+    let grid = stokes.volume.grid;
+    let mut solids = stokes.base.clone();
+    voxelise(&grid, &mut solids, &body(GONE - 1));
+    let above = grid.stride(2);
+    let inside = |place: &usize| {
+        let corners = [0, 1, above, above + 1].map(|by| solids.distance[place + by]);
+        corners.iter().sum::<f32>() < 0.0
+    };
+    let cells: Vec<usize> = grid.places().filter(inside).collect();
+    let paint = &mut stokes.volume.paints[0];
+    let taken: u32 = cells
+        .iter()
+        .map(|place| std::mem::take(&mut paint[*place]))
+        .sum();
+    f64::from(taken) / f64::from(CAPACITY)
 }
 
 /// Columns in which paint lies above air.
@@ -89,7 +112,7 @@ fn series(paint: Paint, name: &str) -> Vec<Image> {
     for place in grid.block([18, 0, 0], [80, 1, 9]) {
         stokes.volume.paints[0][place] = CAPACITY;
     }
-    let conditions = Conditions {
+    let mut conditions = Conditions {
         cell_m: 2.5e-4,
         seconds: SECONDS,
         paint,
@@ -97,13 +120,19 @@ fn series(paint: Paint, name: &str) -> Vec<Image> {
     };
     let mut images = Vec::new();
     for step in 0..=STEPS[STEPS.len() - 1] {
+        if step == GONE {
+            let taken = take_along(&mut stokes);
+            println!("ridge, {name}: {taken:.1} cells of paint go with the blade");
+            conditions.seconds = AFTER_SECONDS;
+        }
         if STEPS.contains(&step) {
             let mut image = paints(&stokes, &[], 0, ZOOM);
             surface(&stokes, &mut image);
             if step < GONE {
                 let [x, z] = middle(step).map(|at| ZOOM as f64 * f64::from(at));
                 let radius = ZOOM as f64 * f64::from(RADIUS);
-                image.disc([x, image.height as f64 - z], radius, GREY);
+                let height = image.height as f64 - z;
+                image.line([0.0, height], [x, height], 2.0 * radius, GREY);
             }
             println!(
                 "ridge, {name}, step {step}: {} columns overhang",
