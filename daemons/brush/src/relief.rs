@@ -186,7 +186,7 @@ mod tests {
         assert!(on.abs() < 3e-4 && beside < -3e-3, "{on} {beside}");
         let [up, down] = seen(&canvas);
         assert!(
-            up - down > 3e-3,
+            up - down > 2.5e-3,
             "{up} {down}: a wall to who comes from the canvas"
         );
     }

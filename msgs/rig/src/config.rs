@@ -390,7 +390,7 @@ mod tests {
             text.contains("no node called 'piant'") && text.contains("did you mean 'paint'"),
             "{text}"
         );
-        assert!(text.contains("rig.toml:87"), "{text}");
+        assert!(text.contains("rig.toml:88"), "{text}");
         let text = error("[node.paint]", "[node.brush-mian]");
         assert!(text.contains("did you mean 'brush-main'"), "{text}");
         for node in ["brush", "brush-main", "ui", "player", "recorder", "phantom"] {

@@ -9,8 +9,8 @@ pub const UNIT: f32 = 512.0;
 pub const MOST: f32 = 255.0;
 /// Units of the surface layer in one of the reservoir.
 pub const DEEP: f32 = 32.0;
-/// Units that hide what lies under them, 1/O_t of eq. 4.1: 31 µm.
-pub const OPAQUE: f32 = 40.0;
+/// Units that hide what lies under them, 1/O_t of eq. 4.1: 49 µm.
+pub const OPAQUE: f32 = 64.0;
 
 /// Units of so many quanta; more than a layer holds count as full.
 #[must_use]

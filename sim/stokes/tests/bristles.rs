@@ -1,6 +1,7 @@
 //! Bristles as a porous body (Brinkman 1949): a film of thickness t on a wall, through which bristles of permeability K go at U,
 //! has u(z) = U·(1 − cosh((t − z)/√K)/cosh(t/√K)).
 
+use maulstick_num::exp;
 use maulstick_stokes::domain::Solids;
 use maulstick_stokes::flow::{Conditions, Effort, Flow};
 use maulstick_stokes::grid::{Ends, Grid, Side};
@@ -43,7 +44,7 @@ fn error(root_k: f64, share: f32) -> f64 {
     flow.step(&fill, &solids, &conditions);
     let answer = |z: f64| {
         let (t, z) = (FILM as f64 / root_k, z / root_k);
-        1.0 - ((t - z).exp() + (z - t).exp()) / (t.exp() + (-t).exp())
+        1.0 - (exp(t - z) + exp(z - t)) / (exp(t) + exp(-t))
     };
     let off = (0..FILM as isize).map(|z| {
         let u = f64::from(flow.velocity[0][grid.at([3, 4, z])] / SPEED);

@@ -102,7 +102,7 @@ fn heights_lie_where_they_were_painted_and_go_no_farther_than_the_canvas() {
 fn a_brush_far_away_or_unknown_has_no_relief_below_it() {
     let painting = bare();
     let mut high = over([30.0, 30.0]);
-    high.pose.position_m[2] += 0.04;
+    high.pose.position_m[2] += 0.06;
     assert_eq!(painting.relief_below(BRUSH, &high), None);
     assert_eq!(painting.relief_below("another", &over([30.0, 30.0])), None);
     let nowhere = Solve {
