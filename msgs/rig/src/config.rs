@@ -399,10 +399,10 @@ mod tests {
         }
         let text = error("profile = \"srgb\"", "profile = \"sgrb\"");
         assert!(text.contains("'srgb'") && text.contains("ICC"), "{text}");
-        assert!(text.contains("rig.toml:77"), "{text}");
+        assert!(text.contains("rig.toml:78"), "{text}");
         let text = error("gamut = \"soft\"", "gamut = \"sfot\"");
         assert!(
-            text.contains("did you mean 'soft'") && text.contains("rig.toml:78"),
+            text.contains("did you mean 'soft'") && text.contains("rig.toml:79"),
             "{text}"
         );
     }
