@@ -183,7 +183,7 @@ mod tests {
         // A film over it lets it through by exp(−10/150).
         let film = 6710.886;
         let [under, over] = seen(&planes([thick, film], film));
-        assert!((over / (under + over) - (1.0 - (-10.0f32 / 150.0).exp())).abs() < 1e-3);
+        assert!((over / (under + over) - (1.0 - exp_f32(-10.0 / 150.0))).abs() < 1e-3);
     }
 
     #[test]
