@@ -438,11 +438,7 @@ fn is_singular(grid: &Grid, stencil: &Stencil) -> bool {
 /// Layers in which unknowns lie.
 fn layers(grid: &Grid, stencil: &Stencil) -> Layers {
     let [row, plane] = [1, 2].map(|axis| grid.stride(axis));
-    let none = std::ops::Range {
-        start: usize::MAX,
-        end: 0,
-    };
-    let mut layers = [none.clone(), none];
+    let mut layers = [(); 2].map(|()| usize::MAX..usize::default());
     for run in stencil.runs.iter() {
         let [low, high] = [run.start / plane, (run.end - 1) / plane];
         let rows = if low == high {
