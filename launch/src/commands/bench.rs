@@ -15,7 +15,7 @@ pub struct BenchOptions {
     /// recording, render, view, window [default: everything]
     area: Option<String>,
     /// Paint model to measure in `paint` [default: impasto]
-    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(models()))]
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(model_names()))]
     model: Option<String>,
     /// Where `paint` computes its steps [default: cpu]
     #[arg(long, value_name = "NAME", value_parser = ["cpu", "gpu"])]
@@ -23,15 +23,6 @@ pub struct BenchOptions {
     /// Print JSON
     #[arg(long)]
     json: bool,
-}
-
-/// The solver that is measured by itself, whether or not a surface can have it as its model.
-const SOLVER: &str = "stokes";
-
-/// What `--model` takes.
-fn models() -> impl Iterator<Item = &'static str> {
-    let alone = std::iter::once(SOLVER);
-    model_names().chain(alone.filter(|name| model_names().all(|model| model != *name)))
 }
 
 /// Runs the benchmarks.

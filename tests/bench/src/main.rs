@@ -65,7 +65,7 @@ struct Options {
     /// recording, render, view, window [default: everything]
     area: Option<String>,
     /// Paint model to measure
-    #[arg(long, default_value = "impasto", value_parser = PossibleValuesParser::new(models()))]
+    #[arg(long, default_value = "impasto", value_parser = PossibleValuesParser::new(model_names()))]
     model: String,
     /// Where its steps are computed
     #[arg(long, default_value = "cpu", value_parser = ["cpu", "gpu"])]
@@ -79,12 +79,6 @@ struct Options {
     /// A process of the pen benchmark
     #[arg(long, hide = true)]
     pen: Option<String>,
-}
-
-/// Paint models, and what is measured by itself until a surface can have it.
-fn models() -> impl Iterator<Item = &'static str> {
-    let alone = std::iter::once(paint::SOLVER);
-    model_names().chain(alone.filter(|name| model_names().all(|model| model != *name)))
 }
 
 /// An area's name and what measures it.

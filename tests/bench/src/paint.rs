@@ -9,7 +9,6 @@ use maulstick_brush::BrushFile;
 use maulstick_gpu::{Choice, Device, GpuImpasto, Traffic};
 use maulstick_num::fork_join::with_threads;
 use maulstick_optics::PaintLibrary;
-use maulstick_painting::models::model_names;
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_rig::UserError;
 use maulstick_types::Pose;
@@ -40,8 +39,6 @@ const ROUNDS: usize = 7;
 const SIZES: [(usize, usize); 2] = [(26, 64), (88, 256)];
 /// As [`SIZES`], of one that cores are worth sharing.
 const WIDE: (usize, usize) = (352, 1024);
-/// The model whose solver is measured by itself.
-pub(crate) const SOLVER: &str = "stokes";
 /// Threads that are compared with one.
 const THREADS: [usize; 3] = [2, 4, 8];
 
@@ -193,12 +190,10 @@ pub(crate) fn run(report: &mut Report, backend: &str, model: &str) -> Result<(),
     if let Some(gpu) = &gpu {
         report.on(gpu.name());
     }
-    if model == SOLVER {
+    // Its steps cost what the solver's do; the wide footprints of the others would take it an hour.
+    if model == "stokes" {
         stokes::run(report);
-        // Its steps in a painting, if a surface can have it.
-        if !model_names().any(|name| name == model) {
-            return Ok(());
-        }
+        return Ok(());
     }
     let means = Means {
         model: model.to_owned(),
