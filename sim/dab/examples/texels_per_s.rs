@@ -66,18 +66,18 @@ fn texels(only: &str) {
                 continue;
             }
             let mut model = Dab::stroking(stroker);
-            let (mut cells, mut seconds) = (0, 0.0);
+            let (mut cells, mut texels, mut seconds) = (0, 0, 0.0);
             for round in 0..ROUNDS {
+                let before = model.texels();
                 let (sum, took) = stroke(&mut bench, &mut model, &poses, way.0.ceil() as i64);
                 if round > 0 {
                     cells += sum.footprint_cells;
+                    texels += model.texels() - before;
                     seconds += took;
                 }
             }
-            println!(
-                "texels_per_s.{name}.{path}: {:.1} million",
-                1e-6 * cells as f64 / seconds
-            );
+            let [texels, touched] = [texels, cells].map(|count: u64| 1e-6 * count as f64 / seconds);
+            println!("texels_per_s.{name}.{path}: {texels:.1} million, touched {touched:.1}");
         }
     }
 }

@@ -59,7 +59,6 @@ fn below_one(value: f64) -> f32 {
 
 /// Whole units of a volume in units.
 #[must_use]
-#[inline(always)]
 pub(crate) fn whole(units: f32, threshold: f32) -> f32 {
     (units + threshold).floor()
 }

@@ -26,6 +26,7 @@
 
 pub mod dither;
 pub mod emboss;
+mod films;
 pub mod layers;
 pub mod raster;
 pub mod relative_height;

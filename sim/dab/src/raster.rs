@@ -1,13 +1,12 @@
-//! The brush as a raster of the canvas's cells (Baxter 2004, § 4.5.1, 4.5.3): the film of each texel is parted among the
-//! cells that it covers, blended there as if the raster were the brush, at one place or several, and goes back to its
-//! texel.
+//! The brush as a raster of the canvas's cells (Baxter 2004, § 4.5.1, 4.5.3): it has the brush's films, and is blended with
+//! the canvas as if it were the brush, at one place or several.
 
 use std::ops::Range;
 
-use maulstick_canvas::quantum::{QUANTA_PER_UNIT, SLOTS};
+use maulstick_canvas::quantum::SLOTS;
 use maulstick_canvas::window::Area;
 use maulstick_model::brush::load::BrushLoad;
-use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
+use maulstick_model::brush::traits::BrushTraits;
 use maulstick_model::footprint::drawn::Drawn;
 use maulstick_model::footprint::shares_of;
 use maulstick_model::interface::Step;
@@ -16,6 +15,7 @@ use maulstick_num::fork_join::each;
 use maulstick_num::wide;
 
 use crate::dither::Dither;
+use crate::films::Films;
 use crate::touching::{Brush, Canvas, Touching, touch};
 use crate::transfer::{Limits, Paints, Row, blend};
 
@@ -28,29 +28,11 @@ pub enum Way {
     Cells(f32),
 }
 
-/// A texel over the canvas while its film is on the raster.
-#[derive(Clone, Copy, Debug)]
-struct Lender {
-    texel: u32,
-    /// Cells that it covers.
-    cells: u32,
-    /// Share of its film on each of them.
-    share: f64,
-}
-
-/// A paint on the raster.
-#[derive(Debug, Default)]
-struct Film {
-    slot: usize,
-    /// Quanta by cell.
-    plane: Vec<f32>,
-    /// Quanta that each lender has given to each of its cells; 0 at last, for the cells that have none.
-    lent: Vec<f32>,
-}
-
 /// What a blend met.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Met {
+    /// Cells under the raster.
+    pub under: u64,
     /// Cells that touched.
     pub cells: u64,
     /// Wet quanta on them before.
@@ -68,16 +50,7 @@ pub struct Raster {
     pub drawn: Drawn,
     rate: Vec<f32>,
     way: Vec<f32>,
-    /// The brush's paints by slot, as many as there are in use.
-    films: Vec<Film>,
-    used: usize,
-    lenders: Vec<Lender>,
-    /// The place of each texel among the lenders.
-    place_of: Vec<u32>,
-    /// That of each cell's texel; the number of lenders where there is none.
-    place: Vec<u32>,
-    /// Of one paint: quanta that come back to each lender.
-    back: Vec<i64>,
+    films: Films,
     /// One for each core.
     touching: Vec<Touching>,
 }
@@ -198,44 +171,19 @@ impl Raster {
     /// Quanta of a paint on each cell of the raster, as [drawn](Self::drawn).
     #[must_use]
     pub fn film(&self, slot: usize) -> Option<&[f32]> {
-        let mut films = self.films[..self.used].iter();
-        let film = films.find(|film| film.slot == slot);
-        film.map(|film| &film.plane[..])
+        self.films.of(slot)
     }
 
     /// The strips that the head has over the canvas, some of them more than once.
     pub fn strips(&self) -> impl Iterator<Item = usize> + '_ {
-        let texels = self.lenders.iter().map(|lender| lender.texel as usize);
-        texels.map(|texel| texel / TEXELS_PER_STRIP)
+        self.films.strips()
     }
 
     /// Parts the films of the texels over the canvas among the cells that they cover; they stay in the load until they
     /// come [back](Self::give_back). `slots` are the paints that brush or canvas may have.
     pub fn lend(&mut self, load: &BrushLoad, traits: &BrushTraits, slots: &[usize], way: Way) {
         self.find_ways(traits, way);
-        self.find_lenders(load.texels(), traits);
-        let cells = self.drawn.texel.len();
-        self.used = slots.len();
-        let films = self.films.len().max(slots.len());
-        self.films.resize_with(films, Film::default);
-        for (own, slot) in self.films.iter_mut().zip(slots) {
-            own.slot = *slot;
-            own.plane.clear();
-            own.lent.clear();
-            let Some(film) = load.film_of(*slot) else {
-                own.plane.resize(cells, 0.0);
-                own.lent.resize(self.lenders.len() + 1, 0.0);
-                continue;
-            };
-            let lends = |lender: &Lender| {
-                let held = f64::from(film[lender.texel as usize]);
-                (held * lender.share) as u32 as f32
-            };
-            own.lent.extend(self.lenders.iter().map(lends));
-            own.lent.push(0.0);
-            let lent = self.place.iter().map(|place| own.lent[*place as usize]);
-            own.plane.extend(lent);
-        }
+        self.films.lend(&self.drawn, load, traits, slots);
     }
 
     /// How far each cell of the brush goes, and what share goes over on the way.
@@ -256,40 +204,6 @@ impl Raster {
             [&self.drawn.cover, &self.drawn.travel],
             [&mut self.rate, &mut self.way],
         );
-    }
-
-    fn find_lenders(&mut self, texels: usize, traits: &BrushTraits) {
-        for lender in self.lenders.drain(..) {
-            if let Some(place) = self.place_of.get_mut(lender.texel as usize) {
-                *place = Drawn::ABSENT;
-            }
-        }
-        self.place_of.resize(texels, Drawn::ABSENT);
-        self.place.clear();
-        for texel in &self.drawn.texel {
-            let Some(place) = self.place_of.get_mut(*texel as usize) else {
-                self.place.push(Drawn::ABSENT);
-                continue;
-            };
-            if *place == Drawn::ABSENT {
-                *place = self.lenders.len() as u32;
-                self.lenders.push(Lender {
-                    texel: *texel,
-                    cells: 0,
-                    share: 0.0,
-                });
-            }
-            self.place.push(*place);
-            self.lenders[*place as usize].cells += 1;
-        }
-        let lenders = self.lenders.len() as u32;
-        let places = self.place.iter_mut();
-        places.for_each(|place| *place = lenders.min(*place));
-        // Cells that a texel's film is as large as.
-        let large = 1.0 / (QUANTA_PER_UNIT * f64::from(traits.film_units_per_quantum));
-        for lender in &mut self.lenders {
-            lender.share = 1.0 / large.max(f64::from(lender.cells));
-        }
     }
 
     /// The cells of a window, of those `within`, that are under the raster moved by whole cells.
@@ -326,7 +240,7 @@ impl Raster {
             let from = drawn.origin[i] - origin[i] + shift[i];
             (under.from[i] as i64 - from) as usize
         });
-        let films = &mut self.films[..self.used];
+        let films = self.films.in_use();
         for film in &*films {
             window.plane_mut(film.slot);
         }
@@ -382,7 +296,10 @@ impl Raster {
             dither,
         };
         each(&mut shares, |share| share.blend(&place));
-        let mut met = Met::default();
+        let mut met = Met {
+            under: under.cells() as u64,
+            ..Met::default()
+        };
         for share in &shares {
             let [cells, wet, thinner] = share.sums.map(|sum| sum as u64);
             met.cells += cells;
@@ -402,23 +319,7 @@ impl Raster {
 
     /// Gives each texel what its cells hold now. By slot, what the brush has more than before.
     pub fn give_back(&mut self, load: &mut BrushLoad) -> [i64; SLOTS] {
-        let mut gained = [0; SLOTS];
-        for film in &self.films[..self.used] {
-            self.back.clear();
-            self.back.resize(self.lenders.len() + 1, 0);
-            for (place, quanta) in self.place.iter().zip(&film.plane) {
-                self.back[*place as usize] += i64::from(*quanta as i32);
-            }
-            let lent = film.lent.iter().zip(&self.back);
-            for (lender, (lent, back)) in self.lenders.iter().zip(lent) {
-                let change = back - *lent as i64 * i64::from(lender.cells);
-                if change != 0 {
-                    load.change_film(film.slot, lender.texel as usize, change as i32);
-                    gained[film.slot] += change;
-                }
-            }
-        }
-        gained
+        self.films.give_back(&self.drawn, load)
     }
 }
 

@@ -78,7 +78,8 @@ pub fn refill(
     let mut paints: Vec<_> = paints.collect();
     for strip in strips {
         let first = strip * TEXELS_PER_STRIP;
-        let mut on = held(&paints, first);
+        let mut on: [[f64; 2]; TEXELS_PER_STRIP] =
+            std::array::from_fn(|place| held(&paints, first + place));
         let thresholds: [[f32; TEXELS_PER_STRIP]; 2] =
             [0, 1].map(|row| dither.along([first as i64, row]));
         // From the point up: what runs down in one step goes a texel far.
@@ -96,7 +97,7 @@ pub fn refill(
                         share_out(film, inside_of, -flow / surface);
                     }
                 }
-                on = held(&paints, first);
+                on[place] = held(&paints, texel);
             }
             if place == 0 {
                 continue;
@@ -108,22 +109,21 @@ pub fn refill(
                     let (above, below) = paint.film.split_at_mut(texel);
                     share_out(&mut above[texel - 1], &mut below[0], flow / both[0]);
                 }
-                on = held(&paints, first);
+                for place in [place - 1, place] {
+                    on[place] = held(&paints, first + place);
+                }
             }
         }
     }
 }
 
-/// Quanta of all paints on the surface and inside of a strip's texels.
-fn held(paints: &[PaintOnBrush<'_>], first: usize) -> [[f64; 2]; TEXELS_PER_STRIP] {
-    let mut held = [[0.0; 2]; TEXELS_PER_STRIP];
-    for paint in paints {
-        let texels = first..first + TEXELS_PER_STRIP;
-        let both = paint.film[texels.clone()].iter().zip(&paint.inside[texels]);
-        for (held, (film, inside)) in held.iter_mut().zip(both) {
-            held[0] += f64::from(*film);
-            held[1] += f64::from(*inside);
-        }
-    }
-    held
+/// Quanta of all paints on the surface and inside of a texel.
+fn held(paints: &[PaintOnBrush<'_>], texel: usize) -> [f64; 2] {
+    let both = paints.iter().fold([0; 2], |[film, inside], paint| {
+        [
+            film + u64::from(paint.film[texel]),
+            inside + u64::from(paint.inside[texel]),
+        ]
+    });
+    both.map(|quanta| quanta as f64)
 }

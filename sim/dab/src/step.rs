@@ -27,6 +27,7 @@ pub struct Dab {
     poses: [HeadPose; 2],
     /// The algorithm of all steps; by the load on the machine where there is none.
     stroker: Option<Stroker>,
+    blended: u64,
 }
 
 impl PaintModel for Dab {
@@ -80,6 +81,13 @@ impl Dab {
             stroker: Some(stroker),
             ..Self::default()
         }
+    }
+
+    /// Cells of all footprints blended so far, whether something of the brush touched them or not: the texels that Baxter
+    /// 2004 counts (§ 6.10: 116 footprints of 26² cells are 77,000).
+    #[must_use]
+    pub fn texels(&self) -> u64 {
+        self.blended
     }
 
     fn without_paint(&mut self, step: &mut Step<'_>) -> StepReport {
@@ -234,6 +242,7 @@ impl Dab {
             let dither = Dither::new(seed, stroke.number);
             stroke.number = stroke.number.wrapping_add(1);
             let met = raster.blend(&mut part, *place, dither);
+            self.blended += met.under;
             if met.cells == 0 {
                 continue;
             }

@@ -3,7 +3,7 @@
 
 use maulstick_num::wide;
 
-use crate::transfer::{RUN, least, most, run, sums};
+use crate::transfer::{PLACES, RUN, run, sums};
 
 /// Share of a gap between brush and canvas up to which the brush's paint only bridges it: what lies on ridges sags into
 /// the hollows between them.
@@ -86,47 +86,53 @@ wide! {
     ///
     /// A pressed bristle has its solved height at 0: it follows the ride into the valleys of the tooth, and is lifted by
     /// higher parts.
-    pub fn touch(brush: &Brush<'_>, canvas: &Canvas<'_>, found: &mut Touching) {
+    pub fn touch<L>(brush: &Brush<'_>, canvas: &Canvas<'_>, found: &mut Touching) {
         let count = brush.count;
-        let to_cells = canvas.cells_per_quantum;
-        let to_bridge = BRIDGED / to_cells;
-        let [mut cells, mut quanta, mut thin] = [[0.0f64; RUN]; 3];
+        let (none, one) = (L::splat(0.0), L::splat(1.0));
+        let to_cells = L::splat(canvas.cells_per_quantum);
+        let to_bridge = L::splat(BRIDGED / canvas.cells_per_quantum);
+        let sink = L::splat(brush.sink);
+        let mut cells = none;
+        let [mut quanta, mut thin] = [[0.0f64; RUN]; 2];
         for at in (0..count).step_by(RUN) {
-            let inside = count - at;
-            let cover = run(brush.cover, at);
-            let [mut rates, mut ways, mut reaches, mut gaps] = [[0.0f32; RUN]; 4];
-            if cover.iter().any(|share| *share > 0.0) {
-                let [height, clearance] = [brush.height, brush.clearance].map(|plane| run(plane, at));
-                let [base, ride] = [canvas.base, canvas.ride].map(|plane| run(plane, at));
-                let [rate, way] = [brush.rate, brush.way].map(|plane| run(plane, at));
-                let mut touches = [0.0f32; RUN];
-                let film = sums(brush.film, brush.start + at);
-                let lies = sums(canvas.wet, canvas.start + at);
-                for i in 0..RUN {
-                    let wet = lies[i] * to_cells;
-                    let rests = most(height[i] + least(ride[i], 0.0), ride[i]);
-                    let reach = base[i] + wet - (rests - brush.sink + clearance[i]);
-                    let near = reach + film[i] * to_cells > 0.0;
-                    touches[i] = if near && cover[i] > 0.0 && i < inside { 1.0 } else { 0.0 };
-                    let depth = least(most(reach, 0.0), wet);
-                    reaches[i] = if wet > 0.0 { depth / wet } else { 0.0 };
-                    gaps[i] = most(-reach, 0.0) * to_bridge;
-                    rates[i] = rate[i] * touches[i];
-                    ways[i] = way[i] * touches[i];
-                    cells[i] += f64::from(touches[i]);
-                    quanta[i] += f64::from(touches[i] * lies[i]);
-                }
+            let [mut reaches, mut gaps, mut rates, mut ways] = [none; 4];
+            // None beyond the row.
+            let inside = (L::splat((count - at) as f32) - L::of(&PLACES)).most(none);
+            let cover: L = run::<L>(brush.cover, at).least(inside);
+            if none.less(cover).any() {
+                let [height, clearance]: [L; 2] =
+                    [brush.height, brush.clearance].map(|plane| run(plane, at));
+                let [base, ride]: [L; 2] = [canvas.base, canvas.ride].map(|plane| run(plane, at));
+                let [rate, way]: [L; 2] = [brush.rate, brush.way].map(|plane| run(plane, at));
+                let film: L = sums(brush.film, brush.start + at);
+                let lies: L = sums(canvas.wet, canvas.start + at);
+                let wet = lies * to_cells;
+                let rests = (height + ride.least(none)).most(ride);
+                let reach = base + wet - (rests - sink + clearance);
+                let near = none.less(reach + film * to_cells);
+                let touches = none.less(cover).choose(near.choose(one, none), none);
+                let depth = reach.most(none).least(wet);
+                reaches = none.less(wet).choose(depth / wet, none);
+                gaps = (none - reach).most(none) * to_bridge;
+                rates = rate * touches;
+                ways = way * touches;
+                cells = cells + touches;
+                let touched = (touches * lies).values();
+                (0..RUN).for_each(|i| quanta[i] += f64::from(touched[i]));
                 if let Some(thinner) = canvas.thinner {
-                    let lies = run(&canvas.wet[thinner][..], canvas.start + at);
-                    (0..RUN).for_each(|i| thin[i] += f64::from(touches[i] * lies[i]));
+                    let lies: L = run(canvas.wet[thinner], canvas.start + at);
+                    let touched = (touches * lies).values();
+                    (0..RUN).for_each(|i| thin[i] += f64::from(touched[i]));
                 }
             }
-            found.rate[at..at + RUN].copy_from_slice(&rates);
-            found.way[at..at + RUN].copy_from_slice(&ways);
-            found.reach[at..at + RUN].copy_from_slice(&reaches);
-            found.gap[at..at + RUN].copy_from_slice(&gaps);
+            let planes = [&mut found.reach, &mut found.gap, &mut found.rate, &mut found.way];
+            for (plane, values) in planes.into_iter().zip([reaches, gaps, rates, ways]) {
+                if let Some(run) = plane[at..].first_chunk_mut() {
+                    *run = values.values();
+                }
+            }
         }
-        found.cells += cells.iter().sum::<f64>();
+        found.cells += cells.values().iter().map(|count| f64::from(*count)).sum::<f64>();
         found.wet[0] += quanta.iter().sum::<f64>();
         found.wet[1] += thin.iter().sum::<f64>();
     }

@@ -5,9 +5,10 @@
 
 use maulstick_canvas::quantum::QUANTA_PER_UNIT;
 use maulstick_model::interface::{Step, Transfer};
+use maulstick_num::lanes::{Lanes, Plain};
 use maulstick_num::wide;
 
-use crate::dither::{Dither, whole};
+use crate::dither::Dither;
 use crate::volume::{MOST, UNIT};
 
 /// What a blend may move, the same on all of its cells.
@@ -60,10 +61,14 @@ pub struct Meeting {
     pub gap: f32,
 }
 
+/// Cells that are done together.
+pub(crate) const RUN: usize = 8;
+/// Their places.
+pub(crate) const PLACES: [f32; RUN] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+
 /// Quanta that go from the brush to the canvas, and from the canvas to the brush: whole units, as far as both sides
 /// have them and room for them.
 #[must_use]
-#[inline(always)]
 pub fn leaving(meeting: &Meeting, limits: &Limits, threshold: f32) -> [f32; 2] {
     let Meeting {
         brush,
@@ -73,34 +78,61 @@ pub fn leaving(meeting: &Meeting, limits: &Limits, threshold: f32) -> [f32; 2] {
         reach,
         gap,
     } = *meeting;
-    let full = MOST * UNIT;
-    let free = least(most(brush - gap, 0.0), full);
-    let loose = most(canvas - limits.stain, 0.0);
-    let reached = least(least(canvas, full) * reach, loose);
-    let rate = rate * limits.exchanges * (1.0 / UNIT);
-    let given = free * rate + limits.flow * way;
-    let taken = reached * rate;
-    // Half a turn apart: what leaves one side shall not go by what leaves the other.
-    let opposite = threshold + if threshold < 0.5 { 0.5 } else { -0.5 };
-    let given = least(whole(given, threshold) * UNIT, free);
-    let taken = least(whole(taken, opposite) * UNIT, loose);
-    let taken = least(taken, most(full - brush, 0.0) + given);
-    let given = least(given, most(limits.most - canvas, 0.0) + taken);
-    [given, taken]
+    let [brush, canvas, rate, way, reach, gap] =
+        [brush, canvas, rate, way, reach, gap].map(Plain::splat);
+    let meetings = Meetings {
+        brush,
+        canvas,
+        rate,
+        way,
+        reach,
+        gap,
+    };
+    let both = meetings.leaving(limits, Plain::splat(threshold));
+    both.map(|side| side.values()[0])
 }
 
-#[inline(always)]
-pub(crate) fn least(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
+/// Cells of a run, as each is a [`Meeting`].
+#[derive(Clone, Copy)]
+struct Meetings<L> {
+    brush: L,
+    canvas: L,
+    rate: L,
+    way: L,
+    reach: L,
+    gap: L,
 }
 
-#[inline(always)]
-pub(crate) fn most(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
+impl<L: Lanes> Meetings<L> {
+    /// As the function of this name.
+    #[inline(always)]
+    fn leaving(self, limits: &Limits, threshold: L) -> [L; 2] {
+        let Self {
+            brush,
+            canvas,
+            rate,
+            way,
+            reach,
+            gap,
+        } = self;
+        let (none, half, unit) = (L::splat(0.0), L::splat(0.5), L::splat(UNIT));
+        let full = L::splat(MOST * UNIT);
+        let whole = |units: L, threshold: L| (units + threshold).floor() * unit;
+        let free = (brush - gap).most(none).least(full);
+        let loose = (canvas - L::splat(limits.stain)).most(none);
+        let reached = (canvas.least(full) * reach).least(loose);
+        let rate = rate * L::splat(limits.exchanges * (1.0 / UNIT));
+        let given = free * rate + L::splat(limits.flow) * way;
+        let taken = reached * rate;
+        // Half a turn apart: what leaves one side shall not go by what leaves the other.
+        let opposite = threshold + threshold.less(half).choose(half, L::splat(-0.5));
+        let given = whole(given, threshold).least(free);
+        let taken = whole(taken, opposite).least(loose);
+        let taken = taken.least((full - brush).most(none) + given);
+        let given = given.least((L::splat(limits.most) - canvas).most(none) + taken);
+        [given, taken]
+    }
 }
-
-/// Cells that are done together.
-pub(crate) const RUN: usize = 16;
 
 /// Cells of a row where the head is: how brush and canvas meet, a plane each.
 #[derive(Debug)]
@@ -128,80 +160,71 @@ pub struct Paints<'a, 'b> {
 
 /// The cells of a run; 0 beyond the plane's end.
 #[inline(always)]
-pub(crate) fn run(plane: &[f32], at: usize) -> [f32; RUN] {
-    let rest = plane.get(at..).unwrap_or_default();
-    match rest.first_chunk() {
-        Some(run) => *run,
-        None => {
-            let mut run = [0.0; RUN];
-            run[..rest.len()].copy_from_slice(rest);
-            run
-        }
+pub(crate) fn run<L: Lanes>(plane: &[f32], at: usize) -> L {
+    match plane.get(at..).and_then(|rest| rest.first_chunk()) {
+        Some(run) => L::of(run),
+        None => L::of(&last(plane, at)),
     }
+}
+
+#[cold]
+fn last(plane: &[f32], at: usize) -> [f32; RUN] {
+    let rest = plane.get(at..).unwrap_or_default();
+    let mut run = [0.0; RUN];
+    run[..rest.len()].copy_from_slice(rest);
+    run
 }
 
 /// Puts the cells of a run where they were, as far as the plane goes.
 #[inline(always)]
-fn put(plane: &mut [f32], at: usize, values: &[f32; RUN]) {
+fn put<L: Lanes>(plane: &mut [f32], at: usize, run: L) {
+    let values = run.values();
     let rest = plane.get_mut(at..).unwrap_or_default();
     match rest.first_chunk_mut() {
-        Some(run) => *run = *values,
+        Some(run) => *run = values,
         None => rest.copy_from_slice(&values[..rest.len()]),
     }
 }
 
 /// Sums of all paints on the cells of a run.
 #[inline(always)]
-pub(crate) fn sums(planes: &[&mut [f32]], at: usize) -> [f32; RUN] {
-    let mut sums = [0.0f32; RUN];
+pub(crate) fn sums<L: Lanes>(planes: &[&mut [f32]], at: usize) -> L {
+    let mut sums = L::splat(0.0);
     for plane in planes {
-        let counts = run(plane, at);
-        (0..RUN).for_each(|i| sums[i] += counts[i]);
+        sums = sums + run(plane, at);
     }
     sums
 }
 
 wide! {
     /// Blends a row whose first cell has this threshold: all paints of a side alike. Cells of the planes beyond the row stay.
-    pub fn blend(row: &Row<'_>, limits: &Limits, first: f32, paints: &mut Paints<'_, '_>) {
+    pub fn blend<L>(row: &Row<'_>, limits: &Limits, first: f32, paints: &mut Paints<'_, '_>) {
+        let (none, one) = (L::splat(0.0), L::splat(1.0));
         let count = row.rate.len();
         let [on_brush, on_canvas] = paints.starts;
         for at in (0..count).step_by(RUN) {
-            let [rate, way] = [row.rate, row.way].map(|plane| run(plane, at));
-            if rate.iter().chain(&way).all(|share| *share == 0.0) {
+            let [rate, way]: [L; 2] = [row.rate, row.way].map(|plane| run(plane, at));
+            if !none.less(rate.most(way)).any() {
                 continue;
             }
             let [reach, gap] = [row.reach, row.gap].map(|plane| run(plane, at));
             let brush = sums(paints.brush, on_brush + at);
             let canvas = sums(paints.canvas, on_canvas + at);
-            let [mut gives, mut takes, mut leaves] = [[0.0f32; RUN]; 3];
-            for i in 0..RUN {
-                let sum = first + (at + i) as f32 * Dither::ACROSS;
-                let meeting = Meeting {
-                    brush: brush[i],
-                    canvas: canvas[i],
-                    rate: rate[i],
-                    way: way[i],
-                    reach: reach[i],
-                    gap: gap[i],
-                };
-                let [given, taken] = leaving(&meeting, limits, sum - sum.floor());
-                gives[i] = given / most(brush[i], 1.0);
-                takes[i] = taken / most(canvas[i], 1.0);
-                let lost = if limits.lasting { least(given, taken) } else { taken };
-                leaves[i] = lost / most(taken, 1.0);
-            }
+            let place = L::splat(at as f32) + L::of(&PLACES);
+            let sum = L::splat(first) + place * L::splat(Dither::ACROSS);
+            let meetings = Meetings { brush, canvas, rate, way, reach, gap };
+            let [given, taken] = meetings.leaving(limits, sum - sum.floor());
+            let gives = given / brush.most(one);
+            let takes = taken / canvas.most(one);
+            let lost = if limits.lasting { given.least(taken) } else { taken };
+            let leaves = lost / taken.most(one);
             for (film, plane) in paints.brush.iter_mut().zip(&mut *paints.canvas) {
-                let mut held = run(film, on_brush + at);
-                let mut lies = run(plane, on_canvas + at);
-                for i in 0..RUN {
-                    let given = (held[i] * gives[i]).floor();
-                    let taken = (lies[i] * takes[i]).floor();
-                    held[i] += taken - given;
-                    lies[i] += given - (taken * leaves[i]).floor();
-                }
-                put(film, on_brush + at, &held);
-                put(plane, on_canvas + at, &lies);
+                let held: L = run(film, on_brush + at);
+                let lies: L = run(plane, on_canvas + at);
+                let given = (held * gives).floor();
+                let taken = (lies * takes).floor();
+                put(film, on_brush + at, held + (taken - given));
+                put(plane, on_canvas + at, lies + (given - (taken * leaves).floor()));
             }
         }
     }

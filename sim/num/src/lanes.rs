@@ -1,12 +1,14 @@
 //! Eight numbers at a time: in one register where the processor has AVX2 or AVX-512, otherwise as the `wide`
 //! crate does it. Both round alike.
 
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, Div, Mul, Sub};
 
 use wide::f32x8;
 
 /// Eight numbers.
-pub trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+pub trait Lanes:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
     /// The same eight times.
     fn splat(value: f32) -> Self;
     /// These.
@@ -15,6 +17,8 @@ pub trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = S
     fn values(self) -> [f32; 8];
     /// Without their signs.
     fn abs(self) -> Self;
+    /// The largest whole number that is not above.
+    fn floor(self) -> Self;
     /// The smaller of each two; none of them is NaN.
     fn least(self, other: Self) -> Self;
     /// The larger of each two; none of them is NaN.
@@ -23,6 +27,8 @@ pub trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = S
     fn less(self, other: Self) -> Self;
     /// As a mask: `one` where it is, else `other`.
     fn choose(self, one: Self, other: Self) -> Self;
+    /// As a mask: whether it is anywhere.
+    fn any(self) -> bool;
 }
 
 impl Lanes for f32x8 {
@@ -47,6 +53,11 @@ impl Lanes for f32x8 {
     }
 
     #[inline(always)]
+    fn floor(self) -> Self {
+        Self::floor(self)
+    }
+
+    #[inline(always)]
     fn least(self, other: Self) -> Self {
         self.fast_min(other)
     }
@@ -65,12 +76,17 @@ impl Lanes for f32x8 {
     fn choose(self, one: Self, other: Self) -> Self {
         self.select(one, other)
     }
+
+    #[inline(always)]
+    fn any(self) -> bool {
+        Self::any(self)
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
 mod avx {
     use std::arch::x86_64::*;
-    use std::ops::{Add, Mul, Sub};
+    use std::ops::{Add, Div, Mul, Sub};
 
     use super::Lanes;
 
@@ -118,6 +134,15 @@ mod avx {
         }
     }
 
+    impl Div for Avx {
+        type Output = Self;
+
+        #[inline(always)]
+        fn div(self, other: Self) -> Self {
+            Self(avx!(_mm256_div_ps(self.0, other.0)))
+        }
+    }
+
     impl Lanes for Avx {
         #[inline(always)]
         fn splat(value: f32) -> Self {
@@ -140,6 +165,11 @@ mod avx {
         }
 
         #[inline(always)]
+        fn floor(self) -> Self {
+            Self(avx!(_mm256_floor_ps(self.0)))
+        }
+
+        #[inline(always)]
         fn least(self, other: Self) -> Self {
             Self(avx!(_mm256_min_ps(self.0, other.0)))
         }
@@ -158,6 +188,11 @@ mod avx {
         fn choose(self, one: Self, other: Self) -> Self {
             Self(avx!(_mm256_blendv_ps(other.0, one.0, self.0)))
         }
+
+        #[inline(always)]
+        fn any(self) -> bool {
+            avx!(_mm256_movemask_ps(self.0)) != 0
+        }
     }
 }
 
@@ -171,18 +206,21 @@ mod tests {
     use super::*;
     use crate::wide::Registers;
 
-    fn all<L: Lanes>(a: &[f32; 8], b: &[f32; 8]) -> [[u32; 8]; 7] {
+    fn all<L: Lanes>(a: &[f32; 8], b: &[f32; 8]) -> ([[u32; 8]; 9], [bool; 2]) {
         let (x, y) = (L::of(a), L::of(b));
         let results = [
             x + y,
             x - y,
             x * y,
+            x / y,
             x.abs(),
+            x.floor(),
             x.least(y),
             x.most(y),
             x.less(y).choose(x, L::splat(0.5)),
         ];
-        results.map(|lanes| lanes.values().map(f32::to_bits))
+        let any = [x.less(y).any(), x.less(x).any()];
+        (results.map(|lanes| lanes.values().map(f32::to_bits)), any)
     }
 
     #[test]

@@ -1,5 +1,6 @@
-//! dAb's stroking algorithms by themselves (Baxter 2004, table 4.2): canvas texels blended a second along two kinds of
-//! path, of which the text says nothing: here a fast straight one and a slow curved one.
+//! dAb's stroking algorithms by themselves (Baxter 2004, table 4.2): texels of footprints blended a second, and cells of
+//! them that were touched, along two kinds of path, of which the text says nothing: here a fast straight one and a slow
+//! curved one.
 
 use std::time::Instant;
 
@@ -48,13 +49,19 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     file.strips.count = BRUSH.1;
     let file = file.scaled_to(BRUSH.0).map_err(fault)?;
     for (stroker, kind) in STROKERS {
-        let mut all = Vec::new();
         for (path, way, turn) in PATHS {
-            let rates = rates(&file, kind, (way, turn))?;
-            all.extend(rates.iter().copied());
-            report.median(&format!("texels_per_s.{stroker}.{path}"), "texels/s", rates);
+            let (texels, touched) = rates(&file, kind, (way, turn))?.into_iter().unzip();
+            report.median(
+                &format!("texels_per_s.{stroker}.{path}"),
+                "texels/s",
+                texels,
+            );
+            report.median(
+                &format!("touched_per_s.{stroker}.{path}"),
+                "cells/s",
+                touched,
+            );
         }
-        report.median(&format!("texels_per_s.{stroker}"), "texels/s", all);
     }
     Ok(())
 }
@@ -91,8 +98,8 @@ fn heads(file: &BrushFile, head: &Head, (way, turn): (f64, f64)) -> Vec<HeadPose
     poses
 }
 
-/// Texels a second of each round.
-fn rates(file: &BrushFile, kind: Stroker, path: (f64, f64)) -> Result<Vec<f64>, UserError> {
+/// Texels of the footprints and cells that were touched, a second, of each round.
+fn rates(file: &BrushFile, kind: Stroker, path: (f64, f64)) -> Result<Vec<(f64, f64)>, UserError> {
     let head = Head::of(file);
     let traits = BrushTraits::of(file, SCALE.cell_m, SCALE.zoom);
     let poses = heads(file, &head, path);
@@ -114,7 +121,8 @@ fn rates(file: &BrushFile, kind: Stroker, path: (f64, f64)) -> Result<Vec<f64>, 
             None,
             (Half::Both, round as u64),
         );
-        let mut texels = StepReport::default();
+        let mut sum = StepReport::default();
+        let before = model.texels();
         let begun = Instant::now();
         for place in 1..poses.len() {
             let (from, to) = (&poses[place - 1], &poses[place]);
@@ -127,7 +135,7 @@ fn rates(file: &BrushFile, kind: Stroker, path: (f64, f64)) -> Result<Vec<f64>, 
                 bounds.0.map(|at| at - margin),
                 bounds.1.map(|at| at + margin),
             );
-            texels.add(&model.step(&mut Step {
+            sum.add(&model.step(&mut Step {
                 window: &mut window,
                 head: &head,
                 sweep: Sweep {
@@ -144,9 +152,11 @@ fn rates(file: &BrushFile, kind: Stroker, path: (f64, f64)) -> Result<Vec<f64>, 
                 thinner: None,
             }));
         }
-        let rate = texels.footprint_cells as f64 / begun.elapsed().as_secs_f64();
+        let seconds = begun.elapsed().as_secs_f64();
+        let counts = [model.texels() - before, sum.footprint_cells];
+        let [texels, touched] = counts.map(|count| count as f64 / seconds);
         if round > 0 {
-            rates.push(rate);
+            rates.push((texels, touched));
         }
     }
     Ok(rates)

@@ -5,7 +5,7 @@ use maulstick_brush::head::STATIONS;
 use maulstick_canvas::quantum::CELL_MAX;
 use maulstick_impasto::stages::advection::STAIN;
 use maulstick_model::brush::head::border;
-use maulstick_model::footprint::band::{middle, rank};
+use maulstick_model::footprint::ribbons::{middle, rank};
 use maulstick_model::interface::{Step, Transfer};
 
 use super::residence::Residence;

@@ -5,6 +5,7 @@ use maulstick_canvas::window::Area;
 use maulstick_num::fork_join::Balance;
 
 use super::band::Band;
+use super::ribbons::Ribbons;
 use super::shares_of;
 use crate::interface::Step;
 
@@ -35,6 +36,7 @@ pub struct Drawn {
     pub reach: ([usize; 2], [usize; 2]),
     /// One for each core, in order of their rows.
     bands: Vec<Band>,
+    ribbons: Ribbons,
     balance: Balance,
 }
 
@@ -91,10 +93,12 @@ impl Drawn {
             }
         });
         let mut parts: Vec<_> = parts.collect();
+        self.ribbons.lay(step, grid, offset, top);
+        let ribbons = &self.ribbons;
         self.balance.each(&mut parts, |part| {
             part.band.begin(grid, offset, part.rows.clone());
-            part.band.draw_head(step, top);
-            part.resolve(grid, stride);
+            part.band.draw_head(step, ribbons, top);
+            part.resolve(ribbons, grid, stride);
         });
         let joined = parts.iter().fold(Band::NOWHERE, |(from, to), part| {
             let (low, high) = part.reach;
@@ -119,14 +123,14 @@ impl Drawn {
 
 impl Part<'_> {
     /// Notes by cell what lies over it.
-    fn resolve(&mut self, grid: Area, stride: usize) {
+    fn resolve(&mut self, ribbons: &Ribbons, grid: Area, stride: usize) {
         let drawing = &self.band.drawing;
         let [cover, height, clearance, travel] = &mut self.planes;
         let (from, to) = &mut self.reach;
         for y in self.rows.clone() {
             let row = (y - self.rows.start) * stride;
             for x in 0..grid.size[0] {
-                let Some(over) = drawing.over(x, y) else {
+                let Some(over) = drawing.over(ribbons, x, y) else {
                     continue;
                 };
                 let place = row + x;

@@ -4,12 +4,13 @@
 //! counts. It touches where it, with the film of paint that it carries, reaches the top of the surface there: tooth,
 //! dry relief and wet paint. All lengths are in cells.
 
-pub mod band;
+mod band;
 pub mod contact;
 mod draw_skin;
 pub mod drawn;
 pub mod lying;
 mod rasterizer;
+pub mod ribbons;
 
 use maulstick_canvas::window::{Area, Window};
 use maulstick_num::fork_join::{Balance, threads};
@@ -17,6 +18,7 @@ use maulstick_num::fork_join::{Balance, threads};
 use band::Band;
 use contact::Contact;
 use lying::Lying;
+use ribbons::Ribbons;
 
 use crate::interface::{Step, StepReport};
 
@@ -50,6 +52,7 @@ pub struct Footprint {
     lying: Lying,
     /// One for each core, in order of their rows.
     bands: Vec<Band>,
+    ribbons: Ribbons,
     balance: Balance,
 }
 
@@ -72,10 +75,12 @@ impl Footprint {
         let offset = [0, 1].map(|i| (origin[i] + self.grid.from[i] as i64) as f32);
         let (grid, lying, height) = (self.grid, &self.lying.quanta[..], self.grid.size[1]);
         let step = &*step;
+        self.ribbons.lay(step, grid, offset, low);
+        let ribbons = &self.ribbons;
         let find = |band: &mut Band, rows| {
             band.begin(grid, offset, rows);
-            band.draw_head(step, low);
-            band.touch(step, lying, sink);
+            band.draw_head(step, ribbons, low);
+            band.touch(step, ribbons, lying, sink);
         };
         let rows = self.balance.cut(height, shares_of(grid.cells()));
         let bands = self.bands.len().max(rows.len());

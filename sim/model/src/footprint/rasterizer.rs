@@ -7,6 +7,7 @@ use std::ops::Range;
 
 use maulstick_num::lanes::Lanes;
 
+use super::ribbons::{Laid, Ribbons};
 use crate::brush::traits::TEXELS_PER_STRIP;
 
 /// A ribbon that covers a cell only in part counts as higher by this much, cells: of ribbons beside each
@@ -143,6 +144,20 @@ impl Line {
     fn reach(&self) -> f32 {
         self.half + 0.5 * self.soft
     }
+
+    /// The same across its columns.
+    fn across(&self) -> f32 {
+        self.reach() / self.cosine
+    }
+
+    /// The rows that it covers on those columns, of so many.
+    pub(super) fn rows(&self, columns: &Range<usize>, rows: usize) -> Range<usize> {
+        let across = self.across();
+        let (_, first) = self.at(columns.start as f32);
+        let (_, last) = self.at(columns.end as f32 - 1.0);
+        let row = |edge: f32| (edge + 1.0).clamp(0.0, rows as f32) as usize;
+        row(first.min(last) - across)..row(first.max(last) + across)
+    }
 }
 
 impl Piece {
@@ -210,6 +225,7 @@ pub(super) struct Drawing {
     /// Share of each cell that all pieces leave open. They overlap at random: each covers its share of the area that
     /// the others leave open.
     open: Vec<f32>,
+    /// Those of cells that are drawn by themselves.
     pieces: Vec<Piece>,
 }
 
@@ -234,12 +250,24 @@ impl Drawing {
         self.rows.clone()
     }
 
+    /// Pieces that [cells](Self::draw_cell) were drawn with: the numbers of a head's ribbons come after theirs.
+    pub(super) fn cells_drawn(&self) -> usize {
+        self.pieces.len()
+    }
+
     /// The part of the head over a cell of these rows.
     #[inline]
-    pub(super) fn over(&self, x: usize, y: usize) -> Option<Over<'_>> {
+    pub(super) fn over<'a>(&'a self, ribbons: &'a Ribbons, x: usize, y: usize) -> Option<Over<'a>> {
         let at = (y - self.rows.start) * self.stride + x;
         let number = self.number[at];
-        let piece = (number >= 0.0).then(|| &self.pieces[number as usize])?;
+        if number < 0.0 {
+            return None;
+        }
+        let number = number as usize;
+        let piece = match number.checked_sub(self.pieces.len()) {
+            Some(on) => ribbons.piece(on)?,
+            None => &self.pieces[number],
+        };
         let [t, across] = piece.line.place([x as f32, y as f32]);
         let cover = 1.0 - self.open[at];
         Some(Over {
@@ -250,14 +278,17 @@ impl Drawing {
         })
     }
 
-    /// Draws a piece of a ribbon over those columns of its major axis.
+    /// Draws the piece of a ribbon that has this number.
     #[inline(always)]
-    pub(super) fn draw<L: Lanes>(&mut self, piece: &Piece, columns: Range<usize>) {
-        let number = self.pieces.len() as f32;
-        self.pieces.push(*piece);
-        match piece.line.major {
-            0 => self.draw_across::<L>(piece, number, columns),
-            _ => self.draw_up::<L>(piece, number, columns),
+    pub(super) fn draw<L: Lanes>(&mut self, laid: &Laid, number: f32) {
+        let from = laid.rows.start.max(self.rows.start);
+        let rows = from..laid.rows.end.min(self.rows.end);
+        if rows.is_empty() {
+            return;
+        }
+        match laid.piece.line.major {
+            0 => self.draw_across::<L>(&laid.piece, number, laid.columns.clone(), rows),
+            _ => self.draw_up::<L>(&laid.piece, number, rows),
         }
     }
 
@@ -265,11 +296,11 @@ impl Drawing {
     #[inline(always)]
     fn draw_up<L: Lanes>(&mut self, piece: &Piece, number: f32, rows: Range<usize>) {
         let line = &piece.line;
-        let across = line.reach() / line.cosine;
+        let across = line.across();
         let edge = self.size[0] as f32;
         let hard = 1.0 / line.soft;
         let [reach, cosine] = [line.reach() * hard, line.cosine * hard].map(L::splat);
-        for row in rows.start.max(self.rows.start)..rows.end.min(self.rows.end) {
+        for row in rows {
             let (t, middle) = line.at(row as f32);
             let fade = |[rate, at]: [f32; 2]| at + rate * row as f32;
             let fade = fade(line.fades[0]).min(fade(line.fades[1])).clamp(0.0, 1.0);
@@ -290,14 +321,15 @@ impl Drawing {
 
     /// A piece that goes rather across than up: of each row the columns near its middle line.
     #[inline(always)]
-    fn draw_across<L: Lanes>(&mut self, piece: &Piece, number: f32, columns: Range<usize>) {
+    fn draw_across<L: Lanes>(
+        &mut self,
+        piece: &Piece,
+        number: f32,
+        columns: Range<usize>,
+        rows: Range<usize>,
+    ) {
         let line = &piece.line;
-        let across = line.reach() / line.cosine;
-        let (_, first) = line.at(columns.start as f32);
-        let (_, last) = line.at(columns.end as f32 - 1.0);
-        let edge = self.size[1] as f32;
-        let from = (first.min(last) - across + 1.0).clamp(0.0, edge) as usize;
-        let to = (first.max(last) + across + 1.0).clamp(0.0, edge) as usize;
+        let across = line.across();
         let (_, origin) = line.at(0.0);
         let (low, high) = (columns.start as f32, columns.end as f32);
         // On a flat line a row has all of its columns.
@@ -311,7 +343,7 @@ impl Drawing {
         let [starts, ends] = line.fades.map(|fade| fade.map(L::splat));
         let [z, rise] = piece.z.map(L::splat);
         let [bottom, rank] = [piece.bottom, piece.rank].map(L::splat);
-        for row in from.max(self.rows.start)..to.min(self.rows.end) {
+        for row in rows {
             let y = row as f32;
             let (x, end) = if steep {
                 let middle = (y - origin) * per_row;
@@ -385,7 +417,7 @@ mod tests {
     /// Whatever is drawn in runs of eight is what each cell by itself would say.
     #[test]
     fn runs_of_cells_agree_with_single_cells() {
-        let mut drawing = Drawing::default();
+        let (mut drawing, ribbons) = (Drawing::default(), Ribbons::default());
         let size = [37, 29];
         let mut won = 0;
         for case in 0..400u32 {
@@ -408,7 +440,17 @@ mod tests {
                 ..Piece::default()
             };
             let columns = (size[line.major] / 5)..(size[line.major] * 4 / 5);
-            drawing.draw::<Plain>(&piece, columns.clone());
+            let rows = match line.major {
+                0 => line.rows(&columns, size[1]),
+                _ => columns.clone(),
+            };
+            let laid = Laid {
+                piece,
+                columns: columns.clone(),
+                rows,
+            };
+            drawing.draw::<Plain>(&laid, 0.0);
+            drawing.pieces.push(piece);
             for y in 0..size[1] {
                 for x in 0..size[0] {
                     let cell = [x as f32, y as f32];
@@ -416,7 +458,7 @@ mod tests {
                     let cover = line.reach() - (cell[1 - line.major] - middle).abs() * line.cosine;
                     let inside = columns.contains(&[x, y][line.major]) && cover > 1e-4;
                     let outside = !columns.contains(&[x, y][line.major]) || cover < -1e-4;
-                    let drawn = drawing.over(x, y).is_some();
+                    let drawn = drawing.over(&ribbons, x, y).is_some();
                     assert!(drawn || !inside, "case {case}: {x} {y} is not drawn");
                     assert!(!drawn || !outside, "case {case}: {x} {y} is drawn");
                     won += usize::from(drawn);
