@@ -10,7 +10,9 @@ use maulstick_types::values::{BrushName, Share};
 
 use super::gesture::{Gesture, Moment, swell};
 use super::marks::stroke;
-use super::{BRUSH, Board, DEPTH_SHARE, GAP_MM, Panel, Sheet, library_brush, mixture_of};
+use super::{
+    BRUSH, Board, DEPTH_SHARE, GAP_MM, Panel, Sheet, library_brush, mixture_of, stroking,
+};
 use crate::performance::refused;
 
 /// Size of a panel, mm.
@@ -87,18 +89,32 @@ pub fn effects(
 ) -> Result<Picture, UserError> {
     let [across, up] = PANEL_MM;
     let columns = 2;
-    let rows = EFFECTS.len().div_ceil(columns);
+    let stroking = match board.model {
+        "dab" => &stroking::PANELS[..],
+        _ => &[],
+    };
+    let panels = EFFECTS.len() + stroking.len();
+    let rows = panels.div_ceil(columns);
     let width = GAP_MM + columns as f64 * (across + GAP_MM);
     let height = GAP_MM + rows as f64 * (WORDS_MM + up + GAP_MM);
     let mut sheet = Sheet::new([width, height], board.cell_mm)?;
-    for (place, effect) in EFFECTS.iter().enumerate() {
-        let x = GAP_MM + (place % columns) as f64 * (across + GAP_MM);
-        let y = GAP_MM + (place / columns) as f64 * (WORDS_MM + up + GAP_MM);
-        sheet.write(effect.name, [x, y + 5.0], 5.5);
-        sheet.write(effect.words, [x, y + 10.0], WORDS_SIZE_MM);
+    let mut done = 0;
+    let mut put = |name: &str, words: &str, picture: &Picture| {
+        let x = GAP_MM + (done % columns) as f64 * (across + GAP_MM);
+        let y = GAP_MM + (done / columns) as f64 * (WORDS_MM + up + GAP_MM);
+        sheet.write(name, [x, y + 5.0], 5.5);
+        sheet.write(words, [x, y + 10.0], WORDS_SIZE_MM);
+        sheet.paste(picture, [x, y + WORDS_MM]);
+        done += 1;
+        told(done, panels);
+    };
+    for effect in &EFFECTS {
         let panel = (effect.paint)(library.clone(), board)?;
-        sheet.paste(&panel.picture(), [x, y + WORDS_MM]);
-        told(place + 1, EFFECTS.len());
+        put(effect.name, effect.words, &panel.picture());
+    }
+    for (words, way_mm) in stroking {
+        let picture = stroking::panel(PANEL_MM, *way_mm, board.cell_mm)?;
+        put("stroking", words, &picture);
     }
     Ok(sheet.page.done())
 }

@@ -7,12 +7,14 @@
 //! | [`marks`] | the marks of a brush |
 //! | [`one_stroke`] | the six marks of a double-loaded one |
 //! | [`softening`] | what a blender does between two wet colours |
+//! | `stroking` | dAb's stroking algorithms |
 
 pub mod effects;
 pub mod gesture;
 pub mod marks;
 pub mod one_stroke;
 pub mod softening;
+mod stroking;
 #[cfg(test)]
 mod tests;
 

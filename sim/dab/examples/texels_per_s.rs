@@ -2,16 +2,15 @@
 //! `impasto` on fine cells, on the number of threads that is given, one and two in turn if none is; one by its time of the
 //! processor, more by the clock: `cargo run --release -p maulstick-dab --example texels_per_s [THREADS [PART OF A NAME]]`.
 
-mod scene;
+use std::time::Instant;
 
-use maulstick_brush::HeadPose;
+use maulstick_brush::{BrushFile, HeadPose};
 use maulstick_dab::Dab;
 use maulstick_dab::stroke::Stroker;
 use maulstick_impasto::Impasto;
 use maulstick_model::interface::{PaintModel, StepReport};
-use maulstick_num::fork_join::with_threads;
-
-use crate::scene::Bench;
+use maulstick_model::trial::Trial;
+use maulstick_num::fork_join::{threads, with_threads};
 
 /// Cells either way.
 const SIDE: u32 = 1024;
@@ -20,12 +19,20 @@ const FILM: f32 = 40_000.0;
 /// Rounds, of which the first warms up.
 const ROUNDS: usize = 12;
 
+/// A round brush of 10 mm with so many strips.
+fn trial(strips: usize, cell_m: f64) -> Trial {
+    let mut file = BrushFile::library("round").expect("a brush of the library");
+    file.strips.count = strips;
+    let file = file.scaled_to(10.0).expect("a size of it");
+    Trial::new(file, SIDE, cell_m).expect("a surface")
+}
+
 /// Heads along a path: cells from one to the next, and by how much it turns on that way, rad.
-fn heads(bench: &Bench, (way, turn): (f64, f64)) -> Vec<HeadPose> {
+fn heads(trial: &Trial, (way, turn): (f64, f64)) -> Vec<HeadPose> {
     let (mut at, mut direction) = ([150.0, 300.0], 0.0f64);
     let mut poses = Vec::new();
     while poses.len() < 200 && at[0] > 60.0 && at[0] < f64::from(SIDE) - 120.0 {
-        poses.push(bench.pose(at, 0.0));
+        poses.push(trial.pose(at, 0.0));
         let (sine, cosine) = maulstick_num::sin_cos(direction);
         at = [at[0] + way * cosine, at[1] + way * sine];
         direction += turn;
@@ -33,20 +40,29 @@ fn heads(bench: &Bench, (way, turn): (f64, f64)) -> Vec<HeadPose> {
     poses
 }
 
-/// A stroke over wet paint.
-fn stroke(
-    bench: &mut Bench,
-    model: &mut dyn PaintModel,
-    poses: &[HeadPose],
-    margin: i64,
-) -> (StepReport, f64) {
-    bench.window.plane_mut(0).fill(FILM);
-    bench.window.plane_mut(1).fill(0.0);
-    bench.stroke(model, poses, margin)
+/// Time of the processor that this thread has had, s, as Linux counts it; by the clock elsewhere.
+fn processor_time(since: Instant) -> f64 {
+    let counted = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let nanoseconds = counted.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
+    nanoseconds.map_or_else(|| since.elapsed().as_secs_f64(), |counted| 1e-9 * counted)
+}
+
+/// A stroke over wet paint, and the seconds it took, of the processor if it is one thread's.
+fn stroke(trial: &mut Trial, model: &mut dyn PaintModel, poses: &[HeadPose]) -> (StepReport, f64) {
+    trial.window.plane_mut(0).fill(FILM);
+    trial.window.plane_mut(1).fill(0.0);
+    let begun = Instant::now();
+    let had = processor_time(begun);
+    let sum = trial.stroke(model, poses, 1);
+    let took = match threads() {
+        1 => processor_time(begun) - had,
+        _ => begun.elapsed().as_secs_f64(),
+    };
+    (sum, took)
 }
 
 fn texels(only: &str) {
-    let mut bench = Bench::new("round", 96, (SIDE, 2.5e-4));
+    let mut trial = trial(96, 2.5e-4);
     for (name, stroker) in [
         ("faster", Stroker::Faster),
         ("better", Stroker::Better),
@@ -57,10 +73,10 @@ fn texels(only: &str) {
             ("oblique", (20.0, 1e-9)),
             ("curved", (3.0, 0.03)),
         ] {
-            let mut poses = heads(&bench, way);
+            let mut poses = heads(&trial, way);
             if path == "oblique" {
                 let place = |i: usize| [150.0 + 18.5 * i as f64, 300.0 + 7.6 * i as f64];
-                poses = (0..40).map(|i| bench.pose(place(i), 0.0)).collect();
+                poses = (0..40).map(|i| trial.pose(place(i), 0.0)).collect();
             }
             if !format!("{name}.{path}").contains(only) {
                 continue;
@@ -69,14 +85,14 @@ fn texels(only: &str) {
             let (mut cells, mut texels, mut seconds) = (0, 0, 0.0);
             for round in 0..ROUNDS {
                 let before = model.texels();
-                let (sum, took) = stroke(&mut bench, &mut model, &poses, way.0.ceil() as i64);
+                let (sum, took) = stroke(&mut trial, &mut model, &poses);
                 if round > 0 {
                     cells += sum.footprint_cells;
                     texels += model.texels() - before;
                     seconds += took;
                 }
             }
-            let [texels, touched] = [texels, cells].map(|count: u64| 1e-6 * count as f64 / seconds);
+            let [texels, touched] = [texels, cells].map(|count| 1e-6 * count as f64 / seconds);
             println!("texels_per_s.{name}.{path}: {texels:.1} million, touched {touched:.1}");
         }
     }
@@ -84,14 +100,14 @@ fn texels(only: &str) {
 
 /// Time of steps of a rig on cells of .125 mm, µs, in turns.
 fn models() {
-    let mut bench = Bench::new("round", 384, (SIDE, 1.25e-4));
-    let step = f64::from(bench.traits.step_cells);
-    let poses = heads(&bench, (step, 0.01));
+    let mut trial = trial(384, 1.25e-4);
+    let step = f64::from(trial.traits.step_cells);
+    let poses = heads(&trial, (step, 0.01));
     let mut models: [Box<dyn PaintModel>; 2] = [Box::<Dab>::default(), Box::<Impasto>::default()];
     let (mut took, mut cells) = ([0.0; 2], [0; 2]);
     for round in 0..ROUNDS {
         for (i, model) in models.iter_mut().enumerate() {
-            let (sum, seconds) = stroke(&mut bench, model.as_mut(), &poses, 2);
+            let (sum, seconds) = stroke(&mut trial, model.as_mut(), &poses);
             if round > 0 {
                 took[i] += seconds;
                 cells[i] += sum.footprint_cells;

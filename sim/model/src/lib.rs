@@ -12,6 +12,7 @@
 //! | [`footprint`] | the cells that a head touches in a step, and how deep |
 //! | [`transfer`] | how much goes between brush and canvas along a way |
 //! | [`modes`] | the sampler and the vacuum cleaner |
+//! | [`trial`] | a brush on a bare surface, to measure a model by itself |
 //!
 //! A full round brush and its load, as a model finds it:
 //!
@@ -38,4 +39,5 @@ pub mod footprint;
 pub mod interface;
 pub mod modes;
 pub mod path;
+pub mod trial;
 pub mod transfer;

@@ -4,30 +4,17 @@
 
 use std::time::Instant;
 
-use maulstick_brush::{BrushFile, Head, HeadPose};
-use maulstick_canvas::relief::Relief;
-use maulstick_canvas::store::TileStore;
-use maulstick_canvas::window::Window;
+use maulstick_brush::{BrushError, BrushFile, HeadPose};
 use maulstick_dab::Dab;
 use maulstick_dab::stroke::Stroker;
-use maulstick_model::brush::head::{Waypoint, low_bounds};
-use maulstick_model::brush::load::{BrushLoad, Half};
-use maulstick_model::brush::scale::Scale;
-use maulstick_model::brush::traits::BrushTraits;
-use maulstick_model::interface::{Handling, PaintModel, Step, StepReport, Sweep};
+use maulstick_model::trial::Trial;
 use maulstick_rig::UserError;
-use maulstick_types::Pose;
-use maulstick_types::brush::Solve;
 
 use crate::report::Report;
 
-/// Cells either way.
-const SIDE: u32 = 1024;
-const SCALE: Scale = Scale {
-    cell_m: 2.5e-4,
-    zoom: 1.0,
-};
-/// Width of the brush, mm, and its strips: a footprint about 40 cells wide.
+/// Cells either way, and their side, m.
+const CELLS: (u32, f64) = (1024, 2.5e-4);
+/// Width of the brush, mm, and its strips: a footprint about 60 cells wide.
 const BRUSH: (f64, usize) = (10.0, 96);
 /// Wet paint on the canvas, quanta.
 const FILM: f32 = 40_000.0;
@@ -44,13 +31,17 @@ const STROKERS: [(&str, Stroker); 3] = [
 
 /// Measures and reports.
 pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
-    let fault = |error: maulstick_brush::BrushError| UserError::failure(error.to_string());
+    let fault = |error: BrushError| UserError::failure(error.to_string());
     let mut file = BrushFile::library("round").map_err(fault)?;
     file.strips.count = BRUSH.1;
     let file = file.scaled_to(BRUSH.0).map_err(fault)?;
+    let trial = Trial::new(file, CELLS.0, CELLS.1);
+    let mut trial = trial.ok_or_else(|| UserError::failure("a surface cannot be leased"))?;
     for (stroker, kind) in STROKERS {
         for (path, way, turn) in PATHS {
-            let (texels, touched) = rates(&file, kind, (way, turn))?.into_iter().unzip();
+            let poses = heads(&trial, (way, turn));
+            let rates = rates(&mut trial, Dab::stroking(kind), &poses);
+            let (texels, touched) = rates.into_iter().unzip();
             report.median(
                 &format!("texels_per_s.{stroker}.{path}"),
                 "texels/s",
@@ -67,30 +58,11 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
 }
 
 /// The heads along a path.
-fn heads(file: &BrushFile, head: &Head, (way, turn): (f64, f64)) -> Vec<HeadPose> {
+fn heads(trial: &Trial, (way, turn): (f64, f64)) -> Vec<HeadPose> {
     let (mut at, mut direction) = ([150.0, 300.0], 0.0f64);
     let mut poses = Vec::new();
-    while poses.len() < 200 && at[0] > 60.0 && at[0] < f64::from(SIDE) - 60.0 {
-        let solve = Solve {
-            event_ns: 0,
-            stroke: 1,
-            surface: 0,
-            flags: 0,
-            pose: Pose {
-                position_m: [
-                    at[0] * SCALE.cell_m,
-                    at[1] * SCALE.cell_m,
-                    0.45 * file.length_m(),
-                ],
-                ..Pose::IDENTITY
-            },
-            zoom: 1.0,
-            angles_rad: vec![[0.3, 0.3]; file.spines.all_joints()],
-            contacts: Vec::new(),
-        };
-        let mut pose = HeadPose::default();
-        Waypoint::of(&solve, SCALE, 1.0).pose(head, SCALE, &mut pose);
-        poses.push(pose);
+    while poses.len() < 200 && at[0] > 60.0 && at[0] < f64::from(CELLS.0) - 60.0 {
+        poses.push(trial.pose(at, 0.0));
         let (sine, cosine) = maulstick_num::sin_cos(direction);
         at = [at[0] + way * cosine, at[1] + way * sine];
         direction += turn;
@@ -99,65 +71,16 @@ fn heads(file: &BrushFile, head: &Head, (way, turn): (f64, f64)) -> Vec<HeadPose
 }
 
 /// Texels of the footprints and cells that were touched, a second, of each round.
-fn rates(file: &BrushFile, kind: Stroker, path: (f64, f64)) -> Result<Vec<(f64, f64)>, UserError> {
-    let head = Head::of(file);
-    let traits = BrushTraits::of(file, SCALE.cell_m, SCALE.zoom);
-    let poses = heads(file, &head, path);
-    let mut store = TileStore::new([SIDE; 2]);
-    let leased = store
-        .around([0; 2], [i64::from(SIDE); 2])
-        .and_then(|all| Window::open(&mut store, all, &Relief::flat(SCALE.cell_m)));
-    let mut window = leased.ok_or_else(|| UserError::failure("a surface cannot be leased"))?;
-    let mut model = Dab::stroking(kind);
-    let mut rates = Vec::new();
-    for round in 0..ROUNDS {
-        window.plane_mut(0).fill(FILM);
-        window.plane_mut(1).fill(0.0);
-        let mut load = BrushLoad::clean(head.strips());
-        load.fill(
-            &head,
-            &traits,
-            &[(1, 1.0)],
-            None,
-            (Half::Both, round as u64),
-        );
-        let mut sum = StepReport::default();
-        let before = model.texels();
-        let begun = Instant::now();
-        for place in 1..poses.len() {
-            let (from, to) = (&poses[place - 1], &poses[place]);
-            let Some(bounds) = low_bounds(&head, to, &traits, 8.0) else {
-                continue;
-            };
-            // The way from state to state is longer than a step of a rig.
-            let margin = path.0.ceil() as i64;
-            let bounds = (
-                bounds.0.map(|at| at - margin),
-                bounds.1.map(|at| at + margin),
-            );
-            sum.add(&model.step(&mut Step {
-                window: &mut window,
-                head: &head,
-                sweep: Sweep {
-                    before: place.checked_sub(2).map(|before| &poses[before]),
-                    from,
-                    to,
-                },
-                bounds,
-                load: &mut load,
-                traits,
-                handling: Handling::default(),
-                stain: 0.0,
-                lasting: false,
-                thinner: None,
-            }));
-        }
+fn rates(trial: &mut Trial, mut model: Dab, poses: &[HeadPose]) -> Vec<(f64, f64)> {
+    let mut rate = |_| {
+        trial.window.plane_mut(0).fill(FILM);
+        trial.window.plane_mut(1).fill(0.0);
+        let (before, begun) = (model.texels(), Instant::now());
+        let sum = trial.stroke(&mut model, poses, 1);
         let seconds = begun.elapsed().as_secs_f64();
         let counts = [model.texels() - before, sum.footprint_cells];
         let [texels, touched] = counts.map(|count| count as f64 / seconds);
-        if round > 0 {
-            rates.push((texels, touched));
-        }
-    }
-    Ok(rates)
+        (texels, touched)
+    };
+    (0..ROUNDS).map(&mut rate).skip(1).collect()
 }

@@ -205,8 +205,8 @@ fn who(node: &str, state: &RigState) -> Option<(String, Option<&'static str>)> {
 fn decided(what: &str, notifications: &mut Notifications) {
     if what == LIGHTER {
         notifications.note(tr!(
-            "Painting falls behind on this machine. The light paint model dAb is faster: `maulstick convert dab` converts \
-             this painting, and that can be undone."
+            "Painting falls behind on this machine. The light paint model dAb is faster: Paint model in the panel Canvas \
+             converts this painting, and that can be undone."
         ));
     }
     if let Some(why) = what.strip_prefix(FALL) {

@@ -1,4 +1,4 @@
-//! Canvas panel: size, tooth, ground, sizing and placement.
+//! Canvas panel: size, tooth, ground, sizing, paint model and placement.
 //!
 //! | module | holds |
 //! | --- | --- |
@@ -12,9 +12,10 @@ use eframe::egui::{CollapsingHeader, DragValue, Key, TextEdit, Ui};
 use maulstick_appearance::ground::GROUNDS;
 use maulstick_canvas::assets::{IMAGE, SPECTRUM};
 use maulstick_canvas::relief::tooth;
-use maulstick_types::edits::{Ground, Piles, Place, Size, Tooth};
+use maulstick_painting::models::model_names;
+use maulstick_types::edits::{Convert, Ground, Piles, Place, Size, Tooth};
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
-use maulstick_types::values::{MaterialName, StainThickness};
+use maulstick_types::values::{MaterialName, ModelName, StainThickness};
 
 use crate::input::keys::Action;
 use crate::panels::Panel;
@@ -96,6 +97,7 @@ impl Panel for CanvasPanel {
             let stain = StainThickness::in_unit(um);
             ask(work, stain.map(|stain| Size { stain, surface }));
         }
+        model(ui, work, &canvas);
         ui.separator();
         self.place(ui, work, &canvas);
         ui.separator();
@@ -130,6 +132,18 @@ fn size(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
             work.requests.act(Action::New);
         }
     });
+}
+
+/// How its paint behaves; another choice converts what is painted.
+fn model(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
+    let chosen = choice(ui, tr!("Paint model"), &canvas.model, model_names());
+    if let Some(model) = chosen {
+        let convert = |model| Convert {
+            model,
+            surface: CANVAS,
+        };
+        ask(work, ModelName::new(&model).map(convert));
+    }
 }
 
 /// Display name of an entry of the scene.

@@ -28,6 +28,19 @@ fn set(harness: &mut Harness<'static, Bench<CanvasPanel>>, role: Role, label: &s
 }
 
 #[test]
+fn another_paint_model_is_asked_for() {
+    let mut harness = panel();
+    choose(&mut harness, "Paint model", "dab");
+    let expected = [Command::from(Convert {
+        model: ModelName::new("dab").expect("valid"),
+        surface: CANVAS,
+    })];
+    assert_eq!(harness.state_mut().asked(), expected);
+    choose(&mut harness, "Paint model", "stokes");
+    assert_ne!(harness.state_mut().asked(), expected, "a fault would pass");
+}
+
+#[test]
 fn tooth_ground_and_sizing_are_asked_for() {
     let mut harness = panel();
     let seed = harness.state().rig.canvas().expect("one").tooth_seed;
