@@ -14,7 +14,7 @@ use crate::brush::traits::BrushTraits;
 use crate::interface::{Handling, PaintModel, Step, StepReport, Sweep};
 
 /// Height of the brush over the surface, and how its joints are bent, of its length and rad.
-const PRESSED: (f64, f64) = (0.45, 0.3);
+const PRESSED: (f64, f32) = (0.45, 0.3);
 /// Wet paint on the surface lies below this, cells.
 const WET: f32 = 8.0;
 
