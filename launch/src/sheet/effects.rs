@@ -10,9 +10,7 @@ use maulstick_types::values::{BrushName, Share};
 
 use super::gesture::{Gesture, Moment, swell};
 use super::marks::stroke;
-use super::{
-    BRUSH, Board, DEPTH_SHARE, GAP_MM, Panel, Sheet, library_brush, mixture_of, stroking,
-};
+use super::{BRUSH, Board, DEPTH_SHARE, GAP_MM, Panel, Sheet, library_brush, mixture_of, stroking};
 use crate::performance::refused;
 
 /// Size of a panel, mm.

@@ -15,8 +15,14 @@ use super::{library_brush, pixels};
 const BRUSH: (f64, usize) = (9.0, 256);
 /// What is done, and the way from head to head, mm.
 pub(super) const PANELS: [(&str, f64); 2] = [
-    ("fast hand: left one footprint along the way, right each", 6.0),
-    ("slow hand: left one footprint along the way, right each", 1.5),
+    (
+        "fast hand: left one footprint along the way, right each",
+        6.0,
+    ),
+    (
+        "slow hand: left one footprint along the way, right each",
+        1.5,
+    ),
 ];
 /// Both algorithms, in the order of the panel: from left to right.
 const STROKERS: [Stroker; 2] = [Stroker::Faster, Stroker::Better];
@@ -33,11 +39,7 @@ fn at(t: f64) -> ([f64; 2], f64) {
 ///
 /// # Errors
 /// A [`UserError`] where the brush is refused.
-pub(super) fn panel(
-    size_mm: [f64; 2],
-    way_mm: f64,
-    cell_mm: f64,
-) -> Result<Picture, UserError> {
+pub(super) fn panel(size_mm: [f64; 2], way_mm: f64, cell_mm: f64) -> Result<Picture, UserError> {
     let [width, height] = size_mm.map(|mm| pixels(mm, cell_mm));
     let half = width / 2;
     let mut rgb = vec![0; 3 * width * height];

@@ -39,5 +39,5 @@ pub mod footprint;
 pub mod interface;
 pub mod modes;
 pub mod path;
-pub mod trial;
 pub mod transfer;
+pub mod trial;
