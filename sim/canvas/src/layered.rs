@@ -39,6 +39,7 @@ pub const fn place_of(shape: OwnShape) -> Option<(usize, usize)> {
 
 /// Quanta of a cell of a plane; 0 where they are no count.
 #[must_use]
+#[inline]
 pub fn value(bytes: &[u8], cell: usize) -> u32 {
     let bytes = bytes[4 * cell..].first_chunk().copied();
     f32::from_le_bytes(bytes.unwrap_or_default()) as u32

@@ -1,7 +1,8 @@
 //! One step of Stokes Paint.
 
-use maulstick_canvas::quantum::{CELL_MAX, QUANTUM_M};
-use maulstick_canvas::window::Area;
+use maulstick_canvas::layered::place_of;
+use maulstick_canvas::quantum::{CELL_MAX, QUANTUM_M, SLOTS};
+use maulstick_canvas::window::{Area, Window};
 use maulstick_impasto::stages::bristle_flow::flow;
 use maulstick_impasto::stages::exchange::Exchange;
 use maulstick_impasto::stages::levelling::HALO;
@@ -51,7 +52,8 @@ impl PaintModel for StokesPaint {
             Transfer::Vacuum => {
                 let area = self.footprint.around;
                 let layers = Layers::of(step.window, cell_m(step));
-                let mut voxels = Voxels::read(step.window, area, layers, &slots_of(step));
+                let slots = slots_of(step, area);
+                let mut voxels = Voxels::read(step.window, area, layers, &slots);
                 report.lifted = vacuum(&self.footprint, step).into();
                 voxels.follow(step.window);
                 voxels.write(step.window);
@@ -69,7 +71,8 @@ impl PaintModel for StokesPaint {
 
     fn rest(&mut self, rest: &mut Rest<'_>) {
         let layers = Layers::of(rest.window, rest.cell_m);
-        let slots: Vec<usize> = rest.window.planes().map(|(slot, _)| slot).collect();
+        let lies = slots_in(rest.window, rest.area);
+        let slots: Vec<usize> = (0..SLOTS).filter(|slot| lies[*slot]).collect();
         let mut voxels = Voxels::read(rest.window, rest.area, layers, &slots);
         level(rest);
         voxels.follow(rest.window);
@@ -83,7 +86,7 @@ impl StokesPaint {
         let cell_m = cell_m(step);
         let layers = Layers::of(step.window, cell_m);
         let area = around(footprint, step, layers.side as i64);
-        let slots = slots_of(step);
+        let slots = slots_of(step, area);
         let mut voxels = Voxels::read(step.window, area, layers, &slots);
         let thickest = footprint
             .wet
@@ -128,9 +131,31 @@ fn around(footprint: &Footprint, step: &Step<'_>, side: i64) -> Area {
     step.window.area(low, high)
 }
 
-/// Slots of all paints on brush and canvas.
-fn slots_of(step: &Step<'_>) -> Vec<usize> {
-    let on_brush = step.load.counts();
-    let has = |slot: &usize| on_brush[*slot] > 0 || step.window.has(*slot);
-    (0..on_brush.len()).filter(has).collect()
+/// Slots of the paints on the brush and on an area of the canvas.
+fn slots_of(step: &Step<'_>, area: Area) -> Vec<usize> {
+    let (on_brush, lies) = (step.load.counts(), slots_in(step.window, area));
+    let has = |slot: &usize| on_brush[*slot] > 0 || lies[*slot];
+    (0..SLOTS).filter(has).collect()
+}
+
+/// Whether each paint is on an area, or layers of it that its counts no longer hold.
+fn slots_in(window: &Window, area: Area) -> [bool; SLOTS] {
+    let mut lies = [false; SLOTS];
+    for (slot, plane) in window.planes() {
+        let mut rows = area.rows(window.width());
+        lies[slot] = rows.any(|row| plane[row].iter().any(|count| *count > 0.0));
+    }
+    for (shape, bytes) in window.own_planes() {
+        if let Some((slot, _)) = place_of(shape)
+            && !lies[slot]
+        {
+            let mut rows = area.rows(window.width());
+            lies[slot] = rows.any(|row| {
+                bytes[4 * row.start..4 * row.end]
+                    .iter()
+                    .any(|byte| *byte > 0)
+            });
+        }
+    }
+    lies
 }

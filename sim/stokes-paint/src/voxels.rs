@@ -28,6 +28,8 @@ pub struct Voxels {
     first: usize,
     /// The grid's lowest layer with room in each column.
     lowest: Vec<u16>,
+    /// The voxel of each column in that layer.
+    bottoms: Vec<usize>,
     /// Height of what each column lies on, in cells of the grid.
     floors: Vec<f32>,
 }
@@ -60,8 +62,13 @@ impl Voxels {
         let own = columns.own(slots);
         let depth = columns.depth(&own) + AIR.max(layers.side + 1);
         let grid = Grid::walled([area.size[0], area.size[1], depth]);
+        let bottom = |(column, lowest): (usize, &u16)| {
+            let [x, y] = [column % area.size[0], column / area.size[0]].map(|at| at as isize);
+            grid.at([x, y, *lowest as isize])
+        };
+        let bottoms: Vec<usize> = lowest.iter().enumerate().map(bottom).collect();
         let mut volume = Volume::new(&grid, layers.capacity, slots.len());
-        columns.fill(slots, &own, &mut volume);
+        columns.fill(slots, (&own, &bottoms), &mut volume);
         let floors: Vec<f32> = floors.iter().map(|floor| floor - first as f32).collect();
         Self {
             area,
@@ -70,6 +77,7 @@ impl Voxels {
             layers,
             first,
             lowest,
+            bottoms,
             floors,
         }
     }
@@ -179,10 +187,7 @@ impl Voxels {
     /// Place of a column's lowest voxel with room.
     #[must_use]
     pub fn bottom(&self, column: usize) -> usize {
-        let grid = &self.volume.grid;
-        let width = self.area.size[0];
-        let [x, y] = [column % width, column / width].map(|at| at as isize);
-        grid.at([x, y, self.lowest[column] as isize])
+        self.bottoms[column]
     }
 
     /// Highest voxel of a column that is at least half full, or its lowest: specks in the air are not its top.
@@ -369,40 +374,38 @@ impl Columns<'_> {
     }
 
     /// Fills the voxels.
-    fn fill(&self, slots: &[usize], own: &[Own<'_>], volume: &mut Volume) {
+    fn fill(&self, slots: &[usize], (own, bottoms): (&[Own<'_>], &[usize]), volume: &mut Volume) {
         let grid = volume.grid;
-        let (width, up) = (grid.cells[0], grid.stride(2));
+        let up = grid.stride(2);
         for (paint, slot) in slots.iter().enumerate() {
             let plane = self.window.plane(*slot);
+            let own: Vec<&Own<'_>> = own.iter().filter(|(of, ..)| *of == paint).collect();
             let counts = &mut volume.paints[paint];
-            for (column, cell) in self.cells.iter().enumerate() {
-                let [x, y] = [column % width, column / width].map(|at| at as isize);
-                let lowest = usize::from(self.lowest[column]);
-                let bottom = grid.at([x, y, lowest as isize]);
+            for ((cell, lowest), bottom) in self.cells.iter().zip(self.lowest).zip(bottoms) {
+                let lowest = usize::from(*lowest);
                 let mut left = plane.map_or(0, |plane| plane[*cell] as u32);
                 // From the lowest on: what counts no longer hold was taken from the top.
-                for (_, layer, bytes) in own.iter().filter(|(of, ..)| *of == paint) {
+                for (_, layer, bytes) in &own {
                     if *layer > lowest && *layer < grid.cells[2] {
                         let lies = value(bytes, *cell).min(left);
                         counts[bottom + (layer - lowest) * up] = lies;
                         left -= lies;
                     }
                 }
-                counts[bottom] = left;
+                counts[*bottom] = left;
             }
         }
-        self.stack(volume, width);
+        self.stack(bottoms, volume);
     }
 
     /// Lets voxels that are too full give what is too much to the one above, as a mixture.
-    fn stack(&self, volume: &mut Volume, width: usize) {
+    fn stack(&self, bottoms: &[usize], volume: &mut Volume) {
         let grid = volume.grid;
         let (up, capacity) = (grid.stride(2), self.layers.capacity);
         let most = (OVERFULL * capacity as f32) as u32;
-        for column in 0..self.cells.len() {
-            let [x, y] = [column % width, column / width].map(|at| at as isize);
-            for layer in usize::from(self.lowest[column])..grid.cells[2] - 1 {
-                let voxel = grid.at([x, y, layer as isize]);
+        for (bottom, lowest) in bottoms.iter().zip(self.lowest) {
+            for layer in 0..grid.cells[2] - 1 - usize::from(*lowest) {
+                let voxel = bottom + layer * up;
                 let total: u32 = volume.paints.iter().map(|paint| paint[voxel]).sum();
                 if total <= most {
                     continue;
