@@ -49,12 +49,11 @@ pub fn write_glb(
     let mut to = vertices.to;
     to.write_all(&vertices.walls)?;
     let walls = solid.parts.vertices as u32;
-    let triangles = Triangles { walls, to };
-    let mut triangles = solid.make(1.0, false, &mut steps, triangles)?;
+    let mut triangles = solid.make(1.0, false, &mut steps, Triangles(to))?;
     for vertex in walls..walls + 3 * solid.parts.walls as u32 {
-        triangles.to.write_all(&vertex.to_le_bytes())?;
+        triangles.0.write_all(&vertex.to_le_bytes())?;
     }
-    triangles.to.flush()?;
+    triangles.0.flush()?;
     let size = solid.told();
     check_whole(painting)?;
     Ok(size)
@@ -201,16 +200,12 @@ impl<W: Write> Facets for Vertices<W> {
 }
 
 /// Writes the numbers of the vertices of facets.
-struct Triangles<W: Write> {
-    /// Number of the first vertex of walls and bottom.
-    walls: u32,
-    to: BufWriter<W>,
-}
+struct Triangles<W: Write>(BufWriter<W>);
 
 impl<W: Write> Facets for Triangles<W> {
     fn surface(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError> {
         for corner in corners {
-            self.to.write_all(&corner.id.to_le_bytes())?;
+            self.0.write_all(&corner.id.to_le_bytes())?;
         }
         Ok(())
     }

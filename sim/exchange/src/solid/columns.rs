@@ -22,8 +22,8 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    /// Those of a band.
-    pub(super) fn of(banded: &Banded<'_>, band: usize) -> Self {
+    /// Those of a band, without pieces and gaps that are thinner than `thin_m`, m.
+    pub(super) fn of(banded: &Banded<'_>, band: usize, thin_m: f64) -> Self {
         let mut layered = BTreeMap::new();
         let width = banded.cells()[0];
         for (id, tile) in banded.tiles(band) {
@@ -40,7 +40,8 @@ impl Columns {
             for (cell, ends) in tile_columns(&banded.bare().relief, id, tile, banded.cell_m()) {
                 let (x, y) = (cell % TILE, cell / TILE);
                 if x < across && y < up && !hidden.contains(&cell) {
-                    layered.insert(y * width + id.x as usize * TILE + x, ends);
+                    let cell = y * width + id.x as usize * TILE + x;
+                    layered.insert(cell, without_thin(&ends, thin_m));
                 }
             }
         }
@@ -56,6 +57,21 @@ impl Columns {
             .get(&cell)
             .map_or_else(|| slice::from_ref(&self.heights[cell]), Vec::as_slice)
     }
+}
+
+/// A column without thin pieces and gaps: what lies on a thin gap lies on what is below it.
+fn without_thin(ends: &[f32], thin_m: f64) -> Vec<f32> {
+    let is_thin = |low: f32, high: f32| f64::from(high) - f64::from(low) < thin_m;
+    let mut kept = vec![ends[0]];
+    for piece in ends[1..].chunks_exact(2) {
+        let place = kept.len() - 1;
+        if is_thin(kept[place], piece[0]) {
+            kept[place] = kept[place].max(piece[1]);
+        } else if !is_thin(piece[0], piece[1]) {
+            kept.extend_from_slice(piece);
+        }
+    }
+    kept
 }
 
 fn has_layers(tile: &Tile) -> bool {

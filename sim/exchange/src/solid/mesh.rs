@@ -4,7 +4,7 @@
 //! bottom is a fan around its middle. Each edge has two facets that run along it in opposite directions, and all look out.
 
 use super::grid::Grid;
-use super::prism::{Corner, Point, Side, Stand, cusp, facets};
+use super::prism::{Corner, Point, Side, Stand, Take, cusp, facets};
 use super::rows::{Colour, Row};
 use super::strip::{CUSP, Strip, WALL_CUSP};
 use crate::ExchangeError;
@@ -198,20 +198,23 @@ impl<F: Facets> Mesh<F> {
         for i in 0..across {
             let [a, b] = [0, 1].map(|k| self.stand(own, i + k));
             let [d, c] = [0, 1].map(|k| self.stand(above, i + k));
-            let take = |corners| self.to.surface(corners);
+            let mut surface = Surface {
+                colour: own.row.colours.get(i).copied().unwrap_or_default(),
+                next: &mut self.next,
+                to: &mut self.to,
+            };
             let right = [
                 own.across.side(i, false),
                 upright.side(i + 1, false),
                 slanting.side(i, true),
             ];
-            facets(&[a, b, c], &right, take)?;
-            let take = |corners| self.to.surface(corners);
+            facets(&[a, b, c], &right, &mut surface)?;
             let left = [
                 slanting.side(i, false),
                 above.across.side(i, true),
                 upright.side(i, true),
             ];
-            facets(&[a, c, d], &left, take)?;
+            facets(&[a, c, d], &left, &mut surface)?;
         }
         self.wall([(above, 0), (own, 0)], upright.side(0, true))?;
         self.wall(
@@ -241,7 +244,10 @@ impl<F: Facets> Mesh<F> {
             reach: WALL_CUSP,
             is_reversed,
         };
-        let mut take = |corners: [Corner; 3]| self.to.wall(corners.map(|corner| corner.at), colour);
+        let mut take = Wall {
+            colour,
+            to: &mut self.to,
+        };
         let first = [
             side(&down[0], false),
             side(&nothing, false),
@@ -259,5 +265,45 @@ impl<F: Facets> Mesh<F> {
         let y = (self.grid.at(1, height) * self.placing.cell) as f32;
         let middle = [0.5 * self.xs[width], 0.5 * y, 0.0];
         self.to.wall([foot(&from), middle, foot(&to)], colour)
+    }
+}
+
+/// Takes facets of the surface, whose vertices are numbered.
+struct Surface<'a, F> {
+    colour: Colour,
+    next: &'a mut u32,
+    to: &'a mut F,
+}
+
+impl<F: Facets> Take for Surface<'_, F> {
+    const IS_WALL: bool = false;
+
+    fn vertex(&mut self, at: Point) -> Corner {
+        let id = *self.next;
+        self.to.vertex(at, self.colour);
+        *self.next = id.wrapping_add(1);
+        Corner { at, id }
+    }
+
+    fn facet(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError> {
+        self.to.surface(corners)
+    }
+}
+
+/// Takes facets of walls, whose vertices have no numbers.
+struct Wall<'a, F> {
+    colour: Colour,
+    to: &'a mut F,
+}
+
+impl<F: Facets> Take for Wall<'_, F> {
+    const IS_WALL: bool = true;
+
+    fn vertex(&mut self, at: Point) -> Corner {
+        Corner { at, id: 0 }
+    }
+
+    fn facet(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError> {
+        self.to.wall(corners.map(|corner| corner.at), self.colour)
     }
 }

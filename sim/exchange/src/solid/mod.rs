@@ -15,7 +15,7 @@ use maulstick_appearance::bands::Banded;
 pub(crate) use self::grid::Grid;
 pub(crate) use self::mesh::{Facets, Mesh, Placing};
 pub(crate) use self::prism::{Corner, Point};
-pub(crate) use self::rows::{Colour, rows};
+pub(crate) use self::rows::{Colour, RowSetup, rows};
 use crate::ExchangeError;
 use crate::surface::Steps;
 
@@ -25,6 +25,8 @@ pub const SOLID_TRIANGLES: u64 = 4_000_000;
 const BASES_MM: [f64; 2] = [0.01, 1000.0];
 /// Factors on heights.
 const EXAGGERATIONS: [f64; 2] = [0.0, 1000.0];
+/// Thickness below which a piece of paint over air, or the air under it, is left out, m: of the solid, and of the painting.
+const THIN_M: [f64; 2] = [1e-6, 1e-8];
 /// mm in a metre.
 const MM: f64 = 1e3;
 
@@ -143,7 +145,7 @@ impl<'a> Solid<'a> {
         };
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
         let mut mesh = Mesh::new(grid, solid.placing(MM), Parts::default());
-        rows(banded, grid, false, steps, |number, row| {
+        rows(banded, solid.rows(false), steps, |number, row| {
             let ends = |column: &Vec<f32>| [column[0], column[column.len() - 1]].map(f64::from);
             for [low, high] in row.columns.iter().map(ends) {
                 range = [range[0].min(low), range[1].max(high)];
@@ -164,10 +166,19 @@ impl<'a> Solid<'a> {
         to: F,
     ) -> Result<F, ExchangeError> {
         let mut mesh = Mesh::new(self.grid, self.placing(metre), to);
-        rows(self.banded, self.grid, is_coloured, steps, |number, row| {
+        rows(self.banded, self.rows(is_coloured), steps, |number, row| {
             mesh.row(number, row)
         })?;
         Ok(mesh.to)
+    }
+
+    fn rows(&self, is_coloured: bool) -> RowSetup {
+        let [made, painted] = THIN_M;
+        RowSetup {
+            grid: self.grid,
+            thin_m: (made / self.setup.exaggeration).max(painted),
+            is_coloured,
+        }
     }
 
     fn placing(&self, metre: f64) -> Placing {

@@ -4,6 +4,7 @@
 //! to either side. Each loop is filled with triangles. So a neighbour, which has the same lines the other way round, fits.
 
 use super::strip::Strip;
+use crate::ExchangeError;
 
 /// A place.
 pub(crate) type Point = [f32; 3];
@@ -67,29 +68,41 @@ pub(super) fn cusp(side: &Side<'_>, turn: usize, [a, b]: [&Stand<'_>; 2]) -> Cor
     }
 }
 
+/// Takes the facets within triangles of columns.
+pub(super) trait Take {
+    /// True for triangles in a vertical plane.
+    const IS_WALL: bool;
+
+    /// One more vertex.
+    fn vertex(&mut self, at: Point) -> Corner;
+
+    /// A facet, counterclockwise from outside.
+    fn facet(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError>;
+}
+
 /// Hands the facets within a triangle of columns, counterclockwise from above, to `take`; `sides` are from the first to the
 /// second and so on round.
-pub(super) fn facets<E>(
+pub(super) fn facets(
     stands: &[Stand<'_>; 3],
     sides: &[Side<'_>; 3],
-    mut take: impl FnMut([Corner; 3]) -> Result<(), E>,
-) -> Result<(), E> {
+    take: &mut impl Take,
+) -> Result<(), ExchangeError> {
     if stands.iter().all(|stand| stand.z.len() == 1) {
-        return take(stands.map(|stand| stand.corner(0)));
+        return take.facet(stands.map(|stand| stand.corner(0)));
     }
     for corners in loops(stands, sides) {
-        fill(&corners, &mut take)?;
+        fill(&corners, take)?;
     }
     Ok(())
 }
 
-/// A corner on the way round a loop, and whether it is a cusp.
-type OnLoop = (Corner, bool);
+/// A corner on the way round a loop, and the side whose cusp it is if it is one.
+type OnLoop = (Corner, Option<usize>);
 
 fn loops(stands: &[Stand<'_>; 3], sides: &[Side<'_>; 3]) -> Vec<Vec<OnLoop>> {
     let counts = stands.each_ref().map(|stand| stand.z.len());
     let firsts = [0, counts[0], counts[0] + counts[1]];
-    let mut next: Vec<(usize, Option<Corner>)> = vec![(usize::MAX, None); counts.iter().sum()];
+    let mut next: Vec<(usize, Option<OnLoop>)> = vec![(usize::MAX, None); counts.iter().sum()];
     for (from, side) in sides.iter().enumerate() {
         let to = (from + 1) % 3;
         let (strip, reversed) = (side.strip, side.is_reversed);
@@ -109,7 +122,7 @@ fn loops(stands: &[Stand<'_>; 3], sides: &[Side<'_>; 3]) -> Vec<Vec<OnLoop>> {
         }
         let [a, b] = if reversed { [to, from] } else { [from, to] };
         for (number, turn) in strip.turns.iter().enumerate() {
-            let corner = cusp(side, number, [&stands[a], &stands[b]]);
+            let corner = (cusp(side, number, [&stands[a], &stands[b]]), Some(from));
             let is_next = turn.is_second != reversed;
             let low = firsts[if is_next { to } else { from }] + turn.end;
             let is_piece = !turn.end.is_multiple_of(2);
@@ -134,8 +147,8 @@ fn loops(stands: &[Stand<'_>; 3], sides: &[Side<'_>; 3]) -> Vec<Vec<OnLoop>> {
             if to == usize::MAX {
                 break;
             }
-            corners.push((corner(end), false));
-            corners.extend(cusp.map(|corner| (corner, true)));
+            corners.push((corner(end), None));
+            corners.extend(cusp);
             end = to;
         }
         if !corners.is_empty() {
@@ -145,49 +158,44 @@ fn loops(stands: &[Stand<'_>; 3], sides: &[Side<'_>; 3]) -> Vec<Vec<OnLoop>> {
     loops
 }
 
-/// Fills a loop. From cusp to cusp it runs along upper or lower sides; each such part is filled by itself, so that no facet
-/// goes from an upper to a lower side.
-fn fill<E>(
-    corners: &[OnLoop],
-    take: &mut impl FnMut([Corner; 3]) -> Result<(), E>,
-) -> Result<(), E> {
-    let cusps: Vec<usize> = (0..corners.len())
-        .filter(|place| corners[*place].1)
-        .collect();
-    let Some(first) = cusps.first() else {
-        return fan(
-            &corners
-                .iter()
-                .map(|(corner, _)| *corner)
-                .collect::<Vec<_>>(),
-            take,
-        );
+/// Fills a loop.
+///
+/// From cusp to cusp it runs along upper or lower sides. With a cusp in each of two sides of the triangle, either part is
+/// filled by itself, so that no facet goes from an upper to a lower side. Other loops are filled around a vertex in their
+/// middle: an edge between two cusps of one side could be a neighbour's too, and four facets would share it; and in a wall,
+/// where two of the columns stand in one place, a facet of those two would have no area.
+fn fill<T: Take>(corners: &[OnLoop], take: &mut T) -> Result<(), ExchangeError> {
+    let is_cusp = |place: &usize| corners[*place].1.is_some();
+    let cusps: Vec<usize> = (0..corners.len()).filter(is_cusp).collect();
+    let round = |places: std::ops::RangeInclusive<usize>| -> Vec<Corner> {
+        let corner = |place: usize| corners[place % corners.len()].0;
+        places.map(corner).collect()
     };
-    let mut part = Vec::new();
-    for place in *first..=first + corners.len() {
-        let (corner, is_cusp) = corners[place % corners.len()];
-        part.push(corner);
-        if is_cusp {
-            fan(&part, take)?;
-            part = vec![corner];
+    match cusps[..] {
+        [] => fan(&round(0..=corners.len() - 1), take),
+        [one, other] if !T::IS_WALL && corners[one].1 != corners[other].1 => {
+            fan(&round(one..=other), take)?;
+            fan(&round(other..=one + corners.len()), take)
+        }
+        _ => {
+            let mut around = vec![take.vertex(middle(corners))];
+            around.extend(round(0..=corners.len()));
+            fan(&around, take)
         }
     }
-    fan(
-        &cusps
-            .iter()
-            .map(|place| corners[*place].0)
-            .collect::<Vec<_>>(),
-        take,
-    )
+}
+
+fn middle(corners: &[OnLoop]) -> Point {
+    [0, 1, 2].map(|axis| {
+        let along = corners.iter().map(|(corner, _)| f64::from(corner.at[axis]));
+        (along.sum::<f64>() / corners.len() as f64) as f32
+    })
 }
 
 /// Facets around the first of these corners.
-fn fan<E>(
-    corners: &[Corner],
-    take: &mut impl FnMut([Corner; 3]) -> Result<(), E>,
-) -> Result<(), E> {
+fn fan(corners: &[Corner], take: &mut impl Take) -> Result<(), ExchangeError> {
     for two in corners.get(1..).unwrap_or_default().windows(2) {
-        take([corners[0], two[0], two[1]])?;
+        take.facet([corners[0], two[0], two[1]])?;
     }
     Ok(())
 }

@@ -81,18 +81,32 @@ fn with_edges<T: Clone>(row: &[T]) -> Vec<T> {
     [&row[..1], row, &row[row.len() - 1..]].concat()
 }
 
-/// Hands the rows of vertices to `take`, each with its number, from the highest; with colours if they are asked for.
+/// What the rows of a solid are made with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RowSetup {
+    pub(crate) grid: Grid,
+    /// Pieces and gaps that are thinner are left out, m.
+    pub(crate) thin_m: f64,
+    /// True for rows with colours.
+    pub(crate) is_coloured: bool,
+}
+
+/// Hands the rows of vertices to `take`, each with its number, from the highest.
 pub(crate) fn rows(
     banded: &Banded<'_>,
-    grid: Grid,
-    is_coloured: bool,
+    setup: RowSetup,
     steps: &mut Steps<'_>,
     mut take: impl FnMut(usize, Row) -> Result<(), ExchangeError>,
 ) -> Result<(), ExchangeError> {
+    let RowSetup {
+        grid,
+        thin_m,
+        is_coloured,
+    } = setup;
     let (width, step) = (grid.width(), grid.step());
     let blocks = width.div_ceil(step);
     let job = |band: usize| -> Vec<(usize, Blocks)> {
-        let columns = Columns::of(banded, band);
+        let columns = Columns::of(banded, band, thin_m);
         let colours = if is_coloured {
             colours(banded, band)
         } else {

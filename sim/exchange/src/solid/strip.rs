@@ -6,9 +6,9 @@
 //! the way to it, at a cusp. No two of these lines cross.
 
 /// How far the cusp is from its column to the other: short of that, or cusps from opposite sides would touch.
-pub(super) const CUSP: f64 = 31.0 / 32.0;
+pub(super) const CUSP: f64 = 127.0 / 128.0;
 /// The same in walls: short of that, or it would be where the cusp of the surface beside the wall is.
-pub(super) const WALL_CUSP: f64 = 15.0 / 16.0;
+pub(super) const WALL_CUSP: f64 = 63.0 / 64.0;
 
 /// A piece or a gap that closes, between end `end` of its column and the next one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -188,6 +188,13 @@ impl Made {
         edges
     }
 
+    /// Twice the area of the smallest facet.
+    fn least_area(&self) -> f64 {
+        let length = |n: [f64; 3]| n.iter().map(|part| part * part).sum::<f64>().sqrt();
+        let areas = self.facets.iter().map(|facet| length(area(facet)));
+        areas.fold(f64::INFINITY, f64::min)
+    }
+
     /// Whether each edge has two facets that run along it in opposite directions.
     fn is_closed(&self) -> bool {
         self.edges().values().all(|runs| *runs == [1, 1])
@@ -316,7 +323,47 @@ fn ragged_paint_on_linen_wet_and_dry_is_closed_and_whole() {
         "ragged: {volume:.1} of {want:.1}, {} facets",
         made.facets.len()
     );
-    // Pieces may touch, so that four facets share an edge.
-    assert!(made.edges().values().all(|[forth, back]| forth == back));
+    assert!(made.is_closed() && made.least_area() > 0.0);
     assert!((volume / want - 1.0).abs() < 0.02);
+}
+
+/// A ridge along the left edge that leans over the rim's tiles, and one that ends at the upper edge.
+fn at_the_rim([x, y, layer]: [usize; 3]) -> f32 {
+    let up = CELLS[1] as usize;
+    match layer {
+        0..3 if x < 2 || (y + 2 >= up && x > 70) => 1.0,
+        3 if x < 9 || (y + 9 >= up && x > 70) => 1.0,
+        _ => 0.0,
+    }
+}
+
+#[test]
+fn overhangs_at_the_rim_are_walled() {
+    let surface = Surface::flat().lay(0, 4, &at_the_rim);
+    let (made, volume) = surface.paint();
+    let [across, up] = CELLS.map(f64::from);
+    let want = up * (2.0 * 3.0 + 9.0) + (across - 71.0) * (2.0 * 3.0 + 9.0);
+    println!("rim: {volume:.1} of {want}");
+    assert!(made.is_closed() && made.least_area() > 0.0);
+    assert!((volume / want - 1.0).abs() < 0.02);
+}
+
+#[test]
+fn heights_made_small_leave_no_slivers() {
+    let surface = Surface::flat().lay(0, 4, &at_the_rim);
+    for exaggeration in [0.0, 1e-9, 1e-3, 1000.0] {
+        let (made, told, _) = surface.solid(SolidSetup {
+            exaggeration,
+            base_mm: 1000.0,
+            ..SETUP
+        });
+        assert!(made.is_closed(), "{exaggeration}");
+        assert!(made.least_area() > 0.0, "{exaggeration}");
+        let highest = made.vertices.iter().map(|at| at[2]).fold(0.0, f32::max);
+        let of_told = told.size_mm[2] / (CELL_M * MM);
+        assert!((f64::from(highest) / of_told - 1.0).abs() < 1e-6);
+    }
+    let (mut made, ..) = surface.solid(SETUP);
+    made.facets[9][1] = made.facets[9][0];
+    assert!(made.least_area() == 0.0, "a fault would pass");
 }

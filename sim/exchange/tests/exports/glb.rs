@@ -131,14 +131,61 @@ fn it_is_the_solid_of_the_stl_with_every_model() {
     }
 }
 
+/// mm³ of all paint on a canvas, by its counts in quanta of 25 mm / 2²⁴.
+fn paint_mm3(painting: &Painting) -> f64 {
+    let store = painting.store(CANVAS).expect("a canvas");
+    let tiles = store
+        .iter()
+        .filter_map(|(_, version)| version.tile.as_deref());
+    let pages = tiles.flat_map(|tile| tile.pages().map(|page| page.get()));
+    let counts = pages.map(|planes| {
+        let counts = planes.iter().flat_map(|(_, plane)| plane.iter());
+        counts.copied().map(f64::from).sum::<f64>()
+    });
+    let cell_mm = CELL_M * 1e3;
+    counts.sum::<f64>() * cell_mm * cell_mm * 25.0 / 16_777_216.0
+}
+
+/// Volume of a solid, mm³, and height of its corner, mm.
+fn measured(painting: &mut Painting) -> (f64, f64) {
+    let mut to = Cursor::new(Vec::new());
+    let setup = SolidSetup {
+        step: 1,
+        exaggeration: 1.0,
+        ..STL
+    };
+    write_glb(painting, CANVAS, &setup, &mut to, &mut |_, _| {}).expect("written");
+    let facets = read(&to.into_inner()).facets();
+    let at_corner = facets.iter().flatten().filter(|at| at[..2] == [0.0, 0.0]);
+    let corner = at_corner.map(|at| at[2]).fold(0.0, f32::max);
+    (volume(&facets) * 1e9, f64::from(corner) * 1e3)
+}
+
+#[test]
+fn its_volume_is_that_of_canvas_and_paint() {
+    for model in ["impasto", "dab", "stokes"] {
+        let mut painting = painted_of(model);
+        let (all, corner) = measured(&mut painting);
+        let want = paint_mm3(&painting);
+        let (canvas, bare_corner) = measured(&mut bare_of(model, CELLS));
+        // The base lies under the lowest place, which is higher under paint: corners are bare.
+        let area = f64::from(CELLS[0] * CELLS[1]) * (CELL_M * 1e3) * (CELL_M * 1e3);
+        let paint = all - canvas + (bare_corner - corner) * area;
+        println!("{model}: {paint:.4} mm³ of {want:.4}");
+        assert!((paint / want - 1.0).abs() < 5e-4, "{model}");
+        assert!(
+            (paint / (1.002 * want) - 1.0).abs() > 5e-4,
+            "a fault would pass"
+        );
+    }
+}
+
 #[test]
 fn its_normals_look_out_and_are_smooth() {
     let read = read(&file("glTF", &mut painted()));
-    let surface = read.normals.iter().filter(|normal| normal[2] > 0.5).count();
-    assert!(surface > 1000);
-    let corners = read.facets();
-    for (facet, indices) in corners.iter().zip(read.indices.chunks_exact(3)) {
-        let side = |to: usize| [0, 1, 2].map(|i| facet[to][i] - facet[0][i]);
+    let [mut by_area, mut by_count] = [(); 2].map(|()| vec![[0.0; 3]; read.places.len()]);
+    for (facet, indices) in read.facets().iter().zip(read.indices.chunks_exact(3)) {
+        let side = |to: usize| [0, 1, 2].map(|i| f64::from(facet[to][i] - facet[0][i]));
         let (u, v) = (side(1), side(2));
         let face = [
             u[1] * v[2] - u[2] * v[1],
@@ -146,10 +193,30 @@ fn its_normals_look_out_and_are_smooth() {
             u[0] * v[1] - u[1] * v[0],
         ];
         for index in indices {
-            let normal = read.normals[*index as usize];
-            assert!((0..3).map(|i| face[i] * normal[i]).sum::<f32>() > 0.0);
+            for (sums, face) in [(&mut by_area, face), (&mut by_count, unit(face))] {
+                let sum = &mut sums[*index as usize];
+                *sum = [0, 1, 2].map(|i| sum[i] + face[i]);
+            }
         }
     }
+    let off = |sums: &[[f64; 3]]| {
+        let off = sums.iter().zip(&read.normals).map(|(sum, normal)| {
+            let apart = unit(*sum)
+                .into_iter()
+                .zip(normal)
+                .map(|(a, b)| (a - f64::from(*b)).abs());
+            apart.fold(0.0, f64::max)
+        });
+        off.fold(0.0, f64::max)
+    };
+    println!("normals off by {:.1e}", off(&by_area));
+    assert!(off(&by_area) < 1e-3);
+    assert!(off(&by_count) > 1e-2, "a fault would pass");
+}
+
+fn unit(n: [f64; 3]) -> [f64; 3] {
+    let length = n.iter().map(|part| part * part).sum::<f64>().sqrt();
+    n.map(|part| part / length)
 }
 
 #[test]
