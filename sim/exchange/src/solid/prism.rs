@@ -158,12 +158,15 @@ fn loops(stands: &[Stand<'_>; 3], sides: &[Side<'_>; 3]) -> Vec<Vec<OnLoop>> {
     loops
 }
 
+/// Corners of columns between two cusps at most, for the part of the loop between them to be filled by itself.
+const BETWEEN_CUSPS: usize = 2;
+
 /// Fills a loop.
 ///
 /// From cusp to cusp it runs along upper or lower sides. With a cusp in each of two sides of the triangle, either part is
 /// filled by itself, so that no facet goes from an upper to a lower side. Other loops are filled around a vertex in their
-/// middle: an edge between two cusps of one side could be a neighbour's too, and four facets would share it; and in a wall,
-/// where two of the columns stand in one place, a facet of those two would have no area.
+/// middle: facets between their corners alone could lie in a side of the triangle, have an edge that is a neighbour's too,
+/// so that four facets share it, or in a wall, where two of the columns stand in one place, have no area.
 fn fill<T: Take>(corners: &[OnLoop], take: &mut T) -> Result<(), ExchangeError> {
     let is_cusp = |place: &usize| corners[*place].1.is_some();
     let cusps: Vec<usize> = (0..corners.len()).filter(is_cusp).collect();
@@ -172,10 +175,18 @@ fn fill<T: Take>(corners: &[OnLoop], take: &mut T) -> Result<(), ExchangeError> 
         places.map(corner).collect()
     };
     match cusps[..] {
-        [] => fan(&round(0..=corners.len() - 1), take),
-        [one, other] if !T::IS_WALL && corners[one].1 != corners[other].1 => {
+        [] if corners.len() == 3 => fan(&round(0..=2), take),
+        [one, other]
+            if !T::IS_WALL
+                && corners[one].1 != corners[other].1
+                && other - one - 1 <= BETWEEN_CUSPS
+                && corners.len() - (other - one) - 1 <= BETWEEN_CUSPS =>
+        {
+            // Around the same cusp, so that upper and lower facets do not cross where the piece is thin.
             fan(&round(one..=other), take)?;
-            fan(&round(other..=one + corners.len()), take)
+            let mut back = vec![corners[one].0];
+            back.extend(round(other..=one + corners.len() - 1));
+            fan(&back, take)
         }
         _ => {
             let mut around = vec![take.vertex(middle(corners))];

@@ -195,6 +195,51 @@ impl Made {
         areas.fold(f64::INFINITY, f64::min)
     }
 
+    /// Share of places, four in each cell, over which air and paint do not take turns from below on: where facets cross.
+    fn crossed(&self) -> f64 {
+        const PLACES: [[f64; 2]; 4] = [[0.31, 0.17], [0.83, 0.36], [0.64, 0.71], [0.12, 0.94]];
+        let mut met: BTreeMap<[usize; 3], Vec<(f64, bool)>> = BTreeMap::new();
+        for facet in &self.facets {
+            let [a, b, c] = facet.map(|corner| corner.map(f64::from));
+            let n = area(facet);
+            let ends = |axis: usize| {
+                let along = [a[axis], b[axis], c[axis]];
+                let least = along.iter().copied().fold(f64::INFINITY, f64::min);
+                let most = along.iter().copied().fold(0.0, f64::max);
+                least as usize..=most as usize
+            };
+            // The bottom is met everywhere.
+            if n[2] == 0.0 || [a[2], b[2], c[2]] == [0.0; 3] {
+                continue;
+            }
+            for (x, y, place) in ends(0)
+                .flat_map(|x| ends(1).flat_map(move |y| (0..4).map(move |place| (x, y, place))))
+            {
+                let at = [x as f64 + PLACES[place][0], y as f64 + PLACES[place][1]];
+                let turn = |from: [f64; 3], to: [f64; 3]| {
+                    (to[0] - from[0]) * (at[1] - from[1]) - (to[1] - from[1]) * (at[0] - from[0])
+                };
+                let turns = [turn(a, b), turn(b, c), turn(c, a)];
+                if turns.iter().all(|turn| turn * n[2] > 0.0) {
+                    let z = a[2] - ((at[0] - a[0]) * n[0] + (at[1] - a[1]) * n[1]) / n[2];
+                    met.entry([x, y, place]).or_default().push((z, n[2] > 0.0));
+                }
+            }
+        }
+        let all = met.len() as f64;
+        let is_crossed = |places: &mut Vec<(f64, bool)>| {
+            places.sort_by(|one, other| one.0.total_cmp(&other.0));
+            let in_turn = places.iter().enumerate();
+            !in_turn
+                .map(|(place, (_, is_top))| *is_top == place.is_multiple_of(2))
+                .all(|is_right| is_right)
+        };
+        met.into_values()
+            .filter_map(|mut places| is_crossed(&mut places).then_some(()))
+            .count() as f64
+            / all
+    }
+
     /// Whether each edge has two facets that run along it in opposite directions.
     fn is_closed(&self) -> bool {
         self.edges().values().all(|runs| *runs == [1, 1])
@@ -258,12 +303,20 @@ fn an_overhang_has_air_under_it_and_all_of_its_paint() {
         made.heights([63, 20])
     );
     assert!(near(&made.heights([70, 20]), &[0.0, 4.0, 5.4], 1e-3));
+    assert!(made.crossed() == 0.0, "{}", made.crossed());
     let mut faulty = Made {
         facets: made.facets.clone(),
         ..Made::default()
     };
     faulty.facets[100].swap(1, 2);
     assert!(!faulty.is_closed() && faulty.volume() != made.volume());
+    let up = |facet: &&mut [Point; 3]| area(facet)[2] > 0.4;
+    faulty
+        .facets
+        .iter_mut()
+        .filter(up)
+        .for_each(|facet| facet.swap(1, 2));
+    assert!(faulty.crossed() > 0.9, "facets that look down would pass");
     faulty.facets.swap_remove(100);
     assert!(!faulty.is_closed(), "a hole would pass");
     // As a map of heights it would stand on the ground.
@@ -325,6 +378,26 @@ fn ragged_paint_on_linen_wet_and_dry_is_closed_and_whole() {
     );
     assert!(made.is_closed() && made.least_area() > 0.0);
     assert!((volume / want - 1.0).abs() < 0.02);
+    println!("crossed: {:.2e}", made.crossed());
+    assert!(made.crossed() < 0.01);
+}
+
+#[test]
+fn the_edge_of_a_thin_ridge_does_not_cross_itself() {
+    // A sheet whose height and thickness differ from cell to cell.
+    let sheet = |[x, y, layer]: [usize; 3]| {
+        let lowest = 4 + (x * 7 + y * 3) % 5 / 3;
+        match layer {
+            0 => 0.3,
+            _ if y < 15 || layer < lowest => 0.0,
+            _ if layer == lowest => 1.0,
+            _ if layer == lowest + 1 => 0.05 * ((x * 11 + y * 5) % 17) as f32,
+            _ => 0.0,
+        }
+    };
+    let (made, _) = Surface::flat().lay(0, 8, &sheet).paint();
+    assert!(made.is_closed() && made.least_area() > 0.0);
+    assert!(made.crossed() == 0.0, "{}", made.crossed());
 }
 
 /// A ridge along the left edge that leans over the rim's tiles, and one that ends at the upper edge.
@@ -344,6 +417,7 @@ fn overhangs_at_the_rim_are_walled() {
     let [across, up] = CELLS.map(f64::from);
     let want = up * (2.0 * 3.0 + 9.0) + (across - 71.0) * (2.0 * 3.0 + 9.0);
     println!("rim: {volume:.1} of {want}");
+    assert!(made.crossed() == 0.0, "{}", made.crossed());
     assert!(made.is_closed() && made.least_area() > 0.0);
     assert!((volume / want - 1.0).abs() < 0.02);
 }
