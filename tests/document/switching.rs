@@ -241,7 +241,7 @@ fn exports_of_a_running_rig_are_those_of_its_file() {
     }
     has(
         &fault(&place, &["export", "x.jpg"], 2),
-        &["'jpg'", ".png, .exr, .ora or .stl"],
+        &["'jpg'", ".png, .exr, .ora, .stl or .glb"],
     );
     has(
         &fault(&place, &["export", "a.maul", "--format", "png"], 2),

@@ -20,7 +20,7 @@ use crate::outputs::{Relayed, UsedFile, check_outputs, named_by};
 /// Options of `maulstick export`.
 #[derive(Args, Clone, Debug)]
 pub struct ExportOptions {
-    /// File to write: .png, .exr, .ora or .stl
+    /// File to write: .png, .exr, .ora, .stl or .glb
     #[arg(required_unless_present = "stop")]
     file: Option<PathBuf>,
     /// Stop the running export; its file is not written
@@ -41,13 +41,13 @@ pub struct ExportOptions {
     /// Gamut mapping of a PNG: soft, clamp [default: that of the rig]
     #[arg(long, value_name = "MAPPING")]
     gamut: Option<String>,
-    /// Thickness of an STL solid below its lowest point, mm
+    /// Thickness of a solid (STL, glTF) below its lowest point, mm
     #[arg(long, default_value_t = 2.0, allow_negative_numbers = true)]
     base_mm: f64,
-    /// Factor on the heights of an STL solid
+    /// Factor on the heights of a solid
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     exaggeration: f64,
-    /// STL vertex spacing, cells [default: at most 4 million triangles]
+    /// Vertex spacing of a solid, cells [default: at most 4 million triangles]
     #[arg(long, value_name = "CELLS")]
     step: Option<u32>,
     #[command(flatten)]

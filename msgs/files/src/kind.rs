@@ -17,6 +17,8 @@ pub enum Kind {
     Ora,
     /// Binary STL.
     Stl,
+    /// Binary glTF.
+    Glb,
     /// Film, GIF.
     Gif,
     /// Film, MP4.
@@ -80,6 +82,7 @@ impl Kind {
             Self::Exr => "an OpenEXR picture",
             Self::Ora => "an OpenRaster picture",
             Self::Stl => "an STL solid",
+            Self::Glb => "a binary glTF solid",
             Self::Gif => "a GIF film",
             Self::Mp4 => "an MP4 film",
             Self::Ledger => "a ledger",
@@ -102,6 +105,7 @@ impl Kind {
             Self::Ora => head.starts_with(b"PK\x03\x04") && has(head, b"mimetypeimage/openraster"),
             // 80 bytes of header, a count, and 50 bytes a triangle.
             Self::Stl => length >= 84 && (length - 84).is_multiple_of(50) && !is_text(head),
+            Self::Glb => head.starts_with(b"glTF"),
             Self::Gif => head.starts_with(b"GIF8"),
             Self::Mp4 => head.get(4..8) == Some(b"ftyp"),
             Self::Ledger => head.starts_with(b"{") && has(head, b"\"accounts_m3\""),
@@ -194,7 +198,7 @@ mod tests {
 
     #[test]
     fn a_file_gives_way_to_its_own_kind_alone() {
-        let kinds: [(Kind, &[u8]); 13] = [
+        let kinds: [(Kind, &[u8]); 14] = [
             (Kind::Png, b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"),
             (Kind::Exr, &[0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0]),
             (
@@ -202,6 +206,7 @@ mod tests {
                 b"PK\x03\x04\x0a\0\0\0\0\0\0\0\0\0\0\0\0\0\x10\0\0\0\x10\0\0\0\x08\0\0\0mimetypeimage/openraster",
             ),
             (Kind::Stl, &[0; 84 + 100]),
+            (Kind::Glb, b"glTF\x02\0\0\0"),
             (Kind::Gif, b"GIF89a\x40\x01"),
             (Kind::Mp4, b"\0\0\0\x20ftypisom"),
             (Kind::Ledger, b"{\n  \"accounts_m3\": {"),

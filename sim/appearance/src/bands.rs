@@ -152,6 +152,12 @@ impl<'a> Banded<'a> {
         self.store
     }
 
+    /// The surface without paint.
+    #[must_use]
+    pub fn bare(&self) -> &'a BlankSurface {
+        self.bare
+    }
+
     /// Number of bands.
     #[must_use]
     pub fn bands(&self) -> usize {

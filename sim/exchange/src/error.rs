@@ -30,7 +30,9 @@ pub enum ExchangeError {
         most: f64,
     },
     /// A relief would have more triangles than its format can count.
-    #[error("{triangles} triangles are too many for STL; choose a step of at least {step} cells")]
+    #[error(
+        "{triangles} triangles are too many for the file; choose a step of at least {step} cells"
+    )]
     TooManyTriangles {
         /// How many it would have.
         triangles: u64,

@@ -8,8 +8,8 @@ use maulstick_painting::Painting;
 
 use crate::surface::Progress;
 use crate::{
-    ExchangeError, StlSetup, stl_step, write_height_map, write_lit_png, write_open_exr,
-    write_open_raster, write_stl,
+    ExchangeError, SolidSetup, solid_step, write_glb, write_height_map, write_lit_png,
+    write_open_exr, write_open_raster, write_stl,
 };
 
 /// Formats of an export.
@@ -25,16 +25,19 @@ pub enum Format {
     Height,
     /// A solid for relief printing.
     Stl,
+    /// The same with its colours: binary glTF.
+    Glb,
 }
 
 impl Format {
     /// All, with their names: that of a file that ends in one, but for heights.
-    pub const ALL: [(&'static str, Self); 5] = [
+    pub const ALL: [(&'static str, Self); 6] = [
         ("png", Self::Png),
         ("exr", Self::Exr),
         ("ora", Self::Ora),
         ("height", Self::Height),
         ("stl", Self::Stl),
+        ("glb", Self::Glb),
     ];
 
     /// The format of that name.
@@ -67,7 +70,7 @@ pub struct Order {
     pub base_mm: f64,
     /// Factor on the heights of a solid.
     pub exaggeration: f64,
-    /// Cells from one point of a solid to the next; as [`stl_step`] proposes if absent.
+    /// Cells from one point of a solid to the next; as [`solid_step`] proposes if absent.
     pub step: Option<u32>,
 }
 
@@ -96,16 +99,19 @@ impl Order {
                     [range.least_m, range.greatest_m].map(|m| f64::from(m) * 1e6);
                 return Ok(format!("black is {least:.1} µm, white is {greatest:.1} µm"));
             }
-            Format::Stl => {
+            Format::Stl | Format::Glb => {
                 let cells = painting
                     .store(surface)
                     .map_or([1, 1], |store| store.cells());
-                let setup = StlSetup {
+                let setup = SolidSetup {
                     base_mm: self.base_mm,
                     exaggeration: self.exaggeration,
-                    step: self.step.unwrap_or_else(|| stl_step(cells)),
+                    step: self.step.unwrap_or_else(|| solid_step(cells)),
                 };
-                let size = write_stl(painting, surface, &setup, to, progress)?;
+                let size = match self.format {
+                    Format::Glb => write_glb(painting, surface, &setup, to, progress)?,
+                    _ => write_stl(painting, surface, &setup, to, progress)?,
+                };
                 let [x, y, z] = size.size_mm;
                 return Ok(format!(
                     "{} triangles, {x:.1} × {y:.1} × {z:.2} mm",
@@ -126,6 +132,7 @@ mod tests {
         let of = |name: &str| Format::of(Path::new(name));
         assert_eq!(of("a.PNG"), Some(Format::Png));
         assert_eq!(of("/x.y/a.stl"), Some(Format::Stl));
+        assert_eq!(of("a.glb"), Some(Format::Glb));
         for name in ["a", "a.height", "a.jpg", ".png"] {
             assert_eq!(of(name), None, "{name}");
         }

@@ -11,7 +11,8 @@
 //! | [`write_open_exr`] | unlit colour, height and the thickness of each paint: OpenEXR |
 //! | [`write_open_raster`] | flat colour, a layer for each dry layer: OpenRaster |
 //! | [`write_height_map`] | height: grey PNG of 16 bits; [`HeightRange`] says what black and white are |
-//! | [`write_stl`] | height as a solid to print: STL; [`stl_step`] proposes how fine |
+//! | [`write_stl`] | a solid to print, with what overhangs: STL; [`solid_step`] proposes how fine |
+//! | [`write_glb`] | the same with colours: binary glTF |
 //!
 //! [`Order`] is any of these; [`small_picture`] is for the eye alone, and [`film`] draws frame after frame. Errors are [`ExchangeError`]; [`Progress`] hears how far an export is.
 //!
@@ -31,12 +32,14 @@ mod error;
 pub mod film;
 pub mod fit_to;
 mod format;
+mod glb;
 mod height_map;
 pub mod import_error;
 mod lit_png;
 mod open_exr;
 mod open_raster;
 pub mod read_image;
+mod solid;
 mod stl;
 mod surface;
 mod thumbnail;
@@ -44,13 +47,15 @@ pub mod underpaint;
 
 pub use error::ExchangeError;
 pub use format::{Format, Order};
+pub use glb::write_glb;
 pub use height_map::{HeightRange, write_height_map};
 pub use import_error::ImportError;
 pub use lit_png::write_lit_png;
 pub use open_exr::write_open_exr;
 pub use open_raster::write_open_raster;
 pub use read_image::Image;
-pub use stl::{STL_TRIANGLES, StlSetup, StlSize, stl_step, write_stl};
+pub use solid::{SOLID_TRIANGLES, SolidSetup, SolidSize, solid_step};
+pub use stl::write_stl;
 pub use surface::Progress;
 pub use thumbnail::{HistoryPictures, small_picture};
 pub use underpaint::{Likeness, Support, Underpainting};

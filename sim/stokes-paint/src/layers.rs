@@ -2,6 +2,7 @@
 
 use maulstick_canvas::layered::MOST_LAYERS;
 use maulstick_canvas::quantum::QUANTUM_M;
+use maulstick_canvas::relief::Relief;
 use maulstick_canvas::window::Window;
 
 use crate::coarse::voxels_a_side;
@@ -24,11 +25,22 @@ impl Layers {
     /// Those of a window with cells of side `cell_m`.
     #[must_use]
     pub fn of(window: &Window, cell_m: f64) -> Self {
+        Self::new(window.ride_below(), cell_m)
+    }
+
+    fn new(below: f32, cell_m: f64) -> Self {
         Self {
             capacity: (cell_m / QUANTUM_M) as u32,
-            below: window.ride_below().ceil(),
+            below: below.ceil(),
             side: voxels_a_side(cell_m),
         }
+    }
+
+    /// Those of a surface with this relief and cells of side `cell_m`.
+    #[must_use]
+    pub fn over(relief: &Relief, cell_m: f64) -> Self {
+        let below = relief.depth_m() as f32 * relief.cells_per_m();
+        Self::new(below, cell_m)
     }
 
     /// Height of what catches paint above the lowest layer's floor, cells.

@@ -17,7 +17,7 @@ struct Format {
     words: &'static str,
 }
 
-const FORMATS: [Format; 5] = [
+const FORMATS: [Format; 6] = [
     Format {
         name: "png",
         ending: "png",
@@ -43,9 +43,14 @@ const FORMATS: [Format; 5] = [
         ending: "stl",
         words: tr_noop!("Relief to print (STL)"),
     },
+    Format {
+        name: "glb",
+        ending: "glb",
+        words: tr_noop!("Relief in colour (glTF)"),
+    },
 ];
 /// File endings of exports.
-const ENDINGS: &[&str] = &["png", "ora", "exr", "stl"];
+const ENDINGS: &[&str] = &["png", "ora", "exr", "stl", "glb"];
 const DEPTHS: [(u32, &str); 2] = [
     (8, tr_noop!("8 bits a channel")),
     (16, tr_noop!("16 bits a channel")),
@@ -104,7 +109,7 @@ impl ExportPicture {
         if !ending.is_empty() && ending != format.ending {
             return Err(tr!(
                 "A name that ends in .{ending} says nothing that can be written. End it in .png, \
-                 .ora, .exr or .stl.",
+                 .ora, .exr, .stl or .glb.",
                 ending
             ));
         }
@@ -127,7 +132,7 @@ impl ExportPicture {
         };
         match format.name {
             "png" => (order.bits, order.profile) = (self.bits, self.profile.to_owned()),
-            "stl" => {
+            "stl" | "glb" => {
                 let base_mm = number(tr!("Base"), &self.base_mm)?;
                 order.exaggeration = number(tr!("Heights"), &self.exaggeration)?;
                 order.base_m = base_mm * 1e-3;
@@ -207,7 +212,7 @@ impl ExportPicture {
                     choice(ui, tr!("Depth"), &DEPTHS, &mut self.bits);
                     choice(ui, tr!("Colours"), &PROFILES, &mut self.profile);
                 }
-                "stl" => {
+                "stl" | "glb" => {
                     ui.label(tr!("Solid"));
                     ui.horizontal(|ui| {
                         entered |= line(ui, tr!("Base"), &mut self.base_mm, false, 48.0);

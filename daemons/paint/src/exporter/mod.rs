@@ -147,6 +147,7 @@ pub fn kind_of(format: Format) -> Kind {
         Format::Exr => Kind::Exr,
         Format::Ora => Kind::Ora,
         Format::Stl => Kind::Stl,
+        Format::Glb => Kind::Glb,
     }
 }
 
@@ -174,7 +175,7 @@ fn order(asked: &ExportOrder, usual: &Export) -> Result<Order, Refusal> {
         };
         Refusal::say(
             format!("nothing is exported as '{name}'"),
-            "end the name in .png, .exr, .ora or .stl, or say which format: png, exr, ora, height, stl",
+            "end the name in .png, .exr, .ora, .stl or .glb, or say which format: png, exr, ora, height, stl, glb",
         )
     })?;
     let profile = match asked.profile.as_str() {

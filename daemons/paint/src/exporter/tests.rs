@@ -74,7 +74,7 @@ fn every_format_is_written_and_what_is_none_is_refused_with_the_list() {
     };
     refused(
         ExportOrder::to(at("a.jpg")),
-        ["'jpg'", ".png, .exr, .ora or .stl"],
+        ["'jpg'", ".png, .exr, .ora, .stl or .glb"],
     );
     refused(ExportOrder::to(at("no/a.png")), ["no/a.png", "folder"]);
     let profile = ExportOrder {

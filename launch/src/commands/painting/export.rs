@@ -28,7 +28,7 @@ pub(in crate::commands) fn formats() -> PossibleValuesParser {
 pub struct ExportOptions {
     /// Painting
     file: PathBuf,
-    /// File to write: .png, .exr, .ora or .stl
+    /// File to write: .png, .exr, .ora, .stl or .glb
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     /// Format, if the file name does not tell; `height` is a PNG too
@@ -46,13 +46,13 @@ pub struct ExportOptions {
     /// Gamut mapping of a PNG: soft, clamp
     #[arg(long, value_name = "MAPPING", default_value = "soft")]
     gamut: String,
-    /// Thickness of an STL solid below its lowest point, mm
+    /// Thickness of a solid (STL, glTF) below its lowest point, mm
     #[arg(long, default_value_t = 2.0, allow_negative_numbers = true)]
     base_mm: f64,
-    /// Factor on the heights of an STL solid
+    /// Factor on the heights of a solid
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     exaggeration: f64,
-    /// STL vertex spacing, cells [default: at most 4 million triangles]
+    /// Vertex spacing of a solid, cells [default: at most 4 million triangles]
     #[arg(long, value_name = "CELLS")]
     step: Option<u32>,
 }
@@ -66,7 +66,7 @@ impl ExportOptions {
         format.ok_or_else(|| {
             UserError::usage("the name does not say which format to write")
                 .at(self.output.display().to_string())
-                .help("end it in .png, .exr, .ora or .stl, or give --format")
+                .help("end it in .png, .exr, .ora, .stl or .glb, or give --format")
         })
     }
 

@@ -25,7 +25,7 @@ use maulstick_rig::UserError;
 pub enum PaintingCommand {
     /// Show what a painting holds
     Info(info::InfoOptions),
-    /// Export a painting: PNG, OpenEXR, OpenRaster, height map, STL
+    /// Export a painting: PNG, OpenEXR, OpenRaster, height map, STL, glTF
     Export(export::ExportOptions),
     /// Import a picture as underpainting, ground or tooth
     Import(import::ImportOptions),

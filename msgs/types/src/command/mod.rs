@@ -157,7 +157,7 @@ wire_struct! {
     pub struct ExportOrder {
         /// The whole path of the file.
         pub path: WholePath,
-        /// `png`, `exr`, `ora`, `height` or `stl`; as the path ends if empty.
+        /// `png`, `exr`, `ora`, `height`, `stl` or `glb`; as the path ends if empty.
         pub format: String,
         /// The surface.
         pub surface: u32,

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 use std::io::Cursor;
 
-use maulstick_exchange::{ExchangeError, STL_TRIANGLES, StlSetup, StlSize, stl_step, write_stl};
+use maulstick_exchange::{
+    ExchangeError, SOLID_TRIANGLES, SolidSetup, SolidSize, solid_step, write_stl,
+};
 use maulstick_painting::Painting;
 use maulstick_types::scene::CANVAS;
 
@@ -14,7 +16,7 @@ type Point = [f32; 3];
 /// A facet: its normal and its corners.
 type Facet = [Point; 4];
 
-fn solid(painting: &mut Painting, setup: &StlSetup) -> (StlSize, Vec<Facet>) {
+fn solid(painting: &mut Painting, setup: &SolidSetup) -> (SolidSize, Vec<Facet>) {
     let mut to = Cursor::new(Vec::new());
     let size = write_stl(painting, CANVAS, setup, &mut to, &mut |_, _| {}).expect("written");
     let file = to.into_inner();
@@ -90,7 +92,7 @@ fn vertices(cells: usize, step: usize) -> Vec<(f64, std::ops::Range<usize>)> {
 }
 
 /// mm³, by prisms under the triangles between the highest cells of blocks.
-fn expected(heights: &[f32], setup: &StlSetup) -> f64 {
+fn expected(heights: &[f32], setup: &SolidSetup) -> f64 {
     let [width, height] = CELLS.map(|cells| cells as usize);
     let step = setup.step as usize;
     let (xs, ys) = (vertices(width, step), vertices(height, step));
@@ -128,7 +130,7 @@ fn no_peak_is_lost_however_coarse_the_solid_is() {
     };
     let [lowest, peak] = ends(&mut heights.iter().copied()).map(f64::from);
     for step in [1, 2, 5, 64] {
-        let setup = StlSetup {
+        let setup = SolidSetup {
             step,
             exaggeration: 1.0,
             ..STL
@@ -160,7 +162,7 @@ fn a_relief_is_a_solid_of_the_right_volume() {
     let mut painting = painted();
     let heights = heights(&mut painting);
     for step in [1, 2, 3, 64, 100, 1000] {
-        let setup = StlSetup { step, ..STL };
+        let setup = SolidSetup { step, ..STL };
         let (size, facets) = solid(&mut painting, &setup);
         assert!(is_watertight(&facets), "step {step}");
         assert!(normals_fit(&facets), "step {step}");
@@ -172,7 +174,7 @@ fn a_relief_is_a_solid_of_the_right_volume() {
         assert!((f64::from(top) - size.size_mm[2]).abs() < 1e-5);
         assert_eq!(size.size_mm[..2], [37.5, 17.5]);
         let expected = |exaggeration: f64| {
-            let setup = StlSetup {
+            let setup = SolidSetup {
                 exaggeration,
                 ..setup
             };
@@ -220,9 +222,9 @@ fn a_proposed_step_gives_as_many_triangles_as_programs_bear() {
         ([16_384, 16_384], 12),
         ([65_536, 1], 1),
     ] {
-        assert_eq!(stl_step(cells), step);
-        assert!(triangles(cells, step) <= STL_TRIANGLES);
-        assert!(step == 1 || triangles(cells, step - 1) > STL_TRIANGLES);
+        assert_eq!(solid_step(cells), step);
+        assert!(triangles(cells, step) <= SOLID_TRIANGLES);
+        assert!(step == 1 || triangles(cells, step - 1) > SOLID_TRIANGLES);
     }
 }
 
@@ -230,23 +232,23 @@ fn a_proposed_step_gives_as_many_triangles_as_programs_bear() {
 fn measures_out_of_range_are_refused() {
     let mut painting = speck();
     for setup in [
-        StlSetup {
+        SolidSetup {
             base_mm: 0.0,
             ..STL
         },
-        StlSetup {
+        SolidSetup {
             base_mm: f64::NAN,
             ..STL
         },
-        StlSetup {
+        SolidSetup {
             exaggeration: -1.0,
             ..STL
         },
-        StlSetup {
+        SolidSetup {
             exaggeration: f64::INFINITY,
             ..STL
         },
-        StlSetup { step: 0, ..STL },
+        SolidSetup { step: 0, ..STL },
     ] {
         let mut to = Vec::new();
         let error = write_stl(&mut painting, CANVAS, &setup, &mut to, &mut |_, _| {});
@@ -254,7 +256,7 @@ fn measures_out_of_range_are_refused() {
         assert!(matches!(error, Err(ExchangeError::OutOfRange { .. })));
         assert!(to.is_empty());
     }
-    let flat = StlSetup {
+    let flat = SolidSetup {
         exaggeration: 0.0,
         ..STL
     };
@@ -264,7 +266,7 @@ fn measures_out_of_range_are_refused() {
 #[test]
 fn more_triangles_than_a_file_can_count_are_refused_with_a_step_that_fits() {
     let mut vast = bare([65_536, 65_536]);
-    let setup = StlSetup { step: 1, ..STL };
+    let setup = SolidSetup { step: 1, ..STL };
     let mut to = Vec::new();
     let error = write_stl(&mut vast, CANVAS, &setup, &mut to, &mut |_, _| {});
     println!("{}", error.as_ref().expect_err("refused"));

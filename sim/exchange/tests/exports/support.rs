@@ -5,8 +5,8 @@ use std::io::Cursor;
 use maulstick_appearance::picture::{Depth, Export};
 use maulstick_brush::BrushFile;
 use maulstick_exchange::{
-    ExchangeError, StlSetup, write_height_map, write_lit_png, write_open_exr, write_open_raster,
-    write_stl,
+    ExchangeError, SolidSetup, write_glb, write_height_map, write_lit_png, write_open_exr,
+    write_open_raster, write_stl,
 };
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::picture::banded;
@@ -151,7 +151,7 @@ pub(crate) fn heights(painting: &mut Painting) -> Vec<f32> {
     (0..banded.bands()).flat_map(rows).collect()
 }
 
-pub(crate) const STL: StlSetup = StlSetup {
+pub(crate) const STL: SolidSetup = SolidSetup {
     base_mm: 2.0,
     exaggeration: 5.0,
     step: 3,
@@ -167,7 +167,7 @@ pub(crate) trait File: std::io::Write + std::io::Seek {}
 impl<T: std::io::Write + std::io::Seek> File for T {}
 
 /// All exports.
-pub(crate) const EXPORTS: [(&str, Write); 6] = [
+pub(crate) const EXPORTS: [(&str, Write); 7] = [
     ("PNG, 8 bits", |painting, surface, to, tell| {
         write_lit_png(
             painting,
@@ -197,6 +197,9 @@ pub(crate) const EXPORTS: [(&str, Write); 6] = [
     }),
     ("STL", |painting, surface, to, tell| {
         write_stl(painting, surface, &STL, to, tell).map(|_| ())
+    }),
+    ("glTF", |painting, surface, to, tell| {
+        write_glb(painting, surface, &STL, to, tell).map(|_| ())
     }),
 ];
 

@@ -19,6 +19,7 @@ fn the_name_says_the_format() {
         ("a.EXR", "exr"),
         ("a.ora", "ora"),
         ("a.stl", "stl"),
+        ("a.glb", "glb"),
     ] {
         let order = asked(&folder.path().join(name), |_| {}).expect("an order");
         assert_eq!((order.format.as_str(), order.bits), (format, 8), "{name}");
@@ -41,7 +42,7 @@ fn what_cannot_be_written_is_told() {
         let words = asked(&folder.path().join(name), change).expect_err("refused");
         assert!(words.contains(word), "{words}");
     };
-    refused("a.gif", |_| {}, ".png, .ora, .exr or .stl");
+    refused("a.gif", |_| {}, ".png, .ora, .exr, .stl or .glb");
     refused("none/a.png", |_| {}, "There is no folder");
     refused("a.stl", |export| export.base_mm = "0".into(), "above 0");
     refused(

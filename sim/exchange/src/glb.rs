@@ -1,0 +1,216 @@
+//! A painting as a solid with its colours, in binary glTF (Khronos Group 2021, *glTF 2.0 Specification*).
+//!
+//! Metres; x right and y up along the surface, z out of it, so that the painting stands and looks at a viewer. Colours are
+//! those of the paint as it is seen from above, unlit, linear sRGB. Normals of the surface are smooth; walls and bottom have
+//! their own vertices.
+
+use std::io::{BufWriter, Write};
+
+use maulstick_painting::Painting;
+use serde_json::json;
+
+use crate::ExchangeError;
+use crate::solid::{Colour, Corner, Facets, Point, Solid, SolidSetup, SolidSize, area, normal};
+use crate::surface::{Progress, Steps, banded, check_whole};
+
+/// Bytes of a vertex: place and normal as 3 floats, red, green, blue and alpha as 16 bits.
+const VERTEX: u64 = 32;
+/// Bytes of a triangle: three numbers of vertices.
+const TRIANGLE: u64 = 12;
+/// Triangles at most: with all that belongs to them a file has at most 4 GiB.
+const MOST: u64 = u32::MAX as u64 / (VERTEX + TRIANGLE) - 1000;
+/// Gloss of oil paint, roughly.
+const ROUGHNESS: f64 = 0.4;
+
+/// Writes a surface as a solid with its colours.
+///
+/// # Errors
+/// [`ExchangeError`].
+pub fn write_glb(
+    painting: &mut Painting,
+    surface: u32,
+    setup: &SolidSetup,
+    to: impl Write,
+    progress: Progress<'_>,
+) -> Result<SolidSize, ExchangeError> {
+    setup.check()?;
+    let banded = banded(painting, surface)?;
+    let mut steps = Steps::new(progress, 3 * banded.bands());
+    let solid = Solid::of(&banded, *setup, MOST, &mut steps)?;
+    let mut to = BufWriter::new(to);
+    write_head(&solid, &mut to)?;
+    let vertices = Vertices {
+        open: Vec::new(),
+        first: 0,
+        walls: Vec::new(),
+        to,
+    };
+    let vertices = solid.make(1.0, true, &mut steps, vertices)?;
+    let mut to = vertices.to;
+    to.write_all(&vertices.walls)?;
+    let walls = solid.parts.vertices as u32;
+    let mut triangles = solid.make(1.0, false, &mut steps, Triangles(to))?;
+    for vertex in walls..walls + 3 * solid.parts.walls as u32 {
+        triangles.0.write_all(&vertex.to_le_bytes())?;
+    }
+    triangles.0.flush()?;
+    let size = solid.told();
+    check_whole(painting)?;
+    Ok(size)
+}
+
+/// Writes the headers, and what says how to read the rest.
+fn write_head(solid: &Solid<'_>, to: &mut impl Write) -> Result<(), ExchangeError> {
+    let vertices = solid.parts.vertices + 3 * solid.parts.walls;
+    let (places, numbers) = (vertices * VERTEX, solid.triangles() * TRIANGLE);
+    let size = solid.size(1.0).map(|length| length as f32);
+    let attribute = |offset: u32, component: u32, kind: &str| {
+        json!({
+            "bufferView": 0, "byteOffset": offset, "count": vertices, "componentType": component, "type": kind,
+        })
+    };
+    const FLOAT: u32 = 5126;
+    let mut position = attribute(0, FLOAT, "VEC3");
+    position["min"] = json!([0.0, 0.0, 0.0]);
+    position["max"] = json!(size);
+    let mut colour = attribute(24, 5123, "VEC4");
+    colour["normalized"] = json!(true);
+    let told = json!({
+        "asset": { "version": "2.0", "generator": "Maulstick" },
+        "scene": 0,
+        "scenes": [{ "nodes": [0] }],
+        "nodes": [{ "mesh": 0, "name": "painting" }],
+        "meshes": [{ "primitives": [{
+            "attributes": { "POSITION": 0, "NORMAL": 1, "COLOR_0": 2 }, "indices": 3, "material": 0,
+        }] }],
+        "materials": [{
+            "name": "paint",
+            "pbrMetallicRoughness": { "metallicFactor": 0.0, "roughnessFactor": ROUGHNESS },
+        }],
+        "accessors": [
+            position,
+            attribute(12, FLOAT, "VEC3"),
+            colour,
+            { "bufferView": 1, "count": 3 * solid.triangles(), "componentType": 5125, "type": "SCALAR" },
+        ],
+        "bufferViews": [
+            { "buffer": 0, "byteLength": places, "byteStride": VERTEX, "target": 34962 },
+            { "buffer": 0, "byteOffset": places, "byteLength": numbers, "target": 34963 },
+        ],
+        "buffers": [{ "byteLength": places + numbers }],
+    });
+    let mut told = told.to_string().into_bytes();
+    told.resize(told.len().next_multiple_of(4), b' ');
+    let all = 12 + 8 + told.len() as u64 + 8 + places + numbers;
+    let Ok(all) = u32::try_from(all) else {
+        return Err(ExchangeError::TooManyTriangles {
+            triangles: solid.triangles(),
+            step: solid.coarser(),
+        });
+    };
+    to.write_all(b"glTF")?;
+    to.write_all(&2u32.to_le_bytes())?;
+    to.write_all(&all.to_le_bytes())?;
+    to.write_all(&(told.len() as u32).to_le_bytes())?;
+    to.write_all(b"JSON")?;
+    to.write_all(&told)?;
+    to.write_all(&((places + numbers) as u32).to_le_bytes())?;
+    to.write_all(b"BIN\0")?;
+    Ok(())
+}
+
+fn vertex(at: Point, normal: Point, colour: Colour) -> [u8; VERTEX as usize] {
+    let mut bytes = [0; VERTEX as usize];
+    let (floats, channels) = bytes.split_at_mut(24);
+    for (bytes, value) in floats.chunks_exact_mut(4).zip(at.iter().chain(&normal)) {
+        bytes.copy_from_slice(&value.to_le_bytes());
+    }
+    let [red, green, blue] = colour;
+    for (bytes, value) in channels.chunks_exact_mut(2).zip([red, green, blue, 1.0]) {
+        let level = (value.clamp(0.0, 1.0) * 65_535.0 + 0.5) as u16;
+        bytes.copy_from_slice(&level.to_le_bytes());
+    }
+    bytes
+}
+
+/// A vertex that may get more facets.
+struct Open {
+    at: Point,
+    colour: Colour,
+    /// Sum of the normals of its facets by their areas.
+    normal: [f64; 3],
+}
+
+/// Writes vertices once they have all their facets.
+struct Vertices<W: Write> {
+    open: Vec<Open>,
+    /// Number of the first that is open.
+    first: u32,
+    /// Those of walls and bottom.
+    walls: Vec<u8>,
+    to: BufWriter<W>,
+}
+
+impl<W: Write> Facets for Vertices<W> {
+    fn vertex(&mut self, at: Point, colour: Colour) {
+        self.open.push(Open {
+            at,
+            colour,
+            normal: [0.0; 3],
+        });
+    }
+
+    fn surface(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError> {
+        let area = area(&corners.map(|corner| corner.at));
+        for corner in corners {
+            let open = &mut self.open[(corner.id - self.first) as usize];
+            open.normal
+                .iter_mut()
+                .zip(area)
+                .for_each(|(sum, part)| *sum += part);
+        }
+        Ok(())
+    }
+
+    fn wall(&mut self, corners: [Point; 3], colour: Colour) -> Result<(), ExchangeError> {
+        let normal = match normal(&corners) {
+            [0.0, 0.0, 0.0] => [0.0, 0.0, 1.0],
+            normal => normal,
+        };
+        for corner in corners {
+            self.walls.extend(vertex(corner, normal, colour));
+        }
+        Ok(())
+    }
+
+    fn finished(&mut self, before: u32) -> Result<(), ExchangeError> {
+        let count = (before - self.first) as usize;
+        for open in self.open.drain(..count) {
+            let [x, y, z] = open.normal;
+            let length = (x * x + y * y + z * z).sqrt();
+            let normal = match length > 0.0 {
+                true => open.normal.map(|part| (part / length) as f32),
+                false => [0.0, 0.0, 1.0],
+            };
+            self.to.write_all(&vertex(open.at, normal, open.colour))?;
+        }
+        self.first = before;
+        Ok(())
+    }
+}
+
+/// Writes the numbers of the vertices of facets.
+struct Triangles<W: Write>(BufWriter<W>);
+
+impl<W: Write> Facets for Triangles<W> {
+    fn surface(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError> {
+        for corner in corners {
+            self.0.write_all(&corner.id.to_le_bytes())?;
+        }
+        Ok(())
+    }
+
+    fn wall(&mut self, _corners: [Point; 3], _colour: Colour) -> Result<(), ExchangeError> {
+        Ok(())
+    }
+}

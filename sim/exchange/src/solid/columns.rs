@@ -1,0 +1,209 @@
+//! What fills the columns over the cells of a surface: ground, dry paint, wet paint.
+
+use std::collections::BTreeMap;
+use std::slice;
+use std::sync::Arc;
+
+use maulstick_appearance::bands::Banded;
+use maulstick_canvas::layered::{place_of, value};
+use maulstick_canvas::planes::{Planes, TILE_CELLS};
+use maulstick_canvas::relief::Relief;
+use maulstick_canvas::tile::{Tile, TileId};
+use maulstick_stokes_paint::layers::Layers;
+use maulstick_types::paint::TILE;
+
+use super::film::{Film, film};
+
+/// The columns of a band, row after row from its lowest: of each its ends in m above the highest bare peaks, as
+/// [`Strip`](super::strip::Strip) takes them.
+pub(super) struct Columns {
+    heights: Arc<Vec<f32>>,
+    layered: BTreeMap<usize, Vec<f32>>,
+}
+
+impl Columns {
+    /// Those of a band, without pieces and gaps that are thinner than `thin_m`, m.
+    pub(super) fn of(banded: &Banded<'_>, band: usize, thin_m: f64) -> Self {
+        let mut layered = BTreeMap::new();
+        let width = banded.cells()[0];
+        for (id, tile) in banded.tiles(band) {
+            let Some(tile) = tile.filter(|tile| has_layers(tile)) else {
+                continue;
+            };
+            let [across, up] = banded.within(id);
+            let hidden: Vec<usize> = banded
+                .bare()
+                .in_wells(id)
+                .filter(|well| well.hides)
+                .map(|well| well.cell)
+                .collect();
+            for (cell, ends) in tile_columns(&banded.bare().relief, id, tile, banded.cell_m()) {
+                let (x, y) = (cell % TILE, cell / TILE);
+                if x < across && y < up && !hidden.contains(&cell) {
+                    let cell = y * width + id.x as usize * TILE + x;
+                    layered.insert(cell, without_thin(&ends, thin_m));
+                }
+            }
+        }
+        Self {
+            heights: banded.heights(band),
+            layered,
+        }
+    }
+
+    /// The column over a cell.
+    pub(super) fn ends(&self, cell: usize) -> &[f32] {
+        self.layered
+            .get(&cell)
+            .map_or_else(|| slice::from_ref(&self.heights[cell]), Vec::as_slice)
+    }
+}
+
+/// A column without thin pieces and gaps: what lies on a thin gap lies on what is below it.
+fn without_thin(ends: &[f32], thin_m: f64) -> Vec<f32> {
+    let is_thin = |low: f32, high: f32| f64::from(high) - f64::from(low) < thin_m;
+    let mut kept = vec![ends[0]];
+    for piece in ends[1..].chunks_exact(2) {
+        let place = kept.len() - 1;
+        if is_thin(kept[place], piece[0]) {
+            kept[place] = kept[place].max(piece[1]);
+        } else if !is_thin(piece[0], piece[1]) {
+            kept.extend_from_slice(piece);
+        }
+    }
+    kept
+}
+
+fn has_layers(tile: &Tile) -> bool {
+    tile.pages().any(|page| is_layered(&page.get()))
+}
+
+fn is_layered(planes: &Planes) -> bool {
+    planes.own().iter().any(|own| place_of(own.shape).is_some())
+}
+
+/// The columns of a tile that have paint in layers, film upon film from the ground on. A film lies on the highest of what
+/// dried before it.
+fn tile_columns(
+    relief: &Relief,
+    id: TileId,
+    tile: &Tile,
+    cell_m: f64,
+) -> BTreeMap<usize, Vec<f32>> {
+    let layers = Layers::over(relief, cell_m);
+    let cells = f64::from(relief.cells_per_m()) as f32;
+    let ground: Vec<f32> = relief.tile(id).iter().map(|m| m * cells).collect();
+    let mut stack = Stack {
+        layers,
+        floors: ground.clone(),
+        tops: ground,
+        above: BTreeMap::new(),
+    };
+    let dry: Vec<_> = tile
+        .dry()
+        .map(|stack| stack.layers().collect())
+        .unwrap_or_default();
+    for layer in dry.iter().rev() {
+        stack.lay(&layer.planes.get());
+    }
+    stack.lay(&tile.wet());
+    let mut columns = stack.above;
+    columns.values_mut().flatten().for_each(|end| *end /= cells);
+    columns
+}
+
+/// The films of a tile, one over the other, heights in cells above the highest bare peaks.
+struct Stack {
+    layers: Layers,
+    /// What the next film was laid on: as high as if no paint were over air.
+    floors: Vec<f32>,
+    /// Tops of columns in one piece.
+    tops: Vec<f32>,
+    /// Ends of all others.
+    above: BTreeMap<usize, Vec<f32>>,
+}
+
+impl Stack {
+    /// Lays a film.
+    fn lay(&mut self, planes: &Planes) {
+        let own: Vec<Own<'_>> = planes
+            .own()
+            .iter()
+            .filter_map(|own| {
+                let (slot, layer) = place_of(own.shape)?;
+                let paint = planes.iter().position(|(known, _)| *known == slot)?;
+                Some((paint, layer, &own.bytes[..]))
+            })
+            .collect();
+        let capacity = self.layers.capacity as f32;
+        let mut column = Column::default();
+        for cell in 0..TILE_CELLS {
+            let floor = (self.floors[cell] + self.layers.below).max(0.0);
+            let lowest = self.layers.lowest(floor);
+            let total = column.read(planes, &own, cell, lowest);
+            let film = match column.fills.len() {
+                1 => Film::lying(total / capacity),
+                _ => {
+                    column.fills.iter_mut().for_each(|fill| *fill /= capacity);
+                    film(&column.fills, (lowest + 1) as f32 - floor)
+                }
+            };
+            self.floors[cell] += total / capacity;
+            self.put(cell, &film);
+        }
+    }
+
+    /// Puts the film of a cell onto its column.
+    fn put(&mut self, cell: usize, film: &Film) {
+        if let Some(top) = self.above.get_mut(&cell).and_then(|ends| ends.last_mut()) {
+            let base = *top;
+            *top += film.lying;
+            let ends = film.floating.iter().flatten().map(|height| base + height);
+            self.above.entry(cell).or_default().extend(ends);
+            return;
+        }
+        let base = self.tops[cell];
+        self.tops[cell] += film.lying;
+        if !film.floating.is_empty() {
+            let ends = film.floating.iter().flatten().map(|height| base + height);
+            let ends = std::iter::once(self.tops[cell]).chain(ends);
+            self.above.insert(cell, ends.collect());
+        }
+    }
+}
+
+/// A plane of the model's own: which of the paints, in which layer.
+type Own<'a> = (usize, usize, &'a [u8]);
+
+/// The paint of a film over one cell.
+#[derive(Default)]
+struct Column {
+    /// Quanta of each paint that are in no layer above the lowest.
+    left: Vec<f32>,
+    /// Quanta of all paints, layer after layer from the lowest on.
+    fills: Vec<f32>,
+}
+
+impl Column {
+    /// Reads a cell whose lowest layer with room is this; quanta in all.
+    fn read(&mut self, planes: &Planes, own: &[Own<'_>], cell: usize, lowest: usize) -> f32 {
+        self.left.clear();
+        self.left
+            .extend(planes.iter().map(|(_, plane)| plane[cell]));
+        let total = self.left.iter().sum();
+        self.fills.clear();
+        self.fills.push(0.0);
+        // From the lowest on: what counts no longer hold was taken from the top.
+        for (paint, layer, bytes) in own.iter().filter(|(_, layer, _)| *layer > lowest) {
+            let lies = (value(bytes, cell) as f32).min(self.left[*paint]);
+            if lies > 0.0 {
+                let place = layer - lowest;
+                self.fills.resize(self.fills.len().max(place + 1), 0.0);
+                self.fills[place] += lies;
+                self.left[*paint] -= lies;
+            }
+        }
+        self.fills[0] = self.left.iter().sum();
+        total
+    }
+}

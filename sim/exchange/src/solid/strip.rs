@@ -1,0 +1,156 @@
+//! The surface between two columns.
+//!
+//! A column is what fills it, as its ends from the lowest up: the top of what lies on the ground, then bottom and top of each
+//! piece over air. So even ends are tops, odd ones bottoms. Pieces of two columns that overlap are one piece between them:
+//! its bottom joins their lowest bottoms, its top their highest tops. Pieces and gaps that the other column lacks close on
+//! the way to it, at a cusp. No two of these lines cross.
+
+/// How far the cusp is from its column to the other: short of that, or cusps from opposite sides would touch.
+pub(super) const CUSP: f64 = 127.0 / 128.0;
+/// The same in walls: short of that, or it would be where the cusp of the surface beside the wall is.
+pub(super) const WALL_CUSP: f64 = 63.0 / 64.0;
+
+/// A piece or a gap that closes, between end `end` of its column and the next one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Turn {
+    /// True if it is one of the second column.
+    pub(super) is_second: bool,
+    /// Its lower end: even for a gap, odd for a piece.
+    pub(super) end: usize,
+}
+
+/// The lines between two columns. None are kept between columns of one end each.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Strip {
+    /// Ends that are joined.
+    pub(super) joins: Vec<[usize; 2]>,
+    /// What closes.
+    pub(super) turns: Vec<Turn>,
+}
+
+impl Strip {
+    /// Between columns of these ends.
+    pub(super) fn between(a: &[f32], b: &[f32]) -> Self {
+        let mut strip = Self::default();
+        if a.len() == 1 && b.len() == 1 {
+            return strip;
+        }
+        // The highest tops so far.
+        let (mut i, mut j) = (0, 0);
+        loop {
+            // The piece in which both are grows while one of its columns has more that the other overlaps.
+            loop {
+                if i + 2 < a.len() && a[i + 1] <= b[j] {
+                    strip.turn(false, i);
+                    i += 2;
+                } else if j + 2 < b.len() && b[j + 1] <= a[i] {
+                    strip.turn(true, j);
+                    j += 2;
+                } else {
+                    break;
+                }
+            }
+            strip.joins.push([i, j]);
+            loop {
+                match (i + 2 < a.len(), j + 2 < b.len()) {
+                    (false, false) => return strip,
+                    (true, true) if a[i + 1] <= b[j + 2] && b[j + 1] <= a[i + 2] => break,
+                    (true, other) if !other || a[i + 1] < b[j + 1] => {
+                        strip.turn(false, i + 1);
+                        i += 2;
+                    }
+                    _ => {
+                        strip.turn(true, j + 1);
+                        j += 2;
+                    }
+                }
+            }
+            strip.joins.push([i + 1, j + 1]);
+            (i, j) = (i + 2, j + 2);
+        }
+    }
+
+    fn turn(&mut self, is_second: bool, end: usize) {
+        self.turns.push(Turn { is_second, end });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn turn(is_second: bool, end: usize) -> Turn {
+        Turn { is_second, end }
+    }
+
+    #[test]
+    fn pieces_that_overlap_are_joined_and_others_close() {
+        let overhang = Strip::between(&[1.0, 5.0, 6.0], &[2.0]);
+        assert_eq!(overhang.joins, [[0, 0]]);
+        assert_eq!(overhang.turns, [turn(false, 1)]);
+        let ledge = Strip::between(&[1.0, 5.0, 6.0], &[5.5]);
+        assert_eq!(
+            (ledge.joins, ledge.turns),
+            (vec![[2, 0]], vec![turn(false, 0)])
+        );
+        let sheet = Strip::between(&[1.0, 5.0, 6.0], &[2.0, 5.5, 7.0]);
+        assert_eq!(sheet.joins, [[0, 0], [1, 1], [2, 2]]);
+        assert!(sheet.turns.is_empty());
+        let fork = Strip::between(&[0.0, 4.0, 8.0], &[0.0, 3.0, 5.0, 7.0, 9.0]);
+        assert_eq!(fork.joins, [[0, 0], [1, 1], [2, 4]]);
+        assert_eq!(fork.turns, [turn(true, 2)]);
+    }
+
+    /// Every end has one line, and lines keep the order of their ends.
+    #[test]
+    fn no_lines_cross() {
+        let mut state = 7u32;
+        let mut next = |most: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 16) % most
+        };
+        for _ in 0..5000 {
+            let mut column = || {
+                let (mut ends, mut at) = (vec![next(4) as f32], 4.0);
+                for _ in 0..2 * next(4) {
+                    at += 1.0 + next(4) as f32;
+                    ends.push(at);
+                }
+                ends
+            };
+            let (a, b) = (column(), column());
+            let strip = Strip::between(&a, &b);
+            if a.len() == 1 && b.len() == 1 {
+                continue;
+            }
+            let mut met = [vec![0; a.len()], vec![0; b.len()]];
+            let mut lines: Vec<[f32; 2]> = Vec::new();
+            for [i, j] in &strip.joins {
+                assert_eq!(i % 2, j % 2);
+                (met[0][*i], met[1][*j]) = (met[0][*i] + 1, met[1][*j] + 1);
+                lines.push([a[*i], b[*j]]);
+            }
+            for turn in &strip.turns {
+                let (side, own) = if turn.is_second { (1, &b) } else { (0, &a) };
+                let middle = 0.5 * (own[turn.end] + own[turn.end + 1]);
+                for end in [turn.end, turn.end + 1] {
+                    met[side][end] += 1;
+                    lines.push(if side == 1 {
+                        [middle, own[end]]
+                    } else {
+                        [own[end], middle]
+                    });
+                }
+            }
+            assert!(met.iter().flatten().all(|times| *times == 1), "{a:?} {b:?}");
+            for one in &lines {
+                for other in &lines {
+                    assert!(
+                        (one[0] - other[0]) * (one[1] - other[1]) >= 0.0,
+                        "{a:?} {b:?}"
+                    );
+                }
+            }
+        }
+    }
+}
