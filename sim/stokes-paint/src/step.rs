@@ -71,8 +71,8 @@ impl PaintModel for StokesPaint {
 
     fn rest(&mut self, rest: &mut Rest<'_>) {
         let layers = Layers::of(rest.window, rest.cell_m);
-        let lies = slots_in(rest.window, rest.area);
-        let slots: Vec<usize> = (0..SLOTS).filter(|slot| lies[*slot]).collect();
+        // Paint flows in from beyond the area, too.
+        let slots: Vec<usize> = rest.window.planes().map(|(slot, _)| slot).collect();
         let mut voxels = Voxels::read(rest.window, rest.area, layers, &slots);
         level(rest);
         voxels.follow(rest.window);
