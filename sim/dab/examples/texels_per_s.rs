@@ -2,6 +2,8 @@
 //! `impasto` on fine cells, on the number of threads that is given, one and two in turn if none is; one by its time of the
 //! processor, more by the clock: `cargo run --release -p maulstick-dab --example texels_per_s [THREADS [PART OF A NAME]]`.
 
+#[path = "scene/paths.rs"]
+mod paths;
 mod scene;
 
 use maulstick_brush::HeadPose;
@@ -11,27 +13,11 @@ use maulstick_impasto::Impasto;
 use maulstick_model::interface::{PaintModel, StepReport};
 use maulstick_num::fork_join::with_threads;
 
+use crate::paths::{PATHS, Path, SIDE, wet};
 use crate::scene::Bench;
 
-/// Cells either way.
-const SIDE: u32 = 1024;
-/// Wet paint on the canvas, quanta.
-const FILM: f32 = 40_000.0;
 /// Rounds, of which the first warms up.
 const ROUNDS: usize = 12;
-
-/// Heads along a path: cells from one to the next, and by how much it turns on that way, rad.
-fn heads(bench: &Bench, (way, turn): (f64, f64)) -> Vec<HeadPose> {
-    let (mut at, mut direction) = ([150.0, 300.0], 0.0f64);
-    let mut poses = Vec::new();
-    while poses.len() < 200 && at[0] > 60.0 && at[0] < f64::from(SIDE) - 120.0 {
-        poses.push(bench.pose(at, 0.0));
-        let (sine, cosine) = maulstick_num::sin_cos(direction);
-        at = [at[0] + way * cosine, at[1] + way * sine];
-        direction += turn;
-    }
-    poses
-}
 
 /// A stroke over wet paint.
 fn stroke(
@@ -40,8 +26,7 @@ fn stroke(
     poses: &[HeadPose],
     margin: i64,
 ) -> (StepReport, f64) {
-    bench.window.plane_mut(0).fill(FILM);
-    bench.window.plane_mut(1).fill(0.0);
+    wet(bench);
     bench.stroke(model, poses, margin)
 }
 
@@ -52,30 +37,23 @@ fn texels(only: &str) {
         ("better", Stroker::Better),
         ("spline", Stroker::Spline),
     ] {
-        for (path, way) in [
-            ("straight", (20.0, 0.0)),
-            ("oblique", (20.0, 1e-9)),
-            ("curved", (3.0, 0.03)),
-        ] {
-            let mut poses = heads(&bench, way);
-            if path == "oblique" {
-                let place = |i: usize| [150.0 + 18.5 * i as f64, 300.0 + 7.6 * i as f64];
-                poses = (0..40).map(|i| bench.pose(place(i), 0.0)).collect();
-            }
-            if !format!("{name}.{path}").contains(only) {
+        for path in PATHS {
+            let poses = path.heads(&bench);
+            let name = format!("{name}.{}", path.name);
+            if !name.contains(only) {
                 continue;
             }
             let mut model = Dab::stroking(stroker);
             let (mut cells, mut seconds) = (0, 0.0);
             for round in 0..ROUNDS {
-                let (sum, took) = stroke(&mut bench, &mut model, &poses, way.0.ceil() as i64);
+                let (sum, took) = stroke(&mut bench, &mut model, &poses, path.margin());
                 if round > 0 {
                     cells += sum.footprint_cells;
                     seconds += took;
                 }
             }
             println!(
-                "texels_per_s.{name}.{path}: {:.1} million",
+                "texels_per_s.{name}: {:.1} million",
                 1e-6 * cells as f64 / seconds
             );
         }
@@ -86,7 +64,7 @@ fn texels(only: &str) {
 fn models() {
     let mut bench = Bench::new("round", 384, (SIDE, 1.25e-4));
     let step = f64::from(bench.traits.step_cells);
-    let poses = heads(&bench, (step, 0.01));
+    let poses = Path::slow(step).heads(&bench);
     let mut models: [Box<dyn PaintModel>; 2] = [Box::<Dab>::default(), Box::<Impasto>::default()];
     let (mut took, mut cells) = ([0.0; 2], [0; 2]);
     for round in 0..ROUNDS {

@@ -74,19 +74,22 @@ impl Bench {
         pose
     }
 
-    /// A stroke with a full brush: what it did, and the seconds it took, of the processor if it is one thread's. `margin` is the
-    /// longest way between two heads, cells.
-    pub(crate) fn stroke(
-        &mut self,
-        model: &mut dyn PaintModel,
-        poses: &[HeadPose],
-        margin: i64,
-    ) -> (StepReport, f64) {
+    /// A full brush.
+    pub(crate) fn loaded(&self) -> BrushLoad {
         let mut load = BrushLoad::clean(self.head.strips());
         load.fill(&self.head, &self.traits, &[(1, 1.0)], None, (Half::Both, 7));
+        load
+    }
+
+    /// Steps through poses: what they did. `margin` is the longest way between two heads, cells.
+    pub(crate) fn steps(
+        &mut self,
+        model: &mut dyn PaintModel,
+        load: &mut BrushLoad,
+        poses: &[HeadPose],
+        margin: i64,
+    ) -> StepReport {
         let mut sum = StepReport::default();
-        let begun = Instant::now();
-        let had = processor_time(begun);
         for place in 1..poses.len() {
             let (from, to) = (&poses[place - 1], &poses[place]);
             let Some((low, high)) = low_bounds(&self.head, to, &self.traits, 8.0) else {
@@ -101,7 +104,7 @@ impl Bench {
                     to,
                 },
                 bounds: (low.map(|at| at - margin), high.map(|at| at + margin)),
-                load: &mut load,
+                load,
                 traits: self.traits,
                 handling: Handling::default(),
                 stain: 0.0,
@@ -109,6 +112,22 @@ impl Bench {
                 thinner: None,
             }));
         }
+        sum
+    }
+
+    /// A stroke with a full brush: what it did, and the seconds it took, of the processor if it is one thread's. `margin` is the
+    /// longest way between two heads, cells.
+    pub(crate) fn stroke(
+        &mut self,
+        model: &mut dyn PaintModel,
+        poses: &[HeadPose],
+        margin: i64,
+    ) -> (StepReport, f64) {
+        let mut load = self.loaded();
+        let begun = Instant::now();
+        let had = processor_time(begun);
+        let mut sum = self.steps(model, &mut load, poses, margin);
+        sum.add(&model.settle(&mut self.window, &mut load));
         let took = match threads() {
             1 => processor_time(begun) - had,
             _ => begun.elapsed().as_secs_f64(),

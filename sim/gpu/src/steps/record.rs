@@ -6,7 +6,7 @@ use maulstick_canvas::quantum::CELL_MAX;
 use maulstick_impasto::stages::advection::STAIN;
 use maulstick_model::brush::head::border;
 use maulstick_model::footprint::band::{middle, rank};
-use maulstick_model::interface::{Step, Transfer};
+use maulstick_model::interface::{Step, Sweep, Transfer};
 
 use super::residence::Residence;
 
@@ -16,13 +16,13 @@ const MARGIN: [f32; 2] = [0.1, 0.95];
 /// No plane.
 const NONE: u32 = u32::MAX;
 
-/// `Step` of impasto.wgsl.
+/// `Step` of step.wgsl.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct StepRecord {
     half_widths: [f32; 8],
-    pub(crate) from: [u32; 2],
-    pub(crate) size: [u32; 2],
+    from: [u32; 2],
+    size: [u32; 2],
     row: u32,
     plane: u32,
     limit: [u32; 2],
@@ -32,7 +32,7 @@ pub(crate) struct StepRecord {
     faces: u32,
     vertices: u32,
     poses: u32,
-    pub(crate) number: u32,
+    number: u32,
     low: f32,
     span: f32,
     bits: u32,
@@ -72,28 +72,32 @@ pub(crate) struct StepRecord {
 
 /// Bytes from one record to the next.
 pub(crate) const RECORD_BYTES: u64 = size_of::<StepRecord>() as u64;
+/// Words of a record, also of one of a blend.
+pub(crate) const RECORD_WORDS: usize = size_of::<StepRecord>() / 4;
+
+/// The cells on which a step works.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Grid {
+    /// Its lower left cell, in the window, beyond which it may go.
+    pub(crate) from: [i64; 2],
+    /// Its columns and rows.
+    pub(crate) size: [u32; 2],
+    /// Its cells that may be touched, from the first up to but not with the second.
+    pub(crate) inside: [[u32; 2]; 2],
+}
 
 impl StepRecord {
-    /// A step of a brush and a window that are on the device; its poses go to the end of `poses`. None
-    /// where the head is beside the surface.
+    /// A motion of a step of a brush and a window that are on the device; its poses go to the end of `poses`.
     pub(crate) fn new(
         step: &Step<'_>,
+        sweep: &Sweep<'_>,
         on: &Residence,
-        number: usize,
+        (grid, number): (&Grid, usize),
         poses: &mut Vec<f32>,
-    ) -> Option<Self> {
+    ) -> Self {
         let (head, traits) = (step.head, &step.traits);
-        let (after, before) = (step.sweep.to, step.sweep.from);
+        let (after, before) = (sweep.to, sweep.from);
         let (origin, limit) = (step.window.origin(), step.window.limit());
-        let within = |cell: i64, i: usize| (cell - origin[i]).clamp(0, limit[i] as i64) as u32;
-        let (from, to) = step.bounds;
-        let touched = [from, to].map(|edge| [0, 1].map(|i| within(edge[i], i)));
-        if (0..2).any(|i| touched[0][i] >= touched[1][i]) {
-            return None;
-        }
-        // Paint is pushed a cell farther than the brush comes.
-        let from = [0, 1].map(|i| within(from[i] - 1, i));
-        let to = [0, 1].map(|i| within(to[i] + 1, i));
         let (transfer, flow) = match step.handling.transfer {
             Transfer::Sponge => (1, 0.0),
             Transfer::Marker { flow } => (2, flow),
@@ -103,12 +107,13 @@ impl StepRecord {
         let loose = traits.loose(after.press);
         let record = Self {
             half_widths: std::array::from_fn(|i| traits.half_width_before(i + 1)),
-            from,
-            size: [0, 1].map(|i| to[i] - from[i]),
+            // Modulo 2³²: where it goes beyond the window no cell is looked at.
+            from: grid.from.map(|cell| cell as u32),
+            size: grid.size,
             row: step.window.width() as u32,
             plane: (step.window.width() * step.window.height()) as u32,
             limit: limit.map(|cells| cells as u32),
-            offset: [0, 1].map(|i| (origin[i] + i64::from(from[i])) as f32),
+            offset: [0, 1].map(|i| (origin[i] + grid.from[i]) as f32),
             planes: on.slots.len() as u32,
             strips: strips as u32,
             faces: on.faces as u32,
@@ -132,7 +137,7 @@ impl StepRecord {
             flow,
             most: step.handling.most.min(CELL_MAX as f32),
             push: u32::from(step.handling.push),
-            inside: touched.map(|edge| [0, 1].map(|i| edge[i] - from[i])),
+            inside: grid.inside,
             cell_max: CELL_MAX as f32,
             reach: traits.sink + step.window.ride_below(),
             border: border(traits) as i32,
@@ -181,7 +186,7 @@ impl StepRecord {
             motion(&after.skin.x, &before.skin.x, poses);
             motion(&after.skin.y, &before.skin.y, poses);
         }
-        Some(record)
+        record
     }
 
     /// A square of cells in a window of that size, on which nothing but the advection works.
@@ -202,10 +207,5 @@ impl StepRecord {
     /// Cells of the grid.
     pub(crate) fn cells(&self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
-    }
-
-    /// Rows of the window that the step may change.
-    pub(crate) fn rows(&self) -> std::ops::Range<usize> {
-        self.from[1] as usize..(self.from[1] + self.size[1]) as usize
     }
 }

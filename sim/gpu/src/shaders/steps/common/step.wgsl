@@ -1,4 +1,4 @@
-// What the stages of an impasto step share: its parameters and buffers. What follows adds an entry
+// What the stages of steps share, whatever the paint model: parameters and buffers. What follows adds an entry
 // point. Lengths are in cells of the surface, paint in quanta: whole numbers, in f32 exact up to 2²⁴.
 
 // Parameters of a step; `StepRecord` of record.rs.

@@ -37,7 +37,7 @@ impl Traffic {
             Binding::Load => on.load_words() as u64,
             Binding::Asks => on.asks_words() as u64,
             Binding::Base => 2 * cells,
-            Binding::Stats | Binding::Groups => 0,
+            Binding::Stats | Binding::Groups | Binding::Blend => 0,
             of_grid => of_grid.words_by_cell() * cells,
         };
         let words: u64 = kernel.bindings.iter().map(words).sum();
