@@ -25,5 +25,5 @@ mod steps;
 
 pub use device::{AdapterReport, Choice, Device, GpuError, adapters};
 pub use films::GpuFilms;
-pub use steps::model::GpuModel;
+pub use steps::model::{GpuModel, MakeModel};
 pub use steps::traffic::Traffic;

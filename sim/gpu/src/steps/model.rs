@@ -42,6 +42,9 @@ struct Session {
     uncounted: bool,
 }
 
+/// Makes a model on a device; a [`GpuError`] where the driver does not take the shaders.
+pub type MakeModel = fn(Device) -> Result<GpuModel, GpuError>;
+
 /// A paint model on the device; on the processor once that is lost.
 pub struct GpuModel {
     workspace: Option<Workspace>,
@@ -72,14 +75,12 @@ impl GpuModel {
         })
     }
 
-    /// The model of this name on a device; none where no device computes it.
-    ///
-    /// # Errors
-    /// A [`GpuError`] where the driver does not take the shaders.
-    pub fn of(name: &str, gpu: Device) -> Option<Result<Self, GpuError>> {
+    /// What makes the model of this name on a device; none where no device computes it.
+    #[must_use]
+    pub fn maker(name: &str) -> Option<MakeModel> {
         match name {
-            "impasto" => Some(Self::impasto(gpu)),
-            "dab" => Some(Self::dab(gpu)),
+            "impasto" => Some(Self::impasto),
+            "dab" => Some(Self::dab),
             _ => None,
         }
     }

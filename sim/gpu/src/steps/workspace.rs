@@ -19,6 +19,8 @@ use crate::device::{Device, GpuError};
 
 /// Steps of a submission.
 pub(crate) const BATCH: usize = 64;
+/// Blends of a batch: the device does some while the next ones are prepared.
+const MOST_BLENDS: usize = 128;
 /// Most bytes of the poses of a batch.
 const POSES_BYTES: usize = 16 << 20;
 /// Words of the statistics of all steps: cells touched, wet paint and thinner on them, the highest paint.
@@ -63,7 +65,9 @@ impl Batch {
 
     /// True if it is time that the device gets it.
     pub(crate) fn is_full(&self) -> bool {
-        self.steps == BATCH || 4 * self.poses.len() > POSES_BYTES
+        self.steps == BATCH
+            || self.blends.len() >= MOST_BLENDS
+            || 4 * self.poses.len() > POSES_BYTES
     }
 }
 
@@ -168,6 +172,7 @@ impl Workspace {
             let poses = (batch.poses.len() / batch.records.len().max(1)) as u64;
             let mut pass = encoder.begin_compute_pass(&Default::default());
             (0..batch.steps).for_each(|_| self.traffic.step());
+            let mut last = None;
             for call in &batch.calls {
                 let (pipeline, bound) = (&self.pipelines[call.stage], &bound[call.stage]);
                 let record = &batch.records[call.record];
@@ -176,7 +181,9 @@ impl Workspace {
                 let offset = |number: usize| (number as u64 * RECORD_BYTES) as u32;
                 let offsets = [call.record, call.blend].map(offset);
                 let count = 1 + usize::from(pipeline.kernel.blends());
-                pass.set_pipeline(&pipeline.pipeline);
+                if last.replace(call.stage) != Some(call.stage) {
+                    pass.set_pipeline(&pipeline.pipeline);
+                }
                 pass.set_bind_group(0, bound, &offsets[..count]);
                 let [grid, few] = GROUP;
                 let count = match pipeline.kernel.groups {

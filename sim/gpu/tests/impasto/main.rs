@@ -38,5 +38,5 @@ fn every_mode_does_what_the_processor_does() {
         quanta: [4.0, 24.0],
         beyond: 0.0,
     };
-    modes::agree(&mut gpu, &mut Impasto::default(), near);
+    modes::agree(&mut gpu, &mut Impasto::default(), near, scene::Scene::new);
 }

@@ -47,8 +47,13 @@ fn after(counts: &Counts, report: &StepReport) -> Counts {
     })
 }
 
-/// Every mode does on the device what it does on the processor.
-pub(crate) fn agree(gpu: &mut dyn PaintModel, cpu: &mut dyn PaintModel, near: Near) {
+/// Every mode does on the device what it does on the processor, in these scenes.
+pub(crate) fn agree(
+    gpu: &mut dyn PaintModel,
+    cpu: &mut dyn PaintModel,
+    near: Near,
+    scene_of: fn(u64) -> Scene,
+) {
     let painting = Handling::default();
     let with = |transfer| Handling {
         transfer,
@@ -83,7 +88,7 @@ pub(crate) fn agree(gpu: &mut dyn PaintModel, cpu: &mut dyn PaintModel, near: Ne
         let (mut off, mut did) = ([const { Vec::new() }; 2], 0.0f32);
         for seed in 0..4 {
             let scene = || {
-                let mut scene = Scene::new(seed);
+                let mut scene = scene_of(seed);
                 (scene.handling, scene.thinner) = (handling, thinner);
                 scene
             };
