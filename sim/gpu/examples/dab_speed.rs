@@ -14,10 +14,11 @@ use std::time::Instant;
 use maulstick_brush::HeadPose;
 use maulstick_dab::Dab;
 use maulstick_dab::stroke::Stroker;
+use maulstick_dab::volume::UNIT;
 use maulstick_gpu::impasto::measure::Measured;
 use maulstick_gpu::{Choice, Device, GpuError, GpuModel};
 use maulstick_model::brush::load::BrushLoad;
-use maulstick_model::interface::{PaintModel as _, StepReport};
+use maulstick_model::interface::{PaintModel, StepReport};
 use maulstick_num::fork_join::with_threads;
 
 use crate::paths::{PATHS, Path, SIDE, wet};
@@ -99,7 +100,7 @@ fn counts(bench: &Bench, load: &BrushLoad) -> (Vec<f32>, u64) {
 /// How the same stroke differs that the processor paints.
 fn compare(stroke: &mut Stroke<'_>, stroker: Stroker) {
     let (poses, margin) = (stroke.poses.clone(), stroke.path.margin());
-    let mut painted = |model: &mut dyn maulstick_model::interface::PaintModel| {
+    let mut painted = |model: &mut dyn PaintModel| {
         let bench = &mut *stroke.bench;
         wet(bench);
         let mut load = bench.loaded();
@@ -118,17 +119,20 @@ fn compare(stroke: &mut Stroke<'_>, stroker: Stroker) {
     };
     let (on_cpu, cells, _, took) = painted(&mut Dab::stroking(stroker));
     let (on_gpu, touched, created, _) = painted(&mut stroke.model);
+    wet(stroke.bench);
+    let (bare, _) = counts(stroke.bench, &stroke.bench.loaded());
+    let changed = on_cpu.iter().zip(&bare).filter(|(is, was)| is != was);
     let apart = on_cpu.iter().zip(&on_gpu).map(|(a, b)| (a - b).abs());
-    let changed = on_cpu.len() as f64;
-    let (most, off) = apart.fold((0.0f32, 0usize), |(most, off), apart| {
-        (most.max(apart), off + usize::from(apart > 0.0))
-    });
+    let most = apart.clone().fold(0.0, f32::max);
+    let off = apart.clone().filter(|apart| *apart > 0.0).count();
+    let units = apart.filter(|apart| *apart >= UNIT).count();
     let sum: f64 = on_gpu.iter().map(|count| f64::from(*count)).sum();
     let other: f64 = on_cpu.iter().map(|count| f64::from(*count)).sum();
     println!(
-        "  beside the processor: {} of {cells} texels more; largest difference {most} quanta (a unit is 512), {off} counts of \
-         {changed} differ, sums by {:.2e}; created {created} quanta; processor {:.1} million texels/s",
+        "  beside the processor: of {cells} texels {} more touched; of {} counts changed {off} differ, {units} by a unit of \
+         {UNIT} quanta or more, {most} at most; sums by {:.1e}; created {created} quanta; processor {:.1} million texels/s",
         touched as i64 - cells as i64,
+        changed.count(),
         (sum / other - 1.0).abs(),
         1e-6 * cells as f64 / took,
     );

@@ -211,7 +211,7 @@ pub(crate) fn run(report: &mut Report, backend: &str, model: &str) -> Result<(),
     }
     match model {
         "impasto" => advection::run(report, means.gpu),
-        "dab" => with_threads(cores.min(2), || texels::run(report)),
+        "dab" => with_threads(cores.min(2), || texels::run(report, means.gpu.as_ref())),
         _ => Ok(()),
     }
 }

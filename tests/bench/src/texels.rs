@@ -9,6 +9,7 @@ use maulstick_canvas::store::TileStore;
 use maulstick_canvas::window::Window;
 use maulstick_dab::Dab;
 use maulstick_dab::stroke::Stroker;
+use maulstick_gpu::{Device, GpuModel};
 use maulstick_model::brush::head::{Waypoint, low_bounds};
 use maulstick_model::brush::load::{BrushLoad, Half};
 use maulstick_model::brush::scale::Scale;
@@ -41,8 +42,18 @@ const STROKERS: [(&str, Stroker); 3] = [
     ("spline", Stroker::Spline),
 ];
 
-/// Measures and reports.
-pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
+/// The algorithm, on a device if there is one.
+fn model(stroker: Stroker, gpu: Option<&Device>) -> Result<Box<dyn PaintModel>, UserError> {
+    let Some(gpu) = gpu else {
+        return Ok(Box::new(Dab::stroking(stroker)));
+    };
+    let fault = |error| UserError::failure(format!("the graphics device: {error}"));
+    let model = GpuModel::dab_stroking(gpu.clone(), stroker).map_err(fault)?;
+    Ok(Box::new(model))
+}
+
+/// Measures and reports; of a device with upload and read-back of each stroke.
+pub(crate) fn run(report: &mut Report, gpu: Option<&Device>) -> Result<(), UserError> {
     let fault = |error: maulstick_brush::BrushError| UserError::failure(error.to_string());
     let mut file = BrushFile::library("round").map_err(fault)?;
     file.strips.count = BRUSH.1;
@@ -50,7 +61,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     for (stroker, kind) in STROKERS {
         let mut all = Vec::new();
         for (path, way, turn) in PATHS {
-            let rates = rates(&file, kind, (way, turn))?;
+            let rates = rates(&file, &mut *model(kind, gpu)?, (way, turn))?;
             all.extend(rates.iter().copied());
             report.median(&format!("texels_per_s.{stroker}.{path}"), "texels/s", rates);
         }
@@ -92,7 +103,11 @@ fn heads(file: &BrushFile, head: &Head, (way, turn): (f64, f64)) -> Vec<HeadPose
 }
 
 /// Texels a second of each round.
-fn rates(file: &BrushFile, kind: Stroker, path: (f64, f64)) -> Result<Vec<f64>, UserError> {
+fn rates(
+    file: &BrushFile,
+    model: &mut dyn PaintModel,
+    path: (f64, f64),
+) -> Result<Vec<f64>, UserError> {
     let head = Head::of(file);
     let traits = BrushTraits::of(file, SCALE.cell_m, SCALE.zoom);
     let poses = heads(file, &head, path);
@@ -101,7 +116,6 @@ fn rates(file: &BrushFile, kind: Stroker, path: (f64, f64)) -> Result<Vec<f64>, 
         .around([0; 2], [i64::from(SIDE); 2])
         .and_then(|all| Window::open(&mut store, all, &Relief::flat(SCALE.cell_m)));
     let mut window = leased.ok_or_else(|| UserError::failure("a surface cannot be leased"))?;
-    let mut model = Dab::stroking(kind);
     let mut rates = Vec::new();
     for round in 0..ROUNDS {
         window.plane_mut(0).fill(FILM);
@@ -144,6 +158,7 @@ fn rates(file: &BrushFile, kind: Stroker, path: (f64, f64)) -> Result<Vec<f64>, 
                 thinner: None,
             }));
         }
+        texels.add(&model.settle(&mut window, &mut load));
         let rate = texels.footprint_cells as f64 / begun.elapsed().as_secs_f64();
         if round > 0 {
             rates.push(rate);
