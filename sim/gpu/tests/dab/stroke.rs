@@ -108,4 +108,6 @@ fn the_books_balance() {
 #[test]
 fn a_lost_device_loses_no_paint() {
     strokes::outlive_their_device(&easel, &agree);
+    // A spline goes through the step before, too.
+    strokes::outlive_their_device(&|gpu| stroking(Stroker::Spline, gpu), &agree);
 }
