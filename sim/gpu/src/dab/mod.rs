@@ -29,7 +29,7 @@ use crate::steps::record::{Grid, StepRecord};
 use crate::steps::residence::Residence;
 use crate::steps::workspace::{Batch, Call};
 use record::BlendRecord;
-use stages::{BEGINS, BLENDS, DRAWS, ENDS, GIVES_BACK, KERNELS};
+use stages::{BEGINS, BLENDS, DRAWS, ENDS, GOES_ON, KERNELS};
 
 impl GpuModel {
     /// The paint model `dab` on a device; the load on the machine chooses how it strokes.
@@ -147,8 +147,9 @@ impl Planner for Steps {
                 blend: blends,
             };
             let first = batch.blends.len();
-            if place == 0 {
-                batch.calls.extend(BEGINS.map(|stage| call(stage, first)));
+            match place {
+                0 => batch.calls.push(call(BEGINS, first)),
+                _ => batch.calls.extend(GOES_ON.map(|stage| call(stage, first))),
             }
             batch.calls.extend(DRAWS.map(|stage| call(stage, first)));
             let count = drawing.shifts.len();
@@ -161,7 +162,6 @@ impl Planner for Steps {
                 batch.calls.push(call(BLENDS, batch.blends.len()));
                 batch.blends.push(bytemuck::cast(own));
             }
-            batch.calls.push(call(GIVES_BACK, first));
             if place + 1 == drawings.len() {
                 batch.calls.push(call(ENDS, first));
             }

@@ -3,22 +3,26 @@
 use maulstick_dab::touching::BRIDGED;
 use maulstick_dab::volume::{MOST, UNIT};
 
-use crate::steps::kernels::{
-    BOUND_HEAD, Binding as B, Groups, Kernel, RASTERIZER, WEIGH_FILMS, source,
-};
+use crate::steps::kernels::{Binding as B, Groups, Kernel, RASTERIZER, source};
 
-/// The stages; a step does [`BEGINS`], those of [`DRAWS`] for each drawing and [`BLENDS`] for each of its blends, then
-/// [`GIVES_BACK`], and [`ENDS`].
-pub(crate) static KERNELS: [Kernel; 9] = [
-    WEIGH_FILMS,
+/// The stages; a step does [`BEGINS`], those of [`DRAWS`] and [`BLENDS`] for each of its drawings, [`GOES_ON`] between two of
+/// them, and [`ENDS`].
+pub(crate) static KERNELS: [Kernel; 7] = [
     Kernel {
-        name: "weigh_canvas",
-        source: source!("dab/weigh_canvas", "dab/common/blend"),
+        name: "weigh",
+        source: source!("dab/weigh", "dab/common/blend"),
         constants: &[],
-        bindings: &[B::Planes, B::Base, B::Keys, B::Stats, B::Blend],
-        groups: Groups::Grid,
+        bindings: &[
+            B::Planes,
+            B::Base,
+            B::Load,
+            B::Asks,
+            B::Keys,
+            B::Stats,
+            B::Blend,
+        ],
+        groups: Groups::GridAndStrips,
     },
-    BOUND_HEAD,
     RASTERIZER,
     Kernel {
         name: "draw_cells",
@@ -35,13 +39,6 @@ pub(crate) static KERNELS: [Kernel; 9] = [
             B::Blend,
         ],
         groups: Groups::Grid,
-    },
-    Kernel {
-        name: "plan_blends",
-        source: source!("dab/plan_blends", "dab/common/blend"),
-        constants: &[],
-        bindings: &[B::Stats, B::Groups],
-        groups: Groups::One,
     },
     Kernel {
         name: "blend",
@@ -61,31 +58,38 @@ pub(crate) static KERNELS: [Kernel; 9] = [
             B::Stats,
             B::Blend,
         ],
-        groups: Groups::Planned(0),
+        groups: Groups::Grid,
     },
     Kernel {
         name: "give_back",
         source: source!("dab/give_back", "dab/common/blend"),
         constants: &[],
         bindings: &[B::Load, B::Asks, B::Stats],
-        groups: Groups::Planned(1),
+        groups: Groups::Strips,
+    },
+    Kernel {
+        name: "next_drawing",
+        source: source!("dab/next_drawing", "dab/common/blend"),
+        constants: &[],
+        bindings: &[B::Stats],
+        groups: Groups::One,
     },
     Kernel {
         name: "refill",
         source: source!("dab/refill", "dab/common/blend"),
         constants: &[],
         bindings: &[B::Load, B::Asks, B::Stats, B::Blend],
-        groups: Groups::Segments,
+        groups: Groups::Strips,
     },
 ];
 
 /// How thick films are, and how high paint stands.
-pub(crate) const BEGINS: [usize; 2] = [0, 1];
+pub(crate) const BEGINS: usize = 0;
 /// The head is drawn.
-pub(crate) const DRAWS: [usize; 4] = [2, 3, 4, 5];
+pub(crate) const DRAWS: [usize; 2] = [1, 2];
 /// It is blended with the canvas at one place.
-pub(crate) const BLENDS: usize = 6;
-/// Texels get what their cells hold.
-pub(crate) const GIVES_BACK: usize = 7;
-/// Reservoirs.
-pub(crate) const ENDS: usize = 8;
+pub(crate) const BLENDS: usize = 3;
+/// Texels get what their cells hold, and the next drawing begins.
+pub(crate) const GOES_ON: [usize; 2] = [4, 5];
+/// The last drawing's texels get it, and reservoirs fill them again.
+pub(crate) const ENDS: usize = 6;

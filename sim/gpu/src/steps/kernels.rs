@@ -66,6 +66,10 @@ pub(crate) enum Groups {
     Grid,
     /// As many as cover the segments, and so the strips and faces.
     Segments,
+    /// As many as cover the cells of the grid, or the strips.
+    GridAndStrips,
+    /// One for each strip.
+    Strips,
     /// One.
     One,
     /// As the plan of the step says at this place: none where nothing is touched.

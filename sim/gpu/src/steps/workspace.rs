@@ -188,6 +188,8 @@ impl Workspace {
                 let [grid, few] = GROUP;
                 let count = match pipeline.kernel.groups {
                     Groups::Grid => record.cells().div_ceil(grid),
+                    Groups::GridAndStrips => record.cells().max(on.strips as u64).div_ceil(grid),
+                    Groups::Strips => on.strips as u64,
                     Groups::Segments => (on.segments() as u64).div_ceil(few),
                     Groups::One => 1,
                     Groups::Planned(place) => {

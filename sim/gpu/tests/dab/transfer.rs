@@ -111,6 +111,8 @@ fn paint_goes_both_ways_in_whole_units() {
             let scene = || {
                 let mut scene = Scene::far(seed, 5.0);
                 scene.handling = handling;
+                // Nothing comes from inside the brush.
+                scene.traits.refill = 0.0;
                 // One more paint on the brush than on the canvas, and the other way about.
                 (0..PAINTS + 2).for_each(|slot| {
                     scene.window.plane_mut(slot);
@@ -124,7 +126,7 @@ fn paint_goes_both_ways_in_whole_units() {
             }
             let mut on_gpu = scene();
             let counts = on_gpu.counts();
-            let probe = prober.run(&mut step_of(&mut on_gpu, name, stain), "give_back");
+            let probe = prober.run(&mut step_of(&mut on_gpu, name, stain), "refill");
             let probe = probe.expect("done").expect("on the surface");
             lying(&on_gpu.window);
             if !matches!(name, "sponge" | "lasting") {

@@ -95,14 +95,13 @@ fn leave_film(paint: u32, i: u32, texel: u32, texel_cells: u32, film: f32) {
     }
 }
 
-fn meet(over: vec2<u32>, reach_low: vec2<u32>) {
-    let i = over.y * step.width + over.x;
+fn meet(i: u32, first: u32) {
     let head_of = drawn[i];
     if head_of.texel == NONE {
         return;
     }
     let texel_cells = atomicLoad(&asks[head_of.texel]);
-    let moved = vec2<i32>(over) + blend_of.shift;
+    let moved = vec2(i32(i % step.width), i32(i / step.width)) + blend_of.shift;
     let on_canvas = all(moved >= blend_of.low) && all(moved < blend_of.high);
     let at = vec2<u32>(moved);
     let cell = select(0u, cell_of(at.x, at.y), on_canvas);
@@ -126,8 +125,7 @@ fn meet(over: vec2<u32>, reach_low: vec2<u32>) {
             meeting.gap = max(-reach, 0.0) * (BRIDGED / to_cells);
             meeting.rate = head_of.rate;
             meeting.way = head_of.way;
-            let first = i32(reach_low.x) + blend_of.shift.x;
-            let left = clamp(first, blend_of.low.x, blend_of.high.x);
+            let left = clamp(i32(first) + blend_of.shift.x, blend_of.low.x, blend_of.high.x);
             goes = leaving(meeting, threshold_at(at, u32(left)));
             atomicAdd(&met[0], 1u);
             atomicAdd(&met[1], u32(meeting.canvas / 16.0 + 0.5));
@@ -162,7 +160,7 @@ fn meet(over: vec2<u32>, reach_low: vec2<u32>) {
     }
 }
 
-@compute @workgroup_size(16, 16)
+@compute @workgroup_size(256)
 fn blend(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(local_invocation_index) index: u32,
@@ -171,12 +169,12 @@ fn blend(
         atomicStore(&met[index], 0u);
     }
     workgroupBarrier();
-    let reach = vec2(atomicLoad(&stats[stat(REACH)]), atomicLoad(&stats[stat(REACH) + 1u]));
-    let size = vec2(
-        atomicLoad(&stats[stat(REACH_SIZE)]), atomicLoad(&stats[stat(REACH_SIZE) + 1u]),
-    );
-    if all(id.xy < size) {
-        meet(reach + id.xy, reach);
+    // Columns and rows over which the head is, away from a bias and from 1: nowhere where they are 0.
+    let first = u32(BIAS) - atomicLoad(&stats[stat(LEAST_TOUCHED)]);
+    let low = u32(BIAS) - atomicLoad(&stats[stat(LEAST_TOUCHED) + 1u]);
+    let high = atomicLoad(&stats[stat(MOST_TOUCHED) + 1u]);
+    if id.x >= low * step.width && id.x < high * step.width {
+        meet(id.x, first);
     }
     workgroupBarrier();
     if index == 0u {

@@ -1,5 +1,12 @@
-// The surfaces of strips whose turn it is are filled again from their reservoirs, in whole deep units, and paint runs
-// down them (reservoir.rs in maulstick-dab). What the step met is counted.
+// After the last blend the texels get what their cells hold; then the surfaces of strips whose turn it is are filled again
+// from their reservoirs, in whole deep units, and paint runs down them (reservoir.rs in maulstick-dab). What the step met is
+// counted. A workgroup has a strip; an invocation one of its texels, and of each some of the paints.
+
+const LANES = 16u;
+
+// Quanta of each paint on the surfaces of the strip's texels, and inside: of 64 paints at most.
+var<workgroup> surface: array<u32, 1024>;
+var<workgroup> inside_it: array<u32, 1024>;
 
 // Adds to a sum of all steps; nobody else does.
 fn tally(sum: u32, which: u32) {
@@ -17,13 +24,17 @@ fn count_step() {
     atomicMax(&stats[TOP_EVER], bitcast<u32>(top / step.cells_per_quantum));
 }
 
+fn place_of(paint: u32, k: u32) -> u32 {
+    return paint * TEXELS_PER_STRIP + k;
+}
+
 // Quanta of all paints on the surface and inside of a texel.
-fn held(texel: u32) -> vec2<u32> {
+fn held(k: u32) -> vec2<f32> {
     var sums = vec2(0u);
     for (var paint = 0u; paint < step.planes; paint++) {
-        sums += vec2(load[film_of(paint) + texel], load[inside_of(paint) + texel]);
+        sums += vec2(surface[place_of(paint, k)], inside_it[place_of(paint, k)]);
     }
-    return sums;
+    return vec2<f32>(sums);
 }
 
 // Deep units of so much as comes on the way, in quanta.
@@ -32,70 +43,103 @@ fn deep_units(quanta: f32, first: u32, texel: u32) -> f32 {
     return floor(blend_of.rate * quanta / blend_of.deep + threshold_of(threshold)) * blend_of.deep;
 }
 
-// Moves a share from one place to another, as far as that can count it.
-fn share_out(from_at: u32, to_at: u32, share: f32) {
-    let there = load[from_at];
-    let goes = min(min(u32(f32(there) * share), there), 0xffffffffu - load[to_at]);
-    load[from_at] = there - goes;
-    load[to_at] += goes;
+// What goes of a count as a share, as far as the other one has room for it.
+fn part(there: u32, share: f32, other_one: u32) -> u32 {
+    return min(min(u32(f32(there) * share), there), 0xffffffffu - other_one);
 }
 
-fn flow_in(texel: u32) {
-    let holds = vec2<f32>(held(texel));
+// Shares that rise from inside of a texel, and that sink into it.
+fn flow_of(strip: u32, k: u32) -> vec2<f32> {
+    let holds = held(k);
+    let texel = strip * TEXELS_PER_STRIP + k;
     let lacks = blend_of.full_surface - holds.x;
-    let rises = min(deep_units(lacks, blend_of.threshold_flows, texel), holds.y);
+    if lacks > 0.0 {
+        let rises = min(deep_units(lacks, blend_of.threshold_flows, texel), holds.y);
+        return vec2(select(0.0, rises / holds.y, rises > 0.0), 0.0);
+    }
     let room = max(blend_of.full_inside - holds.y, 0.0);
     let sinks = min(min(deep_units(-lacks, blend_of.threshold_flows, texel), room), holds.x);
-    for (var paint = 0u; paint < step.planes; paint++) {
-        let film = film_of(paint) + texel;
-        let inside = inside_of(paint) + texel;
-        if lacks > 0.0 && rises > 0.0 {
-            share_out(inside, film, rises / holds.y);
-        } else if lacks <= 0.0 && sinks > 0.0 {
-            share_out(film, inside, sinks / holds.x);
-        }
-    }
+    return vec2(0.0, select(0.0, sinks / holds.x, sinks > 0.0));
 }
 
-fn run_down(texel: u32) {
-    let upper = f32(held(texel - 1u).x);
-    let even = 0.5 * max(upper - f32(held(texel).x), 0.0);
+// Share that runs down from the texel above.
+fn run_of(strip: u32, k: u32) -> f32 {
+    let upper = held(k - 1u).x;
+    let even = 0.5 * max(upper - held(k).x, 0.0);
+    let texel = strip * TEXELS_PER_STRIP + k;
     let flow = min(deep_units(even, blend_of.threshold_runs, texel), upper);
-    if flow <= 0.0 {
-        return;
-    }
-    for (var paint = 0u; paint < step.planes; paint++) {
-        let film = film_of(paint) + texel;
-        share_out(film - 1u, film, flow / upper);
+    return select(0.0, flow / upper, flow > 0.0);
+}
+
+fn flow_in(shares: vec2<f32>, k: u32, lane: u32) {
+    for (var paint = lane; paint < step.planes; paint += LANES) {
+        let at = place_of(paint, k);
+        let rises = part(inside_it[at], shares.x, surface[at]);
+        let sinks = part(surface[at], shares.y, inside_it[at]);
+        surface[at] += rises - sinks;
+        inside_it[at] += sinks - rises;
     }
 }
 
-@compute @workgroup_size(64)
-fn refill(@builtin(global_invocation_id) id: vec3<u32>) {
-    let strip = id.x;
-    if strip == 0u {
+fn run_down(share: f32, k: u32, lane: u32) {
+    for (var paint = lane; paint < step.planes; paint += LANES) {
+        let at = place_of(paint, k);
+        let runs = part(surface[at - 1u], share, surface[at]);
+        surface[at - 1u] -= runs;
+        surface[at] += runs;
+    }
+}
+
+@compute @workgroup_size(16)
+fn refill(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let strip = group.x;
+    let texel = strip * TEXELS_PER_STRIP + lane;
+    if strip == 0u && lane == 0u {
         count_step();
     }
-    if strip >= step.strips {
-        return;
+    give_back_to(texel);
+    for (var paint = 0u; paint < step.planes; paint++) {
+        surface[place_of(paint, lane)] = load[film_of(paint) + texel];
+        inside_it[place_of(paint, lane)] = load[inside_of(paint) + texel];
     }
+    storageBarrier();
+    workgroupBarrier();
+    let touched = atomicLoad(&stats[stat(TOUCHED)]) != 0u && blend_of.turn != NONE;
     let over = atomicLoad(&asks[touch_of(strip)]) != 0u;
-    atomicStore(&asks[touch_of(strip)], 0u);
-    if atomicLoad(&stats[stat(TOUCHED)]) == 0u || blend_of.turn == NONE {
-        return;
-    }
-    if over && strip % FLOW_STEPS == blend_of.turn {
-        // From the point up: what runs down in one step goes a texel far.
-        for (var k = TEXELS_PER_STRIP; k > 0u; k--) {
-            let texel = strip * TEXELS_PER_STRIP + k - 1u;
-            flow_in(texel);
-            if k > 1u {
-                run_down(texel);
+    let flows = touched && over && strip % FLOW_STEPS == blend_of.turn;
+    // From the point up: what runs down in one step goes a texel far.
+    for (var k = TEXELS_PER_STRIP; k > 0u; k--) {
+        var shares = vec2(0.0);
+        if flows {
+            shares = flow_of(strip, k - 1u);
+        }
+        workgroupBarrier();
+        flow_in(shares, k - 1u, lane);
+        workgroupBarrier();
+        if k > 1u {
+            var share = 0.0;
+            if flows {
+                share = run_of(strip, k - 1u);
             }
+            workgroupBarrier();
+            run_down(share, k - 1u, lane);
+            workgroupBarrier();
         }
     }
-    for (var k = 0u; k < TEXELS_PER_STRIP; k++) {
-        let texel = strip * TEXELS_PER_STRIP + k;
-        load[1u + texel] = held(texel).x;
+    if touched {
+        var film = 0u;
+        for (var paint = 0u; paint < step.planes; paint++) {
+            let at = place_of(paint, lane);
+            load[film_of(paint) + texel] = surface[at];
+            load[inside_of(paint) + texel] = inside_it[at];
+            film += surface[at];
+        }
+        load[1u + texel] = film;
+    }
+    if lane == 0u {
+        atomicStore(&asks[touch_of(strip)], 0u);
     }
 }

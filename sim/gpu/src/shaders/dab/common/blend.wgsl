@@ -59,11 +59,8 @@ struct Drawn {
 const FIRST = 1u;
 const LAST = 2u;
 
-// Of a step's statistics: cells touched before the head was drawn last; where it is over the grid, and how large that
-// part is.
+// Of a step's statistics: cells touched before the head was drawn last.
 const BEFORE = 4u;
-const REACH = 15u;
-const REACH_SIZE = 17u;
 // Wet paint and thinner are counted in so many of 256 quanta.
 const WET_UNIT = 16.0;
 
@@ -99,4 +96,20 @@ fn lent(held: u32, texel_cells: u32) -> u32 {
     let low = held * blend_of.share_high;
     let sum = low + product_high(held, blend_of.share_low);
     return product_high(held, blend_of.share_high) + select(0u, 1u, sum < low);
+}
+
+// Gives a texel what its cells hold more, or less, than it lent them, and notes that its strip was over the canvas.
+fn give_back_to(texel: u32) {
+    if atomicLoad(&asks[texel]) == 0u {
+        return;
+    }
+    atomicStore(&asks[texel], 0u);
+    for (var paint = 0u; paint < step.planes; paint++) {
+        let change = change_of(paint) + texel;
+        load[film_of(paint) + texel] += atomicLoad(&asks[change]);
+        atomicStore(&asks[change], 0u);
+    }
+    if atomicLoad(&stats[stat(TOUCHED)]) > atomicLoad(&stats[stat(BEFORE)]) {
+        atomicStore(&asks[touch_of(texel / TEXELS_PER_STRIP)], 1u);
+    }
 }

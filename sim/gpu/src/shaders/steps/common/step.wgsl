@@ -197,6 +197,19 @@ fn raise(which: u32, value: u32) {
     }
 }
 
+// Notes the thickest film of a strip, if it is one, and of all.
+fn weigh_strip(strip: u32) {
+    if strip >= step.strips {
+        return;
+    }
+    var thickest = 0u;
+    for (var k = 0u; k < TEXELS_PER_STRIP; k++) {
+        thickest = max(thickest, load[1u + strip * TEXELS_PER_STRIP + k]);
+    }
+    atomicStore(&asks[thickest_of(strip)], thickest);
+    atomicMax(&stats[stat(FILM)], thickest);
+}
+
 // Columns and rows of the grid: from, up to but not with.
 struct Part {
     low: vec2<u32>,

@@ -1,8 +1,21 @@
-// How high paint stands where the step may touch it (`Lying` of maulstick-model); nothing is drawn yet.
+// How thick the films on the brush are, and how high paint stands where the step may touch it (`Lying` of
+// maulstick-model). Nothing is drawn yet.
+
+// All of the grid may be drawn on.
+fn open_grid() {
+    for (var axis = 0u; axis < 2u; axis++) {
+        atomicStore(&stats[stat(LEAST) + axis], u32(BIAS));
+        atomicStore(&stats[stat(MOST) + axis], u32(2 * BIAS));
+    }
+}
 
 @compute @workgroup_size(256)
-fn weigh_canvas(@builtin(global_invocation_id) id: vec3<u32>) {
+fn weigh(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = id.x;
+    weigh_strip(i);
+    if i == 0u {
+        open_grid();
+    }
     if i >= cells() {
         return;
     }
