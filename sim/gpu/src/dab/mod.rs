@@ -21,6 +21,7 @@ use maulstick_brush::HeadPose;
 use maulstick_dab::dither::Dither;
 use maulstick_dab::stroke::{Course, Stroker, bend, between, parts, places};
 use maulstick_dab::{Dab, first_blend};
+use maulstick_model::brush::head::low_bounds;
 use maulstick_model::interface::{Step, Sweep};
 
 use crate::device::{Device, GpuError};
@@ -100,17 +101,29 @@ fn drawings(step: &Step<'_>, stroker: Stroker) -> (Vec<Drawing>, f32) {
     (drawn.collect(), length)
 }
 
-/// The grid on which the head is drawn, which may go beyond the window; none where it is beside the surface.
-fn drawn_on(step: &Step<'_>) -> Option<Grid> {
-    let (from, to) = step.bounds;
+impl Drawing {
+    /// The cells of the step's bounds on which it can be, beside the window too; none where it is beside them.
+    fn grid(&self, step: &Step<'_>) -> Option<Grid> {
+        let [_, pose] = &self.poses;
+        let (low, high) = low_bounds(step.head, pose, &step.traits, f32::MAX)?;
+        let (from, to) = step.bounds;
+        let from = [0, 1].map(|i| low[i].max(from[i]));
+        let to = [0, 1].map(|i| high[i].min(to[i]));
+        (0..2)
+            .all(|i| from[i] < to[i])
+            .then(|| grid(step, from, to))
+    }
+}
+
+/// The cells of the surface from the first up to but not with the second, all of which may be drawn on.
+fn grid(step: &Step<'_>, from: [i64; 2], to: [i64; 2]) -> Grid {
     let origin = step.window.origin();
-    let size = [0, 1].map(|i| (to[i] - from[i]).max(0) as u32);
-    let grid = Grid {
+    let size = [0, 1].map(|i| (to[i] - from[i]) as u32);
+    Grid {
         from: [0, 1].map(|i| from[i] - origin[i]),
         size,
         inside: [[0; 2], size],
-    };
-    (!step.window.area(from, to).is_empty()).then_some(grid)
+    }
 }
 
 impl Planner for Steps {
@@ -121,53 +134,73 @@ impl Planner for Steps {
         number: u64,
         batch: &mut Batch,
     ) -> Option<Range<usize>> {
-        let grid = drawn_on(step)?;
-        let cells = u64::from(grid.size[0]) * u64::from(grid.size[1]);
-        if !on.has_room(cells) {
+        let (from, to) = step.bounds;
+        let canvas = step.window.area(from, to);
+        if canvas.is_empty() {
             return None;
         }
-        let stroker = self.stroker.unwrap_or_else(|| Stroker::of(step));
-        let (drawings, way) = drawings(step, stroker);
-        let own = BlendRecord::new(step, &grid, (number, way));
+        let bounds = grid(step, from, to);
+        if !on.has_room(bounds.cells()) {
+            return None;
+        }
+        let (drawings, way) = drawings(step, self.stroker.unwrap_or_else(|| Stroker::of(step)));
+        let drawings = drawings
+            .iter()
+            .filter_map(|drawing| Some((drawing, drawing.grid(step)?)));
+        let drawings: Vec<_> = drawings.collect();
+        let mut whole = BlendRecord::new(step, &bounds, (number, way));
+        whole.first_drawn = drawings.first().map_or(0, |(_, grid)| grid.cells() as u32);
+        let whole_step = Call {
+            stage: BEGINS,
+            record: batch.records.len(),
+            blend: batch.blends.len(),
+        };
+        batch.blends.push(bytemuck::cast(whole));
+        let record = StepRecord::new(step, &step.sweep, on, (&bounds, batch.steps));
+        batch.records.push(record);
+        batch.calls.push(whole_step);
         let mut blend = first_blend(number);
-        for (place, drawing) in drawings.iter().enumerate() {
+        for (place, (drawing, grid)) in drawings.iter().enumerate() {
             let [before, after] = &drawing.poses;
             let sweep = Sweep {
                 before: None,
                 from: before,
                 to: after,
             };
-            let of = (&grid, batch.steps);
-            let record = StepRecord::new(step, &sweep, on, of, &mut batch.poses);
-            let number = batch.records.len();
-            batch.records.push(record);
-            let call = |stage, blends: usize| Call {
-                stage,
-                record: number,
-                blend: blends,
+            let first = Call {
+                stage: BLENDS,
+                record: batch.records.len(),
+                blend: batch.blends.len(),
             };
-            let first = batch.blends.len();
-            match place {
-                0 => batch.calls.push(call(BEGINS, first)),
-                _ => batch.calls.extend(GOES_ON.map(|stage| call(stage, first))),
-            }
-            batch.calls.extend(DRAWS.map(|stage| call(stage, first)));
+            let record = StepRecord::new(step, &sweep, on, (grid, batch.steps));
+            batch
+                .records
+                .push(record.draw(step, &sweep, &mut batch.poses));
+            let goes_on = if place > 0 { &GOES_ON[..] } else { &[] };
+            let stages = goes_on.iter().chain(&DRAWS);
+            batch.calls.extend(stages.map(|stage| Call {
+                stage: *stage,
+                ..first
+            }));
+            let mut own = BlendRecord::new(step, grid, (number, way));
+            own.by_even = drawing.by_even;
             let count = drawing.shifts.len();
             for (i, shift) in drawing.shifts.iter().enumerate() {
-                let dither = Dither::new(step.load.seed(), blend);
+                let threshold = Dither::new(step.load.seed(), blend).parts_at(from);
                 blend = blend.wrapping_add(1);
-                let thresholds = (dither, step.bounds.0);
-                let mut own = own.at((i, count), *shift, thresholds);
-                own.by_even = drawing.by_even;
-                batch.calls.push(call(BLENDS, batch.blends.len()));
+                batch.calls.push(Call {
+                    blend: batch.blends.len(),
+                    ..first
+                });
+                let own = own.at((i, count), *shift, threshold);
                 batch.blends.push(bytemuck::cast(own));
             }
-            if place + 1 == drawings.len() {
-                batch.calls.push(call(ENDS, first));
-            }
         }
+        batch.calls.push(Call {
+            stage: ENDS,
+            ..whole_step
+        });
         batch.steps += 1;
-        let canvas = step.window.area(step.bounds.0, step.bounds.1);
         Some(canvas.from[1]..canvas.from[1] + canvas.size[1])
     }
 }

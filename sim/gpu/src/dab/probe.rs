@@ -5,7 +5,7 @@ use maulstick_dab::stroke::Stroker;
 use maulstick_model::interface::Step;
 
 use super::stages::KERNELS;
-use super::{Steps, drawn_on};
+use super::{Steps, drawings};
 use crate::device::{Device, GpuError};
 use crate::steps::kernels::Binding;
 use crate::steps::probing::Probing;
@@ -43,6 +43,7 @@ pub struct Probe {
 /// Stages of steps, one after the other.
 pub struct Prober {
     stages: Probing<Steps>,
+    stroker: Stroker,
 }
 
 impl Prober {
@@ -55,7 +56,7 @@ impl Prober {
             stroker: Some(stroker),
         };
         let stages = Probing::new(gpu, &KERNELS, steps)?;
-        Ok(Self { stages })
+        Ok(Self { stages, stroker })
     }
 
     /// Does those stages of a step that come up to the last one called `last`, writes what they did to
@@ -65,7 +66,9 @@ impl Prober {
     /// # Errors
     /// A [`GpuError`] of the device.
     pub fn run(&mut self, step: &mut Step<'_>, last: &str) -> Result<Option<Probe>, GpuError> {
-        let (Some(probed), Some(grid)) = (self.stages.run(step, last)?, drawn_on(step)) else {
+        let grid = drawings(step, self.stroker).0.pop();
+        let grid = grid.and_then(|drawing| drawing.grid(step));
+        let (Some(probed), Some(grid)) = (self.stages.run(step, last)?, grid) else {
             return Ok(None);
         };
         let size = grid.size.map(|cells| cells as usize);
@@ -86,7 +89,7 @@ impl Prober {
             })
         });
         Ok(Some(Probe {
-            origin: step.bounds.0,
+            origin: [0, 1].map(|i| step.window.origin()[i] + grid.from[i]),
             size,
             over: over.collect(),
         }))

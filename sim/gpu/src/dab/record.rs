@@ -21,7 +21,8 @@ const PARTS: [f64; 2] = [4_294_967_296.0, 18_446_744_073_709_551_616.0];
 pub(crate) struct BlendRecord {
     low: [i32; 2],
     high: [i32; 2],
-    pub(crate) shift: [i32; 2],
+    shift: [i32; 2],
+    corner: [i32; 2],
     /// Way of a cell of the head, reference cells: by the cells that its strip goes, and besides.
     pub(crate) by_even: [f32; 2],
     large: f32,
@@ -41,8 +42,9 @@ pub(crate) struct BlendRecord {
     rate: f32,
     turn: u32,
     thresholds: [u32; 2],
-    room: [u32; 32],
-    room_beside: [u32; 2],
+    /// Cells of the grid on which the step draws first.
+    pub(crate) first_drawn: u32,
+    room: [u32; 31],
 }
 
 const _: () = assert!(size_of::<BlendRecord>() == 4 * RECORD_WORDS);
@@ -56,6 +58,8 @@ impl BlendRecord {
     /// What the blends of a step on a grid share, of one that goes `cells` in all and is the brush's of this number.
     pub(crate) fn new(step: &Step<'_>, grid: &Grid, (number, cells): (u64, f32)) -> Self {
         let canvas = step.window.area(step.bounds.0, step.bounds.1);
+        let origin = step.window.origin();
+        let bounds = [0, 1].map(|i| step.bounds.0[i] - origin[i]);
         let on_grid = |cell: usize, i: usize| (cell as i64 - grid.from[i]) as i32;
         let large = 1.0 / (QUANTA_PER_UNIT * f64::from(step.traits.film_units_per_quantum));
         let share = (PARTS[1] / large.max(1.0)) as u64;
@@ -66,6 +70,7 @@ impl BlendRecord {
         Self {
             low: [0, 1].map(|i| on_grid(canvas.from[i], i)),
             high: [0, 1].map(|i| on_grid(canvas.from[i] + canvas.size[i], i)),
+            corner: [0, 1].map(|i| (grid.from[i] - bounds[i]) as i32),
             large: large as f32,
             share: halves(share),
             most: limits.most,
@@ -88,16 +93,16 @@ impl BlendRecord {
         }
     }
 
-    /// The blend of a drawing at a place of `count`, with these thresholds.
+    /// The blend of a drawing at a place of `count`, where the thresholds of the first cell of the step's bounds are these.
     pub(crate) fn at(
         mut self,
         (place, count): (usize, usize),
         shift: [i64; 2],
-        (dither, corner): (Dither, [i64; 2]),
+        threshold: u32,
     ) -> Self {
         self.shift = shift.map(|cells| cells as i32);
         self.ends = u32::from(place == 0) + 2 * u32::from(place + 1 == count);
-        self.threshold = dither.parts_at(corner);
+        self.threshold = threshold;
         self
     }
 }

@@ -71,8 +71,8 @@ pub(crate) static KERNELS: [Kernel; 7] = [
         name: "next_drawing",
         source: source!("dab/next_drawing", "dab/common/blend"),
         constants: &[],
-        bindings: &[B::Stats],
-        groups: Groups::One,
+        bindings: &[B::Keys, B::Stats],
+        groups: Groups::Grid,
     },
     Kernel {
         name: "refill",

@@ -48,7 +48,8 @@ impl Planner for Steps {
     ) -> Option<Range<usize>> {
         let grid = pushed(step)?;
         let of = (&grid, batch.steps);
-        let record = StepRecord::new(step, &step.sweep, on, of, &mut batch.poses);
+        let record = StepRecord::new(step, &step.sweep, on, of);
+        let record = record.draw(step, &step.sweep, &mut batch.poses);
         let call = |stage| Call {
             stage,
             record: batch.records.len(),

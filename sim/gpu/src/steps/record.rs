@@ -86,26 +86,29 @@ pub(crate) struct Grid {
     pub(crate) inside: [[u32; 2]; 2],
 }
 
+impl Grid {
+    /// How many cells it has.
+    pub(crate) fn cells(&self) -> u64 {
+        u64::from(self.size[0]) * u64::from(self.size[1])
+    }
+}
+
 impl StepRecord {
-    /// A motion of a step of a brush and a window that are on the device; its poses go to the end of `poses`.
+    /// A motion of a step of a brush and a window that are on the device; nothing is drawn.
     pub(crate) fn new(
         step: &Step<'_>,
         sweep: &Sweep<'_>,
         on: &Residence,
         (grid, number): (&Grid, usize),
-        poses: &mut Vec<f32>,
     ) -> Self {
-        let (head, traits) = (step.head, &step.traits);
-        let (after, before) = (sweep.to, sweep.from);
+        let (traits, after) = (&step.traits, sweep.to);
         let (origin, limit) = (step.window.origin(), step.window.limit());
         let (transfer, flow) = match step.handling.transfer {
             Transfer::Sponge => (1, 0.0),
             Transfer::Marker { flow } => (2, flow),
             Transfer::Paint | Transfer::Sampler | Transfer::Vacuum => (0, 0.0),
         };
-        let strips = head.strips();
-        let loose = traits.loose(after.press);
-        let record = Self {
+        Self {
             half_widths: std::array::from_fn(|i| traits.half_width_before(i + 1)),
             // Modulo 2³²: where it goes beyond the window no cell is looked at.
             from: grid.from.map(|cell| cell as u32),
@@ -115,10 +118,10 @@ impl StepRecord {
             limit: limit.map(|cells| cells as u32),
             offset: [0, 1].map(|i| (origin[i] + grid.from[i]) as f32),
             planes: on.slots.len() as u32,
-            strips: strips as u32,
+            strips: on.strips as u32,
             faces: on.faces as u32,
             vertices: on.vertices as u32,
-            poses: poses.len() as u32,
+            poses: 0,
             number: number as u32,
             low: -MARGIN[0],
             span: MARGIN[0] + MARGIN[1],
@@ -154,7 +157,16 @@ impl StepRecord {
             seep: [traits.seep.beside, traits.seep.along].map(|v| v as f32),
             parts: traits.parts,
             room: [0; 3],
-        };
+        }
+    }
+
+    /// Has the head drawn in this motion, whose poses go to the end of `poses`.
+    pub(crate) fn draw(mut self, step: &Step<'_>, sweep: &Sweep<'_>, poses: &mut Vec<f32>) -> Self {
+        let head = step.head;
+        let (after, before) = (sweep.to, sweep.from);
+        let strips = head.strips();
+        let loose = step.traits.loose(after.press);
+        self.poses = poses.len() as u32;
         debug_assert_eq!(after.x.len(), strips * STATIONS);
         let motion = |after: &[f32], before: &[f32], poses: &mut Vec<f32>| {
             poses.extend(
@@ -179,14 +191,14 @@ impl StepRecord {
         let turned = step.load.seed() as usize;
         poses.extend((0..strips).map(|strip| loose * lift[(strip + turned) % strips]));
         poses.extend((0..strips).map(|strip| rank(head, after, strip)));
-        if on.vertices > 0 {
+        if self.vertices > 0 {
             for plane in [&after.skin.x, &after.skin.y, &after.skin.z] {
                 poses.extend_from_slice(plane);
             }
             motion(&after.skin.x, &before.skin.x, poses);
             motion(&after.skin.y, &before.skin.y, poses);
         }
-        record
+        self
     }
 
     /// A square of cells in a window of that size, on which nothing but the advection works.

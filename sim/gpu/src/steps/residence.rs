@@ -127,6 +127,11 @@ impl Residence {
         1 + (1 + 2 * self.slots.len()) * self.texels
     }
 
+    /// Words of the poses of a drawing of the head.
+    pub(crate) fn poses_words(&self) -> usize {
+        (5 * STATIONS + 2) * self.strips + 5 * self.vertices
+    }
+
     /// Words of what is asked of the brush.
     pub(crate) fn asks_words(&self) -> usize {
         (2 + self.slots.len()) * self.texels + 2 * self.strips

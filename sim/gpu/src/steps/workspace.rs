@@ -169,15 +169,13 @@ impl Workspace {
                 .iter()
                 .map(|p| p.bind(&gpu, records, |binding| buffers[binding as usize]))
                 .collect();
-            let poses = (batch.poses.len() / batch.records.len().max(1)) as u64;
             let mut pass = encoder.begin_compute_pass(&Default::default());
             (0..batch.steps).for_each(|_| self.traffic.step());
             let mut last = None;
             for call in &batch.calls {
                 let (pipeline, bound) = (&self.pipelines[call.stage], &bound[call.stage]);
                 let record = &batch.records[call.record];
-                self.traffic
-                    .dispatch(pipeline.kernel, on, record.cells(), poses);
+                self.traffic.dispatch(pipeline.kernel, on, record.cells());
                 let offset = |number: usize| (number as u64 * RECORD_BYTES) as u32;
                 let offsets = [call.record, call.blend].map(offset);
                 let count = 1 + usize::from(pipeline.kernel.blends());

@@ -40,7 +40,7 @@ fn quotient(a: f32, b: f32) -> f32 {
     return near + more * bitcast<f32>(u32(exponent_of(near) - 23) << 23u);
 }
 
-// Threshold of a cell of the grid, counted from the first cell of its row over which the head is.
+// Threshold of a cell of the step's bounds, counted from the first cell of its row over which the head is.
 fn threshold_at(at: vec2<u32>, left: u32) -> f32 {
     let row = increase(left, blend_of.across_high, blend_of.across_low)
         + increase(at.y, blend_of.up_high, blend_of.up_low);
@@ -125,8 +125,10 @@ fn meet(i: u32, first: u32) {
             meeting.gap = max(-reach, 0.0) * (BRIDGED / to_cells);
             meeting.rate = head_of.rate;
             meeting.way = head_of.way;
-            let left = clamp(i32(first) + blend_of.shift.x, blend_of.low.x, blend_of.high.x);
-            goes = leaving(meeting, threshold_at(at, u32(left)));
+            let reached = i32(first) + blend_of.shift.x;
+            let left = clamp(reached, blend_of.low.x, blend_of.high.x) + blend_of.corner.x;
+            let place = vec2<u32>(moved + blend_of.corner);
+            goes = leaving(meeting, threshold_at(place, u32(left)));
             atomicAdd(&met[0], 1u);
             atomicAdd(&met[1], u32(meeting.canvas / 16.0 + 0.5));
             if step.thinner != NONE {

@@ -1,5 +1,4 @@
-// The head over each cell of the grid (`Drawn` of maulstick-model), and over how many of them each texel is. What was
-// drawn is gone afterwards.
+// The head over each cell of the grid (`Drawn` of maulstick-model), and over how many of them each texel is.
 
 @compute @workgroup_size(256)
 fn draw_cells(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -15,8 +14,6 @@ fn draw_cells(@builtin(global_invocation_id) id: vec3<u32>) {
     let at = vec2(i % step.width, i / step.width);
     let fragment = fragment_of(key & ((1u << step.bits) - 1u), at.x, at.y);
     let cover = covered(i);
-    atomicStore(&keys[i], NONE);
-    atomicStore(&keys[cells() + i], 0u);
     let way = sqrt(dot(fragment.moved, fragment.moved)) * blend_of.by_travel + blend_of.evenly;
     let rate = 1.0 - decay(step.ln_kept * way);
     drawn[i] = Drawn(

@@ -1,7 +1,7 @@
 // How thick the films on the brush are, and how high paint stands where the step may touch it (`Lying` of
 // maulstick-model). Nothing is drawn yet.
 
-// All of the grid may be drawn on.
+// All of a grid may be drawn on.
 fn open_grid() {
     for (var axis = 0u; axis < 2u; axis++) {
         atomicStore(&stats[stat(LEAST) + axis], u32(BIAS));
@@ -19,8 +19,9 @@ fn weigh(@builtin(global_invocation_id) id: vec3<u32>) {
     if i >= cells() {
         return;
     }
-    atomicStore(&keys[i], NONE);
-    atomicStore(&keys[cells() + i], 0u);
+    if i < blend_of.first_drawn {
+        clear_cell(i, blend_of.first_drawn);
+    }
     let at = vec2(i % step.width, i / step.width);
     if any(vec2<i32>(at) < blend_of.low) || any(vec2<i32>(at) >= blend_of.high) {
         return;

@@ -8,6 +8,8 @@ struct Blend {
     high: vec2<i32>,
     // The cells by which the drawn head is moved.
     shift: vec2<i32>,
+    // The grid's lower left cell, from that of the step's bounds.
+    corner: vec2<i32>,
     // Way of a cell of the head, reference cells: by the cells that its strip goes, and besides.
     by_travel: f32,
     evenly: f32,
@@ -23,7 +25,7 @@ struct Blend {
     exchanges: f32,
     flow: f32,
     lasting: u32,
-    // Threshold of the grid's lower left cell in parts of 2⁻³², and how thresholds increase across and up in parts of
+    // Threshold of the lower left cell of the step's bounds in parts of 2⁻³², and how thresholds increase across and up in parts of
     // 2⁻⁶⁴ and, across, in floating point.
     threshold: u32,
     across_high: u32,
@@ -39,6 +41,8 @@ struct Blend {
     turn: u32,
     threshold_flows: u32,
     threshold_runs: u32,
+    // Cells of the grid on which the step draws first.
+    first_drawn: u32,
 }
 
 // The lowest part of the head over a cell: `Drawn` of maulstick-model, and what goes over there.
@@ -66,6 +70,12 @@ const WET_UNIT = 16.0;
 
 @group(0) @binding(10) var<storage, read_write> drawn: array<Drawn>;
 @group(0) @binding(16) var<uniform> blend_of: Blend;
+
+// Nothing is drawn on a cell of a grid of so many.
+fn clear_cell(cell: u32, grid_cells: u32) {
+    atomicStore(&keys[cell], NONE);
+    atomicStore(&keys[grid_cells + cell], 0u);
+}
 
 // The upper half of a product.
 fn product_high(a: u32, b: u32) -> u32 {
