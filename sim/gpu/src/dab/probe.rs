@@ -4,8 +4,9 @@ use bytemuck::pod_collect_to_vec;
 use maulstick_dab::stroke::Stroker;
 use maulstick_model::interface::Step;
 
+use super::Steps;
+use super::drawing::drawings;
 use super::stages::KERNELS;
-use super::{Steps, drawings};
 use crate::device::{Device, GpuError};
 use crate::steps::kernels::Binding;
 use crate::steps::probing::Probing;

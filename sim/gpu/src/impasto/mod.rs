@@ -50,13 +50,11 @@ impl Planner for Steps {
         let of = (&grid, batch.steps);
         let record = StepRecord::new(step, &step.sweep, on, of);
         let record = record.draw(step, &step.sweep, &mut batch.poses);
-        let call = |stage| Call {
-            stage,
-            record: batch.records.len(),
-            blend: 0,
-        };
-        batch.calls.extend(stages(record.parts).map(call));
-        batch.records.push(record);
+        let call = batch.next(record, 0);
+        let stages = stages(record.parts);
+        batch
+            .calls
+            .extend(stages.map(|stage| Call { stage, ..call }));
         batch.steps += 1;
         let first = grid.from[1] as usize;
         Some(first..first + grid.size[1] as usize)

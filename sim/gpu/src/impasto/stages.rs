@@ -4,17 +4,27 @@ use maulstick_impasto::stages::velocity::{EASE, SLIP, SQUISH, STABLE};
 use maulstick_model::brush::traits::BrushTraits;
 use maulstick_model::transfer::{POOL, SWAP_FILM};
 
-use crate::steps::kernels::{
-    BOUND_HEAD, Binding as B, Groups, Kernel, RASTERIZER, WEIGH_FILMS, source,
-};
+use crate::steps::kernels::{Binding as B, Groups, Kernel, RASTERIZER, source};
 
 /// The stage that pushes paint along an axis.
 pub(crate) const PUSHES: &str = "advection";
 
 /// The stages of a step, in order.
 pub(crate) static KERNELS: [Kernel; 14] = [
-    WEIGH_FILMS,
-    BOUND_HEAD,
+    Kernel {
+        name: "weigh_films",
+        source: source!("impasto/weigh_films", "impasto/common/axes"),
+        constants: &[],
+        bindings: &[B::Load, B::Asks, B::Stats],
+        groups: Groups::Segments,
+    },
+    Kernel {
+        name: "bound_head",
+        source: source!("impasto/bound_head", "impasto/common/axes"),
+        constants: &[],
+        bindings: &[B::Poses, B::Head, B::Stats],
+        groups: Groups::Segments,
+    },
     Kernel {
         name: "weigh_grid",
         source: source!("impasto/weigh_grid", "impasto/common/axes"),

@@ -109,24 +109,6 @@ pub(crate) use source;
 
 use Binding as B;
 
-/// The thickest film of each strip.
-pub(crate) const WEIGH_FILMS: Kernel = Kernel {
-    name: "weigh_films",
-    source: source!("steps/weigh_films"),
-    constants: &[],
-    bindings: &[B::Load, B::Asks, B::Stats],
-    groups: Groups::Segments,
-};
-
-/// The cells that what is low of the head reaches.
-pub(crate) const BOUND_HEAD: Kernel = Kernel {
-    name: "bound_head",
-    source: source!("steps/bound_head"),
-    constants: &[],
-    bindings: &[B::Poses, B::Head, B::Stats],
-    groups: Groups::Segments,
-};
-
 /// The lowest segment of each cell.
 pub(crate) const RASTERIZER: Kernel = Kernel {
     name: "rasterizer",

@@ -56,6 +56,16 @@ pub(crate) struct Batch {
 }
 
 impl Batch {
+    /// Takes a record; a stage with it and the next blend.
+    pub(crate) fn next(&mut self, record: StepRecord, stage: usize) -> Call {
+        self.records.push(record);
+        Call {
+            stage,
+            record: self.records.len() - 1,
+            blend: self.blends.len(),
+        }
+    }
+
     /// Leaves out what comes after the last stage of this name.
     pub(crate) fn end_after(&mut self, kernels: &[Kernel], name: &str) {
         let last = |call: &Call| kernels[call.stage].name == name;

@@ -33,9 +33,7 @@ fn bound_face(face: u32, height: f32) {
 fn bound_head(@builtin(global_invocation_id) id: vec3<u32>) {
     let film = f32(atomicLoad(&stats[stat(FILM)])) * step.film_cells_per_quantum;
     let ever = bitcast<f32>(atomicLoad(&stats[TOP_EVER])) * step.cells_per_quantum;
-    // Now, where that is known already.
-    let top = bitcast<f32>(atomicLoad(&stats[stat(TOP)]));
-    let height = max(ever, top) + film + step.reach;
+    let height = ever + film + step.reach;
     if id.x < step.faces {
         bound_face(id.x, height);
     }
