@@ -1,6 +1,6 @@
 //! Backend of the paint's steps: as `[paint] backend` or `--backend` say.
 
-use maulstick_gpu::{Choice, Device, GpuImpasto};
+use maulstick_gpu::{Choice, Device, GpuModel};
 use maulstick_painting::Sequencer;
 use maulstick_rig::UserError;
 use maulstick_types::scene::CANVAS;
@@ -19,20 +19,18 @@ pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), Us
         "gpu" => Choice::Forced,
         _ => Choice::Auto,
     };
-    match (sequencer.painting().model(CANVAS), choice) {
-        (Some("impasto"), _) => {}
-        (_, Choice::Auto) => return Ok(()),
-        (model, Choice::Forced) => {
-            let what = format!(
-                "no GPU computes the paint model '{}'",
-                model.unwrap_or_default()
-            );
-            return Err(UserError::usage(what)
-                .at(PLACE)
-                .help("leave the choice to the rig: backend = \"auto\""));
-        }
-    }
-    match (Device::open(choice).and_then(GpuImpasto::new), choice) {
+    let name = sequencer.painting().model(CANVAS).unwrap_or_default();
+    let Some(make) = GpuModel::maker(name) else {
+        return match choice {
+            Choice::Auto => Ok(()),
+            Choice::Forced => Err(UserError::usage(format!(
+                "no GPU computes the paint model '{name}'"
+            ))
+            .at(PLACE)
+            .help("leave the choice to the rig: backend = \"auto\"")),
+        };
+    };
+    match (Device::open(choice).and_then(make), choice) {
         (Ok(model), _) => {
             tracing::info!("paint is computed by {}", model.adapter());
             sequencer.painting_mut().set_model(Box::new(model));

@@ -12,15 +12,15 @@ use maulstick_rig::UserError;
 use super::{library_brush, pixels};
 
 /// The brush: its width, mm, and its strips.
-const BRUSH: (f64, usize) = (9.0, 256);
+const BRUSH: (f64, usize) = (5.0, 128);
 /// What is done, and the way from head to head, mm.
 pub(super) const PANELS: [(&str, f64); 2] = [
     (
-        "fast hand: left one footprint along the way, right each",
+        "a fast hand; left: one footprint a step, right: one a cell",
         6.0,
     ),
     (
-        "slow hand: left one footprint along the way, right each",
+        "a slow hand; left: one footprint a step, right: one a cell",
         1.5,
     ),
 ];
@@ -75,9 +75,9 @@ fn stroke(
         trial.pose([place[0] * size[0], place[1] * size[1]], turn)
     };
     let poses: Vec<HeadPose> = (0..=heads).map(head).collect();
-    trial.stroke(&mut Dab::stroking(stroker), &poses, 0);
+    trial.stroke(&mut Dab::stroking(stroker), &poses);
     let width = trial.window.width();
-    let plane = trial.window.plane(0).unwrap_or_default().to_vec();
+    let plane = trial.window.plane(1).unwrap_or_default().to_vec();
     let [bare, darker] = GREYS;
     Ok(move |x: usize, y: usize| {
         let lies = plane.get(y * width + x).copied().unwrap_or(0.0);

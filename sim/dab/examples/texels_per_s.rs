@@ -9,13 +9,11 @@ use maulstick_dab::Dab;
 use maulstick_dab::stroke::Stroker;
 use maulstick_impasto::Impasto;
 use maulstick_model::interface::{PaintModel, StepReport};
-use maulstick_model::trial::Trial;
+use maulstick_model::trial::{PATHS, Trial};
 use maulstick_num::fork_join::{threads, with_threads};
 
 /// Cells either way.
 const SIDE: u32 = 1024;
-/// Wet paint on the canvas, quanta.
-const FILM: f32 = 40_000.0;
 /// Rounds, of which the first warms up.
 const ROUNDS: usize = 12;
 
@@ -27,19 +25,6 @@ fn trial(strips: usize, cell_m: f64) -> Trial {
     Trial::new(file, SIDE, cell_m).expect("a surface")
 }
 
-/// Heads along a path: cells from one to the next, and by how much it turns on that way, rad.
-fn heads(trial: &Trial, (way, turn): (f64, f64)) -> Vec<HeadPose> {
-    let (mut at, mut direction) = ([150.0, 300.0], 0.0f64);
-    let mut poses = Vec::new();
-    while poses.len() < 200 && at[0] > 60.0 && at[0] < f64::from(SIDE) - 120.0 {
-        poses.push(trial.pose(at, 0.0));
-        let (sine, cosine) = maulstick_num::sin_cos(direction);
-        at = [at[0] + way * cosine, at[1] + way * sine];
-        direction += turn;
-    }
-    poses
-}
-
 /// Time of the processor that this thread has had, s, as Linux counts it; by the clock elsewhere.
 fn processor_time(since: Instant) -> f64 {
     let counted = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
@@ -49,11 +34,10 @@ fn processor_time(since: Instant) -> f64 {
 
 /// A stroke over wet paint, and the seconds it took, of the processor if it is one thread's.
 fn stroke(trial: &mut Trial, model: &mut dyn PaintModel, poses: &[HeadPose]) -> (StepReport, f64) {
-    trial.window.plane_mut(0).fill(FILM);
-    trial.window.plane_mut(1).fill(0.0);
+    trial.wet();
     let begun = Instant::now();
     let had = processor_time(begun);
-    let sum = trial.stroke(model, poses, 1);
+    let sum = trial.stroke(model, poses);
     let took = match threads() {
         1 => processor_time(begun) - had,
         _ => begun.elapsed().as_secs_f64(),
@@ -68,17 +52,10 @@ fn texels(only: &str) {
         ("better", Stroker::Better),
         ("spline", Stroker::Spline),
     ] {
-        for (path, way) in [
-            ("straight", (20.0, 0.0)),
-            ("oblique", (20.0, 1e-9)),
-            ("curved", (3.0, 0.03)),
-        ] {
-            let mut poses = heads(&trial, way);
-            if path == "oblique" {
-                let place = |i: usize| [150.0 + 18.5 * i as f64, 300.0 + 7.6 * i as f64];
-                poses = (0..40).map(|i| trial.pose(place(i), 0.0)).collect();
-            }
-            if !format!("{name}.{path}").contains(only) {
+        for path in PATHS {
+            let poses = trial.heads(path);
+            let name = format!("{name}.{}", path.name);
+            if !name.contains(only) {
                 continue;
             }
             let mut model = Dab::stroking(stroker);
@@ -93,7 +70,7 @@ fn texels(only: &str) {
                 }
             }
             let [texels, touched] = [texels, cells].map(|count| 1e-6 * count as f64 / seconds);
-            println!("texels_per_s.{name}.{path}: {texels:.1} million, touched {touched:.1}");
+            println!("texels_per_s.{name}: {texels:.1} million, touched {touched:.1}");
         }
     }
 }
@@ -102,7 +79,8 @@ fn texels(only: &str) {
 fn models() {
     let mut trial = trial(384, 1.25e-4);
     let step = f64::from(trial.traits.step_cells);
-    let poses = heads(&trial, (step, 0.01));
+    let place = |i: usize| [150.0 + step * i as f64, 300.0 + 0.3 * step * i as f64];
+    let poses: Vec<HeadPose> = (0..200).map(|i| trial.pose(place(i), 0.0)).collect();
     let mut models: [Box<dyn PaintModel>; 2] = [Box::<Dab>::default(), Box::<Impasto>::default()];
     let (mut took, mut cells) = ([0.0; 2], [0; 2]);
     for round in 0..ROUNDS {

@@ -21,7 +21,7 @@ pub struct Dither {
 
 impl Dither {
     /// Increase of a threshold from a cell to the next on its right.
-    pub(crate) const ACROSS: f32 = STRIDES[0] as f32;
+    pub const ACROSS: f32 = STRIDES[0] as f32;
 
     /// Thresholds of the blend of this number with this seed.
     #[must_use]
@@ -32,6 +32,18 @@ impl Dither {
         }
     }
 
+    /// Increases of a threshold across and up, in parts of 2⁻⁶⁴ of a turn.
+    #[must_use]
+    pub fn increases() -> [u64; 2] {
+        [0, 1].map(|axis| (STRIDES[axis] * 18_446_744_073_709_551_616.0) as u64)
+    }
+
+    /// Threshold of a cell of the surface in parts of 2⁻³² of a turn, for devices without f64.
+    #[must_use]
+    pub fn parts_at(&self, cell: [i64; 2]) -> u32 {
+        (fraction(self.sum(cell)) * 4_294_967_296.0) as u32
+    }
+
     /// Thresholds of a cell and of those on its right.
     #[must_use]
     pub fn along<const N: usize>(&self, [x, y]: [i64; 2]) -> [f32; N] {
@@ -40,9 +52,12 @@ impl Dither {
 
     /// Threshold of a cell of the surface.
     #[must_use]
-    pub fn at(&self, [x, y]: [i64; 2]) -> f32 {
-        let sum = self.start + x as f64 * STRIDES[0] + y as f64 * STRIDES[1];
-        below_one(fraction(sum))
+    pub fn at(&self, cell: [i64; 2]) -> f32 {
+        below_one(fraction(self.sum(cell)))
+    }
+
+    fn sum(&self, [x, y]: [i64; 2]) -> f64 {
+        self.start + x as f64 * STRIDES[0] + y as f64 * STRIDES[1]
     }
 }
 

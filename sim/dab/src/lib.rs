@@ -38,4 +38,4 @@ pub mod transfer;
 pub mod volume;
 
 pub use layers::Layers;
-pub use step::Dab;
+pub use step::{Dab, first_blend};

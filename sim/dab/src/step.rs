@@ -18,6 +18,12 @@ use crate::stroke::{Course, Stroker, bend, between, parts, places};
 /// Blends of a step at most, for their numbers.
 const BLENDS: u64 = 256;
 
+/// The number of the first blend of a brush's step of this number, for its [thresholds](Dither::new).
+#[must_use]
+pub fn first_blend(step: u64) -> u64 {
+    step.wrapping_mul(BLENDS)
+}
+
 /// The paint model `dab`, with room for its step.
 #[derive(Debug, Default)]
 pub struct Dab {
@@ -48,8 +54,9 @@ impl PaintModel for Dab {
 }
 
 impl Stroker {
-    /// By the load: where steps are doubled once they bend, so that none is seen; where twice, the machine falls behind.
-    fn of(step: &Step<'_>) -> Self {
+    /// That of a step, by the load on the machine: where steps are doubled once they bend, so that none is seen; where twice, the machine falls behind.
+    #[must_use]
+    pub fn of(step: &Step<'_>) -> Self {
         match step.traits.doublings {
             0 => Self::Better,
             1 => Self::Spline,
@@ -113,7 +120,7 @@ impl Dab {
         if within.is_empty() {
             return StepReport::default();
         }
-        let number = step.load.steps().wrapping_mul(BLENDS);
+        let number = first_blend(step.load.steps());
         let mut stroke = Stroke {
             top: self.lying.weigh(within, step),
             slots: paints(step, within),

@@ -5,6 +5,8 @@
 //! | [`device`] | the device, its faults as values |
 //! | [`films`] | Kubelka-Munk films of many tiles at once |
 //! | [`impasto`] | the paint model `impasto` |
+//! | [`dab`] | the paint model `dab` |
+//! | `steps` | what their steps share |
 //! | `stage` | a compute shader and its pipelines |
 //! | `batch` | tiles as the shaders take them |
 //! | `arena` | buffers that are used again |
@@ -13,12 +15,15 @@
 mod arena;
 mod bake_films;
 mod batch;
+pub mod dab;
 pub mod device;
 pub mod films;
 pub mod impasto;
 mod shade_films;
 mod stage;
+mod steps;
 
 pub use device::{AdapterReport, Choice, Device, GpuError, adapters};
 pub use films::GpuFilms;
-pub use impasto::{GpuImpasto, Traffic};
+pub use steps::model::{GpuModel, MakeModel};
+pub use steps::traffic::Traffic;

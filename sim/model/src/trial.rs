@@ -1,4 +1,5 @@
-//! A brush on a bare surface, to measure or to show what a paint model does in a stroke, without a painting around it.
+//! A brush on a bare surface, to measure or to show what a paint model does in a stroke, without a painting around it; and the
+//! paths along which the speed of strokes is measured.
 
 use maulstick_brush::{BrushFile, Head, HeadPose};
 use maulstick_canvas::relief::Relief;
@@ -16,7 +17,46 @@ use crate::interface::{Handling, PaintModel, Step, StepReport, Sweep};
 /// Height of the brush over the surface, and how its joints are bent, of its length and rad.
 const PRESSED: (f64, f32) = (0.45, 0.3);
 /// Wet paint on the surface lies below this, cells.
-const WET: f32 = 8.0;
+const TOP: f32 = 8.0;
+/// Paint of a surface that is wet all over, quanta.
+const FILM: f32 = 40_000.0;
+/// The slot of that paint, and that of the brush's.
+const SLOTS: [usize; 2] = [0, 1];
+
+/// A path on a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Path {
+    /// Its name.
+    pub name: &'static str,
+    /// Cells from one head to the next.
+    way: f64,
+    /// By how much it turns on that way, rad.
+    turn: f64,
+    /// Where it begins to go, rad.
+    aim: f64,
+}
+
+/// Two fast straight paths, along the cells and across them, and a slow curved one.
+pub const PATHS: [Path; 3] = [
+    Path {
+        name: "straight",
+        way: 20.0,
+        turn: 0.0,
+        aim: 0.0,
+    },
+    Path {
+        name: "oblique",
+        way: 20.0,
+        turn: 0.0,
+        aim: 0.39,
+    },
+    Path {
+        name: "curved",
+        way: 3.0,
+        turn: 0.03,
+        aim: 0.0,
+    },
+];
 
 /// A brush on square cells without tooth.
 #[derive(Debug)]
@@ -26,7 +66,7 @@ pub struct Trial {
     scale: Scale,
     /// Traits of the brush on these cells.
     pub traits: BrushTraits,
-    /// The surface.
+    /// The surface; the brush's paint has slot 1.
     pub window: Window,
 }
 
@@ -70,20 +110,48 @@ impl Trial {
         pose
     }
 
-    /// A stroke through these poses, a step from each to the next, with a brush full of the paint of a slot.
-    pub fn stroke(
+    /// The heads along a path: up to the surface's border, and at most 200.
+    #[must_use]
+    pub fn heads(&self, path: Path) -> Vec<HeadPose> {
+        let (mut at, mut direction) = ([150.0, 300.0], path.aim);
+        let last = self.window.width() as f64 - 120.0;
+        let mut poses = Vec::new();
+        while poses.len() < 200 && at[0] > 60.0 && at[0] < last {
+            poses.push(self.pose(at, 0.0));
+            let (sine, cosine) = maulstick_num::sin_cos(direction);
+            at = [at[0] + path.way * cosine, at[1] + path.way * sine];
+            direction += path.turn;
+        }
+        poses
+    }
+
+    /// Covers all of the surface with a film of the first paint, and with nothing else.
+    pub fn wet(&mut self) {
+        let [film, own] = SLOTS;
+        self.window.plane_mut(film).fill(FILM);
+        self.window.plane_mut(own).fill(0.0);
+    }
+
+    /// A brush full of the second paint.
+    #[must_use]
+    pub fn full(&self) -> BrushLoad {
+        let mut load = BrushLoad::clean(self.head.strips());
+        let full = &[(SLOTS[1], 1.0)];
+        load.fill(&self.head, &self.traits, full, None, (Half::Both, 7));
+        load
+    }
+
+    /// Steps from each of these poses to the next.
+    pub fn steps(
         &mut self,
         model: &mut dyn PaintModel,
+        load: &mut BrushLoad,
         poses: &[HeadPose],
-        slot: usize,
     ) -> StepReport {
-        let mut load = BrushLoad::clean(self.head.strips());
-        let full = &[(slot, 1.0)];
-        load.fill(&self.head, &self.traits, full, None, (Half::Both, 7));
         let mut sum = StepReport::default();
         for (place, pair) in poses.windows(2).enumerate() {
             let [from, to] = pair else { continue };
-            let Some((low, high)) = low_bounds(&self.head, to, &self.traits, WET) else {
+            let Some((low, high)) = low_bounds(&self.head, to, &self.traits, TOP) else {
                 continue;
             };
             let margin = motion(from, to).ceil() as i64;
@@ -96,7 +164,7 @@ impl Trial {
                     to,
                 },
                 bounds: (low.map(|at| at - margin), high.map(|at| at + margin)),
-                load: &mut load,
+                load,
                 traits: self.traits,
                 handling: Handling::default(),
                 stain: 0.0,
@@ -104,6 +172,14 @@ impl Trial {
                 thinner: None,
             }));
         }
+        sum
+    }
+
+    /// A stroke through these poses with a full brush.
+    pub fn stroke(&mut self, model: &mut dyn PaintModel, poses: &[HeadPose]) -> StepReport {
+        let mut load = self.full();
+        let mut sum = self.steps(model, &mut load, poses);
+        sum.add(&model.settle(&mut self.window, &mut load));
         sum
     }
 }

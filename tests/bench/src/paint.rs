@@ -6,7 +6,7 @@ use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
 
 use maulstick_brush::BrushFile;
-use maulstick_gpu::{Choice, Device, GpuImpasto, Traffic};
+use maulstick_gpu::{Choice, Device, GpuModel, Traffic};
 use maulstick_num::fork_join::with_threads;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
@@ -87,7 +87,11 @@ impl Round {
         let mut painting = Painting::new(&setup, library).map_err(fault)?;
         let mut traffic = None;
         if let Some(gpu) = &means.gpu {
-            let model = GpuImpasto::new(gpu.clone()).map_err(fault)?;
+            let make = GpuModel::maker(&means.model).ok_or_else(|| {
+                let what = format!("no GPU computes the paint model '{}'", means.model);
+                UserError::usage(what)
+            })?;
+            let model = make(gpu.clone()).map_err(fault)?;
             traffic = Some(model.traffic());
             painting.set_model(Box::new(model));
         }
@@ -207,7 +211,7 @@ pub(crate) fn run(report: &mut Report, backend: &str, model: &str) -> Result<(),
     }
     match model {
         "impasto" => advection::run(report, means.gpu),
-        "dab" => with_threads(cores.min(2), || texels::run(report)),
+        "dab" => with_threads(cores.min(2), || texels::run(report, means.gpu.as_ref())),
         _ => Ok(()),
     }
 }

@@ -7,7 +7,9 @@ use std::time::Instant;
 use maulstick_brush::{BrushError, BrushFile, HeadPose};
 use maulstick_dab::Dab;
 use maulstick_dab::stroke::Stroker;
-use maulstick_model::trial::Trial;
+use maulstick_gpu::{Device, GpuModel};
+use maulstick_model::interface::PaintModel;
+use maulstick_model::trial::{PATHS, Trial};
 use maulstick_rig::UserError;
 
 use crate::report::Report;
@@ -16,21 +18,17 @@ use crate::report::Report;
 const CELLS: (u32, f64) = (1024, 2.5e-4);
 /// Width of the brush, mm, and its strips: a footprint about 60 cells wide.
 const BRUSH: (f64, usize) = (10.0, 96);
-/// Wet paint on the canvas, quanta.
-const FILM: f32 = 40_000.0;
 /// Rounds, of which the first warms up.
 const ROUNDS: usize = 8;
 
-/// A path: its name, the way from state to state in cells, and how much it turns on that way, rad.
-const PATHS: [(&str, f64, f64); 2] = [("straight", 20.0, 0.0), ("curved", 3.0, 0.03)];
 const STROKERS: [(&str, Stroker); 3] = [
     ("faster", Stroker::Faster),
     ("better", Stroker::Better),
     ("spline", Stroker::Spline),
 ];
 
-/// Measures and reports.
-pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
+/// Measures and reports; of a device with upload and read-back of each stroke.
+pub(crate) fn run(report: &mut Report, gpu: Option<&Device>) -> Result<(), UserError> {
     let fault = |error: BrushError| UserError::failure(error.to_string());
     let mut file = BrushFile::library("round").map_err(fault)?;
     file.strips.count = BRUSH.1;
@@ -38,49 +36,49 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     let trial = Trial::new(file, CELLS.0, CELLS.1);
     let mut trial = trial.ok_or_else(|| UserError::failure("a surface cannot be leased"))?;
     for (stroker, kind) in STROKERS {
-        for (path, way, turn) in PATHS {
-            let poses = heads(&trial, (way, turn));
-            let rates = rates(&mut trial, Dab::stroking(kind), &poses);
-            let (texels, touched) = rates.into_iter().unzip();
-            report.median(
-                &format!("texels_per_s.{stroker}.{path}"),
-                "texels/s",
-                texels,
-            );
-            report.median(
-                &format!("touched_per_s.{stroker}.{path}"),
-                "cells/s",
-                touched,
-            );
+        for path in PATHS {
+            let poses = trial.heads(path);
+            let texels = texels(&mut trial, kind, &poses);
+            let rates = rates(&mut trial, &mut *model(kind, gpu)?, &poses);
+            let name = format!("{stroker}.{}", path.name);
+            let of = |count: fn([u64; 2]) -> u64| {
+                let rates = rates.iter();
+                rates.map(|(cells, seconds)| count([texels, *cells]) as f64 / seconds)
+            };
+            let both = [of(|[texels, _]| texels), of(|[_, touched]| touched)];
+            let [texels, touched] = both.map(Iterator::collect);
+            report.median(&format!("texels_per_s.{name}"), "texels/s", texels);
+            report.median(&format!("touched_per_s.{name}"), "cells/s", touched);
         }
     }
     Ok(())
 }
 
-/// The heads along a path.
-fn heads(trial: &Trial, (way, turn): (f64, f64)) -> Vec<HeadPose> {
-    let (mut at, mut direction) = ([150.0, 300.0], 0.0f64);
-    let mut poses = Vec::new();
-    while poses.len() < 200 && at[0] > 60.0 && at[0] < f64::from(CELLS.0) - 60.0 {
-        poses.push(trial.pose(at, 0.0));
-        let (sine, cosine) = maulstick_num::sin_cos(direction);
-        at = [at[0] + way * cosine, at[1] + way * sine];
-        direction += turn;
-    }
-    poses
+/// The algorithm, on a device if there is one.
+fn model(stroker: Stroker, gpu: Option<&Device>) -> Result<Box<dyn PaintModel>, UserError> {
+    let Some(gpu) = gpu else {
+        return Ok(Box::new(Dab::stroking(stroker)));
+    };
+    let fault = |error| UserError::failure(format!("the graphics device: {error}"));
+    let model = GpuModel::dab_stroking(gpu.clone(), stroker).map_err(fault)?;
+    Ok(Box::new(model))
 }
 
-/// Texels of the footprints and cells that were touched, a second, of each round.
-fn rates(trial: &mut Trial, mut model: Dab, poses: &[HeadPose]) -> Vec<(f64, f64)> {
-    let mut rate = |_| {
-        trial.window.plane_mut(0).fill(FILM);
-        trial.window.plane_mut(1).fill(0.0);
-        let (before, begun) = (model.texels(), Instant::now());
-        let sum = trial.stroke(&mut model, poses, 1);
-        let seconds = begun.elapsed().as_secs_f64();
-        let counts = [model.texels() - before, sum.footprint_cells];
-        let [texels, touched] = counts.map(|count| count as f64 / seconds);
-        (texels, touched)
+/// Texels of the footprints of a stroke.
+fn texels(trial: &mut Trial, stroker: Stroker, poses: &[HeadPose]) -> u64 {
+    let mut dab = Dab::stroking(stroker);
+    trial.wet();
+    trial.stroke(&mut dab, poses);
+    dab.texels()
+}
+
+/// Cells that were touched in each round, and seconds.
+fn rates(trial: &mut Trial, model: &mut dyn PaintModel, poses: &[HeadPose]) -> Vec<(u64, f64)> {
+    let round = |_| {
+        trial.wet();
+        let begun = Instant::now();
+        let sum = trial.stroke(model, poses);
+        (sum.footprint_cells, begun.elapsed().as_secs_f64())
     };
-    (0..ROUNDS).map(&mut rate).skip(1).collect()
+    (0..ROUNDS).map(round).skip(1).collect()
 }

@@ -4,10 +4,11 @@ use std::time::{Duration, Instant};
 
 use bytemuck::cast_slice;
 
-use super::kernels::{Binding, COPIES, KERNELS, Kernel, Pipeline};
-use super::record::{RECORD_BYTES, StepRecord};
+use super::stages::{COPIES, KERNELS};
 use crate::arena::Arena;
 use crate::device::{Device, GpuError};
+use crate::steps::kernels::{Binding, Kernel, Pipeline};
+use crate::steps::record::{RECORD_BYTES, StepRecord};
 
 /// A square of cells on which all paint moves.
 pub struct Measured {
@@ -34,7 +35,7 @@ impl Measured {
         let mut measured = Self {
             advection: gpu.guarded(|| Ok(made(&KERNELS, "advection")))?,
             copy: gpu.guarded(|| Ok(made(&COPIES, "copy_planes")))?,
-            buffers: (0..=Binding::Wants as usize)
+            buffers: (0..Binding::COUNT)
                 .map(|_| Arena::new("measured", storage))
                 .collect(),
             records: Arena::new(
@@ -151,7 +152,7 @@ impl Measured {
     }
 }
 
-/// Statistics of a step that touches all of a square of `side` cells, as impasto.wgsl lays them out.
+/// Statistics of a step that touches all of a square of `side` cells, as step.wgsl lays them out.
 fn stats_of_square(side: u32) -> [u32; 24] {
     let mut stats = [0; 24];
     stats[4 + 11..4 + 15].copy_from_slice(&[65536, 65536, side, side]);

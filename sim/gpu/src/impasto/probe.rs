@@ -4,11 +4,11 @@ use bytemuck::pod_collect_to_vec;
 use maulstick_model::footprint::contact::Contact;
 use maulstick_model::interface::Step;
 
-use super::kernels::{Binding, KERNELS};
-use super::record::StepRecord;
-use super::residence::Residence;
-use super::workspace::{Batch, Workspace};
+use super::stages::KERNELS;
+use super::{Steps, pushed};
 use crate::device::{Device, GpuError};
+use crate::steps::kernels::Binding;
+use crate::steps::probing::Probing;
 
 /// What is looked at.
 #[derive(Clone, Debug)]
@@ -25,7 +25,7 @@ pub struct Probe {
 
 /// Stages of steps, one after the other.
 pub struct Prober {
-    workspace: Workspace,
+    stages: Probing<Steps>,
 }
 
 impl Prober {
@@ -34,8 +34,8 @@ impl Prober {
     /// # Errors
     /// A [`GpuError`] where the driver does not take the shaders.
     pub fn new(gpu: Device) -> Result<Self, GpuError> {
-        let workspace = Workspace::new(gpu)?;
-        Ok(Self { workspace })
+        let stages = Probing::new(gpu, &KERNELS, Steps)?;
+        Ok(Self { stages })
     }
 
     /// Does those stages of a step that come up to the last one called `last`, writes what they did to
@@ -45,33 +45,22 @@ impl Prober {
     /// # Errors
     /// A [`GpuError`] of the device.
     pub fn run(&mut self, step: &mut Step<'_>, last: &str) -> Result<Option<Probe>, GpuError> {
-        let Some(on) = Residence::new(step) else {
+        let (Some(probed), Some(grid)) = (self.stages.run(step, last)?, pushed(step)) else {
             return Ok(None);
         };
-        let mut batch = Batch::default();
-        let Some(record) = StepRecord::new(step, &on, 0, &mut batch.poses) else {
-            return Ok(None);
-        };
-        batch.records.push(record);
-        let workspace = &mut self.workspace;
-        let place = KERNELS.iter().rposition(|kernel| kernel.name == last);
-        workspace.stages = place.map_or(0, |place| place + 1);
-        workspace.upload(&on, (step.window, step.load), step.head)?;
-        workspace.submit(&on, &batch)?;
-        let (from, size) = (record.from, record.size);
-        let cells = record.cells();
+        let (from, size) = (grid.from, grid.size);
+        let cells = u64::from(size[0]) * u64::from(size[1]);
         let ranges = [
             (Binding::Contacts, 0, 32 * cells),
             (Binding::Faces, 0, 8 * cells),
         ];
-        let (contacts, faces) = workspace.read(&ranges, |bytes| {
+        let (contacts, faces) = self.stages.workspace.read(&ranges, |bytes| {
             let (contacts, faces) = bytes.split_at(32 * cells as usize);
             let contacts: Vec<[u32; 8]> = pod_collect_to_vec(contacts);
             (contacts, pod_collect_to_vec(faces))
         })?;
         let width = step.window.width();
-        let (settled, _) = workspace.read_back(&on, record.rows(), width)?;
-        on.write(&settled, step.window, step.load);
+        self.stages.write(probed, step)?;
         let place = |local: usize| {
             let [x, y] = [local % size[0] as usize, local / size[0] as usize];
             (from[1] as usize + y) * width + from[0] as usize + x

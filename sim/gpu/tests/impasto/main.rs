@@ -8,18 +8,35 @@
 )]
 mod scene;
 
+#[path = "../steps/crumpled.rs"]
+mod crumpled;
+#[path = "../steps/easel.rs"]
 mod easel;
 mod footprint;
+#[path = "../steps/modes.rs"]
 mod modes;
 mod probed;
 mod stroke;
+#[path = "../steps/strokes.rs"]
+mod strokes;
 mod transport;
 mod within_head;
 
-use maulstick_gpu::{Choice, Device};
+use maulstick_gpu::{Choice, Device, GpuModel};
+use maulstick_impasto::Impasto;
 
 /// An adapter: where there is no other, lavapipe.
 fn device() -> Device {
     Device::open(Choice::Forced)
         .expect("a Vulkan driver: install mesa-vulkan-drivers, as ./test does")
+}
+
+#[test]
+fn every_mode_does_what_the_processor_does() {
+    let mut gpu = GpuModel::impasto(device()).expect("taken");
+    let near = modes::Near {
+        quanta: [4.0, 24.0],
+        beyond: 0.0,
+    };
+    modes::agree(&mut gpu, &mut Impasto::default(), near, scene::Scene::new);
 }

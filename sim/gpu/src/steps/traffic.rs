@@ -26,18 +26,18 @@ impl Traffic {
         self.steps.fetch_add(1, Relaxed);
     }
 
-    /// Counts a dispatch over a grid of so many cells, of a brush whose poses take so many words.
-    pub(crate) fn dispatch(&self, kernel: &Kernel, on: &Residence, cells: u64, poses: u64) {
+    /// Counts a dispatch over a grid of so many cells.
+    pub(crate) fn dispatch(&self, kernel: &Kernel, on: &Residence, cells: u64) {
         let (slots, strips) = (on.slots.len() as u64, on.strips as u64);
         let words = |binding: &Binding| match binding {
-            Binding::Poses => poses,
+            Binding::Poses => on.poses_words() as u64,
             Binding::Head => 4 * strips + 6 * (on.faces + on.vertices) as u64,
             Binding::Segments => 16 * on.segments() as u64,
             Binding::Planes | Binding::Other => slots * cells,
             Binding::Load => on.load_words() as u64,
             Binding::Asks => on.asks_words() as u64,
             Binding::Base => 2 * cells,
-            Binding::Stats | Binding::Groups => 0,
+            Binding::Stats | Binding::Groups | Binding::Blend => 0,
             of_grid => of_grid.words_by_cell() * cells,
         };
         let words: u64 = kernel.bindings.iter().map(words).sum();

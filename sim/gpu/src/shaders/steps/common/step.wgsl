@@ -1,4 +1,4 @@
-// What the stages of an impasto step share: its parameters and buffers. What follows adds an entry
+// What the stages of steps share, whatever the paint model: parameters and buffers. What follows adds an entry
 // point. Lengths are in cells of the surface, paint in quanta: whole numbers, in f32 exact up to 2²⁴.
 
 // Parameters of a step; `StepRecord` of record.rs.
@@ -195,6 +195,19 @@ fn raise(which: u32, value: u32) {
     if value > atomicLoad(&stats[which]) {
         atomicMax(&stats[which], value);
     }
+}
+
+// Notes the thickest film of a strip, if it is one, and of all.
+fn weigh_strip(strip: u32) {
+    if strip >= step.strips {
+        return;
+    }
+    var thickest = 0u;
+    for (var k = 0u; k < TEXELS_PER_STRIP; k++) {
+        thickest = max(thickest, load[1u + strip * TEXELS_PER_STRIP + k]);
+    }
+    atomicStore(&asks[thickest_of(strip)], thickest);
+    atomicMax(&stats[stat(FILM)], thickest);
 }
 
 // Columns and rows of the grid: from, up to but not with.

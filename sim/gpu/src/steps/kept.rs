@@ -10,6 +10,7 @@ use maulstick_model::interface::{Handling, PaintModel, Step, StepReport, Sweep};
 
 /// A step without window and load.
 struct KeptStep {
+    before: Option<Arc<HeadPose>>,
     from: Arc<HeadPose>,
     to: Arc<HeadPose>,
     bounds: ([i64; 2], [i64; 2]),
@@ -42,14 +43,9 @@ impl KeptSteps {
 
     /// Keeps one.
     pub(crate) fn keep(&mut self, step: &Step<'_>) {
-        // Nearly always it goes on where the last one ended.
-        let last = self.steps.last().map(|last| &last.to);
-        let from = match last.filter(|last| ***last == *step.sweep.from) {
-            Some(last) => Arc::clone(last),
-            None => Arc::new(step.sweep.from.clone()),
-        };
         self.steps.push(KeptStep {
-            from,
+            before: step.sweep.before.map(|pose| self.shared(pose)),
+            from: self.shared(step.sweep.from),
             to: Arc::new(step.sweep.to.clone()),
             bounds: step.bounds,
             traits: step.traits,
@@ -60,10 +56,18 @@ impl KeptSteps {
         });
     }
 
+    /// A pose, which nearly always is one of the last step's.
+    fn shared(&self, pose: &HeadPose) -> Arc<HeadPose> {
+        let last = self.steps.last();
+        let last = last.into_iter().flat_map(|last| [&last.to, &last.from]);
+        let same = last.into_iter().find(|last| ***last == *pose);
+        same.map_or_else(|| Arc::new(pose.clone()), Arc::clone)
+    }
+
     /// Does them all with another model, on window and load as they were last settled.
     pub(crate) fn replay(
         &self,
-        model: &mut impl PaintModel,
+        model: &mut dyn PaintModel,
         window: &mut Window,
         load: &mut BrushLoad,
     ) -> StepReport {
@@ -73,7 +77,7 @@ impl KeptSteps {
                 window,
                 head: &self.head,
                 sweep: Sweep {
-                    before: None,
+                    before: kept.before.as_deref(),
                     from: &kept.from,
                     to: &kept.to,
                 },

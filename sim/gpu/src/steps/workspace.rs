@@ -10,8 +10,8 @@ use maulstick_model::brush::load::BrushLoad;
 use maulstick_model::interface::StepReport;
 use wgpu::BufferUsages as Usage;
 
-use super::kernels::{Binding, Groups, KERNELS, PUSHES, Pipeline};
-use super::record::{RECORD_BYTES, StepRecord};
+use super::kernels::{Binding, Groups, Kernel, Pipeline};
+use super::record::{RECORD_BYTES, RECORD_WORDS, StepRecord};
 use super::residence::{Residence, Settled};
 use super::traffic::Traffic;
 use crate::arena::{Arena, read};
@@ -19,6 +19,10 @@ use crate::device::{Device, GpuError};
 
 /// Steps of a submission.
 pub(crate) const BATCH: usize = 64;
+/// Blends of a batch: the device does some while the next ones are prepared.
+const MOST_BLENDS: usize = 128;
+/// Most bytes of the poses of a batch.
+const POSES_BYTES: usize = 16 << 20;
 /// Words of the statistics of all steps: cells touched, wet paint and thinner on them, the highest paint.
 const TALLY: u64 = 4;
 /// Words of the statistics: those and STEP_STATS a step.
@@ -26,11 +30,55 @@ const STATS: u64 = TALLY + 20 * BATCH as u64;
 /// Invocations of a workgroup that goes over a grid, and over strips or segments.
 const GROUP: [u64; 2] = [256, 64];
 
+/// A stage to be done.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Call {
+    /// Its place among the model's.
+    pub(crate) stage: usize,
+    /// The record of its step.
+    pub(crate) record: usize,
+    /// That of its blend.
+    pub(crate) blend: usize,
+}
+
 /// Steps that are not yet given to the device.
 #[derive(Default)]
 pub(crate) struct Batch {
+    /// How many they are.
+    pub(crate) steps: usize,
+    /// Parameters of steps, and of the parts of steps in which the head is drawn anew.
     pub(crate) records: Vec<StepRecord>,
     pub(crate) poses: Vec<f32>,
+    /// Parameters of blends.
+    pub(crate) blends: Vec<[u32; RECORD_WORDS]>,
+    /// The stages in their order.
+    pub(crate) calls: Vec<Call>,
+}
+
+impl Batch {
+    /// Takes a record; a stage with it and the next blend.
+    pub(crate) fn next(&mut self, record: StepRecord, stage: usize) -> Call {
+        self.records.push(record);
+        Call {
+            stage,
+            record: self.records.len() - 1,
+            blend: self.blends.len(),
+        }
+    }
+
+    /// Leaves out what comes after the last stage of this name.
+    pub(crate) fn end_after(&mut self, kernels: &[Kernel], name: &str) {
+        let last = |call: &Call| kernels[call.stage].name == name;
+        let count = self.calls.iter().rposition(last);
+        self.calls.truncate(count.map_or(0, |last| last + 1));
+    }
+
+    /// True if it is time that the device gets it.
+    pub(crate) fn is_full(&self) -> bool {
+        self.steps == BATCH
+            || self.blends.len() >= MOST_BLENDS
+            || 4 * self.poses.len() > POSES_BYTES
+    }
 }
 
 /// The device with its pipelines and buffers.
@@ -42,30 +90,30 @@ pub(crate) struct Workspace {
     buffers: Vec<Arena>,
     back: Arena,
     pub(crate) traffic: Arc<Traffic>,
-    /// How far a step goes: fewer stages where somebody looks at one of them.
-    pub(crate) stages: usize,
 }
 
 impl Workspace {
     /// Makes the pipelines.
-    pub(crate) fn new(gpu: Device) -> Result<Self, GpuError> {
+    pub(crate) fn new(gpu: Device, kernels: &'static [Kernel]) -> Result<Self, GpuError> {
         let pipelines =
-            gpu.guarded(|| Ok(KERNELS.iter().map(|k| Pipeline::new(&gpu, k)).collect()))?;
+            gpu.guarded(|| Ok(kernels.iter().map(|k| Pipeline::new(&gpu, k)).collect()))?;
         let storage = Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC;
         let buffer = |binding| {
-            let extra = match binding == Binding::Groups as usize {
-                true => Usage::INDIRECT,
-                false => Usage::empty(),
+            const GROUPS: usize = Binding::Groups as usize;
+            const BLEND: usize = Binding::Blend as usize;
+            let usage = match binding {
+                GROUPS => storage | Usage::INDIRECT,
+                BLEND => Usage::UNIFORM | Usage::COPY_DST,
+                _ => storage,
             };
-            Arena::new("impasto", storage | extra)
+            Arena::new("steps", usage)
         };
         Ok(Self {
             pipelines,
             records: Arena::new("records", Usage::UNIFORM | Usage::COPY_DST),
-            buffers: (0..=Binding::Wants as usize).map(buffer).collect(),
+            buffers: (0..Binding::COUNT).map(buffer).collect(),
             back: Arena::new("back", Usage::MAP_READ | Usage::COPY_DST),
             traffic: Arc::default(),
-            stages: KERNELS.len(),
             gpu,
         })
     }
@@ -98,7 +146,6 @@ impl Workspace {
             let mut stats = vec![0; STATS as usize];
             stats[TALLY as usize - 1] = window.top().to_bits();
             self.fill(Binding::Stats, &[cast_slice(&stats)])?;
-            self.room(Binding::Other, (on.cells * on.slots.len()) as u64);
             self.room(Binding::Segments, 16 * on.segments() as u64);
             self.room(Binding::Groups, 24);
             Ok(())
@@ -111,15 +158,13 @@ impl Workspace {
         gpu.guarded(|| {
             let cells = batch.records.iter().map(StepRecord::cells).max();
             let cells = cells.unwrap_or(0);
-            for binding in [
-                Binding::Keys,
-                Binding::Contacts,
-                Binding::Faces,
-                Binding::Totals,
-                Binding::Wants,
-            ] {
+            for binding in Binding::OF_GRID {
                 self.room(binding, binding.words_by_cell() * cells);
             }
+            // A grid may go beyond the window.
+            let most = cells.max(on.cells as u64);
+            self.room(Binding::Other, most * on.slots.len() as u64);
+            self.fill(Binding::Blend, &[cast_slice(&batch.blends)])?;
             self.fill(Binding::Poses, &[cast_slice(&batch.poses)])?;
             self.records.filled(&gpu, &[cast_slice(&batch.records)])?;
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -134,30 +179,34 @@ impl Workspace {
                 .iter()
                 .map(|p| p.bind(&gpu, records, |binding| buffers[binding as usize]))
                 .collect();
-            let poses = (batch.poses.len() / batch.records.len().max(1)) as u64;
             let mut pass = encoder.begin_compute_pass(&Default::default());
-            for (step, record) in batch.records.iter().enumerate() {
-                let offset = (step as u64 * RECORD_BYTES) as u32;
-                self.traffic.step();
-                for place in stages(self.stages, record.parts) {
-                    let (pipeline, bound) = (&self.pipelines[place], &bound[place]);
-                    self.traffic
-                        .dispatch(pipeline.kernel, on, record.cells(), poses);
+            (0..batch.steps).for_each(|_| self.traffic.step());
+            let mut last = None;
+            for call in &batch.calls {
+                let (pipeline, bound) = (&self.pipelines[call.stage], &bound[call.stage]);
+                let record = &batch.records[call.record];
+                self.traffic.dispatch(pipeline.kernel, on, record.cells());
+                let offset = |number: usize| (number as u64 * RECORD_BYTES) as u32;
+                let offsets = [call.record, call.blend].map(offset);
+                let count = 1 + usize::from(pipeline.kernel.blends());
+                if last.replace(call.stage) != Some(call.stage) {
                     pass.set_pipeline(&pipeline.pipeline);
-                    pass.set_bind_group(0, bound, &[offset]);
-                    let [grid, few] = GROUP;
-                    let count = match pipeline.kernel.groups {
-                        Groups::Grid => record.cells().div_ceil(grid),
-                        Groups::Segments => (on.segments() as u64).div_ceil(few),
-                        Groups::One => 1,
-                        Groups::Planned(place) => {
-                            let groups = buffers[Binding::Groups as usize];
-                            pass.dispatch_workgroups_indirect(groups, 16 * place);
-                            continue;
-                        }
-                    };
-                    pass.dispatch_workgroups(count as u32, 1, 1);
                 }
+                pass.set_bind_group(0, bound, &offsets[..count]);
+                let [grid, few] = GROUP;
+                let count = match pipeline.kernel.groups {
+                    Groups::Grid => record.cells().div_ceil(grid),
+                    Groups::GridAndStrips => record.cells().max(on.strips as u64).div_ceil(grid),
+                    Groups::Strips => on.strips as u64,
+                    Groups::Segments => (on.segments() as u64).div_ceil(few),
+                    Groups::One => 1,
+                    Groups::Planned(place) => {
+                        let groups = buffers[Binding::Groups as usize];
+                        pass.dispatch_workgroups_indirect(groups, 16 * place);
+                        continue;
+                    }
+                };
+                pass.dispatch_workgroups(count as u32, 1, 1);
             }
             drop(pass);
             gpu.queue.submit([encoder.finish()]);
@@ -216,13 +265,4 @@ impl Workspace {
             read(&gpu, back, bytes, take)
         })
     }
-}
-
-/// The first so many stages, in order; those that push paint once for each part of a step.
-fn stages(count: usize, parts: u32) -> impl Iterator<Item = usize> {
-    let pushes = |place: &usize| KERNELS[*place].name == PUSHES;
-    let pushing: Vec<usize> = (0..count).filter(pushes).collect();
-    let end = pushing.last().map_or(0, |last| last + 1);
-    let again = pushing.repeat(parts.saturating_sub(1) as usize);
-    (0..end).chain(again).chain(end..count)
 }

@@ -6,7 +6,7 @@ use maulstick_canvas::quantum::CELL_MAX;
 use maulstick_impasto::stages::advection::STAIN;
 use maulstick_model::brush::head::border;
 use maulstick_model::footprint::ribbons::{middle, rank};
-use maulstick_model::interface::{Step, Transfer};
+use maulstick_model::interface::{Step, Sweep, Transfer};
 
 use super::residence::Residence;
 
@@ -16,13 +16,13 @@ const MARGIN: [f32; 2] = [0.1, 0.95];
 /// No plane.
 const NONE: u32 = u32::MAX;
 
-/// `Step` of impasto.wgsl.
+/// `Step` of step.wgsl.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct StepRecord {
     half_widths: [f32; 8],
-    pub(crate) from: [u32; 2],
-    pub(crate) size: [u32; 2],
+    from: [u32; 2],
+    size: [u32; 2],
     row: u32,
     plane: u32,
     limit: [u32; 2],
@@ -32,7 +32,7 @@ pub(crate) struct StepRecord {
     faces: u32,
     vertices: u32,
     poses: u32,
-    pub(crate) number: u32,
+    number: u32,
     low: f32,
     span: f32,
     bits: u32,
@@ -72,48 +72,56 @@ pub(crate) struct StepRecord {
 
 /// Bytes from one record to the next.
 pub(crate) const RECORD_BYTES: u64 = size_of::<StepRecord>() as u64;
+/// Words of a record, also of one of a blend.
+pub(crate) const RECORD_WORDS: usize = size_of::<StepRecord>() / 4;
+
+/// The cells on which a step works.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Grid {
+    /// Its lower left cell, in the window, beyond which it may go.
+    pub(crate) from: [i64; 2],
+    /// Its columns and rows.
+    pub(crate) size: [u32; 2],
+    /// Its cells that may be touched, from the first up to but not with the second.
+    pub(crate) inside: [[u32; 2]; 2],
+}
+
+impl Grid {
+    /// How many cells it has.
+    pub(crate) fn cells(&self) -> u64 {
+        u64::from(self.size[0]) * u64::from(self.size[1])
+    }
+}
 
 impl StepRecord {
-    /// A step of a brush and a window that are on the device; its poses go to the end of `poses`. None
-    /// where the head is beside the surface.
+    /// A motion of a step of a brush and a window that are on the device; nothing is drawn.
     pub(crate) fn new(
         step: &Step<'_>,
+        sweep: &Sweep<'_>,
         on: &Residence,
-        number: usize,
-        poses: &mut Vec<f32>,
-    ) -> Option<Self> {
-        let (head, traits) = (step.head, &step.traits);
-        let (after, before) = (step.sweep.to, step.sweep.from);
+        (grid, number): (&Grid, usize),
+    ) -> Self {
+        let (traits, after) = (&step.traits, sweep.to);
         let (origin, limit) = (step.window.origin(), step.window.limit());
-        let within = |cell: i64, i: usize| (cell - origin[i]).clamp(0, limit[i] as i64) as u32;
-        let (from, to) = step.bounds;
-        let touched = [from, to].map(|edge| [0, 1].map(|i| within(edge[i], i)));
-        if (0..2).any(|i| touched[0][i] >= touched[1][i]) {
-            return None;
-        }
-        // Paint is pushed a cell farther than the brush comes.
-        let from = [0, 1].map(|i| within(from[i] - 1, i));
-        let to = [0, 1].map(|i| within(to[i] + 1, i));
         let (transfer, flow) = match step.handling.transfer {
             Transfer::Sponge => (1, 0.0),
             Transfer::Marker { flow } => (2, flow),
             Transfer::Paint | Transfer::Sampler | Transfer::Vacuum => (0, 0.0),
         };
-        let strips = head.strips();
-        let loose = traits.loose(after.press);
-        let record = Self {
+        Self {
             half_widths: std::array::from_fn(|i| traits.half_width_before(i + 1)),
-            from,
-            size: [0, 1].map(|i| to[i] - from[i]),
+            // Modulo 2³²: where it goes beyond the window no cell is looked at.
+            from: grid.from.map(|cell| cell as u32),
+            size: grid.size,
             row: step.window.width() as u32,
             plane: (step.window.width() * step.window.height()) as u32,
             limit: limit.map(|cells| cells as u32),
-            offset: [0, 1].map(|i| (origin[i] + i64::from(from[i])) as f32),
+            offset: [0, 1].map(|i| (origin[i] + grid.from[i]) as f32),
             planes: on.slots.len() as u32,
-            strips: strips as u32,
+            strips: on.strips as u32,
             faces: on.faces as u32,
             vertices: on.vertices as u32,
-            poses: poses.len() as u32,
+            poses: 0,
             number: number as u32,
             low: -MARGIN[0],
             span: MARGIN[0] + MARGIN[1],
@@ -132,7 +140,7 @@ impl StepRecord {
             flow,
             most: step.handling.most.min(CELL_MAX as f32),
             push: u32::from(step.handling.push),
-            inside: touched.map(|edge| [0, 1].map(|i| edge[i] - from[i])),
+            inside: grid.inside,
             cell_max: CELL_MAX as f32,
             reach: traits.sink + step.window.ride_below(),
             border: border(traits) as i32,
@@ -149,7 +157,16 @@ impl StepRecord {
             seep: [traits.seep.beside, traits.seep.along].map(|v| v as f32),
             parts: traits.parts,
             room: [0; 3],
-        };
+        }
+    }
+
+    /// Has the head drawn in this motion, whose poses go to the end of `poses`.
+    pub(crate) fn draw(mut self, step: &Step<'_>, sweep: &Sweep<'_>, poses: &mut Vec<f32>) -> Self {
+        let head = step.head;
+        let (after, before) = (sweep.to, sweep.from);
+        let strips = head.strips();
+        let loose = step.traits.loose(after.press);
+        self.poses = poses.len() as u32;
         debug_assert_eq!(after.x.len(), strips * STATIONS);
         let motion = |after: &[f32], before: &[f32], poses: &mut Vec<f32>| {
             poses.extend(
@@ -174,14 +191,14 @@ impl StepRecord {
         let turned = step.load.seed() as usize;
         poses.extend((0..strips).map(|strip| loose * lift[(strip + turned) % strips]));
         poses.extend((0..strips).map(|strip| rank(head, after, strip)));
-        if on.vertices > 0 {
+        if self.vertices > 0 {
             for plane in [&after.skin.x, &after.skin.y, &after.skin.z] {
                 poses.extend_from_slice(plane);
             }
             motion(&after.skin.x, &before.skin.x, poses);
             motion(&after.skin.y, &before.skin.y, poses);
         }
-        Some(record)
+        self
     }
 
     /// A square of cells in a window of that size, on which nothing but the advection works.
@@ -202,10 +219,5 @@ impl StepRecord {
     /// Cells of the grid.
     pub(crate) fn cells(&self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
-    }
-
-    /// Rows of the window that the step may change.
-    pub(crate) fn rows(&self) -> std::ops::Range<usize> {
-        self.from[1] as usize..(self.from[1] + self.size[1]) as usize
     }
 }

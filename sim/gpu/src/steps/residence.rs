@@ -39,7 +39,7 @@ pub(crate) struct Settled {
     pub(crate) rows: std::ops::Range<usize>,
     /// Counts on those rows, paint after paint.
     pub(crate) planes: Vec<f32>,
-    /// The load, as impasto.wgsl lays it out.
+    /// The load, as step.wgsl lays it out.
     pub(crate) load: Vec<u32>,
     /// The highest that paint ever stood, quanta.
     pub(crate) top: f32,
@@ -59,11 +59,25 @@ impl Residence {
             vertices: head.skin().map_or(0, |skin| skin.places().len()),
             steps: step.load.steps(),
         };
-        // A cell of the grid takes up to 32 bytes, of the window 4 a paint.
-        let per_cell = (4 * residence.slots.len()).max(32);
-        let largest = (residence.cells * per_cell).max(4 * residence.load_words());
-        let fits = largest <= MOST_BYTES && residence.segment_bits() <= MOST_BITS;
+        let fits = residence.has_room(residence.cells as u64)
+            && 4 * residence.load_words() <= MOST_BYTES
+            && residence.segment_bits() <= MOST_BITS;
         fits.then_some(residence)
+    }
+
+    /// True if a grid of so many cells is not too large.
+    pub(crate) fn has_room(&self, cells: u64) -> bool {
+        cells * self.bytes_by_cell() as u64 <= MOST_BYTES as u64
+    }
+
+    /// A cell of the grid takes up to 32 bytes, of the window 4 a paint.
+    fn bytes_by_cell(&self) -> usize {
+        (4 * self.slots.len()).max(32)
+    }
+
+    /// Steps with contact that the brush had made.
+    pub(crate) fn steps(&self) -> u64 {
+        self.steps
     }
 
     /// Segments that the head is drawn as.
@@ -111,6 +125,11 @@ impl Residence {
     /// Words of the load.
     pub(crate) fn load_words(&self) -> usize {
         1 + (1 + 2 * self.slots.len()) * self.texels
+    }
+
+    /// Words of the poses of a drawing of the head.
+    pub(crate) fn poses_words(&self) -> usize {
+        (5 * STATIONS + 2) * self.strips + 5 * self.vertices
     }
 
     /// Words of what is asked of the brush.

@@ -2,7 +2,8 @@
 
 use maulstick_appearance::picture::{Depth, Export};
 use maulstick_brush::BrushFile;
-use maulstick_gpu::{Device, GpuImpasto};
+use maulstick_gpu::Device;
+use maulstick_model::interface::PaintModel;
 use maulstick_optics::PaintLibrary;
 use maulstick_optics::colour::{RgbSpace, apply, delta_e_2000, lab, srgb_decode};
 use maulstick_painting::picture::flat_drawing;
@@ -29,22 +30,22 @@ pub(crate) fn mixture(text: &str) -> Mixture {
     text.parse().expect("a mixture")
 }
 
-/// A canvas with a film of white, and a brush with blue.
-pub(crate) fn easel(gpu: Option<Device>) -> Painting {
-    easel_of(1, gpu)
-}
+/// Makes a painting, on a device if there is one.
+pub(crate) type Easel<'a> = &'a dyn Fn(Option<Device>) -> Painting;
 
-/// The same with cells `finer` times as small.
-pub(crate) fn easel_of(finer: u32, gpu: Option<Device>) -> Painting {
+/// A canvas with a film of white and cells `finer` times as small, and a brush with blue, of the model of this name, whose
+/// steps another one may compute.
+pub(crate) fn easel_of((name, finer): (&str, u32), model: Option<Box<dyn PaintModel>>) -> Painting {
     let setup = PaintingSetup {
         cells: [finer * SIDE; 2],
         cell_m: 2.5e-4 / f64::from(finer),
+        model: name.to_owned(),
         ..PaintingSetup::default()
     };
     let library = PaintLibrary::measured().expect("whole");
     let mut painting = Painting::new(&setup, library).expect("a painting");
-    if let Some(gpu) = gpu {
-        painting.set_model(Box::new(GpuImpasto::new(gpu).expect("taken")));
+    if let Some(model) = model {
+        painting.set_model(model);
     }
     for name in ["main", "other"] {
         painting.define_brush(name, brush());
@@ -201,4 +202,14 @@ pub(crate) fn difference(one: &mut Painting, two: &mut Painting) -> [f64; 2] {
     assert!(apart.len() > 1000, "{} cells", apart.len());
     let mean = apart.iter().sum::<f64>() / apart.len() as f64;
     [mean, apart[apart.len() * 99 / 100]]
+}
+
+/// Paint that a stroke left on two canvases, on which there was as much `before`: how far the volumes are apart, as a share,
+/// and mean and 99th percentile of ΔE00.
+pub(crate) fn apart(one: &mut Painting, two: &mut Painting, before: u64) -> (f64, [f64; 2]) {
+    let deposited = |after: u64| after as f64 - before as f64;
+    let off = (deposited(volume(two)) / deposited(volume(one)) - 1.0).abs();
+    let colours = difference(one, two);
+    println!("volume off by {off:.2e}, ΔE00 {colours:.3?}");
+    (off, colours)
 }

@@ -1,0 +1,223 @@
+//! Stages as compute pipelines, each with those buffers of step.wgsl that it uses.
+
+use super::record::RECORD_BYTES;
+use crate::device::Device;
+
+/// The buffers, by binding; 0 are the parameters of the step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub(crate) enum Binding {
+    Poses = 1,
+    Head,
+    Segments,
+    Planes,
+    Other,
+    Base,
+    Load,
+    Asks,
+    Keys,
+    Contacts,
+    Faces,
+    Totals,
+    Stats,
+    Groups,
+    Wants,
+    /// The parameters of a blend, a record for each.
+    Blend,
+}
+
+impl Binding {
+    /// How many they are, with that of the step's parameters.
+    pub(crate) const COUNT: usize = Self::Blend as usize + 1;
+
+    /// Those with room for each cell of the grid.
+    pub(crate) const OF_GRID: [Self; 5] = [
+        Self::Keys,
+        Self::Contacts,
+        Self::Faces,
+        Self::Totals,
+        Self::Wants,
+    ];
+
+    /// Words that a cell of the grid has in it; 0 of one that has none.
+    pub(crate) fn words_by_cell(self) -> u64 {
+        match self {
+            Self::Keys | Self::Faces | Self::Wants => 2,
+            Self::Contacts => 8,
+            Self::Totals => 5,
+            _ => 0,
+        }
+    }
+
+    fn read_only(self) -> bool {
+        matches!(self, Self::Poses | Self::Head | Self::Base)
+    }
+
+    /// True if it holds parameters: one record of them is bound at a time.
+    fn is_uniform(self) -> bool {
+        self == Self::Blend
+    }
+}
+
+/// How many workgroups a stage has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Groups {
+    /// As many as cover the cells of the grid.
+    Grid,
+    /// As many as cover the segments, and so the strips and faces.
+    Segments,
+    /// As many as cover the cells of the grid, or the strips.
+    GridAndStrips,
+    /// One for each strip.
+    Strips,
+    /// One.
+    One,
+    /// As the plan of the step says at this place: none where nothing is touched.
+    Planned(u64),
+}
+
+/// What a stage is.
+pub(crate) struct Kernel {
+    /// Its name, also that of its entry point.
+    pub(crate) name: &'static str,
+    pub(crate) source: &'static str,
+    pub(crate) constants: &'static [(&'static str, f64)],
+    pub(crate) bindings: &'static [Binding],
+    pub(crate) groups: Groups,
+}
+
+impl Kernel {
+    /// True if it takes the parameters of a blend.
+    pub(crate) fn blends(&self) -> bool {
+        self.bindings.contains(&Binding::Blend)
+    }
+}
+
+/// The WGSL of a stage, a file of `shaders`, after what all share and what those of its model do.
+macro_rules! source {
+    ($name:literal $(, $own:literal)*) => {
+        concat!(
+            include_str!("../shaders/steps/common/step.wgsl"),
+            include_str!("../shaders/steps/common/shapes.wgsl"),
+            include_str!("../shaders/steps/common/fragments.wgsl"),
+            $(include_str!(concat!("../shaders/", $own, ".wgsl")),)*
+            include_str!(concat!("../shaders/", $name, ".wgsl")),
+        )
+    };
+}
+pub(crate) use source;
+
+use Binding as B;
+
+/// The lowest segment of each cell.
+pub(crate) const RASTERIZER: Kernel = Kernel {
+    name: "rasterizer",
+    source: source!("steps/rasterizer"),
+    constants: &[],
+    bindings: &[B::Poses, B::Head, B::Segments, B::Asks, B::Keys, B::Stats],
+    groups: Groups::Segments,
+};
+
+/// A stage on a device.
+pub(crate) struct Pipeline {
+    pub(crate) kernel: &'static Kernel,
+    layout: wgpu::BindGroupLayout,
+    pub(crate) pipeline: wgpu::ComputePipeline,
+}
+
+impl Pipeline {
+    /// Makes the pipeline.
+    pub(crate) fn new(gpu: &Device, kernel: &'static Kernel) -> Self {
+        let entry = |binding, ty, size| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: wgpu::BindingType::Buffer {
+                ty,
+                has_dynamic_offset: ty == wgpu::BufferBindingType::Uniform,
+                min_binding_size: size,
+            },
+            count: None,
+        };
+        let size = wgpu::BufferSize::new(RECORD_BYTES);
+        let mut entries = vec![entry(0, wgpu::BufferBindingType::Uniform, size)];
+        entries.extend(kernel.bindings.iter().map(|binding| {
+            let read_only = binding.read_only();
+            let storage = (wgpu::BufferBindingType::Storage { read_only }, None);
+            let (ty, size) = match binding.is_uniform() {
+                true => (wgpu::BufferBindingType::Uniform, size),
+                false => storage,
+            };
+            entry(*binding as u32, ty, size)
+        }));
+        let label = Some(kernel.name);
+        let layout = gpu
+            .device
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label,
+                entries: &entries,
+            });
+        let whole = gpu
+            .device
+            .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label,
+                bind_group_layouts: &[Some(&layout)],
+                immediate_size: 0,
+            });
+        let module = gpu
+            .device
+            .create_shader_module(wgpu::ShaderModuleDescriptor {
+                label,
+                source: wgpu::ShaderSource::Wgsl(kernel.source.into()),
+            });
+        let pipeline = gpu
+            .device
+            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label,
+                layout: Some(&whole),
+                module: &module,
+                entry_point: Some(kernel.name),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: kernel.constants,
+                    ..Default::default()
+                },
+                cache: None,
+            });
+        Self {
+            kernel,
+            layout,
+            pipeline,
+        }
+    }
+
+    /// Its buffers, bound.
+    pub(crate) fn bind<'a>(
+        &self,
+        gpu: &Device,
+        records: &'a wgpu::Buffer,
+        buffer: impl Fn(Binding) -> &'a wgpu::Buffer,
+    ) -> wgpu::BindGroup {
+        let record = |buffer| {
+            wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer,
+                offset: 0,
+                size: wgpu::BufferSize::new(RECORD_BYTES),
+            })
+        };
+        let own = self.kernel.bindings.iter().map(|binding| {
+            let resource = match binding.is_uniform() {
+                true => record(buffer(*binding)),
+                false => buffer(*binding).as_entire_binding(),
+            };
+            (*binding as u32, resource)
+        });
+        let all = std::iter::once((0, record(records))).chain(own);
+        let entries: Vec<wgpu::BindGroupEntry<'_>> = all
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+            .collect();
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(self.kernel.name),
+            layout: &self.layout,
+            entries: &entries,
+        })
+    }
+}

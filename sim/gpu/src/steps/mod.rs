@@ -1,0 +1,25 @@
+//! Steps of a brush on the device, whatever the paint model.
+//!
+//! Window and load are on the device from the first step on until they are settled; nothing is read
+//! back between. Steps that nobody has read back are kept, and done again by the processor where the
+//! device is lost.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | `kernels` | stages as pipelines, and those that all models share |
+//! | `record` | a step as the shaders take it |
+//! | `residence` | a window and a load while they are on the device |
+//! | `workspace` | the buffers; upload, steps, read-back |
+//! | `kept` | steps that are on the device alone |
+//! | `traffic` | what steps move, counted |
+//! | `probing` | a step as far as a stage |
+//! | `model` | the paint model that defers its steps to the device |
+
+mod kept;
+pub(crate) mod kernels;
+pub(crate) mod model;
+pub(crate) mod probing;
+pub(crate) mod record;
+pub(crate) mod residence;
+pub(crate) mod traffic;
+pub(crate) mod workspace;

@@ -1,0 +1,254 @@
+//! A paint model that defers its steps to the device; it is the processor's once that is lost.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use maulstick_canvas::window::Window;
+use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::interface::{CountOwn, PaintModel, Rest, Step, StepReport, Transfer};
+
+use super::kept::KeptSteps;
+use super::kernels::Kernel;
+use super::residence::Residence;
+use super::traffic::Traffic;
+use super::workspace::{Batch, Workspace};
+use crate::device::{Device, GpuError};
+
+/// Unsettled steps after which they are settled at the latest.
+const MOST_KEPT: usize = 256;
+
+/// What makes stages of a model's steps.
+pub(crate) trait Planner: Send {
+    /// Adds a step to a batch, the brush's step of this number. The rows of the window that it may change; none where the
+    /// processor is to do it.
+    fn plan(
+        &self,
+        step: &Step<'_>,
+        on: &Residence,
+        number: u64,
+        batch: &mut Batch,
+    ) -> Option<Range<usize>>;
+}
+
+/// What is on the device.
+struct Session {
+    on: Residence,
+    kept: KeptSteps,
+    batch: Batch,
+    uploaded: bool,
+    /// Rows of the window that may have changed.
+    rows: Range<usize>,
+    /// Whether paint may have come from nowhere.
+    uncounted: bool,
+}
+
+/// Makes a model on a device; a [`GpuError`] where the driver does not take the shaders.
+pub type MakeModel = fn(Device) -> Result<GpuModel, GpuError>;
+
+/// A paint model on the device; on the processor once that is lost.
+pub struct GpuModel {
+    workspace: Option<Workspace>,
+    planner: Box<dyn Planner>,
+    session: Option<Session>,
+    /// The same model on the processor.
+    cpu: Box<dyn PaintModel>,
+    adapter: String,
+    fall: Option<String>,
+}
+
+impl GpuModel {
+    /// A model of these stages on a device.
+    pub(crate) fn new(
+        gpu: Device,
+        kernels: &'static [Kernel],
+        planner: Box<dyn Planner>,
+        cpu: Box<dyn PaintModel>,
+    ) -> Result<Self, GpuError> {
+        let adapter = gpu.name().to_owned();
+        Ok(Self {
+            workspace: Some(Workspace::new(gpu, kernels)?),
+            planner,
+            session: None,
+            cpu,
+            adapter,
+            fall: None,
+        })
+    }
+
+    /// What makes the model of this name on a device; none where no device computes it.
+    #[must_use]
+    pub fn maker(name: &str) -> Option<MakeModel> {
+        match name {
+            "impasto" => Some(Self::impasto),
+            "dab" => Some(Self::dab),
+            _ => None,
+        }
+    }
+
+    /// The adapter's name.
+    #[must_use]
+    pub fn adapter(&self) -> &str {
+        &self.adapter
+    }
+
+    /// What its steps move, counted for as long as the device lasts.
+    #[must_use]
+    pub fn traffic(&self) -> Arc<Traffic> {
+        let workspace = self.workspace.as_ref();
+        workspace.map_or_else(Arc::default, |workspace| Arc::clone(&workspace.traffic))
+    }
+
+    /// Has the device do all steps so far, and waits for it; they stay to be settled.
+    ///
+    /// # Errors
+    /// A [`GpuError`] of the device.
+    pub fn wait(&mut self, window: &Window, load: &BrushLoad) -> Result<(), GpuError> {
+        let (Some(workspace), Some(session)) = (&mut self.workspace, &mut self.session) else {
+            return Ok(());
+        };
+        Self::flush(workspace, session, window, load)?;
+        workspace.gpu.wait()
+    }
+
+    /// Gives the device what it has not heard of yet.
+    fn flush(
+        workspace: &mut Workspace,
+        session: &mut Session,
+        window: &Window,
+        load: &BrushLoad,
+    ) -> Result<(), GpuError> {
+        if session.batch.steps == 0 {
+            return Ok(());
+        }
+        if !session.uploaded {
+            workspace.upload(&session.on, (window, load), &session.kept.head)?;
+            session.uploaded = true;
+        }
+        workspace.submit(&session.on, &session.batch)?;
+        session.batch = Batch::default();
+        Ok(())
+    }
+
+    /// The processor goes on: with what the device had not given back.
+    fn fall(&mut self, error: &GpuError, window: &mut Window, load: &mut BrushLoad) -> StepReport {
+        self.workspace = None;
+        self.fall = Some(format!("the graphics device failed: {error}"));
+        let session = self.session.take();
+        session.map_or_else(StepReport::default, |session| {
+            session.kept.replay(self.cpu.as_mut(), window, load)
+        })
+    }
+
+    /// The processor does a step, once all that were before it are settled.
+    fn settle_and_step(&mut self, step: &mut Step<'_>) -> StepReport {
+        let mut report = self.settle(step.window, step.load);
+        report.add(&self.cpu.step(step));
+        report
+    }
+}
+
+impl PaintModel for GpuModel {
+    fn name(&self) -> &'static str {
+        self.cpu.name()
+    }
+
+    fn backend(&self) -> String {
+        match self.workspace {
+            Some(_) => format!("gpu {}", self.adapter),
+            None => "cpu".to_owned(),
+        }
+    }
+
+    fn defers(&self) -> bool {
+        self.workspace.is_some()
+    }
+
+    fn step_now(&mut self, step: &mut Step<'_>) -> StepReport {
+        self.cpu.step(step)
+    }
+
+    fn step(&mut self, step: &mut Step<'_>) -> StepReport {
+        if matches!(step.handling.transfer, Transfer::Sampler | Transfer::Vacuum) {
+            return self.settle_and_step(step);
+        }
+        let Some(workspace) = &mut self.workspace else {
+            return self.cpu.step(step);
+        };
+        if self.session.is_none() {
+            self.session = Residence::new(step).map(|on| Session {
+                on,
+                kept: KeptSteps::of(step.head.clone()),
+                batch: Batch::default(),
+                uploaded: false,
+                rows: 0..0,
+                uncounted: false,
+            });
+        }
+        let Some(session) = &mut self.session else {
+            // Too large for the device: the processor has the room.
+            return self.cpu.step(step);
+        };
+        let number = session.on.steps() + session.kept.len() as u64;
+        let planned = self
+            .planner
+            .plan(step, &session.on, number, &mut session.batch);
+        let Some(rows) = planned else {
+            return self.settle_and_step(step);
+        };
+        session.kept.keep(step);
+        session.uncounted |= step.lasting || step.handling.transfer == Transfer::Sponge;
+        session.rows = match session.rows.is_empty() {
+            true => rows,
+            false => session.rows.start.min(rows.start)..session.rows.end.max(rows.end),
+        };
+        if session.kept.len() >= MOST_KEPT {
+            return self.settle(step.window, step.load);
+        }
+        if session.batch.is_full()
+            && let Err(error) = Self::flush(workspace, session, step.window, step.load)
+        {
+            return self.fall(&error, step.window, step.load);
+        }
+        StepReport::default()
+    }
+
+    fn settle(&mut self, window: &mut Window, load: &mut BrushLoad) -> StepReport {
+        let (Some(workspace), Some(session)) = (&mut self.workspace, &mut self.session) else {
+            return StepReport::default();
+        };
+        if session.kept.len() == 0 {
+            self.session = None;
+            return StepReport::default();
+        }
+        let rows = session.rows.clone();
+        let read = Self::flush(workspace, session, window, load)
+            .and_then(|()| workspace.read_back(&session.on, rows, window.width()));
+        match read {
+            Ok((settled, mut report)) => {
+                if session.uncounted {
+                    report.from_nowhere = session.on.gained(&settled, window, load).into();
+                }
+                session.on.write(&settled, window, load);
+                self.session = None;
+                report
+            }
+            Err(error) => self.fall(&error, window, load),
+        }
+    }
+
+    fn rest_halo(&self) -> Option<usize> {
+        self.cpu.rest_halo()
+    }
+
+    fn rest(&mut self, rest: &mut Rest<'_>) {
+        self.cpu.rest(rest);
+    }
+
+    fn count_own(&self) -> Option<CountOwn> {
+        self.cpu.count_own()
+    }
+
+    fn take_fall(&mut self) -> Option<String> {
+        self.fall.take()
+    }
+}
