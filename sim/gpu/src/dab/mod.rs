@@ -89,7 +89,7 @@ impl Planner for Steps {
         let whole = batch.next(record, BEGINS);
         batch.blends.push(bytemuck::cast(own));
         batch.calls.push(whole);
-        let mut blend = first_blend(number);
+        let mut numbered = first_blend(number);
         for (place, (drawing, grid)) in drawings.iter().enumerate() {
             let sweep = drawing.sweep();
             let record = StepRecord::new(step, &sweep, on, (grid, batch.steps));
@@ -105,8 +105,8 @@ impl Planner for Steps {
             own.by_even = drawing.by_even;
             let count = drawing.shifts.len();
             for (i, shift) in drawing.shifts.iter().enumerate() {
-                let threshold = Dither::new(step.load.seed(), blend).parts_at(from);
-                blend = blend.wrapping_add(1);
+                let threshold = Dither::new(step.load.seed(), numbered).parts_at(from);
+                numbered = numbered.wrapping_add(1);
                 let blend = batch.blends.len();
                 batch.calls.push(Call { blend, ..call });
                 let own = own.at((i, count), *shift, threshold);
