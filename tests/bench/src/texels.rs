@@ -43,7 +43,7 @@ pub(crate) fn run(report: &mut Report, gpu: Option<&Device>) -> Result<(), UserE
             let name = format!("{stroker}.{}", path.name);
             let of = |count: fn([u64; 2]) -> u64| {
                 let rates = rates.iter();
-                rates.map(|(cells, seconds)| count([texels, *cells]) as f64 / seconds)
+                rates.map(move |(cells, seconds)| count([texels, *cells]) as f64 / seconds)
             };
             let both = [of(|[texels, _]| texels), of(|[_, touched]| touched)];
             let [texels, touched] = both.map(Iterator::collect);
