@@ -300,34 +300,55 @@ impl Voxels {
     /// Writes the paint back.
     pub fn write(&self, window: &mut Window) {
         let grid = self.volume.grid;
-        let up = grid.stride(2);
-        let cells: Vec<usize> = self.area.rows(window.width()).flatten().collect();
+        let width = self.area.size[0];
+        let starts: Vec<usize> = self
+            .area
+            .rows(window.width())
+            .map(|row| row.start)
+            .collect();
+        let mut sums = vec![0; width];
         for (paint, slot) in self.slots.iter().enumerate() {
             let counts = &self.volume.paints[paint];
+            let row = |y: usize, layer: usize| {
+                let first = grid.at([0, y as isize, layer as isize]);
+                let lowest = &self.lowest[y * width..(y + 1) * width];
+                counts[first..first + width].iter().zip(lowest)
+            };
             let plane = window.plane_mut(*slot);
-            for (column, cell) in cells.iter().enumerate() {
-                let sum: u32 = self.column(column).map(|voxel| counts[voxel]).sum();
-                plane[*cell] = sum as f32;
+            for (y, start) in starts.iter().enumerate() {
+                sums.fill(0);
+                for layer in 0..grid.cells[2] {
+                    for (sum, (count, lowest)) in sums.iter_mut().zip(row(y, layer)) {
+                        *sum += if layer >= usize::from(*lowest) {
+                            *count
+                        } else {
+                            0
+                        };
+                    }
+                }
+                let cells = &mut plane[*start..start + width];
+                let cells = cells.iter_mut().zip(&sums);
+                cells.for_each(|(cell, sum)| *cell = *sum as f32);
             }
             for layer in 0..grid.cells[2] {
                 let shape = shape_of(*slot, self.first + layer);
-                let is_above = |column: usize| layer > usize::from(self.lowest[column]);
-                let at = |column: usize| {
-                    self.bottom(column) + (layer - usize::from(self.lowest[column])) * up
+                let above = |(count, lowest): (&u32, &u16)| {
+                    if layer > usize::from(*lowest) {
+                        *count
+                    } else {
+                        0
+                    }
                 };
-                let has_any =
-                    (0..cells.len()).any(|column| is_above(column) && counts[at(column)] > 0);
+                let has_any = (0..starts.len()).any(|y| row(y, layer).any(|cell| above(cell) > 0));
                 if !has_any && window.own(shape).is_none() {
                     continue;
                 }
                 let bytes = window.own_mut(shape);
-                for (column, cell) in cells.iter().enumerate() {
-                    let count = if is_above(column) {
-                        counts[at(column)]
-                    } else {
-                        0
-                    };
-                    bytes[4 * cell..4 * cell + 4].copy_from_slice(&(count as f32).to_le_bytes());
+                for (y, start) in starts.iter().enumerate() {
+                    let (cells, _) = bytes[4 * start..4 * (start + width)].as_chunks_mut::<4>();
+                    for (cell, from) in cells.iter_mut().zip(row(y, layer)) {
+                        *cell = (above(from) as f32).to_le_bytes();
+                    }
                 }
             }
         }
@@ -376,24 +397,36 @@ impl Columns<'_> {
     /// Fills the voxels.
     fn fill(&self, slots: &[usize], (own, bottoms): (&[Own<'_>], &[usize]), volume: &mut Volume) {
         let grid = volume.grid;
-        let up = grid.stride(2);
+        let width = grid.cells[0].max(1);
         for (paint, slot) in slots.iter().enumerate() {
-            let plane = self.window.plane(*slot);
-            let own: Vec<&Own<'_>> = own.iter().filter(|(of, ..)| *of == paint).collect();
             let counts = &mut volume.paints[paint];
-            for ((cell, lowest), bottom) in self.cells.iter().zip(self.lowest).zip(bottoms) {
-                let lowest = usize::from(*lowest);
-                let mut left = plane.map_or(0, |plane| plane[*cell] as u32);
-                // From the lowest on: what counts no longer hold was taken from the top.
-                for (_, layer, bytes) in &own {
-                    if *layer > lowest && *layer < grid.cells[2] {
-                        let lies = value(bytes, *cell).min(left);
-                        counts[bottom + (layer - lowest) * up] = lies;
-                        left -= lies;
+            let plane = self.window.plane(*slot);
+            let lies = |cell: &usize| plane.map_or(0, |plane| plane[*cell] as u32);
+            let mut left: Vec<u32> = self.cells.iter().map(lies).collect();
+            // From the lowest on: what counts no longer hold was taken from the top.
+            for (of, layer, bytes) in own {
+                if *of != paint || *layer >= grid.cells[2] {
+                    continue;
+                }
+                let rows = self
+                    .cells
+                    .chunks_exact(width)
+                    .zip(self.lowest.chunks_exact(width));
+                for (y, (row, left)) in rows.zip(left.chunks_exact_mut(width)).enumerate() {
+                    let (cells, lowest) = row;
+                    let (held, _) = bytes[4 * cells[0]..4 * (cells[0] + width)].as_chunks::<4>();
+                    let first = grid.at([0, y as isize, *layer as isize]);
+                    let columns = counts[first..first + width].iter_mut().zip(left);
+                    for ((count, left), (held, lowest)) in columns.zip(held.iter().zip(lowest)) {
+                        if *held != [0; 4] && *layer > usize::from(*lowest) {
+                            *count = (f32::from_le_bytes(*held) as u32).min(*left);
+                            *left -= *count;
+                        }
                     }
                 }
-                counts[*bottom] = left;
             }
+            let columns = bottoms.iter().zip(left);
+            columns.for_each(|(bottom, left)| counts[*bottom] = left);
         }
         self.stack(bottoms, volume);
     }
