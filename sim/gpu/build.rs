@@ -12,5 +12,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             "common/shapes.wgsl",
             "common/axes.wgsl",
         ],
+    )?;
+    check_shaders::check_all(
+        "src/shaders/stokes",
+        &[
+            "common/window.wgsl",
+            "common/sums.wgsl",
+            "common/transfer.wgsl",
+            "common/smoothing.wgsl",
+        ],
     )
 }

@@ -5,6 +5,7 @@
 //! | [`device`] | the device, its faults as values |
 //! | [`films`] | Kubelka-Munk films of many tiles at once |
 //! | [`impasto`] | the paint model `impasto` |
+//! | [`stokes`] | the flow of Stokes Paint |
 //! | `stage` | a compute shader and its pipelines |
 //! | `batch` | tiles as the shaders take them |
 //! | `arena` | buffers that are used again |
@@ -18,7 +19,9 @@ pub mod films;
 pub mod impasto;
 mod shade_films;
 mod stage;
+pub mod stokes;
 
 pub use device::{AdapterReport, Choice, Device, GpuError, adapters};
 pub use films::GpuFilms;
 pub use impasto::{GpuImpasto, Traffic};
+pub use stokes::{FlowState, GpuFlow};

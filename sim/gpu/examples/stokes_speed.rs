@@ -1,0 +1,180 @@
+//! The flow of Stokes Paint on the device: how fast it is, and how far from the processor's.
+//! `cargo run --release -p maulstick-gpu --example stokes_speed -- [SIZE...]`, sizes such as 128x128x64.
+
+use std::error::Error;
+use std::time::{Duration, Instant};
+
+use maulstick_gpu::{Choice, Device, GpuFlow};
+use maulstick_stokes::body::{Rod, voxelise};
+use maulstick_stokes::domain::Solids;
+use maulstick_stokes::flow::{Conditions, Effort, Flow};
+use maulstick_stokes::grid::Grid;
+use maulstick_stokes::rheology::Paint;
+
+/// Sizes where none is asked for: the benchmark's, and the plan's for a discrete processor.
+const SIZES: [[usize; 3]; 2] = [[32, 32, 16], [128, 128, 64]];
+/// Steps of a round, rounds, and the time after which there is no other round.
+const STEPS: usize = 16;
+const ROUNDS: usize = 5;
+const ENOUGH: Duration = Duration::from_secs(20);
+/// Cells of the largest window that the processor moves too.
+const COMPARED: usize = 300_000;
+
+fn conditions() -> Conditions {
+    Conditions {
+        cell_m: 2.5e-4,
+        seconds: 0.01,
+        paint: Paint::newtonian(1e-2),
+        pull: [0.0, 0.0, -9.81],
+    }
+}
+
+/// Paint with waves up to half of a window's height, and a rod that is drawn through it.
+fn scene(grid: &Grid) -> (Vec<f32>, Solids) {
+    let [width, height, depth] = grid.cells.map(|cells| cells as f32);
+    let fill = |place: usize| {
+        let [x, y, z] = grid.cell(place).map(|at| at as f64 + 0.5);
+        let waves = 0.6 * maulstick_num::sin(0.7 * x) * maulstick_num::cos(0.5 * y);
+        (0.5 * f64::from(depth) + waves + 0.5 - z).clamp(0.0, 1.0) as f32
+    };
+    let fill = (0..grid.len()).map(fill).collect();
+    let mut solids = Solids::walls(grid);
+    let rod = Rod {
+        ends: [
+            [0.3 * width, 0.5 * height, 0.25 * depth],
+            [0.32 * width, 0.52 * height, depth],
+        ],
+        radius: 0.08 * width,
+        velocity: [[0.012, 0.0, 0.0]; 2],
+    };
+    voxelise(grid, &mut solids, &[rod]);
+    (fill, solids)
+}
+
+/// Largest difference of a velocity by the fastest one, after each of two steps, and the processor's time of a step.
+fn compare(gpu: &Device, grid: &Grid) -> Result<([f64; 2], Duration), Box<dyn Error>> {
+    let (fill, solids) = scene(grid);
+    let mut cpu = Flow::new(grid);
+    let mut device = GpuFlow::new(gpu.clone(), grid, Effort::default())?;
+    let mut found = [0.0; 2];
+    let mut time = Duration::ZERO;
+    for found in &mut found {
+        let begun = Instant::now();
+        cpu.step(&fill, &solids, &conditions());
+        time = begun.elapsed();
+        device.step(&fill, &solids, &conditions())?;
+        let state = device.read()?;
+        for axis in 0..3 {
+            for face in grid.faces(axis) {
+                let off = f64::from((cpu.velocity[axis][face] - state.velocity[axis][face]).abs());
+                // A number that is none is as far off as can be.
+                *found = if off <= *found { *found } else { off };
+            }
+        }
+        *found /= cpu.fastest();
+    }
+    Ok((found, time))
+}
+
+fn measure(gpu: &Device, grid: &Grid) -> Result<(), Box<dyn Error>> {
+    let [width, height, depth] = grid.cells;
+    let name = format!("{width}x{height}x{depth}");
+    let (fill, solids) = scene(grid);
+    let mut flow = GpuFlow::new(gpu.clone(), grid, Effort::default())?;
+    let bytes = GpuFlow::window_bytes(grid, Effort::default())?;
+    let [dispatches, moved] = flow.traffic();
+    println!(
+        "{name}: window of {:.1} MB, {dispatches} dispatches and {:.1} MB a step",
+        bytes as f64 * 1e-6,
+        moved as f64 * 1e-6
+    );
+    flow.step(&fill, &solids, &conditions())?;
+    flow.time_steps(&conditions(), 1)?;
+    let begun = Instant::now();
+    let (mut steps, mut uploads, mut copies) = (Vec::new(), Vec::new(), Vec::new());
+    for _ in 0..ROUNDS {
+        let each = |time: Duration| time.as_secs_f64() / STEPS as f64;
+        steps.push(each(flow.time_steps(&conditions(), STEPS)?));
+        copies.push(each(flow.time_copies(STEPS)?));
+        let upload = Instant::now();
+        for _ in 0..STEPS {
+            flow.step(&fill, &solids, &conditions())?;
+            flow.wait()?;
+        }
+        uploads.push(each(upload.elapsed()));
+        if begun.elapsed() > ENOUGH {
+            break;
+        }
+    }
+    let [steps, uploads, copies] = [steps, uploads, copies].map(|mut times| {
+        times.sort_by(f64::total_cmp);
+        let range = format!(
+            "{:.3} to {:.3}",
+            1e3 * times[0],
+            1e3 * times[times.len() - 1]
+        );
+        (times[times.len() / 2], range)
+    });
+    println!(
+        "hz.gpu.{name}: {:.1} ({:.3} ms a step, {}; {:.1} GB/s)",
+        1.0 / steps.0,
+        1e3 * steps.0,
+        steps.1,
+        1e-9 * moved as f64 / steps.0
+    );
+    println!(
+        "with fill and solids uploaded and waited for: {:.1} Hz ({} ms)",
+        1.0 / uploads.0,
+        uploads.1
+    );
+    println!(
+        "a copy of the same bytes: {:.3} ms ({}; {:.1} GB/s); a step takes {:.2} times as long",
+        1e3 * copies.0,
+        copies.1,
+        1e-9 * moved as f64 / copies.0,
+        steps.0 / copies.0
+    );
+    let state = flow.read()?;
+    println!(
+        "residual {:.1e} after {} steps",
+        state.norms[state.norms.len() - 1] / state.norms[0],
+        state.norms.len() - 1
+    );
+    if width * height * depth <= COMPARED || gpu.name().contains("NVIDIA") {
+        let (found, time) = compare(gpu, grid)?;
+        println!(
+            "largest difference from the processor's velocities, by the fastest: {:.1e}, {:.1e} (a step of the processor: {:.1} ms)",
+            found[0],
+            found[1],
+            1e3 * time.as_secs_f64()
+        );
+    }
+    Ok(())
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut sizes = Vec::new();
+    for word in std::env::args().skip(1) {
+        let numbers: Result<Vec<usize>, _> = word.split('x').map(str::parse).collect();
+        let size = numbers?;
+        sizes.push(
+            <[usize; 3]>::try_from(size)
+                .map_err(|_| format!("{word}: not a size such as 32x32x16"))?,
+        );
+    }
+    if sizes.is_empty() {
+        sizes.extend(SIZES);
+    }
+    let gpu = Device::open(Choice::Forced)?;
+    println!(
+        "adapter: {}{}",
+        gpu.name(),
+        if gpu.is_cpu() { " (emulated)" } else { "" }
+    );
+    for size in sizes {
+        if let Err(error) = measure(&gpu, &Grid::walled(size)) {
+            println!("{size:?}: {error}");
+        }
+    }
+    Ok(())
+}
