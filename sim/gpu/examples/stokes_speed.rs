@@ -4,7 +4,7 @@
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-use maulstick_gpu::{Choice, Device, GpuFlow};
+use maulstick_gpu::{Choice, Device, GpuFlow, Tuning};
 use maulstick_stokes::body::{Rod, voxelise};
 use maulstick_stokes::domain::Solids;
 use maulstick_stokes::flow::{Conditions, Effort, Flow};
@@ -76,15 +76,75 @@ fn compare(gpu: &Device, grid: &Grid) -> Result<([f64; 2], Duration), Box<dyn Er
     Ok((found, time))
 }
 
+/// Times of a step by rounds, in ms.
+struct Times(Vec<f64>);
+
+impl Times {
+    fn median(&self) -> f64 {
+        self.0.get(self.0.len() / 2).copied().unwrap_or(f64::NAN)
+    }
+
+    /// The median, and the shortest and the longest.
+    fn text(&mut self) -> String {
+        self.0.sort_by(f64::total_cmp);
+        let ends = [self.0.first(), self.0.last()].map(|time| time.copied().unwrap_or(f64::NAN));
+        format!("{:.3} ms ({:.3} to {:.3})", self.median(), ends[0], ends[1])
+    }
+}
+
+/// Prints how fast the steps are where one workgroup does all levels of so many cells and fewer.
+fn time(gpu: &Device, grid: &Grid, rest: u32) -> Result<(), Box<dyn Error>> {
+    let tuning = Tuning {
+        rest,
+        ..Tuning::default()
+    };
+    let effort = Effort::default();
+    let (fill, solids) = scene(grid);
+    let mut flow = GpuFlow::tuned(gpu.clone(), grid, effort, &tuning)?;
+    let [dispatches, moved] = GpuFlow::traffic(grid, effort, &tuning)?;
+    flow.step(&fill, &solids, &conditions())?;
+    let first = flow.time_steps(&conditions(), 1)?;
+    let count = (ROUND.as_secs_f64() / first.as_secs_f64()).clamp(1.0, 256.0) as usize;
+    let begun = Instant::now();
+    let [mut steps, mut uploads, mut copies] = [(); 3].map(|()| Times(Vec::new()));
+    for _ in 0..ROUNDS {
+        let each = |time: Duration| 1e3 * time.as_secs_f64() / count as f64;
+        steps.0.push(each(flow.time_steps(&conditions(), count)?));
+        copies.0.push(each(flow.time_copies(count)?));
+        let upload = Instant::now();
+        for _ in 0..count {
+            flow.step(&fill, &solids, &conditions())?;
+            flow.wait()?;
+        }
+        uploads.0.push(each(upload.elapsed()));
+        if begun.elapsed() > ENOUGH {
+            break;
+        }
+    }
+    let [step, upload, copy] = [&mut steps, &mut uploads, &mut copies].map(Times::text);
+    let [width, height, depth] = grid.cells;
+    println!(
+        "hz.gpu.{width}x{height}x{depth}: {:.1}, {step} a step of {dispatches} dispatches (levels of {rest} cells by one workgroup)",
+        1e3 / steps.median()
+    );
+    println!("  with fill and solids uploaded and waited for: {upload}");
+    let gigabytes = |times: &Times| 1e-6 * moved as f64 / times.median();
+    println!(
+        "  a copy of the same bytes: {copy}; {:.1} and {:.1} GB/s, a step takes {:.2} times as long",
+        gigabytes(&copies),
+        gigabytes(&steps),
+        steps.median() / copies.median()
+    );
+    Ok(())
+}
+
 fn measure(gpu: &Device, grid: &Grid) -> Result<(), Box<dyn Error>> {
     let [width, height, depth] = grid.cells;
-    let name = format!("{width}x{height}x{depth}");
-    let (fill, solids) = scene(grid);
-    let mut flow = GpuFlow::new(gpu.clone(), grid, Effort::default())?;
-    let bytes = GpuFlow::window_bytes(grid, Effort::default())?;
-    let [dispatches, moved] = flow.traffic();
+    let effort = Effort::default();
+    let bytes = GpuFlow::window_bytes(grid, effort)?;
+    let [dispatches, moved] = GpuFlow::traffic(grid, effort, &Tuning::default())?;
     println!(
-        "{name}: window of {:.1} MB, {dispatches} dispatches and {:.1} MB a step",
+        "{width}x{height}x{depth}: window of {:.1} MB, {dispatches} dispatches and {:.1} MB a step",
         bytes as f64 * 1e-6,
         moved as f64 * 1e-6
     );
@@ -97,60 +157,12 @@ fn measure(gpu: &Device, grid: &Grid) -> Result<(), Box<dyn Error>> {
             1e3 * time.as_secs_f64()
         );
     }
-    flow.step(&fill, &solids, &conditions())?;
-    let first = flow.time_steps(&conditions(), 1)?;
-    let count = (ROUND.as_secs_f64() / first.as_secs_f64()).clamp(1.0, 256.0) as usize;
-    let begun = Instant::now();
-    let (mut steps, mut uploads, mut copies) = (Vec::new(), Vec::new(), Vec::new());
-    for _ in 0..ROUNDS {
-        let each = |time: Duration| time.as_secs_f64() / count as f64;
-        steps.push(each(flow.time_steps(&conditions(), count)?));
-        copies.push(each(flow.time_copies(count)?));
-        let upload = Instant::now();
-        for _ in 0..count {
-            flow.step(&fill, &solids, &conditions())?;
-            flow.wait()?;
-        }
-        uploads.push(each(upload.elapsed()));
-        if begun.elapsed() > ENOUGH {
-            break;
-        }
-    }
-    let [steps, uploads, copies] = [steps, uploads, copies].map(|mut times| {
-        times.sort_by(f64::total_cmp);
-        let range = format!(
-            "{:.3} to {:.3}",
-            1e3 * times[0],
-            1e3 * times[times.len() - 1]
-        );
-        (times[times.len() / 2], range)
-    });
-    println!(
-        "hz.gpu.{name}: {:.1} ({:.3} ms a step, {}; {:.1} GB/s)",
-        1.0 / steps.0,
-        1e3 * steps.0,
-        steps.1,
-        1e-9 * moved as f64 / steps.0
-    );
-    println!(
-        "with fill and solids uploaded and waited for: {:.1} Hz ({} ms)",
-        1.0 / uploads.0,
-        uploads.1
-    );
-    println!(
-        "a copy of the same bytes: {:.3} ms ({}; {:.1} GB/s); a step takes {:.2} times as long",
-        1e3 * copies.0,
-        copies.1,
-        1e-9 * moved as f64 / copies.0,
-        steps.0 / copies.0
-    );
-    let state = flow.read()?;
-    println!(
-        "residual {:.1e} after {} steps",
-        state.norms[state.norms.len() - 1] / state.norms[0],
-        state.norms.len() - 1
-    );
-    Ok(())
+    let rests: &[u32] = if gpu.is_cpu() {
+        &[2048]
+    } else {
+        &[2048, 512, 64, 16_384]
+    };
+    rests.iter().try_for_each(|rest| time(gpu, grid, *rest))
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -79,7 +79,7 @@ stages! {
 }
 
 /// A constant of the shaders with another value: the fault that a test seeds.
-pub(crate) type Fault = Option<(&'static str, f64)>;
+pub type Fault = Option<(&'static str, f64)>;
 
 /// The stages on a device.
 pub(crate) struct Pipelines {

@@ -28,7 +28,8 @@ use wgpu::BufferUsages as Usage;
 
 use crate::arena::{Arena, read};
 use crate::device::{Device, GpuError};
-use kernels::{Fault, Pipelines};
+pub use kernels::Fault;
+use kernels::Pipelines;
 use plan::Plan;
 use record::{CALL_BYTES, CALL_STRIDE, WINDOW_BYTES, WindowRecord};
 use schedule::{Dispatch, Schedule};
@@ -61,6 +62,25 @@ pub struct GpuFlow {
     pub relief: f32,
 }
 
+/// How the stages are laid out on a device; the flow is the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tuning {
+    /// Cells of a level from which down one workgroup does all levels.
+    pub rest: u32,
+    /// A constant of the shaders with another value: the fault that a comparison must find.
+    #[doc(hidden)]
+    pub fault: Fault,
+}
+
+impl Default for Tuning {
+    fn default() -> Self {
+        Self {
+            rest: 2048,
+            fault: None,
+        }
+    }
+}
+
 /// What a flow is after a step, on the grid's places as `maulstick_stokes::flow::Flow` has it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlowState {
@@ -80,25 +100,24 @@ impl GpuFlow {
     /// # Errors
     /// [`GpuError::Window`] where the window is too large for the device; another [`GpuError`] of the device.
     pub fn new(gpu: Device, grid: &Grid, effort: Effort) -> Result<Self, GpuError> {
-        Self::with_fault(gpu, grid, effort, None)
+        Self::tuned(gpu, grid, effort, &Tuning::default())
     }
 
-    /// The same with a constant of the shaders changed: the fault that a comparison must find.
+    /// The same, tuned to the device.
     ///
     /// # Errors
     /// As [`GpuFlow::new`].
-    #[doc(hidden)]
-    pub fn with_fault(
+    pub fn tuned(
         gpu: Device,
         grid: &Grid,
         effort: Effort,
-        fault: Fault,
+        tuning: &Tuning,
     ) -> Result<Self, GpuError> {
         let effort = Effort {
             steps: effort.steps.min(MOST_STEPS),
             projections: effort.projections.min(MOST_STEPS),
         };
-        let plan = Plan::new(grid, effort.steps)?;
+        let plan = Plan::new(grid, effort.steps, tuning.rest)?;
         plan.check(&gpu)?;
         let (dispatches, bytes) = {
             let schedule = Schedule::new(&plan, effort);
@@ -106,7 +125,7 @@ impl GpuFlow {
         };
         let device = &gpu.device;
         let (pipelines, fields, records, bound) = gpu.guarded(|| {
-            let pipelines = Pipelines::new(&gpu, fault);
+            let pipelines = Pipelines::new(&gpu, tuning.fault);
             let buffer = |label, size, usage| {
                 device.create_buffer(&wgpu::BufferDescriptor {
                     label: Some(label),
@@ -174,14 +193,18 @@ impl GpuFlow {
     /// # Errors
     /// [`GpuError::Window`] where no device's indices reach so far.
     pub fn window_bytes(grid: &Grid, effort: Effort) -> Result<u64, GpuError> {
-        Plan::new(grid, effort.steps.min(MOST_STEPS)).map(|plan| plan.bytes())
+        Plan::new(grid, effort.steps.min(MOST_STEPS), 0).map(|plan| plan.bytes())
     }
 
-    /// Dispatches of a step, and bytes that its stages go over: each field that a stage reads or writes once. A device's
-    /// caches spare some of it.
-    #[must_use]
-    pub fn traffic(&self) -> [u64; 2] {
-        [self.dispatches.len() as u64, self.bytes]
+    /// Dispatches of a step in a window of a grid, and bytes that its stages go over: each field that a stage reads or writes
+    /// once. A device's caches spare some of it.
+    ///
+    /// # Errors
+    /// [`GpuError::Window`] where no device's indices reach so far.
+    pub fn traffic(grid: &Grid, effort: Effort, tuning: &Tuning) -> Result<[u64; 2], GpuError> {
+        let plan = Plan::new(grid, effort.steps.min(MOST_STEPS), tuning.rest)?;
+        let schedule = Schedule::new(&plan, effort);
+        Ok([schedule.dispatches.len() as u64, schedule.bytes])
     }
 
     /// Gives paint a velocity and a pressure.

@@ -20,8 +20,6 @@ const ROWS: u64 = 32;
 const SCALARS: u64 = 768;
 /// Cells of an axis of the coarsest grid at most, if it can be halved so far.
 const COARSEST_CELLS: usize = 4;
-/// Cells from which down one workgroup does all levels.
-const REST: u32 = 2048;
 
 /// `Level` of window.wgsl.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -76,11 +74,11 @@ pub(crate) fn sides(grid: &Grid) -> [[u32; 3]; 2] {
 }
 
 impl Plan {
-    /// The layout for so many directions.
+    /// The layout for so many directions; one workgroup does all levels of so many cells and fewer.
     ///
     /// # Errors
     /// [`GpuError::Window`] of a window without cells or of more than the shaders' indices reach.
-    pub(crate) fn new(grid: &Grid, memory: usize) -> Result<Self, GpuError> {
+    pub(crate) fn new(grid: &Grid, memory: usize, rest: u32) -> Result<Self, GpuError> {
         let too_large = |words: u64| GpuError::Window {
             cells: grid.cells,
             needs: words.saturating_mul(4),
@@ -133,7 +131,7 @@ impl Plan {
         plan.scalars = scalars as u32;
         let last = plan.levels.len() - 1;
         plan.rest = (0..last)
-            .find(|level| plan.inner(*level) <= REST)
+            .find(|level| plan.inner(*level) <= rest)
             .unwrap_or(last);
         Ok(plan)
     }
@@ -181,7 +179,7 @@ mod tests {
 
     #[test]
     fn a_window_is_laid_out_as_far_as_indices_reach() {
-        let plan = Plan::new(&Grid::walled([32, 32, 16]), 8).expect("laid out");
+        let plan = Plan::new(&Grid::walled([32, 32, 16]), 8, 2048).expect("laid out");
         let cells: Vec<_> = plan.levels.iter().map(|level| level.cells).collect();
         assert_eq!(cells, [[32, 32, 16], [16, 16, 8], [8, 8, 4], [4, 4, 2]]);
         assert_eq!(plan.rest, 1);
@@ -189,7 +187,7 @@ mod tests {
             assert!(pair[0].base + 36 * pair[0].len <= pair[1].base);
         }
         for cells in [[0, 4, 4], [4096; 3], [usize::MAX >> 8; 3]] {
-            let refusal = Plan::new(&Grid::walled(cells), 8).map(|plan| plan.words);
+            let refusal = Plan::new(&Grid::walled(cells), 8, 2048).map(|plan| plan.words);
             assert!(matches!(refusal, Err(GpuError::Window { .. })), "{cells:?}");
         }
     }

@@ -1,6 +1,6 @@
 //! Known answers on the device.
 
-use maulstick_gpu::{FlowState, GpuFlow};
+use maulstick_gpu::{FlowState, GpuFlow, Tuning};
 use maulstick_stokes::body::{Rod, voxelise};
 use maulstick_stokes::domain::{Domain, LEAST_FILL, Solids};
 use maulstick_stokes::flow::{Conditions, Effort, Flow};
@@ -115,11 +115,15 @@ fn the_velocity_is_free_of_divergence() {
 /// Volume that is lacking, before and after each of eight conjugate gradients that multigrid preconditions.
 fn falls(cells: [usize; 3], fault: Option<(&'static str, f64)>) -> Vec<f32> {
     let (grid, fill, solids) = pool(cells, 0.3 * cells[0] as f32);
+    let tuning = Tuning {
+        fault,
+        ..Tuning::default()
+    };
     let effort = Effort {
         steps: 0,
         projections: 8,
     };
-    let mut flow = GpuFlow::with_fault(device(), &grid, effort, fault).expect("made");
+    let mut flow = GpuFlow::tuned(device(), &grid, effort, &tuning).expect("made");
     let conditions = Conditions {
         cell_m: 2.5e-4,
         seconds: 0.01,

@@ -1,5 +1,6 @@
 //! The device beside the processor.
 
+use maulstick_gpu::Tuning;
 use maulstick_stokes::flow::Effort;
 use maulstick_stokes::rheology::Paint;
 
@@ -23,9 +24,9 @@ const EFFORT: Effort = Effort {
     projections: 5,
 };
 
-fn worst(scene: &Scene, fault: Option<(&'static str, f64)>) -> f64 {
-    let found = differences(device(), scene, EFFORT, fault).expect("steps");
-    println!("{}, {fault:?}: {found:?}", scene.name);
+fn worst(scene: &Scene, tuning: &Tuning) -> f64 {
+    let found = differences(device(), scene, EFFORT, tuning).expect("steps");
+    println!("{}, {tuning:?}: {found:?}", scene.name);
     found
         .into_iter()
         .map(|[velocity, _]| velocity)
@@ -35,8 +36,15 @@ fn worst(scene: &Scene, fault: Option<(&'static str, f64)>) -> f64 {
 #[test]
 fn the_device_has_the_processors_velocities() {
     for scene in scenes() {
-        let off = worst(&scene, None);
-        assert!(off < TOLERANCE, "{}: {off:e}", scene.name);
+        // Where one workgroup does all levels, some and the coarsest alone.
+        for rest in [u32::MAX, Tuning::default().rest, 0] {
+            let tuning = Tuning {
+                rest,
+                ..Tuning::default()
+            };
+            let off = worst(&scene, &tuning);
+            assert!(off < TOLERANCE, "{}, {rest}: {off:e}", scene.name);
+        }
     }
 }
 
@@ -45,7 +53,11 @@ fn the_device_has_the_processors_velocities() {
 fn a_fault_would_be_found() {
     for scene in scenes() {
         for fault in ["fault_link", "fault_slope"] {
-            let off = worst(&scene, Some((fault, 1.01)));
+            let tuning = Tuning {
+                fault: Some((fault, 1.01)),
+                ..Tuning::default()
+            };
+            let off = worst(&scene, &tuning);
             assert!(off > TOLERANCE, "{}, {fault}: {off:e}", scene.name);
         }
     }

@@ -1,6 +1,6 @@
 //! Scenes on which the device's flow is held beside the processor's.
 
-use maulstick_gpu::{Device, FlowState, GpuError, GpuFlow};
+use maulstick_gpu::{Device, FlowState, GpuError, GpuFlow, Tuning};
 use maulstick_num::{cos, sin};
 use maulstick_stokes::body::{Rod, voxelise};
 use maulstick_stokes::domain::Solids;
@@ -141,11 +141,11 @@ pub fn differences(
     gpu: Device,
     scene: &Scene,
     effort: Effort,
-    fault: Option<(&'static str, f64)>,
+    tuning: &Tuning,
 ) -> Result<Vec<[f64; 2]>, GpuError> {
     let mut cpu = Flow::new(&scene.grid);
     cpu.effort = effort;
-    let mut device = GpuFlow::with_fault(gpu, &scene.grid, effort, fault)?;
+    let mut device = GpuFlow::tuned(gpu, &scene.grid, effort, tuning)?;
     let mut found = Vec::new();
     for (solids, conditions) in &scene.steps {
         cpu.step(&scene.fill, solids, conditions);
