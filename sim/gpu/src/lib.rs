@@ -24,4 +24,4 @@ pub mod stokes;
 pub use device::{AdapterReport, Choice, Device, GpuError, adapters};
 pub use films::GpuFilms;
 pub use impasto::{GpuImpasto, Traffic};
-pub use stokes::{FlowState, GpuFlow, Tuning};
+pub use stokes::{FlowState, GpuFlow, Paints, Tuning};

@@ -76,6 +76,12 @@ stages! {
     FollowDirection: "follow_direction" of "free_of_divergence", 6;
     CorrectFlow: "correct_flow" of "free_of_divergence", 5;
     EndStep: "end_step" of "begin_step", 4;
+    FillWindow: "fill_window" of "carry_paint", 4;
+    TakeCounts: "take_counts" of "carry_paint", 9;
+    AskFaces: "ask_faces" of "carry_paint", 8;
+    ShareFaces: "share_faces" of "carry_paint", 6;
+    CarryPaint: "carry_paint" of "carry_paint", 3;
+    SettleDrops: "settle_drops" of "carry_paint", 6;
 }
 
 /// A constant of the shaders with another value: the fault that a test seeds.

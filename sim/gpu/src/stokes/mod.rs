@@ -30,6 +30,7 @@ use crate::arena::{Arena, read};
 use crate::device::{Device, GpuError};
 pub use kernels::Fault;
 use kernels::Pipelines;
+pub use plan::Paints;
 use plan::Plan;
 use record::{CALL_BYTES, CALL_STRIDE, WINDOW_BYTES, WindowRecord};
 use schedule::{Dispatch, Schedule};
@@ -58,6 +59,8 @@ pub struct GpuFlow {
     records: wgpu::Buffer,
     bound: wgpu::BindGroup,
     back: Arena,
+    /// Number of the next order of axes.
+    turn: usize,
     /// Part of what a cell has too much or lacks that leaves or enters it in a step.
     pub relief: f32,
 }
@@ -67,6 +70,8 @@ pub struct GpuFlow {
 pub struct Tuning {
     /// Cells of a level from which down one workgroup does all levels.
     pub rest: u32,
+    /// Paint that is carried.
+    pub paints: Paints,
     /// A constant of the shaders with another value: the fault that a comparison must find.
     #[doc(hidden)]
     pub fault: Fault,
@@ -76,6 +81,7 @@ impl Default for Tuning {
     fn default() -> Self {
         Self {
             rest: 2048,
+            paints: Paints::default(),
             fault: None,
         }
     }
@@ -117,7 +123,7 @@ impl GpuFlow {
             steps: effort.steps.min(MOST_STEPS),
             projections: effort.projections.min(MOST_STEPS),
         };
-        let plan = Plan::new(grid, effort.steps, tuning.rest)?;
+        let plan = Plan::new(grid, effort.steps, tuning.rest, tuning.paints)?;
         plan.check(&gpu)?;
         let (dispatches, bytes) = {
             let schedule = Schedule::new(&plan, effort);
@@ -183,6 +189,7 @@ impl GpuFlow {
             records,
             bound,
             back: Arena::new("stokes back", Usage::MAP_READ | Usage::COPY_DST),
+            turn: 0,
             relief: 0.25,
             gpu,
         })
@@ -193,7 +200,7 @@ impl GpuFlow {
     /// # Errors
     /// [`GpuError::Window`] where no device's indices reach so far.
     pub fn window_bytes(grid: &Grid, effort: Effort) -> Result<u64, GpuError> {
-        Plan::new(grid, effort.steps.min(MOST_STEPS), 0).map(|plan| plan.bytes())
+        Plan::new(grid, effort.steps.min(MOST_STEPS), 0, Paints::default()).map(|plan| plan.bytes())
     }
 
     /// Dispatches of a step in a window of a grid, and bytes that its stages go over: each field that a stage reads or writes
@@ -202,7 +209,12 @@ impl GpuFlow {
     /// # Errors
     /// [`GpuError::Window`] where no device's indices reach so far.
     pub fn traffic(grid: &Grid, effort: Effort, tuning: &Tuning) -> Result<[u64; 2], GpuError> {
-        let plan = Plan::new(grid, effort.steps.min(MOST_STEPS), tuning.rest)?;
+        let plan = Plan::new(
+            grid,
+            effort.steps.min(MOST_STEPS),
+            tuning.rest,
+            tuning.paints,
+        )?;
         let schedule = Schedule::new(&plan, effort);
         Ok([schedule.dispatches.len() as u64, schedule.bytes])
     }
@@ -249,7 +261,8 @@ impl GpuFlow {
         solids: &Solids,
         conditions: &Conditions,
     ) -> Result<(), GpuError> {
-        self.gpu.guarded(|| {
+        let gpu = self.gpu.clone();
+        gpu.guarded(|| {
             self.upload(FILL, fill);
             self.upload(DISTANCE, &solids.distance);
             for axis in 0..3 {
@@ -268,14 +281,45 @@ impl GpuFlow {
     /// # Errors
     /// A [`GpuError`] of the device.
     pub fn step_again(&mut self, conditions: &Conditions) -> Result<(), GpuError> {
-        self.gpu.guarded(|| {
+        let gpu = self.gpu.clone();
+        gpu.guarded(|| {
             self.submit(conditions, false);
             Ok(())
         })
     }
 
-    fn submit(&self, conditions: &Conditions, resists: bool) {
-        let record = WindowRecord::new(&self.plan, conditions, self.relief, resists);
+    /// Gives the window paint: quanta of each by cell.
+    ///
+    /// # Errors
+    /// A [`GpuError`] of the device.
+    pub fn write_paints(&self, paints: &[Vec<u32>]) -> Result<(), GpuError> {
+        self.gpu.guarded(|| {
+            for (number, counts) in paints.iter().take(self.plan.paints.count).enumerate() {
+                let counts: Vec<f32> = counts.iter().map(|count| *count as f32).collect();
+                self.upload(self.plan.paint(number), &counts);
+            }
+            Ok(())
+        })
+    }
+
+    /// Waits for the device, and reads the quanta of each paint by cell. Beyond periodic sides are those of the opposite cells.
+    ///
+    /// # Errors
+    /// A [`GpuError`] of the device.
+    pub fn read_paints(&mut self) -> Result<Vec<Vec<u32>>, GpuError> {
+        let len = self.plan.grid.len();
+        let count = self.plan.paints.count;
+        let from = 4 * u64::from(self.plan.field(self.plan.paint(0)));
+        let words = self.read_words(&[(from, 4 * (len * count) as u64)])?;
+        let counts = words.chunks(len).take(count);
+        Ok(counts
+            .map(|counts| counts.iter().map(|count| *count as u32).collect())
+            .collect())
+    }
+
+    fn submit(&mut self, conditions: &Conditions, resists: bool) {
+        let record = WindowRecord::new(&self.plan, conditions, self.relief, resists, self.turn + 1);
+        self.turn = (self.turn + self.plan.paints.parts) % 6;
         self.gpu
             .queue
             .write_buffer(&self.records, 0, bytes_of(&record));

@@ -13,6 +13,8 @@ pub(crate) const DIRECTIONS: u32 = 56;
 pub(crate) const MOST_DIRECTIONS: usize = 24;
 /// Fields of a component on the finest level and on the others.
 const OF_COMPONENT: [u64; 2] = [9, 11];
+/// Parts of a step of transport at most.
+const MOST_PARTS: usize = 40;
 /// Numbers that a workgroup of the sums goes over.
 pub(crate) const SUMMED: u32 = 2048;
 /// Rows of partial sums, and scalars.
@@ -31,6 +33,27 @@ pub(crate) struct Level {
     base: u32,
 }
 
+/// Paint that a window carries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Paints {
+    /// How many paints.
+    pub count: usize,
+    /// Quanta that fill a cell; below 2²².
+    pub capacity: u32,
+    /// Parts of a step: in each, paint goes half a cell at most.
+    pub parts: usize,
+}
+
+impl Default for Paints {
+    fn default() -> Self {
+        Self {
+            count: 0,
+            capacity: 1,
+            parts: 1,
+        }
+    }
+}
+
 /// Layout of a window.
 #[derive(Clone, Debug)]
 pub(crate) struct Plan {
@@ -40,6 +63,7 @@ pub(crate) struct Plan {
     pub(crate) rest: usize,
     /// Directions that there is room for.
     pub(crate) memory: usize,
+    pub(crate) paints: Paints,
     pub(crate) partials: u32,
     pub(crate) scalars: u32,
     /// Numbers of all.
@@ -78,7 +102,12 @@ impl Plan {
     ///
     /// # Errors
     /// [`GpuError::Window`] of a window without cells or of more than the shaders' indices reach.
-    pub(crate) fn new(grid: &Grid, memory: usize, rest: u32) -> Result<Self, GpuError> {
+    pub(crate) fn new(
+        grid: &Grid,
+        memory: usize,
+        rest: u32,
+        paints: Paints,
+    ) -> Result<Self, GpuError> {
         let too_large = |words: u64| GpuError::Window {
             cells: grid.cells,
             needs: words.saturating_mul(4),
@@ -86,8 +115,16 @@ impl Plan {
         };
         let numbers = grid.cells.iter().map(|cells| *cells as u64 + 3);
         let len = numbers.fold(1u64, u64::saturating_mul);
-        let memory = memory.clamp(1, MOST_DIRECTIONS);
-        let mut words = len.saturating_mul(u64::from(DIRECTIONS) + 8 * memory as u64);
+        let paints = Paints {
+            parts: paints.parts.clamp(1, MOST_PARTS),
+            ..paints
+        };
+        // Fields of directions are also room for counts.
+        let memory = memory
+            .max(paints.count.div_ceil(8))
+            .clamp(1, MOST_DIRECTIONS);
+        let mut words =
+            len.saturating_mul(u64::from(DIRECTIONS) + 8 * memory as u64 + 1 + paints.count as u64);
         if grid.is_empty() || words > u64::from(u32::MAX) {
             return Err(too_large(words));
         }
@@ -116,6 +153,7 @@ impl Plan {
             levels,
             rest: 0,
             memory,
+            paints,
             partials: partials as u32,
             scalars: 0,
             words,
@@ -167,6 +205,11 @@ impl Plan {
         (0..3).map(|axis| cells[axis] + beyond[axis]).product()
     }
 
+    /// Number of the field of a paint's counts.
+    pub(crate) const fn paint(&self, paint: usize) -> u32 {
+        DIRECTIONS + 8 * self.memory as u32 + 1 + paint as u32
+    }
+
     /// Where a field of the finest grid begins.
     pub(crate) fn field(&self, number: u32) -> u32 {
         number * self.levels[0].len
@@ -179,7 +222,8 @@ mod tests {
 
     #[test]
     fn a_window_is_laid_out_as_far_as_indices_reach() {
-        let plan = Plan::new(&Grid::walled([32, 32, 16]), 8, 2048).expect("laid out");
+        let plan =
+            Plan::new(&Grid::walled([32, 32, 16]), 8, 2048, Paints::default()).expect("laid out");
         let cells: Vec<_> = plan.levels.iter().map(|level| level.cells).collect();
         assert_eq!(cells, [[32, 32, 16], [16, 16, 8], [8, 8, 4], [4, 4, 2]]);
         assert_eq!(plan.rest, 1);
@@ -187,7 +231,8 @@ mod tests {
             assert!(pair[0].base + 36 * pair[0].len <= pair[1].base);
         }
         for cells in [[0, 4, 4], [4096; 3], [usize::MAX >> 8; 3]] {
-            let refusal = Plan::new(&Grid::walled(cells), 8, 2048).map(|plan| plan.words);
+            let refusal =
+                Plan::new(&Grid::walled(cells), 8, 2048, Paints::default()).map(|plan| plan.words);
             assert!(matches!(refusal, Err(GpuError::Window { .. })), "{cells:?}");
         }
     }

@@ -52,11 +52,23 @@ pub(crate) struct WindowRecord {
     per_rate: f32,
     least_rate: f32,
     resists: u32,
+    capacity: f32,
+    courant: f32,
+    paints: u32,
+    turn: u32,
+    memory: u32,
+    padding: [u32; 3],
 }
 
 impl WindowRecord {
     /// A step under conditions; a part of what cells have too much of leaves them; bristles resist or do not.
-    pub(crate) fn new(plan: &Plan, conditions: &Conditions, relief: f32, resists: bool) -> Self {
+    pub(crate) fn new(
+        plan: &Plan,
+        conditions: &Conditions,
+        relief: f32,
+        resists: bool,
+        turn: usize,
+    ) -> Self {
         let Conditions {
             cell_m,
             seconds,
@@ -89,6 +101,12 @@ impl WindowRecord {
             per_rate: (1.0 / paint.rate) as f32,
             least_rate: (yields / STIFFEST) as f32,
             resists: u32::from(resists),
+            capacity: plan.paints.capacity as f32,
+            courant: (seconds / cell_m) as f32 / plan.paints.parts as f32,
+            paints: plan.paints.count as u32,
+            turn: turn as u32,
+            memory: plan.memory as u32,
+            padding: [0; 3],
         }
     }
 }

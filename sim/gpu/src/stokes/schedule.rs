@@ -56,11 +56,17 @@ impl<'a> Schedule<'a> {
             dispatches: Vec::new(),
             bytes: 0,
         };
+        if plan.paints.count > 0 {
+            schedule.each(Stage::FillWindow, 1, Call::default());
+        }
         schedule.find_domain();
         schedule.find_operator();
         schedule.solve(effort.steps);
         schedule.project(effort.projections);
         schedule.each(Stage::EndStep, 4, Call::default());
+        if plan.paints.count > 0 {
+            schedule.carry();
+        }
         schedule
     }
 
@@ -239,6 +245,34 @@ impl<'a> Schedule<'a> {
         }
         self.add_up(Wanted::Turn, self.summing(1, norm(iterations)));
         self.each(Stage::CorrectFlow, 4, plain);
+    }
+
+    /// Carries paint along one axis after the other, then lets drops sink.
+    fn carry(&mut self) {
+        let paints = self.plan.paints.count as u32;
+        let take = |is_new: u32, begins: u32| Call {
+            first: is_new,
+            axis: begins,
+            ..Call::default()
+        };
+        for part in 0..self.plan.paints.parts as u32 {
+            for number in 0..3 {
+                let begins = u32::from(number == 0);
+                let is_new = u32::from(part + number > 0);
+                self.each(Stage::TakeCounts, 1, take(is_new, begins));
+                let call = Call {
+                    mode: part,
+                    number,
+                    ..Call::default()
+                };
+                self.each(Stage::AskFaces, 1, call);
+                self.each(Stage::ShareFaces, 1, call);
+                self.each(Stage::CarryPaint, paints, call);
+            }
+        }
+        self.each(Stage::TakeCounts, 1, take(1, 1));
+        self.each(Stage::SettleDrops, paints, Call::default());
+        self.each(Stage::TakeCounts, 1, take(1, 1));
     }
 
     /// A V-cycle of so many components from the first on.

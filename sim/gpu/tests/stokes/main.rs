@@ -6,6 +6,7 @@ mod scenes;
 mod answers;
 mod parity;
 mod robust;
+mod transport;
 
 use maulstick_gpu::{Choice, Device};
 use rand_pcg::Pcg64;

@@ -43,6 +43,16 @@ struct Window {
     least_rate: f32,
     // 1 where bristles resist.
     resists: u32,
+    // Quanta that fill a cell, Δt/h of a part of a step, paints, number of the first part's order of axes.
+    capacity: f32,
+    courant: f32,
+    paints: u32,
+    turn: u32,
+    // Directions that there is room for.
+    memory: u32,
+    padding_a: u32,
+    padding_b: u32,
+    padding_c: u32,
 }
 
 // What one dispatch is about.
