@@ -4,7 +4,7 @@
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-use maulstick_gpu::{Choice, Device, GpuFlow, Tuning};
+use maulstick_gpu::{Choice, Device, GpuFlow, Paints, Tuning};
 use maulstick_stokes::body::{Rod, voxelise};
 use maulstick_stokes::domain::Solids;
 use maulstick_stokes::flow::{Conditions, Effort, Flow};
@@ -51,7 +51,7 @@ fn scene(grid: &Grid) -> (Vec<f32>, Solids) {
     (fill, solids)
 }
 
-/// Largest difference of a velocity by the fastest one, after each of two steps, and the processor's time of a step.
+/// Largest difference of a velocity of paint by the fastest one, after each of two steps, and the processor's time of a step.
 fn compare(gpu: &Device, grid: &Grid) -> Result<([f64; 2], Duration), Box<dyn Error>> {
     let (fill, solids) = scene(grid);
     let mut cpu = Flow::new(grid);
@@ -60,12 +60,14 @@ fn compare(gpu: &Device, grid: &Grid) -> Result<([f64; 2], Duration), Box<dyn Er
     let mut time = Duration::ZERO;
     for found in &mut found {
         let begun = Instant::now();
-        cpu.step(&fill, &solids, &conditions());
+        let domain = cpu.step(&fill, &solids, &conditions());
         time = begun.elapsed();
         device.step(&fill, &solids, &conditions())?;
         let state = device.read()?;
         for axis in 0..3 {
-            for face in grid.faces(axis) {
+            // The processor leaves out layers of air.
+            let free = &domain.free[axis];
+            for face in (0..free.len()).filter(|face| free[*face] > 0.0) {
                 let off = f64::from((cpu.velocity[axis][face] - state.velocity[axis][face]).abs());
                 // A number that is none is as far off as can be.
                 *found = if off <= *found { *found } else { off };
@@ -92,16 +94,23 @@ impl Times {
     }
 }
 
-/// Prints how fast the steps are where one workgroup does all levels of so many cells and fewer.
-fn time(gpu: &Device, grid: &Grid, rest: u32) -> Result<(), Box<dyn Error>> {
-    let tuning = Tuning {
-        rest,
-        ..Tuning::default()
-    };
+/// Prints how fast the steps are.
+fn time(gpu: &Device, grid: &Grid, tuning: Tuning) -> Result<(), Box<dyn Error>> {
     let effort = Effort::default();
     let (fill, solids) = scene(grid);
     let mut flow = GpuFlow::tuned(gpu.clone(), grid, effort, &tuning)?;
     let [dispatches, moved] = GpuFlow::traffic(grid, effort, &tuning)?;
+    let Tuning { rest, paints, .. } = tuning;
+    let number = |paint: usize, place: usize| {
+        (paint * grid.cells[0] / paints.count) as isize <= grid.cell(place)[0]
+    };
+    let mut counts = vec![vec![0; grid.len()]; paints.count];
+    for place in grid.places() {
+        if let Some(paint) = (0..paints.count).rev().find(|paint| number(*paint, place)) {
+            counts[paint][place] = (fill[place] * paints.capacity as f32) as u32;
+        }
+    }
+    flow.write_paints(&counts)?;
     flow.step(&fill, &solids, &conditions())?;
     let first = flow.time_steps(&conditions(), 1)?;
     let count = (ROUND.as_secs_f64() / first.as_secs_f64()).clamp(1.0, 256.0) as usize;
@@ -124,8 +133,9 @@ fn time(gpu: &Device, grid: &Grid, rest: u32) -> Result<(), Box<dyn Error>> {
     let [step, upload, copy] = [&mut steps, &mut uploads, &mut copies].map(Times::text);
     let [width, height, depth] = grid.cells;
     println!(
-        "hz.gpu.{width}x{height}x{depth}: {:.1}, {step} a step of {dispatches} dispatches (levels of {rest} cells by one workgroup)",
-        1e3 / steps.median()
+        "hz.gpu.{width}x{height}x{depth}: {:.1}, {step} a step of {dispatches} dispatches ({} paints carried, levels of {rest} cells by one workgroup)",
+        1e3 / steps.median(),
+        paints.count
     );
     println!("  with fill and solids uploaded and waited for: {upload}");
     let gigabytes = |times: &Times| 1e-6 * moved as f64 / times.median();
@@ -162,7 +172,23 @@ fn measure(gpu: &Device, grid: &Grid) -> Result<(), Box<dyn Error>> {
     } else {
         &[2048, 512, 64, 16_384]
     };
-    rests.iter().try_for_each(|rest| time(gpu, grid, *rest))
+    for rest in rests {
+        let tuning = Tuning {
+            rest: *rest,
+            ..Tuning::default()
+        };
+        time(gpu, grid, tuning)?;
+    }
+    let paints = Paints {
+        count: 4,
+        capacity: 167_772,
+        parts: 1,
+    };
+    let tuning = Tuning {
+        paints,
+        ..Tuning::default()
+    };
+    time(gpu, grid, tuning)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -40,7 +40,8 @@ impl GpuFlow {
     pub fn time_copies(&self, count: usize) -> Result<Duration, GpuError> {
         let gpu = &self.gpu;
         gpu.guarded(|| {
-            let piece = self.fields.size() / 4;
+            // What is copied is a whole number of words.
+            let piece = self.fields.size() / 16 * 4;
             let spare = gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("stokes copy"),
                 size: piece,

@@ -1,10 +1,14 @@
-//! The flow of Stokes Paint on the device: the solver of `maulstick-stokes` in WGSL, stage by stage.
+//! Stokes Paint on the device: the solver of `maulstick-stokes` and its transport in WGSL, stage by stage.
 //!
 //! Domain, rheology, operator, the hierarchies of multigrid, generalised conjugate residuals and the conjugate gradients that
 //! end a step all run on the device; scalar products are summed there, and what is found of them stays there. A step is always
 //! the same list of dispatches, and nothing is read back in it. The algorithm is the processor's: its smoother, a Chebyshev
 //! polynomial of damped Jacobi steps, is symmetric and has no order of places, so both have the same one. Sums are of f32
-//! in another order, and images are made orthogonal once, so velocities agree to rounding and not bit by bit.
+//! in another order, so velocities agree to rounding and not bit by bit.
+//!
+//! Counts of paints are whole numbers below 2²⁴, which f32 holds exactly: what goes through a face one cell loses and the other
+//! gains. The number of [parts](Paints) of a step is the caller's, who knows how fast the brush is; paint that is faster goes half
+//! a cell in each. The solids' distances and velocities come from the processor.
 //!
 //! | module | holds |
 //! | --- | --- |
