@@ -5,7 +5,7 @@
 //! | [`device`] | the device, its faults as values |
 //! | [`films`] | Kubelka-Munk films of many tiles at once |
 //! | [`impasto`] | the paint model `impasto` |
-//! | [`stokes`] | the flow of Stokes Paint |
+//! | [`stokes`] | flow and transport of Stokes Paint |
 //! | `stage` | a compute shader and its pipelines |
 //! | `batch` | tiles as the shaders take them |
 //! | `arena` | buffers that are used again |
