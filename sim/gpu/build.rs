@@ -16,5 +16,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let prefixes: Vec<&str> = shared.iter().chain(&own).map(String::as_str).collect();
         check_shaders::check_all(&format!("src/shaders/{folder}"), &prefixes)?;
     }
-    Ok(())
+    check_shaders::check_all(
+        "src/shaders/stokes",
+        &[
+            "common/window.wgsl",
+            "common/sums.wgsl",
+            "common/transfer.wgsl",
+            "common/smoothing.wgsl",
+        ],
+    )
 }

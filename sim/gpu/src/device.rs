@@ -33,6 +33,19 @@ pub enum GpuError {
     /// Its memory is full.
     #[error("its memory is full")]
     Memory,
+    /// A window of so many cells needs more bytes than the device has in one piece.
+    #[error(
+        "a window of {}x{}x{} cells needs {} MiB in one piece, and it has at most {}: choose larger cells or a smaller window",
+        cells[0], cells[1], cells[2], needs.div_ceil(1 << 20), most >> 20
+    )]
+    Window {
+        /// Cells of each axis.
+        cells: [usize; 3],
+        /// Bytes that it needs.
+        needs: u64,
+        /// Bytes that there are.
+        most: u64,
+    },
     /// The driver refused something.
     #[error("its driver refuses: {0}")]
     Refused(String),
@@ -50,11 +63,16 @@ pub struct Device {
     stray: Arc<Mutex<Option<GpuError>>>,
 }
 
-/// The limits that are asked for: those of nearly every device with compute shaders.
-fn limits() -> wgpu::Limits {
+/// The limits that are asked for: those of nearly every device with compute shaders, and as large buffers as it has.
+fn limits(most: &wgpu::Limits) -> wgpu::Limits {
+    let least = wgpu::Limits::downlevel_defaults();
     wgpu::Limits {
         max_storage_buffers_per_shader_stage: 8,
-        ..wgpu::Limits::downlevel_defaults()
+        max_buffer_size: least.max_buffer_size.max(most.max_buffer_size),
+        max_storage_buffer_binding_size: least
+            .max_storage_buffer_binding_size
+            .max(most.max_storage_buffer_binding_size),
+        ..least
     }
 }
 
@@ -182,7 +200,7 @@ impl Device {
         let info = adapter.get_info();
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("maulstick"),
-            required_limits: limits(),
+            required_limits: limits(&adapter.limits()),
             ..Default::default()
         };
         let (device, queue) = block_on(adapter.request_device(&descriptor))

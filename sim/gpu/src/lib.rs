@@ -7,6 +7,7 @@
 //! | [`impasto`] | the paint model `impasto` |
 //! | [`dab`] | the paint model `dab` |
 //! | `steps` | what their steps share |
+//! | [`stokes`] | flow and transport of Stokes Paint |
 //! | `stage` | a compute shader and its pipelines |
 //! | `batch` | tiles as the shaders take them |
 //! | `arena` | buffers that are used again |
@@ -22,8 +23,10 @@ pub mod impasto;
 mod shade_films;
 mod stage;
 mod steps;
+pub mod stokes;
 
 pub use device::{AdapterReport, Choice, Device, GpuError, adapters};
 pub use films::GpuFilms;
 pub use steps::model::{GpuModel, MakeModel};
 pub use steps::traffic::Traffic;
+pub use stokes::{FlowState, GpuFlow, Paints, Tuning};
