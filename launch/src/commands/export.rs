@@ -47,7 +47,7 @@ pub struct ExportOptions {
     /// Factor on the heights of a solid
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     exaggeration: f64,
-    /// Vertex spacing of a solid, cells [default: at most 4 million triangles]
+    /// Vertex spacing of a solid, cells [default: at most 4 million triangles where no paint overhangs]
     #[arg(long, value_name = "CELLS")]
     step: Option<u32>,
     #[command(flatten)]

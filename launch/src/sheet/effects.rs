@@ -371,6 +371,9 @@ mod tests {
         for effect in &EFFECTS {
             assert!(fits(effect.words), "{}", effect.words);
         }
+        for (words, _) in &stroking::PANELS {
+            assert!(fits(words), "{words}");
+        }
         assert!(!fits(
             "thick strokes, dried; a wiped brush of white over the right half"
         ));

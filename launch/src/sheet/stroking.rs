@@ -66,7 +66,9 @@ fn stroke(
     file.strips.count = BRUSH.1;
     let file = file.scaled_to(BRUSH.0).map_err(fault)?;
     let trial = Trial::new(file, width.max(height) as u32, 1e-3 * cell_mm);
-    let mut trial = trial.ok_or_else(|| UserError::failure("a surface cannot be leased"))?;
+    let mut trial = trial.ok_or_else(|| {
+        UserError::failure("the figure has too many cells for one surface: choose larger cells")
+    })?;
     let size = [width, height].map(|cells| cells as f64);
     // The S is about twice as long as it is wide.
     let heads = (1.2 * size[0] * cell_mm / way_mm).ceil() as usize;
@@ -83,4 +85,27 @@ fn stroke(
         let lies = plane.get(y * width + x).copied().unwrap_or(0.0);
         (bare - darker * (lies / (OPAQUE * UNIT)).min(1.0)) as u8
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pixels that differ between the halves of a panel, and those of the left half that are painted.
+    fn differ(way_mm: f64) -> [usize; 2] {
+        let panel = panel([40.0, 24.0], way_mm, 0.25).expect("a panel");
+        let half = panel.width / 2;
+        let pixel = |x: usize, y: usize| panel.rgb[3 * (y * panel.width + x)];
+        let cells = || (0..panel.height).flat_map(|y| (0..half).map(move |x| (x, y)));
+        let differ = cells().filter(|(x, y)| pixel(*x, *y) != pixel(half + x, *y));
+        let painted = cells().filter(|(x, y)| pixel(*x, *y) < 100);
+        [differ.count(), painted.count()]
+    }
+
+    #[test]
+    fn the_algorithms_differ_most_where_the_hand_is_fast() {
+        let [fast, slow] = PANELS.map(|(_, way_mm)| differ(way_mm));
+        assert!(fast[1] > 500 && slow[1] > 500, "{fast:?} {slow:?}");
+        assert!(fast[0] > 50, "{fast:?}");
+    }
 }

@@ -105,7 +105,8 @@ impl Kind {
             Self::Ora => head.starts_with(b"PK\x03\x04") && has(head, b"mimetypeimage/openraster"),
             // 80 bytes of header, a count, and 50 bytes a triangle.
             Self::Stl => length >= 84 && (length - 84).is_multiple_of(50) && !is_text(head),
-            Self::Glb => head.starts_with(b"glTF"),
+            // Brushes modelled in Blender are glTF, too.
+            Self::Glb => head.starts_with(b"glTF") && has(head, b"\"generator\":\"Maulstick\""),
             Self::Gif => head.starts_with(b"GIF8"),
             Self::Mp4 => head.get(4..8) == Some(b"ftyp"),
             Self::Ledger => head.starts_with(b"{") && has(head, b"\"accounts_m3\""),
@@ -206,7 +207,10 @@ mod tests {
                 b"PK\x03\x04\x0a\0\0\0\0\0\0\0\0\0\0\0\0\0\x10\0\0\0\x10\0\0\0\x08\0\0\0mimetypeimage/openraster",
             ),
             (Kind::Stl, &[0; 84 + 100]),
-            (Kind::Glb, b"glTF\x02\0\0\0"),
+            (
+                Kind::Glb,
+                b"glTF\x02\0\0\0\0\x01\0\0\xb0\0\0\0JSON{\"asset\":{\"generator\":\"Maulstick\",",
+            ),
             (Kind::Gif, b"GIF89a\x40\x01"),
             (Kind::Mp4, b"\0\0\0\x20ftypisom"),
             (Kind::Ledger, b"{\n  \"accounts_m3\": {"),
@@ -235,6 +239,10 @@ mod tests {
             let error = destination(&path, kind).expect_err("a text of somebody's");
             assert!(error.to_string().contains("--overwrite"), "{error}");
         }
+        // A brush modelled in Blender is no export.
+        let brush = b"glTF\x02\0\0\0\0\x01\0\0\xb0\0\0\0JSON{\"asset\":{\"generator\":\"Khronos";
+        std::fs::write(&path, brush).expect("written");
+        destination(&path, Kind::Glb).expect_err("somebody's work");
         destination(&path, Kind::Own).expect("its own");
         std::fs::write(&path, "").expect("written");
         destination(&path, Kind::Png).expect("nothing is lost");

@@ -54,7 +54,7 @@ impl PaintModel for Dab {
 }
 
 impl Stroker {
-    /// That of a step, by the load on the machine: where steps are doubled once they bend, so that none is seen; where twice, the machine falls behind.
+    /// Algorithm for a step: a parabola where steps are doubled, a fixed footprint where they are doubled twice.
     #[must_use]
     pub fn of(step: &Step<'_>) -> Self {
         match step.traits.doublings {

@@ -42,8 +42,8 @@ fn painted(model: &str, side: u32) -> Result<Painting, Box<dyn Error>> {
     let file = BrushFile::library("round")?.scaled_to(8.0)?;
     painting.define_brush("main", file.clone());
     let side_mm = f64::from(side) * CELL_M * 1e3;
-    let strokes = (side_mm / APART_MM) as u32 - 1;
-    let poses = ((side_mm - 2.0 * APART_MM) / POSE_MM) as u64;
+    let strokes = ((side_mm / APART_MM) as u32).saturating_sub(1);
+    let poses = ((side_mm - 2.0 * APART_MM).max(0.0) / POSE_MM) as u64;
     for stroke in 0..strokes {
         let up_mm = APART_MM * f64::from(stroke + 1);
         let [one, other] = [0, 1].map(|next| PAINTS[(stroke as usize + next) % PAINTS.len()]);

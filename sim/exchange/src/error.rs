@@ -31,7 +31,7 @@ pub enum ExchangeError {
     },
     /// A relief would have more triangles than its format can count.
     #[error(
-        "{triangles} triangles are too many for the file; choose a step of at least {step} cells"
+        "{triangles} triangles are too many for the file; choose a larger step, of {step} cells or more"
     )]
     TooManyTriangles {
         /// How many it would have.

@@ -54,12 +54,12 @@ pub fn write_glb(
         triangles.0.write_all(&vertex.to_le_bytes())?;
     }
     triangles.0.flush()?;
-    let size = solid.told();
+    let size = solid.extent();
     check_whole(painting)?;
     Ok(size)
 }
 
-/// Writes the headers, and what says how to read the rest.
+/// Writes the GLB header, the JSON chunk and the header of the BIN chunk.
 fn write_head(solid: &Solid<'_>, to: &mut impl Write) -> Result<(), ExchangeError> {
     let vertices = solid.parts.vertices + 3 * solid.parts.walls;
     let (places, numbers) = (vertices * VERTEX, solid.triangles() * TRIANGLE);
@@ -75,8 +75,7 @@ fn write_head(solid: &Solid<'_>, to: &mut impl Write) -> Result<(), ExchangeErro
     position["max"] = json!(size);
     let mut colour = attribute(24, 5123, "VEC4");
     colour["normalized"] = json!(true);
-    let told = json!({
-        "asset": { "version": "2.0", "generator": "Maulstick" },
+    let rest = json!({
         "scene": 0,
         "scenes": [{ "nodes": [0] }],
         "nodes": [{ "mesh": 0, "name": "painting" }],
@@ -99,9 +98,12 @@ fn write_head(solid: &Solid<'_>, to: &mut impl Write) -> Result<(), ExchangeErro
         ],
         "buffers": [{ "byteLength": places + numbers }],
     });
-    let mut told = told.to_string().into_bytes();
-    told.resize(told.len().next_multiple_of(4), b' ');
-    let all = 12 + 8 + told.len() as u64 + 8 + places + numbers;
+    // The generator first: by it an export knows its own files.
+    let asset = r#""asset":{"generator":"Maulstick","version":"2.0"}"#;
+    let rest = rest.to_string();
+    let mut json = format!("{{{asset},{}", &rest[1..]).into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let all = 12 + 8 + json.len() as u64 + 8 + places + numbers;
     let Ok(all) = u32::try_from(all) else {
         return Err(ExchangeError::TooManyTriangles {
             triangles: solid.triangles(),
@@ -111,9 +113,9 @@ fn write_head(solid: &Solid<'_>, to: &mut impl Write) -> Result<(), ExchangeErro
     to.write_all(b"glTF")?;
     to.write_all(&2u32.to_le_bytes())?;
     to.write_all(&all.to_le_bytes())?;
-    to.write_all(&(told.len() as u32).to_le_bytes())?;
+    to.write_all(&(json.len() as u32).to_le_bytes())?;
     to.write_all(b"JSON")?;
-    to.write_all(&told)?;
+    to.write_all(&json)?;
     to.write_all(&((places + numbers) as u32).to_le_bytes())?;
     to.write_all(b"BIN\0")?;
     Ok(())

@@ -2,7 +2,7 @@
 //!
 //! An export takes a painting and a surface of it, writes to a file from its start, and tells how far
 //! it is. Each needs memory for a few rows of tiles, however large the surface is, but for
-//! [`write_open_raster`], which also holds packed layers. The same painting gives the same bytes: no
+//! [`write_open_raster`], which also holds packed layers, and [`write_glb`], which holds its walls. The same painting gives the same bytes: no
 //! file has a date in it.
 //!
 //! | export | file |
@@ -14,7 +14,8 @@
 //! | [`write_stl`] | a solid to print, with what overhangs: STL; [`solid_step`] proposes how fine |
 //! | [`write_glb`] | the same with colours: binary glTF |
 //!
-//! [`Order`] is any of these; [`small_picture`] is for the eye alone, and [`film`] draws frame after frame. Errors are [`ExchangeError`]; [`Progress`] hears how far an export is.
+//! [`Order`] is any of these; [`small_picture`] is for the eye alone, and [`film`] draws frame after frame. Errors are
+//! [`ExchangeError`]; [`Progress`] hears how far an export is.
 //!
 //! An import makes of a picture an underpainting, a ground or a tooth:
 //!

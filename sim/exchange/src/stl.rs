@@ -26,7 +26,7 @@ pub fn write_stl(
     let banded = banded(painting, surface)?;
     let mut steps = Steps::new(progress, 2 * banded.bands());
     let solid = Solid::of(&banded, *setup, u32::MAX.into(), &mut steps)?;
-    let size = solid.told();
+    let size = solid.extent();
     let mut to = BufWriter::new(to);
     let mut header = [0; 80];
     let name = b"Maulstick relief, mm";

@@ -122,8 +122,8 @@ fn compare(stroke: &mut Stroke<'_>, stroker: Stroker) {
     let sum: f64 = on_gpu.iter().map(|count| f64::from(*count)).sum();
     let other: f64 = on_cpu.iter().map(|count| f64::from(*count)).sum();
     println!(
-        "  beside the processor: of {cells} texels {} more touched; of {} counts changed {off} differ, {units} by a unit of \
-         {UNIT} quanta or more, {most} at most; sums by {:.1e}; created {created} quanta; processor {:.1} million texels/s",
+        "  beside the processor: of {cells} cells {} more touched; of {} counts changed {off} differ, {units} by a unit of \
+         {UNIT} quanta or more, {most} at most; sums by {:.1e}; created {created} quanta; processor {:.1} million cells/s",
         touched as i64 - cells as i64,
         changed.count(),
         (sum / other - 1.0).abs(),
@@ -167,7 +167,7 @@ fn run(rounds: usize, only: &str) -> Result<(), GpuError> {
             let (alone, whole) = (median(alone), median(whole));
             let step_us = 1e6 * cells as f64 / (steps * alone);
             println!(
-                "texels_per_s.{name}: {:.1} million, with upload and read-back {:.1} million; a step: {:.0} texels, {:.1} \
+                "touched_per_s.{name}: {:.1} million, with upload and read-back {:.1} million; a step: {:.0} cells, {:.1} \
                  dispatches, {:.3} MB at most, {step_us:.0} µs, a copy of as much {:.1} µs",
                 1e-6 * alone,
                 1e-6 * whole,

@@ -110,13 +110,13 @@ impl Trial {
         pose
     }
 
-    /// The heads along a path: up to the surface's border, and at most 200.
+    /// The heads along a path, on surfaces of 1024 cells either way: up to the border, and at most 200.
     #[must_use]
     pub fn heads(&self, path: Path) -> Vec<HeadPose> {
         let (mut at, mut direction) = ([150.0, 300.0], path.aim);
-        let last = self.window.width() as f64 - 120.0;
+        let last = [self.window.width(), self.window.height()].map(|cells| cells as f64 - 120.0);
         let mut poses = Vec::new();
-        while poses.len() < 200 && at[0] > 60.0 && at[0] < last {
+        while poses.len() < 200 && [0, 1].iter().all(|i| at[*i] > 60.0 && at[*i] < last[*i]) {
             poses.push(self.pose(at, 0.0));
             let (sine, cosine) = maulstick_num::sin_cos(direction);
             at = [at[0] + path.way * cosine, at[1] + path.way * sine];

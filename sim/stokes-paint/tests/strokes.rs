@@ -209,6 +209,25 @@ fn a_step_depends_on_the_cells_around_the_brush_alone() {
 }
 
 #[test]
+fn paint_far_from_the_brush_neither_matters_nor_moves() {
+    const FAR: usize = 9;
+    let paint = |far: usize| {
+        let mut easel = Easel::new(192, Some((3, 2.5 * CELL))).load(0);
+        easel.window.plane_mut(FAR)[far] = 1_000.0;
+        easel.stroke([0.010, 0.012], 0.016, 0.65);
+        let lies = |slot| easel.window.plane(slot).expect("there").to_vec();
+        ([0, 3].map(lies), lies(FAR))
+    };
+    let (near, low) = paint(5);
+    let (same, _) = paint(191 * 192);
+    assert!(near == same);
+    assert!(low[5] == 1_000.0 && low.iter().sum::<f32>() == 1_000.0);
+    // Where the brush is, it does.
+    let (under, moved) = paint(64 * 192 + 44);
+    assert!(under != near && moved != low);
+}
+
+#[test]
 fn what_is_committed_is_read_again() {
     let mut easel = Easel::new(192, Some((3, 3.5 * CELL))).load(0);
     easel.stroke([0.010, 0.012], 0.016, 0.65);

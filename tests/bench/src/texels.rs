@@ -1,6 +1,5 @@
 //! dAb's stroking algorithms by themselves (Baxter 2004, table 4.2): texels of footprints blended a second, and cells of
-//! them that were touched, along two kinds of path, of which the text says nothing: here a fast straight one and a slow
-//! curved one.
+//! them that were touched, along paths of which the text says nothing: here two fast straight ones and a slow curved one.
 
 use std::time::Instant;
 

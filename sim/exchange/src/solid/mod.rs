@@ -207,8 +207,8 @@ impl<'a> Solid<'a> {
         [across, up, placing.z(self.range_m[1])]
     }
 
-    /// What is told of it.
-    pub(crate) fn told(&self) -> SolidSize {
+    /// Its triangles, and its size in mm.
+    pub(crate) fn extent(&self) -> SolidSize {
         SolidSize {
             triangles: self.triangles(),
             size_mm: self.size(MM),

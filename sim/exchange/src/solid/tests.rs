@@ -116,7 +116,7 @@ impl Surface {
         let made = made.expect("made");
         assert_eq!(made.facets.len() as u64, solid.triangles());
         assert_eq!(made.vertices.len() as u64, solid.parts.vertices);
-        (made, solid.told(), solid.range_m[0] / CELL_M)
+        (made, solid.extent(), solid.range_m[0] / CELL_M)
     }
 
     /// Its solid, and the volume of the paint in it, voxels: what it has more than without paint.

@@ -7,13 +7,13 @@ use maulstick_dab::reservoir::{Refill, refill};
 use maulstick_dab::stroke::{Course, Stroker};
 use maulstick_gpu::dab::probe::{Probe, Prober};
 use maulstick_model::brush::load::BrushLoad;
-use maulstick_model::brush::traits::TEXELS_PER_STRIP;
+use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 
 use crate::device;
 use crate::scene::Scene;
 
 /// Strips are filled again every so many steps.
-const TURNS: u64 = 2;
+const TURNS: u64 = BrushTraits::FLOW_STEPS;
 
 /// The same scene after so many steps of its brush.
 fn scene(seed: u64, steps: u64) -> Scene {
