@@ -70,8 +70,8 @@ pub struct PaintingOptions {
     /// of rig.toml]
     #[arg(long, value_name = "NAME", value_parser = BACKENDS)]
     pub backend: Option<String>,
-    /// Paint model of a new painting's canvas: impasto; dab, the light one; marker, an even film that nothing pushes or
-    /// takes up; or auto, which is impasto and proposes dab where painting falls behind [default: that of rig.toml]
+    /// Paint model of a new painting's canvas: impasto; dab, the light one; stokes, paint with a depth; marker, an even film
+    /// that nothing pushes or takes up; or auto, which is impasto and proposes dab where painting falls behind [default: that of rig.toml]
     #[arg(long, value_name = "NAME")]
     pub model: Option<String>,
     /// Ledger of the paint to write, JSON

@@ -1,5 +1,6 @@
 //! Paintings in files, as the command line speaks of them.
 
+use std::fs::File;
 use std::path::Path;
 
 use maulstick_canvas::EditError;
@@ -55,7 +56,11 @@ pub fn copy_closed(from: &Path, to: &Path) -> Result<(), UserError> {
     for suffix in ["", "-wal"] {
         let [from, to] = [from, to].map(|path| companion(path, suffix));
         if suffix.is_empty() || from.exists() {
-            std::fs::copy(&from, &to).map_err(|error| UserError::reading(&from, &error))?;
+            let mut source =
+                File::open(&from).map_err(|error| UserError::reading(&from, &error))?;
+            let copied =
+                File::create(&to).and_then(|mut copy| std::io::copy(&mut source, &mut copy));
+            copied.map_err(|error| UserError::writing(&to, &error))?;
         }
     }
     Ok(())

@@ -120,6 +120,10 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
         return Err(UserError::usage("--ledger needs --play TAKE")
             .help("`maulstick snapshot --ledger FILE` asks a running rig"));
     }
+    if options.snapshot.is_none() && options.painting.ledger.is_some() {
+        return Err(UserError::usage("--ledger needs --snapshot PNG")
+            .help("the ledger is written with the picture at the end of the take"));
+    }
     log_to_stderr("info");
     let mut config = match &options.rig {
         Some(path) => RigConfig::read(path)?,

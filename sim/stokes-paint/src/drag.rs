@@ -70,6 +70,7 @@ pub fn drag(
         .volume
         .advect(&domain, &open, &velocity, seconds, cell_m);
     voxels.lift();
+    voxels.drop_loose();
     let width = step.window.width();
     for (contact, bottom) in footprint.contacts.iter_mut().zip(bottoms) {
         let column = voxels.column_of(contact.cell as usize, width);

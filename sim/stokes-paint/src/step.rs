@@ -76,6 +76,7 @@ impl PaintModel for StokesPaint {
         let mut voxels = Voxels::read(rest.window, rest.area, layers, &slots);
         level(rest);
         voxels.follow(rest.window);
+        voxels.drop_loose();
         voxels.write(rest.window);
     }
 }

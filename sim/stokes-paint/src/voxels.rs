@@ -11,7 +11,7 @@ use crate::layers::Layers;
 /// Layers of air over the highest paint.
 const AIR: usize = 3;
 /// Fill from which on a voxel gives the rest to the one above.
-const OVERFULL: f32 = 1.25;
+pub(crate) const OVERFULL: f32 = 1.25;
 
 /// The paint of an area.
 #[derive(Clone, Debug)]

@@ -1,14 +1,15 @@
 //! Strokes of Stokes Paint on a small surface.
 
 use maulstick_brush::{BrushFile, Head};
-use maulstick_canvas::layered::{place_of, value};
+use maulstick_canvas::layered::{place_of, shape_of, value};
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_canvas::relief::tooth::Tooth;
-use maulstick_canvas::{relief::Relief, store::TileStore, window::Window};
+use maulstick_canvas::window::{Area, Window};
+use maulstick_canvas::{relief::Relief, store::TileStore};
 use maulstick_model::brush::head::Waypoint;
 use maulstick_model::brush::load::{BrushLoad, Half};
 use maulstick_model::brush::{scale::Scale, traits::BrushTraits};
-use maulstick_model::interface::{Handling, PaintModel as _, Step, Transfer};
+use maulstick_model::interface::{Handling, PaintModel as _, Rest, Step, Transfer};
 use maulstick_model::path::PathStepper;
 use maulstick_stokes_paint::StokesPaint;
 use maulstick_types::{Pose, brush::Solve};
@@ -103,6 +104,18 @@ impl Easel {
         });
     }
 
+    /// The brush is lifted.
+    fn rest(&mut self) {
+        let size = [self.window.width(), self.window.height()];
+        StokesPaint::default().rest(&mut Rest {
+            window: &mut self.window,
+            area: Area { from: [0; 2], size },
+            cell_m: SCALE.cell_m,
+            stain: 0.0,
+            thinner: None,
+        });
+    }
+
     /// Quanta on surface and brush, by slot.
     fn counts(&self) -> Vec<u64> {
         let on_brush = self.load.counts();
@@ -119,6 +132,55 @@ impl Easel {
     fn laid(&self) -> f64 {
         let plane = self.window.plane(0).expect("laid");
         plane.iter().map(|count| f64::from(*count)).sum()
+    }
+
+    /// Quanta in voxels that hang on none which lies on the surface, a level one: voxels hold together that are half full.
+    fn loose(&self) -> f64 {
+        let (width, cells) = (
+            self.window.width(),
+            self.window.width() * self.window.height(),
+        );
+        let mut voxels: Vec<Vec<f32>> = vec![vec![0.0; cells]];
+        for (_, plane) in self.window.planes() {
+            let sums = voxels[0].iter_mut().zip(plane);
+            sums.for_each(|(sum, count)| *sum += count);
+        }
+        for (shape, bytes) in self.window.own_planes() {
+            let (_, layer) = place_of(shape).expect("a layer");
+            voxels.resize(voxels.len().max(layer + 1), vec![0.0; cells]);
+            for cell in 0..cells {
+                let count = value(bytes, cell) as f32;
+                voxels[layer][cell] += count;
+                voxels[0][cell] -= count;
+            }
+        }
+        let mut held = vec![vec![false; cells]; voxels.len()];
+        held[0].fill(true);
+        let mut next: Vec<[usize; 2]> = (0..cells).map(|cell| [0, cell]).collect();
+        while let Some([layer, cell]) = next.pop() {
+            // Thin paint hangs on others, and holds none.
+            if layer > 0 && voxels[layer][cell] < 0.5 * CELL {
+                continue;
+            }
+            let beside = [
+                cell.wrapping_sub(1),
+                cell + 1,
+                cell.wrapping_sub(width),
+                cell + width,
+            ];
+            let levels = [layer.wrapping_sub(1), layer + 1].map(|layer| [layer, cell]);
+            for [layer, cell] in beside.map(|cell| [layer, cell]).into_iter().chain(levels) {
+                let is_there = layer < voxels.len() && cell < cells && voxels[layer][cell] > 0.0;
+                if is_there && !std::mem::replace(&mut held[layer][cell], true) {
+                    next.push([layer, cell]);
+                }
+            }
+        }
+        let loose = voxels.iter().zip(&held).flat_map(|(counts, held)| {
+            let cells = counts.iter().zip(held);
+            cells.map(|(count, is_held)| if *is_held { 0.0 } else { f64::from(*count) })
+        });
+        loose.sum()
     }
 
     /// Quanta of a slot in a layer of a cell above its lowest.
@@ -225,6 +287,27 @@ fn paint_far_from_the_brush_neither_matters_nor_moves() {
     // Where the brush is, it does.
     let (under, moved) = paint(64 * 192 + 44);
     assert!(under != near && moved != low);
+}
+
+#[test]
+fn no_paint_hangs_in_the_air() {
+    for ground in [0.0, 0.8 * CELL] {
+        for height in [0.5, 0.6, 0.7] {
+            let mut easel = Easel::new(192, Some((3, ground))).load(0);
+            easel.stroke([0.010, 0.030], 0.016, height);
+            let counts = easel.counts();
+            easel.rest();
+            assert_eq!(easel.counts(), counts);
+            let loose = easel.loose() / easel.laid();
+            assert!(loose == 0.0, "{ground} {height}: {loose} of what was laid");
+            // A fault would be found.
+            let cell = 60 * 192 + 60;
+            easel.window.plane_mut(3)[cell] += CELL;
+            let speck = easel.window.own_mut(shape_of(3, 9));
+            speck[4 * cell..4 * cell + 4].copy_from_slice(&CELL.to_le_bytes());
+            assert!(easel.loose() > 0.9 * f64::from(CELL));
+        }
+    }
 }
 
 #[test]

@@ -53,7 +53,7 @@ pub struct ExportOptions {
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     exaggeration: f64,
     /// Vertex spacing of a solid, cells [default: at most 4 million triangles where no paint overhangs]
-    #[arg(long, value_name = "CELLS")]
+    #[arg(long, value_name = "CELLS", value_parser = clap::value_parser!(u32).range(1..))]
     step: Option<u32>,
 }
 

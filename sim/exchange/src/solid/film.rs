@@ -139,7 +139,8 @@ mod tests {
 
     #[test]
     fn paint_lies_where_its_voxels_are_full() {
-        let cases: [(&[f32], f32, f32, &[[f32; 2]]); 12] = [
+        type Case<'a> = (&'a [f32], f32, f32, &'a [[f32; 2]]);
+        let cases: [Case<'_>; 12] = [
             (&[0.37], 1.0, 0.37, &[]),
             (&[3.7], 1.0, 3.7, &[]),
             (&[0.6, 1.0, 0.2], 0.6, 1.8, &[]),

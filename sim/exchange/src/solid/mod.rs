@@ -63,7 +63,7 @@ impl SolidSetup {
     /// [`ExchangeError::OutOfRange`].
     pub(crate) fn check(&self) -> Result<(), ExchangeError> {
         within("base in mm", self.base_mm, BASES_MM)?;
-        within("exaggeration", self.exaggeration, EXAGGERATIONS)?;
+        within("relief exaggeration", self.exaggeration, EXAGGERATIONS)?;
         let steps = [1.0, f64::from(u32::MAX)];
         within("step in cells", f64::from(self.step), steps)
     }

@@ -229,10 +229,8 @@ impl Made {
         let all = met.len() as f64;
         let is_crossed = |places: &mut Vec<(f64, bool)>| {
             places.sort_by(|one, other| one.0.total_cmp(&other.0));
-            let in_turn = places.iter().enumerate();
-            !in_turn
-                .map(|(place, (_, is_top))| *is_top == place.is_multiple_of(2))
-                .all(|is_right| is_right)
+            let mut in_turn = places.iter().enumerate();
+            !in_turn.all(|(place, (_, is_top))| *is_top == place.is_multiple_of(2))
         };
         met.into_values()
             .filter_map(|mut places| is_crossed(&mut places).then_some(()))

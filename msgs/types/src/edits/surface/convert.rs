@@ -12,7 +12,7 @@ wire_struct! {
     /// chosen anew from those of the painting, as near as they come.
     #[cfg_attr(feature = "cli", derive(clap::Args))]
     pub struct Convert {
-        /// Name of the paint model, such as impasto or dab
+        /// Name of the paint model: impasto, dab, stokes or marker
         pub model: ModelName,
         /// Convert the palette instead of the canvas
         #[serde(default = "read::canvas")]

@@ -1,0 +1,82 @@
+//! Paint that hangs on nothing falls: specks that the flow has thrown up, and lumps whose stalk a brush has cut.
+
+use crate::voxels::{OVERFULL, Voxels};
+
+/// Fill from which on a voxel holds what is beside it and above it.
+const HOLDS: f32 = 0.5;
+/// The same of the lowest voxel of a column, of which a part may be closed.
+const HOLDS_LOW: f32 = 0.3;
+
+impl Voxels {
+    /// Lets paint fall that is not joined, by voxels which are at least half full, to what lies on the ground. Paint at the
+    /// border of the area stays: what lies beyond may hold it.
+    pub fn drop_loose(&mut self) {
+        let mut totals = self.totals();
+        let held = self.held(&totals);
+        let up = self.volume.grid.stride(2);
+        let most = (OVERFULL * self.volume.capacity as f32) as u32;
+        for column in 0..self.area.cells() {
+            let mut under = self.bottom(column);
+            for voxel in self.column(column) {
+                let falls = totals[voxel];
+                if held[voxel] {
+                    under = voxel;
+                }
+                if held[voxel] || falls == 0 {
+                    continue;
+                }
+                while under < voxel && totals[under] + falls > most {
+                    under += up;
+                }
+                if under >= voxel {
+                    continue;
+                }
+                for paint in &mut self.volume.paints {
+                    paint[under] += std::mem::take(&mut paint[voxel]);
+                }
+                totals[under] += falls;
+                totals[voxel] = 0;
+            }
+        }
+    }
+
+    /// Whether each voxel is joined to the ground, by what all of them hold.
+    fn held(&self, totals: &[u32]) -> Vec<bool> {
+        let grid = self.volume.grid;
+        let [width, height] = self.area.size;
+        let capacity = self.volume.capacity as f32;
+        let [holds, holds_low] = [HOLDS, HOLDS_LOW].map(|fill| (fill * capacity) as u32);
+        let mut held = vec![false; grid.len()];
+        let mut next = Vec::new();
+        for column in 0..self.area.cells() {
+            let (x, y) = (column % width, column / width);
+            let bottom = self.bottom(column);
+            held[bottom] = true;
+            if totals[bottom] >= holds_low {
+                next.push(bottom);
+            }
+            if x == 0 || y == 0 || x + 1 == width || y + 1 == height {
+                let border = self.column(column).filter(|voxel| totals[*voxel] > 0);
+                border.for_each(|voxel| {
+                    held[voxel] = true;
+                    next.push(voxel);
+                });
+            }
+        }
+        while let Some(voxel) = next.pop() {
+            for axis in 0..3 {
+                let by = grid.stride(axis);
+                for beside in [voxel - by, voxel + by] {
+                    if totals[beside] == 0 || std::mem::replace(&mut held[beside], true) {
+                        continue;
+                    }
+                    // Thin paint hangs on others, and holds none.
+                    if totals[beside] >= holds {
+                        next.push(beside);
+                    }
+                }
+            }
+        }
+        held
+    }
+}
