@@ -47,6 +47,8 @@ pub fn drag(
     }
     let seconds = f64::from(farthest) * f64::from(STEPS) * cell_m / SPEED_M_S;
     let fine = voxels.volume.grid;
+    let bottoms = bottoms(voxels, footprint, step.window.width());
+    voxels.sink();
     let solids = voxels.solids();
     let open = solids.open(&fine);
     let totals = voxels.totals();
@@ -57,7 +59,6 @@ pub fn drag(
         paint: Paint::newtonian(Body::TUBE.viscosity_pa_s / DENSITY_KG_M3),
         pull: [0.0, 0.0, -GRAVITY_M_S2],
     };
-    let bottoms = bottoms(voxels, footprint, step.window.width());
     let contacts = footprint.contacts.iter().zip(&bottoms);
     hold(voxels, &mut coarse, (contacts, &totals), step, &conditions);
     let flow = flow.get_or_insert_with(|| Flow::new(&coarse.grid));
@@ -70,6 +71,7 @@ pub fn drag(
         .volume
         .advect(&domain, &open, &velocity, seconds, cell_m);
     voxels.lift();
+    voxels.pack();
     voxels.drop_loose();
     let width = step.window.width();
     for (contact, bottom) in footprint.contacts.iter_mut().zip(bottoms) {
@@ -109,12 +111,13 @@ fn hold<'a>(
     let to_m_s = (way_m / conditions.seconds) as f32;
     for (contact, bottom) in contacts {
         let column = voxels.column_of(contact.cell as usize, step.window.width());
-        for voxel in voxels.column(column) {
+        let floor = voxels.floor_of(column);
+        for voxel in voxels.open_column(column) {
             let cell = grid.cell(voxel);
-            let height = cell[2] as f32;
             if totals[voxel] == 0 {
                 continue;
             }
+            let height = floor.max(cell[2] as f32);
             let fill = totals[voxel] as f32 / voxels.volume.capacity as f32;
             let held = (height + fill - bottom.max(height)).max(0.0);
             let velocity = contact.moved.map(|moved| moved * to_m_s);

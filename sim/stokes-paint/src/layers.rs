@@ -15,7 +15,7 @@ const LEAST_OPEN: f32 = 0.3;
 pub struct Layers {
     /// Quanta that fill a voxel.
     pub capacity: u32,
-    /// Whole cells from the lowest layer's floor up to the surface's highest bare peaks.
+    /// Cells from the lowest layer's floor up to the surface's highest bare peaks.
     pub below: f32,
     /// Voxels along the side of a cell of the flow.
     pub side: usize,
@@ -31,7 +31,7 @@ impl Layers {
     fn new(below: f32, cell_m: f64) -> Self {
         Self {
             capacity: (cell_m / QUANTUM_M) as u32,
-            below: below.ceil(),
+            below,
             side: voxels_a_side(cell_m),
         }
     }

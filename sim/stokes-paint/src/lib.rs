@@ -7,6 +7,7 @@
 //! | [`voxels`] | the paint of an area, from the counts of a window and back |
 //! | [`coarse`] | the grid on which the flow is found |
 //! | [`drag`] | bristles as a porous body, and the flow around them |
+//! | `packing` | paint of a column without voids |
 //! | `loose` | paint that hangs on nothing falls |
 //! | [`reach`] | how deep a brush lays and takes up |
 //!
@@ -21,6 +22,7 @@ pub mod coarse;
 pub mod drag;
 pub mod layers;
 mod loose;
+mod packing;
 pub mod reach;
 mod step;
 pub mod voxels;

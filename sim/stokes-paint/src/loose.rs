@@ -1,6 +1,6 @@
 //! Paint that hangs on nothing falls: specks that the flow has thrown up, and lumps whose stalk a brush has cut.
 
-use crate::voxels::{OVERFULL, Voxels};
+use crate::voxels::Voxels;
 
 /// Fill from which on a voxel holds what is beside it and above it.
 const HOLDS: f32 = 0.5;
@@ -14,28 +14,28 @@ impl Voxels {
         let mut totals = self.totals();
         let held = self.held(&totals);
         let up = self.volume.grid.stride(2);
-        let most = (OVERFULL * self.volume.capacity as f32) as u32;
+        let whole = self.volume.capacity;
         for column in 0..self.area.cells() {
-            let mut under = self.bottom(column);
+            let bottom = self.bottom(column);
+            let mut under = bottom;
             for voxel in self.column(column) {
-                let falls = totals[voxel];
                 if held[voxel] {
                     under = voxel;
-                }
-                if held[voxel] || falls == 0 {
                     continue;
                 }
-                while under < voxel && totals[under] + falls > most {
-                    under += up;
+                while under < voxel && totals[voxel] > 0 {
+                    let room = match under == bottom {
+                        true => self.lowest_room(column),
+                        false => whole,
+                    };
+                    let falls = totals[voxel].min(room.saturating_sub(totals[under]));
+                    self.shift([voxel, under], falls);
+                    totals[under] += falls;
+                    totals[voxel] -= falls;
+                    if totals[voxel] > 0 {
+                        under += up;
+                    }
                 }
-                if under >= voxel {
-                    continue;
-                }
-                for paint in &mut self.volume.paints {
-                    paint[under] += std::mem::take(&mut paint[voxel]);
-                }
-                totals[under] += falls;
-                totals[voxel] = 0;
             }
         }
     }

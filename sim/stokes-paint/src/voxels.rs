@@ -10,8 +10,6 @@ use crate::layers::Layers;
 
 /// Layers of air over the highest paint.
 const AIR: usize = 3;
-/// Fill from which on a voxel gives the rest to the one above.
-pub(crate) const OVERFULL: f32 = 1.25;
 
 /// The paint of an area.
 #[derive(Clone, Debug)]
@@ -23,11 +21,11 @@ pub struct Voxels {
     /// Slot of each paint.
     pub slots: Vec<usize>,
     /// Layers of the surface.
-    layers: Layers,
+    pub(crate) layers: Layers,
     /// The surface's layer that is the grid's lowest.
     first: usize,
     /// The grid's lowest layer with room in each column.
-    lowest: Vec<u16>,
+    pub(crate) lowest: Vec<u16>,
     /// The voxel of each column in that layer.
     bottoms: Vec<usize>,
     /// Height of what each column lies on, in cells of the grid.
@@ -70,7 +68,7 @@ impl Voxels {
         let mut volume = Volume::new(&grid, layers.capacity, slots.len());
         columns.fill(slots, (&own, &bottoms), &mut volume);
         let floors: Vec<f32> = floors.iter().map(|floor| floor - first as f32).collect();
-        Self {
+        let mut voxels = Self {
             area,
             volume,
             slots: slots.to_vec(),
@@ -79,7 +77,9 @@ impl Voxels {
             lowest,
             bottoms,
             floors,
-        }
+        };
+        voxels.pack();
+        voxels
     }
 
     /// The column over a cell of a window of this width, which is in the area.
@@ -147,6 +147,13 @@ impl Voxels {
         let (up, bottom) = (self.volume.grid.stride(2), self.bottom(column));
         let layers = self.volume.grid.cells[2] - usize::from(self.lowest[column]);
         (0..layers).map(move |layer| bottom + layer * up)
+    }
+
+    /// The same with what is open below, where [sunk](Self::sink) paint is.
+    pub(crate) fn open_column(&self, column: usize) -> impl Iterator<Item = usize> + use<> {
+        let below = self.floors[column] < f32::from(self.lowest[column]);
+        let sunk = below.then(|| self.bottom(column) - self.volume.grid.stride(2));
+        sunk.into_iter().chain(self.column(column))
     }
 
     /// Adds up what lies in a column down to so many quanta below its top, of each paint.
@@ -223,7 +230,11 @@ impl Voxels {
         let highest = self.column(column).next_back().unwrap_or(voxel);
         let mut left = quanta;
         while left > 0 {
-            let room = self.layers.capacity.saturating_sub(self.total(voxel));
+            let whole = match voxel == self.bottom(column) {
+                true => self.lowest_room(column),
+                false => self.layers.capacity,
+            };
+            let room = whole.saturating_sub(self.total(voxel));
             let goes = if voxel >= highest {
                 left
             } else {
@@ -250,20 +261,6 @@ impl Voxels {
                     self.lay(column, paint, now - before);
                 } else if now < before {
                     self.take(column, paint, before - now);
-                }
-            }
-        }
-    }
-
-    /// Lifts what has sunk below the lowest voxel with room of its column into that.
-    pub fn lift(&mut self) {
-        let grid = self.volume.grid;
-        for column in 0..self.area.cells() {
-            let bottom = self.bottom(column);
-            for below in 1..=usize::from(self.lowest[column]) {
-                let voxel = bottom - below * grid.stride(2);
-                for paint in &mut self.volume.paints {
-                    paint[bottom] += std::mem::take(&mut paint[voxel]);
                 }
             }
         }
@@ -427,29 +424,6 @@ impl Columns<'_> {
             }
             let columns = bottoms.iter().zip(left);
             columns.for_each(|(bottom, left)| counts[*bottom] = left);
-        }
-        self.stack(bottoms, volume);
-    }
-
-    /// Lets voxels that are too full give what is too much to the one above, as a mixture.
-    fn stack(&self, bottoms: &[usize], volume: &mut Volume) {
-        let grid = volume.grid;
-        let (up, capacity) = (grid.stride(2), self.layers.capacity);
-        let most = (OVERFULL * capacity as f32) as u32;
-        for (bottom, lowest) in bottoms.iter().zip(self.lowest) {
-            for layer in 0..grid.cells[2] - 1 - usize::from(*lowest) {
-                let voxel = bottom + layer * up;
-                let total: u32 = volume.paints.iter().map(|paint| paint[voxel]).sum();
-                if total <= most {
-                    continue;
-                }
-                let excess = u64::from(total - capacity);
-                for paint in &mut volume.paints {
-                    let goes = (u64::from(paint[voxel]) * excess / u64::from(total)) as u32;
-                    paint[voxel] -= goes;
-                    paint[voxel + up] += goes;
-                }
-            }
         }
     }
 }
