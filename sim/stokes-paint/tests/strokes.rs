@@ -28,12 +28,18 @@ struct Easel {
     file: BrushFile,
     load: BrushLoad,
     handling: Handling,
+    /// How far each joint is bent, rad.
+    bend: [f32; 2],
 }
 
 impl Easel {
     /// A surface of so many cells each way: a level one under wet paint of a slot, quanta, or bare linen.
     fn new(cells: u32, ground: Option<(usize, f32)>) -> Self {
-        let file = BrushFile::library("round").expect("a brush of the library");
+        Self::with("round", cells, ground)
+    }
+
+    fn with(brush: &str, cells: u32, ground: Option<(usize, f32)>) -> Self {
+        let file = BrushFile::library(brush).expect("a brush of the library");
         let head = Head::of(&file);
         let mut store = TileStore::new([cells; 2]);
         let all = store
@@ -56,6 +62,7 @@ impl Easel {
             file,
             load,
             handling: Handling::default(),
+            bend: [0.2, 0.3],
         }
     }
 
@@ -68,8 +75,12 @@ impl Easel {
 
     /// A stroke along x, from and to so many m, at this height of the handle by the brush's length.
     fn stroke(&mut self, [from, to]: [f64; 2], y_m: f64, height: f64) {
+        self.stroke_between([[from, y_m], [to, y_m]], height);
+    }
+
+    fn stroke_between(&mut self, [from, to]: [[f64; 2]; 2], height: f64) {
         let traits = BrushTraits::of(&self.file, SCALE.cell_m, SCALE.zoom);
-        let at = |x_m: f64| {
+        let at = |[x_m, y_m]: [f64; 2]| {
             let solve = Solve {
                 event_ns: 0,
                 stroke: 1,
@@ -80,7 +91,7 @@ impl Easel {
                     ..Pose::IDENTITY
                 },
                 zoom: SCALE.zoom,
-                angles_rad: vec![[0.2, 0.3]; self.file.spines.all_joints()],
+                angles_rad: vec![self.bend; self.file.spines.all_joints()],
                 contacts: Vec::new(),
             };
             Waypoint::of(&solve, SCALE, 1.0)
@@ -233,6 +244,42 @@ fn a_brush_ploughs_a_furrow_between_ridges() {
     assert!(least < 0.7 && most > 1.3, "{least} {most}");
     // A brush above the paint leaves it.
     assert!(furrow(1.5).iter().all(|height| *height == 1.0));
+}
+
+/// How rough paint behind a stroke along y is in its direction, cells: by how much heights differ from those two cells before
+/// and behind them, in the mean; `ripple` is added to each fourth row.
+fn roughness(window: &Window, ripple: f32) -> f32 {
+    let width = window.width();
+    let height = |cell: usize| {
+        let is_fourth = (cell / width).is_multiple_of(4);
+        let adds = if is_fourth { ripple } else { 0.0 };
+        window.total(cell) / CELL + window.base()[cell] + adds
+    };
+    let bend = |cell: usize| {
+        let [behind, before] = [cell - 2 * width, cell + 2 * width].map(height);
+        (height(cell) - 0.5 * (behind + before)).abs()
+    };
+    let cells = (50..110).flat_map(|y| (86..106).map(move |x| y * width + x));
+    let painted = cells.filter(|cell| window.total(*cell) > 0.5 * CELL);
+    let bends: Vec<f32> = painted.map(bend).collect();
+    bends.iter().sum::<f32>() / bends.len() as f32
+}
+
+#[test]
+fn a_stroke_is_smooth_along_itself() {
+    let mut easel = Easel::with("flat", 192, None);
+    easel.bend = [0.0, -0.3];
+    for strokes in 1..=3 {
+        easel = easel.load(0);
+        easel.stroke_between([[0.024, 0.008], [0.024, 0.040]], 0.7);
+        let (rough, pimples) = (roughness(&easel.window, 0.0), roughness(&easel.window, 0.3));
+        if strokes > 1 {
+            assert!(
+                rough < 0.12 && pimples > 0.12,
+                "{strokes}: {rough} {pimples}"
+            );
+        }
+    }
 }
 
 /// Share of the brush's paint that a stroke lays into the lowest layer of a thick ground.
