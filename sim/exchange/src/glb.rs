@@ -10,15 +10,18 @@ use maulstick_painting::Painting;
 use serde_json::json;
 
 use crate::ExchangeError;
-use crate::solid::{Colour, Corner, Facets, Point, Solid, SolidSetup, SolidSize, area, normal};
-use crate::surface::{Progress, Steps, banded, check_whole};
+use crate::solid::{
+    Colour, Corner, MeshSink, Point, Solid, SolidFormat, SolidSetup, SolidSize, area_normal,
+    normal, unit, write_solid,
+};
+use crate::surface::{Progress, Steps};
 
 /// Bytes of a vertex: place and normal as 3 floats, red, green, blue and alpha as 16 bits.
 const VERTEX: u64 = 32;
-/// Bytes of a triangle: three numbers of vertices.
+/// Bytes of a triangle: three vertex indices.
 const TRIANGLE: u64 = 12;
 /// Triangles at most: with all that belongs to them a file has at most 4 GiB.
-const MOST: u64 = u32::MAX as u64 / (VERTEX + TRIANGLE) - 1000;
+const MAX_TRIANGLES: u64 = u32::MAX as u64 / (VERTEX + TRIANGLE) - 1000;
 /// Gloss of oil paint, roughly.
 const ROUGHNESS: f64 = 0.4;
 
@@ -33,35 +36,40 @@ pub fn write_glb(
     to: impl Write,
     progress: Progress<'_>,
 ) -> Result<SolidSize, ExchangeError> {
-    setup.check()?;
-    let banded = banded(painting, surface)?;
-    let mut steps = Steps::new(progress, 3 * banded.bands());
-    let solid = Solid::of(&banded, *setup, MOST, &mut steps)?;
-    let mut to = BufWriter::new(to);
-    write_head(&solid, &mut to)?;
-    let vertices = Vertices {
-        open: Vec::new(),
-        first: 0,
-        walls: Vec::new(),
-        to,
-    };
-    let vertices = solid.make(1.0, true, &mut steps, vertices)?;
-    let mut to = vertices.to;
-    to.write_all(&vertices.walls)?;
-    let walls = solid.parts.vertices as u32;
-    let mut triangles = solid.make(1.0, false, &mut steps, Triangles(to))?;
-    for vertex in walls..walls + 3 * solid.parts.walls as u32 {
-        triangles.0.write_all(&vertex.to_le_bytes())?;
+    let format = Glb(BufWriter::new(to));
+    write_solid(painting, surface, setup, format, progress)
+}
+
+/// Binary glTF: header, JSON, vertices of the surface, vertices of walls and bottom, vertex indices of facets.
+struct Glb<W: Write>(BufWriter<W>);
+
+impl<W: Write> SolidFormat for Glb<W> {
+    const MAX_TRIANGLES: u64 = MAX_TRIANGLES;
+    const PASSES: usize = 3;
+
+    fn write(mut self, solid: &Solid<'_>, steps: &mut Steps<'_>) -> Result<(), ExchangeError> {
+        write_head(solid, &mut self.0)?;
+        let vertices = VertexSink {
+            pending: Vec::new(),
+            first: 0,
+            walls: Vec::new(),
+            to: self.0,
+        };
+        let vertices = solid.triangulate(1.0, true, steps, vertices)?;
+        let mut to = vertices.to;
+        to.write_all(&vertices.walls)?;
+        let mut indices = solid.triangulate(1.0, false, steps, IndexSink(to))?;
+        let first = solid.counts.vertices as u32;
+        for index in first..first + 3 * solid.counts.wall_facets as u32 {
+            indices.0.write_all(&index.to_le_bytes())?;
+        }
+        Ok(indices.0.flush()?)
     }
-    triangles.0.flush()?;
-    let size = solid.extent();
-    check_whole(painting)?;
-    Ok(size)
 }
 
 /// Writes the GLB header, the JSON chunk and the header of the BIN chunk.
 fn write_head(solid: &Solid<'_>, to: &mut impl Write) -> Result<(), ExchangeError> {
-    let vertices = solid.parts.vertices + 3 * solid.parts.walls;
+    let vertices = solid.counts.vertices + 3 * solid.counts.wall_facets;
     let (places, numbers) = (vertices * VERTEX, solid.triangles() * TRIANGLE);
     let size = solid.size(1.0).map(|length| length as f32);
     let attribute = |offset: u32, component: u32, kind: &str| {
@@ -136,83 +144,86 @@ fn vertex(at: Point, normal: Point, colour: Colour) -> [u8; VERTEX as usize] {
 }
 
 /// A vertex that may get more facets.
-struct Open {
+struct PendingVertex {
     at: Point,
     colour: Colour,
-    /// Sum of the normals of its facets by their areas.
+    /// Sum of the normals of its facets, weighted by area.
     normal: [f64; 3],
 }
 
 /// Writes vertices once they have all their facets.
-struct Vertices<W: Write> {
-    open: Vec<Open>,
-    /// Number of the first that is open.
+struct VertexSink<W: Write> {
+    pending: Vec<PendingVertex>,
+    /// Index of the first pending one.
     first: u32,
-    /// Those of walls and bottom.
+    /// Vertices of walls and bottom.
     walls: Vec<u8>,
     to: BufWriter<W>,
 }
 
-impl<W: Write> Facets for Vertices<W> {
-    fn vertex(&mut self, at: Point, colour: Colour) {
-        self.open.push(Open {
+/// The normal itself; up for that of a facet without area.
+fn or_up(normal: Point) -> Point {
+    match normal {
+        [0.0, 0.0, 0.0] => [0.0, 0.0, 1.0],
+        normal => normal,
+    }
+}
+
+impl<W: Write> MeshSink for VertexSink<W> {
+    fn add_vertex(&mut self, at: Point, colour: Colour) {
+        self.pending.push(PendingVertex {
             at,
             colour,
             normal: [0.0; 3],
         });
     }
 
-    fn surface(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError> {
-        let area = area(&corners.map(|corner| corner.at));
+    fn add_surface_facet(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError> {
+        let normal = area_normal(&corners.map(|corner| corner.at));
         for corner in corners {
-            let open = &mut self.open[(corner.id - self.first) as usize];
-            open.normal
-                .iter_mut()
-                .zip(area)
-                .for_each(|(sum, part)| *sum += part);
+            let pending = &mut self.pending[(corner.id - self.first) as usize];
+            let sums = pending.normal.iter_mut().zip(normal);
+            sums.for_each(|(sum, part)| *sum += part);
         }
         Ok(())
     }
 
-    fn wall(&mut self, corners: [Point; 3], colour: Colour) -> Result<(), ExchangeError> {
-        let normal = match normal(&corners) {
-            [0.0, 0.0, 0.0] => [0.0, 0.0, 1.0],
-            normal => normal,
-        };
+    fn add_wall_facet(&mut self, corners: [Point; 3], colour: Colour) -> Result<(), ExchangeError> {
+        let normal = or_up(normal(&corners));
         for corner in corners {
             self.walls.extend(vertex(corner, normal, colour));
         }
         Ok(())
     }
 
-    fn finished(&mut self, before: u32) -> Result<(), ExchangeError> {
-        let count = (before - self.first) as usize;
-        for open in self.open.drain(..count) {
-            let [x, y, z] = open.normal;
-            let length = (x * x + y * y + z * z).sqrt();
-            let normal = match length > 0.0 {
-                true => open.normal.map(|part| (part / length) as f32),
-                false => [0.0, 0.0, 1.0],
-            };
-            self.to.write_all(&vertex(open.at, normal, open.colour))?;
+    fn complete_vertices(&mut self, end: u32) -> Result<(), ExchangeError> {
+        let count = (end - self.first) as usize;
+        for pending in self.pending.drain(..count) {
+            let normal = or_up(unit(pending.normal));
+            self.to
+                .write_all(&vertex(pending.at, normal, pending.colour))?;
         }
-        self.first = before;
+        self.first = end;
         Ok(())
     }
 }
 
-/// Writes the numbers of the vertices of facets.
-struct Triangles<W: Write>(BufWriter<W>);
+/// Writes the vertex indices of the surface's facets.
+struct IndexSink<W: Write>(BufWriter<W>);
 
-impl<W: Write> Facets for Triangles<W> {
-    fn surface(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError> {
+impl<W: Write> MeshSink for IndexSink<W> {
+    fn add_surface_facet(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError> {
         for corner in corners {
             self.0.write_all(&corner.id.to_le_bytes())?;
         }
         Ok(())
     }
 
-    fn wall(&mut self, _corners: [Point; 3], _colour: Colour) -> Result<(), ExchangeError> {
+    fn add_wall_facet(
+        &mut self,
+        _corners: [Point; 3],
+        _colour: Colour,
+    ) -> Result<(), ExchangeError> {
         Ok(())
     }
 }

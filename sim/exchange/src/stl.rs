@@ -6,10 +6,11 @@ use std::io::{BufWriter, Write};
 use maulstick_painting::Painting;
 
 use crate::ExchangeError;
-use crate::solid::{Colour, Corner, Facets, Point, Solid, SolidSetup, SolidSize, normal};
-use crate::surface::{Progress, Steps, banded, check_whole};
-
-const MM: f64 = 1e3;
+use crate::solid::{
+    Colour, Corner, MM, MeshSink, Point, Solid, SolidFormat, SolidSetup, SolidSize, normal,
+    write_solid,
+};
+use crate::surface::{Progress, Steps};
 
 /// Writes a surface as a solid.
 ///
@@ -22,30 +23,38 @@ pub fn write_stl(
     to: impl Write,
     progress: Progress<'_>,
 ) -> Result<SolidSize, ExchangeError> {
-    setup.check()?;
-    let banded = banded(painting, surface)?;
-    let mut steps = Steps::new(progress, 2 * banded.bands());
-    let solid = Solid::of(&banded, *setup, u32::MAX.into(), &mut steps)?;
-    let size = solid.extent();
-    let mut to = BufWriter::new(to);
-    let mut header = [0; 80];
-    let name = b"Maulstick relief, mm";
-    header[..name.len()].copy_from_slice(name);
-    to.write_all(&header)?;
-    to.write_all(&(size.triangles as u32).to_le_bytes())?;
-    solid.make(MM, false, &mut steps, Stl(to))?.0.flush()?;
-    check_whole(painting)?;
-    Ok(size)
+    let format = Stl(BufWriter::new(to));
+    write_solid(painting, surface, setup, format, progress)
 }
 
+/// Binary STL: header, number of triangles, facets.
 struct Stl<W: Write>(BufWriter<W>);
 
-impl<W: Write> Facets for Stl<W> {
-    fn surface(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError> {
-        self.wall(corners.map(|corner| corner.at), Colour::default())
+impl<W: Write> SolidFormat for Stl<W> {
+    const MAX_TRIANGLES: u64 = u32::MAX as u64;
+    const PASSES: usize = 2;
+
+    fn write(mut self, solid: &Solid<'_>, steps: &mut Steps<'_>) -> Result<(), ExchangeError> {
+        let mut header = [0; 80];
+        let name = b"Maulstick relief, mm";
+        header[..name.len()].copy_from_slice(name);
+        self.0.write_all(&header)?;
+        self.0
+            .write_all(&(solid.triangles() as u32).to_le_bytes())?;
+        Ok(solid.triangulate(MM, false, steps, self)?.0.flush()?)
+    }
+}
+
+impl<W: Write> MeshSink for Stl<W> {
+    fn add_surface_facet(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError> {
+        self.add_wall_facet(corners.map(|corner| corner.at), Colour::default())
     }
 
-    fn wall(&mut self, corners: [Point; 3], _colour: Colour) -> Result<(), ExchangeError> {
+    fn add_wall_facet(
+        &mut self,
+        corners: [Point; 3],
+        _colour: Colour,
+    ) -> Result<(), ExchangeError> {
         let mut bytes = [0; 50];
         let normal = normal(&corners);
         let floats = std::iter::once(&normal).chain(&corners).flatten();

@@ -1,4 +1,4 @@
-//! What fills the columns over the cells of a surface: ground, dry paint, wet paint.
+//! Columns of ground, dry and wet paint over the cells of a surface.
 
 use std::collections::BTreeMap;
 use std::slice;
@@ -14,15 +14,15 @@ use maulstick_types::paint::TILE;
 
 use super::film::{Film, film};
 
-/// The columns of a band, row after row from its lowest: of each its ends in m above the highest bare peaks, as
-/// [`Strip`](super::strip::Strip) takes them.
+/// Columns of a band, row after row from its lowest: the ends of each in m above the highest bare peaks, as
+/// [`ColumnPairing`](super::pairing::ColumnPairing) takes them.
 pub(super) struct Columns {
     heights: Arc<Vec<f32>>,
     layered: BTreeMap<usize, Vec<f32>>,
 }
 
 impl Columns {
-    /// Those of a band, without pieces and gaps that are thinner than `thin_m`, m.
+    /// Columns of a band, without pieces and gaps thinner than `thin_m`, m.
     pub(super) fn of(banded: &Banded<'_>, band: usize, thin_m: f64) -> Self {
         let mut layered = BTreeMap::new();
         let width = banded.cells()[0];
@@ -59,7 +59,7 @@ impl Columns {
     }
 }
 
-/// A column without thin pieces and gaps: what lies on a thin gap lies on what is below it.
+/// A column without thin pieces and gaps; paint over a thin gap is put down on what is below it.
 fn without_thin(ends: &[f32], thin_m: f64) -> Vec<f32> {
     let is_thin = |low: f32, high: f32| f64::from(high) - f64::from(low) < thin_m;
     let mut kept = vec![ends[0]];
@@ -93,40 +93,40 @@ fn tile_columns(
     let layers = Layers::over(relief, cell_m);
     let cells = f64::from(relief.cells_per_m()) as f32;
     let ground: Vec<f32> = relief.tile(id).iter().map(|m| m * cells).collect();
-    let mut stack = Stack {
+    let mut stack = FilmStack {
         layers,
         floors: ground.clone(),
         tops: ground,
-        above: BTreeMap::new(),
+        layered: BTreeMap::new(),
     };
     let dry: Vec<_> = tile
         .dry()
         .map(|stack| stack.layers().collect())
         .unwrap_or_default();
     for layer in dry.iter().rev() {
-        stack.lay(&layer.planes.get());
+        stack.add_film(&layer.planes.get());
     }
-    stack.lay(&tile.wet());
-    let mut columns = stack.above;
+    stack.add_film(&tile.wet());
+    let mut columns = stack.layered;
     columns.values_mut().flatten().for_each(|end| *end /= cells);
     columns
 }
 
-/// The films of a tile, one over the other, heights in cells above the highest bare peaks.
-struct Stack {
+/// Films of a tile, one over the other; heights in cells above the highest bare peaks.
+struct FilmStack {
     layers: Layers,
-    /// What the next film was laid on: as high as if no paint were over air.
+    /// Floor of the next film: its height if no paint were over air.
     floors: Vec<f32>,
-    /// Tops of columns in one piece.
+    /// Tops of columns of one piece.
     tops: Vec<f32>,
-    /// Ends of all others.
-    above: BTreeMap<usize, Vec<f32>>,
+    /// Ends of columns of several pieces.
+    layered: BTreeMap<usize, Vec<f32>>,
 }
 
-impl Stack {
-    /// Lays a film.
-    fn lay(&mut self, planes: &Planes) {
-        let own: Vec<Own<'_>> = planes
+impl FilmStack {
+    /// Adds a film on top.
+    fn add_film(&mut self, planes: &Planes) {
+        let own: Vec<LayerPlane<'_>> = planes
             .own()
             .iter()
             .filter_map(|own| {
@@ -149,17 +149,17 @@ impl Stack {
                 }
             };
             self.floors[cell] += total / capacity;
-            self.put(cell, &film);
+            self.add_to_column(cell, &film);
         }
     }
 
-    /// Puts the film of a cell onto its column.
-    fn put(&mut self, cell: usize, film: &Film) {
-        if let Some(top) = self.above.get_mut(&cell).and_then(|ends| ends.last_mut()) {
+    /// Adds the film over a cell to its column.
+    fn add_to_column(&mut self, cell: usize, film: &Film) {
+        if let Some(top) = self.layered.get_mut(&cell).and_then(|ends| ends.last_mut()) {
             let base = *top;
             *top += film.lying;
             let ends = film.floating.iter().flatten().map(|height| base + height);
-            self.above.entry(cell).or_default().extend(ends);
+            self.layered.entry(cell).or_default().extend(ends);
             return;
         }
         let base = self.tops[cell];
@@ -167,13 +167,13 @@ impl Stack {
         if !film.floating.is_empty() {
             let ends = film.floating.iter().flatten().map(|height| base + height);
             let ends = std::iter::once(self.tops[cell]).chain(ends);
-            self.above.insert(cell, ends.collect());
+            self.layered.insert(cell, ends.collect());
         }
     }
 }
 
-/// A plane of the model's own: which of the paints, in which layer.
-type Own<'a> = (usize, usize, &'a [u8]);
+/// Plane of a model's own: index of its paint, layer, bytes.
+type LayerPlane<'a> = (usize, usize, &'a [u8]);
 
 /// The paint of a film over one cell.
 #[derive(Default)]
@@ -185,22 +185,22 @@ struct Column {
 }
 
 impl Column {
-    /// Reads a cell whose lowest layer with room is this; quanta in all.
-    fn read(&mut self, planes: &Planes, own: &[Own<'_>], cell: usize, lowest: usize) -> f32 {
+    /// Reads a cell whose lowest open layer is `lowest`, and returns its quanta in all.
+    fn read(&mut self, planes: &Planes, own: &[LayerPlane<'_>], cell: usize, lowest: usize) -> f32 {
         self.left.clear();
         self.left
             .extend(planes.iter().map(|(_, plane)| plane[cell]));
         let total = self.left.iter().sum();
         self.fills.clear();
         self.fills.push(0.0);
-        // From the lowest on: what counts no longer hold was taken from the top.
+        // From the lowest layer up: quanta that the counts no longer have were taken from the top.
         for (paint, layer, bytes) in own.iter().filter(|(_, layer, _)| *layer > lowest) {
-            let lies = (value(bytes, cell) as f32).min(self.left[*paint]);
-            if lies > 0.0 {
+            let quanta = (value(bytes, cell) as f32).min(self.left[*paint]);
+            if quanta > 0.0 {
                 let place = layer - lowest;
                 self.fills.resize(self.fills.len().max(place + 1), 0.0);
-                self.fills[place] += lies;
-                self.left[*paint] -= lies;
+                self.fills[place] += quanta;
+                self.left[*paint] -= quanta;
             }
         }
         self.fills[0] = self.left.iter().sum();

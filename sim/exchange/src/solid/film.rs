@@ -1,34 +1,34 @@
-//! Where the paint of one film lies in a column of voxels: on what is under it, or over air.
+//! The paint of one film in a column of voxels: on the film below it, or over air.
 //!
-//! Voxels at least half full are paint, as at an isosurface at fill ½. What lies in less full ones thickens the paint that
+//! Voxels at least half full are paint, as at an isosurface of fill ½. The paint of less full ones thickens the paint that
 //! they touch, so a thin film keeps its thickness and a column all of its paint.
 
-/// Fill from which on a voxel is paint.
-const HALF: f32 = 0.5;
-/// Fill up to which a voxel counts as air.
-const TRACE: f32 = 0.02;
-/// Paint in the air that is thinner lies with what is below it, cells.
-const SPECK: f32 = 0.1;
+/// Least fill of a voxel of paint: the isovalue.
+const ISOVALUE: f32 = 0.5;
+/// Greatest fill of a voxel of air.
+const MAX_AIR_FILL: f32 = 0.02;
+/// Thickness below which paint over air is put down on what is below it, cells.
+const MIN_FLOATING: f32 = 0.1;
 
-/// The paint of a film in a column, heights in cells above what the film lies on.
+/// The paint of a film in a column; heights in cells above the floor of the film.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Film {
-    /// Thickness of what lies on it.
+    /// Thickness of the paint on the floor.
     pub(super) lying: f32,
-    /// Bottom and top of what lies over air, from the lowest up.
+    /// Bottom and top of each piece over air, from the lowest up.
     pub(super) floating: Vec<[f32; 2]>,
 }
 
-/// The film whose paint fills these voxels, the lowest first, of which `room` is open, cells; all others are whole.
+/// The film whose paint fills these voxels from the lowest up. Of the lowest `room` cells are open, of the others all.
 pub(super) fn film(fills: &[f32], room: f32) -> Film {
     let mut film = Film::default();
-    let is_paint = |k: usize| fills[k] >= HALF * if k == 0 { room } else { 1.0 };
-    // The film lies on something: below the lowest voxel there is paint.
+    let is_paint = |k: usize| fills[k] >= ISOVALUE * if k == 0 { room } else { 1.0 };
+    // Below the lowest voxel there is the floor.
     let mut touches = true;
     let mut k = 0;
     while k < fills.len() {
         let first = k;
-        let has_less = |k: usize| fills[k] > TRACE && !is_paint(k);
+        let has_less = |k: usize| fills[k] > MAX_AIR_FILL && !is_paint(k);
         k = (first..fills.len())
             .find(|k| !has_less(*k))
             .unwrap_or(fills.len());
@@ -40,7 +40,7 @@ pub(super) fn film(fills: &[f32], room: f32) -> Film {
             .unwrap_or(fills.len());
         if above == k {
             // Air above.
-            if touches || sum < SPECK {
+            if touches || sum < MIN_FLOATING {
                 film.thicken(sum);
             } else {
                 film.floating.push(extent(less, first, room));
@@ -54,13 +54,13 @@ pub(super) fn film(fills: &[f32], room: f32) -> Film {
             film.add([bottom - (sum - below), top]);
         }
         touches = k > above;
-        if k < fills.len() && fills[k] <= TRACE {
+        if k < fills.len() && fills[k] <= MAX_AIR_FILL {
             film.thicken(fills[k]);
             touches = false;
             k += 1;
         }
     }
-    film.apart()
+    film.without_overlap()
 }
 
 /// Bottom and top of the paint in voxels from `first` on, as thick as it is, around its centre of mass: that of the lowest
@@ -83,7 +83,7 @@ fn extent(fills: &[f32], first: usize, room: f32) -> [f32; 2] {
 }
 
 impl Film {
-    /// Paint of this thickness, all of it on what is under it.
+    /// A film of this thickness without paint over air.
     pub(super) fn lying(cells: f32) -> Self {
         Self {
             lying: cells,
@@ -91,7 +91,7 @@ impl Film {
         }
     }
 
-    /// Thickens what is highest so far.
+    /// Thickens the highest piece so far.
     fn thicken(&mut self, cells: f32) {
         match self.floating.last_mut() {
             Some([_, top]) => *top += cells,
@@ -103,8 +103,8 @@ impl Film {
         self.floating.push(interval);
     }
 
-    /// The same with what would overlap stacked.
-    fn apart(self) -> Self {
+    /// The film with pieces that would overlap stacked on each other.
+    fn without_overlap(self) -> Self {
         let mut film = Self {
             lying: self.lying,
             floating: Vec::new(),

@@ -1,7 +1,7 @@
-//! Vertices over a surface.
+//! Grid of vertices over a surface.
 
-/// Vertices in the middles of blocks of `step` cells a side, counted from the lower left corner, and on the
-/// surface's edges beside them. A vertex is as its block's highest cell, so no peak is lost.
+/// Grid of vertices in the middles of blocks of `step` cells a side, counted from the lower left corner, and on the
+/// surface's rim beside them. A vertex has the column of its block's highest cell, so no peak is lost.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Grid {
     cells: [usize; 2],
@@ -9,7 +9,7 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// Over a surface of so many cells; `step` is 1 or more.
+    /// The grid over a surface of `cells`; `step` is 1 or more.
     pub(crate) fn new(cells: [usize; 2], step: usize) -> Self {
         Self { cells, step }
     }
@@ -35,7 +35,7 @@ impl Grid {
         2 * across * up + 6 * (across + up)
     }
 
-    /// Where a vertex is, cells.
+    /// Place of a vertex along an axis, cells.
     pub(crate) fn at(&self, axis: usize, vertex: usize) -> f64 {
         let cells = self.cells[axis];
         let Some(block) = vertex.checked_sub(1) else {

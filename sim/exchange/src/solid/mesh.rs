@@ -1,70 +1,71 @@
-//! A painting as a closed solid: what fills its columns, from their tops down to z = 0.
+//! A painting as a watertight mesh: its columns of ground and paint, extruded down to z = 0.
 //!
 //! The top is the whole surface of ground and paint, with vertices in the middles of cells; walls go down around it, and the
-//! bottom is a fan around its middle. Each edge has two facets that run along it in opposite directions, and all look out.
+//! bottom is a fan around its middle. Each edge has two opposite half-edges, and all normals point outward.
 
 use super::grid::Grid;
-use super::prism::{Corner, Point, Side, Stand, Take, cusp, facets};
+use super::pairing::{CUSP, ColumnPairing, WALL_CUSP};
+use super::prism::{Corner, FacetSink, PlacedColumn, Point, Side, cusp, triangulate_prism};
 use super::rows::{Colour, Row};
-use super::strip::{CUSP, Strip, WALL_CUSP};
 use crate::ExchangeError;
 
-/// Takes the parts of a solid, as they are made.
-pub(crate) trait Facets {
-    /// The next vertex of the surface, numbered from 0 on.
-    fn vertex(&mut self, _at: Point, _colour: Colour) {}
+/// Receives vertices and facets of a solid as they are made.
+pub(crate) trait MeshSink {
+    /// Adds the next vertex of the surface, with indices from 0.
+    fn add_vertex(&mut self, _at: Point, _colour: Colour) {}
 
-    /// A facet of the surface, counterclockwise from outside.
-    fn surface(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError>;
+    /// Adds a facet of the surface, counterclockwise from outside.
+    fn add_surface_facet(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError>;
 
-    /// A facet of walls or bottom.
-    fn wall(&mut self, corners: [Point; 3], colour: Colour) -> Result<(), ExchangeError>;
+    /// Adds a facet of a wall or the bottom, whose vertices have no indices.
+    fn add_wall_facet(&mut self, corners: [Point; 3], colour: Colour) -> Result<(), ExchangeError>;
 
-    /// Vertices up to this number have all their facets.
-    fn finished(&mut self, _before: u32) -> Result<(), ExchangeError> {
+    /// Vertices of lower indices have all their facets.
+    fn complete_vertices(&mut self, _end: u32) -> Result<(), ExchangeError> {
         Ok(())
     }
 }
 
-/// How lengths become those of the file.
+/// Conversion of lengths to the file's unit.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Placing {
+pub(crate) struct FileScale {
     /// Side of a cell.
     pub(crate) cell: f64,
-    /// Height that lies on the base, m.
-    pub(crate) least_m: f64,
+    /// Height of the base's upper side, m.
+    pub(crate) lowest_m: f64,
     /// Thickness of the base.
     pub(crate) base: f64,
-    /// Height of a metre.
+    /// Units of a metre of height: unit and exaggeration in one.
     pub(crate) metre: f64,
 }
 
-impl Placing {
+impl FileScale {
+    /// z of a height.
     pub(crate) fn z(&self, height_m: f64) -> f64 {
-        self.base + (height_m - self.least_m) * self.metre
+        self.base + (height_m - self.lowest_m) * self.metre
     }
 }
 
-/// A row of vertices, in place.
+/// A row of columns at its place in the file.
 #[derive(Default)]
-struct Placed {
+struct PlacedRow {
     row: Row,
     y: f32,
     z: Vec<Vec<f32>>,
-    /// Number of the lowest vertex of each column.
+    /// Index of the lowest vertex of each column.
     firsts: Vec<u32>,
-    across: Strips,
+    along: Pairings,
 }
 
-/// Strips, with the numbers of their first cusps.
+/// Pairings, with the vertex indices of their first cusps.
 #[derive(Default)]
-struct Strips(Vec<(Strip, u32)>);
+struct Pairings(Vec<(ColumnPairing, u32)>);
 
-impl Strips {
+impl Pairings {
     fn side(&self, place: usize, is_reversed: bool) -> Side<'_> {
-        let (strip, first) = &self.0[place];
+        let (pairing, first) = &self.0[place];
         Side {
-            strip,
+            pairing,
             first: *first,
             reach: CUSP,
             is_reversed,
@@ -72,161 +73,166 @@ impl Strips {
     }
 }
 
-/// A solid that is made from its highest row of vertices down.
-pub(crate) struct Mesh<F> {
+/// Builder of a solid from its highest row of columns down.
+pub(crate) struct MeshBuilder<F> {
     grid: Grid,
-    placing: Placing,
+    scale: FileScale,
     xs: Vec<f32>,
-    above: Placed,
-    /// Number of the next vertex.
+    above: PlacedRow,
+    /// Index of the next vertex.
     next: u32,
-    /// What takes it.
-    pub(crate) to: F,
+    /// Receives vertices and facets.
+    pub(crate) sink: F,
 }
 
-impl<F: Facets> Mesh<F> {
-    /// Nothing of it yet.
-    pub(crate) fn new(grid: Grid, placing: Placing, to: F) -> Self {
-        let place = |i| (grid.at(0, i) * placing.cell) as f32;
+impl<F: MeshSink> MeshBuilder<F> {
+    /// A mesh without any row.
+    pub(crate) fn new(grid: Grid, scale: FileScale, sink: F) -> Self {
+        let place = |i| (grid.at(0, i) * scale.cell) as f32;
         Self {
             grid,
-            placing,
+            scale,
             xs: (0..=grid.spaces()[0]).map(place).collect(),
-            above: Placed::default(),
+            above: PlacedRow::default(),
             next: 0,
-            to,
+            sink,
         }
     }
 
-    /// The next row of vertices, with what lies between it and the one above it.
+    /// Adds the next row, and the facets between it and the one above it.
     ///
     /// # Errors
-    /// Those of the taker.
-    pub(crate) fn row(&mut self, number: usize, row: Row) -> Result<(), ExchangeError> {
+    /// Those of the sink.
+    pub(crate) fn add_row(&mut self, number: usize, row: Row) -> Result<(), ExchangeError> {
         let [across, up] = self.grid.spaces();
         let above = std::mem::take(&mut self.above);
-        let mut own = Placed {
-            y: (self.grid.at(1, number) * self.placing.cell) as f32,
+        let mut own = PlacedRow {
+            y: (self.grid.at(1, number) * self.scale.cell) as f32,
             z: row.columns.iter().map(|ends| self.heights(ends)).collect(),
             row,
-            ..Placed::default()
+            ..PlacedRow::default()
         };
-        let (mut upright, mut slanting) = (Strips::default(), Strips::default());
+        let (mut upright, mut slanting) = (Pairings::default(), Pairings::default());
         if number < up {
             for i in 0..=across {
-                self.strip([(&own, i), (&above, i)], &mut upright);
+                self.pair([(&own, i), (&above, i)], &mut upright);
                 if i < across {
-                    self.strip([(&own, i), (&above, i + 1)], &mut slanting);
+                    self.pair([(&own, i), (&above, i + 1)], &mut slanting);
                 }
             }
         }
-        let finished = self.next;
+        let complete = self.next;
         for i in 0..=across {
             own.firsts.push(self.next);
             for end in 0..own.z[i].len() {
-                self.vertex(self.stand(&own, i).corner(end).at, own.row.colours.get(i));
+                self.add_vertex(self.column(&own, i).corner(end).at, own.row.colours.get(i));
             }
         }
-        let mut level = Strips::default();
+        let mut level = Pairings::default();
         for i in 0..across {
-            self.strip([(&own, i), (&own, i + 1)], &mut level);
+            self.pair([(&own, i), (&own, i + 1)], &mut level);
         }
-        own.across = level;
+        own.along = level;
         if number < up {
-            self.between(&own, &above, [&upright, &slanting])?;
+            self.add_surface(&own, &above, [&upright, &slanting])?;
         }
         for i in 0..across {
             if number == 0 {
-                self.wall([(&own, i), (&own, i + 1)], own.across.side(i, false))?;
+                self.add_wall([(&own, i), (&own, i + 1)], own.along.side(i, false))?;
             }
             if number == up {
-                self.wall([(&own, i + 1), (&own, i)], own.across.side(i, true))?;
+                self.add_wall([(&own, i + 1), (&own, i)], own.along.side(i, true))?;
             }
         }
-        self.to
-            .finished(if number == 0 { self.next } else { finished })?;
+        self.sink
+            .complete_vertices(if number == 0 { self.next } else { complete })?;
         self.above = own;
         Ok(())
     }
 
     fn heights(&self, ends: &[f32]) -> Vec<f32> {
         ends.iter()
-            .map(|end| self.placing.z(f64::from(*end)) as f32)
+            .map(|end| self.scale.z(f64::from(*end)) as f32)
             .collect()
     }
 
-    fn stand<'a>(&self, row: &'a Placed, i: usize) -> Stand<'a> {
-        Stand {
+    fn column<'a>(&self, row: &'a PlacedRow, i: usize) -> PlacedColumn<'a> {
+        PlacedColumn {
             at: [self.xs[i], row.y],
             z: &row.z[i],
             first: row.firsts.get(i).copied().unwrap_or_default(),
         }
     }
 
-    fn vertex(&mut self, at: Point, colour: Option<&Colour>) {
-        self.to.vertex(at, colour.copied().unwrap_or_default());
+    fn add_vertex(&mut self, at: Point, colour: Option<&Colour>) {
+        self.sink
+            .add_vertex(at, colour.copied().unwrap_or_default());
         self.next = self.next.wrapping_add(1);
     }
 
-    /// Adds the strip between two columns, and its cusps as vertices.
-    fn strip(&mut self, ends: [(&Placed, usize); 2], into: &mut Strips) {
+    /// Pairs two columns, and adds the cusps between them as vertices.
+    fn pair(&mut self, ends: [(&PlacedRow, usize); 2], into: &mut Pairings) {
         let [a, b] = ends.map(|(row, i)| &row.row.columns[i][..]);
-        let (strip, first) = (Strip::between(a, b), self.next);
-        let [from, to] = ends.map(|(row, i)| self.stand(row, i));
+        let (pairing, first) = (ColumnPairing::between(a, b), self.next);
+        let [from, to] = ends.map(|(row, i)| self.column(row, i));
         let side = Side {
-            strip: &strip,
+            pairing: &pairing,
             first,
             reach: CUSP,
             is_reversed: false,
         };
-        for (number, turn) in strip.turns.iter().enumerate() {
-            let (row, i) = ends[usize::from(turn.is_second)];
+        for (number, cap) in pairing.caps.iter().enumerate() {
+            let (row, i) = ends[usize::from(cap.is_second)];
             let corner = cusp(&side, number, [&from, &to]);
-            self.vertex(corner.at, row.row.colours.get(i));
+            self.add_vertex(corner.at, row.row.colours.get(i));
         }
-        into.0.push((strip, first));
+        into.0.push((pairing, first));
     }
 
-    /// The surface between two rows, and the walls at its ends.
-    fn between(
+    /// Adds the surface between two rows, and the walls at its ends.
+    fn add_surface(
         &mut self,
-        own: &Placed,
-        above: &Placed,
-        [upright, slanting]: [&Strips; 2],
+        own: &PlacedRow,
+        above: &PlacedRow,
+        [upright, slanting]: [&Pairings; 2],
     ) -> Result<(), ExchangeError> {
         let across = self.grid.spaces()[0];
         for i in 0..across {
-            let [a, b] = [0, 1].map(|k| self.stand(own, i + k));
-            let [d, c] = [0, 1].map(|k| self.stand(above, i + k));
-            let mut surface = Surface {
+            let [a, b] = [0, 1].map(|k| self.column(own, i + k));
+            let [d, c] = [0, 1].map(|k| self.column(above, i + k));
+            let mut surface = SurfaceSink {
                 colour: own.row.colours.get(i).copied().unwrap_or_default(),
                 next: &mut self.next,
-                to: &mut self.to,
+                sink: &mut self.sink,
             };
             let right = [
-                own.across.side(i, false),
+                own.along.side(i, false),
                 upright.side(i + 1, false),
                 slanting.side(i, true),
             ];
-            facets(&[a, b, c], &right, &mut surface)?;
+            triangulate_prism(&[a, b, c], &right, &mut surface)?;
             let left = [
                 slanting.side(i, false),
-                above.across.side(i, true),
+                above.along.side(i, true),
                 upright.side(i, true),
             ];
-            facets(&[a, c, d], &left, &mut surface)?;
+            triangulate_prism(&[a, c, d], &left, &mut surface)?;
         }
-        self.wall([(above, 0), (own, 0)], upright.side(0, true))?;
-        self.wall(
+        self.add_wall([(above, 0), (own, 0)], upright.side(0, true))?;
+        self.add_wall(
             [(own, across), (above, across)],
             upright.side(across, false),
         )
     }
 
-    /// The wall under the surface's edge from a column to the next, counterclockwise around it, and the bottom from there to
-    /// its middle.
-    fn wall(&mut self, ends: [(&Placed, usize); 2], along: Side<'_>) -> Result<(), ExchangeError> {
-        let nothing = Strip::default();
+    /// Adds the wall under the surface's rim from a column to the next, counterclockwise around it, and the bottom from there
+    /// to its middle.
+    fn add_wall(
+        &mut self,
+        ends: [(&PlacedRow, usize); 2],
+        along: Side<'_>,
+    ) -> Result<(), ExchangeError> {
+        let joined = ColumnPairing::default();
         let colour = ends[0]
             .0
             .row
@@ -234,76 +240,82 @@ impl<F: Facets> Mesh<F> {
             .get(ends[0].1)
             .copied()
             .unwrap_or_default();
-        let [from, to] = ends.map(|(row, i)| self.stand(row, i));
-        let [under_from, under_to] = [from, to].map(|stand| Stand { z: &[0.0], ..stand });
-        // Beyond the edge there is nothing down to the bottom.
-        let down = ends.map(|(row, i)| Strip::between(&row.row.columns[i], &[f32::NEG_INFINITY]));
-        let side = |strip, is_reversed| Side {
-            strip,
+        let [from, to] = ends.map(|(row, i)| self.column(row, i));
+        let [under_from, under_to] = [from, to].map(|column| PlacedColumn {
+            z: &[0.0],
+            ..column
+        });
+        // Outside the rim there is air down to the bottom.
+        let down =
+            ends.map(|(row, i)| ColumnPairing::between(&row.row.columns[i], &[f32::NEG_INFINITY]));
+        let side = |pairing, is_reversed| Side {
+            pairing,
             first: 0,
             reach: WALL_CUSP,
             is_reversed,
         };
-        let mut take = Wall {
+        let mut wall = WallSink {
             colour,
-            to: &mut self.to,
+            sink: &mut self.sink,
         };
         let first = [
             side(&down[0], false),
-            side(&nothing, false),
+            side(&joined, false),
             side(&down[0], true),
         ];
-        facets(&[from, under_from, under_to], &first, &mut take)?;
+        triangulate_prism(&[from, under_from, under_to], &first, &mut wall)?;
         let along = Side {
             is_reversed: !along.is_reversed,
             ..along
         };
         let second = [side(&down[0], false), side(&down[1], true), along];
-        facets(&[from, under_to, to], &second, &mut take)?;
-        let foot = |stand: &Stand<'_>| [stand.at[0], stand.at[1], 0.0];
+        triangulate_prism(&[from, under_to, to], &second, &mut wall)?;
+        let foot = |column: &PlacedColumn<'_>| [column.at[0], column.at[1], 0.0];
         let [width, height] = self.grid.spaces();
-        let y = (self.grid.at(1, height) * self.placing.cell) as f32;
+        let y = (self.grid.at(1, height) * self.scale.cell) as f32;
         let middle = [0.5 * self.xs[width], 0.5 * y, 0.0];
-        self.to.wall([foot(&from), middle, foot(&to)], colour)
+        self.sink
+            .add_wall_facet([foot(&from), middle, foot(&to)], colour)
     }
 }
 
-/// Takes facets of the surface, whose vertices are numbered.
-struct Surface<'a, F> {
+/// Passes on facets of the surface, whose vertices have indices.
+struct SurfaceSink<'a, F> {
     colour: Colour,
     next: &'a mut u32,
-    to: &'a mut F,
+    sink: &'a mut F,
 }
 
-impl<F: Facets> Take for Surface<'_, F> {
+impl<F: MeshSink> FacetSink for SurfaceSink<'_, F> {
     const IS_WALL: bool = false;
 
-    fn vertex(&mut self, at: Point) -> Corner {
+    fn add_vertex(&mut self, at: Point) -> Corner {
         let id = *self.next;
-        self.to.vertex(at, self.colour);
+        self.sink.add_vertex(at, self.colour);
         *self.next = id.wrapping_add(1);
         Corner { at, id }
     }
 
-    fn facet(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError> {
-        self.to.surface(corners)
+    fn add_facet(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError> {
+        self.sink.add_surface_facet(corners)
     }
 }
 
-/// Takes facets of walls, whose vertices have no numbers.
-struct Wall<'a, F> {
+/// Passes on facets of walls, whose vertices have no indices.
+struct WallSink<'a, F> {
     colour: Colour,
-    to: &'a mut F,
+    sink: &'a mut F,
 }
 
-impl<F: Facets> Take for Wall<'_, F> {
+impl<F: MeshSink> FacetSink for WallSink<'_, F> {
     const IS_WALL: bool = true;
 
-    fn vertex(&mut self, at: Point) -> Corner {
+    fn add_vertex(&mut self, at: Point) -> Corner {
         Corner { at, id: 0 }
     }
 
-    fn facet(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError> {
-        self.to.wall(corners.map(|corner| corner.at), self.colour)
+    fn add_facet(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError> {
+        self.sink
+            .add_wall_facet(corners.map(|corner| corner.at), self.colour)
     }
 }

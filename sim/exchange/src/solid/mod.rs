@@ -1,56 +1,57 @@
-//! A painting's surface as a solid, which [`write_stl`](crate::write_stl) and [`write_glb`](crate::write_glb) write.
+//! A painting's surface as a watertight solid, which [`write_stl`](crate::write_stl) and [`write_glb`](crate::write_glb) write.
 //!
-//! Paint that lies in layers, and may overhang, is shown whole; where it does not, the solid is that of a map of heights.
+//! Paint in layers is shown whole, with its overhangs; elsewhere the solid is that of a map of heights.
 
 mod columns;
 mod film;
 mod grid;
 mod mesh;
+mod pairing;
 mod prism;
 mod rows;
-mod strip;
 
 use maulstick_appearance::bands::Banded;
+use maulstick_painting::Painting;
 
 pub(crate) use self::grid::Grid;
-pub(crate) use self::mesh::{Facets, Mesh, Placing};
+pub(crate) use self::mesh::{FileScale, MeshBuilder, MeshSink};
 pub(crate) use self::prism::{Corner, Point};
-pub(crate) use self::rows::{Colour, RowSetup, rows};
+pub(crate) use self::rows::{Colour, Row, RowSetup, rows};
 use crate::ExchangeError;
-use crate::surface::Steps;
+use crate::surface::{Progress, Steps, banded, check_whole};
 
 /// Triangles that most programs still work with.
 pub const SOLID_TRIANGLES: u64 = 4_000_000;
-/// Thickness of a base, mm.
-const BASES_MM: [f64; 2] = [0.01, 1000.0];
-/// Factors on heights.
-const EXAGGERATIONS: [f64; 2] = [0.0, 1000.0];
-/// Thickness below which a piece of paint over air, or the air under it, is left out, m: of the solid, and of the painting.
-const THIN_M: [f64; 2] = [1e-6, 1e-8];
 /// mm in a metre.
-const MM: f64 = 1e3;
+pub(crate) const MM: f64 = 1e3;
+/// Range of the thickness of a base, mm.
+const BASES_MM: [f64; 2] = [0.01, 1000.0];
+/// Range of factors on heights.
+const EXAGGERATIONS: [f64; 2] = [0.0, 1000.0];
+/// Thickness below which a piece of paint over air, or the air under it, is left out, m: in the solid, and in the painting.
+const THIN_M: [f64; 2] = [1e-6, 1e-8];
 
-/// What a solid is made with.
+/// Settings of a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolidSetup {
     /// Thickness under the lowest place, mm, .01 to 1000.
     pub base_mm: f64,
     /// Factor on heights, 0 to 1000.
     pub exaggeration: f64,
-    /// Cells from vertex to vertex, 1 or more; a vertex is as the highest of its cells.
+    /// Cells from vertex to vertex, 1 or more; a vertex has the column of the highest of its cells.
     pub step: u32,
 }
 
-/// What a solid has become.
+/// Size of a written solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolidSize {
-    /// How many triangles it has.
+    /// Triangles in all.
     pub triangles: u64,
     /// Across, up and high, mm.
     pub size_mm: [f64; 3],
 }
 
-/// The least step with which a surface of so many cells on which no paint overhangs has at most [`SOLID_TRIANGLES`].
+/// The least step with which a surface of `cells` has at most [`SOLID_TRIANGLES`] where no paint overhangs.
 #[must_use]
 pub fn solid_step(cells: [u32; 2]) -> u32 {
     let cells = cells.map(|cells| cells as usize);
@@ -81,110 +82,152 @@ fn within(what: &'static str, value: f64, [least, most]: [f64; 2]) -> Result<(),
     })
 }
 
-/// A solid that is measured, and can be made.
+/// A solid with its triangles counted and its heights measured.
 pub(crate) struct Solid<'a> {
     banded: &'a Banded<'a>,
     grid: Grid,
     setup: SolidSetup,
     /// From the lowest to the highest place, m.
     range_m: [f64; 2],
-    /// Parts of it.
-    pub(crate) parts: Parts,
+    /// Vertices and facets of its mesh.
+    pub(crate) counts: MeshCounts,
 }
 
-/// Counts of the parts of a solid.
+/// Counts of a mesh.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Parts {
+pub(crate) struct MeshCounts {
     /// Vertices of the surface.
     pub(crate) vertices: u64,
     /// Facets of the surface.
-    pub(crate) surface: u64,
+    pub(crate) surface_facets: u64,
     /// Facets of walls and bottom.
-    pub(crate) walls: u64,
+    pub(crate) wall_facets: u64,
 }
 
-impl Facets for Parts {
-    fn vertex(&mut self, _at: Point, _colour: Colour) {
+impl MeshSink for MeshCounts {
+    fn add_vertex(&mut self, _at: Point, _colour: Colour) {
         self.vertices += 1;
     }
 
-    fn surface(&mut self, _corners: [Corner; 3]) -> Result<(), ExchangeError> {
-        self.surface += 1;
+    fn add_surface_facet(&mut self, _corners: [Corner; 3]) -> Result<(), ExchangeError> {
+        self.surface_facets += 1;
         Ok(())
     }
 
-    fn wall(&mut self, _corners: [Point; 3], _colour: Colour) -> Result<(), ExchangeError> {
-        self.walls += 1;
+    fn add_wall_facet(
+        &mut self,
+        _corners: [Point; 3],
+        _colour: Colour,
+    ) -> Result<(), ExchangeError> {
+        self.wall_facets += 1;
         Ok(())
     }
 }
 
+/// File format of a solid.
+pub(crate) trait SolidFormat {
+    /// Triangles at most.
+    const MAX_TRIANGLES: u64;
+    /// Passes over the surface, that of [`Solid::measure`] included.
+    const PASSES: usize;
+
+    /// Writes the file.
+    fn write(self, solid: &Solid<'_>, steps: &mut Steps<'_>) -> Result<(), ExchangeError>;
+}
+
+/// Writes the solid of a surface in a format.
+pub(crate) fn write_solid<F: SolidFormat>(
+    painting: &mut Painting,
+    surface: u32,
+    setup: &SolidSetup,
+    format: F,
+    progress: Progress<'_>,
+) -> Result<SolidSize, ExchangeError> {
+    setup.check()?;
+    let banded = banded(painting, surface)?;
+    let mut steps = Steps::new(progress, F::PASSES * banded.bands());
+    let solid = Solid::measure(&banded, *setup, F::MAX_TRIANGLES, &mut steps)?;
+    format.write(&solid, &mut steps)?;
+    let size = solid.extent();
+    check_whole(painting)?;
+    Ok(size)
+}
+
 impl<'a> Solid<'a> {
-    /// Measures the solid of a surface, for a file that has room for `most` triangles.
-    pub(crate) fn of(
+    /// Measures the solid of a surface, for a file that has room for `max_triangles`.
+    pub(crate) fn measure(
         banded: &'a Banded<'a>,
         setup: SolidSetup,
-        most: u64,
+        max_triangles: u64,
         steps: &mut Steps<'_>,
     ) -> Result<Self, ExchangeError> {
         let grid = Grid::new(banded.cells(), setup.step as usize);
-        let few = |triangles: u64| match triangles <= most {
+        let check = |triangles: u64| match triangles <= max_triangles {
             true => Ok(()),
             false => Err(ExchangeError::TooManyTriangles {
                 triangles,
                 step: coarser(banded, setup),
             }),
         };
-        few(grid.triangles())?;
+        check(grid.triangles())?;
         let mut solid = Self {
             banded,
             grid,
             setup,
             range_m: [0.0; 2],
-            parts: Parts::default(),
+            counts: MeshCounts::default(),
         };
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-        let mut mesh = Mesh::new(grid, solid.placing(MM), Parts::default());
-        rows(banded, solid.rows(false), steps, |number, row| {
+        let measure = |row: &Row| {
             let ends = |column: &Vec<f32>| [column[0], column[column.len() - 1]].map(f64::from);
             for [low, high] in row.columns.iter().map(ends) {
                 range = [range[0].min(low), range[1].max(high)];
             }
-            mesh.row(number, row)
-        })?;
-        (solid.parts, solid.range_m) = (mesh.to, range);
-        few(solid.triangles())?;
+        };
+        solid.counts = solid.build(MM, false, steps, MeshCounts::default(), measure)?;
+        solid.range_m = range;
+        check(solid.triangles())?;
         Ok(solid)
     }
 
-    /// Makes it in units of which a metre has so many; rows with colours if they are needed.
-    pub(crate) fn make<F: Facets>(
+    /// Hands its mesh to `sink`: lengths in units of which a metre has `metre`, rows with colours if they are needed.
+    pub(crate) fn triangulate<S: MeshSink>(
         &self,
         metre: f64,
         is_coloured: bool,
         steps: &mut Steps<'_>,
-        to: F,
-    ) -> Result<F, ExchangeError> {
-        let mut mesh = Mesh::new(self.grid, self.placing(metre), to);
-        rows(self.banded, self.rows(is_coloured), steps, |number, row| {
-            mesh.row(number, row)
-        })?;
-        Ok(mesh.to)
+        sink: S,
+    ) -> Result<S, ExchangeError> {
+        self.build(metre, is_coloured, steps, sink, |_| ())
     }
 
-    fn rows(&self, is_coloured: bool) -> RowSetup {
-        let [made, painted] = THIN_M;
-        RowSetup {
+    /// The same, with each row of columns shown to `inspect` first.
+    fn build<S: MeshSink>(
+        &self,
+        metre: f64,
+        is_coloured: bool,
+        steps: &mut Steps<'_>,
+        sink: S,
+        mut inspect: impl FnMut(&Row),
+    ) -> Result<S, ExchangeError> {
+        let [solid_m, painting_m] = THIN_M;
+        let setup = RowSetup {
             grid: self.grid,
-            thin_m: (made / self.setup.exaggeration).max(painted),
+            thin_m: (solid_m / self.setup.exaggeration).max(painting_m),
             is_coloured,
-        }
+        };
+        let mut mesh = MeshBuilder::new(self.grid, self.scale(metre), sink);
+        rows(self.banded, setup, steps, |number, row| {
+            inspect(&row);
+            mesh.add_row(number, row)
+        })?;
+        Ok(mesh.sink)
     }
 
-    fn placing(&self, metre: f64) -> Placing {
-        Placing {
+    fn scale(&self, metre: f64) -> FileScale {
+        FileScale {
             cell: self.banded.cell_m() * metre,
-            least_m: self.range_m[0],
+            lowest_m: self.range_m[0],
             base: self.setup.base_mm * metre / MM,
             metre: self.setup.exaggeration * metre,
         }
@@ -197,14 +240,14 @@ impl<'a> Solid<'a> {
 
     /// Triangles in all.
     pub(crate) fn triangles(&self) -> u64 {
-        self.parts.surface + self.parts.walls
+        self.counts.surface_facets + self.counts.wall_facets
     }
 
-    /// Its size in units of which a metre has so many.
+    /// Its size in units of which a metre has `metre`.
     pub(crate) fn size(&self, metre: f64) -> [f64; 3] {
-        let placing = self.placing(metre);
-        let [across, up] = self.banded.cells().map(|cells| cells as f64 * placing.cell);
-        [across, up, placing.z(self.range_m[1])]
+        let scale = self.scale(metre);
+        let [across, up] = self.banded.cells().map(|cells| cells as f64 * scale.cell);
+        [across, up, scale.z(self.range_m[1])]
     }
 
     /// Its triangles, and its size in mm.
@@ -220,9 +263,13 @@ fn coarser(banded: &Banded<'_>, setup: SolidSetup) -> u32 {
     solid_step(banded.store().cells()).max(setup.step.saturating_add(1))
 }
 
-/// The unit normal of a triangle whose corners are counterclockwise; nothing if it has no area.
+/// Unit normal of a triangle whose corners are counterclockwise; 0 if it has no area.
 pub(crate) fn normal(corners: &[Point; 3]) -> Point {
-    let n = area(corners);
+    unit(area_normal(corners))
+}
+
+/// Unit vector of this direction; 0 for that of length 0.
+pub(crate) fn unit(n: [f64; 3]) -> Point {
     let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
     if length > 0.0 {
         n.map(|part| (part / length) as f32)
@@ -231,8 +278,8 @@ pub(crate) fn normal(corners: &[Point; 3]) -> Point {
     }
 }
 
-/// The normal of a triangle, as long as twice its area.
-pub(crate) fn area([a, b, c]: &[Point; 3]) -> [f64; 3] {
+/// Normal of a triangle, as long as twice its area.
+pub(crate) fn area_normal([a, b, c]: &[Point; 3]) -> [f64; 3] {
     let side = |to: &Point| [0, 1, 2].map(|i| f64::from(to[i]) - f64::from(a[i]));
     let (u, v) = (side(b), side(c));
     [

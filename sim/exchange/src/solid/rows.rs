@@ -11,21 +11,21 @@ use crate::surface::Steps;
 /// Linear red, green, blue.
 pub(crate) type Colour = [f32; 3];
 
-/// A row of vertices from edge to edge.
+/// A row of vertices from rim to rim.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Row {
-    /// The ends of each column, m, as [`Strip`](super::strip::Strip) takes them.
+    /// The ends of each column, m, as [`ColumnPairing`](super::pairing::ColumnPairing) takes them.
     pub(crate) columns: Vec<Vec<f32>>,
-    /// Unlit colours seen from above, if they were asked for.
+    /// Unlit colours seen from above; empty if they were not asked for.
     pub(crate) colours: Vec<Colour>,
 }
 
-/// A row of blocks, some of whose rows of cells are in.
+/// A row of blocks, from the rows of cells so far.
 #[derive(Clone, Debug)]
 struct Blocks {
     columns: Vec<Vec<f32>>,
     colours: Vec<Colour>,
-    /// Cells of each block whose colours were summed.
+    /// Cells whose colours are in the sum of each block.
     cells: Vec<f32>,
 }
 
@@ -42,8 +42,8 @@ impl Blocks {
         }
     }
 
-    /// A column comes to a block, in which the highest stays.
-    fn offer(&mut self, block: usize, ends: &[f32]) {
+    /// Keeps the higher of the column of a block and this one.
+    fn keep_highest(&mut self, block: usize, ends: &[f32]) {
         let kept = &mut self.columns[block];
         if top(ends) > top(kept) {
             kept.clear();
@@ -51,20 +51,20 @@ impl Blocks {
         }
     }
 
-    fn tint(&mut self, block: usize, colour: Colour, cells: f32) {
+    fn add_colour(&mut self, block: usize, colour: Colour, cells: f32) {
         let sums = self.colours[block].iter_mut().zip(colour);
         sums.for_each(|(sum, channel)| *sum += channel);
         self.cells[block] += cells;
     }
 
-    fn join(&mut self, row: &Self) {
+    fn merge(&mut self, row: &Self) {
         for block in 0..self.columns.len() {
-            self.offer(block, &row.columns[block]);
-            self.tint(block, row.colours[block], row.cells[block]);
+            self.keep_highest(block, &row.columns[block]);
+            self.add_colour(block, row.colours[block], row.cells[block]);
         }
     }
 
-    /// The row of vertices, with those on the surface's edges.
+    /// The row of vertices, with those on the surface's rim.
     fn row(&self) -> Row {
         let mean = self.colours.iter().zip(&self.cells);
         let colours: Vec<Colour> = mean
@@ -81,22 +81,22 @@ fn with_edges<T: Clone>(row: &[T]) -> Vec<T> {
     [&row[..1], row, &row[row.len() - 1..]].concat()
 }
 
-/// What the rows of a solid are made with.
+/// Settings of the rows of a solid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowSetup {
     pub(crate) grid: Grid,
-    /// Pieces and gaps that are thinner are left out, m.
+    /// Thickness below which pieces and gaps are left out, m.
     pub(crate) thin_m: f64,
     /// True for rows with colours.
     pub(crate) is_coloured: bool,
 }
 
-/// Hands the rows of vertices to `take`, each with its number, from the highest.
+/// Calls `each` with the rows of vertices and their numbers, from the highest.
 pub(crate) fn rows(
     banded: &Banded<'_>,
     setup: RowSetup,
     steps: &mut Steps<'_>,
-    mut take: impl FnMut(usize, Row) -> Result<(), ExchangeError>,
+    mut each: impl FnMut(usize, Row) -> Result<(), ExchangeError>,
 ) -> Result<(), ExchangeError> {
     let RowSetup {
         grid,
@@ -117,9 +117,9 @@ pub(crate) fn rows(
             let mut own = Blocks::new(blocks);
             for x in 0..width {
                 let cell = row * width + x;
-                own.offer(x / step, columns.ends(cell));
+                own.keep_highest(x / step, columns.ends(cell));
                 if is_coloured {
-                    own.tint(x / step, colours.each_ref().map(|plane| plane[cell]), 1.0);
+                    own.add_colour(x / step, colours.each_ref().map(|plane| plane[cell]), 1.0);
                 }
             }
             (y, own)
@@ -130,7 +130,7 @@ pub(crate) fn rows(
     let mut sum = Blocks::new(blocks);
     in_order(banded.bands(), job, |_, rows| {
         for (y, row) in rows {
-            sum.join(&row);
+            sum.merge(&row);
             if y % step > 0 {
                 continue;
             }
@@ -138,13 +138,13 @@ pub(crate) fn rows(
             sum = Blocks::new(blocks);
             let vertex = y / step + 1;
             if vertex + 1 == up {
-                take(up, row.clone())?;
+                each(up, row.clone())?;
             }
             if vertex > 1 {
-                take(vertex, row)?;
+                each(vertex, row)?;
             } else {
-                take(vertex, row.clone())?;
-                take(0, row)?;
+                each(vertex, row.clone())?;
+                each(0, row)?;
             }
         }
         steps.step();

@@ -111,11 +111,11 @@ impl Surface {
         let banded = Banded::new(&self.store, &self.bare, &self.look, CELL_M);
         let mut tell = |_, _| {};
         let mut steps = Steps::new(&mut tell, 2);
-        let solid = Solid::of(&banded, setup, u64::MAX, &mut steps).expect("measured");
-        let made = solid.make(1.0 / CELL_M, false, &mut steps, Made::default());
+        let solid = Solid::measure(&banded, setup, u64::MAX, &mut steps).expect("measured");
+        let made = solid.triangulate(1.0 / CELL_M, false, &mut steps, Made::default());
         let made = made.expect("made");
         assert_eq!(made.facets.len() as u64, solid.triangles());
-        assert_eq!(made.vertices.len() as u64, solid.parts.vertices);
+        assert_eq!(made.vertices.len() as u64, solid.counts.vertices);
         (made, solid.extent(), solid.range_m[0] / CELL_M)
     }
 
@@ -138,29 +138,33 @@ impl Surface {
 struct Made {
     vertices: Vec<Point>,
     facets: Vec<[Point; 3]>,
-    finished: u32,
+    complete: u32,
 }
 
-impl Facets for Made {
-    fn vertex(&mut self, at: Point, _colour: Colour) {
+impl MeshSink for Made {
+    fn add_vertex(&mut self, at: Point, _colour: Colour) {
         self.vertices.push(at);
     }
 
-    fn surface(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError> {
+    fn add_surface_facet(&mut self, corners: [Corner; 3]) -> Result<(), ExchangeError> {
         for corner in corners {
-            assert!(corner.id >= self.finished);
+            assert!(corner.id >= self.complete);
             assert_eq!(self.vertices[corner.id as usize], corner.at);
         }
-        self.wall(corners.map(|corner| corner.at), [0.0; 3])
+        self.add_wall_facet(corners.map(|corner| corner.at), [0.0; 3])
     }
 
-    fn wall(&mut self, corners: [Point; 3], _colour: Colour) -> Result<(), ExchangeError> {
+    fn add_wall_facet(
+        &mut self,
+        corners: [Point; 3],
+        _colour: Colour,
+    ) -> Result<(), ExchangeError> {
         self.facets.push(corners);
         Ok(())
     }
 
-    fn finished(&mut self, before: u32) -> Result<(), ExchangeError> {
-        self.finished = before;
+    fn complete_vertices(&mut self, end: u32) -> Result<(), ExchangeError> {
+        self.complete = end;
         Ok(())
     }
 }
@@ -169,7 +173,7 @@ impl Made {
     /// By the theorem of Gauss.
     fn volume(&self) -> f64 {
         let parts = self.facets.iter().map(|facet| {
-            let n = area(facet);
+            let n = area_normal(facet);
             (0..3).map(|i| n[i] * f64::from(facet[0][i])).sum::<f64>() / 6.0
         });
         parts.sum()
@@ -191,7 +195,7 @@ impl Made {
     /// Twice the area of the smallest facet.
     fn least_area(&self) -> f64 {
         let length = |n: [f64; 3]| n.iter().map(|part| part * part).sum::<f64>().sqrt();
-        let areas = self.facets.iter().map(|facet| length(area(facet)));
+        let areas = self.facets.iter().map(|facet| length(area_normal(facet)));
         areas.fold(f64::INFINITY, f64::min)
     }
 
@@ -201,7 +205,7 @@ impl Made {
         let mut met: BTreeMap<[usize; 3], Vec<(f64, bool)>> = BTreeMap::new();
         for facet in &self.facets {
             let [a, b, c] = facet.map(|corner| corner.map(f64::from));
-            let n = area(facet);
+            let n = area_normal(facet);
             let ends = |axis: usize| {
                 let along = [a[axis], b[axis], c[axis]];
                 let least = along.iter().copied().fold(f64::INFINITY, f64::min);
@@ -308,7 +312,7 @@ fn an_overhang_has_air_under_it_and_all_of_its_paint() {
     };
     faulty.facets[100].swap(1, 2);
     assert!(!faulty.is_closed() && faulty.volume() != made.volume());
-    let up = |facet: &&mut [Point; 3]| area(facet)[2] > 0.4;
+    let up = |facet: &&mut [Point; 3]| area_normal(facet)[2] > 0.4;
     faulty
         .facets
         .iter_mut()

@@ -1,16 +1,16 @@
 //! Binary glTF, read by another reader than wrote it.
 
-use std::collections::BTreeMap;
 use std::io::Cursor;
 
+use maulstick_appearance::picture::{Export, Picture};
 use maulstick_exchange::{ExchangeError, SolidSetup, write_glb};
+use maulstick_optics::gamut::GamutMapping;
 use maulstick_painting::Painting;
+use maulstick_painting::picture::flat_drawing;
 use maulstick_types::scene::CANVAS;
 
+use crate::mesh::{Facet, corners, is_watertight, stl_facets, volume};
 use crate::support::{CELL_M, CELLS, STL, bare, bare_of, file, painted, painted_of, speck};
-
-/// A facet: its corners.
-type Facet = [[f32; 3]; 3];
 
 /// The primitive of a file: places, normals, colours, and numbers of vertices.
 struct Read {
@@ -75,48 +75,14 @@ impl Read {
     }
 }
 
-/// Facets of an STL, lengths in mm.
-fn stl(painting: &mut Painting) -> Vec<Facet> {
-    let bytes = file("STL", painting);
-    let facet = |facet: &[u8]| {
-        let float = |i: usize| f32::from_le_bytes(facet[4 * i..][..4].try_into().expect("four"));
-        [1, 2, 3].map(|corner| [0, 1, 2].map(|axis| float(3 * corner + axis)))
-    };
-    bytes[84..].chunks_exact(50).map(facet).collect()
-}
-
-fn is_closed(facets: &[Facet]) -> bool {
-    let mut edges: BTreeMap<[[u32; 3]; 2], [u32; 2]> = BTreeMap::new();
-    for facet in facets {
-        let bits = facet.map(|corner| corner.map(f32::to_bits));
-        for i in 0..3 {
-            let (from, to) = (bits[i], bits[(i + 1) % 3]);
-            edges.entry([from.min(to), from.max(to)]).or_default()[usize::from(from > to)] += 1;
-        }
-    }
-    edges.values().all(|runs| *runs == [1, 1])
-}
-
-fn volume(facets: &[Facet]) -> f64 {
-    let part = |facet: &Facet| {
-        let [a, b, c] = facet.map(|corner| corner.map(f64::from));
-        let cross = [
-            b[1] * c[2] - b[2] * c[1],
-            b[2] * c[0] - b[0] * c[2],
-            b[0] * c[1] - b[1] * c[0],
-        ];
-        (a[0] * cross[0] + a[1] * cross[1] + a[2] * cross[2]) / 6.0
-    };
-    facets.iter().map(part).sum()
-}
-
 #[test]
 fn it_is_the_solid_of_the_stl_with_every_model() {
     for model in ["impasto", "dab", "stokes"] {
         let mut painting = painted_of(model);
         let read = read(&file("glTF", &mut painting));
-        let (facets, printed) = (read.facets(), stl(&mut painting));
-        assert!(is_closed(&facets) && is_closed(&printed), "{model}");
+        let facets = read.facets();
+        let printed = corners(&stl_facets(&file("STL", &mut painting)));
+        assert!(is_watertight(&facets) && is_watertight(&printed), "{model}");
         assert_eq!(facets.len(), printed.len(), "{model}");
         let ratio = volume(&facets) * 1e9 / volume(&printed);
         println!("{model}: {} facets, volumes {ratio}", facets.len());
@@ -127,7 +93,7 @@ fn it_is_the_solid_of_the_stl_with_every_model() {
         }
         let mut turned = facets;
         turned[7].swap(0, 1);
-        assert!(!is_closed(&turned), "a fault would pass");
+        assert!(!is_watertight(&turned), "a fault would pass");
     }
 }
 
@@ -219,27 +185,72 @@ fn unit(n: [f64; 3]) -> [f64; 3] {
     n.map(|part| part / length)
 }
 
+/// Share of the light that a paint's surface mirrors (Saunderson 1942, k₁): a picture has it, an unlit colour has not.
+const MIRRORED: f32 = 0.03;
+
+/// sRGB level of a linear channel, 0 to 255 (IEC 61966-2-1).
+fn srgb_level(linear: f32) -> f32 {
+    let encoded = match linear <= 0.003_130_8 {
+        true => 12.92 * linear,
+        false => 1.055 * linear.powf(1.0 / 2.4) - 0.055,
+    };
+    255.0 * encoded
+}
+
+/// Greatest difference of vertex colours of the canvas's cells from the pixels of its unlit sRGB picture, in levels, where the
+/// gamut has the colour; and how many channels were compared.
+fn off_picture(painting: &mut Painting, as_linear: fn(f32) -> f32) -> (f32, usize) {
+    let mut to = Cursor::new(Vec::new());
+    let setup = SolidSetup { step: 1, ..STL };
+    write_glb(painting, CANVAS, &setup, &mut to, &mut |_, _| {}).expect("written");
+    let read = read(&to.into_inner());
+    let clamped = Export {
+        gamut: GamutMapping::Clamp,
+        ..Export::default()
+    };
+    let drawing = flat_drawing(painting, CANVAS, &clamped).expect("a canvas");
+    let picture = Picture::of(&drawing).rgb;
+    let [width, height] = CELLS.map(|cells| cells as usize);
+    let (mut off, mut count) = (0.0f32, 0);
+    for (place, colour) in read.places.iter().zip(&read.colours) {
+        let [x, y] = [place[0], place[1]].map(|m| m / CELL_M as f32 - 0.5);
+        // The middles of cells; not the rim.
+        if [x, y].iter().any(|at| (at - at.round()).abs() > 0.01) || place[2] == 0.0 {
+            continue;
+        }
+        let pixel = 3 * ((height - 1 - y.round() as usize) * width + x.round() as usize);
+        let pixel = &picture[pixel..][..3];
+        if pixel.iter().any(|level| [0, 255].contains(level)) {
+            continue;
+        }
+        for (level, channel) in pixel.iter().zip(colour) {
+            let shown = srgb_level(as_linear(*channel) + MIRRORED);
+            off = off.max((shown - f32::from(*level)).abs());
+            count += 1;
+        }
+    }
+    (off, count)
+}
+
 #[test]
-fn its_colours_are_those_of_the_paint() {
+fn its_colours_are_those_of_the_paint_in_linear_srgb() {
     let mut painting = bare_of("impasto", CELLS);
-    let ground = read(&file("glTF", &mut painting));
-    let [red, green, blue, alpha] = ground.colours[1000];
-    assert!(
-        alpha == 1.0 && red > 0.5 && green > 0.5 && blue > 0.5,
-        "gesso"
+    crate::support::stroke(
+        &mut painting,
+        1,
+        "Titanium White=0.6,Ultramarine Blue=0.4",
+        [14.0, 8.0],
     );
-    crate::support::stroke(&mut painting, 1, "Pyrrole Red", [14.0, 8.0]);
-    let read = read(&file("glTF", &mut painting));
-    let at = [18.0, 8.0].map(|mm: f32| mm * 1e-3);
-    let nearest = (0..read.places.len()).min_by(|a, b| {
-        let far = |i: usize| {
-            (read.places[i][0] - at[0]).abs() + (read.places[i][1] - at[1]).abs()
-                - read.places[i][2]
-        };
-        far(*a).total_cmp(&far(*b))
-    });
-    let [red, green, ..] = read.colours[nearest.expect("vertices")];
-    assert!(red > 2.0 * green, "{red} {green}");
+    let (off, count) = off_picture(&mut painting, |channel| channel);
+    println!("off by {off} levels in {count} channels");
+    assert!(off < 1.0 && count > 20_000);
+    // Linear values taken for sRGB, and sRGB values in the file, are a gamma off.
+    let (darker, _) = off_picture(&mut painting, |channel| channel.powf(2.2));
+    let (lighter, _) = off_picture(&mut painting, |channel| srgb_level(channel) / 255.0);
+    println!("with a fault off by {darker} and {lighter} levels");
+    assert!(darker > 20.0 && lighter > 20.0, "a fault would pass");
+    let alphas = read(&file("glTF", &mut painting)).colours;
+    assert!(alphas.iter().all(|colour| colour[3] == 1.0));
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod files;
 mod glb;
+mod mesh;
 mod open_exr;
 mod open_raster;
 mod pictures;

@@ -1,6 +1,5 @@
 //! STL files, measured.
 
-use std::collections::BTreeMap;
 use std::io::Cursor;
 
 use maulstick_exchange::{
@@ -9,14 +8,10 @@ use maulstick_exchange::{
 use maulstick_painting::Painting;
 use maulstick_types::scene::CANVAS;
 
+use crate::mesh::{StlFacet, corners, cross, dot, is_watertight, stl_facets, volume};
 use crate::support::{CELL_M, CELLS, STL, bare, heights, painted, speck};
 
-type Point = [f32; 3];
-
-/// A facet: its normal and its corners.
-type Facet = [Point; 4];
-
-fn solid(painting: &mut Painting, setup: &SolidSetup) -> (SolidSize, Vec<Facet>) {
+fn solid(painting: &mut Painting, setup: &SolidSetup) -> (SolidSize, Vec<StlFacet>) {
     let mut to = Cursor::new(Vec::new());
     let size = write_stl(painting, CANVAS, setup, &mut to, &mut |_, _| {}).expect("written");
     let file = to.into_inner();
@@ -24,48 +19,10 @@ fn solid(painting: &mut Painting, setup: &SolidSetup) -> (SolidSize, Vec<Facet>)
     let count = u32::from_le_bytes(file[80..84].try_into().expect("four"));
     assert_eq!(u64::from(count), size.triangles);
     assert_eq!(file.len(), 84 + 50 * count as usize);
-    let facets = file[84..].chunks_exact(50).map(|facet| {
-        let float = |i: usize| f32::from_le_bytes(facet[4 * i..][..4].try_into().expect("four"));
-        [0, 1, 2, 3].map(|corner| [0, 1, 2].map(|axis| float(3 * corner + axis)))
-    });
-    (size, facets.collect())
+    (size, stl_facets(&file))
 }
 
-/// Whether each edge has two triangles that run along it in opposite directions.
-fn is_watertight(facets: &[Facet]) -> bool {
-    let mut edges: BTreeMap<[[u32; 3]; 2], [u32; 2]> = BTreeMap::new();
-    for [_, corners @ ..] in facets {
-        let bits = corners.map(|corner| corner.map(f32::to_bits));
-        for i in 0..3 {
-            let (from, to) = (bits[i], bits[(i + 1) % 3]);
-            let back = usize::from(from > to);
-            edges.entry([from.min(to), from.max(to)]).or_default()[back] += 1;
-        }
-    }
-    edges.values().all(|runs| *runs == [1, 1])
-}
-
-fn cross(u: [f64; 3], v: [f64; 3]) -> [f64; 3] {
-    [
-        u[1] * v[2] - u[2] * v[1],
-        u[2] * v[0] - u[0] * v[2],
-        u[0] * v[1] - u[1] * v[0],
-    ]
-}
-
-fn dot(u: [f64; 3], v: [f64; 3]) -> f64 {
-    u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
-}
-
-/// mm³, by the theorem of Gauss: less than 0 where normals point in.
-fn volume(facets: &[Facet]) -> f64 {
-    let corners = facets
-        .iter()
-        .map(|[_, corners @ ..]| corners.map(|c| c.map(f64::from)));
-    corners.map(|[a, b, c]| dot(a, cross(b, c)) / 6.0).sum()
-}
-
-fn normals_fit(facets: &[Facet]) -> bool {
+fn normals_fit(facets: &[StlFacet]) -> bool {
     facets.iter().all(|facet| {
         let [normal, a, b, c] = facet.map(|point| point.map(f64::from));
         let side = |to: [f64; 3]| [0, 1, 2].map(|i| to[i] - a[i]);
@@ -164,7 +121,7 @@ fn a_relief_is_a_solid_of_the_right_volume() {
     for step in [1, 2, 3, 64, 100, 1000] {
         let setup = SolidSetup { step, ..STL };
         let (size, facets) = solid(&mut painting, &setup);
-        assert!(is_watertight(&facets), "step {step}");
+        assert!(is_watertight(&corners(&facets)), "step {step}");
         assert!(normals_fit(&facets), "step {step}");
         let top = facets
             .iter()
@@ -180,7 +137,7 @@ fn a_relief_is_a_solid_of_the_right_volume() {
             };
             expected(&heights, &setup)
         };
-        let off = |expected: f64| (volume(&facets) / expected - 1.0).abs();
+        let off = |expected: f64| (volume(&corners(&facets)) / expected - 1.0).abs();
         println!(
             "step {step}: {} triangles, off by {:.1e}",
             size.triangles,
@@ -193,20 +150,24 @@ fn a_relief_is_a_solid_of_the_right_volume() {
         );
     }
     let (_, mut facets) = solid(&mut painting, &STL);
-    let whole = volume(&facets);
+    let whole = volume(&corners(&facets));
     let [normal, a, b, c] = facets[100];
     facets[100] = [normal, a, c, b];
-    assert!(!is_watertight(&facets) && !normals_fit(&facets) && volume(&facets) < whole);
+    assert!(
+        !is_watertight(&corners(&facets))
+            && !normals_fit(&facets)
+            && volume(&corners(&facets)) < whole
+    );
     facets.remove(100);
-    assert!(!is_watertight(&facets), "a hole would pass");
+    assert!(!is_watertight(&corners(&facets)), "a hole would pass");
 }
 
 #[test]
 fn a_cell_is_a_block() {
     let (size, facets) = solid(&mut speck(), &STL);
     assert_eq!((size.triangles, facets.len()), (32, 32));
-    assert!(is_watertight(&facets) && normals_fit(&facets));
-    assert!((volume(&facets) - 0.25 * 0.25 * 2.0).abs() < 1e-7);
+    assert!(is_watertight(&corners(&facets)) && normals_fit(&facets));
+    assert!((volume(&corners(&facets)) - 0.25 * 0.25 * 2.0).abs() < 1e-7);
 }
 
 #[test]

@@ -1,39 +1,40 @@
-//! The surface between two columns.
+//! Pairing of the surfaces of two neighbouring columns (the correspondence problem of surfaces from cross-sections; Meyers,
+//! Skinner and Sloan 1992, *Surfaces from contours*).
 //!
 //! A column is what fills it, as its ends from the lowest up: the top of what lies on the ground, then bottom and top of each
 //! piece over air. So even ends are tops, odd ones bottoms. Pieces of two columns that overlap are one piece between them:
-//! its bottom joins their lowest bottoms, its top their highest tops. Pieces and gaps that the other column lacks close on
-//! the way to it, at a cusp. No two of these lines cross.
+//! an edge joins their lowest bottoms, another their highest tops. Pieces and gaps that the other column lacks are capped on
+//! the way to it, at a cusp. No two of these edges cross.
 
 /// How far the cusp is from its column to the other: short of that, or cusps from opposite sides would touch.
 pub(super) const CUSP: f64 = 127.0 / 128.0;
 /// The same in walls: short of that, or it would be where the cusp of the surface beside the wall is.
 pub(super) const WALL_CUSP: f64 = 63.0 / 64.0;
 
-/// A piece or a gap that closes, between end `end` of its column and the next one.
+/// Cap of a piece or a gap that one column alone has, between end `end` of its column and the next one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Turn {
-    /// True if it is one of the second column.
+pub(super) struct Cap {
+    /// True if the second column has it.
     pub(super) is_second: bool,
-    /// Its lower end: even for a gap, odd for a piece.
+    /// Lower end: even for a gap, odd for a piece.
     pub(super) end: usize,
 }
 
-/// The lines between two columns. None are kept between columns of one end each.
+/// Edges and caps between two columns. It is empty between columns of one end each, whose ends are joined.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Strip {
-    /// Ends that are joined.
-    pub(super) joins: Vec<[usize; 2]>,
-    /// What closes.
-    pub(super) turns: Vec<Turn>,
+pub(super) struct ColumnPairing {
+    /// Edges: an end of the first column, and one of the second.
+    pub(super) joined: Vec<[usize; 2]>,
+    /// Pieces and gaps that are capped.
+    pub(super) caps: Vec<Cap>,
 }
 
-impl Strip {
-    /// Between columns of these ends.
+impl ColumnPairing {
+    /// The pairing of columns of these ends.
     pub(super) fn between(a: &[f32], b: &[f32]) -> Self {
-        let mut strip = Self::default();
+        let mut pairing = Self::default();
         if a.len() == 1 && b.len() == 1 {
-            return strip;
+            return pairing;
         }
         // The highest tops so far.
         let (mut i, mut j) = (0, 0);
@@ -41,37 +42,37 @@ impl Strip {
             // The piece in which both are grows while one of its columns has more that the other overlaps.
             loop {
                 if i + 2 < a.len() && a[i + 1] <= b[j] {
-                    strip.turn(false, i);
+                    pairing.cap(false, i);
                     i += 2;
                 } else if j + 2 < b.len() && b[j + 1] <= a[i] {
-                    strip.turn(true, j);
+                    pairing.cap(true, j);
                     j += 2;
                 } else {
                     break;
                 }
             }
-            strip.joins.push([i, j]);
+            pairing.joined.push([i, j]);
             loop {
                 match (i + 2 < a.len(), j + 2 < b.len()) {
-                    (false, false) => return strip,
+                    (false, false) => return pairing,
                     (true, true) if a[i + 1] <= b[j + 2] && b[j + 1] <= a[i + 2] => break,
                     (true, other) if !other || a[i + 1] < b[j + 1] => {
-                        strip.turn(false, i + 1);
+                        pairing.cap(false, i + 1);
                         i += 2;
                     }
                     _ => {
-                        strip.turn(true, j + 1);
+                        pairing.cap(true, j + 1);
                         j += 2;
                     }
                 }
             }
-            strip.joins.push([i + 1, j + 1]);
+            pairing.joined.push([i + 1, j + 1]);
             (i, j) = (i + 2, j + 2);
         }
     }
 
-    fn turn(&mut self, is_second: bool, end: usize) {
-        self.turns.push(Turn { is_second, end });
+    fn cap(&mut self, is_second: bool, end: usize) {
+        self.caps.push(Cap { is_second, end });
     }
 }
 
@@ -79,26 +80,26 @@ impl Strip {
 mod tests {
     use super::*;
 
-    fn turn(is_second: bool, end: usize) -> Turn {
-        Turn { is_second, end }
+    fn cap(is_second: bool, end: usize) -> Cap {
+        Cap { is_second, end }
     }
 
     #[test]
     fn pieces_that_overlap_are_joined_and_others_close() {
-        let overhang = Strip::between(&[1.0, 5.0, 6.0], &[2.0]);
-        assert_eq!(overhang.joins, [[0, 0]]);
-        assert_eq!(overhang.turns, [turn(false, 1)]);
-        let ledge = Strip::between(&[1.0, 5.0, 6.0], &[5.5]);
+        let overhang = ColumnPairing::between(&[1.0, 5.0, 6.0], &[2.0]);
+        assert_eq!(overhang.joined, [[0, 0]]);
+        assert_eq!(overhang.caps, [cap(false, 1)]);
+        let ledge = ColumnPairing::between(&[1.0, 5.0, 6.0], &[5.5]);
         assert_eq!(
-            (ledge.joins, ledge.turns),
-            (vec![[2, 0]], vec![turn(false, 0)])
+            (ledge.joined, ledge.caps),
+            (vec![[2, 0]], vec![cap(false, 0)])
         );
-        let sheet = Strip::between(&[1.0, 5.0, 6.0], &[2.0, 5.5, 7.0]);
-        assert_eq!(sheet.joins, [[0, 0], [1, 1], [2, 2]]);
-        assert!(sheet.turns.is_empty());
-        let fork = Strip::between(&[0.0, 4.0, 8.0], &[0.0, 3.0, 5.0, 7.0, 9.0]);
-        assert_eq!(fork.joins, [[0, 0], [1, 1], [2, 4]]);
-        assert_eq!(fork.turns, [turn(true, 2)]);
+        let sheet = ColumnPairing::between(&[1.0, 5.0, 6.0], &[2.0, 5.5, 7.0]);
+        assert_eq!(sheet.joined, [[0, 0], [1, 1], [2, 2]]);
+        assert!(sheet.caps.is_empty());
+        let fork = ColumnPairing::between(&[0.0, 4.0, 8.0], &[0.0, 3.0, 5.0, 7.0, 9.0]);
+        assert_eq!(fork.joined, [[0, 0], [1, 1], [2, 4]]);
+        assert_eq!(fork.caps, [cap(true, 2)]);
     }
 
     /// Every end has one line, and lines keep the order of their ends.
@@ -119,21 +120,21 @@ mod tests {
                 ends
             };
             let (a, b) = (column(), column());
-            let strip = Strip::between(&a, &b);
+            let pairing = ColumnPairing::between(&a, &b);
             if a.len() == 1 && b.len() == 1 {
                 continue;
             }
             let mut met = [vec![0; a.len()], vec![0; b.len()]];
             let mut lines: Vec<[f32; 2]> = Vec::new();
-            for [i, j] in &strip.joins {
+            for [i, j] in &pairing.joined {
                 assert_eq!(i % 2, j % 2);
                 (met[0][*i], met[1][*j]) = (met[0][*i] + 1, met[1][*j] + 1);
                 lines.push([a[*i], b[*j]]);
             }
-            for turn in &strip.turns {
-                let (side, own) = if turn.is_second { (1, &b) } else { (0, &a) };
-                let middle = 0.5 * (own[turn.end] + own[turn.end + 1]);
-                for end in [turn.end, turn.end + 1] {
+            for cap in &pairing.caps {
+                let (side, own) = if cap.is_second { (1, &b) } else { (0, &a) };
+                let middle = 0.5 * (own[cap.end] + own[cap.end + 1]);
+                for end in [cap.end, cap.end + 1] {
                     met[side][end] += 1;
                     lines.push(if side == 1 {
                         [middle, own[end]]
