@@ -135,7 +135,7 @@ impl DisplayTile {
     /// Height of a tile of a surface alone, as in [`on`](Self::on), m.
     #[must_use]
     pub(crate) fn height_on(bare: &BlankSurface, id: TileId, tile: Option<&Tile>) -> Vec<f32> {
-        let heights = tile.map(|tile| bare.shown.height(tile));
+        let heights = tile.map(|tile| bare.shown.height(bare, id, tile));
         let mut heights = heights.unwrap_or_else(|| vec![0.0; TILE_CELLS]);
         for well in bare.in_wells(id) {
             if well.hides || heights[well.cell] == 0.0 {

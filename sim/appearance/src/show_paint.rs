@@ -21,7 +21,7 @@ pub struct Seen<'a> {
     pub tile: &'a Tile,
 }
 
-/// How the paint of a model is shown. All are functions of a tile alone.
+/// How the paint of a model is shown. All are functions of a tile and of what it lies on.
 pub trait ShowPaint: Debug + Send + Sync {
     /// Thickness of its wet paints, which the optics shade over what lies under them.
     fn films(&self, tile: &Tile) -> WetFilms {
@@ -35,7 +35,7 @@ pub trait ShowPaint: Debug + Send + Sync {
     }
 
     /// Height of the paint over its ground, m, a cell.
-    fn height(&self, tile: &Tile) -> Vec<f32> {
+    fn height(&self, _bare: &BlankSurface, _id: TileId, tile: &Tile) -> Vec<f32> {
         painted_height(tile)
     }
 

@@ -148,7 +148,7 @@ impl ShowPaint for Layers {
         lay(&mut rgb, &seen.tile.wet(), &colours, |_, volume| {
             hides(volume)
         });
-        let heights = self.height(seen.tile);
+        let heights = self.height(seen.bare, seen.id, seen.tile);
         // The palette is drawn without relief.
         let strength = self.emboss * seen.look.relief();
         let raised = match seen.bare.wells.is_empty() && strength != 0.0 {

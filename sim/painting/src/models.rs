@@ -11,6 +11,7 @@ use maulstick_impasto::Impasto;
 use maulstick_marker::{Marker, Matte};
 use maulstick_model::interface::PaintModel;
 use maulstick_stokes_paint::StokesPaint;
+use maulstick_stokes_paint::overhangs::Overhangs;
 
 /// Entry of a paint model in [`MODELS`].
 pub struct ModelEntry {
@@ -48,7 +49,7 @@ pub static MODELS: [ModelEntry; 4] = [
     },
     ModelEntry {
         name: "stokes",
-        shown: &Counted,
+        shown: &Overhangs,
         colouring: Colouring::Films,
         make: || Box::new(StokesPaint::default()),
     },

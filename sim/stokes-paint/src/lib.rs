@@ -9,6 +9,9 @@
 //! | [`drag`] | bristles as a porous body, and the flow around them |
 //! | `packing` | paint of a column without voids |
 //! | `loose` | paint that hangs on nothing falls |
+//! | [`columns`] | pieces of paint over each cell, and the air between them |
+//! | `film` | the pieces of one film |
+//! | [`overhangs`] | how high such paint is shown |
 //! | [`reach`] | how deep a brush lays and takes up |
 //!
 //! ```
@@ -19,9 +22,12 @@
 //! ```
 
 pub mod coarse;
+pub mod columns;
 pub mod drag;
+mod film;
 pub mod layers;
 mod loose;
+pub mod overhangs;
 mod packing;
 pub mod reach;
 mod step;

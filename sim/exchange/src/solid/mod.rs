@@ -3,7 +3,6 @@
 //! Paint in layers is shown whole, with its overhangs; elsewhere the solid is that of a map of heights.
 
 mod columns;
-mod film;
 mod grid;
 mod mesh;
 mod pairing;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use maulstick_appearance::Appearance;
 use maulstick_appearance::blank_surface::BlankSurface;
 use maulstick_appearance::ground::Ground;
-use maulstick_appearance::show_paint::Counted;
+use maulstick_appearance::show_paint::{Counted, ShowPaint};
 use maulstick_canvas::layered::shape_of;
 use maulstick_canvas::own_plane::OwnPlane;
 use maulstick_canvas::page::Page;
@@ -20,6 +20,7 @@ use maulstick_types::paint::TILE;
 
 use super::*;
 use maulstick_stokes_paint::layers::Layers;
+use maulstick_stokes_paint::overhangs::Overhangs;
 
 const CELL_M: f64 = 2.5e-4;
 /// Quanta of a voxel: 2⁻²⁴ of 25 mm each.
@@ -79,7 +80,7 @@ impl Surface {
         Self {
             store: TileStore::new(CELLS),
             bare: BlankSurface {
-                shown: &Counted,
+                shown: &Overhangs,
                 ground: Ground::Even(vec![0.9; studio.wavelengths()]),
                 relief: Arc::new(relief),
                 wells: Vec::new(),
@@ -104,6 +105,18 @@ impl Surface {
             self.store.replace(id, Version { number: 2, tile });
         }
         self
+    }
+
+    /// Heights as they are shown, cells.
+    fn shown(&self, shown: &'static dyn ShowPaint) -> Vec<f32> {
+        let bare = BlankSurface {
+            shown,
+            ..self.bare.clone()
+        };
+        let banded = Banded::new(&self.store, &bare, &self.look, CELL_M);
+        let bands = (0..banded.bands()).rev().map(|band| banded.heights(band));
+        let heights = bands.flat_map(|band| band.to_vec());
+        heights.map(|m| m / CELL_M as f32).collect()
     }
 
     /// The solid, lengths in cells, what was told of it, and the height of its lowest place.
@@ -338,12 +351,20 @@ fn a_ball_in_the_air_is_one() {
         let distance = from.iter().map(|d| d * d).sum::<f32>().sqrt();
         (8.5 - distance).clamp(0.0, 1.0)
     };
-    let (made, volume) = Surface::flat().lay(0, 24, &ball).paint();
+    let surface = Surface::flat().lay(0, 24, &ball);
+    let (made, volume) = surface.paint();
     let want = 4.0 / 3.0 * std::f64::consts::PI * 512.0;
     println!("ball: {volume:.1} of {want:.1}");
     assert!(made.is_closed() && (volume / want - 1.0).abs() < 0.02);
     let middle = made.heights([62, 20]);
     assert!(near(&middle, &[0.0, 4.0, 20.0], 0.1), "{middle:?}");
+    // What is shown is its top, and not as much as its paint would be without the air under it.
+    let middle = 20 * CELLS[0] as usize + 62;
+    let tops = [&Overhangs as &dyn ShowPaint, &Counted].map(|shown| surface.shown(shown)[middle]);
+    assert!(
+        (tops[0] - 20.0).abs() < 0.1 && (tops[1] - 16.0).abs() < 0.1,
+        "{tops:?}"
+    );
 }
 
 #[test]

@@ -12,15 +12,15 @@ const MIN_FLOATING: f32 = 0.1;
 
 /// The paint of a film in a column; heights in cells above the floor of the film.
 #[derive(Debug, Default, PartialEq)]
-pub(super) struct Film {
+pub(crate) struct Film {
     /// Thickness of the paint on the floor.
-    pub(super) lying: f32,
+    pub(crate) lying: f32,
     /// Bottom and top of each piece over air, from the lowest up.
-    pub(super) floating: Vec<[f32; 2]>,
+    pub(crate) floating: Vec<[f32; 2]>,
 }
 
 /// The film whose paint fills these voxels from the lowest up. Of the lowest `room` cells are open, of the others all.
-pub(super) fn film(fills: &[f32], room: f32) -> Film {
+pub(crate) fn film(fills: &[f32], room: f32) -> Film {
     let mut film = Film::default();
     let is_paint = |k: usize| fills[k] >= ISOVALUE * if k == 0 { room } else { 1.0 };
     // Below the lowest voxel there is the floor.
@@ -84,7 +84,7 @@ fn extent(fills: &[f32], first: usize, room: f32) -> [f32; 2] {
 
 impl Film {
     /// A film of this thickness without paint over air.
-    pub(super) fn lying(cells: f32) -> Self {
+    pub(crate) fn lying(cells: f32) -> Self {
         Self {
             lying: cells,
             floating: Vec::new(),
