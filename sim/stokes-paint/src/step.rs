@@ -20,7 +20,7 @@ use crate::voxels::Voxels;
 
 /// Cells around the contacts in which paint flows.
 const AROUND: i64 = 5;
-/// Fill of a voxel from which on paint is dragged along.
+/// Voxels of a film from which on it is dragged along; twice as thick it is whole.
 const FLOWS_FROM: f32 = 0.2;
 
 /// The paint model `stokes`, with room for its step.
@@ -95,7 +95,7 @@ impl StokesPaint {
             .fold(0.0f32, |most, wet| most.max(*wet));
         let flows = step.load.steps().is_multiple_of(u64::from(STEPS));
         if step.handling.push && flows && thickest > FLOWS_FROM * layers.capacity as f32 {
-            let stays = voxels.set_aside(step.stain);
+            let stays = voxels.set_aside(step.stain, 2.0 * FLOWS_FROM);
             drag(&mut self.flow, &mut voxels, footprint, step, cell_m);
             voxels.put_back(&stays);
         }

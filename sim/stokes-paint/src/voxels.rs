@@ -266,13 +266,17 @@ impl Voxels {
         }
     }
 
-    /// Sets so many quanta of the lowest voxel of each column aside, of its mixture; what was set aside, paint after paint.
+    /// Sets so many quanta of the lowest voxel of each column aside, of its mixture, and of a film thinner than `thin` voxels
+    /// more, up to all of one that is half as thick; what was set aside, paint after paint.
     #[must_use]
-    pub fn set_aside(&mut self, quanta: f32) -> Vec<u32> {
+    pub fn set_aside(&mut self, quanta: f32, thin: f32) -> Vec<u32> {
+        let thin = thin * self.layers.capacity as f32;
         let columns = self.area.cells();
         let mut aside = vec![0; columns * self.slots.len()];
         for column in 0..columns {
             let bottom = self.bottom(column);
+            let film: u32 = self.column(column).map(|voxel| self.total(voxel)).sum();
+            let quanta = quanta.max(thin - film as f32);
             let share = (quanta / self.total(bottom).max(1) as f32).min(1.0);
             for (paint, counts) in self.volume.paints.iter_mut().enumerate() {
                 let stays = (counts[bottom] as f32 * share) as u32;

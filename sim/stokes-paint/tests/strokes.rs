@@ -246,6 +246,24 @@ fn a_brush_ploughs_a_furrow_between_ridges() {
     assert!(furrow(1.5).iter().all(|height| *height == 1.0));
 }
 
+#[test]
+fn thin_paint_is_not_pushed_beside_a_lump_that_is() {
+    let (middle, thin) = (64 * 192 + 60, (0.19 * CELL).floor());
+    let pushed = |ground: f32| {
+        let mut easel = Easel::new(192, Some((3, ground)));
+        easel.handling.transfer = Transfer::Marker { flow: 0.0 };
+        easel.window.plane_mut(3)[middle] = 4.0 * CELL;
+        easel.stroke([0.012, 0.016], 0.016, 0.55);
+        let lies = easel.window.plane(3).expect("there");
+        let changed = (0..lies.len()).filter(|cell| lies[*cell] != ground);
+        let far = |cell: &usize| (cell % 192).abs_diff(60).max((cell / 192).abs_diff(64)) > 6;
+        (changed.clone().count(), changed.filter(far).count())
+    };
+    let (near, far) = pushed(thin);
+    assert!(near > 1 && far == 0, "{near} {far}");
+    assert!(pushed(2.0 * thin).1 > 0);
+}
+
 /// How rough paint behind a stroke along y is in its direction, cells: by how much heights differ from those two cells before
 /// and behind them, in the mean; `ripple` is added to each fourth row.
 fn roughness(window: &Window, ripple: f32) -> f32 {
