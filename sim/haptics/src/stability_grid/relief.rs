@@ -4,13 +4,15 @@
 //! models are. Judged is what the hand was given beyond the work of the models' own force along its true way, felt without
 //! samples, which round a closed way is nothing.
 
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use maulstick_num::sin;
 use maulstick_types::haptics::{ContactModel, ForceLaw, HeightPatch, height_bytes};
 
+use super::extent::Extent;
+use super::link::{Link, random};
 use super::{
     DAMPING_N_S_M, DT, END_S, FORCE_ERROR, HEAD_M, MAX_STIFFNESS_N_M, MOVED_S, Motion, NO_ENERGY_J,
-    Path, RECOVERY_S, Run, STILL_M, STILL_S, TOUCH_S, Wall, grid, random,
+    Path, RECOVERY_S, Run, STILL_M, STILL_S, TOUCH_S, Wall, grid,
 };
 use crate::contact::{Contact, HandleState};
 use crate::plant::Plant;
@@ -129,17 +131,11 @@ struct Booked {
     speed: f64,
 }
 
-fn at(position: DVec3) -> HandleState {
-    HandleState {
-        position,
-        orientation: DQuat::IDENTITY,
-        velocity: DVec3::ZERO,
-    }
-}
-
 impl Booked {
     fn force(&self, position: DVec3) -> DVec3 {
-        let felt = self.contact.evaluate(&at(position), MAX_STIFFNESS_N_M);
+        let felt = self
+            .contact
+            .evaluate(&HandleState::upright(position), MAX_STIFFNESS_N_M);
         felt.conservative
     }
 
@@ -229,33 +225,18 @@ impl ReliefRun {
             correction: DVec3::ZERO,
             speed: 0.0,
         };
-        let period_s = 1.0 / self.run.rate_hz;
-        let mut state = 1;
-        let mut under_way: Vec<(f64, Wall, DVec3)> = Vec::new();
-        let (mut next_s, mut force) = (0.0, DVec3::ZERO);
-        let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
+        let mut link = Link::new(self.run.rate_hz, self.run.jitter, 1);
+        let (mut extent, mut force) = (Extent::NONE, DVec3::ZERO);
         let (mut push, mut asked, mut across_n): (f64, f64, f64) = (0.0, 0.0, 0.0);
         let (mut net_j, mut most_j, mut least_j, mut rise_j): (f64, f64, f64, f64) =
             (0.0, 0.0, 0.0, 0.0);
         let mut fault = None;
         for number in 0..(END_S / DT) as usize {
             let s = number as f64 * DT;
-            let handle = HandleState {
-                position: plant.read_position(),
-                orientation: DQuat::IDENTITY,
-                velocity: plant.read_velocity(),
-            };
+            let handle = plant.handle();
             let tip = handle.position - DVec3::Z * HEAD_M;
-            while next_s <= s {
-                let late = self.run.jitter * period_s * random(&mut state);
-                if random(&mut state) >= self.run.jitter || next_s == 0.0 {
-                    under_way.push((next_s + late, self.run.wall(next_s), tip));
-                }
-                next_s += period_s;
-            }
             booked.age();
-            let arrived = under_way.iter().filter(|(at, ..)| *at <= s).count();
-            if let Some((_, wall, around)) = under_way.drain(..arrived).next_back() {
+            if let Some((wall, around)) = link.newest(s, |s| (self.run.wall(s), tip)) {
                 let patch = self.ground.patch(&wall, around);
                 // Over a wall that rests most patches are the one before.
                 if self.run.motion != Motion::Still || sent.as_ref() != Some(&patch) {
@@ -288,13 +269,13 @@ impl ReliefRun {
             rise_j = rise_j.max(with_motion_j - least_j);
             across_n = across_n.max((force - normal * force.dot(normal)).length());
             if (STILL_S[0]..STILL_S[1]).contains(&s) {
-                (low, high) = (low.min(to), high.max(to));
+                extent.include(to);
                 push += force.dot(normal);
                 asked += booked.force(to).dot(normal);
             }
         }
         Ok(ReliefOutcome {
-            wobble_m: (high - low).max_element(),
+            wobble_m: extent.peak_to_peak_m(),
             net_j: most_j,
             rise_j,
             share: push / asked,
