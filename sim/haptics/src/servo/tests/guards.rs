@@ -384,6 +384,35 @@ fn a_hand_that_shakes_gets_a_softer_wall_until_it_is_still() {
     assert!((0.15..0.8).contains(&softness) && servo.fault().is_none());
 }
 
+/// The seeded fault would be a wall that grows hard again under the hand: pressed in soft and let out hard it gives energy.
+#[test]
+fn a_softer_wall_does_not_harden_under_the_hand_but_while_it_is_away() {
+    let mut servo = Servo::new(bare());
+    servo.limits.oscillation_m = 3e-4;
+    servo.receive(rigid(400.0), Sender::Same);
+    come_up(&mut servo);
+    for tick in 0..600 {
+        let turn = 2.0 * std::f64::consts::PI * 20.0 * f64::from(tick) * DT;
+        servo.step(&handle(0.003 + 0.002 * maulstick_num::sin(turn)), DT);
+    }
+    let pressed_n = |servo: &mut Servo, seconds: u32| {
+        let forces = (0..1000 * seconds).map(|_| servo.step(&handle(0.003), DT).0.z);
+        forces.fold([f64::MAX, f64::MIN], |[least, most], force| {
+            [least.min(force), most.max(force)]
+        })
+    };
+    pressed_n(&mut servo, 1);
+    let [least, most] = pressed_n(&mut servo, 30);
+    println!("{least:.3} to {most:.3} N of 1.2 N");
+    assert!(most < 1.0 && most - least < 1e-12, "{least} to {most} N");
+    for _ in 0..45_000 {
+        servo.step(&handle(-0.001), DT);
+    }
+    pressed_n(&mut servo, 1);
+    let [least, _] = pressed_n(&mut servo, 1);
+    assert!((least - 1.2).abs() < 1e-9, "{least} N");
+}
+
 #[test]
 fn where_no_softness_stills_the_hand_the_fault_latches() {
     let mut servo = Servo::new(bare());
