@@ -6,11 +6,13 @@
 //! | [`guides`] | guides at every stiffness and delay, and strokes along a wavy path |
 //! | [`recorded_models`] | contact models of one hand, felt by others |
 //! | [`scaled_devices`] | devices whose frame is smaller or larger than the desk |
+//! | [`zero_order_hold`] | energy that sampling gives, by the period, the friction of the device and its encoders |
 
 mod guides;
 mod recorded_models;
 mod scaled_devices;
 mod walls;
+mod zero_order_hold;
 
 use crate::servo::limits::Limits;
 pub(crate) use crate::stability_grid::extent::Extent;
