@@ -19,6 +19,18 @@ pub struct HandleState {
     pub velocity: DVec3,
 }
 
+impl HandleState {
+    /// An upright brush at rest whose ferrule is at `position`, m.
+    #[must_use]
+    pub fn upright(position: DVec3) -> Self {
+        Self {
+            position,
+            orientation: DQuat::IDENTITY,
+            velocity: DVec3::ZERO,
+        }
+    }
+}
+
 /// A contact model in the form that the servo evaluates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {

@@ -15,25 +15,19 @@
 //! | [`plant`] | a device and a hand that hold each other, for the simulated stylus and for tests |
 //! | [`stability_grid`] | hands, walls, rates and losses by the thousand: whether the servo is stable |
 
+#[cfg(test)]
+mod closed_loop_tests;
 pub mod contact;
 pub mod fluid;
 pub mod force_law;
 pub mod friction;
 pub mod grain;
 pub mod guide;
-#[cfg(test)]
-mod guided_hand_tests;
 pub mod plant;
 pub mod recipient;
 pub mod relief;
-#[cfg(test)]
-mod replayed_tests;
-#[cfg(test)]
-mod scaled_tests;
 pub mod servo;
 pub mod stability_grid;
-#[cfg(test)]
-mod stability_tests;
 
 pub use contact::{Contact, ContactForce};
 pub use fluid::Fluid;

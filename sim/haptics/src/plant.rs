@@ -6,6 +6,8 @@
 
 use glam::DVec3;
 
+use crate::contact::HandleState;
+
 /// The hand's grip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hand {
@@ -99,6 +101,15 @@ impl Plant {
     #[must_use]
     pub fn read_velocity(&self) -> DVec3 {
         self.read_velocity
+    }
+
+    /// An upright brush in the hand, as the encoders read it.
+    #[must_use]
+    pub fn handle(&self) -> HandleState {
+        HandleState {
+            velocity: self.read_velocity,
+            ..HandleState::upright(self.read)
+        }
     }
 
     /// Where the tip truly is, m.

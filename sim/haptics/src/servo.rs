@@ -471,10 +471,4 @@ impl Servo {
 }
 
 #[cfg(test)]
-mod guard_tests;
-#[cfg(test)]
-mod guidance_tests;
-#[cfg(test)]
-mod relief_tests;
-#[cfg(test)]
 mod tests;

@@ -8,15 +8,19 @@
 //! is passive while K < 2b/T (Colgate and Schenkel 1997): up to there the steady force is judged too. Beside the wall a guide
 //! may hold the hand to a line; then the hand is kicked across that too.
 
+pub(crate) mod extent;
 pub mod fluid;
+pub(crate) mod link;
 pub mod relief;
 
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use maulstick_num::geometry::rotation;
 use maulstick_num::{cos, sin};
 use maulstick_types::haptics::{ContactModel, ForceLaw, GuideModel};
 
-use crate::contact::{Contact, HandleState};
+use self::extent::Extent;
+use self::link::Link;
+use crate::contact::Contact;
 use crate::guide::Guide;
 use crate::plant::{Hand, Plant};
 use crate::servo::Servo;
@@ -232,13 +236,6 @@ impl Told {
     }
 }
 
-pub(crate) fn random(state: &mut u64) -> f64 {
-    *state = state
-        .wrapping_mul(6_364_136_223_846_793_005)
-        .wrapping_add(1_442_695_040_888_963_407);
-    (*state >> 40) as f64 / (1u64 << 24) as f64
-}
-
 impl Run {
     /// Plane and stiffness at a time.
     fn wall(&self, s: f64) -> Wall {
@@ -316,8 +313,7 @@ impl Run {
             Some(_) => 0.0,
             None => FRICTION,
         };
-        let period_s = 1.0 / self.rate_hz;
-        let live_s = (6.0 * period_s).max(0.1);
+        let live_s = (6.0 / self.rate_hz).max(0.1);
         let mut servo = Servo::new(limits);
         let mut plant = Plant::omni(self.hand, self.target(0.0));
         let tip = |plant: &Plant| plant.true_position() - DVec3::Z * HEAD_M;
@@ -326,30 +322,16 @@ impl Run {
             correction: DVec3::ZERO,
             speed: 0.0,
         };
-        let mut state = 1;
-        let mut under_way: Vec<(f64, Wall)> = Vec::new();
-        let (mut next_s, mut force) = (0.0, DVec3::ZERO);
-        let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
+        let mut link = Link::new(self.rate_hz, self.jitter, 1);
+        let (mut extent, mut force) = (Extent::NONE, DVec3::ZERO);
         let (mut push, mut depth, mut told_n_m) = (0.0, 0.0, f64::MAX);
         let (mut net_j, mut most_j): (f64, f64) = (0.0, 0.0);
         let mut fault = None;
         for number in 0..(END_S / DT) as usize {
             let s = number as f64 * DT;
-            while next_s <= s {
-                let late = self.jitter * period_s * random(&mut state);
-                if random(&mut state) >= self.jitter || next_s == 0.0 {
-                    under_way.push((next_s + late, self.wall(next_s)));
-                }
-                next_s += period_s;
-            }
-            let handle = HandleState {
-                position: plant.read_position(),
-                orientation: DQuat::IDENTITY,
-                velocity: plant.read_velocity(),
-            };
+            let handle = plant.handle();
             told.age();
-            let arrived = under_way.iter().filter(|(at, _)| *at <= s).count();
-            if let Some((_, wall)) = under_way.drain(..arrived).next_back() {
+            if let Some(wall) = link.newest(s, |s| self.wall(s)) {
                 servo.receive(wall.contact(friction, live_s)?, Sender::Same);
                 if let Some(guide) = self.guide {
                     servo.receive_guide(guide.guide(live_s)?, Sender::Same);
@@ -378,7 +360,7 @@ impl Run {
             net_j += plant.given_j() - before_j - models - guided;
             most_j = most_j.max(net_j);
             if (STILL_S[0]..STILL_S[1]).contains(&s) {
-                (low, high) = (low.min(to), high.max(to));
+                extent.include(to);
                 let guided = self.guide.map_or(DVec3::ZERO, |guide| guide.force(to));
                 push += (force - guided).dot(told.wall.normal);
                 depth += told.wall.depth(to);
@@ -386,7 +368,7 @@ impl Run {
             }
         }
         Ok(Outcome {
-            wobble_m: (high - low).max_element(),
+            wobble_m: extent.peak_to_peak_m(),
             net_j: most_j,
             share: push / (self.stiffness * depth),
             told_n_m,

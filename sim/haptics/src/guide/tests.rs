@@ -1,6 +1,5 @@
 //! The force of a guide against its potential.
 
-use glam::DQuat;
 use proptest::prelude::*;
 
 use super::*;
@@ -208,11 +207,7 @@ proptest! {
 fn a_hand_of_another_orientation_is_held_by_its_tip() {
     let guide = Guide::new(&model(&[[0.0; 3], [0.1, 0.0, 0.0]])).expect("a guide");
     let tip = DVec3::new(0.03, 0.005, -0.002);
-    let upright = HandleState {
-        position: tip + DVec3::Z * 0.025,
-        orientation: DQuat::IDENTITY,
-        velocity: DVec3::ZERO,
-    };
+    let upright = HandleState::upright(tip + DVec3::Z * 0.025);
     let felt = guide.pull(guide.first(&upright), &upright, &BOUNDS);
     assert!((felt.conservative - DVec3::Y * -0.4).length() < 1e-12);
     assert!((felt.left_m - 0.005).abs() < 1e-12);

@@ -1,6 +1,5 @@
 //! The relief against its oracles: splines by recursion, work round closed ways, stiffness by differences.
 
-use glam::DQuat;
 use maulstick_num::{cos, sin};
 use maulstick_types::haptics::{ContactModel, ForceLaw, height_bytes};
 use proptest::prelude::*;
@@ -29,9 +28,9 @@ pub(crate) fn rough(most_um: i16, seed: u64) -> HeightPatch {
     let of = |i: usize, j: usize| {
         let mut state = seed.wrapping_add((i * SIDE + j) as u64 * 77);
         for _ in 0..3 {
-            crate::stability_grid::random(&mut state);
+            crate::stability_grid::link::random(&mut state);
         }
-        ((crate::stability_grid::random(&mut state) * 2.0 - 1.0) * f64::from(most_um)) as i16
+        ((crate::stability_grid::link::random(&mut state) * 2.0 - 1.0) * f64::from(most_um)) as i16
     };
     patch(of)
 }
@@ -66,11 +65,7 @@ fn over(relief: HeightPatch, law: ForceLaw) -> ContactModel {
 
 /// The handle whose undeformed point is at a place.
 fn at(tip: DVec3) -> HandleState {
-    HandleState {
-        position: tip + DVec3::Z * HEAD_M,
-        orientation: DQuat::IDENTITY,
-        velocity: DVec3::ZERO,
-    }
+    HandleState::upright(tip + DVec3::Z * HEAD_M)
 }
 
 /// Uniform B-spline of a degree that begins at 0, by the recursion of Cox and de Boor.

@@ -44,8 +44,9 @@ mod tests {
     use glam::DVec3;
 
     use crate::servo::Servo;
-    use crate::servo::guard_tests::{DT, handle, pressed};
     use crate::servo::limits::Limits;
+    use crate::servo::tests::guards::pressed;
+    use crate::servo::tests::{DT, handle};
 
     /// The force at each speed, N, of a hand that stays as deep as it is.
     fn at_speeds(servo: &mut Servo, speeds: impl Iterator<Item = f64>) -> Vec<f64> {

@@ -4,6 +4,9 @@
 //!
 //! Each time it is found the force is made softer; soft enough, any device is still. Where it is not,
 //! something else is wrong.
+//!
+//! In contact the force only gets softer, as that of a fast hand does: a wall that grew hard again under a hand would give
+//! more on the way out than it took on the way in. It comes back while the hand is away.
 
 /// Time between two turns of a shaking hand, s: half a period of 60 Hz and of 10 Hz.
 const HALF_PERIOD_S: [f64; 2] = [1.0 / 120.0, 1.0 / 20.0];
@@ -17,7 +20,7 @@ const AWAY_S: f64 = 0.1;
 const SOFTER: f64 = 0.7;
 /// Stiffness at least, by that asked for: shaking at this is a fault.
 const SOFTEST: f64 = 0.15;
-/// How fast stiffness comes back to a still hand, 1/s.
+/// How fast stiffness comes back to a hand that is away, 1/s.
 const RECOVERY: f64 = 0.02;
 
 /// Detector of an oscillating hand.
@@ -67,7 +70,9 @@ impl Oscillation {
         }
         if self.since_turn_s > HALF_PERIOD_S[1] {
             self.turns = 0;
-            self.softness = (self.softness + RECOVERY * dt).min(1.0);
+            if in_contact == Touch::Air {
+                self.softness = (self.softness + RECOVERY * dt).min(1.0);
+            }
         }
         if self.turns < TURNS {
             return false;
@@ -167,11 +172,16 @@ mod tests {
     }
 
     #[test]
-    fn a_hand_that_has_come_to_rest_feels_its_wall_again() {
+    fn a_hand_that_has_shaken_feels_its_wall_again_after_it_was_away() {
         let (mut oscillation, _) = swing(20.0, 1e-3, Touch::Contact, 0.5);
-        assert!(oscillation.softness() < 0.8);
+        let softened = oscillation.softness();
+        assert!(softened < 0.8);
         for _ in 0..45_000 {
             oscillation.watch(0.0, TURN_M, Touch::Contact, 1e-3);
+        }
+        assert_eq!(oscillation.softness(), softened);
+        for _ in 0..45_000 {
+            oscillation.watch(0.0, TURN_M, Touch::Air, 1e-3);
         }
         assert_eq!(oscillation.softness(), 1.0);
     }

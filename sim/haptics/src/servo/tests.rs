@@ -1,6 +1,9 @@
 //! The servo against its promises: ramps, recovery, faults, limits.
 
-use glam::DQuat;
+pub(super) mod guards;
+mod guidance;
+mod relief;
+
 use maulstick_types::haptics::ForceLaw;
 use proptest::prelude::*;
 
@@ -8,14 +11,12 @@ use super::engagement::CALM_TICKS;
 use super::*;
 use crate::contact::tests::{linear, model};
 
-const DT: f64 = 1e-3;
+pub(super) use crate::stability_grid::DT;
+use crate::stability_grid::HEAD_M;
 
-fn handle(depth: f64) -> HandleState {
-    HandleState {
-        position: DVec3::new(0.0, 0.0, 0.025 - depth),
-        orientation: DQuat::IDENTITY,
-        velocity: DVec3::ZERO,
-    }
+/// An upright brush whose tip is so deep in the plane z = 0, m.
+pub(super) fn handle(depth: f64) -> HandleState {
+    HandleState::upright(DVec3::Z * (HEAD_M - depth))
 }
 
 fn contact(law: ForceLaw) -> Contact {

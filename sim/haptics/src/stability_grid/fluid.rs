@@ -4,13 +4,15 @@
 //! f = −c·(v − u), so it keeps ½·c·τ·u² and gives no more back. A solver tells f at its own rate, late and with losses.
 //! Judged is what the hand was given beyond the wall and what the film had kept.
 
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use maulstick_num::sin;
 use maulstick_types::Pose;
 use maulstick_types::haptics::{ContactModel, FluidForce, ForceLaw};
 
-use super::{DAMPING_N_S_M, DT, HEAD_M, MAX_STIFFNESS_N_M, random};
-use crate::contact::{Contact, HandleState};
+use super::extent::Extent;
+use super::link::Link;
+use super::{DAMPING_N_S_M, DT, HEAD_M, MAX_STIFFNESS_N_M};
+use crate::contact::Contact;
 use crate::fluid::Fluid;
 use crate::plant::{Hand, Plant};
 use crate::servo::Servo;
@@ -130,10 +132,8 @@ impl FluidRun {
             0.5 * WALL_N_M * depth * depth
         };
         let mut film = DVec3::ZERO;
-        let mut state = 1;
-        let mut under_way: Vec<(f64, FluidForce)> = Vec::new();
-        let mut next_s = 0.0;
-        let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
+        let mut link = Link::new(self.rate_hz, self.jitter, 1);
+        let mut extent = Extent::NONE;
         let (mut net_j, mut least_j, mut most_j, mut taken_j): (f64, f64, f64, f64) =
             (0.0, 0.0, 0.0, 0.0);
         let (mut braked, mut fault) = (false, None);
@@ -143,26 +143,13 @@ impl FluidRun {
             if self.carried_s > 0.0 {
                 film += (velocity - film) * (DT / self.carried_s);
             }
-            while next_s <= s {
-                let late = self.jitter * random(&mut state) / self.rate_hz;
-                if random(&mut state) >= self.jitter {
-                    under_way.push((next_s + late, self.message(velocity, film)));
-                }
-                next_s += 1.0 / self.rate_hz;
-            }
-            let arrived = under_way.iter().filter(|(at, _)| *at <= s).count();
-            if let Some((_, message)) = under_way.drain(..arrived).next_back() {
+            if let Some(message) = link.newest(s, |_| self.message(velocity, film)) {
                 servo.receive_fluid(Fluid::new(&message, 1.0)?);
             }
             if number % 4 == 0 {
                 servo.receive(wall, Sender::Same);
             }
-            let handle = HandleState {
-                position: plant.read_position(),
-                orientation: DQuat::IDENTITY,
-                velocity,
-            };
-            let (force, tick) = servo.step(&handle, DT);
+            let (force, tick) = servo.step(&plant.handle(), DT);
             (braked, fault) = (braked || tick.braked, fault.or(tick.fault));
             let before = (plant.given_j(), stored(&plant), plant.true_position());
             let depth = if s < 0.6 { -0.002 } else { 0.003 };
@@ -176,12 +163,11 @@ impl FluidRun {
             least_j = least_j.min(net_j + kept);
             most_j = most_j.max(net_j + kept - least_j);
             if s >= STILL_S {
-                low = low.min(plant.true_position());
-                high = high.max(plant.true_position());
+                extent.include(plant.true_position());
             }
         }
         Ok(FluidOutcome {
-            wobble_m: (high - low).max_element(),
+            wobble_m: extent.peak_to_peak_m(),
             net_j: most_j,
             taken_j,
             braked,

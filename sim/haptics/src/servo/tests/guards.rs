@@ -1,22 +1,19 @@
 //! Each guard of the servo against the fault that it is there for, on a virtual clock.
 
-use glam::DQuat;
 use maulstick_types::haptics::ForceLaw;
 
-use super::engagement::CALM_TICKS;
-use super::*;
+use glam::DVec3;
+
+use super::{DT, handle};
+use crate::closed_loop_tests::unguarded;
+use crate::contact::Contact;
 use crate::contact::tests::{linear, model};
 use crate::plant::{Hand, Plant};
-
-pub(super) const DT: f64 = 1e-3;
-
-pub(super) fn handle(depth: f64) -> HandleState {
-    HandleState {
-        position: DVec3::new(0.0, 0.0, 0.025 - depth),
-        orientation: DQuat::IDENTITY,
-        velocity: DVec3::ZERO,
-    }
-}
+use crate::servo::Servo;
+use crate::servo::engagement::CALM_TICKS;
+use crate::servo::fault::Fault;
+use crate::servo::limits::Limits;
+use crate::servo::tick::{Sender, Switch};
 
 fn rigid(stiffness_n_m: f64) -> Contact {
     let mut model = model(ForceLaw::Rigid { stiffness_n_m });
@@ -35,7 +32,7 @@ fn come_up(servo: &mut Servo) {
 }
 
 /// A servo that holds 1 N at 2.5 mm.
-pub(super) fn pressed(limits: Limits) -> Servo {
+pub(in crate::servo) fn pressed(limits: Limits) -> Servo {
     let mut servo = Servo::new(limits);
     servo.receive(rigid(400.0), Sender::Same);
     come_up(&mut servo);
@@ -288,11 +285,7 @@ fn course(stiffness: f64, limits: Limits, hold: usize) -> (f64, f64) {
     let (mut low, mut high, mut force) = (f64::MAX, f64::MIN, DVec3::ZERO);
     let (mut places, mut before) = (Vec::new(), 0.0);
     for tick in 0..3000 {
-        let now = HandleState {
-            position: plant.read_position(),
-            orientation: DQuat::IDENTITY,
-            velocity: plant.read_velocity(),
-        };
+        let now = plant.handle();
         let (wanted, _) = servo.step(&now, DT);
         if tick % hold == 0 {
             force = wanted;
@@ -352,11 +345,7 @@ fn shake(hand: Hand, stiffness: f64, limits: Limits, hold: usize) -> (f64, Servo
     let (mut low, mut high, mut force) = (f64::MAX, f64::MIN, DVec3::ZERO);
     servo.receive(rigid(stiffness), Sender::Same);
     for tick in 0..5000 {
-        let now = HandleState {
-            position: plant.read_position(),
-            orientation: DQuat::IDENTITY,
-            velocity: plant.read_velocity(),
-        };
+        let now = plant.handle();
         let (wanted, _) = servo.step(&now, DT);
         if tick % hold == 0 {
             force = wanted;
@@ -374,14 +363,8 @@ fn shake(hand: Hand, stiffness: f64, limits: Limits, hold: usize) -> (f64, Servo
 
 fn bare() -> Limits {
     Limits {
-        max_force_n: 3.3,
-        continuous_force_n: 3.3,
-        max_stiffness_n_m: 1e9,
-        max_speed_m_s: f64::INFINITY,
-        oscillation_m: f64::INFINITY,
-        damping_n_s_m: 1e9,
         slew_n_s: 1e6,
-        ..Limits::default()
+        ..unguarded()
     }
 }
 
@@ -399,6 +382,35 @@ fn a_hand_that_shakes_gets_a_softer_wall_until_it_is_still() {
     let softness = servo.oscillation.softness();
     println!("at {softness:.2} of its stiffness");
     assert!((0.15..0.8).contains(&softness) && servo.fault().is_none());
+}
+
+/// The seeded fault would be a wall that grows hard again under the hand: pressed in soft and let out hard it gives energy.
+#[test]
+fn a_softer_wall_does_not_harden_under_the_hand_but_while_it_is_away() {
+    let mut servo = Servo::new(bare());
+    servo.limits.oscillation_m = 3e-4;
+    servo.receive(rigid(400.0), Sender::Same);
+    come_up(&mut servo);
+    for tick in 0..600 {
+        let turn = 2.0 * std::f64::consts::PI * 20.0 * f64::from(tick) * DT;
+        servo.step(&handle(0.003 + 0.002 * maulstick_num::sin(turn)), DT);
+    }
+    let pressed_n = |servo: &mut Servo, seconds: u32| {
+        let forces = (0..1000 * seconds).map(|_| servo.step(&handle(0.003), DT).0.z);
+        forces.fold([f64::MAX, f64::MIN], |[least, most], force| {
+            [least.min(force), most.max(force)]
+        })
+    };
+    pressed_n(&mut servo, 1);
+    let [least, most] = pressed_n(&mut servo, 30);
+    println!("{least:.3} to {most:.3} N of 1.2 N");
+    assert!(most < 1.0 && most - least < 1e-12, "{least} to {most} N");
+    for _ in 0..45_000 {
+        servo.step(&handle(-0.001), DT);
+    }
+    pressed_n(&mut servo, 1);
+    let [least, _] = pressed_n(&mut servo, 1);
+    assert!((least - 1.2).abs() < 1e-9, "{least} N");
 }
 
 #[test]

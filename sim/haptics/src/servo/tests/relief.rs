@@ -1,40 +1,24 @@
 //! Relief, friction at rest and the brush's own torque in the servo: bounds, faults, known answers.
 
-use glam::DQuat;
+use glam::DVec3;
 use maulstick_num::geometry::rotation;
 use maulstick_num::sin;
 use maulstick_types::haptics::{ContactModel, ForceLaw, HeightPatch};
 
-use super::engagement::CALM_TICKS;
-use super::*;
+use crate::closed_loop_tests::{DT, HEAD_M, MOST_N, MOST_SLEW_N_S, device};
 use crate::contact::tests::{linear, model};
+use crate::contact::{Contact, HandleState};
 use crate::plant::{Hand, Plant};
 use crate::relief::tests::{edge, ridge, rough};
-use crate::stability_grid::random;
+use crate::servo::Servo;
+use crate::servo::engagement::CALM_TICKS;
+use crate::servo::limits::Limits;
+use crate::servo::tick::Sender;
+use crate::stability_grid::link::random;
 
-const DT: f64 = 1e-3;
-const HEAD_M: f64 = 0.025;
-/// Bounds of a device, N and N/s: literals, for the servo's own are what is tested.
-const MOST_N: f64 = 1.5;
-const MOST_SLEW_N_S: f64 = 200.0;
-
-fn device() -> Limits {
-    Limits {
-        max_force_n: 1.5,
-        continuous_force_n: 1.5,
-        slew_n_s: 200.0,
-        max_stiffness_n_m: 500.0,
-        damping_n_s_m: 0.3,
-        ..Limits::default()
-    }
-}
-
+/// An upright brush with its tip at a place, m.
 fn at(tip: DVec3) -> HandleState {
-    HandleState {
-        position: tip + DVec3::Z * HEAD_M,
-        orientation: DQuat::IDENTITY,
-        velocity: DVec3::ZERO,
-    }
+    HandleState::upright(tip + DVec3::Z * HEAD_M)
 }
 
 fn over(law: ForceLaw, relief: HeightPatch) -> ContactModel {
@@ -70,11 +54,7 @@ fn leaping(law: &ForceLaw, every: usize, limits: Limits) -> [f64; 2] {
             let contact = Contact::new(&over(law.clone(), patch)).expect("a model");
             servo.receive(contact, Sender::Same);
         }
-        let handle = HandleState {
-            position: plant.read_position(),
-            orientation: DQuat::IDENTITY,
-            velocity: plant.read_velocity(),
-        };
+        let handle = plant.handle();
         let (force, told) = servo.step(&handle, DT);
         assert!(force.is_finite() && told.torque_n_m.is_finite());
         // A lever of the head, and the servo's share of a longer one for its change.
@@ -207,11 +187,7 @@ fn pulled(pull_n: f64, static_friction: f64) -> ([f64; 2], f64) {
         if tick % 4 == 0 {
             servo.receive(contact, Sender::Same);
         }
-        let handle = HandleState {
-            position: plant.read_position(),
-            orientation: DQuat::IDENTITY,
-            velocity: plant.read_velocity(),
-        };
+        let handle = plant.handle();
         let (force, told) = servo.step(&handle, DT);
         assert_eq!(told.fault, None);
         // It presses, and when that is at rest it pulls.

@@ -3,11 +3,15 @@
 use glam::DVec3;
 use maulstick_types::haptics::GuideModel;
 
-use super::engagement::CALM_TICKS;
-use super::*;
+use super::DT;
+use crate::contact::HandleState;
+use crate::guide::Guide;
 use crate::guide::tests::{at, model};
-
-const DT: f64 = 1e-3;
+use crate::servo::Servo;
+use crate::servo::engagement::CALM_TICKS;
+use crate::servo::fault::Fault;
+use crate::servo::limits::Limits;
+use crate::servo::tick::{Sender, Switch};
 
 /// A straight guide along x through y.
 fn line(y: f64) -> Guide {

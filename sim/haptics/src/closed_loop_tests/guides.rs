@@ -1,26 +1,22 @@
 //! Hands on a guide in the air, without the servo's other guards: what shakes and what does not, and how far hands that go
 //! along a path stay from it.
 //!
-//! The bound is that of a wall (`stability_tests`): a guide of stiffness K, felt `delay` late at a period T, needs damping
+//! The bound is that of a wall (`walls`): a guide of stiffness K, felt `delay` late at a period T, needs damping
 //! b > K·(T/2 + delay).
 
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use maulstick_num::sin;
 use maulstick_types::haptics::GuideModel;
 
-use crate::contact::HandleState;
+use super::{DT, Extent, HANDS, STILL_M};
 use crate::guide::Guide;
 use crate::plant::{Hand, Plant};
 use crate::servo::Servo;
 use crate::servo::limits::Limits;
 use crate::servo::tick::Sender;
 
-const DT: f64 = 1e-3;
 /// Ticks between two guides.
 const GUIDE_TICKS: usize = 10;
-/// Wobble that no hand feels, m.
-const STILL: f64 = 1e-4;
-const HANDS: [Hand; 3] = [Hand::FINGERTIP, Hand::PEN_GRIP, Hand::ARM];
 
 fn guide(points_m: Vec<[f64; 3]>, stiffness_n_m: f64) -> Guide {
     Guide::new(&GuideModel {
@@ -37,27 +33,13 @@ fn guide(points_m: Vec<[f64; 3]>, stiffness_n_m: f64) -> Guide {
     .expect("a guide")
 }
 
-fn reading(plant: &Plant) -> HandleState {
-    HandleState {
-        position: plant.read_position(),
-        orientation: DQuat::IDENTITY,
-        velocity: plant.read_velocity(),
-    }
-}
-
-/// As if the device took all that sampling gives: these are the bounds of the bare guide.
+/// The bounds of the bare guide.
 fn unguarded() -> Limits {
     Limits {
-        max_stiffness_n_m: 1e9,
         guide_stiffness_n_m: 1e9,
         guide_n: 3.3,
         guide_reach_m: 1.0,
-        max_force_n: 3.3,
-        continuous_force_n: 3.3,
-        damping_n_s_m: 1e9,
-        oscillation_m: f64::INFINITY,
-        max_speed_m_s: f64::INFINITY,
-        ..Limits::default()
+        ..super::unguarded()
     }
 }
 
@@ -78,13 +60,13 @@ impl Hold {
         let mut plant = Plant::omni(self.hand, DVec3::ZERO);
         let mut under_way = vec![DVec3::ZERO; self.delay + 1];
         let line = guide(vec![[0.0, -0.1, 0.0], [0.0, 0.1, 0.0]], self.stiffness);
-        let (mut low, mut high) = (f64::MAX, f64::MIN);
+        let mut extent = Extent::NONE;
         for tick in 0..5000 {
             if tick % GUIDE_TICKS == 0 {
                 servo.receive_guide(line, Sender::Same);
             }
             under_way.rotate_left(1);
-            under_way[self.delay] = servo.step(&reading(&plant), DT).0;
+            under_way[self.delay] = servo.step(&plant.handle(), DT).0;
             let aside = match tick {
                 0..700 => 0.0,
                 700..2000 if (tick / 100) % 2 == 1 => 0.007,
@@ -92,11 +74,10 @@ impl Hold {
             };
             plant.advance(under_way[0], DVec3::X * aside, DT);
             if tick >= 4500 {
-                low = low.min(plant.true_position().x);
-                high = high.max(plant.true_position().x);
+                extent.include(plant.true_position());
             }
         }
-        high - low
+        extent.peak_to_peak_m()
     }
 }
 
@@ -111,7 +92,7 @@ fn every_hand_is_still_on_every_guide_that_may_be_four_ticks_late() {
                     delay,
                 };
                 let wobble = hold.wobble(unguarded());
-                assert!(wobble < STILL, "{hold:?}: {wobble} m");
+                assert!(wobble < STILL_M, "{hold:?}: {wobble} m");
             }
         }
     }
@@ -130,7 +111,7 @@ fn within_the_bound_of_its_damping_a_guide_is_still_at_any_delay() {
                 delay,
             };
             let wobble = hold.wobble(unguarded());
-            assert!(wobble < STILL, "{hold:?}: {wobble} m");
+            assert!(wobble < STILL_M, "{hold:?}: {wobble} m");
         }
     }
 }
@@ -153,7 +134,7 @@ fn a_guide_that_is_too_stiff_or_late_shakes_a_fingertip_and_the_servo_makes_it_s
                 ..unguarded()
             };
             let wobble = hold.wobble(bounded);
-            assert!(wobble < STILL, "{hold:?}: {wobble} m");
+            assert!(wobble < STILL_M, "{hold:?}: {wobble} m");
         }
     }
 }
@@ -180,12 +161,12 @@ fn stroke(hand: Hand, stiffness: f64) -> [f64; 3] {
     let mut servo = Servo::new(limits);
     let mut plant = Plant::omni(hand, wave(0.0));
     let (mut sum, mut count, mut most) = (0.0, 0, 0.0f64);
-    let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
+    let mut extent = Extent::NONE;
     for tick in 0..4000_usize {
         if tick % GUIDE_TICKS == 0 {
             servo.receive_guide(piece(plant.read_position().x, stiffness), Sender::Same);
         }
-        let (force, told) = servo.step(&reading(&plant), DT);
+        let (force, told) = servo.step(&plant.handle(), DT);
         assert_eq!(told.fault, None, "{hand:?}");
         most = most.max(force.length());
         let x = 1e-4 * tick.saturating_sub(500).min(2000) as f64;
@@ -198,10 +179,10 @@ fn stroke(hand: Hand, stiffness: f64) -> [f64; 3] {
             count += 1;
         }
         if tick >= 3500 {
-            (low, high) = (low.min(place), high.max(place));
+            extent.include(place);
         }
     }
-    [sum / f64::from(count), (high - low).max_element(), most]
+    [sum / f64::from(count), extent.peak_to_peak_m(), most]
 }
 
 #[test]
@@ -215,7 +196,7 @@ fn a_guided_hand_stays_nearer_to_the_path_and_comes_to_rest() {
         );
         assert_eq!(free[2], 0.0);
         assert!(guided[0] < 0.85 * free[0], "{hand:?}: {guided:?} {free:?}");
-        assert!(guided[1] < STILL && guided[2] <= 0.6 + 1e-9, "{guided:?}");
+        assert!(guided[1] < STILL_M && guided[2] <= 0.6 + 1e-9, "{guided:?}");
         // Along the path nobody is pulled: it stops where a free one does, but for what the bends do.
     }
 }

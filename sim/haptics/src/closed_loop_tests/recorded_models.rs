@@ -6,33 +6,18 @@ use maulstick_num::sin;
 use maulstick_types::Pose;
 use maulstick_types::haptics::{ContactModel, ForceLaw};
 
+use super::{DT, Extent, HANDS, HEAD_M, MOST_N, MOST_SLEW_N_S, STILL_M, device};
+use crate::contact::Contact;
 use crate::contact::tests::model;
-use crate::contact::{Contact, HandleState};
 use crate::plant::Plant;
 use crate::servo::Servo;
 use crate::servo::limits::Limits;
 use crate::servo::tick::Sender;
-use crate::stability_grid::HANDS;
+use crate::stability_grid::link::random;
 
-const DT: f64 = 1e-3;
 const TICKS: usize = 3000;
 /// The hand presses on here, and then holds still.
 const STILL_TICKS: std::ops::Range<usize> = 2500..TICKS;
-const HEAD_M: f64 = 0.025;
-/// Bounds of a device, N and N/s: literals, for the servo's own are what is tested.
-const MOST_N: f64 = 1.5;
-const MOST_SLEW_N_S: f64 = 200.0;
-
-fn device() -> Limits {
-    Limits {
-        max_force_n: 1.5,
-        continuous_force_n: 1.5,
-        slew_n_s: 200.0,
-        max_stiffness_n_m: 500.0,
-        damping_n_s_m: 0.3,
-        ..Limits::default()
-    }
-}
 
 /// What the models of a recording are.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,13 +90,6 @@ fn felt(kind: Kind, stiffness: f64, place: DVec3) -> ContactModel {
     }
 }
 
-fn random(state: &mut u64) -> f64 {
-    *state = state
-        .wrapping_mul(6_364_136_223_846_793_005)
-        .wrapping_add(1_442_695_040_888_963_407);
-    (*state >> 40) as f64 / (1u64 << 24) as f64
-}
-
 /// How a hand and its models went.
 #[derive(Debug)]
 struct Went {
@@ -140,13 +118,9 @@ fn go(
         wobble_m: 0.0,
         is_faulty: false,
     };
-    let (mut low, mut high, mut last) = (DVec3::MAX, DVec3::MIN, DVec3::ZERO);
+    let (mut extent, mut last) = (Extent::NONE, DVec3::ZERO);
     for tick in 0..TICKS {
-        let handle = HandleState {
-            position: plant.read_position(),
-            orientation: DQuat::IDENTITY,
-            velocity: plant.read_velocity(),
-        };
+        let handle = plant.handle();
         if let Some(model) = next(tick, handle.position) {
             servo.receive(Contact::new(&model).expect("a model"), Sender::Same);
             went.models.push((tick, model));
@@ -159,13 +133,10 @@ fn go(
         last = force;
         plant.advance(force, wish.ferrule(tick), DT);
         if STILL_TICKS.contains(&tick) {
-            (low, high) = (
-                low.min(plant.true_position()),
-                high.max(plant.true_position()),
-            );
+            extent.include(plant.true_position());
         }
     }
-    went.wobble_m = (high - low).max_element();
+    went.wobble_m = extent.peak_to_peak_m();
     went
 }
 
@@ -222,7 +193,7 @@ fn recorded_models_keep_the_servos_bounds_with_the_recorded_hand_and_with_others
                             assert!(!went.is_faulty, "{told}");
                             assert!(went.most_n <= MOST_N + 1e-9, "{told}: {} N", went.most_n);
                             assert!(went.most_slew_n_s <= MOST_SLEW_N_S + 1e-6, "{told}");
-                            assert!(went.wobble_m < 1e-4, "{told}: {} m", went.wobble_m);
+                            assert!(went.wobble_m < STILL_M, "{told}: {} m", went.wobble_m);
                             runs += 1;
                             most_n = most_n.max(went.most_n);
                             wobble_m = wobble_m.max(went.wobble_m);

@@ -5,23 +5,20 @@
 //! (2009): a wall of stiffness K, felt `delay` late at a period T, needs damping
 //! b > K·(T/2 + delay).
 
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use maulstick_types::haptics::ForceLaw;
 
+use super::{DT, Extent, HANDS, STILL_M, unguarded};
+use crate::contact::Contact;
 use crate::contact::tests::model;
-use crate::contact::{Contact, HandleState};
 use crate::force_law::hermite::tests::tuples;
 use crate::plant::{Hand, Plant};
 use crate::servo::Servo;
 use crate::servo::limits::Limits;
 use crate::servo::tick::Sender;
 
-const DT: f64 = 1e-3;
 /// Ticks between two models: those of the brush node come 4 ms apart.
 const MODEL_TICKS: usize = 4;
-/// Wobble that no hand feels, m.
-const STILL: f64 = 1e-4;
-const HANDS: [Hand; 3] = [Hand::FINGERTIP, Hand::PEN_GRIP, Hand::ARM];
 
 /// A hand pressed 3 mm into a wall.
 #[derive(Clone, Copy, Debug)]
@@ -47,29 +44,17 @@ impl Press {
     /// For 1.4 s the wall jumps by 3 mm every 100 ms. How far the tip moves, peak to peak, in the
     /// last half second of five, m.
     fn wobble(&self) -> f64 {
-        let mut servo = Servo::new(Limits {
-            max_stiffness_n_m: 1e9,
-            max_force_n: 3.3,
-            // As if the device took all that sampling gives: these are the bounds of the bare wall.
-            damping_n_s_m: 1e9,
-            oscillation_m: f64::INFINITY,
-            max_speed_m_s: f64::INFINITY,
-            ..Limits::default()
-        });
+        let mut servo = Servo::new(unguarded());
         let mut plant = Plant::omni(self.hand, DVec3::new(0.0, 0.0, 0.025));
         let mut under_way = vec![DVec3::ZERO; self.delay + 1];
         let mut force = DVec3::ZERO;
-        let (mut low, mut high) = (f64::MAX, f64::MIN);
+        let mut extent = Extent::NONE;
         for tick in 0..5000 {
             if tick % MODEL_TICKS == 0 {
                 let up = tick < 1400 && (tick / 100) % 2 == 1;
                 servo.receive(self.wall(if up { 0.003 } else { 0.0 }), Sender::Same);
             }
-            let handle = HandleState {
-                position: plant.read_position(),
-                orientation: DQuat::IDENTITY,
-                velocity: plant.read_velocity(),
-            };
+            let handle = plant.handle();
             under_way.rotate_left(1);
             under_way[self.delay] = servo.step(&handle, DT).0;
             if tick % self.hold == 0 {
@@ -77,11 +62,10 @@ impl Press {
             }
             plant.advance(force, DVec3::new(0.0, 0.0, 0.022), DT);
             if tick >= 4500 {
-                low = low.min(plant.true_position().z);
-                high = high.max(plant.true_position().z);
+                extent.include(plant.true_position());
             }
         }
-        high - low
+        extent.peak_to_peak_m()
     }
 }
 
@@ -97,7 +81,7 @@ fn every_hand_is_still_at_every_stiffness_that_a_device_may_have() {
                     hold: 1,
                 };
                 let wobble = press.wobble();
-                assert!(wobble < STILL, "{press:?}: {wobble} m");
+                assert!(wobble < STILL_M, "{press:?}: {wobble} m");
             }
         }
     }
@@ -118,7 +102,7 @@ fn within_the_bound_of_its_damping_a_wall_is_still_at_any_delay() {
                     hold: 1,
                 };
                 let wobble = press.wobble();
-                assert!(wobble < STILL, "{press:?}: {wobble} m");
+                assert!(wobble < STILL_M, "{press:?}: {wobble} m");
             }
         }
     }
@@ -153,7 +137,7 @@ fn beyond_the_bound_or_with_a_force_sent_over_a_network_a_fingertip_shakes() {
             ..press(400.0, 0, 16)
         }
         .wobble()
-            < STILL
+            < STILL_M
     );
 }
 
@@ -175,29 +159,22 @@ fn stroke(hand: Hand, by: f64, limits: Limits) -> f64 {
     let contact = Contact::new(&linen).expect("a model");
     let mut servo = Servo::new(limits);
     let mut plant = Plant::omni(hand, DVec3::new(0.0, 0.0, 0.03));
-    let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
+    let mut extent = Extent::NONE;
     for tick in 0..3000 {
         if tick % MODEL_TICKS == 0 {
             servo.receive(contact, Sender::Same);
         }
-        let handle = HandleState {
-            position: plant.read_position(),
-            orientation: DQuat::IDENTITY,
-            velocity: plant.read_velocity(),
-        };
+        let handle = plant.handle();
         let (force, told) = servo.step(&handle, DT);
         assert_eq!(told.fault, None);
         let s = tick.min(2000) as f64 * DT;
         let place = DVec3::new(0.03 * maulstick_num::sin(4.0 * s), 0.0, 0.022);
         plant.advance(force, place, DT);
         if tick >= 2500 {
-            (low, high) = (
-                low.min(plant.true_position()),
-                high.max(plant.true_position()),
-            );
+            extent.include(plant.true_position());
         }
     }
-    (high - low).max_element()
+    extent.peak_to_peak_m()
 }
 
 #[test]
@@ -210,18 +187,14 @@ fn a_brush_that_has_stroked_over_linen_comes_to_rest_in_every_hand() {
                 ..Limits::default()
             };
             let wobble = stroke(hand, by, limits);
-            assert!(wobble < STILL, "{hand:?} {by}: {wobble} m");
+            assert!(wobble < STILL_M, "{hand:?} {by}: {wobble} m");
         }
     }
     // The seeded fault: a wall of 2.5 N in the place of the brush, and nobody to stop what shakes.
     let unguarded = Limits {
-        max_stiffness_n_m: 1e9,
-        damping_n_s_m: 1e9,
         slew_n_s: 1e6,
-        oscillation_m: f64::INFINITY,
-        max_speed_m_s: f64::INFINITY,
-        ..Limits::default()
+        ..unguarded()
     };
     let wobble = stroke(Hand::FINGERTIP, 50.0, unguarded);
-    assert!(wobble > STILL, "{wobble} m");
+    assert!(wobble > STILL_M, "{wobble} m");
 }

@@ -1,9 +1,10 @@
 //! A device whose frame is smaller or larger than the desk: the servo works on the desk, the hand is
 //! where the device is, and shakes or is still as one that is not scaled.
 
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use maulstick_types::haptics::ForceLaw;
 
+use super::{DT, Extent, HANDS, HEAD_M, STILL_M, unguarded};
 use crate::contact::tests::model;
 use crate::contact::{Contact, HandleState};
 use crate::plant::{Hand, Plant};
@@ -11,9 +12,6 @@ use crate::servo::Servo;
 use crate::servo::limits::Limits;
 use crate::servo::tick::Sender;
 
-const DT: f64 = 1e-3;
-const HEAD_M: f64 = 0.025;
-const HANDS: [Hand; 3] = [Hand::FINGERTIP, Hand::PEN_GRIP, Hand::ARM];
 const SCALES: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 
 /// What becomes of the desk's force on its way to the hand.
@@ -42,7 +40,7 @@ fn press(hand: Hand, stiffness_n_m: f64, scale: f64, limits: Limits, way: Way) -
     let mut servo = Servo::new(limits);
     let mut plant = Plant::omni(hand, DVec3::Z * 0.001);
     let mut force = DVec3::ZERO;
-    let (mut low, mut high) = (f64::MAX, f64::MIN);
+    let mut extent = Extent::NONE;
     let (mut most_n, mut jump_n) = (0.0f64, 0.0f64);
     for tick in 0..5000 {
         if tick % 4 == 0 {
@@ -52,10 +50,10 @@ fn press(hand: Hand, stiffness_n_m: f64, scale: f64, limits: Limits, way: Way) -
             wall.recovery_ns = 15_000_000;
             servo.receive(Contact::new(&wall).expect("a model"), Sender::Same);
         }
+        let on_desk = plant.read_position() * scale + DVec3::Z * HEAD_M;
         let handle = HandleState {
-            position: plant.read_position() * scale + DVec3::Z * HEAD_M,
-            orientation: DQuat::IDENTITY,
             velocity: plant.read_velocity() * scale,
+            ..HandleState::upright(on_desk)
         };
         let (on_desk, told) = servo.step(&handle, DT);
         assert_eq!(told.fault, None, "{hand:?} {stiffness_n_m} {scale}");
@@ -68,12 +66,11 @@ fn press(hand: Hand, stiffness_n_m: f64, scale: f64, limits: Limits, way: Way) -
         force = on_hand;
         plant.advance(force, DVec3::Z * -0.003, DT);
         if tick >= 4500 {
-            low = low.min(plant.true_position().z);
-            high = high.max(plant.true_position().z);
+            extent.include(plant.true_position());
         }
     }
     Outcome {
-        wobble_m: high - low,
+        wobble_m: extent.peak_to_peak_m(),
         most_n,
         jump_n,
     }
@@ -91,19 +88,6 @@ fn device() -> Limits {
     }
 }
 
-/// One without guards.
-fn unguarded() -> Limits {
-    Limits {
-        max_force_n: 3.3,
-        continuous_force_n: 3.3,
-        max_stiffness_n_m: 1e9,
-        damping_n_s_m: 1e9,
-        oscillation_m: f64::INFINITY,
-        max_speed_m_s: f64::INFINITY,
-        ..Limits::default()
-    }
-}
-
 #[test]
 fn a_scaled_device_moves_as_one_that_is_not_and_keeps_its_own_limits() {
     for hand in HANDS {
@@ -113,7 +97,7 @@ fn a_scaled_device_moves_as_one_that_is_not_and_keeps_its_own_limits() {
             for scale in SCALES {
                 let scaled = run(scale);
                 let told = format!("{hand:?} {stiffness} N/m × {scale}: {scaled:?} {plain:?}");
-                assert!(scaled.wobble_m < 1e-4, "{told}");
+                assert!(scaled.wobble_m < STILL_M, "{told}");
                 assert!((scaled.wobble_m - plain.wobble_m).abs() < 1e-9, "{told}");
                 assert!((scaled.most_n - plain.most_n).abs() < 1e-6, "{told}");
                 assert!(
@@ -143,7 +127,7 @@ fn a_force_that_is_handed_on_as_it_is_shakes_a_fingertip_at_four_times() {
     let scaled = run(unguarded().scaled(4.0), Way::Scaled);
     let as_it_is = run(unguarded(), Way::AsItIs);
     println!("{:.3} mm, {:.2} mm", scaled * 1e3, as_it_is * 1e3);
-    assert!(scaled < 1e-4 && as_it_is > 1e-3, "{scaled} {as_it_is}");
+    assert!(scaled < STILL_M && as_it_is > 1e-3, "{scaled} {as_it_is}");
 }
 
 /// The other seeded fault: limits that are not those of the desk give a hand another force.

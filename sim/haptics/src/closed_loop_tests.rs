@@ -1,0 +1,50 @@
+//! Servo, device and hand in a closed loop, on a clock of its own: what shakes and what comes to rest.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`walls`] | bare walls at every stiffness and delay, and strokes over linen |
+//! | [`guides`] | guides at every stiffness and delay, and strokes along a wavy path |
+//! | [`recorded_models`] | contact models of one hand, felt by others |
+//! | [`scaled_devices`] | devices whose frame is smaller or larger than the desk |
+//! | [`zero_order_hold`] | energy that sampling gives, by the period, the friction of the device and its encoders |
+
+mod guides;
+mod recorded_models;
+mod scaled_devices;
+mod walls;
+mod zero_order_hold;
+
+use crate::servo::limits::Limits;
+pub(crate) use crate::stability_grid::extent::Extent;
+pub(crate) use crate::stability_grid::{DT, HANDS, HEAD_M};
+
+/// Movement of the tip that no hand feels, peak to peak, m: a literal, for the stability grid's own is what it judges by.
+pub(crate) const STILL_M: f64 = 1e-4;
+/// Bounds of [`device`], N and N/s: literals, for the servo's own are what is tested.
+pub(crate) const MOST_N: f64 = 1.5;
+pub(crate) const MOST_SLEW_N_S: f64 = 200.0;
+
+/// A device of 1.5 N and 200 N/s that bears 500 N/m.
+pub(crate) fn device() -> Limits {
+    Limits {
+        max_force_n: 1.5,
+        continuous_force_n: 1.5,
+        slew_n_s: 200.0,
+        max_stiffness_n_m: 500.0,
+        damping_n_s_m: 0.3,
+        ..Limits::default()
+    }
+}
+
+/// Without the guards, and as if the device took all that sampling gives: what is left are the bounds of the bare force.
+pub(crate) fn unguarded() -> Limits {
+    Limits {
+        max_force_n: 3.3,
+        continuous_force_n: 3.3,
+        max_stiffness_n_m: 1e9,
+        damping_n_s_m: 1e9,
+        oscillation_m: f64::INFINITY,
+        max_speed_m_s: f64::INFINITY,
+        ..Limits::default()
+    }
+}
