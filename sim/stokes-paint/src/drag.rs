@@ -30,12 +30,11 @@ const BRISTLES_M2: f64 = 6e-8;
 /// The same of a blade, through which nothing goes.
 const BLADE_M2: f64 = 2e-10;
 
-/// Moves the paint of an area as the brush's contacts drag it along in a step. After it they are as deep in the paint, or as
-/// high above it, as it then lies.
+/// Moves the paint of an area as the brush's contacts, the bristles of which are at these heights, drag it along in a step.
 pub fn drag(
     flow: &mut Option<Flow>,
     voxels: &mut Voxels,
-    footprint: &mut Footprint,
+    (footprint, bottoms): (&Footprint, &[f32]),
     step: &Step<'_>,
     cell_m: f64,
 ) {
@@ -47,7 +46,6 @@ pub fn drag(
     }
     let seconds = f64::from(farthest) * f64::from(STEPS) * cell_m / SPEED_M_S;
     let fine = voxels.volume.grid;
-    let bottoms = bottoms(voxels, footprint, step.window.width());
     voxels.sink();
     let solids = voxels.solids();
     let open = solids.open(&fine);
@@ -59,7 +57,7 @@ pub fn drag(
         paint: Paint::newtonian(Body::TUBE.viscosity_pa_s / DENSITY_KG_M3),
         pull: [0.0, 0.0, -GRAVITY_M_S2],
     };
-    let contacts = footprint.contacts.iter().zip(&bottoms);
+    let contacts = footprint.contacts.iter().zip(bottoms);
     hold(voxels, &mut coarse, (contacts, &totals), step, &conditions);
     let flow = flow.get_or_insert_with(|| Flow::new(&coarse.grid));
     flow.restart(&coarse.grid);
@@ -73,7 +71,10 @@ pub fn drag(
     voxels.lift();
     voxels.pack();
     voxels.drop_loose();
-    let width = step.window.width();
+}
+
+/// Where bristles are after a drag: each at the same height, and as deep in the paint, or as high above it, as it now lies.
+pub fn follow(voxels: &Voxels, footprint: &mut Footprint, bottoms: &[f32], width: usize) {
     for (contact, bottom) in footprint.contacts.iter_mut().zip(bottoms) {
         let column = voxels.column_of(contact.cell as usize, width);
         let surface = voxels.surface(column);
@@ -83,8 +84,9 @@ pub fn drag(
     }
 }
 
-/// Height of the bristle of each contact, in cells of the grid.
-fn bottoms(voxels: &Voxels, footprint: &Footprint, width: usize) -> Vec<f32> {
+/// Height of the bristle of each contact, cells of the grid.
+#[must_use]
+pub fn bottoms(voxels: &Voxels, footprint: &Footprint, width: usize) -> Vec<f32> {
     let height = |contact: &Contact| {
         let surface = voxels.surface(voxels.column_of(contact.cell as usize, width));
         surface - contact.depth + contact.gap

@@ -1,10 +1,10 @@
 //! Paint of a column without voids: paint that cannot be compressed fills what room there is under it, and none is fuller than
-//! full. What is under an overhang stays empty.
+//! full. What is under an overhang stays empty, if it is higher than a voxel: surface tension closes narrow gaps.
 
 use crate::voxels::Voxels;
 
-/// Fill from which on a voxel is paint with voids in it, and not air under paint.
-const VOIDS: f32 = 0.5;
+/// Fill below which a voxel is air.
+const AIR: f32 = 0.5;
 
 impl Voxels {
     /// Packs each column: as mixtures, what a voxel has too much of goes to the one above, and what it lacks comes from there.
@@ -14,15 +14,26 @@ impl Voxels {
         for column in 0..self.area.cells() {
             let bottom = self.bottom(column);
             let layers = self.volume.grid.cells[2] - usize::from(self.lowest[column]);
-            let mut room = self.lowest_room(column);
-            for voxel in (0..layers - 1).map(|layer| bottom + layer * up) {
-                let (total, above) = (self.total(voxel), self.total(voxel + up));
-                if total > room {
-                    self.shift([voxel, voxel + up], total - room);
-                } else if above > 0 && total as f32 >= VOIDS * room as f32 {
-                    self.shift([voxel + up, voxel], above.min(room - total));
+            // The voxel that is being filled.
+            let (mut under, mut room) = (0, self.lowest_room(column));
+            for layer in 1..layers {
+                let [mut to, from] = [under, layer].map(|layer| bottom + layer * up);
+                let excess = self.total(to).saturating_sub(room);
+                self.shift([to, to + up], excess);
+                let mut left = self.total(from);
+                let is_air = (self.total(to) as f32) < AIR * room as f32;
+                if left > 0 && layer - under + usize::from(is_air) > 2 {
+                    (under, room) = (layer, whole);
+                    continue;
                 }
-                room = whole;
+                while under < layer && left > 0 {
+                    let goes = left.min(room - self.total(to));
+                    self.shift([from, to], goes);
+                    left -= goes;
+                    if self.total(to) == room {
+                        (under, to, room) = (under + 1, to + up, whole);
+                    }
+                }
             }
         }
     }

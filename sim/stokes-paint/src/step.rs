@@ -13,7 +13,7 @@ use maulstick_model::interface::{PaintModel, Rest, Step, StepReport, Transfer};
 use maulstick_model::modes::{sample, vacuum};
 use maulstick_stokes::flow::Flow;
 
-use crate::drag::{STEPS, drag};
+use crate::drag::{STEPS, bottoms, drag, follow};
 use crate::layers::Layers;
 use crate::reach::Reach;
 use crate::voxels::Voxels;
@@ -95,9 +95,17 @@ impl StokesPaint {
             .fold(0.0f32, |most, wet| most.max(*wet));
         let flows = step.load.steps().is_multiple_of(u64::from(STEPS));
         if step.handling.push && flows && thickest > FLOWS_FROM * layers.capacity as f32 {
+            let bottoms = bottoms(&voxels, footprint, step.window.width());
             let stays = voxels.set_aside(step.stain, 2.0 * FLOWS_FROM);
-            drag(&mut self.flow, &mut voxels, footprint, step, cell_m);
+            drag(
+                &mut self.flow,
+                &mut voxels,
+                (footprint, &bottoms),
+                step,
+                cell_m,
+            );
             voxels.put_back(&stays);
+            follow(&voxels, footprint, &bottoms, step.window.width());
         }
         if step.handling.most >= CELL_MAX as f32 {
             self.reach.uncover(&voxels, footprint, step);
