@@ -6,6 +6,7 @@
 //! | [`layers`] | layers of voxels over a surface |
 //! | [`voxels`] | the paint of an area, from the counts of a window and back |
 //! | [`coarse`] | the grid on which the flow is found |
+//! | [`flow_backend`] | who finds that flow: the processor, or a device |
 //! | [`drag`] | bristles as a porous body, and the flow around them |
 //! | `loose` | paint that hangs on nothing falls |
 //! | [`reach`] | how deep a brush lays and takes up |
@@ -19,6 +20,7 @@
 
 pub mod coarse;
 pub mod drag;
+pub mod flow_backend;
 pub mod layers;
 mod loose;
 pub mod reach;
