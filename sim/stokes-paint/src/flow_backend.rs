@@ -11,8 +11,8 @@ use crate::coarse::Coarse;
 /// Cells of an axis from which down a window is not made coarser.
 const FEWEST_CELLS: usize = 4;
 
-/// Beginning of the note that flow is found on coarser cells.
-pub const COARSER: &str = "flow on coarser cells: ";
+/// That flow is found on coarser cells, where a backend has no room for the window.
+pub const COARSER: &str = "flow on coarser cells";
 
 /// Paint at rest in a window, and what moves it.
 #[derive(Clone, Copy, Debug)]
@@ -79,11 +79,14 @@ impl BrushFlow {
         }
     }
 
-    /// Name of the backend.
+    /// Name of the backend, and whether it has no room for some windows.
     #[must_use]
     pub fn backend(&self) -> String {
-        let device = self.device.as_ref();
-        device.map_or_else(|| "cpu".to_owned(), |device| device.name())
+        match &self.device {
+            None => "cpu".to_owned(),
+            Some(device) if self.is_noted => format!("{}, {COARSER}", device.name()),
+            Some(device) => device.name(),
+        }
     }
 
     /// The reason why the device is no longer used, returned once.
@@ -137,7 +140,7 @@ impl BrushFlow {
         let [width, height, depth] = coarse.grid.cells;
         let cell_mm = 1e3 * conditions.cell_m;
         self.note = Some(format!(
-            "{COARSER}{width}x{height}x{depth} cells of {cell_mm} mm: {refusal}"
+            "{COARSER}: {width}x{height}x{depth} cells of {cell_mm} mm: {refusal}"
         ));
     }
 }
