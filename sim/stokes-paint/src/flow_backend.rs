@@ -138,9 +138,9 @@ impl BrushFlow {
             return;
         }
         let [width, height, depth] = coarse.grid.cells;
-        let cell_mm = 1e3 * conditions.cell_m;
+        let cell_mm = (1e5 * conditions.cell_m).round() / 100.0;
         self.note = Some(format!(
-            "{COARSER}: {width}x{height}x{depth} cells of {cell_mm} mm: {refusal}"
+            "{COARSER}: {refusal} ({width}x{height}x{depth} cells of {cell_mm} mm)"
         ));
     }
 }
