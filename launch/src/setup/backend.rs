@@ -1,6 +1,6 @@
 //! Backend of the paint's steps: as `[paint] backend` or `--backend` say.
 
-use maulstick_gpu::{Choice, Device, GpuModel};
+use maulstick_gpu::{Choice, Device, DeviceModel};
 use maulstick_painting::Sequencer;
 use maulstick_rig::UserError;
 use maulstick_types::scene::CANVAS;
@@ -9,7 +9,7 @@ use maulstick_types::scene::CANVAS;
 const PLACE: &str = "backend of [paint], or --backend";
 
 /// Has a painting's steps computed by the GPU from now on, and journals that, if the settings want it and there is one:
-/// `auto` takes a graphics processor of its own, `gpu` any.
+/// `auto` takes a graphics processor of its own, and for what it does sooner; `gpu` takes any for all that one can do.
 ///
 /// # Errors
 /// A [`UserError`] if it must be a GPU and there is none.
@@ -20,7 +20,7 @@ pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), Us
         _ => Choice::Auto,
     };
     let name = sequencer.painting().model(CANVAS).unwrap_or_default();
-    let Some(make) = GpuModel::maker(name) else {
+    let Some(model) = DeviceModel::of(name) else {
         return match choice {
             Choice::Auto => Ok(()),
             Choice::Forced => Err(UserError::usage(format!(
@@ -30,11 +30,12 @@ pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), Us
             .help("leave the choice to the rig: backend = \"auto\"")),
         };
     };
-    match (Device::open(choice).and_then(make), choice) {
+    let made = Device::open(choice).and_then(|gpu| model.make(gpu, choice));
+    match (made, choice) {
         (Ok(model), _) => {
-            tracing::info!("paint is computed by {}", model.adapter());
-            sequencer.painting_mut().set_model(Box::new(model));
+            sequencer.painting_mut().set_model(model);
             let chosen = sequencer.painting().backend();
+            tracing::info!("paint is computed by {chosen}");
             sequencer.decide(&format!("backend {chosen}"));
             Ok(())
         }

@@ -3,6 +3,7 @@
 use crate::device::{Device, GpuError};
 
 /// A buffer of the device.
+#[derive(Debug)]
 pub(crate) struct Arena {
     name: &'static str,
     usage: wgpu::BufferUsages,

@@ -3,11 +3,12 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`device`] | the device, its faults as values |
+//! | [`models`] | the paint models that it computes |
 //! | [`films`] | Kubelka-Munk films of many tiles at once |
 //! | [`impasto`] | the paint model `impasto` |
 //! | [`dab`] | the paint model `dab` |
 //! | `steps` | what their steps share |
-//! | [`stokes`] | flow and transport of Stokes Paint |
+//! | [`stokes`] | flow and transport of Stokes Paint, and the flow in the paint model `stokes` |
 //! | `stage` | a compute shader and its pipelines |
 //! | `batch` | tiles as the shaders take them |
 //! | `arena` | buffers that are used again |
@@ -20,6 +21,7 @@ pub mod dab;
 pub mod device;
 pub mod films;
 pub mod impasto;
+pub mod models;
 mod shade_films;
 mod stage;
 mod steps;
@@ -27,6 +29,7 @@ pub mod stokes;
 
 pub use device::{AdapterReport, Choice, Device, GpuError, adapters};
 pub use films::GpuFilms;
+pub use models::DeviceModel;
 pub use steps::model::{GpuModel, MakeModel};
 pub use steps::traffic::Traffic;
-pub use stokes::{FlowState, GpuFlow, Paints, Tuning};
+pub use stokes::{FlowState, GpuBrushFlow, GpuFlow, Paints, Tuning};

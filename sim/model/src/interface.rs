@@ -172,4 +172,8 @@ pub trait PaintModel: Send {
     fn take_fall(&mut self) -> Option<String> {
         None
     }
+    /// A limit of the backend that its steps have met, in words that a journal keeps; returned once.
+    fn take_note(&mut self) -> Option<String> {
+        None
+    }
 }

@@ -109,6 +109,11 @@ impl Models {
     pub(crate) fn take_fall(&mut self) -> Option<String> {
         self.0.values_mut().find_map(|model| model.take_fall())
     }
+
+    /// Limit of its backend that a model has met; returned once.
+    pub(crate) fn take_note(&mut self) -> Option<String> {
+        self.0.values_mut().find_map(|model| model.take_note())
+    }
 }
 
 #[cfg(test)]

@@ -5,8 +5,10 @@
 //! them is as wide as a brush makes it (Baxter 2004, § 5.6).
 
 use maulstick_stokes::domain::Solids;
+use maulstick_stokes::flow::Conditions;
 use maulstick_stokes::grid::Grid;
 
+use crate::flow_backend::FlowWindow;
 use crate::voxels::Voxels;
 
 /// Side of a cell on which flow is found, m, where voxels are smaller.
@@ -41,7 +43,10 @@ impl Coarse {
     #[must_use]
     pub fn of(voxels: &Voxels, (open, totals): (&[f32], &[u32]), side: usize) -> Self {
         let fine = voxels.volume.grid;
-        let grid = Grid::walled(fine.cells.map(|cells| cells.div_ceil(side)));
+        let mut cells = fine.cells.map(|cells| cells.div_ceil(side));
+        // The air that the voxels have above the paint may be less than such a cell.
+        cells[2] += usize::from(side > voxels.side());
+        let grid = Grid::walled(cells);
         let capacity = voxels.volume.capacity as f32;
         let (mut filled, mut room) = (grid.field(), grid.field());
         for z in 0..fine.cells[2] {
@@ -107,6 +112,17 @@ impl Coarse {
             (0..grid.len()).map(face).collect()
         });
         self.solids.resistance = Some(resistance);
+    }
+
+    /// The window whose flow is wanted.
+    #[must_use]
+    pub fn window<'a>(&'a self, conditions: &'a Conditions) -> FlowWindow<'a> {
+        FlowWindow {
+            grid: &self.grid,
+            fill: &self.fill,
+            solids: &self.solids,
+            conditions,
+        }
     }
 
     /// Velocities on the faces of the voxels, between those on the faces of this grid.

@@ -11,10 +11,11 @@ use maulstick_model::footprint::Footprint;
 use maulstick_model::footprint::contact::Contact;
 use maulstick_model::interface::Step;
 use maulstick_stokes::domain::{Domain, LEAST_FILL};
-use maulstick_stokes::flow::{Conditions, Flow};
+use maulstick_stokes::flow::Conditions;
 use maulstick_stokes::rheology::Paint;
 
 use crate::coarse::Coarse;
+use crate::flow_backend::BrushFlow;
 use crate::voxels::Voxels;
 
 /// Speed at which a brush is taken to go, m/s.
@@ -32,7 +33,7 @@ const BLADE_M2: f64 = 2e-10;
 
 /// Moves the paint of an area as the brush's contacts, the bristles of which are at these heights, drag it along in a step.
 pub fn drag(
-    flow: &mut Option<Flow>,
+    flow: &mut BrushFlow,
     voxels: &mut Voxels,
     (footprint, bottoms): (&Footprint, &[f32]),
     step: &Step<'_>,
@@ -50,19 +51,19 @@ pub fn drag(
     let solids = voxels.solids();
     let open = solids.open(&fine);
     let totals = voxels.totals();
-    let mut coarse = Coarse::of(voxels, (&open, &totals), voxels.side());
-    let conditions = Conditions {
-        cell_m: cell_m * coarse.side as f64,
-        seconds,
-        paint: Paint::newtonian(Body::TUBE.viscosity_pa_s / DENSITY_KG_M3),
-        pull: [0.0, 0.0, -GRAVITY_M_S2],
+    let scene = |side: usize| {
+        let mut coarse = Coarse::of(voxels, (&open, &totals), side);
+        let conditions = Conditions {
+            cell_m: cell_m * side as f64,
+            seconds,
+            paint: Paint::newtonian(Body::TUBE.viscosity_pa_s / DENSITY_KG_M3),
+            pull: [0.0, 0.0, -GRAVITY_M_S2],
+        };
+        let contacts = footprint.contacts.iter().zip(bottoms);
+        hold(voxels, &mut coarse, (contacts, &totals), step, &conditions);
+        (coarse, conditions)
     };
-    let contacts = footprint.contacts.iter().zip(bottoms);
-    hold(voxels, &mut coarse, (contacts, &totals), step, &conditions);
-    let flow = flow.get_or_insert_with(|| Flow::new(&coarse.grid));
-    flow.restart(&coarse.grid);
-    flow.step(&coarse.fill, &coarse.solids, &conditions);
-    let velocity = coarse.refine(&flow.velocity, &fine);
+    let velocity = flow.find(&fine, voxels.side(), scene);
     let fill = voxels.volume.fill(&open);
     let domain = Domain::for_transport(&fine, &fill, &solids, LEAST_FILL);
     voxels

@@ -6,6 +6,7 @@
 //! | [`layers`] | layers of voxels over a surface |
 //! | [`voxels`] | the paint of an area, from the counts of a window and back |
 //! | [`coarse`] | the grid on which the flow is found |
+//! | [`flow_backend`] | who finds that flow: the processor, or a device |
 //! | [`drag`] | bristles as a porous body, and the flow around them |
 //! | `packing` | paint of a column without voids |
 //! | `loose` | paint that hangs on nothing falls |
@@ -25,6 +26,7 @@ pub mod coarse;
 pub mod columns;
 pub mod drag;
 mod film;
+pub mod flow_backend;
 pub mod layers;
 mod loose;
 pub mod overhangs;

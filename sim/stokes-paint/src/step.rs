@@ -11,9 +11,9 @@ use maulstick_impasto::stages::seep::seep;
 use maulstick_model::footprint::Footprint;
 use maulstick_model::interface::{PaintModel, Rest, Step, StepReport, Transfer};
 use maulstick_model::modes::{sample, vacuum};
-use maulstick_stokes::flow::Flow;
 
 use crate::drag::{STEPS, bottoms, drag, follow};
+use crate::flow_backend::{BrushFlow, FlowBackend};
 use crate::layers::Layers;
 use crate::reach::Reach;
 use crate::voxels::Voxels;
@@ -29,8 +29,7 @@ pub struct StokesPaint {
     footprint: Footprint,
     exchange: Exchange,
     reach: Reach,
-    /// Room for the flow of a step; nothing of it lasts.
-    flow: Option<Flow>,
+    flow: BrushFlow,
 }
 
 impl PaintModel for StokesPaint {
@@ -65,6 +64,18 @@ impl PaintModel for StokesPaint {
         report
     }
 
+    fn backend(&self) -> String {
+        self.flow.backend()
+    }
+
+    fn take_fall(&mut self) -> Option<String> {
+        self.flow.take_fall()
+    }
+
+    fn take_note(&mut self) -> Option<String> {
+        self.flow.take_note()
+    }
+
     fn rest_halo(&self) -> Option<usize> {
         Some(HALO)
     }
@@ -82,6 +93,15 @@ impl PaintModel for StokesPaint {
 }
 
 impl StokesPaint {
+    /// With the flow around brushes found by a device where that is faster, until it is lost.
+    #[must_use]
+    pub fn on(device: Box<dyn FlowBackend>) -> Self {
+        Self {
+            flow: BrushFlow::on(device),
+            ..Self::default()
+        }
+    }
+
     fn paint(&mut self, step: &mut Step<'_>, report: &mut StepReport) {
         let footprint = &mut self.footprint;
         let cell_m = cell_m(step);

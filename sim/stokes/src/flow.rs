@@ -117,7 +117,7 @@ impl Flow {
             Scheme::Split => 0.5,
         };
         let whole = self.grid;
-        self.grid = whole.below(highest(&whole, fill, least) + 2);
+        self.grid = layers_with_paint(&whole, fill, least);
         self.resize();
         let mut room = match self.room.take() {
             Some(mut room) => {
@@ -320,6 +320,12 @@ impl Flow {
         };
         0.5 * (0..3).map(axis).sum::<f64>()
     }
+}
+
+/// The layers of a window that a step solves: up to the second above the highest cell that is filled at least so far.
+#[must_use]
+pub fn layers_with_paint(grid: &Grid, fill: &[f32], least: f32) -> Grid {
+    grid.below(highest(grid, fill, least) + 2)
 }
 
 /// Number of layers up to the highest cell that is filled so far.

@@ -6,7 +6,7 @@ use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
 
 use maulstick_brush::BrushFile;
-use maulstick_gpu::{Choice, Device, GpuModel, Traffic};
+use maulstick_gpu::{Choice, Device, DeviceModel, Traffic};
 use maulstick_num::fork_join::with_threads;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
@@ -87,13 +87,21 @@ impl Round {
         let mut painting = Painting::new(&setup, library).map_err(fault)?;
         let mut traffic = None;
         if let Some(gpu) = &means.gpu {
-            let make = GpuModel::maker(&means.model).ok_or_else(|| {
-                let what = format!("no GPU computes the paint model '{}'", means.model);
-                UserError::usage(what)
-            })?;
-            let model = make(gpu.clone()).map_err(fault)?;
-            traffic = Some(model.traffic());
-            painting.set_model(Box::new(model));
+            match DeviceModel::of(&means.model) {
+                Some(DeviceModel::Steps(make)) => {
+                    let model = make(gpu.clone()).map_err(fault)?;
+                    traffic = Some(model.traffic());
+                    painting.set_model(Box::new(model));
+                }
+                Some(flow) => {
+                    let model = flow.make(gpu.clone(), Choice::Forced).map_err(fault)?;
+                    painting.set_model(model);
+                }
+                None => {
+                    let what = format!("no GPU computes the paint model '{}'", means.model);
+                    return Err(UserError::usage(what));
+                }
+            }
         }
         let mut sequencer = Sequencer::new(painting);
         sequencer.define_brush(BRUSH, file.clone());
@@ -171,6 +179,11 @@ impl Round {
 
 /// A brush whose footprint covers the share of the square that is wanted.
 fn fitted(side: usize, strips: usize, means: &Means) -> Result<Round, UserError> {
+    Round::new(fitted_mm(side, strips, means)?, strips, side, means)
+}
+
+/// Width of that brush, mm.
+fn fitted_mm(side: usize, strips: usize, means: &Means) -> Result<f64, UserError> {
     let wanted = COVERED * (side * side) as f64;
     let mut width_mm = 0.25 * side as f64;
     for _ in 0..6 {
@@ -182,7 +195,7 @@ fn fitted(side: usize, strips: usize, means: &Means) -> Result<Round, UserError>
         }
         width_mm = (width_mm * (wanted / covered.max(1.0)).sqrt()).clamp(0.5, 250.0);
     }
-    Round::new(width_mm, strips, side, means)
+    Ok(width_mm)
 }
 
 /// Measures and reports.
@@ -194,16 +207,19 @@ pub(crate) fn run(report: &mut Report, backend: &str, model: &str) -> Result<(),
     if let Some(gpu) = &gpu {
         report.on(gpu.name());
     }
-    // Its steps cost what the solver's do; the wide footprints of the others would take it an hour.
-    if model == "stokes" {
-        stokes::run(report);
-        return Ok(());
-    }
     let means = Means {
         model: model.to_owned(),
         gpu,
     };
     let cores = available_parallelism().map_or(1, usize::from);
+    // Its steps cost what the solver's do; the wide footprints of the others would take it an hour.
+    if model == "stokes" {
+        if means.gpu.is_some() {
+            return with_threads(cores.min(2), || beside_processor(report, &means));
+        }
+        stokes::run(report);
+        return Ok(());
+    }
     with_threads(cores.min(2), || rounds(report, &means))?;
     if means.gpu.is_none() {
         cells(report, &means)?;
@@ -214,6 +230,30 @@ pub(crate) fn run(report: &mut Report, backend: &str, model: &str) -> Result<(),
         "dab" => with_threads(cores.min(2), || texels::run(report, means.gpu.as_ref())),
         _ => Ok(()),
     }
+}
+
+/// Both sizes on a device, beside the processor.
+fn beside_processor(report: &mut Report, means: &Means) -> Result<(), UserError> {
+    for (side, strips) in SIZES {
+        let width_mm = fitted_mm(side, strips, means)?;
+        let [mut device, mut processor] = [
+            Round::new(width_mm, strips, side, means)?,
+            Round::new(width_mm, strips, side, &means.on_processor())?,
+        ];
+        device.paint()?;
+        processor.paint()?;
+        let rate = |round: &mut Round| -> Result<f64, UserError> {
+            let ([steps, _], took) = round.paint()?;
+            Ok(steps as f64 / took.as_secs_f64())
+        };
+        let mut pairs = Vec::new();
+        for _ in 0..ROUNDS {
+            pairs.push((rate(&mut device)?, rate(&mut processor)?));
+        }
+        let name = format!("steps_per_s.{side}");
+        report.paired(&name, "steps/s", "on the processor", &pairs);
+    }
+    Ok(())
 }
 
 /// Cells in contact that a core paints, beside the copy of as many.

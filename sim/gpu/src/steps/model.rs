@@ -75,16 +75,6 @@ impl GpuModel {
         })
     }
 
-    /// What makes the model of this name on a device; none where no device computes it.
-    #[must_use]
-    pub fn maker(name: &str) -> Option<MakeModel> {
-        match name {
-            "impasto" => Some(Self::impasto),
-            "dab" => Some(Self::dab),
-            _ => None,
-        }
-    }
-
     /// The adapter's name.
     #[must_use]
     pub fn adapter(&self) -> &str {

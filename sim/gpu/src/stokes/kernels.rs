@@ -88,6 +88,7 @@ stages! {
 pub type Fault = Option<(&'static str, f64)>;
 
 /// The stages on a device.
+#[derive(Debug)]
 pub(crate) struct Pipelines {
     pub(crate) bindings: wgpu::BindGroupLayout,
     made: Vec<wgpu::ComputePipeline>,

@@ -14,14 +14,18 @@
 //! | --- | --- |
 //! | `plan` | where the fields lie |
 //! | `record` | a step and a call as the shaders take them |
+//! | `room` | the buffers of a window |
 //! | `kernels` | the stages, and their pipelines |
 //! | `schedule` | the dispatches of a step |
+//! | `brush_flow` | the flow around a brush of the paint model `stokes` |
 //! | `measure` | steps beside a copy, for the benchmark |
 
+mod brush_flow;
 mod kernels;
 mod measure;
 mod plan;
 mod record;
+mod room;
 mod schedule;
 
 use bytemuck::{bytes_of, cast_slice, pod_collect_to_vec};
@@ -32,11 +36,13 @@ use wgpu::BufferUsages as Usage;
 
 use crate::arena::{Arena, read};
 use crate::device::{Device, GpuError};
+pub use brush_flow::GpuBrushFlow;
 pub use kernels::Fault;
 use kernels::Pipelines;
 pub use plan::Paints;
 use plan::Plan;
-use record::{CALL_BYTES, CALL_STRIDE, WINDOW_BYTES, WindowRecord};
+use record::{CALL_STRIDE, WindowRecord};
+use room::Room;
 use schedule::{Dispatch, Schedule};
 
 /// Fields of window.wgsl that are uploaded or read.
@@ -52,16 +58,17 @@ const PRESSURE_NORMS: u32 = 704;
 const MOST_STEPS: usize = 38;
 
 /// Velocity and pressure of a window on the device.
+#[derive(Debug)]
 pub struct GpuFlow {
     gpu: Device,
-    plan: Plan,
+    tuning: Tuning,
     effort: Effort,
     pipelines: Pipelines,
+    plan: Plan,
     dispatches: Vec<Dispatch>,
+    /// Bytes that the stages of a step go over.
     bytes: u64,
-    fields: wgpu::Buffer,
-    records: wgpu::Buffer,
-    bound: wgpu::BindGroup,
+    room: Room,
     back: Arena,
     /// Number of the next order of axes.
     turn: usize,
@@ -76,6 +83,8 @@ pub struct Tuning {
     pub rest: u32,
     /// Paint that is carried.
     pub paints: Paints,
+    /// Bytes of a window at most, where the device gives more in one piece.
+    pub most_bytes: u64,
     /// A constant of the shaders with another value: the fault that a comparison must find.
     #[doc(hidden)]
     pub fault: Fault,
@@ -86,6 +95,7 @@ impl Default for Tuning {
         Self {
             rest: 2048,
             paints: Paints::default(),
+            most_bytes: u64::MAX,
             fault: None,
         }
     }
@@ -102,6 +112,20 @@ pub struct FlowState {
     pub norms: Vec<f32>,
     /// Norms of the volume that was lacking, before and after each conjugate gradient.
     pub lacking: Vec<f32>,
+}
+
+/// Layout of a window, the dispatches of a step and the bytes that they go over.
+fn laid_out(
+    grid: &Grid,
+    effort: Effort,
+    tuning: &Tuning,
+) -> Result<(Plan, Vec<Dispatch>, u64), GpuError> {
+    let plan = Plan::new(grid, effort.steps, tuning.rest, tuning.paints)?;
+    plan.check(tuning.most_bytes)?;
+    let Schedule {
+        dispatches, bytes, ..
+    } = Schedule::new(&plan, effort);
+    Ok((plan, dispatches, bytes))
 }
 
 impl GpuFlow {
@@ -127,76 +151,79 @@ impl GpuFlow {
             steps: effort.steps.min(MOST_STEPS),
             projections: effort.projections.min(MOST_STEPS),
         };
-        let plan = Plan::new(grid, effort.steps, tuning.rest, tuning.paints)?;
-        plan.check(&gpu)?;
-        let (dispatches, bytes) = {
-            let schedule = Schedule::new(&plan, effort);
-            (schedule.dispatches, schedule.bytes)
+        let limits = gpu.device.limits();
+        let tuning = Tuning {
+            most_bytes: (tuning.most_bytes)
+                .min(limits.max_buffer_size)
+                .min(limits.max_storage_buffer_binding_size),
+            ..*tuning
         };
-        let device = &gpu.device;
-        let (pipelines, fields, records, bound) = gpu.guarded(|| {
+        let (plan, dispatches, bytes) = laid_out(grid, effort, &tuning)?;
+        let (pipelines, room) = gpu.guarded(|| {
             let pipelines = Pipelines::new(&gpu, tuning.fault);
-            let buffer = |label, size, usage| {
-                device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some(label),
-                    size,
-                    usage,
-                    mapped_at_creation: false,
-                })
-            };
-            let storage = Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC;
-            let fields = buffer("stokes fields", plan.bytes(), storage);
-            let size = CALL_STRIDE * (dispatches.len() as u64).max(1);
-            let calls = buffer("stokes calls", size, Usage::UNIFORM | Usage::COPY_DST);
-            let records = buffer(
-                "stokes step",
-                WINDOW_BYTES,
-                Usage::UNIFORM | Usage::COPY_DST,
-            );
-            let mut bytes = vec![0; size as usize];
-            for (slot, dispatch) in bytes.chunks_mut(CALL_STRIDE as usize).zip(&dispatches) {
-                slot[..CALL_BYTES as usize].copy_from_slice(bytes_of(&dispatch.call));
-            }
-            gpu.queue.write_buffer(&calls, 0, &bytes);
-            let call = wgpu::BufferBinding {
-                buffer: &calls,
-                offset: 0,
-                size: wgpu::BufferSize::new(CALL_BYTES),
-            };
-            let bound = device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("stokes"),
-                layout: &pipelines.bindings,
-                entries: &[
-                    wgpu::BindGroupEntry {
-                        binding: 0,
-                        resource: wgpu::BindingResource::Buffer(call),
-                    },
-                    wgpu::BindGroupEntry {
-                        binding: 1,
-                        resource: records.as_entire_binding(),
-                    },
-                    wgpu::BindGroupEntry {
-                        binding: 2,
-                        resource: fields.as_entire_binding(),
-                    },
-                ],
-            });
-            Ok((pipelines, fields, records, bound))
+            let room = Room::new(&gpu, &pipelines, plan.bytes(), dispatches.len());
+            room.write_calls(&gpu, &dispatches);
+            Ok((pipelines, room))
         })?;
         Ok(Self {
-            plan,
+            tuning,
             effort,
             pipelines,
+            plan,
             dispatches,
             bytes,
-            fields,
-            records,
-            bound,
+            room,
             back: Arena::new("stokes back", Usage::MAP_READ | Usage::COPY_DST),
             turn: 0,
             relief: 0.25,
             gpu,
         })
+    }
+
+    /// Paint at rest, and none to be carried, in a window of another grid; its memory grows as it must.
+    ///
+    /// # Errors
+    /// [`GpuError::Window`] where the device has no room for the window: it stays what it was. Another [`GpuError`] of the
+    /// device.
+    pub fn restart(&mut self, grid: &Grid) -> Result<(), GpuError> {
+        let gpu = self.gpu.clone();
+        if self.plan.grid != *grid {
+            let (plan, dispatches, bytes) = laid_out(grid, self.effort, &self.tuning)?;
+            if !self.room.holds(plan.bytes(), dispatches.len()) {
+                self.grow(&plan, dispatches.len())?;
+            }
+            (self.plan, self.dispatches, self.bytes) = (plan, dispatches, bytes);
+            gpu.guarded(|| {
+                self.room.write_calls(&gpu, &self.dispatches);
+                Ok(())
+            })?;
+        }
+        self.turn = 0;
+        gpu.guarded(|| {
+            // What lies beyond walls nobody writes, and it must be 0.
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            encoder.clear_buffer(&self.room.fields, 0, Some(self.plan.bytes()));
+            gpu.queue.submit([encoder.finish()]);
+            Ok(())
+        })
+    }
+
+    /// Makes room for a window, and for some that are larger. Where there is none, as large ones are refused from then on.
+    fn grow(&mut self, plan: &Plan, dispatches: usize) -> Result<(), GpuError> {
+        let gpu = self.gpu.clone();
+        let wanted = plan.bytes().max(self.room.fields.size());
+        // A binding is of whole numbers.
+        let wanted = wanted.next_power_of_two().min(self.tuning.most_bytes) / 4 * 4;
+        let dispatches = dispatches.next_power_of_two();
+        match gpu.guarded(|| Ok(Room::new(&gpu, &self.pipelines, wanted, dispatches))) {
+            Ok(room) => self.room = room,
+            Err(GpuError::Memory) => {
+                self.tuning.most_bytes = self.room.fields.size().min(plan.bytes() - 1);
+                plan.check(self.tuning.most_bytes)?;
+            }
+            Err(error) => return Err(error),
+        }
+        Ok(())
     }
 
     /// Bytes that a window of a grid takes on a device, for so many iterations a step.
@@ -245,12 +272,12 @@ impl GpuFlow {
             grid.wrap(&mut wrapped);
             self.gpu
                 .queue
-                .write_buffer(&self.fields, offset, cast_slice(&wrapped));
+                .write_buffer(&self.room.fields, offset, cast_slice(&wrapped));
         } else {
             let field = &field[..grid.len()];
             self.gpu
                 .queue
-                .write_buffer(&self.fields, offset, cast_slice(field));
+                .write_buffer(&self.room.fields, offset, cast_slice(field));
         }
     }
 
@@ -326,7 +353,7 @@ impl GpuFlow {
         self.turn = (self.turn + self.plan.paints.parts) % 6;
         self.gpu
             .queue
-            .write_buffer(&self.records, 0, bytes_of(&record));
+            .write_buffer(&self.room.records, 0, bytes_of(&record));
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
         let mut last = None;
@@ -335,7 +362,7 @@ impl GpuFlow {
                 pass.set_pipeline(self.pipelines.of(dispatch.stage));
                 last = Some(dispatch.stage);
             }
-            pass.set_bind_group(0, &self.bound, &[(number as u64 * CALL_STRIDE) as u32]);
+            pass.set_bind_group(0, &self.room.bound, &[(number as u64 * CALL_STRIDE) as u32]);
             let [x, y, z] = dispatch.groups;
             pass.dispatch_workgroups(x, y, z);
         }
@@ -371,10 +398,20 @@ impl GpuFlow {
         })
     }
 
+    /// Waits for the device, and reads the velocity alone, axis after axis, on the grid's places.
+    ///
+    /// # Errors
+    /// A [`GpuError`] of the device.
+    pub fn read_velocity(&mut self) -> Result<Vec<f32>, GpuError> {
+        let bytes = 4 * self.plan.grid.len() as u64;
+        let from = 4 * u64::from(self.plan.field(X));
+        self.read_words(&[(from, 3 * bytes)])
+    }
+
     /// Reads parts of the fields, one after the other: from where, how many bytes.
     fn read_words(&mut self, ranges: &[(u64, u64)]) -> Result<Vec<f32>, GpuError> {
         let Self {
-            gpu, back, fields, ..
+            gpu, back, room, ..
         } = self;
         gpu.guarded(|| {
             let bytes = ranges.iter().map(|(_, bytes)| bytes).sum();
@@ -382,7 +419,7 @@ impl GpuFlow {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             let mut at = 0;
             for (from, bytes) in ranges {
-                encoder.copy_buffer_to_buffer(fields, *from, back, at, *bytes);
+                encoder.copy_buffer_to_buffer(&room.fields, *from, back, at, *bytes);
                 at += bytes;
             }
             gpu.queue.submit([encoder.finish()]);

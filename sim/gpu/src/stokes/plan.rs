@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use maulstick_stokes::grid::{Ends, Grid, Side};
 
-use crate::device::{Device, GpuError};
+use crate::device::GpuError;
 
 /// Levels of a hierarchy at most.
 pub(crate) const MOST_LEVELS: usize = 12;
@@ -179,15 +179,11 @@ impl Plan {
         4 * self.words
     }
 
-    /// Says no where a device has not so much memory in one piece.
+    /// Says no to a window of more than so many bytes.
     ///
     /// # Errors
     /// [`GpuError::Window`].
-    pub(crate) fn check(&self, gpu: &Device) -> Result<(), GpuError> {
-        let limits = gpu.device.limits();
-        let most = limits
-            .max_buffer_size
-            .min(limits.max_storage_buffer_binding_size);
+    pub(crate) const fn check(&self, most: u64) -> Result<(), GpuError> {
         if self.bytes() <= most {
             return Ok(());
         }

@@ -2,7 +2,7 @@
 
 use maulstick_dab::Dab;
 use maulstick_dab::stroke::Stroker;
-use maulstick_gpu::{Device, GpuModel};
+use maulstick_gpu::{Choice, Device, DeviceModel, GpuModel};
 use maulstick_model::interface::PaintModel;
 use maulstick_painting::Painting;
 use maulstick_types::edits::{Clean, Dry};
@@ -27,9 +27,9 @@ fn stroking(stroker: Stroker, gpu: Option<Device>) -> Painting {
 }
 
 fn easel(gpu: Option<Device>) -> Painting {
-    let model = gpu.map(|gpu| -> Box<dyn PaintModel> {
-        let make = GpuModel::maker("dab").expect("there is one");
-        Box::new(make(gpu).expect("taken"))
+    let model = gpu.map(|gpu| {
+        let model = DeviceModel::of("dab").expect("there is one");
+        model.make(gpu, Choice::Forced).expect("taken")
     });
     easel_of(("dab", 1), model)
 }

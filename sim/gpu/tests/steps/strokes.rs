@@ -69,7 +69,7 @@ pub(crate) fn balance_the_books(easel: Easel<'_>) {
     assert_eq!(painting.report().quanta_missing, 0);
 }
 
-fn header(seq: u64) -> Header {
+pub(crate) fn header(seq: u64) -> Header {
     Header {
         version: BrushState::VERSION,
         schema: 0,
@@ -81,6 +81,16 @@ fn header(seq: u64) -> Header {
         event_ns: 0,
         sent_ns: 0,
     }
+}
+
+/// What a paint node with this sequencer has decided.
+pub(crate) fn decisions(sequencer: &mut Sequencer) -> Vec<String> {
+    let entries = sequencer.drain_journal().into_iter();
+    let decided = entries.filter_map(|entry| match entry.entry {
+        Entry::Decision { what } => Some(what),
+        _ => None,
+    });
+    decided.collect()
 }
 
 /// The device goes in mid-stroke, with steps on it that nobody has seen: the processor does them again,
@@ -115,13 +125,7 @@ pub(crate) fn outlive_their_device(easel: Easel<'_>, agree: Agree<'_>) {
         assert_eq!(sequencer.painting_mut().report().quanta_missing, 0);
         assert_eq!(sequencer.painting().backend(), "cpu");
         assert!(agree(&mut cpu, sequencer.painting_mut(), before));
-        let decided = sequencer.drain_journal().into_iter();
-        let decided: Vec<String> = decided
-            .filter_map(|entry| match entry.entry {
-                Entry::Decision { what } => Some(what),
-                _ => None,
-            })
-            .collect();
+        let decided = decisions(&mut sequencer);
         println!("{decided:?}");
         let told = |what: &String| what.starts_with("backend cpu: the graphics device failed");
         assert!(

@@ -228,8 +228,11 @@ impl Sequencer {
         (self.records, self.is_unrecorded) = (recording, is_unrecorded);
     }
 
-    /// Enters that something else computes the paint than before, if that is so.
+    /// Enters that something else computes the paint than before, or has met a limit, if that is so.
     pub(super) fn tell_fall(&mut self) {
+        if let Some(note) = self.painting.take_note() {
+            self.decide(&note);
+        }
         if let Some(why) = self.painting.take_fall() {
             self.decide(&format!("backend {}: {why}", self.painting.backend()));
         }

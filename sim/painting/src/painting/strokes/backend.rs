@@ -33,17 +33,41 @@ impl Deferral {
     }
 }
 
-/// The reason why a model changed its backend. It is reported where a stroke ends.
+/// A fact of a model's backend. It is reported where a stroke ends.
 #[derive(Debug, Default)]
-pub(super) struct BackendFallback {
+struct BackendFact {
     found: Option<String>,
     due: bool,
 }
 
-impl BackendFallback {
+impl BackendFact {
+    fn find(&mut self, what: Option<String>) {
+        if what.is_some() {
+            self.found = what;
+        }
+    }
+
+    fn take(&mut self) -> Option<String> {
+        if !std::mem::take(&mut self.due) {
+            return None;
+        }
+        self.found.take()
+    }
+}
+
+/// The reason why a model changed its backend, and a limit that its backend has met.
+#[derive(Debug, Default)]
+pub(super) struct BackendFacts {
+    fall: BackendFact,
+    note: BackendFact,
+}
+
+impl BackendFacts {
     /// A stroke ends or begins.
     pub(super) fn stroke_ends(&mut self) {
-        self.due |= self.found.is_some();
+        for fact in [&mut self.fall, &mut self.note] {
+            fact.due |= fact.found.is_some();
+        }
     }
 }
 
@@ -53,7 +77,7 @@ pub(crate) struct Backend {
     pub(crate) models: Models,
     /// Index of the brush whose newest steps the model has not settled.
     pub(super) unsettled: Option<usize>,
-    pub(super) fallback: BackendFallback,
+    pub(super) facts: BackendFacts,
 }
 
 impl Backend {
@@ -79,11 +103,12 @@ impl Painting {
 
     /// The reason why its backend changed, returned once, after the stroke in which it changed.
     pub fn take_fall(&mut self) -> Option<String> {
-        let fallback = &mut self.backend.fallback;
-        if !std::mem::take(&mut fallback.due) {
-            return None;
-        }
-        fallback.found.take()
+        self.backend.facts.fall.take()
+    }
+
+    /// A limit that its backend has met, returned once, after the stroke in which it did.
+    pub fn take_note(&mut self) -> Option<String> {
+        self.backend.facts.note.take()
     }
 
     /// Fullness of a brush, as far as its stroke on a surface may know.
@@ -129,9 +154,9 @@ impl Painting {
             self.note((brush, on), &report, steps);
             self.book(Some(brush));
         }
-        if let Some(what) = self.backend.models.take_fall() {
-            self.backend.fallback.found = Some(what);
-        }
+        let Backend { models, facts, .. } = &mut self.backend;
+        facts.fall.find(models.take_fall());
+        facts.note.find(models.take_note());
     }
 
     /// Notes what so many steps of a brush did on a surface; of deferred ones that is known when they are settled.

@@ -55,7 +55,7 @@ impl Painting {
         };
         if solve.stroke == 0 {
             self.lift(brush);
-            self.backend.fallback.stroke_ends();
+            self.backend.facts.stroke_ends();
             return Ok(());
         }
         let restarted = solve.flags & solve_flags::RESTARTED != 0;
@@ -130,7 +130,7 @@ impl Painting {
 
     fn begin_stroke(&mut self, brush: usize) -> Result<(), EditError> {
         self.begin_stroke_step(brush);
-        self.backend.fallback.stroke_ends();
+        self.backend.facts.stroke_ends();
         let own = &mut self.brushes[brush];
         own.deferral = Deferral::default();
         let (number, seed) = (own.strokes, own.seed);
