@@ -24,6 +24,9 @@ fn stopped(who: &str) -> String {
 /// Prefix of the decision that the processor takes over from the graphics card.
 const FALL: &str = "backend cpu: ";
 
+/// Prefix of the decision that flow is found on coarser cells.
+const COARSER: &str = "flow on coarser cells: ";
+
 /// Decision that proposes the light paint model.
 const LIGHTER: &str = "model dab proposed";
 
@@ -207,6 +210,12 @@ fn decided(what: &str, notifications: &mut Notifications) {
         notifications.note(tr!(
             "Painting falls behind on this machine. The light paint model dAb is faster: Paint model in the panel Canvas \
              converts this painting, and that can be undone."
+        ));
+    }
+    if let Some(why) = what.strip_prefix(COARSER) {
+        notifications.note(tr!(
+            "The graphics card has too little memory for so wide a brush: thick paint flows in less detail around it ({why})",
+            why
         ));
     }
     if let Some(why) = what.strip_prefix(FALL) {
@@ -440,6 +449,18 @@ mod tests {
         assert_eq!(rig.look(), []);
         rig.state.events = vec![RigEvent::Decided("backend cpu: the device is lost".into())];
         let told = fault("The paint is computed by the processor from now on: the device is lost");
+        assert_eq!(rig.look(), told);
+    }
+
+    #[test]
+    fn that_flow_is_found_on_coarser_cells_is_told() {
+        let mut rig = Rig::new();
+        let what = "flow on coarser cells: a window needs 300 MiB";
+        rig.state.events = vec![RigEvent::Decided(what.into())];
+        let told = note(
+            "The graphics card has too little memory for so wide a brush: thick paint flows in less detail around it (a window \
+             needs 300 MiB)",
+        );
         assert_eq!(rig.look(), told);
     }
 }
