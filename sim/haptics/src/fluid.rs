@@ -4,6 +4,10 @@
 //! thousand times a second: f = f₀ + J·v. So drag follows the hand without lag, whatever the solver's rate. From one
 //! message to the next f₀ and J go along the step response of the Bartlett-Hanning window over the message's recovery,
 //! one period of its source. A mixture of two Jacobians that only brake only brakes.
+//!
+//! f₀ is what paint that moves by itself pushes with. Where the next message does not come, f₀ fades over a second period: paint
+//! of which nothing is known may have come to rest, and drags from then on. Held, it would push on a hand with energy that the
+//! paint has lost.
 
 use glam::{DMat3, DVec3};
 use maulstick_fluid_force::bartlett_hanning::step_response;
@@ -103,6 +107,16 @@ impl Fluid {
     }
 }
 
+impl Fluid {
+    /// Share of its own motion that the paint may still have at an age, s.
+    fn still_moves(&self, age_s: f64) -> f64 {
+        if self.recovery_s <= 0.0 {
+            return 1.0;
+        }
+        (2.0 - age_s / self.recovery_s).clamp(0.0, 1.0)
+    }
+}
+
 /// What drags more than a device bears is as much weaker.
 fn bounded(film: Film) -> Film {
     let columns = [
@@ -174,7 +188,11 @@ impl FluidStage {
         };
         let overdue_s = (age_s - fluid.time_to_live_s).max(0.0);
         let left = (1.0 - overdue_s / fade_s).max(0.0);
-        self.before.toward(fluid.film, share).times(left)
+        let film = Film {
+            at_rest: fluid.film.at_rest * fluid.still_moves(*age_s),
+            ..fluid.film
+        };
+        self.before.toward(film, share).times(left)
     }
 
     /// The force on a hand of this velocity, m/s, N.

@@ -10,7 +10,9 @@
 
 pub(crate) mod extent;
 pub mod fluid;
+mod ledger;
 pub(crate) mod link;
+pub mod painting;
 pub mod relief;
 
 use glam::DVec3;
@@ -32,6 +34,8 @@ use crate::servo::tick::Sender;
 pub const HANDS: [Hand; 3] = [Hand::FINGERTIP, Hand::PEN_GRIP, Hand::ARM];
 /// What its device bears, N/m.
 pub const MAX_STIFFNESS_N_M: f64 = 500.0;
+/// Largest force of its device, N.
+pub const MAX_FORCE_N: f64 = 3.3;
 /// Viscous friction of its device, N·s/m.
 pub const DAMPING_N_S_M: f64 = 0.3;
 /// Period of its servo, s.
@@ -279,11 +283,8 @@ impl Run {
         tip + DVec3::Z * HEAD_M
     }
 
-    /// Lets the hand go through it all.
-    ///
-    /// # Errors
-    /// What is wrong with a wall that makes no contact model.
-    pub fn go(&self) -> Result<Outcome, &'static str> {
+    /// The servo's bounds.
+    fn limits(&self) -> Limits {
         // What is sent elsewhere shows what it does without those who would stop it.
         let guarded = match self.path {
             Path::Servo | Path::Nothing => Limits::default(),
@@ -294,20 +295,28 @@ impl Run {
             },
         };
         let limits = Limits {
-            max_force_n: 3.3,
-            continuous_force_n: 3.3,
+            max_force_n: MAX_FORCE_N,
+            continuous_force_n: MAX_FORCE_N,
             max_stiffness_n_m: MAX_STIFFNESS_N_M,
             damping_n_s_m: DAMPING_N_S_M,
             ..guarded
         };
-        let limits = match self.guide {
+        match self.guide {
             Some(guide) => Limits {
                 guide_n: guide.most_n,
                 guide_stiffness_n_m: guide.stiffness,
                 ..limits
             },
             None => limits,
-        };
+        }
+    }
+
+    /// Lets the hand go through it all.
+    ///
+    /// # Errors
+    /// What is wrong with a wall that makes no contact model.
+    pub fn go(&self) -> Result<Outcome, &'static str> {
+        let limits = self.limits();
         // A hand that is kicked across the wall's friction would hide what the guide gives.
         let friction = match self.guide {
             Some(_) => 0.0,

@@ -47,6 +47,21 @@ fn drag_follows_the_hand_whatever_velocity_it_was_computed_for() {
     assert_eq!(stage.force(DVec3::X, FADE_S), DVec3::ZERO);
 }
 
+/// A message that is held past its period keeps its drag and loses its push.
+#[test]
+fn paint_that_is_not_heard_of_any_more_drags_and_no_longer_pushes() {
+    let mut moving = drag(0.3, DVec3::X * 0.1);
+    moving.wrench = [0.0; 6];
+    let mut stage = FluidStage::default();
+    stage.receive(Fluid::new(&moving, 1.0).expect("a force"), FADE_S);
+    for (age_s, push_n) in [(0.02, 0.03), (0.03, 0.015), (0.04, 0.0), (0.09, 0.0)] {
+        stage.age(age_s - stage.newest.map_or(0.0, |(_, age_s)| age_s));
+        let [rest, fast] = [DVec3::ZERO, DVec3::X].map(|v| stage.force(v, FADE_S).x);
+        assert!((rest - push_n).abs() < 1e-12, "{age_s} s: {rest} N");
+        assert!((fast - rest + 0.3).abs() < 1e-12, "{age_s} s: {fast} N");
+    }
+}
+
 #[test]
 fn what_would_push_the_hand_or_is_no_number_is_refused() {
     let told = |change: fn(&mut FluidForce)| {

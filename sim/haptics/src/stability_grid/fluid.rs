@@ -32,20 +32,18 @@ const END_S: f64 = 5.1;
 pub enum Telling {
     /// Force and Jacobian.
     True,
-    /// The force alone, with no Jacobian: it is held between two messages.
+    /// The force alone, with no Jacobian and no period: it is held between two messages.
     Held,
     /// The force alone by the printed, inward normal: drag pushes the hand.
     Inward,
 }
 
-/// One hand in one film.
-#[derive(Clone, Copy, Debug)]
-pub struct FluidRun {
-    /// The hand.
-    pub hand: Hand,
-    /// Drag of the film, N·s/m.
+/// A film of paint and its solver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Film {
+    /// Drag, N·s/m.
     pub drag: f64,
-    /// Time constant of the film, s; 0 of one that stands.
+    /// Time constant with which the brush carries it along, s; 0 of one that stands.
     pub carried_s: f64,
     /// Messages a second.
     pub rate_hz: f64,
@@ -53,6 +51,15 @@ pub struct FluidRun {
     pub jitter: f64,
     /// What the solver tells.
     pub telling: Telling,
+}
+
+/// One hand in one film.
+#[derive(Clone, Copy, Debug)]
+pub struct FluidRun {
+    /// The hand.
+    pub hand: Hand,
+    /// The film.
+    pub film: Film,
     /// Whether the observer looks on.
     pub observer: Observer,
 }
@@ -81,10 +88,11 @@ pub struct FluidOutcome {
     pub fault: Option<Fault>,
 }
 
-impl FluidRun {
-    fn message(&self, velocity: DVec3, film: DVec3) -> FluidForce {
+impl Film {
+    /// What the solver tells of a brush and a film of these velocities, m/s.
+    pub(super) fn message(&self, velocity: DVec3, carried: DVec3) -> FluidForce {
         let six = |v: DVec3| [v.x, v.y, v.z, 0.0, 0.0, 0.0];
-        let force = (velocity - film) * -self.drag;
+        let force = (velocity - carried) * -self.drag;
         let mut jacobian = [[0.0; 6]; 6];
         if self.telling == Telling::True {
             for (i, row) in jacobian.iter_mut().enumerate().take(3) {
@@ -103,10 +111,29 @@ impl FluidRun {
             }),
             jacobian,
             time_to_live_ns: 3 * period_ns,
-            recovery_ns: period_ns,
+            // Who tells its period has its force fade after it.
+            recovery_ns: match self.telling {
+                Telling::Held => 0,
+                Telling::True | Telling::Inward => period_ns,
+            },
         }
     }
 
+    /// Its velocity a tick later, m/s, under a brush that touches it by a share.
+    pub(super) fn follow(&self, carried: DVec3, velocity: DVec3, touch: f64) -> DVec3 {
+        match self.carried_s > 0.0 {
+            true => carried + (velocity - carried) * (touch * DT / self.carried_s),
+            false => carried,
+        }
+    }
+
+    /// Energy that it keeps at a velocity, J.
+    pub(super) fn kept_j(&self, carried: DVec3) -> f64 {
+        0.5 * self.drag * self.carried_s * carried.length_squared()
+    }
+}
+
+impl FluidRun {
     /// Lets the hand go through it all.
     ///
     /// # Errors
@@ -131,8 +158,8 @@ impl FluidRun {
             let depth = (HEAD_M - plant.true_position().z).max(0.0);
             0.5 * WALL_N_M * depth * depth
         };
-        let mut film = DVec3::ZERO;
-        let mut link = Link::new(self.rate_hz, self.jitter, 1);
+        let (film, mut carried) = (self.film, DVec3::ZERO);
+        let mut link = Link::new(film.rate_hz, film.jitter, 1);
         let mut extent = Extent::NONE;
         let (mut net_j, mut least_j, mut most_j, mut taken_j): (f64, f64, f64, f64) =
             (0.0, 0.0, 0.0, 0.0);
@@ -140,10 +167,8 @@ impl FluidRun {
         for number in 0..(END_S / DT) as usize {
             let s = number as f64 * DT;
             let velocity = plant.read_velocity();
-            if self.carried_s > 0.0 {
-                film += (velocity - film) * (DT / self.carried_s);
-            }
-            if let Some(message) = link.newest(s, |_| self.message(velocity, film)) {
+            carried = film.follow(carried, velocity, 1.0);
+            if let Some(message) = link.newest(s, |_| film.message(velocity, carried)) {
                 servo.receive_fluid(Fluid::new(&message, 1.0)?);
             }
             if number % 4 == 0 {
@@ -159,7 +184,7 @@ impl FluidRun {
             net_j += given;
             let way = plant.true_position() - before.2;
             taken_j -= force.truncate().dot(way.truncate());
-            let kept = 0.5 * self.drag * self.carried_s * film.length_squared() + plant.kinetic_j();
+            let kept = film.kept_j(carried) + plant.kinetic_j();
             least_j = least_j.min(net_j + kept);
             most_j = most_j.max(net_j + kept - least_j);
             if s >= STILL_S {
@@ -187,13 +212,16 @@ mod tests {
             for drag in [0.1, 0.3, 0.8] {
                 for rate_hz in [15.0, 30.0, 60.0] {
                     for jitter in [0.0, 0.1, 0.2, 0.5] {
-                        let run = FluidRun {
-                            hand,
+                        let film = Film {
                             drag,
                             carried_s,
                             rate_hz,
                             jitter,
                             telling,
+                        };
+                        let run = FluidRun {
+                            hand,
+                            film,
                             observer,
                         };
                         all.push((run, run.go().expect("a film")));
@@ -233,9 +261,9 @@ mod tests {
     /// gives, the observer takes back all but a fraction.
     #[test]
     fn drag_that_pushes_is_found_out_and_the_observer_takes_its_power_back() {
-        let refused = FluidRun {
+        let refused = Film {
             telling: Telling::Inward,
-            ..runs(0.0, Telling::True, Observer::There)[0].0
+            ..runs(0.0, Telling::True, Observer::There)[0].0.film
         };
         let mut message = refused.message(DVec3::X * 0.1, DVec3::ZERO);
         message.jacobian[0][0] = refused.drag;

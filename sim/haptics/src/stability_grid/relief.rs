@@ -9,29 +9,37 @@ use maulstick_num::sin;
 use maulstick_types::haptics::{ContactModel, ForceLaw, HeightPatch, height_bytes};
 
 use super::extent::Extent;
+use super::fluid::Film;
+use super::ledger::Ledger;
 use super::link::{Link, random};
 use super::{
-    DAMPING_N_S_M, DT, END_S, FORCE_ERROR, HEAD_M, MAX_STIFFNESS_N_M, MOVED_S, Motion, NO_ENERGY_J,
-    Path, RECOVERY_S, Run, STILL_M, STILL_S, TOUCH_S, Wall, grid,
+    DT, END_S, FORCE_ERROR, GuideLine, HEAD_M, MOVED_S, Motion, NO_ENERGY_J, Path, RECOVERY_S, Run,
+    STILL_M, STILL_S, TOUCH_S, Wall, grid,
 };
-use crate::contact::{Contact, HandleState};
+use crate::contact::Contact;
+use crate::fluid::Fluid;
+use crate::friction::ramp;
 use crate::plant::Plant;
 use crate::servo::Servo;
 use crate::servo::fault::Fault;
-use crate::servo::limits::Limits;
 use crate::servo::tick::Sender;
 
-/// A way out along the normal that ends beyond all contact, m.
-const OUT_M: f64 = 1.2e-2;
 /// Side of a cell, m.
 const CELL_M: f64 = 1e-3;
 /// Coulomb friction of its device, N.
-const COULOMB_N: f64 = 0.06;
+pub(super) const COULOMB_N: f64 = 0.06;
 /// Stiffnesses of its walls, N/m.
 const WALLS_N_M: [f64; 5] = [100.0, 300.0, 500.0, 800.0, 1000.0];
 /// The hand is drawn across the relief by so much to each side, and holds still on a flank, m.
 const DRAWN_M: f64 = 4e-3;
 const FLANK_M: f64 = 1.3e-3;
+/// It paints along a guide by so much to each side, m.
+const STROKE_M: f64 = 0.03;
+/// It begins so much higher than over bare relief, m, and comes down within so long, s.
+const ABOVE_M: f64 = 6e-3;
+const DESCENT_S: f64 = 0.3;
+/// Time that an arm that has painted needs beyond the usual to come to rest, s.
+const SETTLE_S: f64 = 1.0;
 
 /// What lies on the plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,6 +115,8 @@ pub struct ReliefRun {
     pub friction: f64,
     /// Coulomb friction of the device, N, which hides what a hand is given that moves.
     pub coulomb_n: f64,
+    /// Film of paint, if the hand goes through one.
+    pub film: Option<Film>,
 }
 
 /// How it went.
@@ -122,92 +132,64 @@ pub struct ReliefOutcome {
     pub share: f64,
     /// Greatest force across the normal, N.
     pub across_n: f64,
+    /// Greatest force, N.
+    pub most_n: f64,
+    /// Fastest change of it, N/s.
+    pub slew_n_s: f64,
+    /// True if the observer took energy back.
+    pub braked: bool,
     /// What latched the force at zero, if anything did.
     pub fault: Option<Fault>,
 }
 
-/// The newest model without samples: a change is spread over the recovery time, and a servo that softens it says so.
-struct Booked {
-    contact: Contact,
-    correction: DVec3,
-    speed: f64,
-    /// Share of the stiffness that the servo gives, and whether the head touched at the last tick.
-    softness: f64,
-    touched: bool,
-}
-
-impl Booked {
-    fn force(&self, position: DVec3) -> DVec3 {
-        let felt = self
-            .contact
-            .evaluate(&HandleState::upright(position), MAX_STIFFNESS_N_M);
-        felt.conservative
-    }
-
-    fn age(&mut self) {
-        let (size, shrunk) = (self.correction.length(), self.speed * DT);
-        if size > shrunk {
-            self.correction *= (size - shrunk) / size;
-        } else {
-            (self.correction, self.speed) = (DVec3::ZERO, 0.0);
-        }
-    }
-
-    fn change(&mut self, contact: Contact, position: DVec3) {
-        let before = self.force(position) + self.correction;
-        self.contact = contact;
-        self.correction = before - self.force(position);
-        self.speed = self.speed.max(self.correction.length() / RECOVERY_S);
-    }
-
-    /// Work on a short straight way, J, by Simpson's rule.
-    fn work(&self, from: DVec3, to: DVec3) -> f64 {
-        let middle = self.force((from + to) * 0.5);
-        let mean = (self.force(from) + middle * 4.0 + self.force(to)) / 6.0;
-        (mean + self.correction).dot(to - from) * self.softness
-    }
-
-    /// Energy stored in the model at a place without softening, J: its work on a way out along the normal, by Simpson's rule.
-    fn stored(&self, position: DVec3) -> f64 {
-        const STEPS: u32 = 64;
-        let step = self.contact.normal() * (OUT_M / f64::from(STEPS));
-        let along = |i: f64| self.force(position + step * i).dot(step);
-        let piece = |i: u32| {
-            let i = f64::from(i);
-            (along(i) + 4.0 * along(i + 0.5) + along(i + 1.0)) / 6.0
-        };
-        (0..STEPS).map(piece).sum()
-    }
-
-    /// Follows the stiffness that the servo says it gives: what is stored more by a wall that grows hard under a hand that
-    /// does not move, nobody put in, J.
-    fn soften(&mut self, handle: &HandleState, given_n_m: f64, position: DVec3) -> f64 {
-        let felt = self.contact.evaluate(handle, MAX_STIFFNESS_N_M);
-        let touches = felt.depth_m > 0.0 && felt.stiffness_n_m > 0.0;
-        let before = self.softness;
-        if touches {
-            self.softness = given_n_m / felt.stiffness_n_m;
-        }
-        let was_in_contact = std::mem::replace(&mut self.touched, touches);
-        match touches && was_in_contact && self.softness != before {
-            true => (self.softness - before) * self.stored(position),
-            false => 0.0,
-        }
-    }
+/// Where a hand wants to be that paints along a guide and across it.
+fn painting(run: &Run, guide: &GuideLine, s: f64) -> DVec3 {
+    let painted_s = s.clamp(TOUCH_S, MOVED_S) - TOUCH_S;
+    let drawn = DVec3::new(
+        DRAWN_M * sin(5.0 * painted_s),
+        STROKE_M * sin(8.0 * painted_s),
+        0.0,
+    );
+    // Along the guide's normal it comes down from above all relief, so gently that no force is cut.
+    let left = 1.0 - ((s - TOUCH_S) / DESCENT_S).clamp(0.0, 1.0);
+    let above = guide.normal * (guide.normal.z * ABOVE_M * left);
+    let resting_s = if s < MOVED_S {
+        s
+    } else {
+        (s - SETTLE_S).max(MOVED_S)
+    };
+    run.target(resting_s) + drawn + above
 }
 
 impl ReliefRun {
+    /// When the hand is judged to hold still, s.
+    fn still_s(&self) -> [f64; 2] {
+        STILL_S.map(|s| s + self.settle_s())
+    }
+
+    /// Time that a hand needs to come to rest beyond the usual, s.
+    fn settle_s(&self) -> f64 {
+        match self.run.guide {
+            Some(_) => SETTLE_S,
+            None => 0.0,
+        }
+    }
+
+    /// Time to live of models and guides, s: what is lost shall not fade.
+    fn live_s(&self) -> f64 {
+        (6.0 / self.run.rate_hz).max(0.1)
+    }
+
     fn contact(&self, wall: &Wall, patch: HeightPatch) -> Result<Contact, &'static str> {
         let law = ForceLaw::Rigid {
             stiffness_n_m: wall.stiffness,
         };
-        let live_s = (6.0 / self.run.rate_hz).max(0.1);
         Contact::new(&ContactModel {
             plane_point_m: wall.point.to_array(),
             plane_normal: wall.normal.to_array(),
             friction_static: 1.5 * self.friction,
             friction_kinetic: self.friction,
-            time_to_live_ns: (live_s * 1e9) as u64,
+            time_to_live_ns: (self.live_s() * 1e9) as u64,
             recovery_ns: (RECOVERY_S * 1e9) as u64,
             relief: patch,
             ..ContactModel::bare(law, HEAD_M)
@@ -216,6 +198,9 @@ impl ReliefRun {
 
     /// Where the hand wants to be at a time.
     fn target(&self, s: f64) -> DVec3 {
+        if let Some(guide) = &self.run.guide {
+            return painting(&self.run, guide, s);
+        }
         let aside = match s {
             s if s < TOUCH_S => -DRAWN_M,
             s if s < MOVED_S => -DRAWN_M * maulstick_num::cos(5.0 * (s - TOUCH_S)),
@@ -233,44 +218,33 @@ impl ReliefRun {
     /// Lets the hand go through it all.
     ///
     /// # Errors
-    /// What is wrong with a wall that makes no contact model.
+    /// What is wrong with a wall, a guide or a film that is refused.
     pub fn go(&self) -> Result<ReliefOutcome, &'static str> {
-        let unguarded = self.run.path == Path::Sent;
-        let guard = |usual: f64| if unguarded { f64::INFINITY } else { usual };
-        let usual = Limits::default();
-        let mut servo = Servo::new(Limits {
-            max_force_n: 3.3,
-            continuous_force_n: 3.3,
-            max_stiffness_n_m: MAX_STIFFNESS_N_M,
-            damping_n_s_m: DAMPING_N_S_M,
-            oscillation_m: guard(usual.oscillation_m),
-            max_speed_m_s: guard(usual.max_speed_m_s),
-            ..usual
-        });
+        let mut servo = Servo::new(self.run.limits());
         let mut plant = Plant::omni(self.run.hand, self.target(0.0));
         plant.coulomb_n = self.coulomb_n;
         let (mut contact, mut sent) = (
             self.contact(&self.run.wall(0.0), HeightPatch::flat())?,
             None,
         );
-        let mut booked = Booked {
-            contact,
-            correction: DVec3::ZERO,
-            speed: 0.0,
-            softness: 1.0,
-            touched: false,
-        };
+        let guide = self.run.guide.map(|guide| guide.guide(self.live_s()));
+        let guide = guide.transpose()?;
+        let mut ledger = Ledger::new(contact, self.run.guide);
         let mut link = Link::new(self.run.rate_hz, self.run.jitter, 1);
-        let (mut extent, mut force) = (Extent::NONE, DVec3::ZERO);
+        let mut paint = self
+            .film
+            .map(|film| (film, Link::new(film.rate_hz, film.jitter, 2), DVec3::ZERO));
+        let mut extent = Extent::NONE;
+        let (mut force, mut given) = (DVec3::ZERO, DVec3::ZERO);
         let (mut push, mut asked, mut across_n): (f64, f64, f64) = (0.0, 0.0, 0.0);
-        let (mut net_j, mut most_j, mut least_j, mut rise_j): (f64, f64, f64, f64) =
-            (0.0, 0.0, 0.0, 0.0);
-        let mut fault = None;
-        for number in 0..(END_S / DT) as usize {
+        let (mut most_n, mut slew_n_s): (f64, f64) = (0.0, 0.0);
+        let (mut braked, mut fault) = (false, None);
+        let still_s = self.still_s();
+        for number in 0..((END_S + self.settle_s()) / DT) as usize {
             let s = number as f64 * DT;
             let handle = plant.handle();
             let tip = handle.position - DVec3::Z * HEAD_M;
-            booked.age();
+            ledger.age();
             if let Some((wall, around)) = link.newest(s, |s| (self.run.wall(s), tip)) {
                 let patch = self.ground.patch(&wall, around);
                 // Over a wall that rests most patches are the one before.
@@ -279,45 +253,61 @@ impl ReliefRun {
                     sent = Some(patch);
                 }
                 servo.receive(contact, Sender::Same);
-                booked.change(contact, handle.position);
+                if let Some(guide) = guide {
+                    servo.receive_guide(guide, Sender::Same);
+                }
+                ledger.change(contact, handle.position);
+            }
+            if let Some((film, link, carried)) = &mut paint {
+                let touch = ramp(ledger.depth(handle.position));
+                *carried = film.follow(*carried, handle.velocity, touch);
+                if let Some(message) = link.newest(s, |_| film.message(handle.velocity, *carried)) {
+                    servo.receive_fluid(Fluid::new(&message, 1.0)?);
+                }
             }
             let (wanted, tick) = servo.step(&handle, DT);
-            fault = fault.or(tick.fault);
+            (braked, fault) = (braked || tick.braked, fault.or(tick.fault));
+            most_n = most_n.max(wanted.length());
+            slew_n_s = slew_n_s.max((wanted - given).length() / DT);
+            given = wanted;
             match self.run.path {
                 Path::Servo => force = wanted,
                 Path::Sent if number % 16 == 0 => force = wanted,
                 Path::Sent | Path::Nothing => {}
             }
-            let normal = booked.contact.normal();
+            let normal = ledger.normal();
             let force = match self.tilt {
                 Tilt::BySlope => force,
                 Tilt::Upright => normal * force.dot(normal),
             };
-            let (from, before_j) = (plant.true_position(), plant.given_j());
+            let before = plant;
             if fault.is_none() && self.run.path == Path::Servo {
-                net_j += booked.soften(&handle, tick.stiffness_n_m, from);
+                ledger.soften(&handle, tick.stiffness_n_m, before.true_position());
             }
             plant.advance(force, self.target(s), DT);
-            let to = plant.true_position();
-            net_j += plant.given_j() - before_j - booked.work(from, to);
-            most_j = most_j.max(net_j);
-            // What the device's mass keeps it has not given yet.
-            let with_motion_j = net_j + plant.kinetic_j();
-            least_j = least_j.min(with_motion_j);
-            rise_j = rise_j.max(with_motion_j - least_j);
+            let kept_j = paint
+                .as_ref()
+                .map_or(0.0, |(film, _, carried)| film.kept_j(*carried));
+            ledger.book(&before, &plant, kept_j);
             across_n = across_n.max((force - normal * force.dot(normal)).length());
-            if (STILL_S[0]..STILL_S[1]).contains(&s) {
+            if (still_s[0]..still_s[1]).contains(&s) {
+                let to = plant.true_position();
                 extent.include(to);
-                push += force.dot(normal);
-                asked += booked.force(to).dot(normal);
+                let guide = self.run.guide;
+                let guided = guide.map_or(DVec3::ZERO, |it| it.force(to - DVec3::Z * HEAD_M));
+                push += (force - guided).dot(normal);
+                asked += ledger.force(to).dot(normal);
             }
         }
         Ok(ReliefOutcome {
             wobble_m: extent.peak_to_peak_m(),
-            net_j: most_j,
-            rise_j,
+            net_j: ledger.most_j,
+            rise_j: ledger.rise_j,
             share: push / asked,
             across_n,
+            most_n,
+            slew_n_s,
+            braked,
             fault,
         })
     }
@@ -349,6 +339,7 @@ pub fn relief_grid(path: Path) -> Vec<ReliefRun> {
                         tilt: Tilt::BySlope,
                         friction,
                         coulomb_n: COULOMB_N,
+                        film: None,
                     });
                 }
             }
@@ -358,110 +349,4 @@ pub fn relief_grid(path: Path) -> Vec<ReliefRun> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::plant::Hand;
-
-    fn went(runs: impl IntoIterator<Item = ReliefRun>) -> Vec<(ReliefRun, ReliefOutcome)> {
-        let go = |run: ReliefRun| (run, run.go().expect("a wall"));
-        runs.into_iter().map(go).collect()
-    }
-
-    fn most(all: &[(ReliefRun, ReliefOutcome)], of: impl Fn(&ReliefOutcome) -> f64) -> f64 {
-        all.iter().map(|(_, it)| of(it)).fold(0.0, f64::max)
-    }
-
-    fn every_hand_is_still(ground: Ground) {
-        let runs = relief_grid(Path::Servo);
-        let all = went(runs.into_iter().filter(|run| run.ground == ground));
-        let bad: Vec<_> = all.iter().filter(|(run, it)| !run.is_good(it)).collect();
-        for (run, outcome) in bad.iter().take(10) {
-            println!("{run:?}: {outcome:?}");
-        }
-        let soft = |(run, it): &(ReliefRun, ReliefOutcome)| match run.run.stiffness {
-            k if k < super::super::BOUND_N_M => (it.share - 1.0).abs(),
-            _ => 0.0,
-        };
-        let moved: Vec<_> = all
-            .iter()
-            .filter(|(run, _)| run.friction == 0.0)
-            .copied()
-            .collect();
-        println!(
-            "{ground:?}: {} runs, {} bad: wobble {:.3} mm, energy {:.3} µJ, {:.3} µJ from some time on, force off by {:.2} %, {:.2} N across at most",
-            all.len(),
-            bad.len(),
-            most(&all, |it| it.wobble_m) * 1e3,
-            most(&all, |it| it.net_j) * 1e6,
-            most(&moved, |it| it.rise_j) * 1e6,
-            all.iter().map(soft).fold(0.0, f64::max) * 1e2,
-            most(&all, |it| it.across_n)
-        );
-        assert_eq!((all.len(), bad.len()), (675, 0), "{ground:?}");
-    }
-
-    #[test]
-    fn every_hand_is_still_on_rough_ground_and_gets_no_energy_of_it() {
-        every_hand_is_still(Ground::Rough);
-    }
-
-    #[test]
-    fn every_hand_is_still_on_a_ridge_and_gets_no_energy_of_it() {
-        every_hand_is_still(Ground::Ridge);
-    }
-
-    #[test]
-    fn every_hand_is_still_at_an_edge_and_gets_no_energy_of_it() {
-        every_hand_is_still(Ground::Edge);
-    }
-
-    fn some(stiffness: f64, ground: Ground, path: Path) -> impl Iterator<Item = ReliefRun> {
-        let runs = relief_grid(path).into_iter();
-        runs.filter(move |it| {
-            (it.run.stiffness, it.ground, it.friction) == (stiffness, ground, 0.0)
-        })
-    }
-
-    /// The seeded faults: a force that is sent over a network shakes a fingertip here too, and a servo that does nothing is
-    /// found out.
-    #[test]
-    fn a_force_from_afar_and_none_are_found_out() {
-        for ground in [Ground::Rough, Ground::Ridge, Ground::Edge] {
-            let sent =
-                went(some(500.0, ground, Path::Sent).filter(|it| it.run.hand == Hand::FINGERTIP));
-            assert!(sent.iter().all(|(run, it)| !run.is_good(it)), "{ground:?}");
-            let nothing = went(some(300.0, ground, Path::Nothing));
-            let still = nothing
-                .iter()
-                .filter(|(it, _)| it.run.motion == Motion::Still);
-            assert!(still.clone().count() > 20);
-            for (run, outcome) in still {
-                assert!(!run.is_good(outcome), "{run:?}: {outcome:?}");
-            }
-        }
-    }
-
-    /// The other seeded fault: a force that is not tilted by the slope, without the friction of the device that would hide it.
-    #[test]
-    fn an_upright_force_on_relief_gives_energy() {
-        for ground in [Ground::Rough, Ground::Ridge, Ground::Edge] {
-            let without_friction = |tilt| {
-                let runs = some(300.0, ground, Path::Servo).map(move |it| ReliefRun {
-                    tilt,
-                    coulomb_n: 0.0,
-                    ..it
-                });
-                let still = runs.filter(|it| it.run.motion == Motion::Still);
-                let all = went(still);
-                most(&all, |it| it.rise_j)
-            };
-            let [tilted_j, upright_j] = [Tilt::BySlope, Tilt::Upright].map(without_friction);
-            println!(
-                "{ground:?}: tilted {:.2} µJ, upright {:.0} µJ",
-                tilted_j * 1e6,
-                upright_j * 1e6
-            );
-            assert!(tilted_j <= NO_ENERGY_J && upright_j > 10.0 * NO_ENERGY_J);
-        }
-    }
-}
+mod tests;
