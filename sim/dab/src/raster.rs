@@ -16,17 +16,9 @@ use maulstick_num::wide;
 
 use crate::dither::Dither;
 use crate::films::Films;
+use crate::stroke::Way;
 use crate::touching::{Brush, Canvas, Touching, touch};
 use crate::transfer::{Limits, Paints, Row, blend};
-
-/// How far a blend goes.
-#[derive(Clone, Copy, Debug)]
-pub enum Way {
-    /// As far as each strip moves in the step.
-    OfStrips,
-    /// So many cells.
-    Cells(f32),
-}
 
 /// What a blend met.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -193,14 +185,9 @@ impl Raster {
             plane.clear();
             plane.resize(cells, 0.0);
         }
-        let reference = traits.cell_per_reference;
-        let by_even = match way {
-            Way::OfStrips => [reference, 0.0],
-            Way::Cells(cells) => [0.0, cells * reference],
-        };
         shares(
             &traits.exchanging,
-            by_even,
+            way.factors(traits.cell_per_reference),
             [&self.drawn.cover, &self.drawn.travel],
             [&mut self.rate, &mut self.way],
         );

@@ -11,9 +11,9 @@ use maulstick_model::interface::{PaintModel, Step, StepReport, Sweep, Transfer};
 use maulstick_model::modes::{sample, vacuum};
 
 use crate::dither::Dither;
-use crate::raster::{Raster, Way};
+use crate::raster::Raster;
 use crate::reservoir::{Refill, refill};
-use crate::stroke::{Course, Stroker, bend, between, parts, places};
+use crate::stroke::{Stroker, Way, each_drawing};
 
 /// Blends of a step at most, for their numbers.
 const BLENDS: u64 = 256;
@@ -129,11 +129,12 @@ impl Dab {
             strips: vec![false; step.head.strips()],
             report: StepReport::default(),
         };
-        let cells = match self.stroker.unwrap_or_else(|| Stroker::of(step)) {
-            Stroker::Faster => self.stroke_faster(step, &mut stroke),
-            Stroker::Better => self.stroke_better(step, None, &mut stroke),
-            Stroker::Spline => self.stroke_better(step, bend(&step.sweep), &mut stroke),
-        };
+        let stroker = self.stroker.unwrap_or_else(|| Stroker::of(step));
+        let (sweep, mut poses) = (step.sweep, std::mem::take(&mut self.poses));
+        let cells = each_drawing(&sweep, stroker, &mut poses, |motion, places, way| {
+            self.blend(step, motion, places, way, &mut stroke);
+        });
+        self.poses = poses;
         if stroke.report.footprint_cells == 0 {
             return StepReport::default();
         }
@@ -153,47 +154,6 @@ impl Dab {
         step.window
             .touch((from, [from[0] + size[0], from[1] + size[1]]));
         stroke.report
-    }
-
-    /// Algorithm 1. The way of the anchor point, cells.
-    fn stroke_faster(&mut self, step: &mut Step<'_>, stroke: &mut Stroke) -> f32 {
-        let way = Course::of(&step.sweep, None).way;
-        let places: Vec<[i64; 2]> = places(way).collect();
-        let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
-        let to = step.sweep.to;
-        let rests = Sweep {
-            before: None,
-            from: to,
-            to,
-        };
-        let each = Way::Cells(length / places.len() as f32);
-        self.blend(step, rests, &places, each, stroke);
-        length
-    }
-
-    /// Algorithm 2, along a parabola if there is one. The way of the anchor point, cells.
-    fn stroke_better(
-        &mut self,
-        step: &mut Step<'_>,
-        bend: Option<(&HeadPose, f32)>,
-        stroke: &mut Stroke,
-    ) -> f32 {
-        let whole = step.sweep;
-        let course = Course::of(&whole, bend);
-        let [mut before, mut after] = std::mem::take(&mut self.poses);
-        for run in course.runs(parts(&whole)) {
-            between(&whole, bend, run.part[0], &mut before);
-            between(&whole, bend, run.part[1], &mut after);
-            let sweep = Sweep {
-                before: None,
-                from: &before,
-                to: &after,
-            };
-            self.blend(step, sweep, &run.shifts, Way::OfStrips, stroke);
-        }
-        self.poses = [before, after];
-        let [x, y] = course.way;
-        (x * x + y * y).sqrt()
     }
 
     /// Draws the head in the middle of a motion, and blends it with the canvas at places beside it.

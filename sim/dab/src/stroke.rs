@@ -25,6 +25,67 @@ pub enum Stroker {
     Spline,
 }
 
+/// Way of the head in a blend.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Way {
+    /// As far as each strip moves in the step.
+    OfStrips,
+    /// So many cells.
+    Cells(f32),
+}
+
+impl Way {
+    /// Way of a cell of the head in reference cells, of which a cell is `cell_per_reference`: a factor on the way of its strip
+    /// in the step, and a summand.
+    #[must_use]
+    pub fn factors(self, cell_per_reference: f32) -> [f32; 2] {
+        match self {
+            Self::OfStrips => [cell_per_reference, 0.0],
+            Self::Cells(cells) => [0.0, cells * cell_per_reference],
+        }
+    }
+}
+
+/// Cuts a step into drawings of the head, and returns the way of its anchor point, cells. `draw` gets of each drawing the
+/// motion in whose middle the head is drawn, the places beside it at which it is blended, and the way of each blend; `poses`
+/// is room for the heads of a motion.
+pub fn each_drawing(
+    sweep: &Sweep<'_>,
+    stroker: Stroker,
+    poses: &mut [HeadPose; 2],
+    mut draw: impl FnMut(Sweep<'_>, &[[i64; 2]], Way),
+) -> f32 {
+    let bend = match stroker {
+        Stroker::Spline => bend(sweep),
+        Stroker::Faster | Stroker::Better => None,
+    };
+    let course = Course::of(sweep, bend);
+    let [x, y] = course.way;
+    let length = (x * x + y * y).sqrt();
+    if stroker == Stroker::Faster {
+        let places: Vec<[i64; 2]> = places(course.way).collect();
+        let rests = Sweep {
+            before: None,
+            from: sweep.to,
+            to: sweep.to,
+        };
+        draw(rests, &places, Way::Cells(length / places.len() as f32));
+        return length;
+    }
+    let [before, after] = poses;
+    for run in course.runs(parts(sweep)) {
+        between(sweep, bend, run.part[0], before);
+        between(sweep, bend, run.part[1], after);
+        let motion = Sweep {
+            before: None,
+            from: before,
+            to: after,
+        };
+        draw(motion, &run.shifts, Way::OfStrips);
+    }
+    length
+}
+
 /// The head at `t` of its way, 0 to 1: on the chord, or on the parabola through `before`, which it passed at −`ago`.
 pub fn between(sweep: &Sweep<'_>, bend: Option<(&HeadPose, f32)>, t: f32, into: &mut HeadPose) {
     let (from, to) = (sweep.from, sweep.to);

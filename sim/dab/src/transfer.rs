@@ -44,21 +44,21 @@ impl Limits {
     }
 }
 
-/// A cell where brush and canvas meet; paint in quanta.
+/// Contact of brush and canvas on a cell, or on the cells of a run; paint in quanta.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Meeting {
-    /// Of the brush over it.
-    pub brush: f32,
-    /// On the canvas.
-    pub canvas: f32,
+pub struct Meeting<T = f32> {
+    /// Paint of the brush.
+    pub brush: T,
+    /// Paint of the canvas.
+    pub canvas: T,
     /// Share of either side that goes over, 1 − (1 − R)^T, by the share of the cell that is covered.
-    pub rate: f32,
+    pub rate: T,
     /// Way of the brush by the share of the cell that is covered, reference cells.
-    pub way: f32,
+    pub way: T,
     /// Share of the canvas's paint that the brush reaches.
-    pub reach: f32,
+    pub reach: T,
     /// Gap between brush and canvas, which the brush's paint bridges.
-    pub gap: f32,
+    pub gap: T,
 }
 
 /// Cells that are done together.
@@ -70,41 +70,21 @@ pub(crate) const PLACES: [f32; RUN] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 /// have them and room for them.
 #[must_use]
 pub fn leaving(meeting: &Meeting, limits: &Limits, threshold: f32) -> [f32; 2] {
-    let Meeting {
-        brush,
-        canvas,
-        rate,
-        way,
-        reach,
-        gap,
-    } = *meeting;
-    let [brush, canvas, rate, way, reach, gap] =
-        [brush, canvas, rate, way, reach, gap].map(Plain::splat);
-    let meetings = Meetings {
-        brush,
-        canvas,
-        rate,
-        way,
-        reach,
-        gap,
+    let splat = Plain::splat;
+    let run = Meeting {
+        brush: splat(meeting.brush),
+        canvas: splat(meeting.canvas),
+        rate: splat(meeting.rate),
+        way: splat(meeting.way),
+        reach: splat(meeting.reach),
+        gap: splat(meeting.gap),
     };
-    let both = meetings.leaving(limits, Plain::splat(threshold));
+    let both = run.leaving(limits, splat(threshold));
     both.map(|side| side.values()[0])
 }
 
-/// Cells of a run, as each is a [`Meeting`].
-#[derive(Clone, Copy)]
-struct Meetings<L> {
-    brush: L,
-    canvas: L,
-    rate: L,
-    way: L,
-    reach: L,
-    gap: L,
-}
-
-impl<L: Lanes> Meetings<L> {
-    /// As the function of this name.
+impl<L: Lanes> Meeting<L> {
+    /// [`leaving`] on the cells of a run.
     #[inline(always)]
     fn leaving(self, limits: &Limits, threshold: L) -> [L; 2] {
         let Self {
@@ -212,8 +192,8 @@ wide! {
             let canvas = sums(paints.canvas, on_canvas + at);
             let place = L::splat(at as f32) + L::of(&PLACES);
             let sum = L::splat(first) + place * L::splat(Dither::ACROSS);
-            let meetings = Meetings { brush, canvas, rate, way, reach, gap };
-            let [given, taken] = meetings.leaving(limits, sum - sum.floor());
+            let meeting = Meeting { brush, canvas, rate, way, reach, gap };
+            let [given, taken] = meeting.leaving(limits, sum - sum.floor());
             let gives = given / brush.most(one);
             let takes = taken / canvas.most(one);
             let lost = if limits.lasting { given.least(taken) } else { taken };

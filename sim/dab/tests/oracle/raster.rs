@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use maulstick_dab::dither::Dither;
-use maulstick_dab::raster::{Raster, Way};
-use maulstick_dab::stroke::Stroker;
+use maulstick_dab::raster::Raster;
+use maulstick_dab::stroke::{Stroker, Way};
 use maulstick_model::footprint::drawn::Drawn;
 
 use crate::scene::Bench;

@@ -1,7 +1,7 @@
-//! The drawings of the head in a step, as `stroke.rs` of maulstick-dab has them, and the cells on which they are.
+//! Drawings of the head in a step ([`each_drawing`]), and the cells on which they are.
 
 use maulstick_brush::HeadPose;
-use maulstick_dab::stroke::{Course, Stroker, bend, between, parts, places};
+use maulstick_dab::stroke::{Stroker, each_drawing};
 use maulstick_model::brush::head::low_bounds;
 use maulstick_model::interface::{Step, Sweep};
 
@@ -17,35 +17,15 @@ pub(crate) struct Drawing {
 
 /// The drawings of a step, and the way of its anchor point, cells.
 pub(crate) fn drawings(step: &Step<'_>, stroker: Stroker) -> (Vec<Drawing>, f32) {
-    let whole = &step.sweep;
-    let reference = step.traits.cell_per_reference;
-    let bend = match stroker {
-        Stroker::Spline => bend(whole),
-        Stroker::Faster | Stroker::Better => None,
-    };
-    let course = Course::of(whole, bend);
-    let [x, y] = course.way;
-    let length = (x * x + y * y).sqrt();
-    if stroker == Stroker::Faster {
-        let shifts: Vec<[i64; 2]> = places(course.way).collect();
-        let each = length / shifts.len() as f32;
-        let drawing = Drawing {
-            poses: [whole.to, whole.to].map(HeadPose::clone),
-            shifts,
-            by_even: [0.0, each * reference],
-        };
-        return (vec![drawing], length);
-    }
-    let drawn = course.runs(parts(whole)).map(|run| Drawing {
-        poses: run.part.map(|t| {
-            let mut pose = HeadPose::default();
-            between(whole, bend, t, &mut pose);
-            pose
-        }),
-        shifts: run.shifts,
-        by_even: [reference, 0.0],
+    let (mut drawings, mut poses) = (Vec::new(), Default::default());
+    let length = each_drawing(&step.sweep, stroker, &mut poses, |motion, shifts, way| {
+        drawings.push(Drawing {
+            poses: [motion.from.clone(), motion.to.clone()],
+            shifts: shifts.to_vec(),
+            by_even: way.factors(step.traits.cell_per_reference),
+        });
     });
-    (drawn.collect(), length)
+    (drawings, length)
 }
 
 impl Drawing {

@@ -31,7 +31,7 @@ use crate::steps::residence::Residence;
 use crate::steps::workspace::{Batch, Call};
 use drawing::{drawings, grid};
 use record::BlendRecord;
-use stages::{BEGINS, BLENDS, DRAWS, ENDS, GOES_ON, KERNELS};
+use stages::{BLEND, DRAW, KERNELS, NEXT_DRAWING, REFILL, WEIGH};
 
 impl GpuModel {
     /// The paint model `dab` on a device; the load on the machine chooses how it strokes.
@@ -86,7 +86,7 @@ impl Planner for Steps {
         let mut own = BlendRecord::new(step, &bounds, (number, way));
         own.first_drawn = drawings.first().map_or(0, |(_, grid)| grid.cells() as u32);
         let record = StepRecord::new(step, &step.sweep, on, (&bounds, batch.steps));
-        let whole = batch.next(record, BEGINS);
+        let whole = batch.next(record, WEIGH);
         batch.blends.push(bytemuck::cast(own));
         batch.calls.push(whole);
         let mut numbered = first_blend(number);
@@ -94,9 +94,9 @@ impl Planner for Steps {
             let sweep = drawing.sweep();
             let record = StepRecord::new(step, &sweep, on, (grid, batch.steps));
             let record = record.draw(step, &sweep, &mut batch.poses);
-            let call = batch.next(record, BLENDS);
-            let goes_on = if place > 0 { &GOES_ON[..] } else { &[] };
-            let stages = goes_on.iter().chain(&DRAWS);
+            let call = batch.next(record, BLEND);
+            let between = if place > 0 { &NEXT_DRAWING[..] } else { &[] };
+            let stages = between.iter().chain(&DRAW);
             batch.calls.extend(stages.map(|stage| Call {
                 stage: *stage,
                 ..call
@@ -114,7 +114,7 @@ impl Planner for Steps {
             }
         }
         batch.calls.push(Call {
-            stage: ENDS,
+            stage: REFILL,
             ..whole
         });
         batch.steps += 1;

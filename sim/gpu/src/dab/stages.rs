@@ -5,8 +5,8 @@ use maulstick_dab::volume::{MOST, UNIT};
 
 use crate::steps::kernels::{Binding as B, Groups, Kernel, RASTERIZER, source};
 
-/// The stages; a step does [`BEGINS`], those of [`DRAWS`] and [`BLENDS`] for each of its drawings, [`GOES_ON`] between two of
-/// them, and [`ENDS`].
+/// Kernels. A step runs [`WEIGH`], for each of its drawings [`DRAW`] and a [`BLEND`] a place, [`NEXT_DRAWING`] between two
+/// drawings, and [`REFILL`].
 pub(crate) static KERNELS: [Kernel; 7] = [
     Kernel {
         name: "weigh",
@@ -83,13 +83,13 @@ pub(crate) static KERNELS: [Kernel; 7] = [
     },
 ];
 
-/// How thick films are, and how high paint stands.
-pub(crate) const BEGINS: usize = 0;
-/// The head is drawn.
-pub(crate) const DRAWS: [usize; 2] = [1, 2];
-/// It is blended with the canvas at one place.
-pub(crate) const BLENDS: usize = 3;
-/// Texels get what their cells hold, and the next drawing begins.
-pub(crate) const GOES_ON: [usize; 2] = [4, 5];
-/// The last drawing's texels get it, and reservoirs fill them again.
-pub(crate) const ENDS: usize = 6;
+/// Weighs films and wet paint, once a step.
+pub(crate) const WEIGH: usize = 0;
+/// Draws the head: rasterizer, then cells.
+pub(crate) const DRAW: [usize; 2] = [1, 2];
+/// Blends the drawn head with the canvas at one place.
+pub(crate) const BLEND: usize = 3;
+/// Gives the films of cells back to their texels and clears the grid, between two drawings.
+pub(crate) const NEXT_DRAWING: [usize; 2] = [4, 5];
+/// Gives back the films of the last drawing, and refills the brush's surface from its reservoirs.
+pub(crate) const REFILL: usize = 6;

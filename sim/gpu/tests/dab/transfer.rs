@@ -3,8 +3,8 @@
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_dab::dither::Dither;
 use maulstick_dab::first_blend;
-use maulstick_dab::raster::{Raster, Way};
-use maulstick_dab::stroke::{Course, Stroker, places};
+use maulstick_dab::raster::Raster;
+use maulstick_dab::stroke::{Course, Stroker, Way, places};
 use maulstick_gpu::dab::probe::{Probe, Prober};
 use maulstick_model::footprint::drawn::Drawn;
 use maulstick_model::interface::{Handling, Step, Sweep, Transfer};
