@@ -52,22 +52,6 @@ pub fn tile_columns(
     columns
 }
 
-/// The ends of a column without pieces and gaps thinner than `thin_m`, m; paint over a thin gap is put down on what is below it.
-#[must_use]
-pub fn without_thin(ends: &[f32], thin_m: f64) -> Vec<f32> {
-    let is_thin = |low: f32, high: f32| f64::from(high) - f64::from(low) < thin_m;
-    let mut kept = vec![ends[0]];
-    for piece in ends[1..].chunks_exact(2) {
-        let place = kept.len() - 1;
-        if is_thin(kept[place], piece[0]) {
-            kept[place] = kept[place].max(piece[1]);
-        } else if !is_thin(piece[0], piece[1]) {
-            kept.extend_from_slice(piece);
-        }
-    }
-    kept
-}
-
 /// Films of a tile, one over the other; heights in cells above the highest bare peaks.
 struct FilmStack {
     layers: Layers,

@@ -4,10 +4,10 @@ use maulstick_appearance::blank_surface::BlankSurface;
 use maulstick_appearance::show_paint::{Counted, ShowPaint};
 use maulstick_canvas::tile::{Tile, TileId};
 
-use crate::columns::{has_layers, tile_columns, without_thin};
+use crate::columns::{has_layers, tile_columns};
 
-/// Thickness from which on a piece over air is shown, cells.
-const THICK: f64 = 0.5;
+/// Thickness from which on a piece over air is shown above it, cells: a lip as thin as the cells are wide would be specks.
+const THICK: f32 = 2.0;
 
 /// Counted paint whose ridges may overhang.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +20,9 @@ impl ShowPaint for Overhangs {
             let relief = bare.relief.tile(id);
             let cell_m = 1.0 / f64::from(bare.relief.cells_per_m());
             for (cell, ends) in tile_columns(&bare.relief, id, tile, cell_m) {
-                if let Some(top) = without_thin(&ends, THICK * cell_m).last() {
+                if let [.., bottom, top] = ends[..]
+                    && top - bottom >= THICK * cell_m as f32
+                {
                     heights[cell] = top - relief[cell];
                 }
             }

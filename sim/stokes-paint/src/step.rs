@@ -21,7 +21,7 @@ use crate::voxels::Voxels;
 /// Cells around the contacts in which paint flows.
 const AROUND: i64 = 5;
 /// Voxels of a film from which on it is dragged along; twice as thick it is whole.
-const FLOWS_FROM: f32 = 0.2;
+const FLOWS_FROM: f32 = 0.4;
 
 /// The paint model `stokes`, with room for its step.
 #[derive(Debug, Default)]

@@ -101,7 +101,7 @@ proptest! {
         fill(&mut window, &all, &[]);
         let mut voxels = Voxels::read(&window, AREA, Layers::of(&window, CELL_M), &[0, 1]);
         let before = voxels.volume.counts();
-        let aside = voxels.set_aside(stain, 0.4);
+        let aside = voxels.set_aside(stain, 0.8);
         let some: u64 = aside.iter().map(|count| u64::from(*count)).sum();
         prop_assert_eq!(voxels.volume.counts().iter().sum::<u64>() + some, before.iter().sum::<u64>());
         voxels.put_back(&aside);

@@ -248,7 +248,7 @@ fn a_brush_ploughs_a_furrow_between_ridges() {
 
 #[test]
 fn thin_paint_is_not_pushed_beside_a_lump_that_is() {
-    let (middle, thin) = (64 * 192 + 60, (0.19 * CELL).floor());
+    let (middle, thin) = (64 * 192 + 60, (0.39 * CELL).floor());
     let pushed = |ground: f32| {
         let mut easel = Easel::new(192, Some((3, ground)));
         easel.handling.transfer = Transfer::Marker { flow: 0.0 };

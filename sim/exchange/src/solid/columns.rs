@@ -5,7 +5,7 @@ use std::slice;
 use std::sync::Arc;
 
 use maulstick_appearance::bands::Banded;
-use maulstick_stokes_paint::columns::{has_layers, tile_columns, without_thin};
+use maulstick_stokes_paint::columns::{has_layers, tile_columns};
 use maulstick_types::paint::TILE;
 
 /// Columns of a band, row after row from its lowest: the ends of each in m above the highest bare peaks, as
@@ -51,4 +51,19 @@ impl Columns {
             .get(&cell)
             .map_or_else(|| slice::from_ref(&self.heights[cell]), Vec::as_slice)
     }
+}
+
+/// The ends of a column without pieces and gaps thinner than `thin_m`, m; paint over a thin gap is put down on what is below it.
+fn without_thin(ends: &[f32], thin_m: f64) -> Vec<f32> {
+    let is_thin = |low: f32, high: f32| f64::from(high) - f64::from(low) < thin_m;
+    let mut kept = vec![ends[0]];
+    for piece in ends[1..].chunks_exact(2) {
+        let place = kept.len() - 1;
+        if is_thin(kept[place], piece[0]) {
+            kept[place] = kept[place].max(piece[1]);
+        } else if !is_thin(piece[0], piece[1]) {
+            kept.extend_from_slice(piece);
+        }
+    }
+    kept
 }
