@@ -105,9 +105,7 @@ impl Fluid {
             recovery_s: message.recovery_ns as f64 * 1e-9,
         })
     }
-}
 
-impl Fluid {
     /// Share of its own motion that the paint may still have at an age, s.
     fn still_moves(&self, age_s: f64) -> f64 {
         if self.recovery_s <= 0.0 {

@@ -20,9 +20,9 @@ fn is_layered(planes: &Planes) -> bool {
     planes.own().iter().any(|own| place_of(own.shape).is_some())
 }
 
-/// The columns of a tile in which there is air under paint, by cell: their ends in m above the highest bare peaks, of which
-/// the first is the top of what lies on the ground, and then come bottom and top of each piece over air. A film lies on the highest of what
-/// dried before it.
+/// The columns of a tile in which there is air under paint, by cell: their ends in m above the highest bare peaks. The first
+/// is the top of what lies on the ground, then come bottom and top of each piece over air. A film lies on the highest of
+/// what dried before it.
 #[must_use]
 pub fn tile_columns(
     relief: &Relief,

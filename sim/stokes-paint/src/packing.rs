@@ -47,15 +47,18 @@ impl Voxels {
 
     /// Moves so many quanta, which must be there, from one voxel to another, as the mixture that they are.
     pub(crate) fn shift(&mut self, [from, to]: [usize; 2], quanta: u32) {
-        let total = u64::from(self.total(from).max(1));
+        if quanta == 0 {
+            return;
+        }
+        let total = u64::from(self.total(from));
         let mut left = quanta;
-        let paints = self.volume.paints.iter_mut();
-        paints.for_each(|paint| {
+        for paint in &mut self.volume.paints {
             let goes = (u64::from(paint[from]) * u64::from(quanta) / total) as u32;
             paint[from] -= goes;
             paint[to] += goes;
             left -= goes;
-        });
+        }
+        // What rounding has left of them.
         for paint in &mut self.volume.paints {
             let goes = left.min(paint[from]);
             paint[from] -= goes;

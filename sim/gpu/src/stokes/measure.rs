@@ -41,7 +41,7 @@ impl GpuFlow {
         let gpu = &self.gpu;
         gpu.guarded(|| {
             // What is copied is a whole number of words.
-            let piece = self.room.fields.size() / 16 * 4;
+            let piece = self.buffers.fields.size() / 16 * 4;
             let spare = gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("stokes copy"),
                 size: piece,
@@ -55,7 +55,7 @@ impl GpuFlow {
                 let mut left = (self.bytes / 2).next_multiple_of(4);
                 while left > 0 {
                     let some = left.min(piece);
-                    encoder.copy_buffer_to_buffer(&self.room.fields, 0, &spare, 0, some);
+                    encoder.copy_buffer_to_buffer(&self.buffers.fields, 0, &spare, 0, some);
                     left -= some;
                 }
                 gpu.queue.submit([encoder.finish()]);

@@ -14,18 +14,18 @@
 //! | --- | --- |
 //! | `plan` | where the fields lie |
 //! | `record` | a step and a call as the shaders take them |
-//! | `room` | the buffers of a window |
+//! | `buffers` | the buffers of a window |
 //! | `kernels` | the stages, and their pipelines |
 //! | `schedule` | the dispatches of a step |
 //! | `brush_flow` | the flow around a brush of the paint model `stokes` |
 //! | `measure` | steps beside a copy, for the benchmark |
 
 mod brush_flow;
+mod buffers;
 mod kernels;
 mod measure;
 mod plan;
 mod record;
-mod room;
 mod schedule;
 
 use bytemuck::{bytes_of, cast_slice, pod_collect_to_vec};
@@ -37,12 +37,12 @@ use wgpu::BufferUsages as Usage;
 use crate::arena::{Arena, read};
 use crate::device::{Device, GpuError};
 pub use brush_flow::GpuBrushFlow;
+use buffers::WindowBuffers;
 pub use kernels::Fault;
 use kernels::Pipelines;
 pub use plan::Paints;
 use plan::Plan;
 use record::{CALL_STRIDE, WindowRecord};
-use room::Room;
 use schedule::{Dispatch, Schedule};
 
 /// Fields of window.wgsl that are uploaded or read.
@@ -68,7 +68,7 @@ pub struct GpuFlow {
     dispatches: Vec<Dispatch>,
     /// Bytes that the stages of a step go over.
     bytes: u64,
-    room: Room,
+    buffers: WindowBuffers,
     back: Arena,
     /// Number of the next order of axes.
     turn: usize,
@@ -159,11 +159,11 @@ impl GpuFlow {
             ..*tuning
         };
         let (plan, dispatches, bytes) = laid_out(grid, effort, &tuning)?;
-        let (pipelines, room) = gpu.guarded(|| {
+        let (pipelines, buffers) = gpu.guarded(|| {
             let pipelines = Pipelines::new(&gpu, tuning.fault);
-            let room = Room::new(&gpu, &pipelines, plan.bytes(), dispatches.len());
-            room.write_calls(&gpu, &dispatches);
-            Ok((pipelines, room))
+            let buffers = WindowBuffers::new(&gpu, &pipelines, plan.bytes(), dispatches.len());
+            buffers.write_calls(&gpu, &dispatches);
+            Ok((pipelines, buffers))
         })?;
         Ok(Self {
             tuning,
@@ -172,7 +172,7 @@ impl GpuFlow {
             plan,
             dispatches,
             bytes,
-            room,
+            buffers,
             back: Arena::new("stokes back", Usage::MAP_READ | Usage::COPY_DST),
             turn: 0,
             relief: 0.25,
@@ -189,12 +189,12 @@ impl GpuFlow {
         let gpu = self.gpu.clone();
         if self.plan.grid != *grid {
             let (plan, dispatches, bytes) = laid_out(grid, self.effort, &self.tuning)?;
-            if !self.room.holds(plan.bytes(), dispatches.len()) {
+            if !self.buffers.holds(plan.bytes(), dispatches.len()) {
                 self.grow(&plan, dispatches.len())?;
             }
             (self.plan, self.dispatches, self.bytes) = (plan, dispatches, bytes);
             gpu.guarded(|| {
-                self.room.write_calls(&gpu, &self.dispatches);
+                self.buffers.write_calls(&gpu, &self.dispatches);
                 Ok(())
             })?;
         }
@@ -202,7 +202,7 @@ impl GpuFlow {
         gpu.guarded(|| {
             // What lies beyond walls nobody writes, and it must be 0.
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            encoder.clear_buffer(&self.room.fields, 0, Some(self.plan.bytes()));
+            encoder.clear_buffer(&self.buffers.fields, 0, Some(self.plan.bytes()));
             gpu.queue.submit([encoder.finish()]);
             Ok(())
         })
@@ -211,14 +211,21 @@ impl GpuFlow {
     /// Makes room for a window, and for some that are larger. Where there is none, as large ones are refused from then on.
     fn grow(&mut self, plan: &Plan, dispatches: usize) -> Result<(), GpuError> {
         let gpu = self.gpu.clone();
-        let wanted = plan.bytes().max(self.room.fields.size());
+        let wanted = plan.bytes().max(self.buffers.fields.size());
         // A binding is of whole numbers.
         let wanted = wanted.next_power_of_two().min(self.tuning.most_bytes) / 4 * 4;
         let dispatches = dispatches.next_power_of_two();
-        match gpu.guarded(|| Ok(Room::new(&gpu, &self.pipelines, wanted, dispatches))) {
-            Ok(room) => self.room = room,
+        match gpu.guarded(|| {
+            Ok(WindowBuffers::new(
+                &gpu,
+                &self.pipelines,
+                wanted,
+                dispatches,
+            ))
+        }) {
+            Ok(buffers) => self.buffers = buffers,
             Err(GpuError::Memory) => {
-                self.tuning.most_bytes = self.room.fields.size().min(plan.bytes() - 1);
+                self.tuning.most_bytes = self.buffers.fields.size().min(plan.bytes() - 1);
                 plan.check(self.tuning.most_bytes)?;
             }
             Err(error) => return Err(error),
@@ -272,12 +279,12 @@ impl GpuFlow {
             grid.wrap(&mut wrapped);
             self.gpu
                 .queue
-                .write_buffer(&self.room.fields, offset, cast_slice(&wrapped));
+                .write_buffer(&self.buffers.fields, offset, cast_slice(&wrapped));
         } else {
             let field = &field[..grid.len()];
             self.gpu
                 .queue
-                .write_buffer(&self.room.fields, offset, cast_slice(field));
+                .write_buffer(&self.buffers.fields, offset, cast_slice(field));
         }
     }
 
@@ -353,7 +360,7 @@ impl GpuFlow {
         self.turn = (self.turn + self.plan.paints.parts) % 6;
         self.gpu
             .queue
-            .write_buffer(&self.room.records, 0, bytes_of(&record));
+            .write_buffer(&self.buffers.records, 0, bytes_of(&record));
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
         let mut last = None;
@@ -362,7 +369,11 @@ impl GpuFlow {
                 pass.set_pipeline(self.pipelines.of(dispatch.stage));
                 last = Some(dispatch.stage);
             }
-            pass.set_bind_group(0, &self.room.bound, &[(number as u64 * CALL_STRIDE) as u32]);
+            pass.set_bind_group(
+                0,
+                &self.buffers.bound,
+                &[(number as u64 * CALL_STRIDE) as u32],
+            );
             let [x, y, z] = dispatch.groups;
             pass.dispatch_workgroups(x, y, z);
         }
@@ -411,7 +422,7 @@ impl GpuFlow {
     /// Reads parts of the fields, one after the other: from where, how many bytes.
     fn read_words(&mut self, ranges: &[(u64, u64)]) -> Result<Vec<f32>, GpuError> {
         let Self {
-            gpu, back, room, ..
+            gpu, back, buffers, ..
         } = self;
         gpu.guarded(|| {
             let bytes = ranges.iter().map(|(_, bytes)| bytes).sum();
@@ -419,7 +430,7 @@ impl GpuFlow {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             let mut at = 0;
             for (from, bytes) in ranges {
-                encoder.copy_buffer_to_buffer(&room.fields, *from, back, at, *bytes);
+                encoder.copy_buffer_to_buffer(&buffers.fields, *from, back, at, *bytes);
                 at += bytes;
             }
             gpu.queue.submit([encoder.finish()]);

@@ -69,19 +69,23 @@ impl Press {
     }
 }
 
+fn assert_still(hand: Hand, stiffness: f64, delay: usize) {
+    let press = Press {
+        hand,
+        stiffness,
+        delay,
+        hold: 1,
+    };
+    let wobble = press.wobble();
+    assert!(wobble < STILL_M, "{press:?}: {wobble} m");
+}
+
 #[test]
 fn every_hand_is_still_at_every_stiffness_that_a_device_may_have() {
     for hand in HANDS {
         for delay in [0, 1] {
             for stiffness in [50.0, 100.0, 200.0, 300.0, 400.0, 500.0] {
-                let press = Press {
-                    hand,
-                    stiffness,
-                    delay,
-                    hold: 1,
-                };
-                let wobble = press.wobble();
-                assert!(wobble < STILL_M, "{press:?}: {wobble} m");
+                assert_still(hand, stiffness, delay);
             }
         }
     }
@@ -94,15 +98,7 @@ fn within_the_bound_of_its_damping_a_wall_is_still_at_any_delay() {
         for delay in [0, 1, 2, 3, 4, 8, 15] {
             let bound = (plant.damping + hand.damping) / (DT * (0.5 + delay as f64));
             for share in [0.25, 0.5, 0.75, 0.95] {
-                let stiffness = share * bound;
-                let press = Press {
-                    hand,
-                    stiffness,
-                    delay,
-                    hold: 1,
-                };
-                let wobble = press.wobble();
-                assert!(wobble < STILL_M, "{press:?}: {wobble} m");
+                assert_still(hand, share * bound, delay);
             }
         }
     }

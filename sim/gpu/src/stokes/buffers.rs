@@ -10,15 +10,15 @@ use crate::device::Device;
 
 /// Buffers for windows up to a size.
 #[derive(Debug)]
-pub(crate) struct Room {
+pub(crate) struct WindowBuffers {
     pub(crate) fields: wgpu::Buffer,
     pub(crate) records: wgpu::Buffer,
     calls: wgpu::Buffer,
     pub(crate) bound: wgpu::BindGroup,
 }
 
-impl Room {
-    /// Room for fields of so many bytes and so many dispatches.
+impl WindowBuffers {
+    /// Buffers for fields of so many bytes and so many dispatches.
     pub(crate) fn new(gpu: &Device, pipelines: &Pipelines, bytes: u64, dispatches: usize) -> Self {
         let buffer = |label, size, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
