@@ -9,6 +9,8 @@ use maulstick_stokes_paint::voxels::Voxels;
 use proptest::prelude::*;
 
 const CELL_M: f64 = 2.5e-4;
+/// Quanta that fill a voxel.
+const FULL: u32 = 167_772;
 const AREA: Area = Area {
     from: [6, 10],
     size: [4, 3],
@@ -45,7 +47,46 @@ fn counts(window: &Window) -> Vec<[f32; 2]> {
     cells(window).into_iter().map(of).collect()
 }
 
+/// Whether no voxel is fuller than full, and none that is paint has room for what lies above it.
+fn is_packed(voxels: &Voxels) -> bool {
+    (0..AREA.cells()).all(|column| {
+        let totals: Vec<u32> = voxels
+            .column(column)
+            .map(|voxel| voxels.total(voxel))
+            .collect();
+        let rooms = std::iter::once(voxels.lowest_room(column)).chain(std::iter::repeat(FULL));
+        let mut pairs = totals.windows(2).zip(rooms);
+        pairs.all(|(total, room)| {
+            let has_room = 2 * total[0] >= room && total[0] < room;
+            total[0] <= room && !(has_room && total[1] > 0)
+        })
+    })
+}
+
 proptest! {
+    #[test]
+    fn a_column_has_no_voids(
+        all in prop::collection::vec(prop::array::uniform2(400_000u32..2_000_000), 12),
+        layers in prop::collection::vec((0usize..2, 1usize..20, 0u32..400_000), 0..40),
+        column in 0usize..12,
+    ) {
+        let mut window = window();
+        fill(&mut window, &all, &layers);
+        let mut voxels = Voxels::read(&window, AREA, Layers::of(&window, CELL_M), &[0, 1]);
+        prop_assert!(is_packed(&voxels));
+        // A void of a quantum, and a quantum too much.
+        let bottom = voxels.bottom(column);
+        let above = bottom + voxels.volume.grid.stride(2);
+        prop_assume!(voxels.total(bottom) == voxels.lowest_room(column) && voxels.total(above) > 0);
+        let paint = usize::from(voxels.volume.paints[0][bottom] == 0);
+        voxels.volume.paints[paint][bottom] -= 1;
+        prop_assert!(!is_packed(&voxels));
+        voxels.volume.paints[paint][bottom] += 2;
+        prop_assert!(!is_packed(&voxels));
+        voxels.pack();
+        prop_assert!(is_packed(&voxels));
+    }
+
     #[test]
     fn what_is_read_is_written_to_the_quantum(
         all in prop::collection::vec(prop::array::uniform2(0u32..2_000_000), 12),
