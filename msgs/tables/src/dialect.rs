@@ -42,7 +42,7 @@ impl Separator {
             .filter(|(_, score)| score.parts)
             .copied()
             .collect::<Vec<_>>();
-        if found.is_empty() || blanks.1.words_below_the_first_line == 0 {
+        if found.is_empty() || blanks.1.words == 0 {
             found.push(blanks);
         }
         // The first of the best.
@@ -60,8 +60,8 @@ struct Score {
     /// It parts a line into cells.
     parts: bool,
     numbers: i64,
+    /// Cells below the first line, which may be headings, that are neither numbers nor empty.
     words: i64,
-    words_below_the_first_line: i64,
 }
 
 impl Score {
@@ -75,10 +75,7 @@ impl Score {
                 match (cell.is_empty(), is_number(cell)) {
                     (true, _) => {}
                     (_, true) => score.numbers += 1,
-                    (_, false) => {
-                        score.words += 1;
-                        score.words_below_the_first_line += i64::from(number > 0);
-                    }
+                    (_, false) => score.words += i64::from(number > 0),
                 }
             });
             score.parts |= cut.is_ok() && cells > 1;
