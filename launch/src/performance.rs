@@ -10,6 +10,7 @@ use maulstick_painting::models::{AUTO, AUTO_MODELS, model_called};
 use maulstick_painting::{PaintingSetup, paint_error};
 use maulstick_rig::UserError;
 use maulstick_rig::config::{BACKENDS, BrushSection, LightSection, RigConfig};
+use maulstick_rig::table_file::{MOST_BYTES, read_table};
 use maulstick_types::Mixture;
 use maulstick_types::command::advice::Advice;
 use maulstick_types::scene::Light;
@@ -271,9 +272,8 @@ pub fn library_from(path: Option<&Path>) -> Result<PaintLibrary, UserError> {
     let Some(path) = path else {
         return library();
     };
-    let text = std::fs::read_to_string(path).map_err(|error| UserError::reading(path, &error))?;
-    // Spreadsheets begin a table with a byte order mark.
-    PaintLibrary::parse(text.trim_start_matches('\u{feff}')).map_err(|error| match error {
+    let text = read_table(path, MOST_BYTES)?;
+    PaintLibrary::parse(&text).map_err(|error| match error {
         PaintError::File { line, what } => UserError::usage(what)
             .at(format!("{}:{line}", path.display()))
             .help("a row: paint, colour index, source, K or S, then 101 values, 380 to 780 nm"),

@@ -106,7 +106,7 @@ fn bad_poses_are_refused_with_their_line() {
     has(&refused(""), &["empty", "p.csv:1", "t,x,y,z,qx,qy,qz,qw"]);
     has(
         &refused("0,0,0,0.02,0,0,0,1\n"),
-        &["not the header", "p.csv:1"],
+        &["column 1", "p.csv:1", "t,x,y,z,qx,qy,qz,qw"],
     );
     has(&refused("t,x,y,z,qx,qy,qz,qw\n"), &["no poses", "p.csv:1"]);
     let changed = |from: &str, to: &str| {
@@ -115,11 +115,11 @@ fn bad_poses_are_refused_with_their_line() {
     };
     has(
         &changed("0.2,0.004,", "0.2,nan,"),
-        &["x: 'nan' is not finite", "p.csv:4"],
+        &["(x): 'nan' is not finite", "p.csv:4"],
     );
     has(
         &changed("0.2,0.004,", "0.2,a,"),
-        &["x: 'a' is not a number", "p.csv:4"],
+        &["(x): 'a' is not a number", "p.csv:4"],
     );
     has(&changed("0.2,0.004,", "0.2,"), &["7 columns", "p.csv:4"]);
     has(

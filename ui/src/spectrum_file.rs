@@ -5,6 +5,7 @@ use std::path::Path;
 
 use maulstick_optics::{Illuminant, Reflectance};
 use maulstick_rig::UserError;
+use maulstick_rig::table_file::table_text;
 use maulstick_types::command::SPECTRUM_MAX;
 
 /// The text of a table; a folder, a device or a huge file is rejected.
@@ -17,17 +18,17 @@ fn text(path: &Path, row: &str) -> Result<String, UserError> {
             .help(tr!("name a CSV file: {row}", row)));
     }
     let file = std::fs::File::open(path).map_err(failed)?;
-    let mut text = String::new();
+    let mut bytes = Vec::new();
     let most = SPECTRUM_MAX as u64;
     file.take(most + 1)
-        .read_to_string(&mut text)
+        .read_to_end(&mut bytes)
         .map_err(failed)?;
-    if text.len() > SPECTRUM_MAX {
+    if bytes.len() > SPECTRUM_MAX {
         return Err(UserError::usage(tr!("a file of this size is no spectrum"))
             .at(place())
             .help(tr!("give a row a wavelength: {row}", row)));
     }
-    Ok(text.trim_start_matches('\u{feff}').to_owned())
+    table_text(path, &bytes)
 }
 
 /// The light of a CSV file of nm,power, called as the file.

@@ -238,7 +238,9 @@ fn space_mouse(identity: &Identity, bytes: &[u8]) -> Result<Means, UserError> {
 
 fn described(identity: &Identity, bytes: &[u8]) -> Result<hidreport::ReportDescriptor, UserError> {
     descriptor::read(bytes).map_err(|what| {
-        UserError::failure(format!("{identity} describes itself wrongly: {what}")).help(OTHER)
+        UserError::failure(format!("{identity} describes itself wrongly: {what}")).help(format!(
+            "{OTHER}; the kernel may read a pen all the same: take `driver = \"evdev\"`"
+        ))
     })
 }
 

@@ -13,6 +13,7 @@ use maulstick_rig::UserError;
 use maulstick_rig::config::BrushSection;
 use maulstick_rig::config::toml_fault;
 use maulstick_rig::files::{Kind, check_writable, write_whole};
+use maulstick_rig::table_file::{MOST_BYTES, read_table};
 use maulstick_types::values::{BrushName, BrushToml};
 use serde_json::json;
 
@@ -267,10 +268,10 @@ fn read_spine(path: &Path) -> Result<SpineFile, UserError> {
 }
 
 fn read_poses(path: &Path) -> Result<Vec<TrialPose>, UserError> {
-    let (text, name) = read(path)?;
+    let text = read_table(path, MOST_BYTES)?;
     poses(&text).map_err(|error| {
         UserError::usage(error.what)
-            .at(format!("{name}:{}", error.line))
+            .at(format!("{}:{}", path.display(), error.line))
             .help(error.help)
     })
 }

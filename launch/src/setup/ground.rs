@@ -10,6 +10,7 @@ use maulstick_optics::Reflectance;
 use maulstick_painting::PaintingSetup;
 use maulstick_rig::UserError;
 use maulstick_rig::config::is_path;
+use maulstick_rig::table_file::read_table;
 
 use crate::performance::refused;
 
@@ -43,19 +44,18 @@ impl GroundFile {
             let image = Image::open(path).map_err(|error| no_picture(name, &error))?;
             return Ok(Self::Picture(Arc::new(image), name.to_owned()));
         }
-        let text =
-            std::fs::read_to_string(path).map_err(|error| UserError::reading(path, &error))?;
-        let text = text.trim_start_matches('\u{feff}').to_owned();
-        if text.len() > SPECTRUM_MAX {
-            return Err(UserError::usage("a file of this size is no spectrum")
-                .at(name.to_owned())
-                .help("give a row a wavelength: nm,reflectance"));
-        }
-        Reflectance::parse(&text).map_err(|error| {
+        let text = read_table(path, SPECTRUM_MAX as u64)?;
+        let read = Reflectance::parse(&text).map_err(|error| {
             UserError::usage(error.what)
                 .at(format!("{name}:{}", error.line))
                 .help("a row a wavelength: nm,reflectance, rising, 0 to 1")
         })?;
+        if read.limited > 0 {
+            eprintln!(
+                "note: {name}: {} reflectances lie a little outside of 0 to 1: taken as 0 and 1",
+                read.limited
+            );
+        }
         Ok(Self::Spectrum(text))
     }
 

@@ -7,6 +7,7 @@ use maulstick_appearance::light::illuminant_named;
 use maulstick_optics::{Illuminant, Observer, PaintLibrary, RuleKind, StudioSettings, Viewing};
 use maulstick_rig::UserError;
 use maulstick_rig::config::is_path;
+use maulstick_rig::table_file::{MOST_BYTES, read_table};
 
 use crate::performance::refused;
 
@@ -108,7 +109,7 @@ impl ViewingOptions {
     }
 }
 
-/// A light by its name, or of a CSV file.
+/// A light by its name, or of a table.
 ///
 /// # Errors
 /// A [`UserError`] for an unknown name, with the nearest, or a bad file, with its line.
@@ -120,9 +121,9 @@ pub fn illuminant(name: &str) -> Result<Illuminant, UserError> {
     if !is_path(name) && !path.exists() {
         return illuminant_named(name).map_err(refused);
     }
-    let text = std::fs::read_to_string(path).map_err(|error| UserError::reading(path, &error))?;
+    let text = read_table(path, MOST_BYTES)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    Illuminant::parse(&stem, text.trim_start_matches('\u{feff}')).map_err(|error| {
+    Illuminant::parse(&stem, &text).map_err(|error| {
         UserError::usage(error.what)
             .at(format!("{name}:{}", error.line))
             .help("a row a wavelength: nm,power, rising")

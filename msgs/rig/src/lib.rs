@@ -9,6 +9,7 @@
 //! | [`files`] | files: whole under their name, of one's own kind, open here |
 //! | [`log`] | log lines |
 //! | [`node_handle`] | joining a rig, living in it, leaving it |
+//! | [`table_file`] | tables in files that a user names |
 //! | [`stop`] | the stop flag: a signal, or the launcher's end |
 
 pub mod command_client;
@@ -17,6 +18,7 @@ pub mod log;
 pub mod node_handle;
 pub mod size;
 pub mod stop;
+pub mod table_file;
 pub mod user_devices;
 pub mod user_error;
 

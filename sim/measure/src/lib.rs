@@ -3,7 +3,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`table`] | a table as a spreadsheet writes it |
+//! | [`table`] | tables of measurements |
 //! | [`headings`], [`notes`] | what its columns and comments mean |
 //! | [`measurements`] | samples: what they are made of, and what was read of them |
 //! | `reading` | rows of a table, as numbers |

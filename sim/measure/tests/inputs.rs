@@ -64,7 +64,7 @@ fn readings_that_none_can_be() {
         ),
         (
             "x,,1,,,,0.5,NaN,0.5,0.5",
-            "column 8 (500): 'NaN' is not a number",
+            "column 8 (500): 'NaN' is not finite",
             "0.25",
         ),
         (

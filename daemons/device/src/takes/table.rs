@@ -1,23 +1,21 @@
 //! Tables of strokes as takes.
 //!
 //! Columns t (s, or what `TimeUnit` says), x, y (table units, y down), pressure (0 to 1), and if there are any tilt x, tilt y
-//! and twist (degrees), divided by white space or commas. A first line of words names the columns in
-//! another order; lines that begin with `#` say nothing.
+//! and twist (degrees), and the stroke, as [`maulstick_tables`] reads them. A first line of words names the columns in another
+//! order. An empty line, another value in the column `stroke`, and time that begins anew begin another stroke.
+
+mod columns;
+mod strokes;
 
 use std::path::Path;
 
 use maulstick_brush::model::BRIDGED_NS;
 use maulstick_rig::UserError;
+use maulstick_rig::table_file::{MOST_BYTES, read_table};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, FARTHEST_M, StylusPose, StylusSample, axes};
 
 use crate::take::{Take, TakeSample};
-
-/// Names of the columns, the needed ones first.
-const COLUMNS: [&str; 7] = ["t", "x", "y", "pressure", "tilt_x", "tilt_y", "twist"];
-/// Columns that a table must have.
-const NEEDED: usize = 4;
-/// Steepest tilt, degrees.
-const STEEPEST: f64 = 85.0;
+use columns::Row;
 
 /// Median times between samples of a stroke from which a unit of time is guessed, s: pens report 10 to 500
 /// times a second.
@@ -100,28 +98,12 @@ pub struct Imported {
     pub notes: Vec<String>,
 }
 
-/// Position of a column, by its number in [`COLUMNS`].
-type Places = [Option<usize>; COLUMNS.len()];
-
-/// A sample as it stands in the table.
-struct Row {
-    line: usize,
-    /// In the order of [`COLUMNS`]; NaN if absent.
-    values: [f64; COLUMNS.len()],
-}
-
-impl Row {
-    fn touches(&self) -> bool {
-        self.values[3] > 0.0
-    }
-}
-
 /// Reads a table as a take of the device `device`.
 ///
 /// # Errors
 /// A [`UserError`] with the line and the column, and what to do.
 pub fn import(path: &Path, layout: TableLayout, device: &str) -> Result<Imported, UserError> {
-    let text = std::fs::read_to_string(path).map_err(|error| UserError::reading(path, &error))?;
+    let text = read_table(path, MOST_BYTES)?;
     parse(&text, &path.display().to_string(), layout, device)
 }
 
@@ -135,84 +117,32 @@ pub fn parse(
     layout: TableLayout,
     device: &str,
 ) -> Result<Imported, UserError> {
-    let rows = rows(text, name)?;
-    let Some(first) = rows.first() else {
-        return Err(UserError::usage("the table holds no samples")
-            .at(name)
-            .help("each line is: t x y pressure [tilt_x tilt_y [twist]]"));
-    };
     let mut notes = Vec::new();
+    let mut rows = columns::rows(text, name, &mut notes)?;
+    strokes::part(&mut rows, name)?;
+    strokes::spread(&mut rows, name, &mut notes)?;
     let unit = time_unit(&rows, name, layout, &mut notes)?;
-    let start = first.values[0];
+    let times_ns = strokes::times_ns(&rows, unit.ns(), name, &mut notes)?;
     let mut samples = Vec::with_capacity(rows.len());
-    for row in &rows {
+    for (row, time_ns) in rows.iter().zip(&times_ns) {
         let sample = pen(&row.values, layout);
         if sample.fault().is_some() {
             return Err(too_far(row, &rows, name, layout));
         }
         samples.push(TakeSample {
-            time_ns: ((row.values[0] - start) * unit.ns()).round() as u64,
+            time_ns: *time_ns,
             sample,
         });
     }
-    notes.extend(unpainted(&rows, &samples, layout));
+    notes.extend(unpainted(&rows, &times_ns, layout));
     Ok(Imported {
         take: Take {
             setup: None,
             device: device.to_owned(),
-            samples,
+            samples: strokes::lifted(&rows, samples),
         },
         notes,
     })
-}
-
-/// The rows, of those of the same time the last.
-fn rows(text: &str, name: &str) -> Result<Vec<Row>, UserError> {
-    let mut places: Option<Places> = None;
-    let mut rows: Vec<Row> = Vec::new();
-    // Spreadsheets begin a table with a byte order mark.
-    let text = text.trim_start_matches('\u{feff}');
-    for (line, row) in text.lines().enumerate().map(|(i, row)| (i + 1, row.trim())) {
-        if row.is_empty() || row.starts_with('#') {
-            continue;
-        }
-        let place = format!("{name}:{line}");
-        let cells: Vec<&str> = row
-            .split([',', ' ', '\t', ';'])
-            .filter(|cell| !cell.is_empty())
-            .collect();
-        let columns = match places {
-            Some(columns) => columns,
-            None => {
-                let words = cells
-                    .iter()
-                    .any(|cell| COLUMNS.contains(&cell.to_lowercase().as_str()));
-                let columns = if words {
-                    header(&cells, &place)?
-                } else {
-                    in_order(cells.len())
-                };
-                places = Some(columns);
-                if words {
-                    continue;
-                }
-                columns
-            }
-        };
-        let values = numbers(&cells, &columns, &place)?;
-        let last = rows.last().map_or(f64::NEG_INFINITY, |row| row.values[0]);
-        if values[0] < last {
-            let what = format!("time runs backward: {} after {last}", values[0]);
-            return Err(UserError::usage(what)
-                .at(place)
-                .help("sort the table by time"));
-        }
-        if values[0] == last {
-            rows.pop();
-        }
-        rows.push(Row { line, values });
-    }
-    Ok(rows)
 }
 
 /// The unit of the column t: as given, or such that a pen's samples lie as far apart as pens report them.
@@ -222,9 +152,7 @@ fn time_unit(
     layout: TableLayout,
     notes: &mut Vec<String>,
 ) -> Result<TimeUnit, UserError> {
-    let pairs = rows
-        .windows(2)
-        .filter(|two| two[0].touches() && two[1].touches());
+    let pairs = rows.windows(2).filter(|two| two[0].paints_to(&two[1]));
     let mut steps: Vec<f64> = pairs
         .map(|two| two[1].values[0] - two[0].values[0])
         .collect();
@@ -278,7 +206,7 @@ fn too_far(row: &Row, rows: &[Row], name: &str, layout: TableLayout) -> UserErro
 }
 
 /// Parts of a table that paint nothing.
-fn unpainted(rows: &[Row], samples: &[TakeSample], layout: TableLayout) -> Vec<String> {
+fn unpainted(rows: &[Row], times_ns: &[u64], layout: TableLayout) -> Vec<String> {
     let mut notes = Vec::new();
     let outside = |row: &&Row| {
         let within = |axis: usize| (0.0..=layout.size[axis]).contains(&row.values[1 + axis]);
@@ -292,12 +220,12 @@ fn unpainted(rows: &[Row], samples: &[TakeSample], layout: TableLayout) -> Vec<S
             rows.len()
         ));
     }
-    let touching = |i: &usize| rows[i - 1].touches() && rows[*i].touches();
+    let touching = |i: &usize| rows[i - 1].paints_to(&rows[*i]);
     let pairs: Vec<usize> = (1..rows.len()).filter(touching).collect();
     if pairs.is_empty() {
         notes.push("no two samples in a row have pressure, so the take paints nothing".into());
     }
-    let torn = |i: &&usize| samples[**i].time_ns - samples[**i - 1].time_ns > BRIDGED_NS;
+    let torn = |i: &&usize| times_ns[**i] - times_ns[**i - 1] > BRIDGED_NS;
     let torn: Vec<usize> = pairs.iter().filter(torn).copied().collect();
     if let Some(first) = torn.first() {
         notes.push(format!(
@@ -308,65 +236,6 @@ fn unpainted(rows: &[Row], samples: &[TakeSample], layout: TableLayout) -> Vec<S
         ));
     }
     notes
-}
-
-fn in_order(count: usize) -> Places {
-    std::array::from_fn(|column| (column < count).then_some(column))
-}
-
-/// The places of the columns that a header names.
-fn header(cells: &[&str], place: &str) -> Result<Places, UserError> {
-    let mut places = [None; COLUMNS.len()];
-    for (at, cell) in cells.iter().enumerate() {
-        let word = cell.to_lowercase();
-        match COLUMNS.iter().position(|column| *column == word) {
-            Some(column) => places[column] = Some(at),
-            None => {
-                let what = format!("there is no column '{cell}'");
-                return Err(UserError::unknown(what, &word, COLUMNS).at(place));
-            }
-        }
-    }
-    Ok(places)
-}
-
-/// The numbers of a row in the order of [`COLUMNS`]; a missing optional one is NaN.
-fn numbers(cells: &[&str], places: &Places, place: &str) -> Result<[f64; 7], UserError> {
-    let mut values = [f64::NAN; COLUMNS.len()];
-    for (column, value) in values.iter_mut().enumerate() {
-        let fault = |what: String| UserError::usage(what).at(place);
-        let Some(cell) = places[column].and_then(|at| cells.get(at)) else {
-            if column < NEEDED || (places[column].is_some()) {
-                let what = format!("column {} ({}) is missing", column + 1, COLUMNS[column]);
-                return Err(
-                    fault(what).help("each line is: t x y pressure [tilt_x tilt_y [twist]]")
-                );
-            }
-            continue;
-        };
-        let where_ = format!("column {} ({})", column + 1, COLUMNS[column]);
-        let number: f64 = cell.parse().map_err(|_| {
-            fault(format!("{where_}: '{cell}' is not a number")).help("correct it or drop the line")
-        })?;
-        if !number.is_finite() {
-            return Err(fault(format!("{where_}: '{cell}' is not finite")).help("drop the line"));
-        }
-        let range = match column {
-            3 => Some((0.0, 1.0)),
-            4 | 5 => Some((-STEEPEST, STEEPEST)),
-            _ => None,
-        };
-        if let Some((low, high)) = range
-            && !(low..=high).contains(&number)
-        {
-            return Err(
-                fault(format!("{where_}: {number} is not within {low} and {high}"))
-                    .help("scale the column"),
-            );
-        }
-        *value = number;
-    }
-    Ok(values)
 }
 
 fn pen(values: &[f64; 7], layout: TableLayout) -> StylusSample {

@@ -2,23 +2,31 @@
 //! descriptor is of.
 //!
 //! A descriptor comes from whatever is plugged in. A few bytes may ask for billions of fields, or name
-//! a usage before any page; so [`read`] walks over its items first and refuses what no device needs.
+//! a usage before any page; so [`read`] walks over its items first and refuses what no device needs. What nobody here
+//! reads does not count: makers put tens of thousands of fields of their own beside a pen (firmware, heat maps,
+//! certificates), or keys without usages.
 
 use hidreport::{Field, Report as _, ReportDescriptor, Usage};
 
 /// A descriptor is no longer than this, bytes: the kernel gives no more.
 pub const LONGEST: usize = 4096;
-/// Most fields of all main items together. Each has a copy of the usages of its collections, [`DEPTH`] times
+/// Most fields of all inputs that are read. Each has a copy of the usages of its collections, [`DEPTH`] times
 /// [`COLLECTION_USAGES`] at most.
 const FIELDS: usize = 8192;
-/// Bits of one main item.
+/// Bits of an input that is read.
 const BITS: usize = 1 << 16;
+/// Bits of an input that is passed over.
+const PASSED_BITS: usize = 1 << 24;
 /// Usages of all ranges together.
 const USAGES: u64 = 1 << 17;
 /// Usages of one collection.
 const COLLECTION_USAGES: u64 = 16;
 /// Largest nesting of collections, or of saved globals.
 const DEPTH: usize = 12;
+/// Type of an item that says something of the next main item alone.
+const LOCAL: u8 = 0x08;
+/// An input that is passed over: one array of no usage, as long as all its fields.
+const PASSED_OVER: &[u8] = &[0x09, 0x00, 0x81, 0x00];
 
 /// Usage pages.
 pub mod page {
@@ -32,13 +40,14 @@ pub mod page {
     pub const WACOM: u16 = 0xFF0D;
 }
 
-/// Reads a descriptor.
+/// Reads a descriptor: its inputs. Each input that is on no page in [`page`] but media keys' is one field, and of output
+/// and feature reports there is nothing.
 ///
 /// # Errors
 /// The error, in words.
 pub fn read(bytes: &[u8]) -> Result<ReportDescriptor, String> {
-    check(bytes)?;
-    ReportDescriptor::try_from(bytes).map_err(|error| error.to_string())
+    let needed = needed(bytes)?;
+    ReportDescriptor::try_from(needed.as_slice()).map_err(|error| error.to_string())
 }
 
 /// Page and number of a usage.
@@ -47,20 +56,22 @@ pub fn pair(usage: &Usage) -> (u16, u16) {
     (usage.usage_page.into(), usage.usage_id.into())
 }
 
-/// Globals and locals, as far as they bear on the cost of a descriptor. By the specification Push saves globals alone;
-/// `hidreport` saves and restores the locals too.
+/// Globals, as far as they bear on the cost of a descriptor, and on whether a field is read.
 #[derive(Clone, Copy, Default)]
-struct Known {
-    has_page: bool,
+struct Globals {
+    page: Option<u16>,
     bits: usize,
     count: usize,
-    locals: Locals,
 }
 
-/// The usages that the next main item has.
-#[derive(Clone, Copy, Default)]
+/// The usages that the next main item has, and the items that say so. They are written only before an input that is read:
+/// by the specification Push saves globals alone, while `hidreport` would save and restore them too.
+#[derive(Clone, Default)]
 struct Locals {
+    items: Vec<u8>,
     named: u64,
+    /// Pages that are said with a usage.
+    pages: Vec<u16>,
     least: Option<u64>,
     most: Option<u64>,
 }
@@ -72,6 +83,12 @@ impl Locals {
             _ => 0,
         };
         self.named + range
+    }
+
+    /// True if a field with these usages may be a pen's or a 6-DOF mouse's.
+    fn is_read(&self, page: Option<u16>) -> bool {
+        let known = |page: &u16| matches!(*page, page::DESKTOP | page::DIGITIZER | page::WACOM);
+        self.usages() > 0 && page.iter().chain(&self.pages).any(known)
     }
 }
 
@@ -105,11 +122,14 @@ pub fn input_bytes(bytes: &[u8], number: u8) -> Option<u64> {
     (bits > 0).then(|| 1 + bits.div_ceil(8))
 }
 
-fn check(bytes: &[u8]) -> Result<(), String> {
+/// The items of a descriptor that are needed to read its inputs.
+fn needed(bytes: &[u8]) -> Result<Vec<u8>, String> {
     if bytes.is_empty() || bytes.len() > LONGEST {
         return Err(format!("it has {} bytes, not 1 to {LONGEST}", bytes.len()));
     }
-    let (mut known, mut kept) = (Known::default(), Vec::new());
+    let mut needed = Vec::with_capacity(bytes.len());
+    let (mut globals, mut kept) = (Globals::default(), Vec::new());
+    let mut locals = Locals::default();
     let (mut depth, mut fields, mut usages) = (0_usize, 0_usize, 0_u64);
     let mut at = 0;
     while at < bytes.len() {
@@ -117,50 +137,75 @@ fn check(bytes: &[u8]) -> Result<(), String> {
         let Some((head, value, next)) = item(bytes, at) else {
             return wrong("an item is cut off");
         };
+        let whole = &bytes[at..next];
+        let is_main = matches!(head, 0x80 | 0x90 | 0xA0 | 0xB0 | 0xC0);
+        if is_main && head != 0xC0 && globals.page.is_none() {
+            return wrong("a main item comes before any usage page");
+        }
         match head {
-            0x04 => known.has_page = true,
-            0x74 => known.bits = usize::try_from(value).unwrap_or(usize::MAX),
-            0x94 => known.count = usize::try_from(value).unwrap_or(usize::MAX),
-            0xA4 => kept.push(known),
+            0x04 => globals.page = u16::try_from(value).ok(),
+            0x74 => globals.bits = usize::try_from(value).unwrap_or(usize::MAX),
+            0x94 => globals.count = usize::try_from(value).unwrap_or(usize::MAX),
+            0xA4 => kept.push(globals),
             0xB4 => match kept.pop() {
-                Some(before) => known = before,
+                Some(before) => globals = before,
                 None => return wrong("globals are taken back that were not kept"),
             },
-            0x08 => known.locals.named += 1,
-            0x18 => known.locals.least = Some(value),
-            0x28 => known.locals.most = Some(value),
-            main @ (0x80 | 0x90 | 0xB0 | 0xA0) => {
-                if !known.has_page {
-                    return wrong("a main item comes before any usage page");
+            0x08 => {
+                locals.named += 1;
+                if let (5, Ok(page)) = (whole.len(), u16::try_from(value >> 16)) {
+                    locals.pages.push(page);
                 }
-                let named = known.locals.usages();
-                usages += named;
-                if main == 0xA0 {
-                    depth += 1;
-                    if named > COLLECTION_USAGES {
-                        return wrong("a collection has too many usages");
-                    }
-                } else {
-                    let bits = known.bits.saturating_mul(known.count);
-                    if bits > BITS {
-                        return wrong("a field is too long");
-                    }
-                    fields += known.count;
+            }
+            0x18 => locals.least = Some(value),
+            0x28 => locals.most = Some(value),
+            // A constant has no usages, whatever stands before it.
+            0x80 if value & 1 == 1 || !locals.is_read(globals.page) => {
+                if globals.bits.saturating_mul(globals.count) > PASSED_BITS {
+                    return wrong("a field is too long");
                 }
-                known.locals = Locals::default();
+                fields += 1;
+                needed.extend(match value & 1 {
+                    1 => whole,
+                    _ => PASSED_OVER,
+                });
             }
-            0xC0 => {
-                depth = depth.saturating_sub(1);
-                known.locals = Locals::default();
+            0x80 => {
+                if globals.bits.saturating_mul(globals.count) > BITS {
+                    return wrong("a field is too long");
+                }
+                fields += globals.count;
+                usages += locals.usages();
+                needed.extend(locals.items.iter().chain(whole));
             }
+            0xA0 => {
+                depth += 1;
+                if locals.usages() > COLLECTION_USAGES {
+                    return wrong("a collection has too many usages");
+                }
+                usages += locals.usages();
+                needed.extend(locals.items.iter().chain(whole));
+            }
+            0xC0 => depth = depth.saturating_sub(1),
             _ => {}
         }
         if depth > DEPTH || kept.len() > DEPTH || fields > FIELDS || usages > USAGES {
             return wrong("it asks for too much");
         }
+        match head & 0x0C {
+            _ if is_main => locals = Locals::default(),
+            LOCAL => locals.items.extend(whole),
+            _ => needed.extend(whole),
+        }
+        if head == 0xC0 {
+            needed.extend(whole);
+        }
         at = next;
     }
-    Ok(())
+    match needed.is_empty() {
+        true => Err("it says nothing of a report".to_owned()),
+        false => Ok(needed),
+    }
 }
 
 /// Description of a device by its descriptor: `a mouse and a keyboard`.

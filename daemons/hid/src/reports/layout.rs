@@ -2,7 +2,7 @@
 //!
 //! Usages are those of the digitizers' page 0x0D and of X and Y of page 0x01 (HID usage tables), and Wacom's
 //! page 0xFF0D, which mirrors them and is finer. A tablet may have reports of both kinds for one pen: of
-//! those, Wacom's are read alone. Lengths come from physical ranges and units. Where there are none:
+//! those, Wacom's are read alone. Lengths and angles come from physical ranges and units. Where there are none:
 //!
 //! | what | is taken for |
 //! | --- | --- |
@@ -10,19 +10,25 @@
 //! | tilts | degrees, where the range is signed and within ±180, else the range is ±90° |
 //! | twist, azimuth | degrees, where the range is signed and within ±360, else the range is once round |
 //! | altitude | degrees, where the range is signed and within ±90, else the range is up to upright |
-//! | distance | the range is 1 cm |
+//! | distance | the range is 1 cm; so where it is more than 10 cm |
 //! | pressure | a touch of a pen without has half |
 //! | tip switch | a pen without touches while it has pressure |
 //! | in range | a pen without is near from a report on, until it has neither touched nor reported for a second |
+//!
+//! Units and physical ranges hold from field to field, so one that a descriptor forgot to take back is another field's. It
+//! counts as none for an angle that is no angle's: of another unit and as X or Y has it, or not within a turn.
+//!
+//! A device may leave off the end of a report. It is read where it says where the pen is and whether it touches; tilts,
+//! twist, height and switches that were left off are as of a pen without them.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use hidreport::{Field, Report, ReportDescriptor, VariableField};
+use hidreport::{Field, Report, ReportDescriptor};
 use maulstick_num::{atan2, sin_cos};
 use maulstick_types::stylus::axes;
 
 use crate::descriptor::{lies_in, page, pair};
-use crate::units::{metres, radians};
+use crate::reports::number::Number;
 use maulstick_device::pen::{End, Presence, Reading, STEEPEST_RAD};
 
 /// Counts a metre of a tablet that does not say, 5080 an inch.
@@ -33,6 +39,8 @@ const SIDES_M: [f64; 2] = [0.01, 2.0];
 const LONGER_M: f64 = 0.25;
 /// Hover height at the end of a range without units, m.
 pub(crate) const HIGHEST_M: f64 = 0.01;
+/// No tablet senses a pen from farther, m.
+const FARTHEST_HOVER_M: f64 = 0.1;
 /// Pressure of a touch without a pressure field.
 pub(crate) const PRESSED: f64 = 0.5;
 
@@ -85,106 +93,31 @@ impl Role {
             _ => return None,
         })
     }
-}
 
-/// A number in a report.
-#[derive(Clone, Debug)]
-struct Number {
-    field: VariableField,
-    least: f64,
-    most: f64,
-    /// Value of a count, if the descriptor gives a unit: m or rad.
-    metres: Option<f64>,
-    radians: Option<f64>,
-    /// Of the least count, in the unit of the physical range.
-    at_least: f64,
-    physical: f64,
-}
-
-impl Number {
-    fn new(field: &VariableField) -> Option<Self> {
-        if field.bits.is_empty() || field.bits.len() > 32 {
-            return None;
-        }
-        let bits = field.bits.len();
-        let (least, most) = (
-            i32::from(field.logical_minimum),
-            i32::from(field.logical_maximum),
-        );
-        let (least, most) = (f64::from(least), greatest(least, most, bits));
-        if most <= least {
-            return None;
-        }
-        let range = match (field.physical_minimum, field.physical_maximum) {
-            (Some(least), Some(most)) => {
-                let (least, most) = (i32::from(least), i32::from(most));
-                [f64::from(least), greatest(least, most, bits)]
-            }
-            _ => [0.0, 0.0],
-        };
-        let unit = field.unit.map_or(0, u32::from);
-        let exponent = field.unit_exponent.map_or(0, i32::from);
-        // Without a physical range the logical one is it.
-        let [low, high] = match range[1] > range[0] {
-            true => range,
-            false => [least, most],
-        };
-        let count = (high - low) / (most - least);
-        Some(Self {
-            field: field.clone(),
-            least,
-            most,
-            metres: metres(unit, exponent).map(|unit| unit * count),
-            radians: radians(unit, exponent).map(|unit| unit * count),
-            at_least: low,
-            physical: count,
-        })
+    fn is_angle(self) -> bool {
+        matches!(
+            self,
+            Self::TiltX | Self::TiltY | Self::Azimuth | Self::Altitude | Self::Twist
+        )
     }
 
-    /// The count, within the logical range.
-    fn count(&self, report: &[u8]) -> f64 {
-        let Ok(value) = self.field.extract(report) else {
-            return self.least;
-        };
-        let value = match self.field.is_signed() {
-            true => f64::from(i32::from(value)),
-            false => f64::from(u32::from(value)),
-        };
-        value.clamp(self.least, self.most)
-    }
-
-    /// Share of the range, 0 to 1.
-    fn share(&self, report: &[u8]) -> f64 {
-        (self.count(report) - self.least) / (self.most - self.least)
-    }
-
-    /// An angle, rad. Without a unit a signed range within ±`within` is degrees; another is `whole` rad wide,
-    /// and `zero` of the way along it an unsigned one is 0.
-    fn angle(&self, report: &[u8], within: f64, whole: f64, zero: f64) -> f64 {
-        let from_least = self.count(report) - self.least;
-        if let Some(radians) = self.radians {
-            return radians * (self.at_least / self.physical + from_least);
-        }
-        let highest = self.at_least + self.physical * (self.most - self.least);
-        let is_signed = self.at_least < 0.0;
-        if is_signed && self.at_least.abs().max(highest.abs()) <= within {
-            return (self.at_least + self.physical * from_least).to_radians();
-        }
-        let zero = if is_signed { 0.5 } else { zero };
-        (self.share(report) - zero) * whole
+    /// True if a report without it still says where a pen is and whether it touches.
+    fn may_lack(self) -> bool {
+        let others = matches!(self, Self::Distance | Self::Depth | Self::Switch(_));
+        self.is_angle() || others
     }
 }
 
-/// The greatest value of a range for a field of so many bits. Where no value is negative, devices write it
-/// without room for a sign, and Linux reads it so: it comes here as a negative one of 8, 16 or 32 bits.
-fn greatest(least: i32, most: i32, bits: usize) -> f64 {
-    let above = match most {
-        _ if most >= least || least < 0 => 0_u64,
-        -128..0 if bits <= 8 => 1 << 8,
-        -32_768..0 => 1 << 16,
-        _ => 1 << 32,
-    };
-    f64::from(most) + above as f64
+/// Takes physical ranges from angles that they were not meant for: without a unit of angle, and as X or Y has them.
+fn drop_lengths_of_angles(numbers: &mut [(Role, Number)]) {
+    let lengths = numbers
+        .iter()
+        .filter(|(role, _)| matches!(role, Role::X | Role::Y));
+    let lengths: Vec<[f64; 2]> = lengths.filter_map(|(_, number)| number.physical).collect();
+    let angles = numbers.iter_mut().filter(|(role, _)| role.is_angle());
+    for (_, number) in angles.filter(|(_, number)| number.radians.is_none()) {
+        number.physical = number.physical.filter(|range| !lengths.contains(range));
+    }
 }
 
 /// The sides of a tablet of so many counts, m: as it says, unless that is no tablet's.
@@ -210,7 +143,7 @@ pub struct Layout {
 #[derive(Clone, Debug)]
 struct PenReport {
     id: Option<u8>,
-    /// Its size, with its number.
+    /// Bytes up to the end of the last field that it is not read without.
     bytes: usize,
     is_wacoms: bool,
     numbers: Vec<(Role, Number)>,
@@ -265,7 +198,8 @@ impl Layout {
         self.tells_range
     }
 
-    /// Reads a report; nothing where it is another's than the pen's, or too short.
+    /// Reads a report; nothing where it is another's than the pen's, or ends before it says where the pen is and whether
+    /// it touches.
     #[must_use]
     pub fn decode(&self, report: &[u8]) -> Option<Reading> {
         let fits = |pen: &&PenReport| match pen.id {
@@ -307,9 +241,14 @@ impl PenReport {
         }
         let has = |role: Role| numbers.iter().any(|(known, _)| *known == role);
         let is_pen = has(Role::X) && has(Role::Y) && (has(Role::Tip) || has(Role::Pressure));
-        is_pen.then(|| Self {
+        if !is_pen {
+            return None;
+        }
+        drop_lengths_of_angles(&mut numbers);
+        let needed = numbers.iter().filter(|(role, _)| !role.may_lack());
+        Some(Self {
             id: report.report_id().map(u8::from),
-            bytes: report.size_in_bytes(),
+            bytes: needed.map(|(_, number)| number.end()).max().unwrap_or(0),
             is_wacoms,
             numbers,
         })
@@ -318,6 +257,12 @@ impl PenReport {
     fn number(&self, role: Role) -> Option<&Number> {
         let found = self.numbers.iter().find(|(known, _)| *known == role);
         found.map(|(_, number)| number)
+    }
+
+    /// The number of a role, if a report is long enough to have it.
+    fn sent(&self, report: &[u8], role: Role) -> Option<&Number> {
+        self.number(role)
+            .filter(|number| number.end() <= report.len())
     }
 
     fn area_m(&self) -> [f64; 2] {
@@ -341,7 +286,7 @@ impl PenReport {
     }
 
     fn decode(&self, report: &[u8], area_m: [f64; 2]) -> Reading {
-        let share = |role| self.number(role).map(|number| number.share(report));
+        let share = |role| self.sent(report, role).map(|number| number.share(report));
         let is_on = |role| self.is_on(report, role);
         let pressure = share(Role::Pressure);
         let touches = is_on(Role::Tip).unwrap_or(pressure > Some(0.0));
@@ -378,13 +323,14 @@ impl PenReport {
         let height = |number: &Number, share: f64| {
             let range = number
                 .metres
-                .map(|count| count * (number.most - number.least));
+                .map(|count| count * (number.most - number.least))
+                .filter(|range| *range <= FARTHEST_HOVER_M);
             share * range.unwrap_or(HIGHEST_M)
         };
-        if let Some(distance) = self.number(Role::Distance) {
+        if let Some(distance) = self.sent(report, Role::Distance) {
             return height(distance, distance.share(report));
         }
-        self.number(Role::Depth)
+        self.sent(report, Role::Depth)
             .map_or(0.0, |depth| height(depth, 1.0 - depth.share(report)))
     }
 
@@ -392,15 +338,17 @@ impl PenReport {
     /// up from the tablet.
     fn tilt_rad(&self, report: &[u8]) -> Option<[f64; 2]> {
         let tilt = |role| {
-            let number = self.number(role)?;
+            let number = self.sent(report, role)?;
             Some(number.angle(report, 180.0, PI, 0.5))
         };
         if let (Some(x), Some(y)) = (tilt(Role::TiltX), tilt(Role::TiltY)) {
             return Some([x, -y].map(|tilt| tilt.clamp(-STEEPEST_RAD, STEEPEST_RAD)));
         }
-        let azimuth = self.number(Role::Azimuth)?.angle(report, 360.0, TAU, 0.0);
-        let altitude = self.number(Role::Altitude)?;
-        let altitude = match altitude.at_least < 0.0 {
+        let azimuth = self
+            .sent(report, Role::Azimuth)?
+            .angle(report, 360.0, TAU, 0.0);
+        let altitude = self.sent(report, Role::Altitude)?;
+        let altitude = match altitude.is_signed() {
             true => altitude.angle(report, 90.0, PI, 0.5).abs(),
             // Altitudes above the tablet alone.
             false => altitude.angle(report, 90.0, FRAC_PI_2, 0.0),
@@ -413,7 +361,9 @@ impl PenReport {
 
     /// HID counts a twist clockwise for who looks from above.
     fn twist_rad(&self, report: &[u8]) -> Option<f64> {
-        let clockwise = self.number(Role::Twist)?.angle(report, 360.0, TAU, 0.0);
+        let clockwise = self
+            .sent(report, Role::Twist)?
+            .angle(report, 360.0, TAU, 0.0);
         Some(wrapped(-clockwise))
     }
 }

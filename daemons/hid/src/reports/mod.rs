@@ -4,6 +4,7 @@ pub mod descriptor;
 pub mod device_source;
 pub mod hidraw;
 pub mod layout;
+mod number;
 pub mod recorder;
 pub mod recording;
 pub mod report_stream;

@@ -5,6 +5,7 @@
 
 mod daemon;
 mod decoding;
+mod descriptors;
 mod evdev;
 mod evemu;
 mod live;

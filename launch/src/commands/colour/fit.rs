@@ -1,7 +1,7 @@
 //! `maulstick fit`: the painter's own paints from measured reflectances.
 
 use std::fmt::Write as _;
-use std::io::{ErrorKind, Write as _};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -9,8 +9,10 @@ use maulstick_measure::{Fit, FitOptions, MeasureError, paint_file, parse_surface
 use maulstick_optics::surface::SurfaceCorrection;
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, write_whole};
+use maulstick_rig::table_file::{MOST_BYTES, read_table};
 use serde_json::json;
 
+use crate::commands::table::table;
 use crate::commands::{print_json, print_text};
 use crate::outputs::{UsedFile, check_outputs};
 
@@ -46,13 +48,7 @@ pub struct FitCommand {
 /// A [`UserError`] with line and column of the table, or where the file cannot be written.
 pub fn run(options: &FitCommand) -> Result<i32, UserError> {
     let path = &options.measurements;
-    let text = std::fs::read_to_string(path).map_err(|error| {
-        let fault = UserError::reading(path, &error);
-        match error.kind() {
-            ErrorKind::InvalidData => fault.help("save the table as CSV in UTF-8"),
-            _ => fault,
-        }
-    })?;
+    let text = read_table(path, MOST_BYTES)?;
     let output = &options.output;
     let writing = |error: std::io::Error| UserError::writing(output, &error);
     check_outputs(
@@ -123,15 +119,15 @@ fn as_json(fit: &Fit, output: &Path) -> serde_json::Value {
 }
 
 fn as_table(fit: &Fit, output: &Path) -> String {
-    let letters = |one: &maulstick_measure::Residual| one.name.chars().count();
-    let width = fit.residuals.iter().map(letters).max().unwrap_or(0).max(6);
-    let mut text = format!("{:<width$}  ΔE₀₀\n", "sample");
+    let row = |name: &str, delta_e: f64| [name.to_owned(), format!("{delta_e:.2}")];
+    let mut rows: Vec<[String; 2]> = fit
+        .residuals
+        .iter()
+        .map(|one| row(&one.name, one.delta_e))
+        .collect();
+    rows.extend([row("mean", fit.mean()), row("worst", fit.worst())]);
+    let mut text = table(["sample", "ΔE₀₀"], &rows);
     // Writing to a String cannot fail.
-    for one in &fit.residuals {
-        writeln!(text, "{:<width$}  {:.2}", one.name, one.delta_e).ok();
-    }
-    writeln!(text, "{:<width$}  {:.2}", "mean", fit.mean()).ok();
-    writeln!(text, "{:<width$}  {:.2}", "worst", fit.worst()).ok();
     if let Some(s) = fit.white_s_per_m {
         writeln!(
             text,

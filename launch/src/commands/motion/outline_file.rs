@@ -6,6 +6,7 @@ use kurbo::{Affine, BezPath, PathEl, Point, flatten};
 use maulstick_device::Take;
 use maulstick_motion::{Outline, strokes};
 use maulstick_rig::UserError;
+use maulstick_tables::{HeadingLine, Separator, Table, TableError, decode};
 use usvg::tiny_skia_path::PathSegment;
 use usvg::{Group, Node, Options, Tree};
 
@@ -53,25 +54,23 @@ fn of_take(take: &Take, head_m: f64) -> Contours {
 /// Line, fault and advice.
 type Fault = (Option<usize>, String, &'static str);
 
+/// Advice on a table that is no outline.
+const LINE: &str = "each line is: x,y in mm; or name an SVG file, or a take";
+
 fn of_text(bytes: &[u8]) -> Result<Contours, Fault> {
-    let fault = |what: String, help: &'static str| (None, what, help);
+    let fault = |what: &str, help: &'static str| (None, what.to_owned(), help);
     if bytes.len() > LARGEST {
-        return Err(fault(
-            "the outline has more than 64 MB".to_owned(),
-            "leave out what is no outline",
-        ));
+        let help = "leave out what is no outline";
+        return Err(fault("the outline has more than 64 MB", help));
     }
-    let text = std::str::from_utf8(bytes).map_err(|_| {
+    let text = decode(bytes).map_err(|_| {
         let help = "name an SVG file, a take or a table of x,y";
-        fault("this is no outline".to_owned(), help)
+        fault("this is no outline", help)
     })?;
-    match text
-        .trim_start_matches('\u{feff}')
-        .trim_start()
-        .starts_with('<')
-    {
+    let text = text.trim_start_matches('\u{feff}');
+    match text.trim_start().starts_with('<') {
         true => of_svg(text)
-            .map_err(|error| fault(error, "save it as plain SVG with a path or a polygon")),
+            .map_err(|error| (None, error, "save it as plain SVG with a path or a polygon")),
         false => of_table(text),
     }
 }
@@ -143,38 +142,31 @@ fn polygons(path: &BezPath, contours: &mut Contours) {
 
 /// A table of x,y in mm from the middle of the desk, y up; an empty line begins another contour.
 fn of_table(text: &str) -> Result<Contours, Fault> {
-    let mut contours = vec![Vec::new()];
-    for (number, line) in text
-        .lines()
-        .enumerate()
-        .map(|(i, line)| (i + 1, line.trim()))
-    {
-        if line.starts_with('#') {
-            continue;
+    let fault = |error: TableError| {
+        let help = match error.fault {
+            maulstick_tables::Fault::TwoReadings { .. } => error.fault.help(),
+            _ => LINE,
+        };
+        (Some(error.line), error.what(), help)
+    };
+    let table = Table::parse(text, HeadingLine::Words).map_err(fault)?;
+    let mut contours = Contours::new();
+    let mut block = None;
+    for row in table.rows() {
+        // SVG writes points as x,y x,y.
+        let is_pair = |cell: &str| cell.contains(',');
+        if table.separator() == Separator::Blanks && row.cells().all(is_pair) {
+            let what = "two points on a line, or one with decimal commas?".to_owned();
+            return Err((Some(row.line()), what, "write a point a line, as x;y"));
         }
-        if line.is_empty() {
+        let point = row.numbers::<2>().map_err(fault)?.map(|mm| 1e-3 * mm);
+        if block.replace(row.block()) != Some(row.block()) {
             contours.push(Vec::new());
-            continue;
         }
-        let cells = line
-            .split([',', ';', ' ', '\t'])
-            .filter(|cell| !cell.is_empty());
-        let numbers: Vec<Option<f64>> = cells.map(|cell| cell.parse().ok()).collect();
-        match (&numbers[..], contours.last_mut()) {
-            ([Some(x), Some(y)], Some(contour)) => contour.push([1e-3 * x, 1e-3 * y]),
-            // Its columns may have names.
-            _ if number == 1 && numbers.len() == 2 && numbers.iter().all(Option::is_none) => {}
-            _ => {
-                let what = format!("'{line}' is no point");
-                return Err((
-                    Some(number),
-                    what,
-                    "each line is: x,y in mm; or name an SVG file, or a take",
-                ));
-            }
+        if let Some(contour) = contours.last_mut() {
+            contour.push(point);
         }
     }
-    contours.retain(|contour| !contour.is_empty());
     Ok(contours)
 }
 
@@ -225,8 +217,23 @@ mod tests {
             of_text(b"x,y\n# a leaf\n0,0\n10,0\n10,20\n\n1 1\n2 1\n2 2\n").expect("read");
         assert_eq!(contours.iter().map(Vec::len).collect::<Vec<_>>(), [3, 3]);
         assert_eq!(contours[0][2], [0.01, 0.02]);
-        let (line, what, _) = of_text(b"0,0\n10\n").expect_err("no point");
-        assert!(line == Some(2) && what.contains("'10'"), "{what}");
+        for text in [
+            "x;y\r0,5;0\r10;0,25\r10;20\r",
+            "\"x\"\t\"y\"\n.5\t0\n10\t.25\n10\t20\n",
+        ] {
+            let contours = of_text(text.as_bytes()).expect("read");
+            assert_eq!(
+                contours,
+                [[[0.0005, 0.0], [0.01, 0.00025], [0.01, 0.02]]],
+                "{text:?}"
+            );
+        }
+        for text in ["0,0\n10\n", "0,0\n10,x\n", "0,0\n1,2,3\n"] {
+            let (line, ..) = of_text(text.as_bytes()).expect_err(text);
+            assert_eq!(line, Some(2), "{text:?}");
+        }
+        let (line, ..) = of_text(b"10,20 30,40\n").expect_err("two readings");
+        assert_eq!(line, Some(1));
         assert!(of_text(b"\xff\xfe").is_err());
     }
 }

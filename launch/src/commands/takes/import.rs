@@ -13,7 +13,8 @@ use crate::outputs::{UsedFile, check_outputs};
 /// Options of `maulstick import`.
 #[derive(Args, Clone, Debug)]
 pub struct ImportOptions {
-    /// Table: t (s), x, y, pressure (0 to 1) and optionally tilt_x, tilt_y, twist (degrees)
+    /// Table: t (s), x, y, pressure (0 to 1) and optionally tilt_x, tilt_y, twist (degrees), stroke
+    /// (docs/tables.md)
     table: PathBuf,
     /// Take to write
     #[arg(short, long, value_name = "TAKE")]

@@ -14,6 +14,7 @@
 
 use glam::{DQuat, DVec3};
 use maulstick_num::geometry::Rigid;
+use maulstick_tables::{Fault, HeadingLine, Row, Table, TableError};
 use serde::{Deserialize, Serialize};
 
 use crate::energy::friction::Anisotropy;
@@ -206,38 +207,55 @@ pub struct PoseError {
     pub help: &'static str,
 }
 
-/// The first line of a list of poses.
+/// The headings of a list of poses.
 pub const HEADER: &str = "t,x,y,z,qx,qy,qz,qw";
-const COLUMNS: usize = 8;
+const COLUMNS: [&str; 8] = ["t", "x", "y", "z", "qx", "qy", "qz", "qw"];
 /// A quaternion whose length differs from 1 by more is taken for a mistake.
 const NEARLY_UNIT: f64 = 1e-3;
 
-/// Reads a list of poses: [`HEADER`], then a line a pose, time rising (s, m, unit quaternion).
+impl From<TableError> for PoseError {
+    fn from(error: TableError) -> Self {
+        Self {
+            line: error.line,
+            what: error.what(),
+            help: match error.fault {
+                Fault::Narrow { .. } | Fault::Wide { .. } => {
+                    "each line after the headings is a pose: t,x,y,z,qx,qy,qz,qw"
+                }
+                Fault::NotFinite { .. } => "leave out poses that are not known",
+                other => other.help(),
+            },
+        }
+    }
+}
+
+/// Reads a list of poses: a table whose first line names the columns of [`HEADER`] in any order, then a line a pose, time
+/// rising (s, m, unit quaternion).
 ///
 /// # Errors
 /// A [`PoseError`] with the line.
 pub fn poses(text: &str) -> Result<Vec<TrialPose>, PoseError> {
-    let filled = |(_, row): &(usize, &str)| !row.is_empty();
-    let lines = text.lines().enumerate();
-    let mut rows = lines.map(|(i, row)| (i + 1, row.trim())).filter(filled);
-    let (line, header) = rows.next().unwrap_or((1, ""));
-    let words: Vec<&str> = header.split(',').map(str::trim).collect();
-    if words != HEADER.split(',').collect::<Vec<&str>>() {
-        return Err(PoseError {
-            line,
-            what: match header {
-                "" => "the file is empty".to_owned(),
-                _ => format!("'{header}' is not the header"),
-            },
-            help: "the first line is: t,x,y,z,qx,qy,qz,qw",
-        });
+    let table = Table::parse(text, HeadingLine::First)?;
+    let headless = |what: String| PoseError {
+        line: table.first_line(),
+        what,
+        help: "the first line is: t,x,y,z,qx,qy,qz,qw",
+    };
+    if table.headings().is_empty() {
+        return Err(headless("the file is empty".to_owned()));
+    }
+    let found = table.columns(COLUMNS);
+    let found = found.map_err(|error| headless(error.what()))?;
+    let mut places = [0; COLUMNS.len()];
+    for ((place, found), name) in places.iter_mut().zip(found).zip(COLUMNS) {
+        *place = found.ok_or_else(|| headless(format!("the column '{name}' is missing")))?;
     }
     let mut poses: Vec<TrialPose> = Vec::new();
-    for (line, row) in rows {
-        let pose = pose(line, row)?;
+    for row in table.rows() {
+        let pose = pose(row, &places)?;
         if let Some(last) = poses.last().filter(|last| last.t >= pose.t) {
             return Err(PoseError {
-                line,
+                line: row.line(),
                 what: format!("time does not rise: {} s after {} s", pose.t, last.t),
                 help: "sort the poses by time",
             });
@@ -246,31 +264,27 @@ pub fn poses(text: &str) -> Result<Vec<TrialPose>, PoseError> {
     }
     if poses.is_empty() {
         return Err(PoseError {
-            line,
+            line: table.first_line(),
             what: "there are no poses".to_owned(),
-            help: "each line after the header is a pose: t,x,y,z,qx,qy,qz,qw",
+            help: "each line after the headings is a pose: t,x,y,z,qx,qy,qz,qw",
         });
     }
     Ok(poses)
 }
 
-fn pose(line: usize, row: &str) -> Result<TrialPose, PoseError> {
-    let wrong = |what: String, help: &'static str| PoseError { line, what, help };
-    let cells: Vec<&str> = row.split(',').map(str::trim).collect();
-    if cells.len() != COLUMNS {
-        let what = format!("{} columns, but a pose has {COLUMNS}", cells.len());
-        return Err(wrong(what, "each line is: t,x,y,z,qx,qy,qz,qw"));
+fn pose(row: Row<'_>, places: &[usize; COLUMNS.len()]) -> Result<TrialPose, PoseError> {
+    let wrong = |what: String, help: &'static str| PoseError {
+        line: row.line(),
+        what,
+        help,
+    };
+    let (cells, columns) = (row.len(), COLUMNS.len());
+    if cells < columns {
+        return Err(TableError::new(row.line(), Fault::Narrow { cells, columns }).into());
     }
-    let mut values = [0.0f64; COLUMNS];
-    for ((value, cell), name) in values.iter_mut().zip(cells).zip(HEADER.split(',')) {
-        *value = cell.parse().map_err(|_| {
-            let what = format!("{name}: '{cell}' is not a number");
-            wrong(what, "numbers are written as in 0.025 or 2.5e-2")
-        })?;
-        if !value.is_finite() {
-            let what = format!("{name}: '{cell}' is not finite");
-            return Err(wrong(what, "leave out poses that are not known"));
-        }
+    let mut values = [0.0; COLUMNS.len()];
+    for (value, place) in values.iter_mut().zip(places) {
+        *value = row.number(*place)?;
     }
     let [t, x, y, z, qx, qy, qz, qw] = values;
     let rotation = DQuat::from_xyzw(qx, qy, qz, qw);

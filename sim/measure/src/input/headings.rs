@@ -28,22 +28,22 @@ impl Headings {
     /// For a column without a heading or with one that stands twice, for wavelengths that do not
     /// rise, for more than [`MOST_COLUMNS`], for a paint whose name a paint file cannot hold, and where paints or wavelengths lack.
     pub fn of(table: &Table) -> Result<Self, MeasureError> {
-        let columns = table.headings.len();
+        let columns = table.headings().len();
         if columns > MOST_COLUMNS {
             let what = format!("{columns} columns; a table has at most {MOST_COLUMNS}");
             let help = "average the readings to a wavelength each nm or more, 380 to 780 nm";
-            return Err(MeasureError::new(what, help).line(table.heading_line));
+            return Err(MeasureError::new(what, help).line(table.first_line()));
         }
         let mut found = Self::default();
-        for (column, heading) in table.headings.iter().enumerate() {
+        for (column, heading) in table.headings().iter().enumerate() {
             let fault =
-                |what: String, help: &str| table.fault(table.heading_line, column, what, help);
+                |what: String, help: &str| table.fault(table.first_line(), column, what, help);
             if heading.is_empty() {
                 let help = "name the paint or the wavelength, or delete the column";
                 return Err(fault("the column has no heading".into(), help));
             }
             let lower = heading.to_lowercase();
-            if table.headings[..column]
+            if table.headings()[..column]
                 .iter()
                 .any(|other| other.to_lowercase() == lower)
             {
@@ -55,7 +55,7 @@ impl Headings {
                 continue;
             }
             let number = table.number(lower.trim_end_matches("nm").trim_end());
-            let Some(nm) = number else {
+            let Ok(nm) = number else {
                 let named = check_paint_name(heading);
                 if let Err(what) = named {
                     return Err(fault(what, "choose another name for the paint"));
@@ -80,7 +80,7 @@ impl Headings {
             found.wavelengths.push((column, nm));
         }
         let fault =
-            |what: &str, help: &str| Err(MeasureError::new(what, help).line(table.heading_line));
+            |what: &str, help: &str| Err(MeasureError::new(what, help).line(table.first_line()));
         if found.paints.is_empty() {
             return fault(
                 "no column names a paint",

@@ -1,5 +1,6 @@
 //! Samples of a table of measurements: what they are made of, and what the instrument read of them.
 
+use maulstick_tables::{Fault, Row, shown};
 use maulstick_types::command::advice::{choice, nearest};
 
 use crate::error::MeasureError;
@@ -7,7 +8,7 @@ use crate::headings::Headings;
 use crate::instrument;
 use crate::notes::Notes;
 use crate::reading::{Kind, Reading};
-use crate::table::{Row, Table};
+use crate::table::Table;
 
 /// Reflectances above this are taken for a mistake.
 pub const GREATEST: f64 = 1.2;
@@ -93,7 +94,7 @@ impl Measurements {
         let headings = Headings::of(&table)?;
         let notes = Notes::of(&table, &headings)?;
         let mut readings = Vec::new();
-        for row in &table.rows {
+        for row in table.rows() {
             readings.push(reading(&table, &headings, row)?);
         }
         let mut warnings = headings.warnings();
@@ -102,14 +103,13 @@ impl Measurements {
             check_range(&table, &headings, reading)?;
         }
         let grounds: Vec<(&str, &[f64])> = table
-            .rows
-            .iter()
+            .rows()
             .zip(&readings)
             .filter(|(_, reading)| reading.kind == Kind::Ground)
             .map(|(row, reading)| (name(&headings, row), reading.values.as_slice()))
             .collect();
         let mut samples = Vec::new();
-        for (row, reading) in table.rows.iter().zip(&readings) {
+        for (row, reading) in table.rows().zip(&readings) {
             if reading.kind != Kind::Sample {
                 continue;
             }
@@ -123,7 +123,7 @@ impl Measurements {
             };
             samples.push(Sample {
                 name,
-                line: row.line,
+                line: row.line(),
                 shares,
                 layer,
                 readings: reading.values.clone(),
@@ -131,7 +131,7 @@ impl Measurements {
         }
         if samples.is_empty() {
             let help = "give rows with shares of paints and their reflectances";
-            return Err(MeasureError::new("no row measures a paint", help).line(table.heading_line));
+            return Err(MeasureError::new("no row measures a paint", help).line(table.first_line()));
         }
         Ok(Self {
             wavelengths_nm: headings.wavelengths.iter().map(|(_, nm)| *nm).collect(),
@@ -140,7 +140,7 @@ impl Measurements {
                 .iter()
                 .map(|(_, name)| name.clone())
                 .collect(),
-            heading_line: table.heading_line,
+            heading_line: table.first_line(),
             headings,
             samples,
             notes,
@@ -149,10 +149,10 @@ impl Measurements {
     }
 }
 
-fn name<'a>(headings: &Headings, row: &'a Row) -> &'a str {
+fn name<'a>(headings: &Headings, row: Row<'a>) -> &'a str {
     headings
         .column("sample")
-        .map_or("", |column| &row.cells[column])
+        .map_or("", |column| row.cell(column))
 }
 
 /// A sample without a name is called by its mixture.
@@ -173,33 +173,31 @@ fn described(headings: &Headings, shares: &[f64]) -> String {
     parts.join(",")
 }
 
-fn reading(table: &Table, headings: &Headings, row: &Row) -> Result<Reading, MeasureError> {
+fn reading(table: &Table, headings: &Headings, row: Row<'_>) -> Result<Reading, MeasureError> {
     let mut kind = Kind::Sample;
     if let Some(column) = headings.column("kind")
-        && !row.cells[column].is_empty()
+        && !row.cell(column).is_empty()
     {
-        let given = row.cells[column].to_lowercase().replace(' ', "");
+        let given = row.cell(column).to_lowercase().replace(' ', "");
         let known = KINDS.iter().find(|(name, _)| *name == given);
         let Some((_, found)) = known else {
             let help = choice(&given, KINDS.map(|(name, _)| name));
-            let what = format!("'{}' is no kind of row", row.cells[column]);
-            return Err(table.fault(row.line, column, what, &help));
+            let what = format!("'{}' is no kind of row", shown(row.cell(column)));
+            return Err(table.fault(row.line(), column, what, &help));
         };
         kind = *found;
     }
     let mut values = Vec::new();
     for (column, nm) in &headings.wavelengths {
-        let cell = &row.cells[*column];
-        let fault = |what: String, help: &str| Err(table.fault(row.line, *column, what, help));
+        let cell = row.cell(*column);
+        let fault = |what: String, help: &str| Err(table.fault(row.line(), *column, what, help));
         if cell.is_empty() {
             let help = "measure it, or delete this wavelength's column in all rows";
             return fault(format!("the reading at {nm} nm is missing"), help);
         }
-        let Some(value) = table.number(cell) else {
-            return fault(
-                format!("'{cell}' is not a number"),
-                "write 0.25, for example",
-            );
+        let value = match table.number(cell) {
+            Ok(value) => value,
+            Err(wrong) => return fault(wrong.to_string(), wrong.help()),
         };
         if value < 0.0 {
             let help = "measure it again, or write 0 where noise made it negative";
@@ -209,7 +207,7 @@ fn reading(table: &Table, headings: &Headings, row: &Row) -> Result<Reading, Mea
     }
     Ok(Reading {
         kind,
-        line: row.line,
+        line: row.line(),
         values,
     })
 }
@@ -233,20 +231,18 @@ fn check_range(table: &Table, headings: &Headings, reading: &Reading) -> Result<
     Ok(())
 }
 
-fn shares(table: &Table, headings: &Headings, row: &Row) -> Result<Vec<f64>, MeasureError> {
+fn shares(table: &Table, headings: &Headings, row: Row<'_>) -> Result<Vec<f64>, MeasureError> {
     let mut shares = Vec::new();
     for (column, paint) in &headings.paints {
-        let cell = &row.cells[*column];
-        let fault = |what: String, help: &str| Err(table.fault(row.line, *column, what, help));
-        let Some(share) = (if cell.is_empty() {
-            Some(0.0)
-        } else {
-            table.number(cell)
-        }) else {
-            return fault(
-                format!("'{cell}' is not a share of '{paint}'"),
-                "write 0.25, for example",
-            );
+        let cell = row.cell(*column);
+        let fault = |what: String, help: &str| Err(table.fault(row.line(), *column, what, help));
+        let share = match table.number(cell) {
+            Ok(share) => share,
+            Err(Fault::Missing) => 0.0,
+            Err(wrong) => {
+                let what = format!("no share of '{paint}': {wrong}");
+                return fault(what, wrong.help());
+            }
         };
         if share < 0.0 {
             return fault(format!("the share {cell} is negative"), "shares are 0 to 1");
@@ -263,7 +259,7 @@ fn shares(table: &Table, headings: &Headings, row: &Row) -> Result<Vec<f64>, Mea
     let help = if (sum - 100.0).abs() < 1.0 {
         "are these per cent? divide by 100".to_owned()
     } else if sum > 1.0 + SHARE_TOLERANCE && last.is_some_and(|(share, _)| *share > 1.0) {
-        let name = &table.headings[column];
+        let name = &table.headings()[column];
         let divide = "shares are 0 to 1: divide weights by their sum";
         match nearest(name, crate::headings::RESERVED) {
             Some(nearest) => {
@@ -275,43 +271,49 @@ fn shares(table: &Table, headings: &Headings, row: &Row) -> Result<Vec<f64>, Mea
         "divide each weight by the sum of the row's weights".to_owned()
     };
     let what = format!("the shares sum to {sum:.4}, not to 1");
-    Err(table.fault(row.line, column, what, &help))
+    Err(table.fault(row.line(), column, what, &help))
 }
 
 fn layer(
     table: &Table,
     headings: &Headings,
-    row: &Row,
+    row: Row<'_>,
     grounds: &[(&str, &[f64])],
     warnings: &mut Vec<String>,
 ) -> Result<Layer, MeasureError> {
     let cell = |reserved: &str| {
         let column = headings.column(reserved)?;
-        let cell = row.cells[column].as_str();
+        let cell = row.cell(column);
         (!cell.is_empty()).then_some((column, cell))
     };
     let (thickness, over) = match (cell("thickness_um"), cell("over")) {
         (None, None) => return Ok(Layer::Opaque),
         (Some((column, _)), None) => {
             let help = "name the ground in the column `over`: black, white, a reflectance, or a row of kind ground";
-            return Err(table.fault(row.line, column, "a thickness, but over what?", help));
+            return Err(table.fault(row.line(), column, "a thickness, but over what?", help));
         }
         (None, Some((column, _))) => {
             let help =
                 "measure the wet thickness and write it, or leave `over` empty if the sample hides";
-            return Err(table.fault(row.line, column, "a drawdown without `thickness_um`", help));
+            return Err(table.fault(
+                row.line(),
+                column,
+                "a drawdown without `thickness_um`",
+                help,
+            ));
         }
         (Some(thickness), Some(over)) => (thickness, over),
     };
     let (column, text) = thickness;
     let thickness_um = table
         .number(text)
+        .ok()
         .filter(|um| (0.1..=1e5).contains(um))
         .ok_or_else(|| {
             let what = format!("'{text}' is no thickness");
-            table.fault(row.line, column, what, "give it in µm, 0.1 to 100000")
+            table.fault(row.line(), column, what, "give it in µm, 0.1 to 100000")
         })?;
-    let ground = ground(table, headings, (row.line, over), grounds, warnings)?;
+    let ground = ground(table, headings, (row.line(), over), grounds, warnings)?;
     Ok(Layer::Film {
         thickness_m: thickness_um * 1e-6,
         ground,
@@ -351,7 +353,7 @@ fn ground(
         ));
         return Ok(Ground::Read(vec![CHART_WHITE; wavelengths]));
     }
-    match table.number(text) {
+    match table.number(text).ok() {
         Some(r) if (0.0..=GREATEST).contains(&r) => Ok(Ground::Read(vec![r; wavelengths])),
         Some(r) => {
             let help = "a ground reflects 0 to 1; are these per cent? divide by 100";

@@ -3,11 +3,13 @@
 use std::collections::BTreeMap;
 
 use maulstick_optics::surface::SurfaceCorrection;
+use maulstick_tables::Note;
+use maulstick_tables::table::MOST_CHARACTERS;
 use maulstick_types::command::advice::choice;
 
 use crate::error::MeasureError;
 use crate::headings::Headings;
-use crate::table::{Note, Table};
+use crate::table::Table;
 
 /// The notes of a table.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +42,7 @@ impl Notes {
             colour_indices: BTreeMap::new(),
             source: String::new(),
         };
-        for note in &table.notes {
+        for note in table.notes() {
             let fault = |what: String, help: &str| MeasureError::new(what, help).line(note.line);
             match note.key.as_str() {
                 "reference white" => found.white = Some((note.line, note.value.clone())),
@@ -73,8 +75,7 @@ impl Notes {
                 "colour index" | "color index" => {
                     found.read_colour_indices(note, headings)?;
                 }
-                // A paint file has no quotes: a comma would end the cell.
-                "source" => found.source = note.value.replace(',', ";"),
+                "source" => found.source = cell(&note.value).map_err(|e| e.line(note.line))?,
                 _ => {}
             }
         }
@@ -103,10 +104,22 @@ impl Notes {
                 .collect();
             let place =
                 paint_called(paint.trim(), &names).map_err(|error| error.line(note.line))?;
-            self.colour_indices.insert(place, index.trim().to_owned());
+            let index = cell(index.trim()).map_err(|error| error.line(note.line))?;
+            self.colour_indices.insert(place, index);
         }
         Ok(())
     }
+}
+
+/// A text as a cell of a paint file, which is written without quotes.
+fn cell(text: &str) -> Result<String, MeasureError> {
+    let characters = text.chars().count();
+    if characters > MOST_CHARACTERS {
+        let what = format!("a note of {characters} characters");
+        let help = format!("shorten it to {MOST_CHARACTERS} at most");
+        return Err(MeasureError::new(what, help));
+    }
+    Ok(text.replace(',', ";").replace('"', "'"))
 }
 
 /// Reads `K1, K2` or `none`.

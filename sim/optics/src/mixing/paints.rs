@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use maulstick_tables::{HeadingLine, Row, Table, shown};
 use maulstick_types::{Mixture, MixtureError};
 
 use crate::spectrum::{SAMPLES, Spectrum};
@@ -106,15 +107,28 @@ pub fn check_paint_name(name: &str) -> Result<(), String> {
     Ok(())
 }
 
+impl From<maulstick_tables::TableError> for PaintError {
+    fn from(error: maulstick_tables::TableError) -> Self {
+        Self::File {
+            line: error.line,
+            what: error.what(),
+        }
+    }
+}
+
+/// Columns before the values.
+const NAMED: usize = 4;
+
 /// The header names the wavelengths of the samples.
-fn check_header(cells: &[&str]) -> Result<(), String> {
-    for (i, cell) in cells.iter().skip(4).enumerate() {
-        let nm = crate::spectrum::wavelength(i);
-        if cell.trim().parse::<f64>() != Ok(nm) {
-            return Err(format!(
-                "column {}: wavelength '{cell}' instead of {nm}",
-                i + 5
-            ));
+fn check_header(row: Row<'_>) -> Result<(), PaintError> {
+    for column in NAMED..row.len() {
+        let nm = crate::spectrum::wavelength(column - NAMED);
+        if row.number(column)? != nm {
+            let cell = row.cell(column).to_owned();
+            return Err(PaintError::File {
+                line: row.line(),
+                what: format!("column {}: wavelength '{cell}' instead of {nm}", column + 1),
+            });
         }
     }
     Ok(())
@@ -141,7 +155,7 @@ impl PaintLibrary {
         Self::parse(MEASURED)
     }
 
-    /// Reads a paint file: `paint,colour_index,source,quantity`, then 101 values of K or S relative
+    /// Reads a paint file, a table of `paint,colour_index,source,quantity`, then 101 values of K or S relative
     /// to titanium white's S, 380 to 780 nm.
     ///
     /// # Errors
@@ -149,45 +163,47 @@ impl PaintLibrary {
     pub fn parse(text: &str) -> Result<Self, PaintError> {
         let mut found: BTreeMap<String, [Option<Spectrum>; 2]> = BTreeMap::new();
         let mut order: Vec<(String, String, String)> = Vec::new();
-        let lines = text.lines().enumerate().map(|(i, line)| (i + 1, line));
-        for (line, row) in lines.filter(|(_, row)| !row.starts_with('#') && !row.is_empty()) {
-            let fault = |what: String| PaintError::File { line, what };
-            let cells: Vec<&str> = row.split(',').collect();
-            if cells[0] == "paint" {
-                check_header(&cells).map_err(fault)?;
+        let table = Table::parse(text, HeadingLine::Row)?;
+        for row in table.rows() {
+            let fault = |what: String| PaintError::File {
+                line: row.line(),
+                what,
+            };
+            if row.cell(0).eq_ignore_ascii_case("paint") {
+                check_header(row)?;
                 continue;
             }
-            if cells.len() != 4 + SAMPLES {
-                return Err(fault(format!(
-                    "{} columns instead of {}",
-                    cells.len(),
-                    4 + SAMPLES
-                )));
+            let (cells, columns) = (row.len(), NAMED + SAMPLES);
+            if cells != columns {
+                return Err(fault(format!("{cells} columns instead of {columns}")));
             }
             let mut values = [0.0; SAMPLES];
-            for (i, (value, cell)) in values.iter_mut().zip(&cells[4..]).enumerate() {
-                let number: f64 = cell
-                    .parse()
-                    .map_err(|_| fault(format!("column {}: '{cell}' is not a number", i + 5)))?;
+            for (column, value) in (NAMED..).zip(&mut values) {
+                let number = row.number(column)?;
                 if !(0.0..=MOST).contains(&number) {
-                    let what = format!("column {}: {cell} is not 0 to {MOST:.0}", i + 5);
+                    let cell = shown(row.cell(column));
+                    let what = format!("column {}: {cell} is not 0 to {MOST:.0}", column + 1);
                     return Err(fault(what));
                 }
                 *value = number * WHITE_S_PER_M;
             }
-            let place = match cells[3] {
+            let [name, colour_index, source, quantity] =
+                [0, 1, 2, 3].map(|column| row.cell(column));
+            let place = match quantity {
                 "K" => 0,
                 "S" => 1,
-                other => return Err(fault(format!("quantity '{other}' is neither K nor S"))),
+                other => {
+                    let what = format!("quantity '{}' is neither K nor S", shown(other));
+                    return Err(fault(what));
+                }
             };
-            if !found.contains_key(cells[0]) {
-                check_paint_name(cells[0]).map_err(fault)?;
-                order.push((cells[0].into(), cells[1].into(), cells[2].into()));
+            if !found.contains_key(name) {
+                check_paint_name(name).map_err(fault)?;
+                order.push((name.into(), colour_index.into(), source.into()));
             }
-            let rows = found.entry(cells[0].to_owned()).or_default();
+            let rows = found.entry(name.to_owned()).or_default();
             if rows[place].replace(Spectrum(values)).is_some() {
-                let what = format!("a second row of {} of '{}'", cells[3], cells[0]);
-                return Err(fault(what));
+                return Err(fault(format!("a second row of {quantity} of '{name}'")));
             }
         }
         let mut paints = Vec::new();
@@ -195,7 +211,7 @@ impl PaintLibrary {
             let Some([Some(k), Some(s)]) = found.remove(&name) else {
                 let what = format!("'{name}' lacks its row of K or of S");
                 return Err(PaintError::File {
-                    line: text.lines().count(),
+                    line: table.last_line(),
                     what,
                 });
             };
@@ -306,7 +322,7 @@ mod tests {
         assert!(error("X,PX,me,K,1".into()).starts_with("line 1: 5 columns"));
         assert!(error(row("K", "x")).starts_with("line 1: column 5: 'x'"));
         assert!(error(row("K", "-1")).contains("not 0 to"));
-        assert!(error(row("K", "NaN")).contains("not 0 to"));
+        assert!(error(row("K", "NaN")).contains("column 5: 'NaN'"));
         assert!(error(row("Q", "1")).contains("neither K nor S"));
         assert!(error(row("K", "1")).contains("lacks its row"));
         assert!(error(String::new()).contains("no paint"));

@@ -1,4 +1,4 @@
-//! Spectra from CSV files: a wavelength a row, on any grid.
+//! Spectra from tables: a wavelength a row, on any grid, as [`maulstick_tables`] reads them.
 //!
 //! ```text
 //! # comment
@@ -6,6 +6,8 @@
 //! 380,49.98
 //! 385,52.31
 //! ```
+
+use maulstick_tables::{HeadingLine, Table, shown};
 
 use crate::spectrum::{Spectrum, bin, resample};
 use crate::surface::SurfaceCorrection;
@@ -20,21 +22,37 @@ pub struct TableError {
     pub what: String,
 }
 
+impl From<maulstick_tables::TableError> for TableError {
+    fn from(error: maulstick_tables::TableError) -> Self {
+        Self {
+            line: error.line,
+            what: error.what(),
+        }
+    }
+}
+
+/// Instruments read nothing as a little less than nothing, by this share of the greatest reading at most.
+const DARK: f64 = 0.01;
+/// They read a white that is as white as their standard as more than 1, by this at most.
+const WHITER: f64 = 0.05;
+
 /// A spectrum covers this at least, nm: beyond its ends it is held.
 const COVERED: [f64; 2] = [420.0, 680.0];
 
 impl Spectrum {
     /// Reads the power of a light: a column of values of 0 or more over wavelengths in nm, which must
-    /// rise; see [`bin`].
+    /// rise; see [`bin`]. Values below 0 by no more than an instrument's noise are 0.
     ///
     /// # Errors
     /// [`TableError`] with line and column.
     pub fn parse(text: &str) -> Result<Self, TableError> {
-        let table = rows(text, |value| match value >= 0.0 && value.is_finite() {
-            true => Ok(()),
-            false => Err(format!("{value} is not 0 or more")),
-        })?;
-        Ok(bin(&table))
+        let table = parsed(text)?;
+        let mut rows = rows(&table)?;
+        let greatest = rows.iter().map(|row| row.value).fold(0.0, f64::max);
+        for row in &mut rows {
+            row.within([-DARK * greatest, f64::MAX], [0.0, f64::MAX], "0 or more")?;
+        }
+        Ok(bin(&whole(&table, &rows)?))
     }
 }
 
@@ -45,6 +63,8 @@ pub struct Reflectance {
     pub reading: Spectrum,
     /// Whether the gloss of the surface went past the instrument.
     pub specular_excluded: bool,
+    /// Number of readings that were beyond 0 to 1, by no more than instruments err, and were taken as 0 or 1.
+    pub limited: usize,
 }
 
 impl Reflectance {
@@ -55,29 +75,30 @@ impl Reflectance {
     /// # Errors
     /// [`TableError`] with line and column.
     pub fn parse(text: &str) -> Result<Self, TableError> {
+        let table = parsed(text)?;
         let mut specular_excluded = false;
-        for (line, row) in text.lines().enumerate() {
-            let note = row.trim().trim_start_matches('#').to_lowercase();
-            let Some(value) = note.trim().strip_prefix("specular:") else {
-                continue;
-            };
-            specular_excluded = match value.trim() {
+        for note in table.notes().iter().filter(|note| note.key == "specular") {
+            specular_excluded = match note.value.to_lowercase().as_str() {
                 "excluded" => true,
                 "included" => false,
                 other => {
-                    let what = format!("'{other}' is not `included` or `excluded`");
-                    let line = line + 1;
+                    let what = format!("'{}' is not `included` or `excluded`", shown(other));
+                    let line = note.line;
                     return Err(TableError { line, what });
                 }
             };
         }
-        let table = rows(text, |value| match (0.0..=1.0).contains(&value) {
-            true => Ok(()),
-            false => Err(format!("{value} is not a reflectance of 0 to 1")),
-        })?;
+        let mut rows = rows(&table)?;
+        let mut limited = 0;
+        for row in &mut rows {
+            let is_limited =
+                row.within([-DARK, 1.0 + WHITER], [0.0, 1.0], "a reflectance of 0 to 1")?;
+            limited += usize::from(is_limited);
+        }
         Ok(Self {
-            reading: resample(&table),
+            reading: resample(&whole(&table, &rows)?),
             specular_excluded,
+            limited,
         })
     }
 
@@ -94,63 +115,87 @@ impl Reflectance {
     }
 }
 
-/// The rows of a table, nm and value, of which `check` says whether it may be.
-fn rows(
-    text: &str,
-    check: impl Fn(f64) -> Result<(), String>,
-) -> Result<Vec<[f64; 2]>, TableError> {
-    let mut table: Vec<[f64; 2]> = Vec::new();
-    let mut headed = false;
-    for (line, row) in text.lines().enumerate().map(|(i, row)| (i + 1, row.trim())) {
-        if row.is_empty() || row.starts_with('#') {
-            continue;
+/// A row of a spectrum.
+struct Reading {
+    line: usize,
+    nm: f64,
+    /// Its column, from 1.
+    column: usize,
+    value: f64,
+}
+
+impl Reading {
+    /// Brings a value within `used` that lies within `given`; true if it was not.
+    fn within(&mut self, given: [f64; 2], used: [f64; 2], range: &str) -> Result<bool, TableError> {
+        let Self {
+            line,
+            column,
+            value,
+            ..
+        } = *self;
+        if !(given[0]..=given[1]).contains(&value) {
+            let what = format!("column {column}: {value} is not {range}");
+            return Err(TableError { line, what });
         }
-        let fault = |what: String| TableError { line, what };
-        // Spreadsheets of half the world separate by semicolons.
-        let cells: Vec<&str> = row.split([',', ';']).map(str::trim).collect();
-        let numbers: Vec<_> = cells.iter().map(|cell| cell.parse::<f64>()).collect();
-        if table.is_empty() && !headed && numbers.iter().all(Result::is_err) {
-            headed = true;
-            continue;
-        }
-        let [Ok(nm), Ok(value)] = numbers.as_slice() else {
-            let what = match numbers.iter().position(Result::is_err) {
-                Some(column) if cells.len() == 2 => {
-                    format!("column {}: '{}' is not a number", column + 1, cells[column])
-                }
-                _ => format!("{} columns; give two: nm, value", cells.len()),
-            };
-            return Err(fault(what));
-        };
-        if !(100.0..=5000.0).contains(nm) {
-            return Err(fault(format!("column 1: {nm} is no wavelength in nm")));
-        }
-        check(*value).map_err(|what| fault(format!("column 2: {what}")))?;
-        if let Some([before, _]) = table.last()
-            && before >= nm
-        {
-            return Err(fault(format!(
-                "column 1: {nm} nm after {before} nm; they must rise"
-            )));
-        }
-        table.push([*nm, *value]);
+        self.value = value.clamp(used[0], used[1]);
+        Ok(self.value != value)
     }
-    let end = text.lines().count().max(1);
-    let fault = |what: &str| TableError {
-        line: end,
-        what: what.into(),
+}
+
+fn parsed(text: &str) -> Result<Table, TableError> {
+    Ok(Table::parse(text, HeadingLine::Words)?)
+}
+
+/// The rows of a table of two columns.
+fn rows(table: &Table) -> Result<Vec<Reading>, TableError> {
+    let is_wavelength = |heading: &String| {
+        let heading = heading.to_lowercase();
+        ["nm", "wavelength", "lambda", "λ"]
+            .iter()
+            .any(|name| heading.starts_with(name))
     };
-    if table.len() < 2 {
-        return Err(fault("a spectrum takes two wavelengths or more"));
+    let first = table.headings().iter().position(is_wavelength).unwrap_or(0);
+    let mut rows: Vec<Reading> = Vec::with_capacity(table.rows().len());
+    for row in table.rows() {
+        let line = row.line();
+        let numbers = row.numbers::<2>()?;
+        let [nm, value] = [numbers[first.min(1)], numbers[1 - first.min(1)]];
+        let fault = |what: String| {
+            let what = format!("column {}: {what}", first + 1);
+            Err(TableError { line, what })
+        };
+        if !(100.0..=5000.0).contains(&nm) {
+            return fault(format!("{nm} is no wavelength in nm"));
+        }
+        if let Some(before) = rows.last().map(|row| row.nm).filter(|before| *before >= nm) {
+            return fault(format!("{nm} nm after {before} nm; they must rise"));
+        }
+        rows.push(Reading {
+            line,
+            nm,
+            column: 2 - first.min(1),
+            value,
+        });
     }
-    let [first, last] = [table[0][0], table[table.len() - 1][0]];
-    if first > COVERED[0] || last < COVERED[1] {
-        return Err(fault(&format!(
-            "the spectrum goes from {first} to {last} nm; give it from {} or less to {} or more",
-            COVERED[0], COVERED[1]
+    Ok(rows)
+}
+
+/// Wavelengths and values, if they cover the visible.
+fn whole(table: &Table, rows: &[Reading]) -> Result<Vec<[f64; 2]>, TableError> {
+    let fault = |what: String| TableError {
+        line: table.last_line(),
+        what,
+    };
+    let [first, .., last] = rows else {
+        return Err(fault("a spectrum takes two wavelengths or more".into()));
+    };
+    if first.nm > COVERED[0] || last.nm < COVERED[1] {
+        return Err(fault(format!(
+            "the spectrum goes from {} to {} nm; give it from {} or less to {} or more",
+            first.nm, last.nm, COVERED[0], COVERED[1]
         )));
     }
-    Ok(table)
+    Ok(rows.iter().map(|row| [row.nm, row.value]).collect())
 }
 
 #[cfg(test)]
@@ -170,12 +215,9 @@ mod tests {
             error("380,1\n370,1"),
             "line 2: column 1: 370 nm after 380 nm; they must rise"
         );
-        assert_eq!(error("380,1,2"), "line 1: 3 columns; give two: nm, value");
+        assert!(error("380,1,2").starts_with("line 1: 3 columns"));
         assert_eq!(error("380,-1"), "line 1: column 2: -1 is not 0 or more");
-        assert_eq!(
-            error("380,NaN\n390,1"),
-            "line 1: column 2: NaN is not 0 or more"
-        );
+        assert!(error("380,NaN\n390,1").starts_with("line 1: column 2: 'NaN'"));
         assert_eq!(error("4,1"), "line 1: column 1: 4 is no wavelength in nm");
         assert_eq!(
             error(""),
@@ -216,5 +258,66 @@ mod tests {
         assert!(error("400,0.5").contains("two wavelengths"));
         assert!(error("500,0.5\n600,0.5").contains("420 or less"));
         assert!(error("# specular: some\n400,0.5").contains("line 1"));
+    }
+
+    #[test]
+    fn spreadsheets_of_any_country_give_the_same_spectrum() {
+        let rows = [(380, 50.25), (500, 62.5), (780, 90.75)];
+        let plain: String = rows.iter().map(|(nm, p)| format!("{nm},{p}\n")).collect();
+        let wanted = Spectrum::parse(&plain).expect("good");
+        let commas = |text: &str| text.replace(',', ";").replace('.', ",");
+        for text in [
+            format!("nm;power\r\n{}", commas(&plain)),
+            format!("nm\tpower\n{}", plain.replace(',', "\t")),
+            format!("nm power\r{}", plain.replace(',', " ").replace('\n', "\r")),
+            format!(
+                "\u{feff}\"nm\",\"power\"\n\"{}",
+                plain
+                    .replace(',', "\",\"")
+                    .trim_end()
+                    .replace('\n', "\"\n\"")
+                    + "\"\n"
+            ),
+            format!(
+                "power,Wavelength [nm]\n{}",
+                rows.map(|(nm, p)| format!("{p},{nm}\n")).concat()
+            ),
+        ] {
+            assert_eq!(Spectrum::parse(&text).expect(&text), wanted, "{text:?}");
+        }
+        // One of thousands, or with decimals?
+        assert!(Spectrum::parse("380;1,234\n780;2,345\n").is_err());
+    }
+
+    #[test]
+    fn errors_of_instruments_are_taken_back_and_no_more() {
+        let white = Reflectance::parse("380,1.003\n500,1\n780,-0.0002\n").expect("good");
+        assert_eq!(white.limited, 2);
+        assert_eq!((white.reading.0[0], white.reading.0[100]), (1.0, 0.0));
+        let lamp = Spectrum::parse("380,−0.0002\n500,1\n780,0.5\n").expect("good");
+        assert!(lamp.0.iter().all(|power| *power >= 0.0));
+        for text in [
+            "400,1.1\n700,1\n",
+            "400,-0.02\n700,1\n",
+            "400,50\n700,100\n",
+        ] {
+            let error = Reflectance::parse(text).expect_err(text);
+            assert_eq!(error.line, 1, "{error}");
+        }
+        assert_eq!(
+            Spectrum::parse("400,-0.02\n700,1\n")
+                .expect_err("dark")
+                .line,
+            1
+        );
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn no_text_makes_a_reader_panic(text in "([0-9]{3}[,;\t ][0-9][.,]?[0-9]{0,3}[\r\n]|[0-9.,;e\t \"\r\n#:-]){0,40}") {
+            drop(Spectrum::parse(&text));
+            drop(Reflectance::parse(&text));
+            drop(crate::paints::PaintLibrary::parse(&text));
+        }
     }
 }
