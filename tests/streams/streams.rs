@@ -382,6 +382,10 @@ fn python_reads_and_writes_every_golden_message() {
     let golden = golden.to_str().expect("text");
     let read = printed(&mut python(&place, "golden.py", &[golden]), &schema);
     assert_eq!(read, messages.to_string());
+    assert_eq!(
+        printed(&mut python(&place, "fields.py", &[]), &schema),
+        "ok"
+    );
 }
 
 #[test]

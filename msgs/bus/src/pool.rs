@@ -71,7 +71,7 @@ fn open(sizes: &[usize]) -> State {
                     full_since: None,
                 };
             }
-            Err(error) => refusal = error.to_string(),
+            Err(error) => refusal = reason(error),
         }
         // zenoh leaves a segment behind that it could not lock.
         clear_shared_memory();
