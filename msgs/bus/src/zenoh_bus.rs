@@ -112,13 +112,15 @@ impl ZenohBus {
     /// # Errors
     /// As [`ZenohBus::open`].
     pub fn open_sharing(dial: &Dial, clock: RigClock) -> Result<Self, BusError> {
-        Self::open_as(dial, clock, Memory::Shared).or_else(|error| {
-            let own = Self::open(dial, clock)?;
-            tracing::info!(
-                "pictures go through the socket, which takes longer: no memory is shared: {error}"
-            );
-            Ok(own)
-        })
+        let opened = Self::open_as(dial, clock, Memory::Shared);
+        let Err(error @ BusError::Open { .. }) = opened else {
+            return opened;
+        };
+        let own = Self::open(dial, clock)?;
+        tracing::info!(
+            "pictures go through the socket, which takes longer: no memory is shared: {error}"
+        );
+        Ok(own)
     }
 
     /// With a pool of so many bytes, for benchmarks; without one if it shares no memory.
