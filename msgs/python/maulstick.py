@@ -15,7 +15,7 @@ POSITION, ORIENTATION, PRESSURE, TILT, TWIST, SWITCHES, PROXIMITY, FORCE, VELOCI
 ERASER = 1 << 31
 # Fields that are left out are 0, none or empty, but for these.
 DEFAULTS = {
-    ("StylusSample", "senses"): lambda sample: POSITION | (ORIENTATION if "Ferrule" in sample["pose"] else PRESSURE),
+    ("StylusSample", "senses"): lambda sample: POSITION | (ORIENTATION if "Ferrule" in sample.get("pose", {}) else PRESSURE),
     ("StylusSample", "in_range"): True,
     ("StylusPose.Contact", "tilt_rad"): [0.38759668665518066, -0.38759668665518066],
     ("Pose", "orientation"): [0.0, 0.0, 0.0, 1.0],
@@ -88,7 +88,7 @@ class Table:
             return self._write("Vec<u8>", value.encode())
         if form in ("Vec", "array"):
             if count not in (None, len(value)):
-                raise FieldError(f"{kind} has {count} values, not {len(value)}")
+                raise TypeError(f"it has {count} values, not {len(value)}")
             length = self._write("u64", len(value)) if form == "Vec" else b""
             return length + b"".join(self._write(inner, item) for item in value)
         shape = self.types[kind]
