@@ -9,6 +9,8 @@ use std::time::{Duration, Instant};
 use zenoh::Wait as _;
 use zenoh::shm::{PosixShmProviderBackend, ShmProvider, ShmProviderBuilder, ZShmMut};
 
+use crate::reason::reason;
+
 /// Sizes to try, bytes: a large frame and some small ones; what fits into the 8 MiB that a user may lock
 /// by default.
 const SIZES: [usize; 2] = [16 << 20, 4 << 20];
