@@ -48,7 +48,7 @@ const LEASE_MS: u32 = 20_000;
 /// Longest wait for a connection to a rig that runs: as long as a process that stands still is believed.
 const CONNECT: Duration = Duration::from_secs(20);
 /// Files that a session has open at the same time: threads that wait, sockets to all others, and what its node reads.
-const LEAST_FILES: u64 = 128;
+const LEAST_FILES: u64 = 64;
 
 /// Sees that this process may open as many files as a session needs; the limit is raised as far as the system allows.
 ///

@@ -12,6 +12,7 @@ use maulstick_streams::recording_writer::MESSAGE_ENCODING;
 use maulstick_streams::topic_pattern::matches;
 use maulstick_streams::traffic::Arrived;
 use maulstick_streams::{Recording, Traffic, Value};
+use maulstick_types::plain;
 use serde_json::json;
 
 use super::foxglove_export;
@@ -188,8 +189,8 @@ fn foreign_entry(topic: &ForeignTopic) -> serde_json::Value {
 fn foreign_row(topic: &ForeignTopic) -> [String; 6] {
     let schema = topic.schema.as_deref().unwrap_or("unknown");
     [
-        topic.name.clone(),
-        format!("{schema} [{}]", topic.encoding),
+        plain(&topic.name).into_owned(),
+        plain(&format!("{schema} [{}]", topic.encoding)).into_owned(),
         topic.messages.to_string(),
         format!("{:.1}", topic.rate_hz),
         format!("{:.1}", topic.bytes as f64 * 1e-3),
