@@ -26,6 +26,7 @@
 //! | [`outputs`] | files that are written; none replaces one that is read |
 //! | [`script`] | a day at the easel, a step after the other |
 //! | [`paintings`] | the bundled paintings |
+//! | [`panics`] | panics as errors that a user can read |
 //! | [`performance`] | setup that `render` and `up --play` share: take, brush, loads, canvas |
 
 pub mod advice;
@@ -37,6 +38,7 @@ pub mod doctor;
 mod figures;
 pub mod outputs;
 pub mod paintings;
+pub mod panics;
 pub mod performance;
 pub mod processes;
 pub mod script;

@@ -9,6 +9,22 @@ HEADER = struct.Struct("<HHIIIIIQQQ")
 FIELDS = ("magic", "version", "schema", "source", "epoch", "flags", "length", "seq", "event_ns", "sent_ns")
 PLAIN = dict(u8="<B", u16="<H", u32="<I", u64="<Q", i32="<i", i64="<q", f32="<f", f64="<d", bool="<?")
 
+# Bits of `senses`, see docs/messages.md.
+POSITION, ORIENTATION, PRESSURE, TILT, TWIST, SWITCHES, PROXIMITY, FORCE, VELOCITY, TORQUE = (1 << bit for bit in range(10))
+# A pressed eraser in `switches`.
+ERASER = 1 << 31
+# Fields that are left out are 0, none or empty, but for these.
+DEFAULTS = {
+    ("StylusSample", "senses"): lambda sample: POSITION | (ORIENTATION if "Ferrule" in sample.get("pose", {}) else PRESSURE),
+    ("StylusSample", "in_range"): True,
+    ("StylusPose.Contact", "tilt_rad"): [0.38759668665518066, -0.38759668665518066],
+    ("Pose", "orientation"): [0.0, 0.0, 0.0, 1.0],
+}
+
+
+class FieldError(ValueError):
+    """A value that a message has no room for; says which fields there are."""
+
 
 def split(message):
     """Header and body of a message."""
@@ -30,7 +46,12 @@ class Table:
         return self._read(self.name, io.BytesIO(body))
 
     def encode(self, value):
+        """The body of a message; fields that are left out have their defaults, see DEFAULTS."""
         return self._write(self.name, value)
+
+    def fields(self):
+        """Names and types of its fields."""
+        return {field["name"]: field["type"] for field in self.types[self.name]["struct"]}
 
     def _read(self, kind, body):
         form, inner, count = _parts(kind)
@@ -67,18 +88,53 @@ class Table:
             return self._write("Vec<u8>", value.encode())
         if form in ("Vec", "array"):
             if count not in (None, len(value)):
-                raise ValueError(f"{kind} has {count} values, not {len(value)}")
+                raise TypeError(f"it has {count} values, not {len(value)}")
             length = self._write("u64", len(value)) if form == "Vec" else b""
             return length + b"".join(self._write(inner, item) for item in value)
         shape = self.types[kind]
         if "struct" in shape:
-            return self._write_fields(shape["struct"], value)
+            return self._write_fields(kind, shape["struct"], value)
+        variants = {variant["name"]: variant["fields"] for variant in shape["enum"]}
+        if not isinstance(value, dict) or len(value) != 1 or not value.keys() <= variants.keys():
+            raise FieldError(f"{value!r} is none of {self._choices(kind)}")
         ((name, fields),) = value.items()
-        tag = [variant["name"] for variant in shape["enum"]].index(name)
-        return self._write("u32", tag) + self._write_fields(shape["enum"][tag]["fields"], fields)
+        tag = list(variants).index(name)
+        return self._write("u32", tag) + self._write_fields(f"{kind}.{name}", variants[name], fields)
 
-    def _write_fields(self, fields, value):
-        return b"".join(self._write(field["type"], value[field["name"]]) for field in fields)
+    def _write_fields(self, owner, fields, value):
+        names = ", ".join(field["name"] for field in fields) or "none"
+        if not isinstance(value, dict):
+            raise FieldError(f"{owner} is a dict of its fields, not {value!r}; its fields: {names}")
+        unknown = value.keys() - {field["name"] for field in fields}
+        if unknown:
+            raise FieldError(f"{owner} has no field {min(unknown)!r}; its fields: {names}")
+        return b"".join(self._write_field(owner, field["name"], field["type"], value) for field in fields)
+
+    def _write_field(self, owner, name, kind, value):
+        try:
+            return self._write(kind, value[name] if name in value else self._default(owner, name, kind, value))
+        except (struct.error, TypeError, AttributeError) as error:
+            raise FieldError(f"{owner}.{name} is of type {kind}, not {value[name]!r}: {error}") from None
+
+    def _default(self, owner, name, kind, value):
+        """What a field holds that is left out."""
+        if (owner, name) in DEFAULTS:
+            default = DEFAULTS[owner, name]
+            return default(value) if callable(default) else default
+        form, inner, count = _parts(kind)
+        if form in PLAIN:
+            return 0
+        if form == "array":
+            return [self._default(owner, name, inner, value)] * count
+        if form in ("Option", "Vec", "String"):
+            return {"Option": None, "Vec": [], "String": ""}[form]
+        if "struct" in self.types[kind]:
+            return {}
+        raise FieldError(f"{owner} needs its field {name!r}, one of {self._choices(kind)}")
+
+    def _choices(self, kind):
+        shown = lambda variant: f"{variant['name']} ({', '.join(field['name'] for field in variant['fields'])})"
+        return ", ".join(shown(variant) for variant in self.types[kind]["enum"])
 
 
 @functools.cache
@@ -91,16 +147,18 @@ def _parts(kind):
     return form, inner, None
 
 
-def recording(path, topics="**"):
-    """Messages of a recording or take: topic, seconds of arrival on the rig's clock, header, fields."""
+def recording(path, *topics):
+    """Messages of a recording or take: topic, seconds of arrival on the rig's clock, header, fields. Of all topics, or of those
+    that match one of the patterns."""
     from mcap.exceptions import McapError
     from mcap.reader import NonSeekingReader
 
-    tables = {}
+    tables, topics = {}, topics or ("**",)
+    is_meant = lambda topic: any(_matches(pattern, topic) for pattern in topics)
     with open(path, "rb") as file:
         try:
             for schema, channel, message in NonSeekingReader(file).iter_messages(log_time_order=False):
-                if schema and schema.encoding == "x-maulstick-fields+json" and _matches(topics, channel.topic):
+                if schema and schema.encoding == "x-maulstick-fields+json" and is_meant(channel.topic):
                     if schema.id not in tables:
                         tables[schema.id] = Table(json.loads(schema.data))
                     header, body = split(message.data)
@@ -150,6 +208,8 @@ class Rig:
                     yield str(sample.key_expr).removeprefix(self.facts["prefix"]), header, table.decode(body)
 
     def sender(self, topic, message):
+        if message not in self.by_name:
+            raise FieldError(f"there is no message {message!r}; there are {', '.join(sorted(self.by_name))}")
         return Sender(self, topic, self.by_name[message])
 
 

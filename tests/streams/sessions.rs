@@ -16,6 +16,12 @@ const CANVAS: [&str; 4] = ["--size", "320x256", "--cell-mm", "0.5"];
 /// A recorder that has the painting already.
 fn recorder(place: &Place, file: &str) -> Launcher {
     let recorder = Launcher::start(place.maulstick(&["record", "-o", file]));
+    wait_for_painting(place, file, &recorder);
+    recorder
+}
+
+/// Waits until a file has the painting.
+fn wait_for_painting(place: &Place, file: &str, recorder: &Launcher) {
     let has_painting = || {
         let info = place.run(&["recording", "info", file, "--json"]).stdout;
         let info: Value = serde_json::from_slice(&info).ok()?;
@@ -25,7 +31,6 @@ fn recorder(place: &Place, file: &str) -> Launcher {
     };
     let found = wait_for(PATIENCE, has_painting);
     assert!(found.is_some(), "{}", recorder.said());
-    recorder
 }
 
 /// Plays a hand's samples after `start` as those of a live device.
@@ -211,6 +216,50 @@ fn a_session_is_painted_again_to_the_same_picture() {
         ],
         &["--start"],
     );
+    launcher.close(&place);
+}
+
+#[test]
+fn a_paint_node_that_dies_begins_another_file_and_each_is_painted_again() {
+    let place = Place::new();
+    place.short_demo("hand.mcap", 6.0);
+    let mut launcher = Launcher::up(&place, &[&["sea.maul"], CANVAS.as_slice()].concat());
+    launcher.wait_says("is up");
+    let mut recorder = recorder(&place, "s.mcap");
+    place.done(&["load", "Bone Black"]);
+    stroke(&place, "left", "3");
+    // While it levels each moment has a picture of its own, and its place in the journal says which.
+    let levelling = place.done(&["snapshot", "-o", "levelling.png", "--json"]);
+    let levelling: Value = serde_json::from_slice(&levelling.stdout).expect("JSON");
+    stroke(&place, "left", "3");
+    let paint = place.pid("maulstick-paint").expect("a paint node");
+    signal(paint, Signal::SIGKILL);
+    launcher.wait_says("'paint' failed and is started again");
+    wait_for_painting(&place, "s-2.mcap", &recorder);
+    place.done(&["load", "Cadmium Red Light"]);
+    stroke(&place, "right", "3");
+    place.done(&["dry"]);
+    let painted = snapshot(&place, "painted.png");
+    recorder.signal(Signal::SIGINT);
+    recorder.wait(PATIENCE);
+
+    let until = levelling["place"].to_string();
+    place.done(&["render", "s.mcap", "-o", "then.png", "--until", &until]);
+    let levelling = place.bytes("levelling.png");
+    assert_same(&place.bytes("then.png"), &levelling, "while it levels");
+    place.done(&["take", "from", "s.mcap", "-o", "first.mcap"]);
+    place.done(&["render", "first.mcap", "-o", "first.png"]);
+    assert_ne!(place.bytes("first.png"), levelling, "a stroke more");
+    place.done(&["render", "s-2.mcap", "-o", "again.png"]);
+    assert_same(&place.bytes("again.png"), &painted, "after the crash");
+    let late = ["--start", "0.5", "-o", "late.mcap"];
+    place.done(&[&["take", "from", "s-2.mcap"], late.as_slice()].concat());
+    place.done(&["render", "late.mcap", "-o", "late.png"]);
+    assert_same(&place.bytes("late.png"), &painted, "the end of it");
+    let behind = ["take", "from", "s.mcap", "-o", "x.mcap", "--start", "1e6"];
+    has(&fault(&place, &behind, 2), &["s-2.mcap"]);
+    let elsewhere = ["render", "s-2.mcap", "-o", "x.png", "--until", "999999"];
+    has(&fault(&place, &elsewhere, 2), &["999999"]);
     launcher.close(&place);
 }
 

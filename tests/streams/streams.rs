@@ -4,6 +4,7 @@
 mod support;
 
 use std::path::Path;
+use std::process::Command;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -13,7 +14,7 @@ use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin, encode};
 use nix::sys::signal::Signal;
 use serde_json::Value;
-use support::{Launcher, PATIENCE, Place, fault, has, join, printed, python, wait_for};
+use support::{Launcher, MAULSTICK, PATIENCE, Place, fault, has, join, printed, python, wait_for};
 
 /// Of ten numbers the sender leaves out one.
 const EACH: u64 = 10;
@@ -97,9 +98,36 @@ fn check_losses(stream: &Value) -> (u64, u64) {
     (heard, lost)
 }
 
+/// Without files for its sockets a command says so, and panics nowhere.
+fn check_few_files(place: &Place) {
+    for command in [
+        &["hz", "--once"][..],
+        &["record", "-o", "few.mcap"],
+        &["snapshot", "-o", "few.png"],
+    ] {
+        let in_place = place.maulstick(&[]);
+        let mut shell = Command::new("sh");
+        let told = in_place.get_envs();
+        shell
+            .current_dir(place.path(""))
+            .envs(told.filter_map(|(name, value)| Some((name, value?))))
+            .args(["-c", "ulimit -n 32; exec \"$0\" \"$@\"", MAULSTICK])
+            .args(command);
+        let output = shell.output().expect("started");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{command:?}: {said}");
+        has(&said, &["error: ", "32 files", "ulimit -n"]);
+        assert!(
+            !said.contains("panicked") && !said.contains(".rs:"),
+            "{said}"
+        );
+    }
+}
+
 #[test]
 fn what_a_sender_leaves_out_is_counted_exactly_and_its_contents_are_shown() {
     beside_a_sender(|place| {
+        check_few_files(place);
         let hz = place
             .done(&["hz", "control/**", "--seconds", "1", "--json"])
             .stdout;
@@ -382,6 +410,10 @@ fn python_reads_and_writes_every_golden_message() {
     let golden = golden.to_str().expect("text");
     let read = printed(&mut python(&place, "golden.py", &[golden]), &schema);
     assert_eq!(read, messages.to_string());
+    assert_eq!(
+        printed(&mut python(&place, "fields.py", &[]), &schema),
+        "ok"
+    );
 }
 
 #[test]

@@ -129,23 +129,24 @@ pub struct SurfaceFeel {
     pub relief: HeightPatch,
 }
 
-/// Contact model of a surface under a brush.
+/// Contact model of a surface under a brush, the tip of whose unbent head is at a place of the desk, m.
 #[must_use]
 pub fn contact_model(
     device: Origin,
     brush: &str,
-    file: &BrushFile,
+    (file, tip): (&BrushFile, DVec3),
     plane: &Plane,
     felt: SurfaceFeel,
 ) -> ContactModel {
+    let (point, normal) = (plane.to_desk.point(DVec3::ZERO), plane.normal());
     let friction = file.contact.friction;
     let on_canvas = plane.id == CANVAS;
     ContactModel {
         device: device.source,
         device_epoch: device.epoch,
         brush: brush.to_owned(),
-        plane_point_m: plane.to_desk.point(DVec3::ZERO).to_array(),
-        plane_normal: plane.normal().to_array(),
+        plane_point_m: point.to_array(),
+        plane_normal: normal.to_array(),
         friction_static: file.contact.friction_static.unwrap_or(friction),
         friction_kinetic: friction,
         // Paint drags by the fluid force, once.
@@ -156,6 +157,7 @@ pub fn contact_model(
         time_to_live_ns: TIME_TO_LIVE_NS,
         recovery_ns: RECOVERY_NS,
         relief: felt.relief,
+        depth_m: (point - tip).dot(normal),
     }
 }
 

@@ -186,6 +186,7 @@ fn a_foreign_brush_file_is_contradicted() {
         brush: "main".into(),
         hash: name_hash(&toml),
         toml,
+        head_length_m: 0.0,
     };
     rig.stray(&topic, origin(name_hash("main"), 99), Flags::FIRST, 0, &def);
     rig.is_back("a foreign brush file");

@@ -1,5 +1,6 @@
 //! The command.
 
 fn main() {
+    maulstick::panics::tell();
     maulstick::finish(maulstick::cli::run());
 }

@@ -18,6 +18,22 @@ pub enum BusError {
         /// Error of the transport.
         reason: String,
     },
+    /// Nobody could be connected to in time.
+    #[error("{at}: no connection within {limit_s} s")]
+    Silent {
+        /// Address.
+        at: String,
+        /// Waiting time, s.
+        limit_s: u64,
+    },
+    /// This process may open too few files.
+    #[error("this process may open {limit} files at the same time, and needs {least}")]
+    Files {
+        /// The limit.
+        limit: u64,
+        /// Files that it needs.
+        least: u64,
+    },
     /// A declaration or a send failed.
     #[error("{topic}: {reason}")]
     Topic {

@@ -5,6 +5,7 @@
 //! asks again for missing ones, and reports those that it gives up. The behaviour of a sender without credit is its own
 //! affair: a player waits, a live brush merges.
 
+mod losses;
 mod receiver;
 mod sender;
 mod stream;

@@ -14,6 +14,7 @@
 //! | [`rivals`] | the choice between two senders under one name |
 //! | [`participants`] | the programs of a rig, and what each sends, receives and answers |
 //! | [`clock`] | the rig's clock |
+//! | [`reason`](mod@reason) | what a library says, without paths of the machine that built it |
 //! | [`rig`] | the rig's folder, and the file by which a foreign program finds it |
 
 mod announce;
@@ -25,6 +26,7 @@ mod memory;
 pub mod participants;
 mod payload;
 mod pool;
+pub mod reason;
 mod recent;
 pub mod rig;
 pub mod rivals;

@@ -9,6 +9,8 @@ use std::time::{Duration, Instant};
 use zenoh::Wait as _;
 use zenoh::shm::{PosixShmProviderBackend, ShmProvider, ShmProviderBuilder, ZShmMut};
 
+use crate::reason::reason;
+
 /// Sizes to try, bytes: a large frame and some small ones; what fits into the 8 MiB that a user may lock
 /// by default.
 const SIZES: [usize; 2] = [16 << 20, 4 << 20];
@@ -71,7 +73,7 @@ fn open(sizes: &[usize]) -> State {
                     full_since: None,
                 };
             }
-            Err(error) => refusal = error.to_string(),
+            Err(error) => refusal = reason(error),
         }
         // zenoh leaves a segment behind that it could not lock.
         clear_shared_memory();

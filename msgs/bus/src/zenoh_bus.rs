@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
+use nix::sys::resource::{Resource, getrlimit, setrlimit};
 use zenoh::Wait as _;
 use zenoh::bytes::ZBytes;
 use zenoh::handlers::CallbackDrop;
@@ -23,6 +24,7 @@ use crate::clock::RigClock;
 use crate::inbox::{Inbox, Queue, Wake};
 use crate::payload::Payload;
 use crate::pool::Pool;
+use crate::reason::reason;
 
 /// Settings with which a process joins the rig's sockets.
 #[derive(Clone, Debug)]
@@ -43,6 +45,33 @@ const MAX_MESSAGE_BYTES: usize = 96 << 20;
 /// to a third only once.
 const LEASE_MS: u32 = 20_000;
 
+/// Longest wait for a connection to a rig that runs: as long as a process that stands still is believed.
+const CONNECT: Duration = Duration::from_secs(20);
+/// Files that a session has open at the same time: threads that wait, sockets to all others, and what its node reads.
+const LEAST_FILES: u64 = 64;
+
+/// Sees that this process may open as many files as a session needs; the limit is raised as far as the system allows.
+///
+/// # Errors
+/// [`BusError::Files`]: without them zenoh panics.
+fn check_files() -> Result<(), BusError> {
+    let Ok((now, most)) = getrlimit(Resource::RLIMIT_NOFILE) else {
+        return Ok(());
+    };
+    if now >= LEAST_FILES {
+        return Ok(());
+    }
+    let wanted = LEAST_FILES.min(most);
+    let raised = setrlimit(Resource::RLIMIT_NOFILE, wanted, most).map_or(now, |()| wanted);
+    match raised >= LEAST_FILES {
+        true => Ok(()),
+        false => Err(BusError::Files {
+            limit: raised,
+            least: LEAST_FILES,
+        }),
+    }
+}
+
 /// A zenoh session with the rig's clock.
 #[derive(Debug)]
 pub struct ZenohBus {
@@ -54,7 +83,7 @@ pub struct ZenohBus {
 pub(crate) fn topic_error(topic: &str, error: impl std::fmt::Display) -> BusError {
     BusError::Topic {
         topic: topic.to_owned(),
-        reason: error.to_string(),
+        reason: reason(error),
     }
 }
 
@@ -83,13 +112,15 @@ impl ZenohBus {
     /// # Errors
     /// As [`ZenohBus::open`].
     pub fn open_sharing(dial: &Dial, clock: RigClock) -> Result<Self, BusError> {
-        Self::open_as(dial, clock, Memory::Shared).or_else(|error| {
-            let own = Self::open(dial, clock)?;
-            tracing::info!(
-                "pictures go through the socket, which takes longer: no memory is shared: {error}"
-            );
-            Ok(own)
-        })
+        let opened = Self::open_as(dial, clock, Memory::Shared);
+        let Err(error @ BusError::Open { .. }) = opened else {
+            return opened;
+        };
+        let own = Self::open(dial, clock)?;
+        tracing::info!(
+            "pictures go through the socket, which takes longer: no memory is shared: {error}"
+        );
+        Ok(own)
     }
 
     /// With a pool of so many bytes, for benchmarks; without one if it shares no memory.
@@ -111,10 +142,19 @@ impl ZenohBus {
             at: at.clone(),
             reason: error,
         };
-        let config = config(dial, memory).map_err(|error| open_error(error.to_string()))?;
-        let session = zenoh::open(config)
-            .wait()
-            .map_err(|error| open_error(error.to_string()))?;
+        check_files()?;
+        let config = config(dial, memory).map_err(|error| open_error(reason(error)))?;
+        let begun = Instant::now();
+        let session = zenoh::open(config).wait().map_err(|error| {
+            // It has tried again and again until then.
+            match dial.connect.is_empty() || begun.elapsed() < CONNECT {
+                true => open_error(reason(error)),
+                false => BusError::Silent {
+                    at: at.clone(),
+                    limit_s: CONNECT.as_secs(),
+                },
+            }
+        })?;
         if let Some(listen) = &dial.listen {
             let locators = session.info().locators().wait();
             if !locators
@@ -141,7 +181,7 @@ impl ZenohBus {
     /// Says goodbye to all peers.
     pub fn close(&self) {
         if let Err(error) = self.session.close().wait() {
-            tracing::debug!("closing the bus: {error}");
+            tracing::debug!("closing the bus: {}", reason(error));
         }
     }
 }
@@ -174,7 +214,7 @@ fn config(dial: &Dial, memory: Memory) -> zenoh::Result<zenoh::Config> {
             serde_json::json!(dial.listen.iter().collect::<Vec<_>>()),
         ),
         ("connect/endpoints", serde_json::json!(dial.connect)),
-        ("connect/timeout_ms", serde_json::json!(2000)),
+        ("connect/timeout_ms", serde_json::json!(CONNECT.as_millis())),
         (
             "connect/exit_on_failure",
             serde_json::json!(!dial.connect.is_empty()),

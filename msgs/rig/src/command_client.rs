@@ -15,6 +15,15 @@ use maulstick_types::{Origin, name_hash};
 /// Time after which an unanswered command is sent again.
 const ASK: Duration = Duration::from_secs(2);
 
+/// A command that is done.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Done {
+    /// Its index in the painting's journal; 0 of one that is not in it.
+    pub journal: u64,
+    /// What it wrote or found, in words; may be empty.
+    pub detail: String,
+}
+
 /// Client that sends commands to a node.
 pub struct CommandClient {
     bus: Arc<dyn Bus>,
@@ -67,6 +76,21 @@ impl CommandClient {
         patience: Duration,
         stop: &dyn Fn() -> bool,
     ) -> Result<String, UserError> {
+        let done = self.carry_out(command, after, patience, stop)?;
+        Ok(done.detail)
+    }
+
+    /// The same, with the place that the command has in the painting's journal.
+    ///
+    /// # Errors
+    /// As [`Self::send`].
+    pub fn carry_out(
+        &mut self,
+        command: impl Into<Command>,
+        after: Option<After>,
+        patience: Duration,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Done, UserError> {
         let command = command.into();
         // A failure at the end of a take, or of a write, is no wrong usage.
         let refusal: fn(String) -> UserError = match &command {
@@ -99,9 +123,9 @@ impl CommandClient {
                 limit,
             ) {
                 Ok(CommandReply {
-                    outcome: Outcome::Done { detail, .. },
+                    outcome: Outcome::Done { journal, detail },
                     ..
-                }) => return Ok(detail),
+                }) => return Ok(Done { journal, detail }),
                 Ok(CommandReply {
                     outcome: Outcome::Refused { what, advice },
                     ..

@@ -3,6 +3,7 @@
 use std::fmt::{self, Debug};
 use std::io::IsTerminal as _;
 
+use maulstick_bus::reason::reason;
 use maulstick_types::plain;
 use tracing::field::Field;
 use tracing_subscriber::EnvFilter;
@@ -45,7 +46,7 @@ where
 fn write_field(to: &mut Writer<'_>, field: &Field, value: &dyn Debug) -> fmt::Result {
     let text = format!("{value:?}");
     match field.name() {
-        "message" => write!(to, "{}", plain(&text)),
+        "message" => write!(to, "{}", plain(&reason(text))),
         name => write!(to, "{name}={}", plain(&text)),
     }
 }

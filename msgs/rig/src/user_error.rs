@@ -156,11 +156,23 @@ impl From<LightError> for UserError {
 impl From<BusError> for UserError {
     fn from(error: BusError) -> Self {
         match error {
-            BusError::Open { at, reason } => {
-                Self::failure(format!("cannot join the rig: {reason}"))
+            BusError::Open { at, reason } => Self::failure(format!(
+                "cannot join the rig: {reason}"
+            ))
+            .at(at)
+            .help(
+                "see that no other process has this name in the rig, and that its folder is yours",
+            ),
+            BusError::Silent { at, limit_s } => {
+                let what = format!("the rig runs, but nothing connects within {limit_s} s");
+                Self::failure(what)
                     .at(at)
-                    .help("see that the rig is running and that its folder is yours")
+                    .help("try again: the machine may be too busy, and `maulstick doctor` says with what; otherwise start the rig anew")
             }
+            BusError::Files { least, .. } => Self::failure(error.to_string()).help(format!(
+                "raise the limit before: `ulimit -n {}`",
+                least.next_power_of_two().max(1024)
+            )),
             BusError::Topic { topic, reason } => Self::failure(reason).at(topic).help(
                 "the node was restarted or the rig has stopped: look at the messages of the rig",
             ),

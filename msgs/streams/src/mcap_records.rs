@@ -17,7 +17,9 @@ pub const HEAD: usize = 9;
 const FIRST_PRIVATE: u8 = 0x80;
 /// Window of a zstd frame that is decompressed, as a power of 2 in bytes; zstd's own levels up to 19 need it.
 const WINDOW_LOG: u32 = 23;
-/// Most bytes that a byte of a chunk may become. Samples at rest become 30.
+/// Most bytes that a chunk becomes that says so, however well it packs: plain pictures pack above 2000:1.
+const MOST_STATED: usize = 64 << 20;
+/// Most bytes that a byte of another chunk may become. Samples at rest become 30.
 const MOST_EXPANSION: usize = 256;
 /// Allocation that a chunk of any size may need, bytes.
 const LEAST_ROOM: usize = 1 << 20;
@@ -222,9 +224,9 @@ pub fn unpack(body: &[u8]) -> Unpacked<'_> {
                 decoder.window_log_max(WINDOW_LOG)?;
                 Ok(decoder.single_frame())
             });
-            read_all(decoder, data.len())
+            read_all(decoder, most_of(body, data))
         }
-        "lz4" => read_all(lz4::Decoder::new(data), data.len()),
+        "lz4" => read_all(lz4::Decoder::new(data), most_of(body, data)),
         other => return nothing(format!("chunks compressed by '{other}' cannot be read")),
     };
     let crc = u32::from_le_bytes(std::array::from_fn(|i| body[24 + i]));
@@ -234,12 +236,18 @@ pub fn unpack(body: &[u8]) -> Unpacked<'_> {
     Unpacked { bytes, damage }
 }
 
-/// Reads what a decoder gives before it fails.
+/// Most bytes that the data of a chunk may become.
+fn most_of(body: &[u8], data: &[u8]) -> usize {
+    let stated = u64_at(body, 16).and_then(|stated| usize::try_from(stated).ok());
+    let by_size = data.len().saturating_mul(MOST_EXPANSION).max(LEAST_ROOM);
+    by_size.max(stated.unwrap_or(0).min(MOST_STATED))
+}
+
+/// Reads what a decoder gives before it fails, up to so many bytes.
 fn read_all(
     decoder: std::io::Result<impl Read>,
-    packed: usize,
+    most: usize,
 ) -> (Cow<'static, [u8]>, Option<String>) {
-    let most = packed.saturating_mul(MOST_EXPANSION).max(LEAST_ROOM);
     let mut bytes = Vec::new();
     let read = decoder.and_then(|decoder| decoder.take(most as u64 + 1).read_to_end(&mut bytes));
     let damage = match read {

@@ -97,12 +97,34 @@ pub struct Stream {
     pub transit: Distribution,
     /// From sampling to arrival.
     pub age: Distribution,
-    first_ns: u64,
+    /// When the newest arrived, ns.
     last_ns: u64,
+    sent: Sendings,
     /// One more than the highest number.
-    next_seq: u64,
+    next_seq: Option<u64>,
+    /// True once one was heard that was sent since the listener came.
+    has_begun: bool,
     /// The newest of the missing numbers.
     missing: BTreeSet<u64>,
+}
+
+/// Messages whose rate is measured, by their sender's times: what comes late comes in heaps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Sendings {
+    messages: u64,
+    first_ns: u64,
+    last_ns: u64,
+}
+
+impl Sendings {
+    fn add(&mut self, sent_ns: u64) {
+        self.first_ns = match self.messages {
+            0 => sent_ns,
+            _ => self.first_ns.min(sent_ns),
+        };
+        self.last_ns = self.last_ns.max(sent_ns);
+        self.messages += 1;
+    }
 }
 
 impl Stream {
@@ -112,40 +134,61 @@ impl Stream {
             bytes,
             arrived_ns,
         } = *message;
-        if self.messages == 0 {
-            self.first_ns = arrived_ns;
-            self.next_seq = header.seq;
-        } else {
+        if self.messages > 0 {
             self.gaps.add(arrived_ns.saturating_sub(self.last_ns));
         }
         self.schema = header.schema;
         self.messages += 1;
         self.bytes += bytes as u64;
         self.last_ns = arrived_ns;
-        if header.sent_ns >= since_ns {
+        let is_since = header.sent_ns >= since_ns;
+        if is_since {
             self.transit.add(arrived_ns.saturating_sub(header.sent_ns));
             self.age.add(arrived_ns.saturating_sub(header.event_ns));
         }
-        if header.seq >= self.next_seq {
-            self.lost += header.seq - self.next_seq;
-            self.missing
-                .extend((self.next_seq..header.seq).rev().take(MOST_MISSING));
-            while self.missing.len() > MOST_MISSING {
-                self.missing.pop_first();
-            }
-            self.next_seq = header.seq.saturating_add(1);
-        } else {
-            self.disordered += 1;
-            self.lost -= u64::from(self.missing.remove(&header.seq));
+        let mut next_seq = self.next_seq.unwrap_or(header.seq);
+        if is_since && !self.has_begun && header.seq > next_seq {
+            // What was heard so far was kept for late joiners: what was sent between was not sent to this one.
+            next_seq = header.seq;
+            self.sent = Sendings::default();
         }
+        self.has_begun |= is_since;
+        if header.seq < next_seq {
+            self.disordered += 1;
+            // One that comes twice is counted once.
+            if self.missing.remove(&header.seq) {
+                self.lost -= 1;
+                self.sent.add(header.sent_ns);
+            }
+            return;
+        }
+        self.sent.add(header.sent_ns);
+        self.lost += header.seq - next_seq;
+        self.missing
+            .extend((next_seq..header.seq).rev().take(MOST_MISSING));
+        while self.missing.len() > MOST_MISSING {
+            self.missing.pop_first();
+        }
+        self.next_seq = Some(header.seq.saturating_add(1));
     }
 
-    /// Messages a second, between the first and the last; 0 of fewer than two.
+    /// True while some are missing that may still come.
+    #[must_use]
+    pub fn lacks_some(&self) -> bool {
+        !self.missing.is_empty()
+    }
+
+    /// Messages a second that arrived, between the first and the last by their sender's times; 0 of fewer than two.
     #[must_use]
     pub fn rate_hz(&self) -> f64 {
-        let passed_s = self.last_ns.saturating_sub(self.first_ns) as f64 * 1e-9;
-        match self.messages >= 2 && passed_s > 0.0 {
-            true => (self.messages - 1) as f64 / passed_s,
+        let Sendings {
+            messages,
+            first_ns,
+            last_ns,
+        } = self.sent;
+        let passed_s = last_ns.saturating_sub(first_ns) as f64 * 1e-9;
+        match messages >= 2 && passed_s > 0.0 {
+            true => (messages - 1) as f64 / passed_s,
             false => 0.0,
         }
     }
@@ -174,6 +217,21 @@ impl Traffic {
         let key = (topic.to_owned(), message.header.origin());
         let stream = self.streams.entry(key).or_default();
         stream.add(message, self.since_ns);
+    }
+
+    /// Takes in what waited when the time was over: it fills what is missing, and is not measured otherwise.
+    pub fn add_late(&mut self, topic: &str, message: &Arrived) {
+        let key = (topic.to_owned(), message.header.origin());
+        let late = self.streams.get_mut(&key);
+        let late = late.filter(|stream| stream.missing.contains(&message.header.seq));
+        late.into_iter()
+            .for_each(|stream| stream.add(message, self.since_ns));
+    }
+
+    /// True while messages of some stream are missing that may still come.
+    #[must_use]
+    pub fn lacks_some(&self) -> bool {
+        self.streams.values().any(Stream::lacks_some)
     }
 
     /// The streams, by topic.
@@ -238,6 +296,63 @@ mod tests {
         assert_eq!(stream.age.quantile(0.5), 2_000_000);
         assert_eq!(stream.gaps.most(), 8_000_000);
         assert_eq!(stream.bytes, 90_000);
+    }
+
+    #[test]
+    fn a_rate_is_that_of_the_sender_however_late_and_in_heaps_it_comes() {
+        // 490 a second, which arrive within .75 s after a pause of the machine.
+        let at = |seq: u64| seq * 1000 / 490;
+        let stream =
+            heard((0..490).map(|seq| message(seq, [at(seq), at(seq), 1000 + 3 * seq / 2])));
+        assert!(
+            (stream.rate_hz() - 490.0).abs() < 1.0,
+            "{}",
+            stream.rate_hz()
+        );
+        // Half of them are lost: so many come.
+        let half = (0..490).step_by(2).map(|seq| message(seq, [at(seq); 3]));
+        let stream = heard(half);
+        assert!(
+            (stream.rate_hz() - 245.0).abs() < 1.0,
+            "{}",
+            stream.rate_hz()
+        );
+        // Each comes twice.
+        let twice = (0..490).flat_map(|seq| [message(seq, [at(seq); 3]); 2]);
+        let stream = heard(twice);
+        assert!(
+            (stream.rate_hz() - 490.0).abs() < 1.0,
+            "{}",
+            stream.rate_hz()
+        );
+    }
+
+    #[test]
+    fn what_was_sent_before_a_listener_came_is_not_lost() {
+        let mut traffic = Traffic::since(50_000_000);
+        // The newest value of before, then what is sent to this listener too.
+        traffic.add("a", &message(100, [1, 2, 60]));
+        for seq in 157..160 {
+            traffic.add("a", &message(seq, [seq; 3]));
+        }
+        traffic.add("a", &message(161, [161; 3]));
+        let (_, _, stream) = traffic.streams().next().expect("one");
+        assert_eq!((stream.messages, stream.lost), (5, 1));
+    }
+
+    #[test]
+    fn what_waits_at_the_end_is_late_and_not_lost() {
+        let mut traffic = Traffic::default();
+        for seq in [0, 1, 58] {
+            traffic.add("a", &message(seq, [seq; 3]));
+        }
+        assert!(traffic.lacks_some());
+        for seq in (2..58).chain(59..200) {
+            traffic.add_late("a", &message(seq, [seq, seq, 300]));
+        }
+        let (_, _, stream) = traffic.streams().next().expect("one");
+        assert_eq!((stream.messages, stream.lost), (59, 0));
+        assert!(!traffic.lacks_some());
     }
 
     #[test]

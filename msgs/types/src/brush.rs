@@ -132,13 +132,15 @@ impl Solve {
 
 message! {
     /// A brush file; cached for late joiners.
-    pub struct BrushDef [version 1, at most 1048576 bytes] {
+    pub struct BrushDef [version 2, at most 1048576 bytes] {
         /// Name of the brush in the rig.
         pub brush: String,
         /// The file, TOML.
         pub toml: String,
         /// FNV-1a of the file.
         pub hash: u32,
+        /// Length of its head, from where it meets the ferrule to its tip, m.
+        pub head_length_m: f64,
     }
 }
 

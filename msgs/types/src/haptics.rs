@@ -116,7 +116,7 @@ pub fn heights_um(bytes: &[u8]) -> impl Iterator<Item = i16> {
 
 message! {
     /// Contact force on the handle until the next model, evaluated at the device's own rate; in the desk frame.
-    pub struct ContactModel [contract of hash 0xf3eb_8772, version 2, at most 4096 bytes] {
+    pub struct ContactModel [contract of hash 0xf3eb_8772, version 3, at most 4096 bytes] {
         /// The device that it is for: the source of its samples.
         pub device: u32,
         /// The device's epoch; another one is dropped.
@@ -145,6 +145,8 @@ message! {
         pub recovery_ns: u64,
         /// Relief around the brush.
         pub relief: HeightPatch,
+        /// Depth of the unbent head's tip below the plane where the hand was as the model was made, m; negative above it.
+        pub depth_m: f64,
     }
 }
 
@@ -177,6 +179,7 @@ impl ContactModel {
             time_to_live_ns: Self::TIME_TO_LIVE_MOST_NS,
             recovery_ns: 0,
             relief: HeightPatch::flat(),
+            depth_m: 0.0,
         }
     }
 }

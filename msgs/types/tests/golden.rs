@@ -102,6 +102,7 @@ fn all() -> String {
             cell_m: 0.001,
             heights_um: height_bytes([7, -8, 300]),
         },
+        depth_m: 0.002,
     };
     let knot = HermiteKnot {
         depth: 0.5,
@@ -190,6 +191,7 @@ fn all() -> String {
             brush: "main".into(),
             toml: "kind = 1".into(),
             hash: 9,
+            head_length_m: 0.025,
         }),
         line(&BrushState {
             device: 1,

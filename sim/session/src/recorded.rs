@@ -42,13 +42,27 @@ pub enum SessionFault {
         /// Index of the entry that followed.
         found: u64,
     },
+    /// The session does not reach a place of the journal, or begins behind it.
+    #[error("place {place} of the painting's journal is not in it: it has {first} to {last}")]
+    Elsewhere {
+        /// The place.
+        place: u64,
+        /// Index of its first entry.
+        first: u64,
+        /// Index of its last entry.
+        last: u64,
+    },
 }
 
 /// Entries and states of a session, put together in the order of the journal.
 #[derive(Debug)]
 pub struct RecordedSession {
+    /// Index of the first entry.
+    first: u64,
     /// Index of the next entry.
     next: u64,
+    /// Index of the last entry that is of interest.
+    last: u64,
     /// Number of the next record.
     serial: u64,
     /// Epoch of the paint node.
@@ -63,11 +77,22 @@ impl RecordedSession {
     #[must_use]
     pub fn after(sequencer: &Sequencer) -> Self {
         Self {
+            first: sequencer.journal_next(),
             next: sequencer.journal_next(),
+            last: u64::MAX,
             serial: sequencer.serial(),
             epoch: None,
             entries: BTreeMap::new(),
             states: BTreeMap::new(),
+        }
+    }
+
+    /// The session up to a place of the journal, that entry among it; what comes behind it is passed over.
+    #[must_use]
+    pub fn until(self, place: u64) -> Self {
+        Self {
+            last: place,
+            ..self
         }
     }
 
@@ -88,6 +113,9 @@ impl RecordedSession {
     /// # Errors
     /// [`SessionFault::Another`], or [`SessionFault::Entries`] where some are missing before it.
     pub fn entry(&mut self, header: &Header, entry: JournalEntry) -> Result<(), SessionFault> {
+        if self.is_past() {
+            return Ok(());
+        }
         let known = self.epoch.replace(header.epoch);
         let newest = self.entries.last_key_value().map(|(index, _)| *index);
         let newest = newest.or(self.next.checked_sub(1));
@@ -118,6 +146,9 @@ impl RecordedSession {
     /// [`SessionFault::State`] where a later state of the same brush has come, and that of the record has not.
     pub fn next_record(&mut self) -> Result<Option<Record>, SessionFault> {
         let index = self.next;
+        if self.is_past() {
+            return Ok(None);
+        }
         let first = self.entries.first_entry();
         let Some(mut entry) = first.filter(|own| *own.key() == index) else {
             return Ok(None);
@@ -167,11 +198,29 @@ impl RecordedSession {
         }))
     }
 
-    /// Checks that nothing is left over.
+    /// True once all up to the last place of interest has come.
+    fn is_past(&self) -> bool {
+        self.next > self.last
+    }
+
+    /// Checks that nothing is left over, and that the place up to which it is painted was reached.
     ///
     /// # Errors
     /// [`SessionFault`] with what is missing before it.
     pub fn end(&self) -> Result<(), SessionFault> {
+        let place = self.last;
+        let is_before = place.checked_add(1).is_some_and(|next| next < self.first);
+        let is_behind = place < u64::MAX && self.next <= place && self.entries.is_empty();
+        if is_before || is_behind {
+            return Err(SessionFault::Elsewhere {
+                place,
+                first: self.first,
+                last: self.next.saturating_sub(1),
+            });
+        }
+        if self.is_past() {
+            return Ok(());
+        }
         match self.entries.first_key_value() {
             None => Ok(()),
             Some((index, Entry::States { brush, from, .. })) if *index == self.next => {
@@ -300,6 +349,42 @@ mod tests {
         let fault = end.expect_err("one is lost").to_string();
         assert!(fault.contains("'main' is missing"), "{fault}");
         assert_ne!(report(&mut other), report(&mut painting));
+    }
+
+    #[test]
+    fn a_session_ends_at_a_place_of_the_journal_whatever_comes_behind_it() {
+        let mut offline = offline();
+        let session = RecordedSession::after(offline.sequencer_mut());
+        let first = session.next_index();
+        let tick = |index: u64| JournalEntry {
+            index,
+            entry: Entry::Tick { count: index },
+        };
+        let header = message(0);
+        let mut session = session.until(first + 1);
+        for index in [first, first + 1, first + 2] {
+            session.entry(&header, tick(index)).expect("the next");
+        }
+        let mut come = || session.next_record().expect("whole").map(|own| own.index);
+        assert_eq!(
+            [come(), come(), come()],
+            [Some(first), Some(first + 1), None]
+        );
+        // Another painting and a gap behind the place are of no interest.
+        let restarted = Header { epoch: 2, ..header };
+        assert_eq!(session.entry(&restarted, tick(first)), Ok(()));
+        assert_eq!(session.entry(&header, tick(first + 9)), Ok(()));
+        assert_eq!(session.end(), Ok(()));
+        for place in [first + 7, first - 2] {
+            let mut session = RecordedSession::after(offline.sequencer_mut()).until(place);
+            session.entry(&header, tick(first)).expect("known");
+            session.next_record().expect("whole");
+            let end = session.end();
+            assert!(
+                matches!(end, Err(SessionFault::Elsewhere { .. })),
+                "{end:?}"
+            );
+        }
     }
 
     #[test]

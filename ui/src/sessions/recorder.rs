@@ -101,8 +101,25 @@ struct RecorderLine {
     lacks_painting: String,
 }
 
+/// A line that says that the recording goes on in another file, for the journal broke off.
+#[derive(Debug, Deserialize)]
+struct BrokenOff {
+    /// The file.
+    recording: PathBuf,
+    /// True, or absent where a recording begins.
+    broke_off: bool,
+}
+
 /// Tells what the painter has to know of a line.
 fn tell(line: &str, notifications: &mut Notifications) {
+    if let Ok(BrokenOff {
+        recording,
+        broke_off: true,
+    }) = serde_json::from_str(line)
+    {
+        let file = paths::shown(&recording);
+        notifications.note(tr!("The recording goes on in {file}.", file));
+    }
     if let Ok(RecorderLine {
         lacks_painting: why,
     }) = serde_json::from_str(line)

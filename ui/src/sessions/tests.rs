@@ -22,7 +22,8 @@ const PROGRAM: &str = r#"#!/bin/sh
 for file; do :; done
 case "$1 $file" in
 *full*) printf 'error: no room\n  --> /x\n help: free some space\n' >&2; exit 1;;
-*bare*) echo '{"recording": "/x"}'; echo '{"lacks_painting": "it is in no file"}';;
+*bare*) echo '{"recording": "/x"}'; echo '{"lacks_painting": "it is in no file"}'
+ echo '{"recording": "/x-2", "broke_off": true}';;
 record*) trap 'exit 0' INT; : > "$file"
  while :; do sleep 0.01; done;;
 replay*) echo "$*" > "$file.args"
@@ -141,6 +142,8 @@ fn what_a_recording_lacks_and_why_one_fails_is_told() {
         *weight == Weight::Fault && told.contains("it is in no file"),
         "{told}"
     );
+    let goes_on = |(_, told): &(Weight, String)| told.contains("x-2");
+    assert!(desk.told.iter().any(goes_on), "{:?}", desk.told);
     let mut desk = Desk::new();
     desk.processes = SessionProcesses::new("/none/maulstick".into());
     desk.turn(vec![SessionOrder::Record]);

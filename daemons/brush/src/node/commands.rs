@@ -28,6 +28,7 @@ pub(super) fn define(
         brush: name.to_owned(),
         toml,
         hash,
+        head_length_m: file.length_m(),
     };
     def.send(now_ns, &message)
 }

@@ -74,7 +74,8 @@ impl BrushNode {
             relief,
         };
         let name = &self.settings.name;
-        let model = contact_model(origin, name, self.model.file(), &plane, felt);
+        let file = self.model.file();
+        let model = contact_model(origin, name, (file, tip), &plane, felt);
         sender.send(now_ns, now_ns, &model)?;
         Ok(())
     }

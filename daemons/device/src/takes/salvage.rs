@@ -2,7 +2,8 @@
 //!
 //! Damage is reported, and skipped: reading continues with the next intact record. Checksums cover the chunks and all
 //! before the summary, so a take without damage is the one that was written. In a chunk whose checksum is wrong a
-//! sample counts if its message is valid by itself.
+//! sample counts if its message is valid by itself. Samples may stand in any order: their numbers tell in which they were
+//! sent.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -102,12 +103,38 @@ pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Salvage, Refusal> {
     reading.finish(setup)
 }
 
+/// A sample with the epoch and the number of its message.
+pub(crate) struct Numbered {
+    pub(crate) epoch: u32,
+    pub(crate) number: u64,
+    pub(crate) sample: TakeSample,
+}
+
+/// Samples in the order in which they were sent. One that came late has the time of the next at the latest.
+pub(crate) fn in_order(mut found: Vec<Numbered>) -> Vec<TakeSample> {
+    let mut begins = BTreeMap::<u32, u64>::new();
+    for own in &found {
+        let begin = begins.entry(own.epoch).or_insert(u64::MAX);
+        *begin = own.sample.time_ns.min(*begin);
+    }
+    found.sort_by_key(|own| {
+        let begin = begins.get(&own.epoch);
+        (begin.copied(), own.epoch, own.number, own.sample.time_ns)
+    });
+    let mut next_ns = u64::MAX;
+    for own in found.iter_mut().rev() {
+        next_ns = next_ns.min(own.sample.time_ns);
+        own.sample.time_ns = next_ns;
+    }
+    found.into_iter().map(|own| own.sample).collect()
+}
+
 /// Content read so far.
 #[derive(Default)]
 struct Reading {
     /// Topics by the numbers of their channels.
     topics: BTreeMap<u16, String>,
-    devices: Vec<Take>,
+    devices: Vec<(String, Vec<Numbered>)>,
     last_ns: u64,
     /// The first damage, and how many more places there are.
     damage: Option<(String, usize)>,
@@ -197,7 +224,7 @@ impl Reading {
             Ok(decoded) => decoded,
             Err(error) => return self.damaged(at, &format!("message {number}: {error}")),
         };
-        let wrong = if header.log_time < self.last_ns {
+        let wrong = if !certain && header.log_time < self.last_ns {
             Some("time runs backward")
         } else if !certain && header.log_time != bus.event_ns {
             Some("it has two times")
@@ -207,18 +234,18 @@ impl Reading {
         if let Some(what) = wrong {
             return self.damaged(at, &format!("message {number}: {what}"));
         }
-        self.last_ns = header.log_time;
-        let sample = TakeSample {
-            time_ns: header.log_time,
-            sample,
+        self.last_ns = self.last_ns.max(header.log_time);
+        let sample = Numbered {
+            epoch: bus.epoch,
+            number: bus.seq,
+            sample: TakeSample {
+                time_ns: header.log_time,
+                sample,
+            },
         };
-        match self.devices.iter_mut().find(|take| take.device == device) {
-            Some(take) => take.samples.push(sample),
-            None => self.devices.push(Take {
-                device: device.to_owned(),
-                samples: vec![sample],
-                setup: None,
-            }),
+        match self.devices.iter_mut().find(|(name, _)| name == device) {
+            Some((_, samples)) => samples.push(sample),
+            None => self.devices.push((device.to_owned(), vec![sample])),
         }
     }
 
@@ -230,12 +257,16 @@ impl Reading {
         });
         let mut devices = self.devices.into_iter();
         match (devices.next(), devices.next()) {
-            (Some(take), None) => Ok(Salvage {
-                take: Take { setup, ..take },
+            (Some((device, samples)), None) => Ok(Salvage {
+                take: Take {
+                    device,
+                    samples: in_order(samples),
+                    setup,
+                },
                 damage,
             }),
             (None, _) => Err(damage.map_or(Refusal::Empty, Refusal::Damaged)),
-            (Some(one), Some(two)) => Err(Refusal::Several(one.device, two.device)),
+            (Some((one, _)), Some((two, _))) => Err(Refusal::Several(one, two)),
         }
     }
 }

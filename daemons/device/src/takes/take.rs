@@ -177,6 +177,73 @@ mod tests {
         assert_eq!(Take::read(&path).expect("read").samples, samples);
     }
 
+    /// Writes the samples of a take in an order of their numbers, as another program may.
+    fn write_in(path: &Path, options: mcap::WriteOptions, order: impl Iterator<Item = usize>) {
+        let file = BufWriter::new(File::create(path).expect("created"));
+        let mut writer = options.create(file).expect("begun");
+        let no_metadata = std::collections::BTreeMap::new();
+        let channel_id = writer
+            .add_channel(0, "stylus/pen/sample", MESSAGE_ENCODING, &no_metadata)
+            .expect("added");
+        let origin = Origin {
+            source: 1,
+            epoch: 1,
+        };
+        let take = take();
+        for number in order {
+            let TakeSample { time_ns, sample } = &take.samples[number];
+            let sequence = number as u64;
+            let bytes = encode(&origin, Flags::NONE, sequence, *time_ns, *time_ns, sample);
+            let header = MessageHeader {
+                channel_id,
+                sequence: number as u32,
+                log_time: *time_ns,
+                publish_time: *time_ns,
+            };
+            let bytes = bytes.expect("encoded");
+            writer
+                .write_to_known_channel(&header, &bytes)
+                .expect("written");
+        }
+        writer.finish().expect("finished");
+    }
+
+    #[test]
+    fn samples_are_read_in_the_order_of_their_numbers_wherever_they_stand() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.mcap");
+        let count = take().samples.len();
+        for options in [
+            mcap::WriteOptions::new(),
+            mcap::WriteOptions::new().chunk_size(Some(4096)),
+            mcap::WriteOptions::new().use_chunks(false),
+        ] {
+            write_in(&path, options, (0..count).map(|place| place * 61 % count));
+            assert_eq!(Take::read(&path), Ok(take()));
+        }
+    }
+
+    #[test]
+    fn a_sample_that_came_late_stands_where_it_was_sent() {
+        let numbered = |number: u64, time_ns: u64| crate::salvage::Numbered {
+            epoch: 1,
+            number,
+            sample: TakeSample {
+                time_ns,
+                sample: StylusSample::away(),
+            },
+        };
+        let found = vec![
+            numbered(0, 5),
+            numbered(2, 7),
+            numbered(1, 8),
+            numbered(3, 9),
+        ];
+        let times = crate::salvage::in_order(found);
+        let times: Vec<u64> = times.iter().map(|own| own.time_ns).collect();
+        assert_eq!(times, [5, 7, 7, 9]);
+    }
+
     fn with_a_setup() -> Take {
         let mut setup = TakeSetup::default();
         setup.add(b"paint".to_vec(), "csv");

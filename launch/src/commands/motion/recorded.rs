@@ -35,16 +35,12 @@ pub(super) fn read_motion(path: &Path, device: Option<&str>) -> Result<Take, Use
             .is_some_and(|topic| topic.name == own);
         if is_own {
             match decode::<StylusSample>(&message.bytes) {
-                Ok((header, sample)) => {
-                    // One that came late or twice is no motion, nor is what no device may send.
-                    let before = samples.last().map(|last| last.time_ns);
-                    if before.is_none_or(|before| header.event_ns > before)
-                        && sample.fault().is_none()
-                    {
-                        let time_ns = header.event_ns;
-                        samples.push(TakeSample { time_ns, sample });
-                    }
+                // What no device may send is no motion.
+                Ok((header, sample)) if sample.fault().is_none() => {
+                    let time_ns = header.event_ns;
+                    samples.push(TakeSample { time_ns, sample });
                 }
+                Ok(_) => {}
                 Err(error) => fault = Some(error.to_string()),
             }
         }
@@ -57,6 +53,9 @@ pub(super) fn read_motion(path: &Path, device: Option<&str>) -> Result<Take, Use
                 .help("cut it with the version of Maulstick that recorded it"),
         );
     }
+    // One may have come late, or twice.
+    samples.sort_by_key(|own| own.time_ns);
+    samples.dedup_by_key(|own| own.time_ns);
     let begin_ns = samples.first().map_or(0, |first| first.time_ns);
     for sample in &mut samples {
         sample.time_ns -= begin_ns;

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use maulstick_bus::typed::{Received, Receiver, ask, random_epoch};
 use maulstick_bus::{Bus, BusError, Dial, Qos, Queue, RigClock, RigFolder, Wake, ZenohBus};
-use maulstick_rig::command_client::CommandClient;
+use maulstick_rig::command_client::{CommandClient, Done};
 use maulstick_rig::node_handle::CONFIG_FILE;
 use maulstick_rig::{RigConfig, UserError};
 use maulstick_types::command::Command;
@@ -114,11 +114,24 @@ impl Client {
         command: impl Into<Command>,
         limit: Duration,
     ) -> Result<String, UserError> {
+        let done = self.carry_out(command, limit)?;
+        Ok(done.detail)
+    }
+
+    /// The same, with the place that the command has in the painting's journal.
+    ///
+    /// # Errors
+    /// A [`UserError`] with the node's refusal.
+    pub fn carry_out(
+        &self,
+        command: impl Into<Command>,
+        limit: Duration,
+    ) -> Result<Done, UserError> {
         let command = command.into();
         let node = command.node().to_owned();
         let bus = Arc::clone(&self.bus) as Arc<dyn Bus>;
         let is_gone = || RigFolder::join_at(&self.folder).is_err();
-        CommandClient::of(bus, &self.topics, &node).send(command, None, limit, &is_gone)
+        CommandClient::of(bus, &self.topics, &node).carry_out(command, None, limit, &is_gone)
     }
 
     /// Sends a node a query of its own.

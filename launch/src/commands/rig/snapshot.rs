@@ -6,9 +6,11 @@ use clap::Args;
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 use maulstick_types::command::TakeCommand;
+use serde_json::json;
 
 use crate::commands::client::{Client, Target};
-use crate::commands::say;
+use crate::commands::open::LONGEST;
+use crate::commands::{print_json_line, say};
 use crate::outputs::{Relayed, UsedFile, check_outputs};
 
 /// Options of `maulstick snapshot`.
@@ -20,6 +22,9 @@ pub struct SnapshotOptions {
     /// Ledger of the paint to write, JSON
     #[arg(long, value_name = "FILE")]
     ledger: Option<PathBuf>,
+    /// Print a line of JSON with the picture and its place in the painting's journal
+    #[arg(long)]
+    json: bool,
     #[command(flatten)]
     target: Target,
 }
@@ -41,10 +46,15 @@ pub fn snapshot(options: &SnapshotOptions) -> Result<i32, UserError> {
         path: picture.asked()?,
         ledger: ledger.as_ref().map(Relayed::asked).transpose()?,
     };
-    let said = Client::command(&options.target, command)?;
+    let done = Client::open(&options.target)?.carry_out(command, LONGEST)?;
     if let Some(ledger) = ledger {
         ledger.arrive("")?;
     }
-    say!("{}", picture.arrive(&said)?);
+    let said = picture.arrive(&done.detail)?;
+    if options.json {
+        print_json_line(&json!({ "picture": options.output, "place": done.journal }))?;
+    } else {
+        say!("place {} of the painting's journal: {said}", done.journal);
+    }
     Ok(0)
 }

@@ -18,6 +18,9 @@ const ROOM: usize = 1 << 15;
 /// Longest time in which what waits is taken in at the end.
 const REST: Duration = Duration::from_millis(200);
 
+/// Time for which missing messages are waited for when a measurement ends.
+const LATE: Duration = Duration::from_millis(200);
+
 /// A message that was received.
 #[derive(Clone)]
 pub(super) struct ReceivedMessage {
@@ -107,12 +110,18 @@ impl Listener {
         waiting.take_while(|_| Instant::now() < until).collect()
     }
 
-    /// What comes from now on, for a time.
+    /// What comes from now on, for a time. What another message has overtaken may come a moment later.
     pub(super) fn traffic(&mut self, time: Duration) -> Traffic {
         let mut traffic = Traffic::since(self.member.bus.now_ns());
         let until = Instant::now() + time;
         while let Some(received) = self.next(until) {
             traffic.add(&received.topic, &received.message);
+        }
+        let late = Instant::now() + LATE;
+        while traffic.lacks_some()
+            && let Some(received) = self.next(late)
+        {
+            traffic.add_late(&received.topic, &received.message);
         }
         traffic
     }

@@ -68,7 +68,9 @@ pub fn run(options: &MeasureOptions, measure: Measure) -> Result<i32, UserError>
         print_text(&shown(&traffic, measure))?;
         let dropped = listener.dropped() - dropped;
         if dropped > 0 {
-            say!("{dropped} messages came faster than this program reads");
+            say!(
+                "{dropped} messages came faster than this program reads, and count as lost here alone"
+            );
         }
         if listener.foreign > 0 {
             say!(

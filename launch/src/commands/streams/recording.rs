@@ -7,10 +7,12 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand, ValueEnum};
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, write_whole};
-use maulstick_streams::recording::{RecordedMessage, Topic};
+use maulstick_streams::recording::{ForeignTopic, RecordedMessage, Topic};
+use maulstick_streams::recording_writer::MESSAGE_ENCODING;
 use maulstick_streams::topic_pattern::matches;
 use maulstick_streams::traffic::Arrived;
 use maulstick_streams::{Recording, Traffic, Value};
+use maulstick_types::plain;
 use serde_json::json;
 
 use super::foxglove_export;
@@ -86,7 +88,10 @@ const WHOLE: [u64; 2] = [0, u64::MAX];
 
 fn info(path: &std::path::Path, as_json: bool) -> Result<i32, UserError> {
     let mut recording = Recording::open(path)?;
-    let mut traffic = Traffic::default();
+    let facts = recording.notes().get("recording").cloned();
+    let fact = |name: &str| facts.as_ref().and_then(|facts| facts.get(name));
+    let begun_ns = fact("rig_ns").and_then(|ns| ns.parse::<u64>().ok());
+    let mut traffic = Traffic::since(begun_ns.unwrap_or(0));
     let topics = recording.topics().clone();
     recording.messages(WHOLE, &mut |message| {
         if let Some(topic) = topics.get(&message.channel) {
@@ -99,6 +104,7 @@ fn info(path: &std::path::Path, as_json: bool) -> Result<i32, UserError> {
         }
         true
     })?;
+    let foreign = recording.foreign()?;
     let [first, last] = recording.times_ns().unwrap_or_default();
     let seconds = last.saturating_sub(first) as f64 * 1e-9;
     let known: BTreeMap<&str, &str> = topics
@@ -133,21 +139,14 @@ fn info(path: &std::path::Path, as_json: bool) -> Result<i32, UserError> {
             "files": recording.attachments().keys().collect::<Vec<_>>(),
             "damage": recording.damage(),
             "streams": streams,
+            "foreign": foreign.iter().map(foreign_entry).collect::<Vec<_>>(),
         }))?;
         return Ok(0);
     }
-    let facts = recording.notes().get("recording");
-    let fact = |name: &str| {
-        facts
-            .and_then(|facts| facts.get(name))
-            .map_or("?", String::as_str)
-    };
-    say!(
-        "{:.1} s of {}, by maulstick {}",
-        seconds,
-        fact("rig"),
-        fact("version")
-    );
+    match fact("rig").zip(fact("version")) {
+        Some((rig, version)) => say!("{seconds:.1} s of {rig}, by maulstick {version}"),
+        None => say!("{seconds:.1} s"),
+    }
     if let Some(damage) = recording.damage() {
         say!("damaged: {damage}; what is shown can be read, and `maulstick take recover` mends it");
     }
@@ -161,10 +160,42 @@ fn info(path: &std::path::Path, as_json: bool) -> Result<i32, UserError> {
             stream.lost.to_string(),
         ]
     });
-    let rows: Vec<_> = rows.collect();
+    let rows: Vec<_> = rows.chain(foreign.iter().map(foreign_row)).collect();
     let head = ["topic", "message", "messages", "a second", "kB", "lost"];
     print_text(&table(head, &rows))?;
+    match (rows.is_empty(), foreign.is_empty()) {
+        (true, _) => say!("it has no messages"),
+        (false, false) => {
+            say!(
+                "topics of another program have their encoding in brackets: Maulstick lists them, and reads them not"
+            );
+        }
+        (false, true) => {}
+    }
     Ok(0)
+}
+
+fn foreign_entry(topic: &ForeignTopic) -> serde_json::Value {
+    json!({
+        "topic": topic.name,
+        "message": topic.schema,
+        "encoding": topic.encoding,
+        "messages": topic.messages,
+        "bytes": topic.bytes,
+        "rate_hz": topic.rate_hz,
+    })
+}
+
+fn foreign_row(topic: &ForeignTopic) -> [String; 6] {
+    let schema = topic.schema.as_deref().unwrap_or("unknown");
+    [
+        plain(&topic.name).into_owned(),
+        plain(&format!("{schema} [{}]", topic.encoding)).into_owned(),
+        topic.messages.to_string(),
+        format!("{:.1}", topic.rate_hz),
+        format!("{:.1}", topic.bytes as f64 * 1e-3),
+        "-".to_owned(),
+    ]
 }
 
 fn export(options: &ExportOptions) -> Result<i32, UserError> {
@@ -199,6 +230,20 @@ fn export(options: &ExportOptions) -> Result<i32, UserError> {
         );
     }
     if topics.is_empty() {
+        let foreign = recording.foreign()?;
+        if let Some(topic) = foreign
+            .iter()
+            .find(|own| matches(&options.topic, &own.name))
+        {
+            let what = format!(
+                "the messages of {} are those of another program, encoded as '{}'",
+                topic.name, topic.encoding
+            );
+            let help = format!(
+                "Maulstick exports what it has recorded, whose encoding is {MESSAGE_ENCODING}"
+            );
+            return Err(UserError::usage(what).at(place).help(help));
+        }
         let names: BTreeSet<&str> = recording
             .topics()
             .values()

@@ -72,7 +72,7 @@ pub(super) fn run(options: &FromOptions) -> Result<i32, UserError> {
         return Err(
             UserError::usage(format!("--start {} is behind its end", bounds[0]))
                 .at(path.display().to_string())
-                .help(format!("it is {length_s:.1} s long")),
+                .help(session.length_in_words()),
         );
     }
     let output = UsedFile::new("the take", &options.output).of(Kind::Take);
@@ -179,6 +179,18 @@ impl Source {
         match self {
             Self::Session(session) => session.length_ns(),
             Self::Painting(painting) => painting.length_ns(),
+        }
+    }
+
+    /// Its length, and where it goes on.
+    fn length_in_words(&self) -> String {
+        let length_s = self.length_ns() as f64 * 1e-9;
+        match self {
+            Self::Session(session) if session.next().is_some() => format!(
+                "it is {length_s:.1} s long, and the recording goes on in {}",
+                session.next().unwrap_or_default()
+            ),
+            _ => format!("it is {length_s:.1} s long"),
         }
     }
 

@@ -35,6 +35,10 @@ pub struct RenderOptions {
     /// Picture to write, a PNG
     #[arg(short, long, value_name = "PNG")]
     pub(super) output: PathBuf,
+    /// Of a recorded session, paint up to this place of the painting's journal, as `maulstick snapshot` prints it [default:
+    /// its end]
+    #[arg(long, value_name = "PLACE", conflicts_with = "script")]
+    pub(super) until: Option<u64>,
     /// Settings of the rig
     #[arg(long, value_name = "FILE")]
     rig: Option<PathBuf>,
@@ -96,6 +100,10 @@ impl RenderOptions {
     /// Refuses options that would do nothing.
     fn check_idle(&self) -> Result<(), UserError> {
         let painting = &self.painting;
+        if self.until.is_some() {
+            return Err(UserError::usage("--until is for a recorded session")
+                .help("cut a take with `maulstick motion cut`"));
+        }
         if let (Some(_), Some(load)) = (&self.script, painting.kit.load.first()) {
             return Err(UserError::usage("--load does nothing beside --script")
                 .help(format!("load in the script: {{ load = {load:?} }}")));
@@ -136,12 +144,12 @@ pub fn run(options: &RenderOptions) -> Result<i32, UserError> {
         Some(path) => RigConfig::read(path)?,
         None => picture_settings(),
     };
-    options.check_idle()?;
     if let Some(session) = options.session()? {
         options.show(&mut config);
         check_outputs(&options.outputs(), &options.inputs(&config))?;
         return render_session(options, session, &config);
     }
+    options.check_idle()?;
     let take = match &options.take {
         Some(path) => Some((path, read_take(path)?)),
         None => None,

@@ -45,7 +45,7 @@ pub(super) fn render_session(
     session.write_painting(&path)?;
     let (document, mut sequencer, since) = open_begin(&path)?;
     // What is decided here is another entry of the journal.
-    let recorded = RecordedSession::after(&sequencer);
+    let recorded = RecordedSession::after(&sequencer).until(options.until.unwrap_or(u64::MAX));
     let backend = painting.backend.as_ref().unwrap_or(&config.paint.backend);
     choose_backend(&mut sequencer, backend)?;
     let mut autosave = Autosave::new(document, &mut sequencer, since);

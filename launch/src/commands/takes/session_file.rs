@@ -26,6 +26,8 @@ pub(crate) const PAINTING: &str = "painting.maul";
 pub(crate) const JOURNAL: &str = "paint/journal";
 /// Name of the note that a recording has once it was ended.
 const COUNTS: &str = "counts";
+/// Name of the note with the file in which a recording goes on.
+pub(crate) const NEXT: &str = "next";
 /// Topics of the brush states.
 const STATES: &str = "brush/*/state";
 
@@ -114,6 +116,7 @@ impl SessionFile {
     pub(super) fn origin(&self) -> Result<TakeOrigin, UserError> {
         let mut notes = self.recording.notes().clone();
         notes.remove(COUNTS);
+        notes.remove(NEXT);
         let mut files = BTreeMap::new();
         for name in self.recording.attachments().keys() {
             if name != PAINTING
@@ -129,6 +132,12 @@ impl SessionFile {
             files,
             brushes: topics.filter_map(brush).collect(),
         })
+    }
+
+    /// Name of the file in which the recording goes on, if it does.
+    pub(super) fn next(&self) -> Option<&str> {
+        let note = self.recording.notes().get(NEXT)?;
+        note.get("file").map(String::as_str)
     }
 
     /// Length of the session, ns.
@@ -158,6 +167,11 @@ impl SessionFile {
                     .saturating_sub(less * u64::from(at_ns.is_multiple_of(100_000_000)));
                 tenths as f64 * 0.1
             });
+            if let SessionFault::Elsewhere { .. } = fault {
+                return UserError::usage(fault.to_string())
+                    .at(&place)
+                    .help("`maulstick snapshot` says at which place of the journal it was made");
+            }
             UserError::usage(format!("at {at_s:.1} s: {fault}"))
                 .at(&place)
                 .help(format!(
@@ -197,9 +211,12 @@ impl SessionFile {
         })?;
         done?;
         // Of a recording that was cut off the last message may be anywhere.
-        if to_ns == u64::MAX && !self.is_cut_off() {
-            let end = session.end();
-            end.map_err(|fault| broken(&fault, newest_ns))?;
+        match session.end() {
+            Err(fault @ SessionFault::Elsewhere { .. }) => return Err(broken(&fault, newest_ns)),
+            Err(fault) if to_ns == u64::MAX && !self.is_cut_off() => {
+                return Err(broken(&fault, newest_ns));
+            }
+            _ => {}
         }
         match self.recording.damage() {
             Some(damage) if to_ns == u64::MAX && !self.is_cut_off() => {

@@ -110,6 +110,10 @@ impl<M: Message> CreditReceiver<M> {
         let keys: Vec<StreamKey> = self.streams.keys().cloned().collect();
         for key in keys {
             self.chase(bus, &key, now_ns)?;
+            let stream = self.streams.get_mut(&key);
+            if let Some(lost) = stream.and_then(|stream| stream.losses.due(now_ns)) {
+                tracing::warn!("{}: {lost} messages are lost", key.0);
+            }
         }
         self.counts.refused = self.reader.refused();
         Ok(())
@@ -236,13 +240,9 @@ impl<M: Message> CreditReceiver<M> {
             return Ok(());
         }
         if unserved || (live && stream.askings >= PATIENCE) {
-            self.counts.lost += stream.give_up(gap, &mut self.ordered);
-            tracing::warn!(
-                "{}: messages {} to {} are lost",
-                key.0,
-                gap.from,
-                gap.seen - 1
-            );
+            let lost = stream.give_up(gap, &mut self.ordered);
+            self.counts.lost += lost;
+            stream.losses.add(lost);
             return Ok(());
         }
         self.ask(bus, key, gap, now_ns)

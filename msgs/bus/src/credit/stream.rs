@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, VecDeque};
 
 use maulstick_types::{Flags, Header};
 
+use super::losses::Losses;
 use super::{RING, WINDOW};
 use crate::bus::Pending;
 use crate::rivals::{Rivals, Verdict};
@@ -52,6 +53,8 @@ pub(super) struct Stream<M> {
     replay: bool,
     /// Messages given up as another sender was followed.
     pub lost: u64,
+    /// Messages that did not come.
+    pub losses: Losses,
 }
 
 impl<M> Stream<M> {
@@ -74,6 +77,7 @@ impl<M> Stream<M> {
             askings: 0,
             replay,
             lost: 0,
+            losses: Losses::default(),
         }
     }
 
@@ -140,9 +144,9 @@ impl<M> Stream<M> {
             true => before.or(self.next),
             false => before,
         };
-        let lost = self.lost;
+        let (lost, losses) = (self.lost, self.losses);
         *self = Self::follow(header, self.rivals.clone());
-        self.lost = lost;
+        (self.lost, self.losses) = (lost, losses);
         if self.replay {
             self.next = before.or(self.next);
         } else if let Some(from) = from {

@@ -62,6 +62,12 @@ impl Attachment {
         fits.then_some((text(name, media_type)?, attachment))
     }
 
+    /// Where its record begins and ends.
+    pub(super) fn record(&self) -> [u64; 2] {
+        let end = self.data_at.saturating_add(self.bytes).saturating_add(4);
+        [self.body_at.saturating_sub(HEAD as u64), end]
+    }
+
     /// Writes its data to `to`.
     ///
     /// # Errors

@@ -1,9 +1,11 @@
-//! Reads a recording: by its index, or, where it has none as after a crash, by all of its records. JSON channels, which are
-//! for viewers, are left alone, and attached files stay on the disk until they are asked for.
+//! Reads a recording: by its index, or, where it has none as after a crash, by all of its records. Messages in chunks and
+//! outside of them are read alike, in order of time wherever they stand. JSON channels, which are for viewers, are left
+//! alone, and attached files stay on the disk until they are asked for.
 //!
 //! No length that the file states is believed before it is compared with the file.
 
 mod attachment;
+mod in_order;
 mod layout;
 
 use std::collections::BTreeMap;
@@ -18,9 +20,10 @@ use mcap::MAGIC;
 use mcap::records::{Record, op};
 
 pub use self::attachment::Attachment;
-use self::layout::Layout;
+use self::in_order::InOrder;
+use self::layout::{Layout, Stretch};
 use crate::field_table::{FieldTable, TableError};
-use crate::mcap_records::{Found, HEAD, records, unpack};
+use crate::mcap_records::{Found, HEAD, records, u64_at, unpack};
 use crate::mcap_walk::read_at;
 use crate::value::Value;
 
@@ -58,6 +61,23 @@ pub struct RecordedMessage {
     pub header: Header,
     /// Header and body.
     pub bytes: Vec<u8>,
+}
+
+/// A topic of another program, whose messages are not those of the bus.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ForeignTopic {
+    /// Its name.
+    pub name: String,
+    /// Name of the schema of its messages, where it has one.
+    pub schema: Option<String>,
+    /// Encoding of its messages, such as `json` or `cdr`.
+    pub encoding: String,
+    /// Number of its messages.
+    pub messages: u64,
+    /// Their bytes.
+    pub bytes: u64,
+    /// Messages a second; 0 of fewer than two.
+    pub rate_hz: f64,
 }
 
 impl Topic {
@@ -172,22 +192,12 @@ impl Recording {
     /// Times of its first and last message, rig clock, ns; `None` if it has none.
     #[must_use]
     pub fn times_ns(&self) -> Option<[u64; 2]> {
-        let first = self
-            .layout
-            .chunks
-            .iter()
-            .map(|chunk| chunk.times_ns[0])
-            .min()?;
-        let last = self
-            .layout
-            .chunks
-            .iter()
-            .map(|chunk| chunk.times_ns[1])
-            .max()?;
-        Some([first, last])
+        let times = self.layout.stretches.iter().map(|own| own.times_ns);
+        times.reduce(|[first, last], [from, to]| [first.min(from), last.max(to)])
     }
 
-    /// Has `each` see the messages that arrived in a range of times, in the order of the file, until it says false.
+    /// Has `each` see the messages that arrived in a range of times, in order of time, until it says false. Those of one time
+    /// come in the order of the file.
     ///
     /// # Errors
     /// A [`UserError`] where the file cannot be read. What is damaged is left out, and noted in [`Self::damage`].
@@ -196,39 +206,114 @@ impl Recording {
         [from_ns, to_ns]: [u64; 2],
         each: &mut dyn FnMut(RecordedMessage) -> bool,
     ) -> Result<(), UserError> {
-        let Layout { chunks, damage, .. } = &mut self.layout;
-        for chunk in &*chunks {
-            let [first, last] = chunk.times_ns;
+        let mut in_order = InOrder::default();
+        for number in 0..self.layout.stretches.len() {
+            let stretch = self.layout.stretches[number];
+            let [first, last] = stretch.times_ns;
             if last < from_ns || first > to_ns {
                 continue;
             }
-            if chunk.bytes > MOST_CHUNK {
-                damage.get_or_insert("a chunk is too large to be read".into());
-                continue;
+            if !in_order.take_before(stretch.order(), each) {
+                return Ok(());
             }
-            let bytes = read_at(&self.file, self.length, chunk.at, chunk.bytes);
-            let bytes = bytes.map_err(|error| UserError::reading(&self.path, &error))?;
-            let unpacked = unpack(bytes.get(HEAD..).unwrap_or_default());
-            if let Some(found) = unpacked.damage {
-                damage.get_or_insert(found);
-            }
-            for record in records(&unpacked.bytes, 0).filter(|own| own.whole) {
-                let Some(message) = message(&record) else {
-                    continue;
-                };
-                let is_meant = (from_ns..=to_ns).contains(&message.arrived_ns);
-                if is_meant && !each(message) {
-                    return Ok(());
+            self.records_of(&stretch, &mut |record| {
+                if let Some(message) = message(record)
+                    && (from_ns..=to_ns).contains(&message.arrived_ns)
+                {
+                    in_order.add(stretch.at, message);
                 }
-            }
+            })?;
         }
+        in_order.take_rest(each);
+        Ok(())
+    }
+
+    /// Topics of other programs, with what is in the file of each.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the file cannot be read.
+    pub fn foreign(&mut self) -> Result<Vec<ForeignTopic>, UserError> {
+        let mut counts = BTreeMap::<u16, (u64, u64, [u64; 2])>::new();
+        let channels = self.layout.foreign.clone();
+        let stretches = match channels.is_empty() {
+            true => Vec::new(),
+            false => self.layout.stretches.clone(),
+        };
+        for stretch in &stretches {
+            self.records_of(stretch, &mut |record| {
+                let Some((channel, at_ns)) = channel_of(record).zip(time_of(record)) else {
+                    return;
+                };
+                let (messages, bytes, times) =
+                    counts.entry(channel).or_insert((0, 0, [u64::MAX, 0]));
+                *messages += 1;
+                *bytes += record.body.len().saturating_sub(MESSAGE_HEAD) as u64;
+                *times = [times[0].min(at_ns), times[1].max(at_ns)];
+            })?;
+        }
+        let topic = |(id, channel): (u16, layout::ForeignChannel)| {
+            let (messages, bytes, [first, last]) = counts.get(&id).copied().unwrap_or_default();
+            let passed_s = last.saturating_sub(first) as f64 * 1e-9;
+            ForeignTopic {
+                name: channel.name,
+                schema: channel.schema,
+                encoding: channel.encoding,
+                messages,
+                bytes,
+                rate_hz: match messages >= 2 && passed_s > 0.0 {
+                    true => (messages - 1) as f64 / passed_s,
+                    false => 0.0,
+                },
+            }
+        };
+        Ok(channels.into_iter().map(topic).collect())
+    }
+
+    /// Has `each` see the records of a stretch, those of a chunk unpacked.
+    fn records_of(
+        &mut self,
+        stretch: &Stretch,
+        each: &mut dyn FnMut(&Found<'_>),
+    ) -> Result<(), UserError> {
+        let damage = &mut self.layout.damage;
+        if stretch.bytes > MOST_CHUNK {
+            damage.get_or_insert("a chunk is too large to be read".into());
+            return Ok(());
+        }
+        let bytes = read_at(&self.file, self.length, stretch.at, stretch.bytes);
+        let bytes = bytes.map_err(|error| UserError::reading(&self.path, &error))?;
+        if !stretch.is_chunk {
+            records(&bytes, 0).for_each(|record| each(&record));
+            return Ok(());
+        }
+        let unpacked = unpack(bytes.get(HEAD..).unwrap_or_default());
+        if let Some(found) = unpacked.damage {
+            damage.get_or_insert(found);
+        }
+        records(&unpacked.bytes, 0).for_each(|record| each(&record));
         Ok(())
     }
 }
 
+/// Channel, number and two times before the data of a message, bytes.
+const MESSAGE_HEAD: usize = 22;
+
+/// The channel of a message.
+fn channel_of(record: &Found<'_>) -> Option<u16> {
+    let is_message = record.opcode == op::MESSAGE && record.whole;
+    let channel = record.body.first_chunk().filter(|_| is_message)?;
+    Some(u16::from_le_bytes(*channel))
+}
+
+/// When a message arrived, ns.
+fn time_of(record: &Found<'_>) -> Option<u64> {
+    let is_message = record.opcode == op::MESSAGE && record.whole;
+    u64_at(record.body, 6).filter(|_| is_message)
+}
+
 /// The message of a record, if it is one of the bus.
 fn message(record: &Found<'_>) -> Option<RecordedMessage> {
-    if record.opcode != op::MESSAGE {
+    if record.opcode != op::MESSAGE || !record.whole {
         return None;
     }
     let Ok(Record::Message { header, data }) = mcap::parse_record(op::MESSAGE, record.body) else {

@@ -44,6 +44,7 @@ impl Rig {
             brush: "main".into(),
             toml: toml.into(),
             hash: 0,
+            head_length_m: 0.0,
         };
         def.send(0, 0, &told).expect("sent");
         let scene = PaintingSetup::default().scene();
@@ -141,6 +142,7 @@ fn another_brush_is_where_the_hand_rests() {
         brush: "main".into(),
         toml: BrushFile::library_text("fan").expect("text").into(),
         hash: 1,
+        head_length_m: 0.0,
     };
     let now = rig.bus.now_ns();
     rig.def.send(now, now, &told).expect("sent");

@@ -5,8 +5,10 @@
 //! | [`part`] | one file |
 //! | [`ring`] | the files of a recording, and those that go for newer ones |
 //! | [`painting_copy`], [`on_the_way`] | the painting as it is at the beginning of a file |
+//! | [`journal_watch`] | where the journal breaks off, and another file begins |
 //! | [`voice`] | what a recorder says |
 
+mod journal_watch;
 mod on_the_way;
 mod painting_copy;
 mod part;
@@ -21,6 +23,7 @@ use maulstick_rig::UserError;
 use maulstick_streams::Traffic;
 use maulstick_streams::topic_pattern::matches;
 
+use self::journal_watch::{Break, JournalWatch};
 use self::painting_copy::PaintingCopy;
 use self::part::Part;
 pub(crate) use self::ring::Ring;
@@ -36,6 +39,8 @@ pub(crate) const LEAST_LAST: Duration = Duration::from_secs(10);
 const QUOTA_FILES: u64 = 8;
 /// At most so much is lost with this process.
 const FLUSH: Duration = Duration::from_millis(500);
+/// Shortest time of a file: however often a journal breaks off, or seems to, there are not thousands of them.
+const SHORTEST: Duration = Duration::from_secs(1);
 
 /// How a recording is divided into files, and which of them are kept.
 #[derive(Clone, Copy, Debug, Default)]
@@ -102,23 +107,66 @@ pub(crate) fn record(
     };
     let begun = Instant::now();
     let end = settings.lasts.map(|lasts| begun + lasts);
-    let mut state = State::default();
+    let paints = matches(&settings.topic, JOURNAL);
+    let mut state = State::new(paints, listener);
     let mut part = begin(ring.newest(), create, listener)?;
     voice.say(&RecorderNews::Begun { file: part.path() })?;
     ring.trim()?;
     let mut flush_at = begun + FLUSH;
-    let paints = matches(&settings.topic, JOURNAL);
-    let mut copy = paints.then(|| PaintingCopy::new(false));
+    let mut copy = paints.then(|| PaintingCopy::new(false, BTreeMap::new()));
+    let mut watch = JournalWatch::default();
+    // True where the rest of the file is no part of its session.
+    let mut is_broken = false;
     while !listener.is_over() && end.is_none_or(|end| Instant::now() < end) {
         let until = end.map_or(flush_at, |end| end.min(flush_at));
-        if let Some(received) = listener.next(until) {
+        let received = listener.next(until);
+        match (received.as_ref().and_then(|own| watch.note(own)), &copy) {
+            // What is missing is in the painting that the file will begin with.
+            (Some(Break::Gap), Some(own)) => {
+                copy = Some(PaintingCopy::new(own.is_told(), watch.unpainted()));
+            }
+            (found, _) => is_broken |= paints && found.is_some(),
+        }
+        let is_due = Instant::now() >= flush_at;
+        let is_full = is_due
+            && (division
+                .most_of_a_file()
+                .is_some_and(|most| part.bytes() >= most)
+                || division
+                    .time_of_a_file()
+                    .is_some_and(|after| part.age() >= after));
+        let breaks_off = is_broken && part.age() >= SHORTEST;
+        // A copy belongs to the file at whose beginning it was asked for.
+        let goes_on = is_full && !copy.as_ref().is_some_and(PaintingCopy::is_made);
+        if breaks_off || goes_on {
+            let next = ring.next().to_owned();
+            finish(part, &mut state, listener, voice, Some(&next))?;
+            part = begin(&next, |path| std::fs::File::create_new(path), listener)?;
+            let file = part.path();
+            voice.say(&match breaks_off {
+                true => RecorderNews::BreaksOff { file },
+                false => RecorderNews::GoesOn { file },
+            })?;
+            ring.trim()?;
+            // What is sent rarely is in each file, from its beginning on.
+            let now_ns = listener.member.bus.now_ns();
+            for received in state.kept.values() {
+                let mut again = received.clone();
+                again.message.arrived_ns = now_ns;
+                part.write(&again)?;
+            }
+            let is_told = copy.as_ref().is_some_and(PaintingCopy::is_told);
+            copy = paints.then(|| PaintingCopy::new(is_told, watch.unpainted()));
+            is_broken = false;
+        }
+        if let Some(received) = received {
             part.write(&received)?;
             if let Some(copy) = &mut copy {
-                copy.note(&received);
+                copy.note(&received, voice)?;
             }
             state.add(received);
         }
-        if Instant::now() < flush_at {
+        if !is_due {
             continue;
         }
         flush_at = Instant::now() + FLUSH;
@@ -133,32 +181,6 @@ pub(crate) fn record(
         if !listener.has_rig() {
             break;
         }
-        let is_full = division
-            .most_of_a_file()
-            .is_some_and(|most| part.bytes() >= most)
-            || division
-                .time_of_a_file()
-                .is_some_and(|after| part.age() >= after);
-        // A copy belongs to the file at whose beginning it was asked for.
-        if is_full && !copy.as_ref().is_some_and(PaintingCopy::is_made) {
-            finish(part, &mut state, listener, voice)?;
-            part = begin(
-                ring.next(),
-                |path| std::fs::File::create_new(path),
-                listener,
-            )?;
-            voice.say(&RecorderNews::GoesOn { file: part.path() })?;
-            ring.trim()?;
-            // What is sent rarely is in each file, from its beginning on.
-            let now_ns = listener.member.bus.now_ns();
-            for received in state.kept.values() {
-                let mut again = received.clone();
-                again.message.arrived_ns = now_ns;
-                part.write(&again)?;
-            }
-            let is_told = copy.as_ref().is_some_and(PaintingCopy::is_told);
-            copy = paints.then(|| PaintingCopy::new(is_told));
-        }
     }
     for received in listener.rest() {
         part.write(&received)?;
@@ -170,19 +192,21 @@ pub(crate) fn record(
     if let Some(painting) = copy.and_then(|copy| copy.wait(&is_vain)) {
         part.attach(&painting)?;
     }
-    finish(part, &mut state, listener, voice)
+    finish(part, &mut state, listener, voice, None)
 }
 
-/// Ends a file, and says what it holds.
+/// Ends a file, with the name of the one in which the recording goes on, and says what it holds.
 fn finish(
     part: Part,
     state: &mut State,
     listener: &Listener,
     voice: Voice,
+    next: Option<&Path>,
 ) -> Result<(), UserError> {
     let (file, seconds) = (part.path().to_owned(), part.age().as_secs_f64());
+    let lacks_painting = state.paints && !part.has_painting();
     let missing = state.missing(listener);
-    let messages = part.finish(missing)?;
+    let messages = part.finish(missing, next)?;
     let [lost, dropped, _] = missing;
     voice.say(&RecorderNews::Ended(Summary {
         bytes: std::fs::metadata(&file).map_or(0, |data| data.len()),
@@ -191,12 +215,14 @@ fn finish(
         seconds,
         lost,
         dropped,
+        lacks_painting,
     }))
 }
 
 /// What was received so far, over all files.
-#[derive(Default)]
 struct State {
+    /// True if the journal of the painting is among the topics.
+    paints: bool,
     traffic: Traffic,
     /// The last message of each topic that is kept for late joiners.
     kept: BTreeMap<String, ReceivedMessage>,
@@ -205,6 +231,15 @@ struct State {
 }
 
 impl State {
+    fn new(paints: bool, listener: &Listener) -> Self {
+        Self {
+            paints,
+            traffic: Traffic::since(listener.member.bus.now_ns()),
+            kept: BTreeMap::new(),
+            before: [0; 3],
+        }
+    }
+
     fn add(&mut self, received: ReceivedMessage) {
         self.traffic.add(&received.topic, &received.message);
         if Listener::is_cached(&received.topic) {

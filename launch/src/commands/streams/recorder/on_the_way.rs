@@ -9,12 +9,12 @@ use maulstick_types::paint::PaintConsumed;
 use crate::commands::streams::listener::ReceivedMessage;
 
 /// Topic of the brush states.
-const STATES: &str = "brush/*/state";
+pub(super) const STATES: &str = "brush/*/state";
 /// Topic of the paint's credit.
-const CREDIT: &str = "paint/consumed";
+pub(super) const CREDIT: &str = "paint/consumed";
 
 /// A brush: the source and the epoch of its states.
-type Brush = (u32, u32);
+pub(super) type Brush = (u32, u32);
 
 /// What is known of them.
 #[derive(Debug, Default)]
@@ -37,6 +37,15 @@ pub(super) enum Painted {
 }
 
 impl OnTheWay {
+    /// What is known at the beginning of a file: brushes of whose states some were not painted then, with the number of the
+    /// next one.
+    pub(super) fn after(unpainted: BTreeMap<Brush, u64>) -> Self {
+        Self {
+            first: unpainted,
+            ..Self::default()
+        }
+    }
+
     /// Takes in a message of the file.
     pub(super) fn note(&mut self, received: &ReceivedMessage) {
         let header = &received.message.header;

@@ -1,13 +1,16 @@
 //! The painting as it is at the beginning of a recording, so that what is accepted from then on can be painted again.
 
+use std::collections::BTreeMap;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use maulstick_document::{Checkpoint, record};
 use maulstick_rig::UserError;
 use maulstick_types::command::FileCommand;
+use maulstick_types::decode;
+use maulstick_types::paint::PaintStatus;
 
-use super::on_the_way::{OnTheWay, Painted};
+use super::on_the_way::{Brush, OnTheWay, Painted};
 use super::voice::{RecorderNews, Voice};
 use crate::commands::client::{Client, Target};
 use crate::commands::open::{LONGEST, whole};
@@ -22,6 +25,10 @@ const SETTLES: Duration = Duration::from_millis(500);
 const LONGEST_LAG: Duration = Duration::from_secs(10);
 /// Time until the paint node is asked again, where it refused.
 const AGAIN: Duration = Duration::from_secs(2);
+/// Topic of the paint's status, which has the painting's file.
+const STATUS: &str = "paint/status";
+/// Why a painting without a file is not copied, as the paint node says it.
+const IN_MEMORY: &str = "a painting in memory only cannot be copied";
 /// Interval at which a copy that is waited for is looked at.
 const LOOK: Duration = Duration::from_millis(20);
 
@@ -39,21 +46,47 @@ pub(super) struct PaintingCopy {
 }
 
 impl PaintingCopy {
-    /// A copy for a file that begins now; `is_told` where it was said of the file before that it lacks the painting.
-    pub(super) fn new(is_told: bool) -> Self {
+    /// A copy for a file that begins now, with the brushes of whose states some are not painted; `is_told` where it was said of
+    /// the file before that it lacks the painting.
+    pub(super) fn new(is_told: bool, unpainted: BTreeMap<Brush, u64>) -> Self {
         Self {
             at: Instant::now() + SETTLES,
-            on_the_way: OnTheWay::default(),
+            on_the_way: OnTheWay::after(unpainted),
             copying: None,
             is_refused: false,
             is_told,
         }
     }
 
-    /// Takes in a message of the file.
-    pub(super) fn note(&mut self, received: &ReceivedMessage) {
+    /// Takes in a message of the file. That the painting is in no file is said at once.
+    ///
+    /// # Errors
+    /// A [`UserError`] where nothing can be said.
+    pub(super) fn note(
+        &mut self,
+        received: &ReceivedMessage,
+        voice: Voice,
+    ) -> Result<(), UserError> {
         if self.copying.is_none() {
             self.on_the_way.note(received);
+        }
+        let is_homeless = received.topic == STATUS
+            && !self.is_told
+            && decode::<PaintStatus>(&received.bytes)
+                .is_ok_and(|(_, status)| status.path.is_empty());
+        match is_homeless {
+            true => self.refused(IN_MEMORY, voice),
+            false => Ok(()),
+        }
+    }
+
+    /// Takes in that it was refused, which is said once.
+    fn refused(&mut self, why: &str, voice: Voice) -> Result<(), UserError> {
+        self.at = Instant::now() + AGAIN;
+        self.is_refused = true;
+        match std::mem::replace(&mut self.is_told, true) {
+            true => Ok(()),
+            false => voice.say(&RecorderNews::LacksPainting { why }),
         }
     }
 
@@ -87,11 +120,7 @@ impl PaintingCopy {
             Ok(Err(fault)) => fault.what,
             Err(_) => "internal error: the copy panicked".into(),
         };
-        self.at = Instant::now() + AGAIN;
-        self.is_refused = true;
-        if !std::mem::replace(&mut self.is_told, true) {
-            voice.say(&RecorderNews::LacksPainting { why: &fault })?;
-        }
+        self.refused(&fault, voice)?;
         Ok(None)
     }
 

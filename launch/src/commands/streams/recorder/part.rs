@@ -16,7 +16,7 @@ use mcap::McapResult;
 
 use crate::commands::streams::fault;
 use crate::commands::streams::listener::{Listener, ReceivedMessage};
-use crate::commands::takes::session_file::PAINTING;
+use crate::commands::takes::session_file::{NEXT, PAINTING};
 
 /// How a file is created.
 pub(crate) type Create = fn(&Path) -> std::io::Result<File>;
@@ -31,6 +31,7 @@ pub(super) struct Part {
     messages: u64,
     /// Bytes of its messages, before they are compressed.
     bytes: u64,
+    has_painting: bool,
     begun: Instant,
 }
 
@@ -77,6 +78,7 @@ impl Part {
             tables: KnownTables::default(),
             messages: 0,
             bytes: 0,
+            has_painting: false,
             begun: Instant::now(),
         })
     }
@@ -126,7 +128,13 @@ impl Part {
         self.writer
             .attach(PAINTING, "application/vnd.sqlite3", painting)
             .map_err(|error| fault(&self.path, error))?;
+        self.has_painting = true;
         self.flush()
+    }
+
+    /// True once the painting is attached.
+    pub(super) fn has_painting(&self) -> bool {
+        self.has_painting
     }
 
     pub(super) fn flush(&mut self) -> Result<(), UserError> {
@@ -150,8 +158,13 @@ impl Part {
         self.begun.elapsed()
     }
 
-    /// Ends it, with the numbers of messages that were lost, dropped and foreign; returns that of those that it holds.
-    pub(super) fn finish(mut self, missing: [u64; 3]) -> Result<u64, UserError> {
+    /// Ends it, with the numbers of messages that were lost, dropped and foreign, and the file in which the recording goes on;
+    /// returns the number of messages that it holds.
+    pub(super) fn finish(
+        mut self,
+        missing: [u64; 3],
+        next: Option<&Path>,
+    ) -> Result<u64, UserError> {
         let [lost, dropped, foreign] = missing;
         let counts = [
             ("messages", self.messages),
@@ -160,7 +173,12 @@ impl Part {
             ("foreign", foreign),
         ];
         let counts = counts.map(|(name, count)| (name.to_owned(), count.to_string()));
+        let next = next.and_then(Path::file_name);
+        let next = next.map(|name| ("file".to_owned(), name.to_string_lossy().into_owned()));
         let end = || {
+            if let Some(next) = next {
+                self.writer.note(NEXT, BTreeMap::from([next]))?;
+            }
             self.writer.note("counts", counts.into_iter().collect())?;
             self.writer.finish()
         };

@@ -31,6 +31,11 @@ pub(super) enum RecorderNews<'a> {
         /// The file.
         file: &'a Path,
     },
+    /// It goes on in another file, for the journal of the painting broke off.
+    BreaksOff {
+        /// The file.
+        file: &'a Path,
+    },
     /// The painting as it was at a file's beginning is in that file.
     HasPainting {
         /// The file.
@@ -60,6 +65,8 @@ pub(super) struct Summary<'a> {
     pub lost: u64,
     /// Messages that the recorder was too slow for.
     pub dropped: u64,
+    /// True if it has the journal of a painting, but not the painting.
+    pub lacks_painting: bool,
 }
 
 impl Voice {
@@ -76,7 +83,9 @@ impl Voice {
                 _ => say!("{}", news.in_words()),
             },
             Self::Log => match news {
-                RecorderNews::Begun { .. } | RecorderNews::LacksPainting { .. } => {
+                RecorderNews::Begun { .. }
+                | RecorderNews::BreaksOff { .. }
+                | RecorderNews::LacksPainting { .. } => {
                     tracing::info!("{}", news.in_words());
                 }
                 _ => tracing::debug!("{}", news.in_words()),
@@ -92,6 +101,10 @@ impl RecorderNews<'_> {
             Self::Begun { file } | Self::GoesOn { file } => {
                 format!("recording into {}", file.display())
             }
+            Self::BreaksOff { file } => format!(
+                "the painting's journal broke off: the paint node began anew, or messages were lost; recording into {}",
+                file.display()
+            ),
             Self::HasPainting { file } => format!("{} has the painting", file.display()),
             Self::LacksPainting { why } => format!(
                 "without the painting, {why}: until it is there, nothing can be painted again from this recording"
@@ -103,10 +116,15 @@ impl RecorderNews<'_> {
                 bytes,
                 lost,
                 dropped,
+                lacks_painting,
             }) => format!(
-                "{}: {messages} messages in {seconds:.1} s, {:.1} MB; {lost} lost, {dropped} dropped here",
+                "{}: {messages} messages in {seconds:.1} s, {:.1} MB; {lost} lost, {dropped} dropped here{}",
                 file.display(),
-                *bytes as f64 * 1e-6
+                *bytes as f64 * 1e-6,
+                match lacks_painting {
+                    true => "; without the painting, so it cannot be painted again",
+                    false => "",
+                }
             ),
         }
     }
@@ -114,6 +132,7 @@ impl RecorderNews<'_> {
     fn in_json(&self) -> Value {
         match self {
             Self::Begun { file } | Self::GoesOn { file } => json!({ "recording": file }),
+            Self::BreaksOff { file } => json!({ "recording": file, "broke_off": true }),
             Self::HasPainting { file } => json!({ "has_painting": file }),
             Self::LacksPainting { why } => json!({ "lacks_painting": why }),
             Self::Ended(summary) => json!({
