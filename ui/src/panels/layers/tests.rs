@@ -1,4 +1,5 @@
-use eframe::egui::{Key, accesskit::Role, vec2};
+use eframe::egui::accesskit::{Role, Toggled};
+use eframe::egui::{Key, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use maulstick_types::Region;
@@ -57,6 +58,44 @@ fn the_eye_hides_a_layer_and_shows_it_as_it_was() {
 }
 
 #[test]
+fn a_hidden_layer_is_shown_as_hidden_at_once_and_that_its_picture_comes() {
+    let mut harness = panel();
+    let comes = |harness: &Harness<'static, Bench<LayersPanel>>| {
+        harness
+            .query_all_by_role(Role::ProgressIndicator)
+            .next()
+            .is_some()
+    };
+    let is_shown = |harness: &Harness<'static, Bench<LayersPanel>>| {
+        let eye = harness.get_by_label("Show Sky");
+        eye.accesskit_node().toggled() == Some(Toggled::True)
+    };
+    assert!(!comes(&harness) && is_shown(&harness));
+    harness.get_by_label("Show Sky").click();
+    harness.run_steps(3);
+    assert!(
+        comes(&harness) && !is_shown(&harness),
+        "the rig has not answered"
+    );
+    let rig = &mut harness.state_mut().rig;
+    rig.scene.as_mut().expect("a scene").layers[1].opacity = 0.0;
+    let status = &mut rig.paint.as_mut().expect("a node").status;
+    (status.baking, status.baked) = (100, 20);
+    harness.run_steps(3);
+    assert!(comes(&harness), "it is computed");
+    let status = &mut harness
+        .state_mut()
+        .rig
+        .paint
+        .as_mut()
+        .expect("a node")
+        .status;
+    status.baked = 100;
+    harness.run_steps(3);
+    assert!(!comes(&harness) && !is_shown(&harness));
+}
+
+#[test]
 fn an_opacity_is_sent_when_it_is_let_go_and_shown_while_it_is_dragged() {
     let mut harness = panel();
     let slider = harness.get_by_role_and_label(Role::Slider, "Opacity of Sky");
@@ -103,7 +142,7 @@ fn a_click_on_a_name_gives_another_one() {
 #[test]
 fn paint_dries_at_once_in_time_or_becomes_wet_again() {
     let mut harness = panel();
-    let share = harness.get_by_role_and_label(Role::Slider, "Share");
+    let share = harness.get_by_role_and_label(Role::Slider, "How much");
     share.set_value_accesskit(40.0);
     harness.run();
     harness
