@@ -41,7 +41,7 @@ enum Command {
     Import(import::ImportOptions),
     /// Make a demo: a take, a painting or a sheet of marks
     Demo(demo::DemoOptions),
-    /// Show or repair takes
+    /// Show takes, make them of what was painted, complete or recover them
     #[command(subcommand)]
     Take(take::TakeCommand),
     /// Cut, join, place, mirror, retime takes; fill an outline by example
@@ -72,7 +72,7 @@ enum Command {
     Endpoint(endpoint::EndpointOptions),
     /// Print the message formats
     Schema(schema::SchemaOptions),
-    /// Show, export or import brushes
+    /// Show brushes, take one in hand, set its mode, import one
     #[command(subcommand)]
     Brush(brush::BrushCommand),
     /// Show, export, import, film, repair, pack painting files; keep versions
@@ -326,6 +326,54 @@ mod tests {
             let said = rejected.expect_err(arguments).to_string();
             assert!(said.contains(word), "{arguments}: {said}");
         }
+    }
+
+    /// Characters of the line that says what a command does, at most: a list of them stays in 100 columns.
+    const LINE: usize = 90;
+
+    /// What is wrong with a line of help.
+    fn fault_of(line: &str) -> Option<&'static str> {
+        let first = line.chars().next();
+        match first {
+            None => Some("says nothing"),
+            Some(first) if first.is_lowercase() || first == '`' => {
+                Some("begins as a comment of the code does")
+            }
+            _ if line.ends_with('.') => Some("ends as a sentence"),
+            _ if line.contains("[`") || line.contains("::") => Some("names what is in the code"),
+            _ => None,
+        }
+    }
+
+    /// What is wrong with the help of a command and of those below it.
+    fn faults(command: &clap::Command, path: &str, found: &mut Vec<String>) {
+        let about = command.get_about().map(ToString::to_string);
+        let about = about.unwrap_or_default();
+        let long = (about.chars().count() > LINE).then_some("is too long");
+        let lines = command.get_arguments().map(|argument| {
+            let help = argument.get_help().map(ToString::to_string);
+            (argument.get_id().to_string(), help.unwrap_or_default())
+        });
+        let wrong = lines.filter_map(|(name, help)| Some((name, fault_of(&help)?)));
+        let own = fault_of(&about)
+            .or(long)
+            .map(|fault| (String::new(), fault));
+        let wrong = own.into_iter().chain(wrong);
+        found.extend(wrong.map(|(name, fault)| format!("{path} {name}: {fault}")));
+        for below in command.get_subcommands() {
+            faults(below, &format!("{path} {}", below.get_name()), found);
+        }
+    }
+
+    #[test]
+    fn all_help_is_for_people() {
+        let mut found = Vec::new();
+        faults(&Cli::command(), "maulstick", &mut found);
+        assert!(found.is_empty(), "{found:#?}");
+        let code = clap::Command::new("x").about("`x`, with which a y is stopped");
+        let nothing = clap::Arg::new("y").long("y");
+        faults(&code.arg(nothing), "x", &mut found);
+        assert_eq!(found.len(), 2, "a fault would pass: {found:?}");
     }
 
     #[test]

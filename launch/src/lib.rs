@@ -23,6 +23,7 @@
 //! | [`kit`] | setup of a take: embedded into it, and extracted from it |
 //! | [`lamp`] | changes of the light |
 //! | [`memory`] | memory that a command allocates at once |
+//! | [`picture`] | pictures that a command reads |
 //! | [`outputs`] | files that are written; none replaces one that is read |
 //! | [`script`] | a day at the easel, a step after the other |
 //! | [`paintings`] | the bundled paintings |
@@ -48,8 +49,8 @@ pub mod up;
 
 pub use figures::{page, plot, swatch};
 pub use setup::{
-    backend, cells, destination, document, duration, easel, ground, kit, lamp, memory, tooth,
-    viewing,
+    backend, cells, destination, document, duration, easel, ground, kit, lamp, memory, picture,
+    tooth, viewing,
 };
 
 use maulstick_rig::UserError;

@@ -152,7 +152,7 @@ fn a_log_says_who_did_what_and_a_record_can_be_left_out_and_forgotten() {
             "what",
             "stroke of main on the canvas",
             " UTC",
-            "Begin",
+            "begin a take of player with main, loaded with Bone Black",
         ],
     );
     assert_eq!(log.matches("stroke of main").count() as u64, painted);

@@ -220,7 +220,8 @@ fn a_graph_shows_who_sends_what_to_whom() {
         );
         place.done(&["graph", "-o", "rig.svg"]);
         assert!(place.bytes("rig.svg").starts_with(b"<svg"));
-        place.done(&["graph", "-o", "rig.svg", "--format", "mermaid"]);
+        place.done(&["graph", "-o", "rig.mmd"]);
+        assert!(place.bytes("rig.mmd").starts_with(b"flowchart LR"));
         std::fs::write(place.path("rig.svg"), "my diary").expect("written");
         fault(place, &["graph", "-o", "rig.svg"], 1);
     });

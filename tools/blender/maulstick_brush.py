@@ -109,6 +109,15 @@ def set_up(armature, mesh=None):
             give(bone, "damping", DAMPING, OF_BONES)
     for key, value in OBJECT_DEFAULTS.items():
         give(armature, key, value, OF_OBJECTS)
+    measure_ends(armature)
+
+
+def measure_ends(armature):
+    """Notes the lengths of the last bones, which glTF does not have."""
+    for root in roots_of(armature):
+        last = spine_from(root)[-1]
+        head, tail = ends_mm(armature, last)
+        last["length_m"] = (tail - head).length * 1e-3
 
 
 def slips(one, other):
@@ -247,11 +256,8 @@ def export(armature, mesh, path):
 
 
 def write(armature, mesh, path):
-    """Writes a model as a .glb, with the lengths of the last bones, which glTF does not have."""
-    for root in roots_of(armature):
-        last = spine_from(root)[-1]
-        head, tail = ends_mm(armature, last)
-        last["length_m"] = (tail - head).length * 1e-3
+    """Writes a model as a .glb."""
+    measure_ends(armature)
     for other in bpy.context.scene.objects:
         other.select_set(other in (armature, mesh))
     bpy.ops.export_scene.gltf(

@@ -5,6 +5,7 @@ use std::path::Path;
 use maulstick_brush::BrushFile;
 use maulstick_rig::UserError;
 use maulstick_rig::config::{BrushSection, toml_fault};
+use maulstick_rig::files::ending;
 
 /// The brush file of a section, at its size: one of the library, or read from where its kind says.
 ///
@@ -37,13 +38,14 @@ pub fn read_brush(path: &Path) -> Result<BrushFile, UserError> {
     let bytes = std::fs::read(path).map_err(|error| UserError::reading(path, &error))?;
     let place = path.display().to_string();
     let wrong = |what: String, help: &str| UserError::usage(what).at(place.clone()).help(help);
-    let extension = path.extension().and_then(|extension| extension.to_str());
-    if matches!(extension, Some("glb" | "gltf")) {
+    if matches!(&*ending(path), "glb" | "gltf") {
         return maulstick_brush::gltf::read(&bytes)
             .map_err(|error| wrong(error.to_string(), "correct the model in Blender"));
     }
-    let text = String::from_utf8(bytes)
-        .map_err(|_| wrong("this is no text".to_owned(), "name a TOML or a glTF file"))?;
+    let text = String::from_utf8(bytes).map_err(|_| {
+        let help = "a brush file is TOML, or a model whose name ends in .glb or .gltf";
+        wrong("this is no text".to_owned(), help)
+    })?;
     let file: BrushFile =
         toml::from_str(&text).map_err(|error| toml_fault(&text, &place, &error))?;
     file.check()
@@ -75,6 +77,11 @@ mod tests {
         let fault = brush_file(&section(&kind)).expect_err("half a file");
         let line = format!("{kind}:1");
         assert_eq!(fault.place, Some(line));
+        // A model by its name, in capitals too.
+        let model = folder.path().join("own.GLB");
+        std::fs::write(&model, b"glTF\xff\xff").expect("written");
+        let fault = read_brush(&model).expect_err("half a model");
+        assert!(fault.help.is_some_and(|help| help.contains("Blender")));
         assert!(
             brush_file(&section("ruond"))
                 .expect_err("misspelt")

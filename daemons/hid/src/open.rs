@@ -359,16 +359,15 @@ fn begin(kind: Kind, opened: &mut Opened) {
 fn missing(kind: Kind, address: &Address, all: &[Found]) -> UserError {
     let mut there: Vec<_> = all.iter().map(|found| found.identity.to_string()).collect();
     there.dedup();
-    let there = match there.is_empty() {
-        true => "no HID device is plugged in".to_owned(),
-        false => format!("there are {}", there.join(", ")),
-    };
     let what = match address {
         Address::Any => format!("no {} is plugged in", kind.word()),
         Address::Numbers(vendor, product) => format!("no {vendor:04x}:{product:04x} is plugged in"),
         Address::Path(path) => format!("no HID device is plugged in at {path}"),
     };
-    UserError::failure(what).help(format!("plug it in; {there}"))
+    UserError::failure(what).help(match there.is_empty() {
+        true => "plug it in".to_owned(),
+        false => format!("plug it in; there are {}", there.join(", ")),
+    })
 }
 
 /// Description of a device for the log.

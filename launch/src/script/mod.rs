@@ -36,6 +36,7 @@ use maulstick_canvas::quantum::SLOTS;
 use maulstick_device::Take;
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::UserError;
+use maulstick_rig::files::ending;
 use maulstick_types::Mixture;
 use maulstick_types::edits::{Edit, LightChange};
 use toml::de::DeTable;
@@ -100,10 +101,7 @@ impl Script {
     pub fn read(path: &Path, library: &PaintLibrary) -> Result<Self, UserError> {
         let text = std::fs::read_to_string(path).map_err(|error| {
             let fault = UserError::reading(path, &error);
-            match path
-                .extension()
-                .is_some_and(|extension| extension == "mcap")
-            {
+            match ending(path) == "mcap" {
                 true => fault.help("a take is painted without `--script`: `maulstick render TAKE`"),
                 false => fault,
             }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use maulstick_appearance::ground::add_spectrum;
 use maulstick_canvas::assets::{IMAGE, SPECTRUM};
-use maulstick_exchange::{Image, ImportError, embed};
+use maulstick_exchange::{Image, PictureKind, embed};
 use maulstick_optics::Reflectance;
 use maulstick_painting::PaintingSetup;
 use maulstick_rig::UserError;
@@ -13,11 +13,10 @@ use maulstick_rig::config::is_path;
 use maulstick_rig::table_file::read_table;
 
 use crate::performance::refused;
+use crate::picture::{no_picture, open_picture};
 
 /// A spectrum has at most this many bytes.
 const SPECTRUM_MAX: usize = maulstick_types::command::SPECTRUM_MAX;
-/// File endings of pictures.
-const PICTURES: [&str; 5] = ["png", "jpg", "jpeg", "tif", "tiff"];
 
 /// Source of a ground.
 #[derive(Clone, Debug)]
@@ -40,8 +39,8 @@ impl GroundFile {
         if !is_path(name) {
             return Ok(Self::Named(name.to_owned()));
         }
-        if is_picture(path) {
-            let image = Image::open(path).map_err(|error| no_picture(name, &error))?;
+        if PictureKind::is_named(path) {
+            let image = open_picture(path)?;
             return Ok(Self::Picture(Arc::new(image), name.to_owned()));
         }
         let text = read_table(path, SPECTRUM_MAX as u64)?;
@@ -67,7 +66,8 @@ impl GroundFile {
         let Self::Picture(image, name) = self else {
             return Ok(None);
         };
-        let bytes = embed::ground(image, cells).map_err(|error| no_picture(name, &error))?;
+        let bytes =
+            embed::ground(image, cells).map_err(|error| no_picture(name.as_ref(), &error))?;
         Ok(Some(bytes))
     }
 
@@ -89,24 +89,6 @@ impl GroundFile {
             }
         };
         Ok(())
-    }
-}
-
-/// True if a file has the ending of a picture.
-#[must_use]
-pub fn is_picture(path: &Path) -> bool {
-    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
-    PICTURES.iter().any(|known| extension == *known)
-}
-
-/// The error that a file is no picture, as the user sees it.
-#[must_use]
-pub fn no_picture(name: &str, error: &ImportError) -> UserError {
-    match error {
-        ImportError::File(error) => UserError::reading(name.as_ref(), error),
-        other => UserError::usage(other.to_string())
-            .at(name.to_owned())
-            .help("give a PNG, JPEG or TIFF of at most 20,000 pixels either way"),
     }
 }
 

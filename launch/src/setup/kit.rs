@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use maulstick_device::{Take, TakeSetup};
+use maulstick_exchange::PictureKind;
 use maulstick_optics::paints::MEASURED;
 use maulstick_rig::UserError;
 use maulstick_rig::config::{BrushSection, RigConfig, is_path};
@@ -10,7 +11,6 @@ use maulstick_rig::files::{Kind, write_whole};
 use maulstick_rig::user_error::EXIT_FAILURE;
 use maulstick_types::Mixture;
 
-use crate::ground::is_picture;
 use crate::performance::brush_file;
 
 /// The canvas, palette, brush, paints and light of a rig, with the files that they name.
@@ -53,7 +53,7 @@ pub fn kit_of(
     }
     if is_path(&config.canvas.ground) {
         let file = Path::new(&config.canvas.ground);
-        let extension = match is_picture(file) {
+        let extension = match PictureKind::is_named(file) {
             true => file.extension().unwrap_or_default().to_ascii_lowercase(),
             false => "csv".into(),
         };
@@ -121,4 +121,17 @@ pub fn use_kit(
         config.brush[0] = BrushSection { name, ..brush };
     }
     Ok(kit.loads.clone())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_take_can_embed_each_kind_of_picture() {
+        for ending in PictureKind::ENDINGS {
+            assert!(TakeSetup::knows(ending), "{ending}");
+        }
+        assert!(!TakeSetup::knows("exe"));
+    }
 }

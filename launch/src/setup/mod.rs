@@ -10,5 +10,6 @@ pub mod ground;
 pub mod kit;
 pub mod lamp;
 pub mod memory;
+pub mod picture;
 pub mod tooth;
 pub mod viewing;

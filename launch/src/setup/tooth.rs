@@ -4,10 +4,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use maulstick_canvas::relief::tooth_picture::{DEPTH_UM, ToothName, WIDTH_MM};
-use maulstick_exchange::{Image, embed};
+use maulstick_exchange::{Image, PictureKind, embed};
 use maulstick_rig::UserError;
 
-use crate::ground::{is_picture, no_picture};
+use crate::picture::{no_picture, open_picture};
 
 /// Depth of a tooth for which nothing is said, µm.
 pub const DEPTH: f64 = 80.0;
@@ -61,15 +61,19 @@ impl ToothPicture {
         depth_um: Option<f64>,
     ) -> Result<Self, UserError> {
         let path = Path::new(file);
-        if path.exists() && !is_picture(path) {
+        if path.exists() && !PictureKind::is_named(path) {
             return Err(
                 UserError::usage("a tooth is made of a picture, and this is none")
                     .at(file)
-                    .help("give a PNG, JPEG or TIFF: white is high"),
+                    .help("give a PNG, JPEG, TIFF, OpenEXR or OpenRaster picture: white is high"),
             );
         }
-        let image = Image::open(path).map_err(|error| no_picture(file, &error))?;
-        Self::new(image, file, width_mm, depth_um.unwrap_or(DEPTH))
+        Self::new(
+            open_picture(path)?,
+            file,
+            width_mm,
+            depth_um.unwrap_or(DEPTH),
+        )
     }
 
     /// Its width on a canvas of so many cells of `cell_m`, mm.
@@ -83,7 +87,8 @@ impl ToothPicture {
     /// A [`UserError`] where the picture is too large for it.
     pub fn png(&self, cells: [u32; 2], cell_m: f64) -> Result<Arc<[u8]>, UserError> {
         let width_mm = self.width_on(cells, cell_m);
-        embed::tooth(&self.image, width_mm, cell_m).map_err(|error| no_picture(&self.file, &error))
+        embed::tooth(&self.image, width_mm, cell_m)
+            .map_err(|error| no_picture(self.file.as_ref(), &error))
     }
 
     /// The tooth's name where the painting holds it by this hash.

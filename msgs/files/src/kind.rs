@@ -43,6 +43,43 @@ pub enum Kind {
     Own,
 }
 
+/// Endings of files' names, in lower case, by what they hold: what is written under one of another kind would be taken for
+/// it. Names that end in none of these say nothing.
+const ENDINGS: [(&str, &[Kind]); 24] = [
+    ("png", &[Kind::Png]),
+    ("exr", &[Kind::Exr]),
+    ("ora", &[Kind::Ora]),
+    ("stl", &[Kind::Stl]),
+    ("glb", &[Kind::Glb]),
+    ("gif", &[Kind::Gif]),
+    ("mp4", &[Kind::Mp4]),
+    ("json", &[Kind::Ledger, Kind::Messages]),
+    ("jsonl", &[Kind::Messages]),
+    ("mcap", &[Kind::Take]),
+    ("csv", &[Kind::Paints, Kind::Messages, Kind::Forces]),
+    ("toml", &[Kind::Brush]),
+    ("hid", &[Kind::Recording]),
+    ("svg", &[Kind::Graph]),
+    ("mmd", &[Kind::Graph]),
+    ("mermaid", &[Kind::Graph]),
+    ("md", &[Kind::Graph]),
+    // Kinds that are read, or that other programs write.
+    ("maul", &[]),
+    ("jpg", &[]),
+    ("jpeg", &[]),
+    ("tif", &[]),
+    ("tiff", &[]),
+    ("gltf", &[]),
+    ("icc", &[]),
+];
+
+/// The ending of a file's name in lower case; empty if there is none.
+#[must_use]
+pub fn ending(path: &Path) -> String {
+    let ending = path.extension().unwrap_or_default();
+    ending.to_string_lossy().to_ascii_lowercase()
+}
+
 /// As many first bytes as tell any kind.
 const HEAD: usize = 64;
 /// The first bytes of every SQLite file.
@@ -94,6 +131,37 @@ impl Kind {
             Self::Forces => "a table of forces",
             Self::Graph => "a graph of a rig",
             Self::Own => "a file of Maulstick",
+        }
+    }
+
+    /// The endings of its files' names.
+    fn endings(self) -> impl Iterator<Item = &'static str> {
+        let own = ENDINGS
+            .iter()
+            .filter(move |(_, kinds)| kinds.contains(&self));
+        own.map(|(ending, _)| *ending)
+    }
+
+    /// Sees that a name does not end as that of another kind.
+    ///
+    /// # Errors
+    /// What is wrong with it, and how it may end.
+    pub fn check_name(self, path: &Path) -> Result<(), Error> {
+        let ending = ending(path);
+        let known = ENDINGS.iter().find(|(known, _)| *known == ending);
+        match known {
+            Some((_, kinds)) if self != Self::Own && !kinds.contains(&self) => {
+                let own: Vec<String> = self.endings().map(|own| format!(".{own}")).collect();
+                let what = self.name();
+                Err(Error::new(
+                    ErrorKind::InvalidInput,
+                    format!(
+                        "{what} is no .{ending} file: end its name in {}",
+                        own.join(" or ")
+                    ),
+                ))
+            }
+            _ => Ok(()),
         }
     }
 
@@ -150,6 +218,7 @@ pub(crate) fn destination(path: &Path, kind: Kind) -> Result<PathBuf, Error> {
         ));
     }
     let Ok(found) = std::fs::metadata(&to) else {
+        kind.check_name(path)?;
         return Ok(to);
     };
     if found.is_dir() {
@@ -171,6 +240,7 @@ pub(crate) fn destination(path: &Path, kind: Kind) -> Result<PathBuf, Error> {
             "it is a painting, and nothing is written over one",
         ));
     }
+    kind.check_name(path)?;
     if gives_way(&to, kind) || OVERWRITE.load(Relaxed) {
         return Ok(to);
     }
@@ -247,6 +317,47 @@ mod tests {
         std::fs::write(&path, "").expect("written");
         destination(&path, Kind::Png).expect("nothing is lost");
         destination(&folder.path().join("none"), Kind::Png).expect("nothing is there");
+    }
+
+    #[test]
+    fn a_name_that_ends_as_another_kind_does_is_refused_without_case() {
+        let all = [
+            Kind::Png,
+            Kind::Exr,
+            Kind::Ora,
+            Kind::Stl,
+            Kind::Glb,
+            Kind::Gif,
+            Kind::Mp4,
+            Kind::Ledger,
+            Kind::Take,
+            Kind::Paints,
+            Kind::Brush,
+            Kind::Recording,
+            Kind::Messages,
+            Kind::Forces,
+            Kind::Graph,
+        ];
+        for kind in all {
+            assert!(kind.endings().next().is_some(), "{kind:?}");
+            for (ending, kinds) in ENDINGS {
+                for name in [ending.to_owned(), ending.to_uppercase()] {
+                    let path = format!("/nowhere/a.{name}");
+                    let said = destination(Path::new(&path), kind);
+                    assert_eq!(said.is_ok(), kinds.contains(&kind), "{kind:?} {said:?}");
+                    destination(Path::new(&path), Kind::Own).expect("its own");
+                }
+            }
+            for name in ["a", "sea 1.5", "notes.txt", ".png"] {
+                kind.check_name(Path::new(name)).expect("it says nothing");
+            }
+        }
+        let said = Kind::Graph
+            .check_name(Path::new("g.PNG"))
+            .expect_err("a picture");
+        assert!(said.to_string().contains(".svg or .mmd"), "{said}");
+        assert_eq!(ending(Path::new("/a.b/G.SVG")), "svg");
+        assert_eq!(ending(Path::new("/a.b/G")), "");
     }
 
     #[test]

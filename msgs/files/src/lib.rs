@@ -2,7 +2,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`kind`] | kinds of files by their first bytes; which file may be written over |
+//! | [`kind`] | kinds of files by their first bytes and by how their names end; which file may be written over |
 //! | [`free`] | names that are not taken |
 //! | [`open`] | databases that this process has open, by device and inode |
 //! | [`whole`] | files that are whole under their name, or not there at all |
@@ -13,7 +13,7 @@ pub mod open;
 pub mod whole;
 
 pub use free::first_free;
-pub use kind::{Kind, allow_overwriting, gives_way, is_companion, is_painting};
+pub use kind::{Kind, allow_overwriting, ending, gives_way, is_companion, is_painting};
 pub use open::{FileId, OpenDatabase, read_head};
 pub use whole::{
     Unfinished, check_folder, check_writable, clear_on_signals, write_folder, write_whole,

@@ -183,8 +183,11 @@ impl Assets {
 fn decode(bytes: &[u8]) -> Result<Decoded, EditError> {
     let wrong =
         |error: png::DecodingError| EditError::Picture(format!("this is no whole PNG: {error}"));
-    let limits = png::Limits { bytes: 1 << 30 };
-    let decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
+    // Of the pixels' rows alone: what else a file has unpacks to anything.
+    let limits = png::Limits { bytes: 1 << 26 };
+    let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
+    decoder.set_ignore_iccp_chunk(true);
+    decoder.set_ignore_text_chunk(true);
     let mut reader = decoder.read_info().map_err(wrong)?;
     let info = reader.info();
     let (width, height) = (info.width as usize, info.height as usize);

@@ -29,4 +29,4 @@ mod shown;
 mod tile;
 
 pub use colouring::Colouring;
-pub use tile::{Converted, Converter, Distance, TileGround};
+pub use tile::{Converted, Converter, Distance, FAR, Farthest, TileGround};

@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use maulstick_appearance::Appearance;
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
-use maulstick_canvas::quantum::CELL_MAX;
+use maulstick_canvas::quantum::{CELL_MAX, QUANTUM_M};
 use maulstick_canvas::tile::Tile;
 use maulstick_canvas::wet_over::{noted, wet_over};
 use maulstick_optics::Under;
 use maulstick_optics::colour::delta_e_2000;
+use maulstick_types::paint::TILE;
 
 use crate::cell_fit::CellFit;
 use crate::colouring::Colouring;
@@ -32,16 +33,55 @@ pub struct Distance {
     pub sum: f64,
     /// The farthest.
     pub worst: f64,
+    /// The cell that is the farthest; `None` of no cell.
+    pub farthest: Option<Farthest>,
     /// Number of cells.
     pub cells: u64,
+    /// Number of those beyond [`FAR`].
+    pub far: u64,
+}
+
+/// A distance that everybody sees, ΔE₀₀.
+pub const FAR: f64 = 5.0;
+/// Films below this one may hide otherwise in another model, whatever is mixed, m.
+const THIN_M: f64 = 40e-6;
+
+/// A cell whose colour is not met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Farthest {
+    /// Its column and row, in the tile or the surface, from the lower left corner.
+    pub cell: [usize; 2],
+    /// Thickness of its paint, m.
+    pub film_m: f64,
+}
+
+impl Farthest {
+    /// True where the film is so thin that it need not hide as it did.
+    #[must_use]
+    pub fn is_thin(&self) -> bool {
+        self.film_m < THIN_M
+    }
 }
 
 impl Distance {
     /// Takes another one in.
     pub fn add(&mut self, other: &Self) {
         self.sum += other.sum;
+        if other.worst > self.worst || self.farthest.is_none() {
+            self.farthest = other.farthest;
+        }
         self.worst = self.worst.max(other.worst);
         self.cells += other.cells;
+        self.far += other.far;
+    }
+
+    /// The same of a tile whose first cell is this one of a surface.
+    #[must_use]
+    pub fn moved(mut self, [x, y]: [usize; 2]) -> Self {
+        if let Some(Farthest { cell, .. }) = &mut self.farthest {
+            *cell = [cell[0] + x, cell[1] + y];
+        }
+        self
     }
 
     /// The mean; 0 of no cell.
@@ -129,12 +169,19 @@ impl<'a> Converter<'a> {
         for cell in 0..TILE_CELLS {
             let is_dry = dry.as_ref().is_some_and(|dry| dry[cell] > 0.0);
             if is_dry || wet.iter().any(|(_, plane)| plane[cell] > 0.0) {
+                let film: f32 = wet.iter().map(|(_, plane)| plane[cell]).sum();
+                let film = film + dry.as_ref().map_or(0.0, |dry| dry[cell]);
                 let [one, other] = [before, after].map(|shown| shown.lab(&self.palette, cell));
                 let delta_e = delta_e_2000(one, other);
                 distance.add(&Distance {
                     sum: delta_e,
                     worst: delta_e,
+                    farthest: Some(Farthest {
+                        cell: [cell % TILE, cell / TILE],
+                        film_m: f64::from(film) * QUANTUM_M,
+                    }),
                     cells: 1,
+                    far: u64::from(delta_e > FAR),
                 });
             }
         }

@@ -16,7 +16,7 @@ use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::relief::Relief;
 use maulstick_canvas::tile::{Tile, TileId};
-use maulstick_convert::{Colouring, Converted, Converter, TileGround};
+use maulstick_convert::{Colouring, Converted, Converter, Distance, FAR, TileGround};
 use maulstick_dab::Layers;
 use maulstick_optics::colour::{apply, delta_e_2000, inverse, lab};
 use maulstick_optics::{CpuFilms, PaintLibrary, Studio, StudioSettings, THINNER};
@@ -244,6 +244,14 @@ fn volumes_stay_by_cell_and_layer_and_colours_come_near() {
             assert!(plain > mean_limit, "a fault would pass: counts as they are");
             if own.cells == TILE_CELLS as u64 {
                 assert!((own.mean() - mean).abs() < 0.02 && (own.worst - worst).abs() < 0.1);
+                let seen = easel.seen(&other, to);
+                let pairs = before.iter().zip(&seen);
+                let off: Vec<f64> = pairs.map(|(one, two)| delta_e_2000(*one, *two)).collect();
+                let beyond = off.iter().filter(|off| **off > FAR).count() as u64;
+                println!("{} of {beyond} beyond {FAR}", own.far);
+                assert!(own.far.abs_diff(beyond) < 40);
+                let [x, y] = own.farthest.expect("a cell").cell;
+                assert!((off[y * 64 + x] - worst).abs() < 0.1, "it is told where");
             }
         }
     }
@@ -361,5 +369,21 @@ fn common_mixtures_are_met_and_what_is_out_of_gamut_is_told() {
     ];
     let off = delta_e_2000(one[0], two[0]);
     println!("phthalo green and black: {off:.2}");
-    assert!((off - converted.distance.worst).abs() < 0.05, "it is told");
+    let told = converted.distance;
+    assert!((off - told.worst).abs() < 0.05, "it is told");
+    let farthest = told.farthest.expect("a cell");
+    assert!((farthest.film_m - 200e-6).abs() < 1e-6 && !farthest.is_thin());
+    let all = TILE_CELLS as u64;
+    assert_eq!((told.cells, told.far), (all, 0));
+    // Of a surface it is known where, and the farther one counts.
+    let mut surface = told.moved([64, 128]);
+    let cell = farthest.cell;
+    let there = surface.farthest.map(|farthest| farthest.cell);
+    assert_eq!(there, Some([cell[0] + 64, cell[1] + 128]));
+    surface.add(&Distance {
+        worst: told.worst - 1.0,
+        ..told
+    });
+    assert_eq!(surface.farthest.map(|farthest| farthest.cell), there);
+    assert_eq!(surface.cells, 2 * all);
 }

@@ -12,8 +12,17 @@ pub enum ImportError {
     #[error("the file cannot be read: {0}")]
     File(#[source] std::io::Error),
     /// It holds no picture, or one that is damaged.
-    #[error("this is no whole PNG, JPEG or TIFF picture: {0}")]
+    #[error("this is no whole PNG, JPEG, TIFF, OpenEXR or OpenRaster picture: {0}")]
     NotAPicture(String),
+    /// It is of a kind of its format that is not read.
+    #[error("pictures of this kind are not read: {0}")]
+    Unsupported(String),
+    /// A pixel is no number: across and down from the upper left one, which is 0, 0.
+    #[error("pixel {0}, {1} from the upper left corner is no number (NaN)")]
+    NotANumber(usize, usize),
+    /// What a file has beside its pixels takes too much memory: so many MB are allowed.
+    #[error("what the file has beside its pixels takes more than {0} MB")]
+    Beside(usize),
     /// It is larger than pictures may be.
     #[error(
         "a picture of {0}×{1} pixels is too large: import one of at most {MOST_SIDE} pixels either way"

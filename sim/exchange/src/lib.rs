@@ -54,7 +54,7 @@ pub use import_error::ImportError;
 pub use lit_png::write_lit_png;
 pub use open_exr::write_open_exr;
 pub use open_raster::write_open_raster;
-pub use read_image::Image;
+pub use read_image::{Image, PictureKind, UnusedMark};
 pub use solid::{SOLID_TRIANGLES, SolidSetup, SolidSize, solid_step};
 pub use stl::write_stl;
 pub use surface::Progress;

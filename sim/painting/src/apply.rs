@@ -3,7 +3,7 @@
 use std::fmt;
 
 use maulstick_canvas::EditError;
-use maulstick_convert::Distance;
+use maulstick_convert::{Distance, FAR};
 use maulstick_types::Mixture;
 use maulstick_types::edits::{
     Branch, Clean, Convert, Dry, Edit, Fill, Forget, GoTo, Ground, Handle, Keep, Load, LoadFrom,
@@ -44,8 +44,13 @@ pub enum Applied {
     Loaded(Mixture),
     /// A file is written.
     Written(String),
-    /// A surface has another paint model: how near its colours come to those of before.
-    Converted(Distance),
+    /// A surface has another paint model.
+    Converted {
+        /// How near its colours come to those of before.
+        distance: Distance,
+        /// Side of its cells, m.
+        cell_m: f64,
+    },
 }
 
 impl fmt::Display for Applied {
@@ -69,16 +74,41 @@ impl fmt::Display for Applied {
                 }
                 Ok(())
             }
-            Self::Converted(distance) if distance.cells == 0 => f.write_str("colours as before"),
-            Self::Converted(distance) => write!(
-                f,
-                "colours within \u{394}E\u{2080}\u{2080} {:.2} in the mean, {:.1} at most",
-                distance.mean(),
-                distance.worst
-            ),
+            Self::Converted { distance, cell_m } => converted(distance, *cell_m, f),
             Self::Step(what) | Self::Written(what) => f.write_str(what),
         }
     }
+}
+
+/// How near colours come, where they are the farthest, and why.
+fn converted(distance: &Distance, cell_m: f64, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let Some(farthest) = &distance.farthest else {
+        return f.write_str("colours as before");
+    };
+    write!(
+        f,
+        "colours within \u{394}E\u{2080}\u{2080} {:.2} in the mean",
+        distance.mean()
+    )?;
+    let [x, y] = farthest.cell.map(|cell| (cell as f64 + 0.5) * cell_m * 1e3);
+    let film_um = farthest.film_m * 1e6;
+    let why = match farthest.is_thin() {
+        true => "a film so thin does not hide as it did",
+        false => "no mixture of the paints has that colour",
+    };
+    let worst = distance.worst;
+    write!(
+        f,
+        "; {worst:.1} at most, {x:.1} mm from the left and {y:.1} mm from below, under {film_um:.0} µm of paint"
+    )?;
+    if worst <= FAR {
+        return Ok(());
+    }
+    let share = 100.0 * distance.far as f64 / distance.cells.max(1) as f64;
+    write!(
+        f,
+        ": {why}; {share:.1} % of the paint is off by more than {FAR}"
+    )
 }
 
 macro_rules! apply_edits {

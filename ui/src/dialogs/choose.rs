@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use eframe::egui::Context;
+use maulstick_exchange::PictureKind;
 
 use crate::dialogs::browser::{Browser, Purpose};
 use crate::dialogs::dialog::{self, Answer, Foot};
@@ -35,7 +36,7 @@ impl ChooseFile {
         Self {
             kind: Kind::Picture,
             title,
-            browser: Browser::at(&begin(folder), Purpose::Read, &paths::PICTURES),
+            browser: Browser::at(&begin(folder), Purpose::Read, &PictureKind::ENDINGS),
             unkept: Unkept::default(),
             wrong: None,
         }
@@ -96,7 +97,7 @@ impl ChooseFile {
         let file = paths::shown(&path);
         Err(match self.kind {
             Kind::Picture => tr!(
-                "{file} is no file. Choose a PNG, JPEG or TIFF of the list.",
+                "{file} is no file. Choose a PNG, JPEG, TIFF, OpenEXR or OpenRaster of the list.",
                 file
             ),
             Kind::Recording => tr!("{file} is no file. Choose a recording of the list.", file),

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui::{Align2, Area, Context, Frame, Id, Order, RichText};
 use maulstick_brush::BrushFile;
+use maulstick_exchange::PictureKind;
+use maulstick_exchange::read_image::kind::HEAD;
 use maulstick_types::command::BRUSH_FILE_MAX;
 
 use crate::dialogs::paths;
@@ -14,7 +16,7 @@ use crate::sessions::RECORDING;
 
 /// The kinds of files that may be dropped.
 pub(crate) const KINDS: &str = tr_noop!(
-    "Drop a painting (.maul), a recording (.mcap), a picture to look at (PNG, JPEG, TIFF) or a brush (.toml)."
+    "Drop a painting (.maul), a recording (.mcap), a picture to look at (PNG, JPEG, TIFF, OpenEXR, OpenRaster) or a brush (.toml)."
 );
 
 /// A file that was dropped, as it was found to be.
@@ -62,9 +64,7 @@ pub(crate) fn found(path: &Path) -> Dropped {
     if begins(b"SQLite format 3\0") || ending == paths::PAINTING {
         return Dropped::Painting(path.to_owned());
     }
-    let is_picture = begins(b"\x89PNG") || begins(b"\xff\xd8\xff");
-    let is_tiff = begins(b"II*\0") || begins(b"MM\0*");
-    if is_picture || is_tiff || paths::PICTURES.contains(&ending.as_str()) {
+    if PictureKind::of(&head).is_some() || PictureKind::is_named(path) {
         return Dropped::Picture(path.to_owned());
     }
     match ending.as_str() {
@@ -84,7 +84,7 @@ pub(crate) fn found(path: &Path) -> Dropped {
 /// The first bytes of a file.
 fn head(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut head = Vec::new();
-    File::open(path)?.take(16).read_to_end(&mut head)?;
+    File::open(path)?.take(HEAD as u64).read_to_end(&mut head)?;
     Ok(head)
 }
 
@@ -122,7 +122,7 @@ pub(crate) fn hint(context: &Context) {
         (Some(paths::PAINTING), _) => tr!("Let go to open the painting."),
         (Some(RECORDING), _) => tr!("Let go to play the recording."),
         (Some("toml"), _) => tr!("Let go to take this brush into the hand."),
-        (Some(ending), _) if paths::PICTURES.contains(&ending) => {
+        (Some(ending), _) if PictureKind::ENDINGS.contains(&ending) => {
             tr!("Let go to pin the picture beside the canvas.")
         }
         _ => translated(KINDS),
@@ -156,6 +156,11 @@ mod tests {
         assert_eq!(found(&picture), Dropped::Picture(picture));
         let named = put("scan.TIF", b"");
         assert_eq!(found(&named), Dropped::Picture(named));
+        let layers = [&b"PK\x03\x04"[..], &[0; 26], b"mimetypeimage/openraster"].concat();
+        let layered = put("layers", &layers);
+        assert_eq!(found(&layered), Dropped::Picture(layered));
+        let light = put("light.EXR", b"");
+        assert_eq!(found(&light), Dropped::Picture(light));
         let take = put("sea.mcap", b"");
         assert_eq!(found(&take), Dropped::Recording(take));
         let round = BrushFile::library_text("round").expect("a brush");
@@ -180,6 +185,7 @@ mod tests {
         };
         refused("song.mp3", b"ID3", &[".mp3", ".maul", "PNG", ".toml"]);
         refused("notes", b"words", &["notes", ".maul"]);
+        refused("text.docx", b"PK\x03\x04words", &[".docx", "OpenRaster"]);
         refused("b.toml", b"name = 7", &["b.toml", "docs/brushes.md"]);
         refused("c.toml", b"\xff\xfe", &["c.toml"]);
         refused("d.toml", &vec![b' '; BRUSH_FILE_MAX + 1], &["megabyte"]);

@@ -4,13 +4,12 @@ use std::path::{Component, Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use directories::{BaseDirs, UserDirs};
+pub(crate) use maulstick_rig::files::ending;
 use maulstick_rig::files::first_free;
 use maulstick_types::values::WholePath;
 
 /// File ending of a painting.
 pub(crate) const PAINTING: &str = "maul";
-/// File endings of the pictures that can be read.
-pub(crate) const PICTURES: [&str; 5] = ["png", "jpg", "jpeg", "tif", "tiff"];
 
 /// A whole path as messages carry it.
 ///
@@ -85,13 +84,6 @@ pub(crate) fn name(path: &Path) -> String {
         || path.display().to_string(),
         |name| name.to_string_lossy().into_owned(),
     )
-}
-
-/// File ending in lower case; empty if there is none.
-#[must_use]
-pub(crate) fn ending(path: &Path) -> String {
-    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
-    ending.to_string_lossy().into_owned()
 }
 
 /// The same path with this ending, unless it has it.

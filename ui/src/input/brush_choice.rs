@@ -7,6 +7,7 @@ use std::sync::OnceLock;
 use maulstick_brush::file::library::LIBRARY;
 use maulstick_brush::{BrushError, BrushFile};
 use maulstick_rig::UserError;
+use maulstick_rig::files::ending;
 use maulstick_types::command::{BrushCommand, Command};
 use maulstick_types::edits::{Edit, Handle, Load, Tune};
 use maulstick_types::scene::{BrushHandling, Tuning};
@@ -113,8 +114,7 @@ pub(crate) fn next_width_mm(now_mm: f64, up: bool) -> f64 {
 /// A [`UserError`] where it cannot be read or is no brush.
 pub(crate) fn read(path: &Path) -> Result<BrushFile, UserError> {
     let bytes = std::fs::read(path).map_err(|error| UserError::reading(path, &error))?;
-    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
-    let read = match extension == "glb" || extension == "gltf" {
+    let read = match matches!(&*ending(path), "glb" | "gltf") {
         true => maulstick_brush::gltf::read(&bytes).map_err(|error| error.to_string()),
         false => std::str::from_utf8(&bytes)
             .map_err(|_| tr!("this is no text").to_owned())

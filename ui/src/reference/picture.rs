@@ -46,7 +46,15 @@ impl Picture {
                 width,
                 height
             ),
-            _ => tr!("It is damaged, or no PNG, JPEG or TIFF. Take another copy.").to_owned(),
+            ImportError::NotANumber(x, y) => tr!(
+                "Its pixel {x}, {y} is no number. Paint over it in the program that made it, and save it again.",
+                x,
+                y
+            ),
+            ImportError::Unsupported(_) => {
+                tr!("It is of a kind that is not read. Save it as PNG.").to_owned()
+            }
+            _ => tr!("It is damaged, or no PNG, JPEG, TIFF, OpenEXR or OpenRaster. Take another copy.").to_owned(),
         })?;
         let own_size = image.size();
         let longer = own_size[0].max(own_size[1]);

@@ -20,7 +20,7 @@ const SETTINGS: &str = "settings";
 /// Prefix of the keys of the loads; four digits follow, so that they are in order.
 const LOAD: &str = "load.";
 /// Kinds of files, by the extension of their names.
-const KINDS: [(&str, &str); 7] = [
+const KINDS: [(&str, &str); 9] = [
     ("toml", "application/toml"),
     ("csv", "text/csv"),
     ("png", "image/png"),
@@ -28,6 +28,8 @@ const KINDS: [(&str, &str); 7] = [
     ("jpeg", "image/jpeg"),
     ("tif", "image/tiff"),
     ("tiff", "image/tiff"),
+    ("exr", "image/x-exr"),
+    ("ora", "image/openraster"),
 ];
 
 /// Setup of a take.
@@ -42,6 +44,12 @@ pub struct TakeSetup {
 }
 
 impl TakeSetup {
+    /// True if files with this ending can be embedded.
+    #[must_use]
+    pub fn knows(extension: &str) -> bool {
+        KINDS.iter().any(|(known, _)| *known == extension)
+    }
+
     /// Takes a file in; its name, which is returned, ends in one of `KINDS`.
     pub fn add(&mut self, bytes: Vec<u8>, extension: &str) -> String {
         let name = name_of(&bytes, extension);
@@ -66,8 +74,7 @@ impl TakeSetup {
             match parsed {
                 Some(Ok(Record::Attachment { header, data, .. })) => {
                     let kind = header.name.split_once('.').map_or("", |(_, kind)| kind);
-                    let known = KINDS.iter().any(|(known, _)| *known == kind);
-                    if known && header.name == name_of(&data, kind) {
+                    if Self::knows(kind) && header.name == name_of(&data, kind) {
                         setup.files.insert(header.name, data.into_owned());
                     }
                 }

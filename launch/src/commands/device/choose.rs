@@ -73,7 +73,7 @@ pub(super) fn run(options: &UseOptions) -> Result<i32, UserError> {
     let mut file = UserFile::read()?;
     let name = &options.device;
     let in_rig = in_rig(&options.target)?;
-    let own = file.device(name).cloned();
+    let own = file.device(name, &in_rig).cloned();
     let is_own = own.is_ok();
     // A studio's device is one of the rig alone.
     let running = in_rig.iter().find(|device| device.name == *name);

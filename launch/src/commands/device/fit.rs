@@ -19,7 +19,7 @@ use maulstick_rig::{RigConfig, Stop, UserError, user_devices};
 use serde_json::json;
 use toml_edit::{Array, DocumentMut, Item, TableLike, Value};
 
-use super::user_file::{is_same, put_in_rig, remove_from_rig};
+use super::user_file::{in_rig, is_same, put_in_rig, remove_from_rig, unknown};
 use crate::EXIT_INTERRUPTED;
 use crate::commands::client::{Client, Target};
 use crate::commands::{print_json_line, print_line};
@@ -75,7 +75,7 @@ pub(super) fn run(options: &FitOptions) -> Result<i32, UserError> {
             let target = Target::named(&config.rig.name);
             (path.clone(), config, target)
         }
-        None => own_settings(&options.target, teller)?,
+        None => own_settings(&options.device, &options.target, teller)?,
     };
     let place = path.display().to_string();
     let device = section(&config, &options.device).ok_or_else(|| {
@@ -129,16 +129,19 @@ fn section(config: &RigConfig, name: &str) -> Option<DeviceSection> {
     devices.find(|device| device.name == name).cloned()
 }
 
-/// The user's own devices, to be fitted to the canvas of the rig that runs.
+/// The user's own devices, `name` among them, to be fitted to the canvas of the rig that runs.
 fn own_settings(
+    name: &str,
     target: &Target,
     teller: Teller,
 ) -> Result<(PathBuf, RigConfig, Target), UserError> {
     let path = user_devices::path()?;
-    if !path.exists() {
-        return Err(UserError::usage("you have no device yet").help(
-            "`maulstick device add` adds one that is attached; `--rig` names the settings of a rig",
-        ));
+    let device = match path.exists() {
+        true => user_devices::read(&path)?,
+        false => Vec::new(),
+    };
+    if !device.iter().any(|own| own.name == name) {
+        return Err(not_own(name, &device, target));
     }
     let config = match Client::open(target) {
         Ok(client) => client.config()?,
@@ -152,8 +155,20 @@ fn own_settings(
             config
         }
     };
-    let device = user_devices::read(&path)?;
     Ok((path, RigConfig { device, ..config }, target.clone()))
+}
+
+/// The error that a device is none of the user's own, which are `own`.
+fn not_own(name: &str, own: &[DeviceSection], target: &Target) -> UserError {
+    let in_rig = in_rig(target).unwrap_or_default();
+    match in_rig.iter().any(|device| device.name == name) {
+        true => UserError::usage(format!("'{name}' is a device of the rig's own settings")).help(
+            format!(
+                "name the file that the rig was started with: `maulstick device fit {name} --rig rig.toml`"
+            ),
+        ),
+        false => unknown(name, own, &in_rig),
+    }
 }
 
 /// Fits a device that nobody else has open.

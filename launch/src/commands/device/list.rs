@@ -233,7 +233,12 @@ fn in_words(findings: &Findings) -> String {
             service.address,
         ));
     }
-    let mut text = String::new();
+    // What paints already comes before what might.
+    let is_used = is_used(findings);
+    let mut text = match is_used {
+        true => in_rig(findings.rig.as_deref()) + "\n",
+        false => String::new(),
+    };
     if !rows.is_empty() {
         text += &table(["device", "id", "at", "driver", ""], &rows);
     }
@@ -250,7 +255,16 @@ fn in_words(findings: &Findings) -> String {
         let device = usable.min_by_key(|device| device.driver == Some("spacemouse"));
         text += &device.map(advice).unwrap_or_default();
     }
-    text + &in_rig(findings.rig.as_deref())
+    match is_used {
+        true => text,
+        false => text + "\n" + &in_rig(findings.rig.as_deref()),
+    }
+}
+
+/// True if a device of the rig has shown itself.
+fn is_used(findings: &Findings) -> bool {
+    let mut used = findings.rig.iter().flatten();
+    used.any(|used| used.is_there)
 }
 
 fn is_usable(device: &Attached) -> bool {
@@ -278,7 +292,7 @@ fn program(name: &str, driver: &str, at: &str) -> Row {
     [name, "-", at, driver, "found"].map(str::to_owned)
 }
 
-/// Message if there is nothing to paint with.
+/// Message if there is nothing that a driver fits, but what the rig has in use.
 fn nothing(findings: &Findings) -> String {
     let folders: Vec<String> = findings
         .openhaptics
@@ -286,8 +300,14 @@ fn nothing(findings: &Findings) -> String {
         .iter()
         .map(|path| path.display().to_string())
         .collect();
+    let first = match is_used(findings) {
+        true => "Nothing else is attached that a driver fits.",
+        false => {
+            "Nothing attached that a driver fits; the mouse paints, and so does `driver = \"simulated\"`."
+        }
+    };
     format!(
-        "Nothing attached that a driver fits; the mouse paints, and so does `driver = \"simulated\"`.\n\
+        "{first}\n\
          Shown would be pens (pen) and 6-DOF mice (spacemouse) at /dev/hidraw*, other tablets (evdev)\n\
          at /dev/input/event*, Polhem and WoodenHaptics (polhem) at serial ports, an Inverse3\n\
          (inverse3) with Haply's service at {}, a Touch (openhaptics) with libHD.so,\n\
@@ -312,10 +332,10 @@ fn advice(device: &Attached) -> String {
 
 fn in_rig(used: Option<&[Used]>) -> String {
     let Some(used) = used else {
-        return "\nThe rig does not run: `maulstick up` starts it.\n".into();
+        return "The rig does not run: `maulstick up` starts it.\n".into();
     };
     if used.is_empty() {
-        return "\nThe rig that runs has no device.\n".into();
+        return "The rig that runs has no device.\n".into();
     }
     let row = |used: &Used| -> Row {
         let state = match (used.trouble.as_str(), used.is_there) {
@@ -329,7 +349,7 @@ fn in_rig(used: Option<&[Used]>) -> String {
     };
     let rows: Vec<Row> = used.iter().map(row).collect();
     let head = ["in the rig", "driver", "brush", "priority", ""];
-    format!("\n{}", table(head, &rows))
+    table(head, &rows)
 }
 
 #[cfg(test)]

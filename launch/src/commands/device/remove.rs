@@ -3,7 +3,7 @@
 use clap::Args;
 use maulstick_rig::UserError;
 
-use super::user_file::{UserFile, remove_from_rig};
+use super::user_file::{UserFile, in_rig, remove_from_rig};
 use crate::commands::client::Target;
 use crate::commands::say;
 
@@ -23,8 +23,9 @@ pub struct RemoveOptions {
 pub(super) fn run(options: &RemoveOptions) -> Result<i32, UserError> {
     let mut file = UserFile::read()?;
     let name = &options.device;
+    let in_rig = in_rig(&options.target)?;
     let was_in_rig = remove_from_rig(&options.target, name)?;
-    match file.device(name).map(drop) {
+    match file.device(name, &in_rig).map(drop) {
         Ok(()) => {
             file.remove(name)?;
             say!("'{name}' is kept no more in {}", file.path().display());

@@ -31,13 +31,17 @@ pub(super) fn run(options: &RenameOptions) -> Result<i32, UserError> {
     let (device, name) = (&options.device, &options.new_name);
     let in_rig = in_rig(&options.target)?;
     let running = in_rig.iter().find(|own| own.name == *device);
-    let own = file.device(device).map_err(|fault| match running {
-        Some(_) => UserError::usage(format!("'{device}' is a device of the rig's own settings"))
+    let own = file
+        .device(device, &in_rig)
+        .map_err(|fault| match running {
+            Some(_) => UserError::usage(format!(
+                "'{device}' is a device of the rig's own settings"
+            ))
             .help(
                 "change its name in the rig.toml that the rig was started with, and start it again",
             ),
-        None => fault,
-    })?;
+            None => fault,
+        })?;
     let is_own = is_same(own, running).is_ok();
     file.check_free(name, &in_rig)?;
     file.rename(device, name)?;

@@ -1,5 +1,6 @@
 //! The file of a user's devices, changed without touching what else is written in it, and the running rig told of it.
 
+use std::collections::BTreeSet;
 use std::fs::DirBuilder;
 use std::io::{ErrorKind, Write as _};
 use std::os::unix::fs::DirBuilderExt as _;
@@ -55,17 +56,17 @@ impl UserFile {
         &self.path
     }
 
-    /// The device called `name`.
+    /// The user's device called `name`; `in_rig` are those of the rig, which may have been meant.
     ///
     /// # Errors
-    /// A [`UserError`] with the nearest name where there is none.
-    pub(super) fn device(&self, name: &str) -> Result<&DeviceSection, UserError> {
+    /// A [`UserError`] with the nearest name where the user has none.
+    pub(super) fn device(
+        &self,
+        name: &str,
+        in_rig: &[DeviceSection],
+    ) -> Result<&DeviceSection, UserError> {
         let found = self.devices.iter().find(|device| device.name == name);
-        found.ok_or_else(|| {
-            let names = self.devices.iter().map(|device| device.name.as_str());
-            let what = format!("you have no device called '{name}'");
-            UserError::unknown(what, name, names).at(self.path.display().to_string())
-        })
+        found.ok_or_else(|| unknown(name, &self.devices, in_rig))
     }
 
     /// Checks that neither the user nor the rig, whose devices are `in_rig`, has a device called `name`.
@@ -145,7 +146,7 @@ impl UserFile {
     fn change_name(&mut self, device: &str, name: &str) -> Result<(), UserError> {
         check(&DeviceSection {
             name: name.to_owned(),
-            ..self.device(device)?.clone()
+            ..self.device(device, &[])?.clone()
         })?;
         let mut tables = self.tables()?.iter_mut();
         let own = tables.find(|table| name_of(table) == Some(device));
@@ -238,6 +239,21 @@ fn table(device: &DeviceSection) -> Result<Table, UserError> {
 
 fn toml_text(device: &DeviceSection) -> Result<String, UserError> {
     toml::to_string(device).map_err(|error| UserError::failure(error.to_string()))
+}
+
+/// The error that neither the user nor the rig has a device called `name`.
+pub(super) fn unknown(name: &str, own: &[DeviceSection], in_rig: &[DeviceSection]) -> UserError {
+    let what = match in_rig.is_empty() {
+        true => format!("you have no device called '{name}'"),
+        false => format!("there is no device called '{name}', neither of yours nor of the rig's"),
+    };
+    let all = own.iter().chain(in_rig);
+    let names: BTreeSet<&str> = all.map(|device| device.name.as_str()).collect();
+    match names.is_empty() {
+        true => UserError::usage(what)
+            .help("`maulstick device list` shows what is attached, `maulstick device add` adds it"),
+        false => UserError::unknown(what, name, names),
+    }
 }
 
 /// The devices of the rig of `target`, none if that does not run.
@@ -356,6 +372,22 @@ brush = \"main\"
         assert_eq!(names, ["left-arm", "puck"]);
         file.rename("left-arm", "arm").expect("it fits");
         assert_eq!(file.text.to_string(), TEXT.replace("'arm'", "\"arm\""));
+    }
+
+    #[test]
+    fn an_unknown_name_finds_the_nearest_of_the_users_and_of_the_rigs() {
+        let own = UserFile::parse("/x/devices.toml".into(), TEXT).expect("valid");
+        let in_rig = [DeviceSection::new("phantom", "simulated", "main")];
+        let help = |own: &[DeviceSection], name: &str, in_rig: &[DeviceSection]| {
+            let fault = unknown(name, own, in_rig);
+            assert!(fault.what.contains(name), "{fault}");
+            fault.help.unwrap_or_default()
+        };
+        let both = help(&own.devices, "phantm", &in_rig);
+        assert!(both.contains("'phantom'") && both.contains("arm") && both.contains("puck"));
+        assert!(help(&own.devices, "amr", &in_rig).contains("'arm'"));
+        assert!(help(&[], "phantm", &in_rig).contains("'phantom'"));
+        assert!(help(&[], "phantm", &[]).contains("maulstick device add"));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use std::process::{Child, Command, Stdio};
 use maulstick_appearance::picture::Picture;
 use maulstick_exchange::film::GifFilm;
 use maulstick_rig::UserError;
-use maulstick_rig::files::{Kind, check_folder, write_folder, write_whole, write_whole_at};
+use maulstick_rig::files::{Kind, check_folder, ending, write_folder, write_whole, write_whole_at};
 
 use crate::outputs::{UsedFile, check_outputs};
 
@@ -35,13 +35,12 @@ impl FilmKind {
     /// # Errors
     /// A [`UserError`] for the name of another kind.
     pub(super) fn of(path: &Path) -> Result<Self, UserError> {
-        let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
-        match ending.as_ref().map(|ending| ending.to_string_lossy()) {
-            None => Ok(Self::Pictures),
-            Some(ending) if ending == "gif" => Ok(Self::Gif),
-            Some(ending) if ending == "mp4" => Ok(Self::Mp4),
-            Some(_) if path.as_os_str().as_encoded_bytes().ends_with(b"/") => Ok(Self::Pictures),
-            Some(ending) => Err(UserError::usage(format!("no film ends in .{ending}"))
+        match ending(path).as_str() {
+            "" => Ok(Self::Pictures),
+            "gif" => Ok(Self::Gif),
+            "mp4" => Ok(Self::Mp4),
+            _ if path.as_os_str().as_encoded_bytes().ends_with(b"/") => Ok(Self::Pictures),
+            ending => Err(UserError::usage(format!("no film ends in .{ending}"))
                 .at(path.display().to_string())
                 .help("end it in .mp4 or .gif, or name a new folder for PNG pictures")),
         }

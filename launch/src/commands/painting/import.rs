@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use maulstick_exchange::underpaint::underpaint;
-use maulstick_exchange::{Image, ImportError, Support, embed};
+use maulstick_exchange::underpaint::{MOST_PAINTS, underpaint};
+use maulstick_exchange::{Image, ImportError, Likeness, Support, embed};
 use maulstick_painting::{Painting, Sequencer, Wetness};
 use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::Autosave;
@@ -15,7 +15,11 @@ use maulstick_types::values::MaterialName;
 use crate::commands::say;
 use crate::document::{go_on, there, wrong};
 use crate::performance::refused;
+use crate::picture::{no_picture, open_picture};
 use crate::tooth::{DEPTH, ToothPicture};
+
+/// A mean ΔE₀₀ beyond which a picture is another one.
+const FAR: f64 = 15.0;
 
 /// What becomes of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -33,7 +37,7 @@ enum Purpose {
 pub struct ImportOptions {
     /// Painting
     file: PathBuf,
-    /// Picture: PNG, JPEG or TIFF
+    /// Picture: PNG, JPEG, TIFF, OpenEXR or OpenRaster
     picture: PathBuf,
     /// Use of the picture
     #[arg(long = "as", value_name = "PURPOSE", default_value = "underpainting")]
@@ -47,8 +51,8 @@ pub struct ImportOptions {
     /// Dry the underpainting to a layer of this name; what is wet dries before it, to a layer of its own
     #[arg(long, value_name = "LAYER", num_args = 0..=1, default_missing_value = "underpainting")]
     dry: Option<String>,
-    /// Paint to mix the picture from; can be given several times [default: those in use in the painting,
-    /// else those of its palette]
+    /// Paint to mix the picture from; can be given several times [default: those in use in the painting and
+    /// those of its palette]
     #[arg(long = "paint", value_name = "NAME")]
     paints: Vec<String>,
     /// Width of a tooth's picture on the canvas, mm; it repeats beyond [default: that of the canvas]
@@ -66,7 +70,7 @@ pub struct ImportOptions {
 pub(super) fn run(options: &ImportOptions) -> Result<i32, UserError> {
     let path = &options.file;
     there(path)?;
-    let image = Image::open(&options.picture).map_err(|error| options.fault(&error))?;
+    let image = open_picture(&options.picture)?;
     let (document, mut sequencer, since) = go_on(&RigConfig::default(), path)?;
     let autosave = Autosave::new(document, &mut sequencer, since);
     let done = match options.purpose {
@@ -84,16 +88,13 @@ pub(super) fn run(options: &ImportOptions) -> Result<i32, UserError> {
 impl ImportOptions {
     fn fault(&self, error: &ImportError) -> UserError {
         match error {
-            ImportError::File(error) => UserError::reading(&self.picture, error),
             ImportError::Thickness(_) => UserError::usage(error.to_string()).at("--um"),
             ImportError::Paints(_) => UserError::usage(error.to_string()).at("--paint"),
             ImportError::Refused(refusal) => refused(refusal.clone()).at("--paint"),
             ImportError::Canvas(..) => UserError::usage(error.to_string())
                 .at(self.file.display().to_string())
                 .help("give it as a ground, which may be coarser than the cells"),
-            other => UserError::usage(other.to_string())
-                .at(self.picture.display().to_string())
-                .help("give a PNG, JPEG or TIFF of at most 20,000 pixels either way"),
+            other => no_picture(&self.picture, other),
         }
     }
 
@@ -117,11 +118,12 @@ impl ImportOptions {
         painted.map_err(refused)?;
         let likeness = found.likeness();
         Ok(format!(
-            "underpainted with {} paints; ΔE00 {:.2} in the mean, {:.1} for 95 %, {:.1} at most",
+            "underpainted with {} paints; ΔE00 {:.2} in the mean, {:.1} for 95 %, {:.1} at most{}",
             found.paints().len(),
             likeness.mean,
             likeness.p95,
-            likeness.max
+            likeness.max,
+            advice(likeness)
         ))
     }
 
@@ -153,19 +155,63 @@ impl ImportOptions {
     }
 }
 
-/// The paints in use; in a new painting those of its palette.
+/// What is to be done where the picture is hardly to be recognised.
+fn advice(likeness: &Likeness) -> &'static str {
+    match likeness.mean > FAR {
+        true => {
+            "\nhelp: these paints do not make its colours: `maulstick painting import --paint NAME` takes others, \
+             and `maulstick paints` lists them"
+        }
+        false => "",
+    }
+}
+
+/// The paints in use and those of the palette, as many as can be mixed; those in use first.
 fn paints_at_hand(painting: &Painting) -> Vec<String> {
     let scene = painting.scene();
-    let mut names: Vec<String> = scene.paints.iter().map(|slot| slot.name.clone()).collect();
-    if names.is_empty() {
-        let wells = scene.surfaces.iter().flat_map(|surface| &surface.wells);
-        for well in wells {
-            if let WellKind::Paint { mixture } = &well.kind {
-                names.extend(mixture.parts.iter().map(|part| part.paint.clone()));
-            }
+    let used = scene.paints.iter().map(|slot| slot.name.clone());
+    let wells = scene.surfaces.iter().flat_map(|surface| &surface.wells);
+    let squeezed = wells.filter_map(|well| match &well.kind {
+        WellKind::Paint { mixture } => Some(mixture.parts.iter().map(|part| part.paint.clone())),
+        _ => None,
+    });
+    let mut names: Vec<String> = Vec::new();
+    for name in used.chain(squeezed.flatten()) {
+        if names.len() < MOST_PAINTS && !names.contains(&name) {
+            names.push(name);
         }
     }
     names.sort();
-    names.dedup();
     names
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_optics::PaintLibrary;
+    use maulstick_painting::PaintingSetup;
+    use maulstick_painting::setup::PALETTE_PAINTS;
+    use maulstick_types::edits::{Fill, Form as _};
+
+    use super::*;
+
+    #[test]
+    fn a_picture_is_mixed_from_the_palette_too_where_little_was_used() {
+        let setup = PaintingSetup {
+            cells: [64, 64],
+            ..PaintingSetup::default()
+        };
+        let library = PaintLibrary::measured().expect("whole");
+        let mut painting = Painting::new(&setup, library).expect("a painting");
+        let palette = paints_at_hand(&painting);
+        assert_eq!(palette.len(), PALETTE_PAINTS.len());
+        painting
+            .apply(Fill::example().expect("in range"))
+            .expect("a film");
+        let used: Vec<_> = painting.scene().paints.clone();
+        assert!(!used.is_empty());
+        let now = paints_at_hand(&painting);
+        assert!(now.len() >= palette.len() && now.len() <= MOST_PAINTS);
+        assert!(used.iter().all(|slot| now.contains(&slot.name)));
+        assert!(palette.iter().all(|name| now.contains(name)));
+    }
 }

@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use maulstick_rig::{RigConfig, UserError};
+use maulstick_rig::{RigConfig, UserError, user_devices};
 use maulstick_session::{Logged, LoggedWhat, painting_log};
-use maulstick_types::scene::{CANVAS, PALETTE};
-use maulstick_types::{name_hash, plain};
+use maulstick_types::plain;
 use serde_json::{Value, json};
 
+use super::log_words::{Names, surface, words};
 use super::timelapse::no_record;
 use super::wall_time::{utc, utc_seconds};
 use crate::commands::table::table;
@@ -23,6 +23,10 @@ const LINE: usize = 160;
 pub struct LogOptions {
     /// Painting
     file: PathBuf,
+    /// Settings of the rig that it was painted with: its devices are called by their names [default: your own
+    /// devices and those of a new rig]
+    #[arg(long, value_name = "FILE")]
+    rig: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -34,46 +38,32 @@ pub struct LogOptions {
 /// A [`UserError`] where it cannot be read, or has no record.
 pub(super) fn run(options: &LogOptions) -> Result<i32, UserError> {
     let path = &options.file;
+    let mut devices = match &options.rig {
+        Some(path) => RigConfig::read(path)?.device,
+        None => RigConfig::default().device,
+    };
+    // Devices that cannot be read now are none that stop the reading of a painting.
+    let own = user_devices::path().and_then(|path| user_devices::read(&path));
+    devices.extend(own.unwrap_or_default());
     let (document, opened) = read(path)?;
     if opened.beginning().is_none() {
         return Err(no_record(path));
     }
     let log = painting_log(&document, &opened).map_err(|error| wrong(path, &error))?;
+    let mut names = Names::of(&devices);
     if options.json {
-        let log: Vec<Value> = log.iter().map(as_json).collect();
+        let log = log.iter().map(|line| as_json(line, &mut names));
+        let log: Vec<Value> = log.collect();
         print_json(&json!({ "log": log }))?;
         return Ok(0);
     }
-    let rows: Vec<[String; 3]> = log.iter().map(row).collect();
+    let rows = log.iter().map(|line| row(line, &mut names));
+    let rows: Vec<[String; 3]> = rows.collect();
     print_text(&table(["time", "who", "what"], &rows))?;
     Ok(0)
 }
 
-/// Name of a device by the hash of it, if it is one of those that every rig may have; else the hash.
-fn device(hash: u32) -> String {
-    let known = RigConfig::default().device;
-    let names = known.iter().map(|device| device.name.as_str());
-    let mut names = names.chain(["mouse", "player"]);
-    let found = names.find(|name| name_hash(name) == hash);
-    found.map_or_else(|| format!("device {hash:08x}"), str::to_owned)
-}
-
-fn surface(id: u32) -> String {
-    match id {
-        CANVAS => "canvas".to_owned(),
-        PALETTE => "palette".to_owned(),
-        other => format!("surface {other}"),
-    }
-}
-
-fn client(id: u64) -> String {
-    match id {
-        0 => "maulstick".to_owned(),
-        id => format!("client {id:016x}"),
-    }
-}
-
-fn row(line: &Logged) -> [String; 3] {
+fn row(line: &Logged, names: &mut Names) -> [String; 3] {
     let time = line.time_ms.map_or_else(String::new, utc_seconds);
     let (who, what) = match &line.what {
         LoggedWhat::Stroke(stroke) => {
@@ -89,21 +79,18 @@ fn row(line: &Logged) -> [String; 3] {
                 stroke.seconds,
                 1e3 * stroke.length_m
             );
-            (device(stroke.device), what)
+            (names.device(stroke.device), what)
         }
         LoggedWhat::Command {
             client: id,
             command,
-        } => {
-            let value = serde_json::to_value(command).unwrap_or_default();
-            (client(*id), words(value))
-        }
+        } => (names.sender(*id), words(command, names)),
         LoggedWhat::Dropped { client: id, brush } => {
-            let what = format!("undo of a stroke of {brush} that was not painted yet");
-            (client(*id), what)
+            let what = format!("undo a stroke of {brush} that was not painted yet");
+            (names.sender(*id), what)
         }
-        LoggedWhat::Decision(what) => (client(0), what.clone()),
-        LoggedWhat::Brush(name) => (client(0), format!("brush {name}")),
+        LoggedWhat::Decision(what) => (names.sender(0), what.clone()),
+        LoggedWhat::Brush(name) => (names.sender(0), format!("brush {name}")),
     };
     let what = match what.char_indices().nth(LINE) {
         Some((end, _)) => format!("{}…", &what[..end]),
@@ -112,31 +99,13 @@ fn row(line: &Logged) -> [String; 3] {
     [time, who, plain(&what).to_string()]
 }
 
-/// A command as its name and its fields.
-fn words(command: Value) -> String {
-    match command {
-        Value::Object(fields) if fields.len() == 1 => {
-            let Some((name, value)) = fields.into_iter().next() else {
-                return String::new();
-            };
-            match &value {
-                Value::Object(inner) if name == "Edit" && inner.len() == 1 => words(value),
-                Value::Object(inner) if name == "Take" && inner.len() == 1 => words(value),
-                Value::Object(inner) if inner.is_empty() => name,
-                value => format!("{name} {value}"),
-            }
-        }
-        Value::String(name) => name,
-        other => other.to_string(),
-    }
-}
-
-fn as_json(line: &Logged) -> Value {
+fn as_json(line: &Logged, names: &mut Names) -> Value {
     let mut value = match &line.what {
         LoggedWhat::Stroke(stroke) => json!({
             "kind": "stroke",
             "brush": stroke.brush,
-            "device": device(stroke.device),
+            "device": names.device(stroke.device),
+            "device_hash": format!("{:08x}", stroke.device),
             "replayed": stroke.is_replayed,
             "surface": surface(stroke.surface),
             "seconds": stroke.seconds,
@@ -159,22 +128,15 @@ fn as_json(line: &Logged) -> Value {
 
 #[cfg(test)]
 mod tests {
-    use maulstick_types::command::Command;
-    use maulstick_types::edits::{GoTo, Undo};
-
     use super::*;
 
     #[test]
-    fn commands_are_named_with_their_fields() {
-        let of = |command: Command| words(serde_json::to_value(command).expect("JSON"));
-        assert_eq!(of(Undo { brush: None }.into()), "Undo {\"brush\":null}");
-        assert_eq!(of(GoTo { step: 7 }.into()), "GoTo {\"step\":7}");
+    fn a_line_is_no_longer_than_a_line() {
         let line = Logged {
             time_ms: None,
             what: LoggedWhat::Decision("x".repeat(500)),
         };
-        assert_eq!(row(&line)[2].chars().count(), LINE + 1);
-        assert_eq!(device(name_hash("mouse")), "mouse");
-        assert_eq!(device(7), "device 00000007");
+        let row = row(&line, &mut Names::default());
+        assert_eq!(row[2].chars().count(), LINE + 1);
     }
 }

@@ -7,6 +7,7 @@ mod film_file;
 mod import;
 mod info;
 mod log;
+mod log_words;
 mod pack;
 mod recover;
 mod timelapse;

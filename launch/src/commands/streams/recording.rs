@@ -150,18 +150,21 @@ fn info(path: &std::path::Path, as_json: bool) -> Result<i32, UserError> {
     if let Some(damage) = recording.damage() {
         say!("damaged: {damage}; what is shown can be read, and `maulstick take recover` mends it");
     }
-    let rows = traffic.streams().map(|(topic, _, stream)| {
+    let rows = totals(&traffic).into_iter().map(|(topic, total)| {
         [
             topic.to_owned(),
             message(topic).to_owned(),
-            stream.messages.to_string(),
-            format!("{:.1}", stream.rate_hz()),
-            format!("{:.1}", stream.bytes as f64 * 1e-3),
-            stream.lost.to_string(),
+            total.senders.to_string(),
+            total.messages.to_string(),
+            format!("{:.1}", total.rate_hz),
+            format!("{:.1}", total.bytes as f64 * 1e-3),
+            total.lost.to_string(),
         ]
     });
     let rows: Vec<_> = rows.chain(foreign.iter().map(foreign_row)).collect();
-    let head = ["topic", "message", "messages", "a second", "kB", "lost"];
+    let head = [
+        "topic", "message", "senders", "messages", "a second", "kB", "lost",
+    ];
     print_text(&table(head, &rows))?;
     match (rows.is_empty(), foreign.is_empty()) {
         (true, _) => say!("it has no messages"),
@@ -186,16 +189,47 @@ fn foreign_entry(topic: &ForeignTopic) -> serde_json::Value {
     })
 }
 
-fn foreign_row(topic: &ForeignTopic) -> [String; 6] {
+fn foreign_row(topic: &ForeignTopic) -> [String; 7] {
     let schema = topic.schema.as_deref().unwrap_or("unknown");
     [
         plain(&topic.name).into_owned(),
         plain(&format!("{schema} [{}]", topic.encoding)).into_owned(),
+        "-".to_owned(),
         topic.messages.to_string(),
         format!("{:.1}", topic.rate_hz),
         format!("{:.1}", topic.bytes as f64 * 1e-3),
         "-".to_owned(),
     ]
+}
+
+/// A topic, whoever sent it: a process that was started again counts as another sender.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct TopicTotal {
+    senders: u64,
+    messages: u64,
+    /// While each sent, in the mean.
+    rate_hz: f64,
+    bytes: u64,
+    lost: u64,
+}
+
+/// Each topic once.
+fn totals(traffic: &Traffic) -> BTreeMap<&str, TopicTotal> {
+    let mut totals: BTreeMap<&str, TopicTotal> = BTreeMap::new();
+    for (topic, _, stream) in traffic.streams() {
+        let total = totals.entry(topic).or_default();
+        let messages = total.messages + stream.messages;
+        let rates =
+            total.rate_hz * total.messages as f64 + stream.rate_hz() * stream.messages as f64;
+        *total = TopicTotal {
+            senders: total.senders + 1,
+            messages,
+            rate_hz: rates / messages.max(1) as f64,
+            bytes: total.bytes + stream.bytes,
+            lost: total.lost + stream.lost,
+        };
+    }
+    totals
 }
 
 fn export(options: &ExportOptions) -> Result<i32, UserError> {
@@ -383,5 +417,48 @@ impl Lines<'_> {
             Form::Json | Form::Foxglove => line.json(&self.options.field),
         };
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_types::{Flags, Header};
+
+    use super::*;
+
+    #[test]
+    fn a_topic_is_listed_once_however_many_sent_it() {
+        let mut traffic = Traffic::default();
+        let mut send = |topic: &str, epoch: u32, seq: u64| {
+            let header = Header {
+                version: 1,
+                schema: 1,
+                source: 7,
+                epoch,
+                flags: Flags::default(),
+                length: 0,
+                seq,
+                event_ns: 0,
+                sent_ns: 0,
+            };
+            let arrived = Arrived {
+                header,
+                bytes: 100,
+                arrived_ns: u64::from(epoch) * 1_000_000_000 + seq * 10_000_000,
+            };
+            traffic.add(topic, &arrived);
+        };
+        for epoch in 1..=3 {
+            (0..10)
+                .filter(|seq| *seq != 4)
+                .for_each(|seq| send("a", epoch, seq));
+        }
+        send("b", 1, 0);
+        let totals = totals(&traffic);
+        assert_eq!(totals.keys().copied().collect::<Vec<_>>(), ["a", "b"]);
+        let a = totals["a"];
+        assert_eq!((a.senders, a.messages, a.bytes, a.lost), (3, 27, 2700, 3));
+        assert!((a.rate_hz - 100.0).abs() < 15.0, "{a:?}");
+        assert_eq!(traffic.streams().count(), 4, "a fault would pass");
     }
 }

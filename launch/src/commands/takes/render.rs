@@ -6,7 +6,7 @@ use clap::Args;
 use maulstick_device::Take;
 use maulstick_paint_node::snapshots::write_snapshot;
 use maulstick_painting::{Painting, Sequencer};
-use maulstick_rig::files::Kind;
+use maulstick_rig::files::{Kind, ending};
 use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::{Autosave, Offline};
 
@@ -126,12 +126,12 @@ impl RenderOptions {
 
 /// Reads a take; a script in its place is refused with advice.
 fn read_take(path: &Path) -> Result<Take, UserError> {
-    Take::read(path).map_err(|fault| match path.extension() {
-        Some(extension) if extension == "toml" && path.exists() => fault.help(format!(
+    Take::read(path).map_err(|fault| match ending(path) == "toml" && path.exists() {
+        true => fault.help(format!(
             "a script is painted with `--script {}`",
             path.display()
         )),
-        _ => fault,
+        false => fault,
     })
 }
 

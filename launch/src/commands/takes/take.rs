@@ -41,13 +41,15 @@ pub enum TakeCommand {
         #[arg(long)]
         json: bool,
     },
-    /// Make a take of a recorded session, or of what a painting was painted with: strokes and commands, and the painting as
-    /// it was before
+    /// Make a take of a recorded session, or of what a painting was painted with
+    ///
+    /// It holds strokes and commands, and the painting as it was before.
     From(FromOptions),
-    /// Embed in a take what it is painted with: canvas, palette, brush, paints, light, loads. It then
-    /// gives the same painting anywhere
+    /// Embed in a take what it is painted with, so that it gives the same painting anywhere
+    ///
+    /// Embedded are canvas, palette, brush, paints, light and loads.
     Embed(EmbedOptions),
-    /// Recover what can be read of a damaged take or recording, as one that a crash left
+    /// Recover what can be read of a damaged take or recording, such as a crash leaves
     Recover {
         /// Damaged take or recording, which is not changed
         take: PathBuf,

@@ -116,6 +116,9 @@ pub fn nearest<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Opti
 #[must_use]
 pub fn choice<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let names: Vec<&str> = names.into_iter().collect();
+    if names.is_empty() {
+        return "there is none".to_owned();
+    }
     let all = names.join(", ");
     match nearest(name, names) {
         Some(nearest) => format!("did you mean '{nearest}'? There are: {all}"),
@@ -158,6 +161,7 @@ mod tests {
             "did you mean 'from'? There are: from, to"
         );
         assert_eq!(choice("whither", ["from", "to"]), "there are: from, to");
+        assert_eq!(choice("whither", []), "there is none");
     }
 
     #[test]

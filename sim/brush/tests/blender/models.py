@@ -109,8 +109,6 @@ def as_blender_writes_it(spines, head):
 
 def write_plainly(spines, head, path):
     """Exports everything by the exporter's own defaults, but for the custom properties."""
-    for root in maulstick_brush.roots_of(spines):
-        maulstick_brush.spine_from(root)[-1]["length_m"] = model_round.BONE_M
     bpy.ops.export_scene.gltf(filepath=str(path), export_extras=True)
 
 

@@ -6,7 +6,7 @@ use maulstick_optics::upsampling::lab_with_slopes;
 use maulstick_optics::{Paint, Studio};
 
 /// Most paints that are mixed to a picture.
-pub(crate) const MOST_PAINTS: usize = 16;
+pub const MOST_PAINTS: usize = 16;
 
 /// Shares of paints by volume, of the sum 1.
 pub(crate) type Shares = [f64; MOST_PAINTS];

@@ -22,7 +22,8 @@ use maulstick_optics::Paint;
 use maulstick_painting::{LaidTile, Painting};
 use maulstick_types::paint::TILE;
 
-use self::films::{Films, MOST_PAINTS, Shares};
+pub use self::films::MOST_PAINTS;
+use self::films::{Films, Shares};
 use self::search::{Search, Sought, shared};
 use crate::fit_to::{Raster, colours};
 use crate::import_error::ImportError;

@@ -7,6 +7,7 @@ use exr::compression::Compression;
 use exr::image::{AnyChannels, FlatSamples, Layer};
 use exr::prelude::{ReadChannels as _, ReadLayers as _, read};
 use maulstick_canvas::quantum::QUANTUM_M;
+use maulstick_exchange::Image;
 use maulstick_optics::colour::RgbSpace;
 use maulstick_optics::gamut::{Gamut, GamutMapping};
 use maulstick_optics::icc::Profile;
@@ -130,4 +131,30 @@ fn colour_and_height_are_the_paintings() {
     let expected = unlit_picture(&mut painting, CANVAS).rgb;
     assert!(flat(["R", "G", "B"]) == expected);
     assert!(flat(["R", "B", "G"]) != expected, "a fault would pass");
+}
+
+#[test]
+fn the_picture_is_read_back_as_it_was_written() {
+    let mut painting = painted();
+    let bytes = file("OpenEXR", &mut painting);
+    let image = Image::read(&bytes).expect("a picture");
+    assert_eq!(image.unused_mark(), None);
+    let [width, height] = CELLS.map(|cells| cells as usize);
+    assert_eq!(image.size(), [width, height]);
+    let written = channels(&layer(bytes));
+    let mut row = Vec::new();
+    let mut off = [0.0f32; 2];
+    for y in 0..height {
+        image.colours(y, &mut row);
+        for (x, colour) in row.iter().enumerate() {
+            let cell = y * width + x;
+            let of = |names: [&str; 3]| names.map(|name| written[name][cell].clamp(0.0, 1.0));
+            for (off, names) in off.iter_mut().zip([["R", "G", "B"], ["B", "G", "R"]]) {
+                let pairs = colour.iter().zip(of(names));
+                *off = pairs.fold(*off, |off, (a, b)| off.max((a - b).abs()));
+            }
+        }
+    }
+    assert_eq!(off[0], 0.0);
+    assert!(off[1] > 0.1, "a fault would pass");
 }

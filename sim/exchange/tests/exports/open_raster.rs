@@ -2,6 +2,8 @@
 
 use std::io::{Cursor, Read as _};
 
+use maulstick_exchange::Image;
+use maulstick_exchange::fit_to::colours;
 use maulstick_painting::Painting;
 use maulstick_painting::picture::unlit_picture;
 use maulstick_types::edits::{Dry, LayerRef, Opacity};
@@ -144,4 +146,23 @@ fn lower_layers_are_the_painting_before_the_others_were_laid() {
         let next = seen.get(upper + 1);
         assert!(next.is_none_or(|next| next != before), "a fault would pass");
     }
+}
+
+#[test]
+fn the_whole_picture_is_read_back_as_it_was_written() {
+    let mut painting = painted();
+    let flat = unlit_picture(&mut painting, CANVAS).rgb;
+    let bare = unlit_picture(&mut bare(CELLS), CANVAS).rgb;
+    let image = Image::read(&file("OpenRaster", &mut painting)).expect("a picture");
+    let size = CELLS.map(|cells| cells as usize);
+    assert_eq!(image.size(), size);
+    let raster = colours(&image, size).expect("fitted");
+    let rows = raster.rgb.rchunks_exact(size[0]);
+    let read: Vec<u8> = rows.flatten().flatten().copied().collect();
+    let off = |other: &[u8]| {
+        let pairs = read.iter().zip(other);
+        pairs.map(|(a, b)| a.abs_diff(*b)).max()
+    };
+    assert!(off(&flat) <= Some(1), "{:?}", off(&flat));
+    assert!(off(&bare) > Some(40), "a fault would pass");
 }

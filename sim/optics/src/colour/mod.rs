@@ -4,11 +4,13 @@
 //! has a negative channel there, and comes out of the matrix to a wider space without one.
 
 mod adapt;
+mod encoding;
 mod lab;
 mod matrix;
 mod rgb;
 
 pub use adapt::{D50, adaptation, bradford};
+pub use encoding::{Chromaticities, Transfer};
 pub use lab::{delta_e_2000, delta_e_2000_near, lab};
 pub use matrix::{Matrix, apply, inverse, product, solve3};
 pub use rgb::{

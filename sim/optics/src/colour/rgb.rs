@@ -6,7 +6,7 @@ use super::adapt::{D50, adaptation, bradford};
 use super::matrix::{Matrix, apply, inverse, product};
 
 /// Chromaticity of daylight of 6504 K, the white of both spaces.
-const D65: [f64; 2] = [0.3127, 0.3290];
+pub(super) const D65: [f64; 2] = [0.3127, 0.3290];
 
 /// A colour space with white D65 and the transfer function of sRGB.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,13 +18,13 @@ pub enum RgbSpace {
     DisplayP3,
 }
 
-fn xyz_of_chromaticity([x, y]: [f64; 2]) -> [f64; 3] {
+pub(super) fn xyz_of_chromaticity([x, y]: [f64; 2]) -> [f64; 3] {
     [x / y, 1.0, (1.0 - x - y) / y]
 }
 
 impl RgbSpace {
     /// Chromaticities of red, green and blue.
-    const fn primaries(self) -> [[f64; 2]; 3] {
+    pub(super) const fn primaries(self) -> [[f64; 2]; 3] {
         match self {
             Self::Srgb => [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]],
             Self::DisplayP3 => [[0.680, 0.320], [0.265, 0.690], [0.150, 0.060]],

@@ -147,3 +147,26 @@ fn json_has_the_same() {
     assert_eq!(value["inverse_service"]["listens"], json!(false));
     assert_eq!(value["rig"], json!([]));
 }
+
+#[test]
+fn what_the_rig_has_in_use_comes_first_and_is_not_called_nothing() {
+    let mut found = findings(vec![], vec![]);
+    let pen = Used {
+        section: DeviceSection::new("pen", "window", "main"),
+        is_in_rig: false,
+        is_own: false,
+        is_there: true,
+        trouble: String::new(),
+    };
+    found.rig = Some(vec![pen.clone()]);
+    let text = in_words(&found);
+    assert!(text.starts_with("in the rig  driver"), "{text}");
+    let first = text.split_once("\n\n").map(|(_, below)| below);
+    assert!(first.is_some_and(|below| below.starts_with("Nothing else is attached")));
+    // One that has not shown itself paints nothing.
+    found.rig = Some(vec![Used {
+        is_there: false,
+        ..pen
+    }]);
+    assert!(in_words(&found).starts_with("Nothing attached"));
+}

@@ -15,18 +15,19 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use maulstick_rig::UserError;
-use maulstick_rig::files::{Kind, write_whole};
+use maulstick_rig::files::{Kind, ending, write_whole};
 
 use self::processes::Graph;
 use super::listener::Listener;
 use super::measure::duration;
 use crate::commands::client::Target;
 use crate::commands::{print_json, print_text};
+use crate::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick graph`.
 #[derive(Args, Clone, Debug)]
 pub struct GraphOptions {
-    /// Form of the picture [default: svg for a FILE that ends so, else mermaid]
+    /// Form of the picture [default: as the FILE ends, .svg or .mmd; mermaid without one]
     #[arg(long, value_enum)]
     format: Option<Form>,
     /// File to write; otherwise it is printed
@@ -51,12 +52,45 @@ enum Form {
     Svg,
 }
 
+impl GraphOptions {
+    /// The form that is asked for.
+    ///
+    /// # Errors
+    /// A [`UserError`] for a file whose name does not tell, or is of another kind.
+    fn form(&self) -> Result<Form, UserError> {
+        let Some(path) = &self.output else {
+            return Ok(self.format.unwrap_or(Form::Mermaid));
+        };
+        let told = match ending(path).as_str() {
+            "svg" => Some(Form::Svg),
+            "mmd" | "mermaid" | "md" => Some(Form::Mermaid),
+            _ => None,
+        };
+        let outputs = [UsedFile::new("the graph", path).of(Kind::Graph)];
+        check_outputs(&outputs, &[])?;
+        let wrong = |what: &str| {
+            UserError::usage(what)
+                .at(path.display().to_string())
+                .help("end it in .svg or .mmd, or give --format")
+        };
+        match (self.format, told) {
+            (None, Some(told)) => Ok(told),
+            (None, None) => Err(wrong("the name does not say which form to draw")),
+            (Some(asked), Some(told)) if asked != told => {
+                Err(wrong("the name says another form than --format"))
+            }
+            (Some(asked), _) => Ok(asked),
+        }
+    }
+}
+
 /// Draws the running rig.
 ///
 /// # Errors
 /// A [`UserError`] for a rig that does not run, a time that is out of range, or a file that cannot be written.
 pub fn run(options: &GraphOptions) -> Result<i32, UserError> {
     let time = duration(options.seconds)?;
+    let form = options.form()?;
     let mut listener = Listener::open(&options.target, "**")?;
     let traffic = listener.traffic(time);
     let mut rates = BTreeMap::new();
@@ -69,13 +103,6 @@ pub fn run(options: &GraphOptions) -> Result<i32, UserError> {
         print_json(&graph.json())?;
         return Ok(0);
     }
-    let is_svg = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "svg");
-    let form = options
-        .format
-        .unwrap_or(match options.output.as_ref().is_some_and(is_svg) {
-            true => Form::Svg,
-            false => Form::Mermaid,
-        });
     let text = match form {
         Form::Mermaid => mermaid::text(&graph),
         Form::Svg => svg::text(&graph),
@@ -86,4 +113,36 @@ pub fn run(options: &GraphOptions) -> Result<i32, UserError> {
             .map_err(|error| UserError::writing(path, &error))?,
     }
     Ok(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn form(name: &str, format: Option<Form>) -> Result<Form, String> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let options = GraphOptions {
+            format,
+            output: Some(folder.path().join(name)),
+            seconds: 1.0,
+            json: false,
+            target: Target::named("studio"),
+        };
+        options.form().map_err(|fault| fault.to_string())
+    }
+
+    #[test]
+    fn the_name_says_the_form_in_small_letters_or_capitals() {
+        for name in ["g.svg", "G.SVG"] {
+            assert_eq!(form(name, None), Ok(Form::Svg));
+        }
+        for name in ["g.mmd", "G.MD"] {
+            assert_eq!(form(name, None), Ok(Form::Mermaid));
+        }
+        assert_eq!(form("graph", Some(Form::Svg)), Ok(Form::Svg));
+        for name in ["graph", "g.dot", "g.png"] {
+            assert!(form(name, None).expect_err(name).contains(".svg"));
+        }
+        assert!(form("g.mmd", Some(Form::Svg)).is_err());
+    }
 }

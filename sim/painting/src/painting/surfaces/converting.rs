@@ -12,6 +12,7 @@ use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_convert::{Converted, Converter, Distance, TileGround};
 use maulstick_num::fork_join;
 use maulstick_types::edits::Convert;
+use maulstick_types::paint::TILE;
 use maulstick_types::scene::WellKind;
 
 use super::part::Changed;
@@ -49,7 +50,8 @@ impl Apply for Convert {
         to.name.clone_into(&mut materials[on].model);
         painting.set_materials(&materials);
         painting.end_own_step();
-        Ok(Applied::Converted(distance))
+        let cell_m = painting.surfaces[on].cell_m;
+        Ok(Applied::Converted { distance, cell_m })
     }
 }
 
@@ -118,7 +120,8 @@ impl Painting {
             let mut shares: Vec<&mut [Job]> = jobs.chunks_mut(each).collect();
             fork_join::each(&mut shares, |share| share.iter_mut().for_each(work));
             for job in jobs.drain(..) {
-                let seen = job.converted.distance;
+                let first = [job.id.x, job.id.y].map(|tile| tile as usize * TILE);
+                let seen = job.converted.distance.moved(first);
                 let tile = assembled(&job.tile, job.converted, &self.surfaces.pager);
                 let tile = Arc::new(tile);
                 if is_even && job.stays.is_empty() {
