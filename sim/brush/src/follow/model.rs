@@ -10,11 +10,12 @@ use maulstick_types::stylus::{StylusPose, StylusSample};
 use crate::desk::{Desk, Obstacle, Plane, aim, ferrule};
 use crate::file::BrushFile;
 use crate::follow::stroke_count::StrokeCount;
-use crate::handle_path::Sampled;
+use crate::handle_path::{HandlePath, Sampled};
 use crate::head_solver::{HeadSolver, SolvedHead, settings_of};
 use crate::lead::Lead;
 use crate::mark::{Beside, Mark, point_of};
 use crate::solver::Settings;
+use crate::speed_limit::SpeedLimit;
 use crate::spine_layout::SpineLayout;
 
 /// Longest pause between two samples in contact that is crossed along their path, ns; a longer one begins a stroke.
@@ -36,6 +37,9 @@ pub struct BrushModel {
     desk: Option<Desk>,
     follows: Option<Origin>,
     tracked: Option<TrackedBrush>,
+    speed: SpeedLimit,
+    /// Samples at which it began anew because the handle was too fast.
+    too_fast: u64,
     strokes: StrokeCount,
     /// Factor on the stiffness of the file.
     tuned: f64,
@@ -88,6 +92,8 @@ impl BrushModel {
             desk: None,
             follows: None,
             tracked: None,
+            speed: SpeedLimit::default(),
+            too_fast: 0,
             strokes: StrokeCount::default(),
             tuned: 1.0,
             wetness: 0.0,
@@ -155,14 +161,26 @@ impl BrushModel {
         self.desk.as_ref()
     }
 
+    /// Samples so far at which the handle in contact was faster than [`FASTEST_M_S`](crate::speed_limit::FASTEST_M_S).
+    #[must_use]
+    pub fn too_fast(&self) -> u64 {
+        self.too_fast
+    }
+
+    /// Begins anew at the next sample: those between it and the newest one are not known.
+    pub fn begin_anew(&mut self) {
+        self.tracked = None;
+    }
+
     /// Follows one sample of the device `origin`: empty while there is no scene, else the solves on the path to it, the
     /// last at the sample itself.
     ///
     /// A touching brush is solved each time it has moved by about a step, counted on across samples, so that its path
     /// does not depend on how often it is sampled; between two of these a sample gives a preview. A pen lands and lifts
     /// at its sample. A pause of up to [`BRIDGED_NS`] in contact is crossed like any path between two samples. A longer
-    /// one, another device, time that does not advance and a zoom restart the solver at the new pose: the solve says
-    /// so, and nothing is painted from the one before to it. After a pause alone the head stays bent as it was.
+    /// one, another device, time that does not advance, a zoom and a handle that is too fast restart the solver at the
+    /// new pose: the solve says so, and nothing is painted from the one before to it. After a pause alone the head stays
+    /// bent as it was.
     pub fn follow(&mut self, origin: Origin, event_ns: u64, sample: &StylusSample) -> Vec<Solve> {
         if self.follows != Some(origin) {
             self.follows = Some(origin);
@@ -193,17 +211,23 @@ impl BrushModel {
         });
         let stays = |tracked: &TrackedBrush| tracked.head.touches() && !sample.in_air();
         let paused = |tracked: &TrackedBrush| event_ns - tracked.newest.event_ns > BRIDGED_NS;
-        let (mut tracked, solves) = match before {
-            Some(mut tracked) if stays(&tracked) && !paused(&tracked) => {
-                let solves = self.go(&mut tracked, here, &plane);
+        let path = before
+            .as_ref()
+            .filter(|tracked| stays(tracked) && !paused(tracked))
+            .map(|from| HandlePath::new(from.before.as_ref(), &from.newest, &here, length));
+        let way_m = path.as_ref().map_or(0.0, HandlePath::length_m);
+        let before = self.slow_enough(before, way_m, event_ns);
+        let (mut tracked, solves) = match (before, path) {
+            (Some(mut tracked), Some(path)) => {
+                let solves = self.go(&mut tracked, &path, here, &plane);
                 tracked.before = Some(tracked.newest);
                 (tracked, solves)
             }
-            Some(mut tracked) if stays(&tracked) => {
+            (Some(mut tracked), None) if stays(&tracked) => {
                 let solve = self.resume(&mut tracked, here, &plane);
                 (tracked, vec![solve])
             }
-            Some(mut tracked) if !paused(&tracked) => {
+            (Some(mut tracked), None) if !paused(&tracked) => {
                 (tracked.before, tracked.left_over_m) = (None, 0.0);
                 if !tracked.is_pressed {
                     tracked.stroke = 0;
@@ -230,6 +254,19 @@ impl BrushModel {
         tracked.is_pressed = is_pen && !sample.in_air();
         self.tracked = Some(tracked);
         solves
+    }
+
+    /// The brush that goes `way_m` to a sample at `event_ns`; none where it goes too fast, which is counted.
+    fn slow_enough(
+        &mut self,
+        tracked: Option<TrackedBrush>,
+        way_m: f64,
+        event_ns: u64,
+    ) -> Option<TrackedBrush> {
+        let tracked = tracked?;
+        let passes = self.speed.passes(way_m, event_ns - tracked.newest.event_ns);
+        self.too_fast += u64::from(!passes);
+        passes.then_some(tracked)
     }
 
     /// Begins another stroke with a head that is bent as it was before a pause in contact: one that

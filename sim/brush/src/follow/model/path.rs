@@ -23,20 +23,16 @@ const MOST_OF_A_LEAP: f64 = 1024.0;
 const SPLITS: u32 = 2;
 
 impl BrushModel {
-    /// Solves a touching brush at each step of its path to a sample, and gives a preview of it there.
+    /// Solves a touching brush at each step of its path to a sample, and gives a preview of it there. The path is finite and
+    /// as slow as [`SpeedLimit`](crate::speed_limit::SpeedLimit) says.
     pub(super) fn go(
         &mut self,
         tracked: &mut TrackedBrush,
+        path: &HandlePath,
         here: Sampled,
         plane: &Plane,
     ) -> Vec<Solve> {
         let start_ns = tracked.newest.event_ns;
-        let path = HandlePath::new(
-            tracked.before.as_ref(),
-            &tracked.newest,
-            &here,
-            self.file.length_m(),
-        );
         let motion_m = path.length_m();
         let pause = (here.event_ns - start_ns) as f64 / MOST_SOLVES_NS;
         let many_m = motion_m / (MOST_SOLVES * pause.max(1.0));
@@ -48,7 +44,7 @@ impl BrushModel {
         while gone_m <= whole_m {
             let s = path.after(gone_m - tracked.left_over_m);
             let segment = PathSegment {
-                path: &path,
+                path,
                 from: at,
                 to: s,
                 start_ns,
