@@ -15,6 +15,7 @@
 //! | [`participants`] | the programs of a rig, and what each sends, receives and answers |
 //! | [`clock`] | the rig's clock |
 //! | [`rig`] | the rig's folder, and the file by which a foreign program finds it |
+//! | [`sockets`] | the sockets in it, put back where they were removed |
 
 mod announce;
 pub mod bus;
@@ -28,6 +29,7 @@ mod pool;
 mod recent;
 pub mod rig;
 pub mod rivals;
+pub mod sockets;
 pub mod typed;
 mod zenoh_bus;
 
