@@ -121,7 +121,7 @@ impl RenderOptions {
 fn tell_haste(too_fast: u64) {
     if too_fast > 0 {
         eprintln!(
-            "{too_fast} samples are faster than {FASTEST_M_S} m/s: the brush began anew at each, and nothing is painted on \
+            "samples faster than {FASTEST_M_S} m/s: {too_fast}; the brush began anew at each, and nothing is painted on \
              the way to it; `maulstick motion retime` makes a take slower"
         );
     }
