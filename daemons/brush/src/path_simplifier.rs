@@ -1,7 +1,11 @@
 //! Path of a live brush that may not send: samples that are within half a cell of the chord between their neighbours
-//! are joined; in the air the newest one is enough.
+//! are joined; in the air the newest one is enough, and among those that are too fast too, for nothing is painted between
+//! them. What a hand could not have drawn in a minute is dropped.
+
+use std::collections::VecDeque;
 
 use glam::DVec3;
+use maulstick_brush::speed_limit::SpeedLimit;
 use maulstick_num::geometry::Rigid;
 use maulstick_types::Origin;
 use maulstick_types::stylus::{StylusPose, StylusSample};
@@ -30,14 +34,48 @@ pub enum Place {
     Surface,
 }
 
-/// Samples that wait for credit, in order.
+/// How the brush comes to a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Start {
+    /// From the sample before.
+    GoesOn,
+    /// It begins anew there: its hand was too fast, or time did not advance.
+    Anew,
+    /// It begins anew there, for samples before were dropped.
+    AfterLoss,
+}
+
+/// Samples that wait for credit, in order. Their number and their way have a bound, whatever comes.
 #[derive(Clone, Debug)]
 pub struct PathSimplifier {
     head_length_m: f64,
-    kept: Vec<Waiting>,
+    kept: VecDeque<Kept>,
     /// Joined since the sample before the last one kept.
     joined: Vec<Points>,
+    /// The newest sample that came.
+    newest: Option<(Origin, u64, Points, Place)>,
+    speed: SpeedLimit,
+    /// Sum of the ways of those kept, m.
+    way_m: f64,
+    /// True while what comes is dropped.
+    drops: bool,
+    superseded: u64,
+    dropped: u64,
 }
+
+/// A sample that is kept.
+#[derive(Clone, Debug)]
+struct Kept {
+    waiting: Waiting,
+    start: Start,
+    /// Way from the sample before, m.
+    way_m: f64,
+}
+
+/// Samples that wait at most: of a path they are a few for each centimetre.
+const MOST_KEPT: usize = 8192;
+/// Longest way that waits, m: that of a minute of painting.
+const LONGEST_M: f64 = 20.0;
 
 /// Points of the brush whose paths are kept: of a pen its tip, of a 6-DOF device the ends of the
 /// head, for a brush that turns on the spot moves its tip alone.
@@ -45,6 +83,9 @@ type Points = [[f64; 3]; 2];
 
 /// Longest time between two samples that others are joined between, ns.
 const LONGEST_NS: u64 = 50_000_000;
+
+/// Samples that are joined between two at most: those of a device of 8 kHz.
+const MOST_JOINED: usize = 400;
 
 /// Half a cell, m.
 const TOLERANCE_M: f64 = 1.25e-4;
@@ -67,6 +108,10 @@ fn pressure(sample: &StylusSample) -> f64 {
         StylusPose::Ferrule { .. } => 1.0,
         StylusPose::Contact { pressure, .. } => *pressure,
     }
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (DVec3::from_array(a) - DVec3::from_array(b)).length()
 }
 
 /// Squared distance of `p` from the chord `a`-`b`.
@@ -95,55 +140,159 @@ impl PathSimplifier {
     pub fn new(head_length_m: f64) -> Self {
         Self {
             head_length_m,
-            kept: Vec::new(),
+            kept: VecDeque::new(),
             joined: Vec::new(),
+            newest: None,
+            speed: SpeedLimit::default(),
+            way_m: 0.0,
+            drops: false,
+            superseded: 0,
+            dropped: 0,
         }
     }
 
-    /// Adds the newest sample.
-    pub fn push(&mut self, waiting: Waiting) {
-        let count = self.kept.len();
-        let same = self
-            .kept
-            .last()
-            .is_some_and(|last| last.origin == waiting.origin);
-        if same && self.kept[count - 1].place == Place::Air && waiting.place == Place::Air {
-            self.kept[count - 1] = waiting;
+    /// Goes on for a brush with another head, and forgets all that waits.
+    pub fn take_up(&mut self, head_length_m: f64) {
+        self.head_length_m = head_length_m;
+        self.clear();
+    }
+
+    /// Adds the newest sample; false where there is no room for it. A sample in the air has room always.
+    pub fn push(&mut self, waiting: Waiting) -> bool {
+        let (start, way_m) = self.step(&waiting);
+        let is_full = self.kept.len() >= MOST_KEPT || self.way_m >= LONGEST_M;
+        if is_full && waiting.place == Place::Surface {
+            (self.drops, self.dropped) = (true, self.dropped + 1);
+            return false;
+        }
+        let start = match std::mem::take(&mut self.drops) {
+            true => Start::AfterLoss,
+            false => start,
+        };
+        let mut added = Kept {
+            waiting,
+            start,
+            way_m,
+        };
+        if self.is_in_the_air(&added) {
+            self.replace(added);
             self.joined.clear();
-            return;
+        } else if self.begins_anew_again(&added) {
+            (added.start, self.superseded) = (Start::AfterLoss, self.superseded + 1);
+            self.replace(added);
+            self.joined.clear();
+        } else if let Some(middle) = self.joins(&added) {
+            self.joined.push(middle);
+            self.replace(added);
+        } else {
+            self.joined.clear();
+            self.way_m += added.way_m;
+            self.kept.push_back(added);
         }
-        if same && count >= 2 {
-            let (a, m) = (&self.kept[count - 2], &self.kept[count - 1]);
-            let touching = [a, m, &waiting].iter().all(|w| w.place == Place::Surface);
-            let [start, middle, end] =
-                [a, m, &waiting].map(|w| points(&w.sample, self.head_length_m));
-            // Time that runs backward, or leaps, restarts the brush: such a sample stays.
-            let span_ns = waiting.event_ns.checked_sub(a.event_ns);
-            let at_ns = m.event_ns.checked_sub(a.event_ns);
-            if let (Some(span_ns @ 1..LONGEST_NS), Some(at_ns)) = (span_ns, at_ns)
-                && at_ns <= span_ns
-                && touching
-                && on_the_way(&middle, &start, &end)
-                && self.joined.iter().all(|p| on_the_way(p, &start, &end))
-            {
-                let share = at_ns as f64 / span_ns as f64;
-                let expected =
-                    pressure(&a.sample) * (1.0 - share) + pressure(&waiting.sample) * share;
-                if (pressure(&m.sample) - expected).abs() <= TOLERANCE_PRESSURE {
-                    self.joined.push(middle);
-                    self.kept[count - 1] = waiting;
-                    return;
-                }
-            }
-        }
-        self.joined.clear();
-        self.kept.push(waiting);
+        true
     }
 
-    /// Takes all that waits.
-    pub fn take(&mut self) -> Vec<Waiting> {
+    /// How the brush comes to a sample, and its way on the surface from the one before, m.
+    fn step(&mut self, waiting: &Waiting) -> (Start, f64) {
+        let here = points(&waiting.sample, self.head_length_m);
+        let this = (waiting.origin, waiting.event_ns, here, waiting.place);
+        let before = self.newest.replace(this);
+        let Some((_, before_ns, there, place)) =
+            before.filter(|(origin, ..)| *origin == waiting.origin)
+        else {
+            return (Start::GoesOn, 0.0);
+        };
+        let touches = place == Place::Surface && waiting.place == Place::Surface;
+        let way_m = match touches {
+            true => (0..2)
+                .map(|end| distance(here[end], there[end]))
+                .fold(0.0, f64::max),
+            false => 0.0,
+        };
+        let advances = waiting.event_ns > before_ns;
+        let time_ns = waiting.event_ns.saturating_sub(before_ns);
+        match advances && self.speed.passes(way_m, time_ns) || !touches {
+            true => (Start::GoesOn, way_m),
+            false => (Start::Anew, 0.0),
+        }
+    }
+
+    /// The last sample and where each of the two is, if it is of the same device.
+    fn last_before(&self, added: &Kept) -> Option<(&Kept, [Place; 2])> {
+        let last = self.kept.back()?;
+        let same = last.waiting.origin == added.waiting.origin;
+        same.then_some((last, [last.waiting.place, added.waiting.place]))
+    }
+
+    /// True if a sample and the one before it are in the air.
+    fn is_in_the_air(&self, added: &Kept) -> bool {
+        let last = self.last_before(added);
+        last.is_some_and(|(_, places)| places == [Place::Air; 2])
+    }
+
+    /// True if the brush begins anew at a sample and at the one before it, which so paints nothing.
+    fn begins_anew_again(&self, added: &Kept) -> bool {
+        self.last_before(added).is_some_and(|(last, places)| {
+            let begin_anew = last.start > Start::GoesOn && added.start > Start::GoesOn;
+            begin_anew && places == [Place::Surface; 2]
+        })
+    }
+
+    /// Puts a sample in the place of the last one.
+    fn replace(&mut self, added: Kept) {
+        if let Some(last) = self.kept.back_mut() {
+            self.way_m += added.way_m;
+            *last = Kept {
+                start: last.start.max(added.start),
+                way_m: last.way_m + added.way_m,
+                waiting: added.waiting,
+            };
+        }
+    }
+
+    /// Points of the last sample, if it is on the chord from the one before it to this one.
+    fn joins(&self, added: &Kept) -> Option<Points> {
+        let count = self.kept.len();
+        let before = self.kept.get(count.checked_sub(2)?)?;
+        let last = self.kept.back()?;
+        let goes_on = [last.start, added.start] == [Start::GoesOn; 2];
+        let (a, m, waiting) = (&before.waiting, &last.waiting, &added.waiting);
+        if !goes_on || m.origin != waiting.origin || self.joined.len() >= MOST_JOINED {
+            return None;
+        }
+        let touching = [a, m, waiting].iter().all(|w| w.place == Place::Surface);
+        let [start, middle, end] = [a, m, waiting].map(|w| points(&w.sample, self.head_length_m));
+        // Time that runs backward, or leaps, restarts the brush: such a sample stays.
+        let span_ns = waiting.event_ns.checked_sub(a.event_ns)?;
+        let at_ns = m.event_ns.checked_sub(a.event_ns)?;
+        let is_between = (1..LONGEST_NS).contains(&span_ns) && at_ns <= span_ns;
+        if !is_between
+            || !touching
+            || !on_the_way(&middle, &start, &end)
+            || !self.joined.iter().all(|p| on_the_way(p, &start, &end))
+        {
+            return None;
+        }
+        let share = at_ns as f64 / span_ns as f64;
+        let expected = pressure(&a.sample) * (1.0 - share) + pressure(&waiting.sample) * share;
+        ((pressure(&m.sample) - expected).abs() <= TOLERANCE_PRESSURE).then_some(middle)
+    }
+
+    /// Takes the oldest one.
+    pub fn pop(&mut self) -> Option<(Start, Waiting)> {
+        let oldest = self.kept.pop_front()?;
+        self.way_m = match self.kept.is_empty() {
+            true => 0.0,
+            false => self.way_m - oldest.way_m,
+        };
+        Some((oldest.start, oldest.waiting))
+    }
+
+    /// Forgets all that waits.
+    pub fn clear(&mut self) {
         self.joined.clear();
-        std::mem::take(&mut self.kept)
+        self.kept.clear();
+        (self.newest, self.way_m, self.drops) = (None, 0.0, false);
     }
 
     /// True if it is empty.
@@ -152,10 +301,28 @@ impl PathSimplifier {
         self.kept.is_empty()
     }
 
+    /// Samples that wait.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.kept.len()
+    }
+
+    /// Samples so far that were too fast, and in whose place the next one is solved, which was so too.
+    #[must_use]
+    pub fn superseded(&self) -> u64 {
+        self.superseded
+    }
+
+    /// Samples so far for which there was no room.
+    #[must_use]
+    pub fn dropped(&self) -> u64 {
+        self.dropped
+    }
+
     /// True if a sample of a device waits.
     #[must_use]
     pub fn holds(&self, device: Origin) -> bool {
-        self.kept.iter().any(|waiting| waiting.origin == device)
+        self.kept.iter().any(|kept| kept.waiting.origin == device)
     }
 }
 
@@ -164,6 +331,12 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+
+    impl PathSimplifier {
+        fn take(&mut self) -> Vec<Waiting> {
+            std::iter::from_fn(|| self.pop().map(|(_, waiting)| waiting)).collect()
+        }
+    }
 
     fn sample(seq: u64, x: f64, y: f64, pressure: f64) -> Waiting {
         let pose = StylusPose::Contact {
@@ -195,7 +368,7 @@ mod tests {
     #[test]
     fn a_straight_line_becomes_its_ends() {
         let mut backlog = PathSimplifier::new(0.025);
-        (0..40).for_each(|i| backlog.push(sample(i, 1e-4 * i as f64, 0.0, 0.5)));
+        (0..40).for_each(|i| assert!(backlog.push(sample(i, 1e-4 * i as f64, 0.0, 0.5))));
         let seqs: Vec<u64> = backlog.take().iter().map(|w| w.seq).collect();
         assert_eq!(seqs, vec![0, 39]);
     }
@@ -236,7 +409,7 @@ mod tests {
             kept.iter().any(|w| w.seq == 2),
             "the tip's path is cut short"
         );
-        (0..5).for_each(|seq| backlog.push(swung(seq, 0.1)));
+        (0..5).for_each(|seq| assert!(backlog.push(swung(seq, 0.1))));
         assert_eq!(backlog.take().len(), 2, "a brush that rests is joined");
     }
 
@@ -262,6 +435,50 @@ mod tests {
             });
         }
         assert_eq!(backlog.take().len(), 3);
+    }
+
+    #[test]
+    fn what_is_too_fast_leaves_its_newest_sample_and_the_rest_goes_on_from_there() {
+        let mut backlog = PathSimplifier::new(0.025);
+        // A metre each millisecond, there and back; then a hand of 1 m/s that turns off.
+        for seq in 0..50 {
+            assert!(backlog.push(sample(seq, (seq % 2) as f64, 0.0, 0.5)));
+        }
+        assert_eq!((backlog.len(), backlog.superseded()), (2, 48));
+        for seq in 50..53 {
+            let y = 1e-3 * (seq - 49) as f64;
+            assert!(backlog.push(sample(seq, 1.0, y, 0.5)));
+        }
+        let kept = std::iter::from_fn(|| backlog.pop()).map(|(start, w)| (start, w.seq));
+        let kept: Vec<(Start, u64)> = kept.collect();
+        let [goes_on, anew] = [Start::GoesOn, Start::AfterLoss];
+        assert_eq!(kept, [(goes_on, 0), (anew, 49), (goes_on, 52)]);
+    }
+
+    #[test]
+    fn a_flood_is_bounded_and_its_lift_is_kept() {
+        let mut backlog = PathSimplifier::new(0.025);
+        // 15 m/s, zigzag, for as long as it likes.
+        let (mut room, mut seq) = (0, 0);
+        while seq < 20_000 {
+            let x = 0.015 * (seq % 2) as f64;
+            room += usize::from(backlog.push(sample(seq, x, 1e-3 * (seq % 7) as f64, 0.5)));
+            seq += 1;
+        }
+        assert!(backlog.len() <= MOST_KEPT && backlog.way_m <= LONGEST_M + 0.32);
+        assert_eq!(backlog.dropped(), seq - room as u64);
+        assert!(backlog.dropped() > 0);
+        assert!(backlog.push(sample(seq, 0.0, 0.0, 0.0)), "the lift");
+        let mut last = None;
+        while let Some(popped) = backlog.pop() {
+            last = Some(popped);
+        }
+        assert_eq!(
+            last.map(|(start, w)| (start, w.seq)),
+            Some((Start::AfterLoss, seq))
+        );
+        assert!(backlog.push(sample(seq + 1, 0.0, 0.0, 0.5)), "room again");
+        assert_eq!(backlog.pop().map(|(start, _)| start), Some(Start::GoesOn));
     }
 
     proptest! {

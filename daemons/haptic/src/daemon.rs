@@ -14,6 +14,7 @@ use maulstick_rig::{NodeHandle, RigConfig, UserError};
 use maulstick_types::haptics::{
     ContactModel, FluidForce, ForceOrder, ForceReply, ForceRequest, GuideModel,
 };
+use maulstick_types::node::NodeWork;
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus};
 use maulstick_types::{Flags, encode};
 
@@ -40,7 +41,11 @@ const IDLE_PERIOD_NS: u64 = 50_000_000;
 pub fn run(member: &mut NodeHandle, settings: &HapticSettings) -> Result<(), UserError> {
     let mut daemon = Daemon::new(member, settings)?;
     member.ready()?;
-    member.run(|| daemon.turn())
+    member.run(|| {
+        let wait = daemon.turn()?;
+        member.work.set(daemon.work());
+        Ok(wait)
+    })
 }
 
 struct Daemon {
@@ -192,6 +197,16 @@ impl Daemon {
             self.status.send(now_ns, now_ns, &self.told)?;
         }
         Ok(Duration::from_millis(1))
+    }
+
+    /// What it has done since its start.
+    fn work(&self) -> NodeWork {
+        NodeWork {
+            produced: self.told.samples,
+            lost: self.told.dropped,
+            refused: self.told.foreign_models,
+            ..NodeWork::default()
+        }
     }
 
     fn dropped(&self) -> u64 {

@@ -13,6 +13,7 @@ use maulstick_num::geometry::canonical;
 use maulstick_rig::config::{BRUSH_NODE, CanvasSection, DeviceSection};
 use maulstick_rig::{NodeHandle, UserError};
 use maulstick_types::Origin;
+use maulstick_types::node::NodeWork;
 use maulstick_types::stylus::StylusStatus;
 use maulstick_types::wire::topics::Topics;
 
@@ -66,7 +67,11 @@ pub fn run(member: &mut NodeHandle, settings: &HidSettings) -> Result<(), UserEr
         Kind::of_section(&settings.device)?.ports(),
     )?;
     member.ready()?;
-    let result = member.run(|| daemon.turn());
+    let result = member.run(|| {
+        let wait = daemon.turn()?;
+        member.work.set(daemon.work());
+        Ok(wait)
+    });
     result.and(daemon.end())
 }
 
@@ -238,6 +243,16 @@ impl Daemon {
         self.stream = None;
         let ended = self.recorder.take().map_or(Ok(()), Recorder::end);
         lifted.and(ended)
+    }
+
+    /// What it has done since its start.
+    #[must_use]
+    pub fn work(&self) -> NodeWork {
+        NodeWork {
+            produced: self.told.samples,
+            lost: self.told.dropped,
+            ..NodeWork::default()
+        }
     }
 
     fn dropped(&self) -> u64 {

@@ -100,7 +100,9 @@ pub(super) fn run(options: &BrushOptions) -> Result<i32, UserError> {
                 Err(fault) => tracing::warn!("the rig's settings: {fault}"),
             }
         }
-        Ok(node.turn()?)
+        let wait = node.turn()?;
+        member.work.set(node.work());
+        Ok(wait)
     })?;
     member.leave();
     Ok(0)

@@ -60,9 +60,11 @@ pub(super) fn run(options: &PaintOptions) -> Result<i32, UserError> {
     let mut thread =
         Worker::start("frames", run).map_err(|error| UserError::failure(error.to_string()))?;
     let fallen = |error: WorkerPanicked| UserError::failure(error.to_string());
+    let work = member.work.clone();
     let mut turn = |node: &mut PaintNode| {
         thread.check().map_err(fallen)?;
         let wait = node.turn()?;
+        work.set(node.work());
         match (node.fault(), node.document_path()) {
             (Some(what), Some(path)) => Err(wrong(path, &DocumentError::Damaged(what.to_owned()))),
             _ => Ok(wait),

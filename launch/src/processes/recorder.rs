@@ -49,6 +49,7 @@ pub(super) fn run(options: &RecorderOptions) -> Result<i32, UserError> {
     let rig = settings.target.rig();
     let ring = Ring::dated(folder, rig, &jiff::Zoned::now(), settings.division)?;
     let mut listener = Listener::over(member, ALL)?;
+    listener.pulse = Some(listener.member.pulse()?);
     listener.member.ready()?;
     record_files(&settings, &mut listener, ring, |path| {
         File::create_new(path)

@@ -19,6 +19,7 @@ pub(super) fn run(options: &UiOptions) -> Result<i32, UserError> {
     let by_signal = member.stop.clone();
     let export = export(&member.config.view, VIEW)?;
     let library = library_from(member.config.paint.paints.as_deref())?;
+    member.pulse_beside()?;
     maulstick_ui::run(member, [MOUSE, PEN], &export, library)?;
     // Ended by a signal it has not been closed by the painter.
     Ok(i32::from(by_signal.by_signal()))

@@ -4,14 +4,16 @@ mod devices;
 mod folder;
 mod loads;
 mod orders;
-mod silence;
 mod starts;
 mod switch;
+mod turns;
+mod watchdog;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
+use maulstick_bus::sockets::SocketKeeper;
 use maulstick_bus::{Bus, Dial, RigClock, RigFolder, Subscription, Wake, ZenohBus};
 use maulstick_rig::node_handle::{CONFIG_FILE, HUB};
 use maulstick_rig::user_error::EXIT_FAILURE;
@@ -26,8 +28,9 @@ use crate::up::conductor::{Conductor, Performance};
 use crate::up::plan::{NodeSpec, Role};
 use folder::FolderWatch;
 use orders::Orders;
-use silence::Silence;
 use switch::Switch;
+use turns::Turns;
+use watchdog::Watchdog;
 
 /// Time in which all nodes end when asked; paint that is being written to a file has that of the switch.
 const GRACE: Duration = Duration::from_millis(1200);
@@ -59,8 +62,8 @@ pub struct Supervisor {
     orders: Orders,
     /// A switch to another painting in progress.
     switch: Option<Switch>,
-    /// The paint node says nothing.
-    silence: Option<Silence>,
+    turns: Turns,
+    watchdog: Watchdog,
     folder_watch: FolderWatch,
 }
 
@@ -106,6 +109,8 @@ impl Supervisor {
             .map_err(|error| UserError::writing(&path, &error))?;
         folder.announce(HUB, clock)?;
         let orders = Orders::new(&*bus, &topics, &wake)?;
+        let watchdog = Watchdog::new(&*bus, &topics)?;
+        let sockets = SocketKeeper::new(folder.path());
         let conductor = match performance {
             Some(performance) => Some(Conductor::new(&*bus, &topics, performance, &wake)?),
             None => None,
@@ -130,8 +135,9 @@ impl Supervisor {
             unloaded: true,
             orders,
             switch: None,
-            silence: None,
-            folder_watch: FolderWatch::default(),
+            turns: Turns::default(),
+            watchdog,
+            folder_watch: FolderWatch::new(sockets),
         };
         for place in 0..supervisor.nodes.len() {
             supervisor.start_node(place)?;
@@ -182,6 +188,7 @@ impl Supervisor {
 
     /// One look at everything; an exit code where the rig is to end.
     fn turn(&mut self) -> Result<Option<i32>, UserError> {
+        self.begin_turn();
         self.watch_tokens();
         if let Some(code) = self.watch_children()? {
             return Ok(Some(code));

@@ -16,6 +16,7 @@
 //! | [`clock`] | the rig's clock |
 //! | [`reason`](mod@reason) | what a library says, without paths of the machine that built it |
 //! | [`rig`] | the rig's folder, and the file by which a foreign program finds it |
+//! | [`sockets`] | the sockets in it, put back where they were removed |
 
 mod announce;
 pub mod bus;
@@ -30,6 +31,7 @@ pub mod reason;
 mod recent;
 pub mod rig;
 pub mod rivals;
+pub mod sockets;
 pub mod typed;
 mod zenoh_bus;
 

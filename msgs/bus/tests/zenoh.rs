@@ -6,6 +6,7 @@ use zenoh::Wait as _;
 use zenoh::qos::Priority;
 
 use maulstick_bus::bus::Answer;
+use maulstick_bus::sockets::{SocketKeeper, SocketNews};
 use maulstick_bus::{
     Bus, BusError, Dial, Payload, Qos, Queue, RigClock, RigFolder, Server, Wake, ZenohBus,
 };
@@ -97,6 +98,42 @@ fn nodes_that_know_only_the_hub_find_each_other() {
             "{who}"
         );
         assert!(arrival.arrived_ns.abs_diff(bus.now_ns()) < 1_000_000_000);
+    }
+}
+
+/// As where a temporary folder is cleaned, and then a node dies and is started again.
+#[test]
+fn who_starts_after_all_sockets_were_removed_finds_the_others() {
+    let rig = rig();
+    let mut keeper = SocketKeeper::new(rig.folder.path());
+    let nodes = ["brush", "paint"];
+    let brush = rig.node("brush");
+    keeper.look().expect("looked");
+    for name in ["hub", "brush"] {
+        let socket = rig.folder.path().join(format!("{name}.sock"));
+        std::fs::remove_file(socket).expect("removed");
+    }
+    let news = keeper.look().expect("looked");
+    assert_eq!(news.restored, ["brush", "hub"]);
+    let paint = rig.node("paint");
+    let wake = Wake::new();
+    for (from, to) in [(&brush, &paint), (&paint, &brush)] {
+        let publisher = from.publisher("t/a", Qos::RealTime).expect("declared");
+        let queue = Queue::Ring(8);
+        let heard = to.subscribe("t/a", Qos::RealTime, queue, &wake);
+        let heard = heard.expect("subscribed");
+        until(&wake, || {
+            publisher.put(vec![1]).expect("sent");
+            heard.try_recv()
+        });
+    }
+    // Those that leave take their sockets along.
+    brush.close();
+    paint.close();
+    assert_eq!(keeper.look().expect("looked"), SocketNews::default());
+    for name in nodes {
+        let socket = rig.folder.path().join(format!("{name}.sock"));
+        assert!(!socket.exists(), "{name}");
     }
 }
 

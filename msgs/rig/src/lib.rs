@@ -9,6 +9,7 @@
 //! | [`files`] | files: whole under their name, of one's own kind, open here |
 //! | [`log`] | log lines |
 //! | [`node_handle`] | joining a rig, living in it, leaving it |
+//! | [`pulse`] | the status of a node, by which the launcher sees that it goes on |
 //! | [`table_file`] | tables in files that a user names |
 //! | [`stop`] | the stop flag: a signal, or the launcher's end |
 
@@ -16,6 +17,7 @@ pub mod command_client;
 pub mod config;
 pub mod log;
 pub mod node_handle;
+pub mod pulse;
 pub mod size;
 pub mod stop;
 pub mod table_file;

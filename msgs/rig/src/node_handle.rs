@@ -7,10 +7,12 @@ use std::time::Duration;
 use maulstick_bus::bus::Token;
 use maulstick_bus::typed::random_epoch;
 use maulstick_bus::{Bus, Dial, Participant, RigClock, RigFolder, Wake, ZenohBus};
+use maulstick_types::node::NodeStatus;
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
 use crate::config::RigConfig;
+use crate::pulse::{Pulse, WorkCount};
 use crate::stop::Stop;
 use crate::user_error::UserError;
 
@@ -20,6 +22,9 @@ pub const HUB: &str = "hub";
 const SHARING: [&str; 2] = ["paint", "ui"];
 /// The settings in the rig's folder, as the nodes read them.
 pub const CONFIG_FILE: &str = "rig.toml";
+
+/// Longest time between two turns: the status of a node that rests is due then.
+const LONGEST_WAIT: Duration = Duration::from_nanos(NodeStatus::PERIOD_NS / 2);
 
 /// Place of a process in a rig.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -50,6 +55,8 @@ pub struct NodeHandle {
     pub wake: Wake,
     /// Stop flag.
     pub stop: Stop,
+    /// What it has done, for its status.
+    pub work: WorkCount,
     session: Arc<ZenohBus>,
     token: Option<Token>,
 }
@@ -89,6 +96,7 @@ impl NodeHandle {
             clock,
             wake,
             stop,
+            work: WorkCount::default(),
             session,
             token: None,
         })
@@ -113,6 +121,7 @@ impl NodeHandle {
     }
 
     /// Calls `turn` whenever there is something to do, or after the time that it returned, until the stop flag is set.
+    /// Each turn is a beat of the node's pulse.
     ///
     /// # Errors
     /// The error of `turn`.
@@ -120,10 +129,41 @@ impl NodeHandle {
         &self,
         mut turn: impl FnMut() -> Result<Duration, UserError>,
     ) -> Result<(), UserError> {
+        let mut pulse = self.pulse()?;
         while !self.stop.requested() {
             let wait = turn()?;
-            self.wake.wait(wait);
+            pulse.turn(self.bus.now_ns())?;
+            self.wake.wait(wait.min(LONGEST_WAIT));
         }
+        Ok(())
+    }
+
+    /// The pulse of this node, for a loop of its own.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the bus is closed.
+    pub fn pulse(&self) -> Result<Pulse, UserError> {
+        let work = self.work.clone();
+        Ok(Pulse::new(&*self.bus, &self.topics, &self.node, work)?)
+    }
+
+    /// Has a thread send the status of a node whose loop may rest, as that of a window does while nobody sees it: it tells
+    /// that the process goes on, until it leaves the rig.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the bus is closed, or there is no thread.
+    pub fn pulse_beside(&self) -> Result<(), UserError> {
+        let (mut pulse, bus) = (self.pulse()?, Arc::clone(&self.bus));
+        let stop = self.stop.clone();
+        let beat = move || {
+            while !stop.requested() && pulse.turn(bus.now_ns()).is_ok() {
+                std::thread::sleep(Duration::from_nanos(NodeStatus::PERIOD_NS));
+            }
+        };
+        std::thread::Builder::new()
+            .name("pulse".into())
+            .spawn(beat)
+            .map_err(|error| UserError::failure(error.to_string()))?;
         Ok(())
     }
 

@@ -7,7 +7,7 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`wire`] | header, codec, field tables and their hash, the key expressions of a rig |
-//! | [`stylus`], [`control`], [`haptics`], [`brush`], [`scene`], [`paint`], [`command`], [`window`] | the messages |
+//! | [`stylus`], [`control`], [`haptics`], [`brush`], [`scene`], [`paint`], [`command`], [`window`], [`node`] | the messages |
 //! | [`edits`] | edits of a painting, one in one file |
 //! | [`values`] | numbers and names that are in range |
 //! | [`pose`], [`region`], [`mixture`] | where something is, a part of a surface, a mixture of paints |
@@ -18,6 +18,7 @@ pub mod control;
 pub mod edits;
 pub mod haptics;
 pub mod mixture;
+pub mod node;
 pub mod paint;
 pub mod pose;
 pub mod region;

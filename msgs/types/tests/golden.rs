@@ -22,8 +22,8 @@ use maulstick_types::scene::{
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, TakeEnd, TakeStatus};
 use maulstick_types::{CATALOGUE, Flags, Message, Mixture, Origin, decode, encode};
 use parts::{
-    control, files, force_reply, handling, paint_status, pose, presented, status, takes, thumbnail,
-    wide_light,
+    control, files, force_reply, handling, node_status, paint_status, pose, presented, status,
+    takes, thumbnail, wide_light,
 };
 
 fn after() -> After {
@@ -398,6 +398,7 @@ fn all() -> String {
             to: 3,
         }),
         line(&presented()),
+        line(&node_status()),
     ]
     .concat()
 }

@@ -20,6 +20,7 @@
 //! | [`subdivide`] | Catmull-Clark subdivision |
 //! | [`desk`] | surfaces, and where a stylus holds the ferrule |
 //! | [`handle_path`] | the handle's path between samples |
+//! | [`speed_limit`] | the speed beyond which a brush begins anew |
 //! | [`head_solver`] | a solved head: its spines among obstacles and each other |
 //! | [`mark`], [`lead`] | the mark of a brush, and the lead that brings it under the point of a pen |
 //! | [`head_stiffness`] | its stiffness, as the hand feels it |
@@ -56,7 +57,7 @@ mod spines;
 mod surfaces;
 
 pub use file::{BrushError, BrushFile};
-pub use follow::{handle_path, lead, mark, model};
+pub use follow::{handle_path, lead, mark, model, speed_limit};
 pub use head::{Head, HeadPose, Hold};
 pub use model::BrushModel;
 pub use numeric::{blocks, qp, subdivide};

@@ -29,6 +29,8 @@ pub struct Offline {
     me: Origin,
     next: u64,
     samples: u64,
+    /// Samples that were too fast for the brushes that were put down.
+    too_fast_before: u64,
     ticker: Ticker,
 }
 
@@ -77,6 +79,7 @@ impl Offline {
             me,
             next: 0,
             samples: 0,
+            too_fast_before: 0,
             ticker: Ticker::default(),
         };
         offline.begin_take(loads)?;
@@ -93,6 +96,7 @@ impl Offline {
         file: BrushFile,
         depth_share: f64,
     ) -> Result<(), EditError> {
+        self.too_fast_before = self.too_fast();
         self.model = BrushModel::new(file.clone(), depth_share);
         self.sequencer.define_brush(brush, file);
         self.brush = brush.to_owned();
@@ -114,6 +118,12 @@ impl Offline {
         self.sequencer.begin_own_take(&self.brush, player, loads)?;
         self.follow_scene();
         Ok(())
+    }
+
+    /// Samples so far that were faster than a hand (`maulstick_brush::speed_limit`): the brush began anew at each.
+    #[must_use]
+    pub fn too_fast(&self) -> u64 {
+        self.too_fast_before + self.model.too_fast()
     }
 
     /// Name of the brush in hand.

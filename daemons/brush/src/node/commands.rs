@@ -10,7 +10,6 @@ use maulstick_types::{Flags, encode, name_hash};
 
 use super::BrushNode;
 use super::pace::Pace;
-use crate::path_simplifier::PathSimplifier;
 
 /// Announces the definition of a brush.
 pub(super) fn define(
@@ -114,7 +113,8 @@ impl BrushNode {
             return refused(what, "lift it, or let the take end, and ask again");
         }
         define(&mut self.def, now_ns, &self.settings.name, &file)?;
-        (self.backlog, self.pace) = (PathSimplifier::new(file.length_m()), Pace::default());
+        self.backlog.take_up(file.length_m());
+        self.pace = Pace::default();
         self.model.take_up(file);
         Ok(Outcome::done(""))
     }

@@ -2,6 +2,7 @@
 
 mod commands;
 mod contact_publisher;
+mod haste;
 mod pace;
 mod progress;
 mod settings;
@@ -34,9 +35,10 @@ use crate::arbiter::{Arbiter, Range, Stroke};
 use crate::contact_model::{NO_GRAIN, grain};
 use crate::fluid_force::{Held, drag};
 use crate::outbox::Outbox;
-use crate::path_simplifier::{PathSimplifier, Place, Waiting};
+use crate::path_simplifier::{PathSimplifier, Place, Start, Waiting};
 
 use contact_publisher::DragSent;
+use haste::Haste;
 use pace::Pace;
 use progress::Progress;
 pub use settings::{BrushDevices, BrushSettings};
@@ -45,6 +47,9 @@ use takes::Take;
 
 /// Live, states older than this are not added to: the brush merges, ns.
 const OLDEST_NS: u64 = 50_000_000;
+
+/// Solves of a turn at most, but for those of its last sample: the node hears what comes meanwhile.
+const SOLVES_A_TURN: usize = 256;
 
 /// The paint node's name.
 const PAINT: &str = "paint";
@@ -68,6 +73,8 @@ pub struct BrushNode {
     states: CreditSender<BrushState>,
     credit: Receiver<PaintConsumed>,
     scene: Receiver<Scene>,
+    /// The next scene, while samples from before it wait to be solved.
+    next_scene: Option<Received<Scene>>,
     /// When the scene that is followed was sent, ns.
     scene_ns: u64,
     infos: Receiver<StylusInfo>,
@@ -78,6 +85,10 @@ pub struct BrushNode {
     fluids: Recent<DragSent>,
     arbiter: Arbiter,
     backlog: PathSimplifier,
+    /// Solves left in this turn.
+    solves_left: usize,
+    /// Samples too fast, and dropped, that were told, and whether each was logged.
+    told_haste: Haste,
     pace: Pace,
     outbox: Outbox,
     progress: Progress,
@@ -137,6 +148,7 @@ impl BrushNode {
             )?,
             scene: Receiver::new(b, &topics.scene(), Qos::Cached, Queue::Ring(16), wake)?
                 .checking(Scene::fault),
+            next_scene: None,
             scene_ns: 0,
             infos: Receiver::new(
                 b,
@@ -152,6 +164,8 @@ impl BrushNode {
             fluids: Recent::default(),
             arbiter: Arbiter::default(),
             backlog: PathSimplifier::new(settings.file.length_m()),
+            solves_left: 0,
+            told_haste: Haste::default(),
             pace: Pace::default(),
             outbox: Outbox::default(),
             progress: Progress::default(),
@@ -201,12 +215,14 @@ impl BrushNode {
     pub fn turn(&mut self) -> Result<Duration, BusError> {
         let bus = Arc::clone(&self.bus);
         let now_ns = bus.now_ns();
+        self.solves_left = SOLVES_A_TURN;
         self.take_in(now_ns);
         self.serve_commands(now_ns)?;
         self.def.turn(now_ns)?;
         self.samples.poll(&*bus)?;
         self.follow_scene(now_ns)?;
-        while let Some(received) = self.next_sample(None) {
+        let before_ns = self.next_scene.as_ref().map(|next| next.header.event_ns);
+        while let Some(received) = self.next_sample(before_ns) {
             self.sample(received, now_ns)?;
         }
         self.flush(now_ns)?;
@@ -218,13 +234,16 @@ impl BrushNode {
         let backlog = &self.backlog;
         let waits = |device: Origin| backlog.holds(device);
         self.progress.tell(now_ns, &mut self.consumed, waits)?;
-        Ok(Duration::from_millis(20))
+        Ok(match self.solves_left {
+            0 => Duration::ZERO,
+            _ => Duration::from_millis(20),
+        })
     }
 
     /// Follows the desk. Samples belong to the desk as it was when they were taken: moving the canvas does not move
     /// samples that wait to be solved.
     fn follow_scene(&mut self, now_ns: u64) -> Result<(), BusError> {
-        while let Some(scene) = self.scene.try_recv() {
+        while let Some(scene) = self.next_scene.take().or_else(|| self.scene.try_recv()) {
             // Only a late scene is passed over: another painting counts its own anew.
             let sent_ns = scene.header.sent_ns.min(scene.arrived_ns);
             if sent_ns < self.scene_ns {
@@ -234,6 +253,11 @@ impl BrushNode {
                 self.sample(received, now_ns)?;
             }
             self.solve(now_ns);
+            if !self.backlog.is_empty() {
+                // In the turns to come.
+                self.next_scene = Some(scene);
+                return Ok(());
+            }
             self.scene_ns = sent_ns;
             self.model.set_scene(&scene.message);
             self.grain = grain(&scene.message);
@@ -364,13 +388,15 @@ impl BrushNode {
             let sample = received.message;
             let place = self.place(&sample);
             self.pace.note(now_ns, place);
-            self.backlog.push(Waiting {
+            if !self.backlog.push(Waiting {
                 origin,
                 seq,
                 event_ns,
                 sample,
                 place,
-            });
+            }) {
+                self.tell_haste();
+            }
             self.flush(now_ns)?;
         }
         self.feel(&device, origin, &held, now_ns)
@@ -412,25 +438,35 @@ impl BrushNode {
         self.send(now_ns)
     }
 
-    /// Solves what waits, as one state.
+    /// Solves what waits, as one state, as far as this turn allows.
     fn solve(&mut self, now_ns: u64) {
-        let waiting = self.backlog.take();
-        let Some(last) = waiting.last().cloned() else {
+        let (mut solves, mut newest) = (Vec::new(), None);
+        let mut devices = BTreeSet::new();
+        while self.solves_left > 0
+            && let Some((start, waiting)) = self.backlog.pop()
+        {
+            if start == Start::AfterLoss {
+                self.model.begin_anew();
+            }
+            let (origin, event_ns) = (waiting.origin, waiting.event_ns);
+            let more = self.model.follow(origin, event_ns, &waiting.sample);
+            self.solves_left = self.solves_left.saturating_sub(more.len().max(1));
+            devices.insert((origin.source, origin.epoch));
+            newest = Some((origin, waiting.seq));
+            solves.extend::<Vec<Solve>>(more);
+        }
+        let Some((origin, device_seq)) = newest else {
             return;
         };
-        let devices: BTreeSet<(u32, u32)> = waiting
-            .iter()
-            .map(|w| (w.origin.source, w.origin.epoch))
-            .collect();
-        let mut solves: Vec<Solve> = waiting
-            .iter()
-            .flat_map(|w| self.model.follow(w.origin, w.event_ns, &w.sample))
-            .collect();
         self.pace.flag(now_ns, &mut solves);
+        if self.backlog.is_empty() {
+            self.pace.caught_up();
+        }
+        self.tell_haste();
         let state = BrushState {
-            device: last.origin.source,
-            device_epoch: last.origin.epoch,
-            device_seq: last.seq,
+            device: origin.source,
+            device_epoch: origin.epoch,
+            device_seq,
             solves,
         };
         if !state.solves.is_empty() {

@@ -29,9 +29,14 @@ impl Pace {
         }
     }
 
-    /// Flags the solves of all that waited.
+    /// Nothing waits any more.
+    pub(super) fn caught_up(&mut self) {
+        self.since_ns = None;
+    }
+
+    /// Flags the solves of what waited.
     pub(super) fn flag(&mut self, now_ns: u64, solves: &mut [Solve]) {
-        let since_ns = self.since_ns.take().unwrap_or(now_ns);
+        let since_ns = self.since_ns.unwrap_or(now_ns);
         let late = match now_ns.saturating_sub(since_ns) {
             VERY_LATE_NS.. => solve_flags::FOUR_TIMES,
             LATE_NS.. => solve_flags::TWICE,
@@ -80,6 +85,7 @@ mod tests {
             pace.note(now_ns, Place::Surface);
             let mut solves: Vec<_> = strokes.iter().map(|stroke| solve(*stroke)).collect();
             pace.flag(now_ns, &mut solves);
+            pace.caught_up();
             solves.iter().map(|solve| solve.flags).collect()
         };
         const TWICE: u32 = solve_flags::TWICE;

@@ -43,7 +43,7 @@ impl BrushNode {
                 return Ok(false);
             }
             self.gone.remove(device);
-            self.backlog.take();
+            self.backlog.clear();
             self.pace = Pace::default();
             self.take = Some(take);
             first = Flags::FIRST;
@@ -55,6 +55,7 @@ impl BrushNode {
                 .state(origin, header.seq, header.event_ns, sample),
             Some(_) => None,
         };
+        self.tell_haste();
         if header.flags.has(Flags::LAST) {
             self.take = None;
             let state = state.unwrap_or(BrushState {

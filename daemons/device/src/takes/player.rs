@@ -12,6 +12,7 @@ use maulstick_bus::{CreditSender, Qos, Queue};
 use maulstick_rig::{NodeHandle, UserError, config};
 use maulstick_types::brush::BrushConsumed;
 use maulstick_types::command::{After, TakeCommand};
+use maulstick_types::node::NodeWork;
 use maulstick_types::stylus::{StylusInfo, StylusSample, TakeEnd, TakeStatus, axes};
 use maulstick_types::values::BrushName;
 use maulstick_types::{Flags, Mixture, Origin, name_hash};
@@ -95,6 +96,7 @@ pub fn run(member: &mut NodeHandle, settings: &PlayerSettings) -> Result<(), Use
     member.ready()?;
     member.run(|| {
         let wait = player.turn()?;
+        member.work.set(player.work());
         if player.ended() && !settings.stay {
             stop.request();
         }
@@ -171,6 +173,16 @@ impl<'a> Player<'a> {
 
     fn ended(&self) -> bool {
         self.sent == self.settings.take.samples.len() && self.samples.outstanding() == 0
+    }
+
+    /// What it has done.
+    fn work(&self) -> NodeWork {
+        NodeWork {
+            consumed: self.sent as u64 - self.samples.outstanding(),
+            produced: self.sent as u64,
+            held: self.samples.outstanding(),
+            ..NodeWork::default()
+        }
     }
 
     fn turn(&mut self) -> Result<Duration, UserError> {

@@ -3,6 +3,7 @@
 use maulstick_bus::BusError;
 use maulstick_document::Document;
 use maulstick_painting::Painting;
+use maulstick_types::node::NodeWork;
 use maulstick_types::paint::{DryingStatus, HistoryStep, PaintStatus};
 use maulstick_types::scene::CANVAS;
 
@@ -37,6 +38,36 @@ impl PaintNode {
                 tracing::warn!("{}: its brush file has not come, its states wait", next.key);
             }
         }
+    }
+
+    /// What this node has done since its start, and what waits.
+    #[must_use]
+    pub fn work(&self) -> NodeWork {
+        let (painting, topics) = (self.sequencer.painting(), &self.topics);
+        let is_known = |key: &str| {
+            let brush = topics.middle(key);
+            brush.is_some_and(|brush| painting.knows_brush(brush))
+        };
+        let heads = self.states.heads();
+        let (waiting, held): (Vec<_>, Vec<_>) = heads.partition(|next| is_known(&next.key));
+        let counts = self.states.counts();
+        NodeWork {
+            consumed: counts.received,
+            produced: self.sequencer.journal_next(),
+            waiting: waiting.len() as u64,
+            held: held.len() as u64,
+            refused: self.refused_in_all(),
+            lost: counts.lost,
+            too_fast: 0,
+        }
+    }
+
+    /// Messages that it did not obey.
+    fn refused_in_all(&self) -> u64 {
+        self.refused
+            + self.states.counts().refused
+            + self.reader.refused()
+            + self.sequencer.ignored()
     }
 
     pub(super) fn publish_status(&mut self, now_ns: u64) -> Result<(), BusError> {
@@ -96,10 +127,7 @@ impl PaintNode {
             lost: counts.lost,
             baking: baking.all,
             baked: baking.done,
-            refused: self.refused
-                + counts.refused
-                + self.reader.refused()
-                + self.sequencer.ignored(),
+            refused: self.refused_in_all(),
         };
         let told = self.told_status.as_ref();
         if told.is_some_and(|(told, told_ns)| *told == status && now_ns < told_ns + AT_REST_NS) {

@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | [`session`] | a session is painted again |
 //! | [`streams`] | messages of chosen topics are sent again |
+//! | [`pacing`] | no faster than brushes follow |
 //! | [`driven`] | the device whose hand feels it |
 //! | [`guide`], [`traced`] | its strokes guide a hand that paints |
 //! | [`place`] | a take elsewhere on the desk |
@@ -14,6 +15,7 @@ mod driven;
 mod events;
 mod guide;
 mod orders;
+mod pacing;
 mod place;
 mod session;
 mod streams;

@@ -16,6 +16,7 @@ use maulstick_types::{Flags, Header, Origin, decode, encode, name_hash};
 
 use super::driven::Driven;
 use super::events::Events;
+use super::pacing::Pacing;
 use super::place::Place;
 use super::{Playback, ReplayOptions, TURN, Turn};
 
@@ -83,6 +84,8 @@ pub(super) fn replay(options: &ReplayOptions, recording: &Recording) -> Result<i
         device: options.device.as_deref(),
         driven,
         place,
+        pacing: Pacing::new(&*member.bus, &member.topics, &member.wake)?,
+        newest_ns: BTreeMap::new(),
     };
     if let Some(device) = &options.device {
         senders.introduce(recording, device)?;
@@ -109,8 +112,11 @@ pub(super) fn replay(options: &ReplayOptions, recording: &Recording) -> Result<i
         if turn == Turn::End || is_over {
             break;
         }
+        let fastest = playback.transport.rate() == Rate::Max;
         match next_ns {
-            Some(at_ns) if playback.transport.is_due(at_ns) => {
+            Some(at_ns)
+                if playback.transport.is_due(at_ns) && (!fastest || senders.has_credit()) =>
+            {
                 played_ns = at_ns;
                 if let Some((topic, message)) = events.take() {
                     senders.send(&topic, &message)?;
@@ -181,9 +187,17 @@ struct Senders<'a> {
     driven: Option<Driven>,
     /// Where samples of a stylus are put.
     place: Option<Place>,
+    pacing: Pacing,
+    /// Times of sampling of the newest message of each topic, as recorded and as sent, ns.
+    newest_ns: BTreeMap<String, (u64, u64)>,
 }
 
 impl Senders<'_> {
+    /// True if the brushes have credit for another sample.
+    fn has_credit(&mut self) -> bool {
+        self.pacing.has_credit(self.member.bus.now_ns())
+    }
+
     /// The topic as which a topic is sent.
     fn topic(&self, topic: &str) -> String {
         if let Some(renamed) = self.renamed.get(topic) {
@@ -259,6 +273,7 @@ impl Senders<'_> {
         let now_ns = self.member.bus.now_ns();
         let old = message.header;
         let event_ns = now_ns.saturating_sub(old.sent_ns.saturating_sub(old.event_ns));
+        let event_ns = self.advancing(&topic, old.event_ns, event_ns);
         let seq = self.senders.get(&topic).map_or(0, |(_, next)| *next);
         let bytes = match (&self.driven, &self.place) {
             (Some(driven), _) if matches(MODELS, recorded) => {
@@ -295,6 +310,19 @@ impl Senders<'_> {
         self.put(&topic, qos, bytes)
     }
 
+    /// The time of sampling of a message of a topic: later than that of the one before, where it was so when they were
+    /// recorded. Played faster than they came, messages are closer together than the times that they took to arrive.
+    fn advancing(&mut self, topic: &str, recorded_ns: u64, event_ns: u64) -> u64 {
+        let newest = self.newest_ns.get(topic).copied();
+        let event_ns = match newest {
+            Some((before_ns, newest_ns)) if recorded_ns > before_ns => event_ns.max(newest_ns + 1),
+            _ => event_ns,
+        };
+        self.newest_ns
+            .insert(topic.to_owned(), (recorded_ns, event_ns));
+        event_ns
+    }
+
     /// Takes the styluses away, so that a brush does not go on from where they were to where they are next.
     fn lift(&mut self) -> Result<(), UserError> {
         let is_stylus = |topic: &&String| matches("stylus/*/sample", topic);
@@ -317,6 +345,11 @@ impl Senders<'_> {
         if let Some((publisher, next)) = self.senders.get_mut(topic) {
             publisher.put(bytes)?;
             *next += 1;
+            let next = *next;
+            if matches("stylus/*/sample", topic) {
+                let (device, now_ns) = (self.origin(topic), self.member.bus.now_ns());
+                self.pacing.sent(device, next, now_ns);
+            }
         }
         Ok(())
     }

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use maulstick_bus::{Qos, Queue, RigFolder, Subscription};
+use maulstick_rig::pulse::Pulse;
 use maulstick_rig::{NodeArgs, NodeHandle, UserError};
 use maulstick_streams::Traffic;
 use maulstick_streams::topic_pattern::matches;
@@ -41,6 +42,8 @@ pub(crate) struct Listener {
     cached: Vec<Subscription>,
     /// Messages that are none of Maulstick's.
     pub foreign: u64,
+    /// The pulse of one that the launcher watches.
+    pub pulse: Option<Pulse>,
 }
 
 impl Listener {
@@ -86,6 +89,7 @@ impl Listener {
             live,
             cached,
             foreign: 0,
+            pulse: None,
             member,
         })
     }
@@ -94,6 +98,10 @@ impl Listener {
     pub(super) fn next(&mut self, until: Instant) -> Option<ReceivedMessage> {
         // However fast they come, the time ends.
         while !self.member.stop.requested() && Instant::now() < until {
+            let now_ns = self.member.bus.now_ns();
+            if let Some(Err(error)) = self.pulse.as_mut().map(|pulse| pulse.turn(now_ns)) {
+                tracing::debug!("{error}");
+            }
             if let Some(received) = self.waiting() {
                 return Some(received);
             }

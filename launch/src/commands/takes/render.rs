@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use maulstick_brush::speed_limit::FASTEST_M_S;
 use maulstick_device::Take;
 use maulstick_paint_node::snapshots::write_snapshot;
 use maulstick_painting::{Painting, Sequencer};
@@ -121,6 +122,16 @@ impl RenderOptions {
             }
         }
         Ok(())
+    }
+}
+
+/// Says how many samples were faster than a hand: strokes have gaps there.
+fn tell_haste(too_fast: u64) {
+    if too_fast > 0 {
+        eprintln!(
+            "samples faster than {FASTEST_M_S} m/s: {too_fast}; the brush began anew at each, and nothing is painted on \
+             the way to it; `maulstick motion retime` makes a take slower"
+        );
     }
 }
 
@@ -244,5 +255,6 @@ pub fn run(options: &RenderOptions) -> Result<i32, UserError> {
     if unloaded {
         eprintln!("the brush carried no paint: `--load \"Ultramarine Blue\"` gives it some");
     }
+    tell_haste(offline.too_fast());
     Ok(0)
 }

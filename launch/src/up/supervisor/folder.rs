@@ -1,36 +1,103 @@
-//! Check for the rig's folder: if somebody removes it, the processes go on, but nobody finds them.
+//! Check for the rig's folder: if somebody removes it, the processes go on, but nobody finds them. Sockets that are removed
+//! from it are put back.
 
 use std::time::{Duration, Instant};
 
+use maulstick_bus::sockets::{SocketKeeper, SocketNews};
+
 use super::Supervisor;
+use crate::up::child::State;
+use crate::up::plan::Role;
 
 /// Interval of the check.
 const PERIOD: Duration = Duration::from_secs(1);
+/// Interval at which all that is in the folder is touched: cleaners take what is days old.
+const TOUCH: Duration = Duration::from_secs(600);
 
-/// Time of the last check, and true once the loss was reported.
-#[derive(Debug, Default)]
+/// Times of the last check and touch, and true once the loss was reported.
+#[derive(Debug)]
 pub(super) struct FolderWatch {
+    sockets: SocketKeeper,
     looked: Option<Instant>,
+    touched: Option<Instant>,
     told: bool,
+    /// True once it was reported that sockets cannot be looked after.
+    unkept: bool,
+}
+
+impl FolderWatch {
+    /// Looks after a folder and its sockets.
+    pub(super) fn new(sockets: SocketKeeper) -> Self {
+        Self {
+            sockets,
+            looked: None,
+            touched: None,
+            told: false,
+            unkept: false,
+        }
+    }
+
+    /// True where it is time to look.
+    fn is_due(&mut self, now: Instant) -> bool {
+        let rests = |since: Instant| now.duration_since(since) < PERIOD;
+        let is_due = !self.told && !self.looked.is_some_and(rests);
+        if is_due {
+            self.looked = Some(now);
+        }
+        is_due
+    }
+
+    /// Looks at the sockets, and touches them where it is time.
+    fn look(&mut self, now: Instant) -> SocketNews {
+        let rests = |since: Instant| now.duration_since(since) < TOUCH;
+        if !self.touched.is_some_and(rests) {
+            self.touched = Some(now);
+            self.sockets.touch();
+        }
+        self.sockets.look().unwrap_or_else(|error| {
+            if !std::mem::replace(&mut self.unkept, true) {
+                tracing::warn!("the sockets of the rig cannot be looked after: {error}");
+            }
+            SocketNews::default()
+        })
+    }
 }
 
 impl Supervisor {
-    /// Says once that the folder, or its lock, is gone.
+    /// Puts removed sockets back, and says once that the folder, or its lock, is gone.
     pub(super) fn watch_folder(&mut self) {
-        let watch = &mut self.folder_watch;
-        let rests = watch.looked.is_some_and(|looked| looked.elapsed() < PERIOD);
-        if watch.told || rests {
+        let now = Instant::now();
+        if !self.folder_watch.is_due(now) {
             return;
         }
-        watch.looked = Some(Instant::now());
-        if self.folder.is_whole() {
+        if !self.folder.is_whole() {
+            self.folder_watch.told = true;
+            tracing::error!(
+                "the folder of the rig, {}, was removed: painting goes on, but no command finds the rig, and \
+                 a node that ends cannot join again; end the rig and start it again",
+                self.folder.path().display()
+            );
             return;
         }
-        watch.told = true;
-        tracing::error!(
-            "the folder of the rig, {}, was removed: painting goes on, but no command finds the rig, and \
-             a node that ends cannot join again; end the rig and start it again",
-            self.folder.path().display()
-        );
+        let news = self.folder_watch.look(now);
+        for node in news.restored {
+            tracing::warn!(
+                "the socket of '{node}' was removed from the rig's folder, and is put back"
+            );
+        }
+        for name in news.lost {
+            let mut nodes = self.nodes.iter_mut();
+            let node = nodes.find(|node| node.spec.name == name && node.state == State::Running);
+            match node {
+                // They lose nothing by it.
+                Some(node) if matches!(node.spec.role, Role::Brush | Role::Device) => {
+                    tracing::warn!("the socket of '{name}' is gone: it is started again");
+                    node.renew();
+                }
+                _ => tracing::error!(
+                    "the socket of '{name}' is gone: programs that start do not reach it; end the rig and start it again"
+                ),
+            }
+        }
     }
 }

@@ -147,7 +147,6 @@ impl Supervisor {
             self.follow_painting(&status.message.path);
             self.orders.status = Some(status.message);
             self.orders.status_ns = status.header.event_ns;
-            self.has_spoken();
         }
         while let Some(request) = self.orders.server.try_recv() {
             let orders = &mut self.orders;

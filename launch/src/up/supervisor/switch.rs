@@ -86,6 +86,13 @@ impl Plan {
 }
 
 impl Switch {
+    /// Gives the paint node so much more time.
+    pub(super) fn postpone(&mut self, by: Duration) {
+        if let Stage::Closing(_, since) | Stage::Opening(_, _, since) = &mut self.stage {
+            *since += by;
+        }
+    }
+
     /// Begins with it.
     ///
     /// # Errors

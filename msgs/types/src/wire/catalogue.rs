@@ -3,7 +3,7 @@
 use crate::wire::codec::Message;
 use crate::wire::header::DecodeError;
 use crate::wire::schema::Schema;
-use crate::{brush, command, control, haptics, paint, scene, stylus, window};
+use crate::{brush, command, control, haptics, node, paint, scene, stylus, window};
 
 /// One message of the rig.
 #[derive(Debug)]
@@ -68,6 +68,7 @@ pub static CATALOGUE: &[CatalogueEntry] = &[
     entry!(paint::ThumbnailRequest, "paint/thumbnail (query)"),
     entry!(paint::ThumbnailReply, "paint/thumbnail (reply)"),
     entry!(window::Presented, "ui/presented"),
+    entry!(node::NodeStatus, "node/<node>/status"),
     entry!(command::CommandRequest, "command/<node> (query)"),
     entry!(command::CommandReply, "command/<node> (reply)"),
     entry!(command::GapRequest, "gap/<stream> (query)"),

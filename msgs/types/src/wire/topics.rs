@@ -82,6 +82,8 @@ topics! {
     command(node) = "command/{node}";
     /// Lost messages, a query: [`GapRequest`](crate::command::GapRequest) on the stream's own key.
     gap(stream) = "gap/{stream}";
+    /// Status of a node: [`NodeStatus`](crate::node::NodeStatus).
+    node_status(node) = "node/{node}/status";
     /// The liveliness token of a node.
     node(node) = "node/{node}";
 }

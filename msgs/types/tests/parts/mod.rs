@@ -7,6 +7,7 @@ use maulstick_types::command::{
 use maulstick_types::control::ControlSample;
 use maulstick_types::edits::Relight;
 use maulstick_types::haptics::ForceReply;
+use maulstick_types::node::{NodeStatus, NodeWork};
 use maulstick_types::paint::{
     DryingStatus, ExportStatus, FrameHolds, HistoryStep, PaintStatus, ThumbnailReply,
 };
@@ -236,5 +237,21 @@ pub(crate) fn presented() -> Presented {
             epoch: 6,
             next: 7,
         }],
+    }
+}
+
+pub(crate) fn node_status() -> NodeStatus {
+    NodeStatus {
+        process: 1,
+        turns: 2,
+        work: NodeWork {
+            consumed: 3,
+            produced: 4,
+            waiting: 5,
+            held: 6,
+            refused: 7,
+            lost: 8,
+            too_fast: 9,
+        },
     }
 }

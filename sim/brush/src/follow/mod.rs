@@ -4,4 +4,5 @@ pub mod handle_path;
 pub mod lead;
 pub mod mark;
 pub mod model;
+pub mod speed_limit;
 mod stroke_count;

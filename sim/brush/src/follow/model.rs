@@ -17,6 +17,7 @@ use crate::head_solver::{HeadSolver, SolvedHead, settings_of};
 use crate::lead::Lead;
 use crate::mark::{Beside, Mark, point_of};
 use crate::solver::Settings;
+use crate::speed_limit::SpeedLimit;
 use crate::spine_layout::SpineLayout;
 
 /// Longest pause between two samples in contact that is crossed along their path, ns; a longer one begins a stroke.
@@ -38,6 +39,9 @@ pub struct BrushModel {
     desk: Option<Desk>,
     follows: Option<Origin>,
     tracked: Option<TrackedBrush>,
+    speed: SpeedLimit,
+    /// Samples at which it began anew because the handle was too fast.
+    too_fast: u64,
     strokes: StrokeCount,
     /// Factor on the stiffness of the file.
     tuned: f64,
@@ -92,6 +96,8 @@ impl BrushModel {
             desk: None,
             follows: None,
             tracked: None,
+            speed: SpeedLimit::default(),
+            too_fast: 0,
             strokes: StrokeCount::default(),
             tuned: 1.0,
             wetness: 0.0,
@@ -159,14 +165,26 @@ impl BrushModel {
         self.desk.as_ref()
     }
 
+    /// Samples so far at which the handle in contact was faster than [`FASTEST_M_S`](crate::speed_limit::FASTEST_M_S).
+    #[must_use]
+    pub fn too_fast(&self) -> u64 {
+        self.too_fast
+    }
+
+    /// Begins anew at the next sample: those between it and the newest one are not known.
+    pub fn begin_anew(&mut self) {
+        self.tracked = None;
+    }
+
     /// Follows one sample of the device `origin`: empty while there is no scene, else the solves on the path to it, the
     /// last at the sample itself.
     ///
     /// A touching brush is solved each time it has moved by about a step, counted on across samples, so that its path
     /// does not depend on how often it is sampled; between two of these a sample gives a preview. A pen lifts at its
-    /// sample; one that is set down is shown at once, and [waits](setting_down) for the direction of its stroke. A pause of up to [`BRIDGED_NS`] in contact is crossed like any path between two samples. A longer
-    /// one, another device, time that does not advance and a zoom restart the solver at the new pose: the solve says
-    /// so, and nothing is painted from the one before to it. After a pause alone the head stays bent as it was.
+    /// sample; one that is set down is shown at once, and [waits](setting_down) for the direction of its stroke. A pause
+    /// of up to [`BRIDGED_NS`] in contact is crossed like any path between two samples. A longer one, another device, time
+    /// that does not advance, a zoom and a handle that is too fast restart the solver at the new pose: the solve says so,
+    /// and nothing is painted from the one before to it. After a pause alone the head stays bent as it was.
     pub fn follow(&mut self, origin: Origin, event_ns: u64, sample: &StylusSample) -> Vec<Solve> {
         let mut solves = Vec::new();
         if self.follows != Some(origin) {
@@ -213,6 +231,11 @@ impl BrushModel {
             }
             solves.extend(self.set_down(tracked, goes_on.then_some(&here), &plane));
         }
+        let way_m = before
+            .as_ref()
+            .filter(|tracked| stays(tracked) && !paused(tracked))
+            .map_or(0.0, |tracked| self.path(tracked, &here).length_m());
+        let before = self.slow_enough(before, way_m, event_ns);
         let mut tracked = match before {
             Some(mut tracked) if stays(&tracked) && !paused(&tracked) => {
                 solves.extend(self.go(&mut tracked, here, &plane));

@@ -42,6 +42,9 @@ impl Stage {
     }
 }
 
+/// Statuses by which the launcher sees that nodes go on: each sends one, and they say nothing of the way of a stroke.
+const STATUS: &str = "node/*/status";
+
 /// A topic that a process sends.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct Sent {
@@ -108,12 +111,15 @@ impl Graph {
     ) -> Self {
         let relative = |key: &String| topics.relative(key).unwrap_or(key).to_owned();
         let process = |participant: &Participant| {
-            let sends = participant.sends.iter().map(relative).map(|topic| Sent {
+            let topics = participant.sends.iter().map(relative);
+            let own = topics.filter(|topic| !matches(STATUS, topic));
+            let sends = own.map(|topic| Sent {
                 rate_hz: rates.get(topic.as_str()).copied().unwrap_or(0.0),
                 topic,
             });
             let sends: Vec<Sent> = sends.collect();
             let answers = participant.answers.iter().map(relative);
+            let receives = participant.receives.iter().map(relative);
             Process {
                 name: match participant.name.as_deref() {
                     Some(HUB) => "launcher".to_owned(),
@@ -122,7 +128,7 @@ impl Graph {
                 },
                 stage: Stage::of(&sends),
                 sends,
-                receives: participant.receives.iter().map(relative).collect(),
+                receives: receives.filter(|topic| topic != STATUS).collect(),
                 answers: answers.filter(|topic| !matches("gap/**", topic)).collect(),
             }
         };

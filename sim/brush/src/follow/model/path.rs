@@ -23,7 +23,27 @@ const MOST_OF_A_LEAP: f64 = 1024.0;
 const SPLITS: u32 = 2;
 
 impl BrushModel {
-    /// Solves a touching brush at each step of its path to a sample, and gives a preview of it there.
+    /// The path of a touching brush to a sample.
+    pub(super) fn path(&self, tracked: &TrackedBrush, here: &Sampled) -> HandlePath {
+        let (before, newest) = (tracked.before.as_ref(), &tracked.newest);
+        HandlePath::new(before, newest, here, self.file.length_m())
+    }
+
+    /// The brush that goes `way_m` to a sample at `event_ns`; none where it goes too fast, which is counted.
+    pub(super) fn slow_enough(
+        &mut self,
+        tracked: Option<TrackedBrush>,
+        way_m: f64,
+        event_ns: u64,
+    ) -> Option<TrackedBrush> {
+        let tracked = tracked?;
+        let passes = self.speed.passes(way_m, event_ns - tracked.newest.event_ns);
+        self.too_fast += u64::from(!passes);
+        passes.then_some(tracked)
+    }
+
+    /// Solves a touching brush at each step of its path to a sample, and gives a preview of it there. The path is finite and
+    /// as slow as [`SpeedLimit`](crate::speed_limit::SpeedLimit) says.
     pub(super) fn go(
         &mut self,
         tracked: &mut TrackedBrush,
@@ -31,12 +51,7 @@ impl BrushModel {
         plane: &Plane,
     ) -> Vec<Solve> {
         let start_ns = tracked.newest.event_ns;
-        let path = HandlePath::new(
-            tracked.before.as_ref(),
-            &tracked.newest,
-            &here,
-            self.file.length_m(),
-        );
+        let path = self.path(tracked, &here);
         let motion_m = path.length_m();
         let pause = (here.event_ns - start_ns) as f64 / MOST_SOLVES_NS;
         let many_m = motion_m / (MOST_SOLVES * pause.max(1.0));
