@@ -177,19 +177,24 @@ impl Offline {
         let mut bend = move |(number, (event_ns, sample)): (usize, &(u64, &StylusSample))| {
             let fits = sample.fault().is_none();
             let serial = first + number as u64;
-            let state = fits.then(|| model.state(player, serial, *event_ns, sample))?;
-            Some((number, *event_ns, state?))
+            let state = fits.then(|| model.state(player, serial, *event_ns, sample));
+            // As the brush node sends them.
+            let messages = state.flatten().map_or_else(Vec::new, |state| {
+                state.messages(Flags::REPLAY, Flags::NONE, Flags::NONE)
+            });
+            let messages = messages.into_iter();
+            messages.map(move |(flags, state)| (number, *event_ns, flags, state))
         };
         let (sequencer, brush, me, next) =
             (&mut self.sequencer, &self.brush, self.me, &mut self.next);
         let ticker = &mut self.ticker;
-        let mut paint = |(number, event_ns, state): (usize, u64, BrushState)| {
+        let mut paint = |(number, event_ns, flags, state): (usize, u64, Flags, BrushState)| {
             let header = Header {
                 version: BrushState::VERSION,
                 schema: 0,
                 source: me.source,
                 epoch: me.epoch,
-                flags: Flags::REPLAY,
+                flags,
                 length: 0,
                 seq: *next,
                 event_ns,
@@ -205,20 +210,22 @@ impl Offline {
             // Offline no command waits for a state.
             let (_, painted) = sequencer.state(brush, &header, &state);
             sequencer.drain_journal();
-            each(sequencer, number);
+            if !flags.has(Flags::CONTINUES) {
+                each(sequencer, number);
+            }
             painted
         };
         if let [_] = samples {
             return samples
                 .iter()
                 .enumerate()
-                .filter_map(bend)
+                .flat_map(bend)
                 .try_for_each(paint);
         }
         std::thread::scope(|scope| {
             let (bent, states) = mpsc::sync_channel(AHEAD);
             scope.spawn(move || {
-                for state in samples.iter().enumerate().filter_map(&mut bend) {
+                for state in samples.iter().enumerate().flat_map(&mut bend) {
                     // The painter has given up: what is wrong is said there.
                     if bent.send(state).is_err() {
                         return;
