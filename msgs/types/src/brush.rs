@@ -18,6 +18,9 @@ pub mod solve_flags {
     pub const FOUR_TIMES: u32 = 16;
 }
 
+/// Brushes of a painting at most.
+pub const BRUSHES_MOST: usize = 64;
+
 wire_struct! {
     /// A joint that touches a surface.
     pub struct Contact {

@@ -60,7 +60,7 @@ impl Offline {
     ) -> Result<Self, EditError> {
         let mut model = BrushModel::new(file.clone(), depth_share);
         model.set_scene(sequencer.painting().scene());
-        sequencer.define_brush(brush, file);
+        sequencer.define_brush(brush, file)?;
         let player = Origin {
             source: name_hash("player"),
             epoch: 1,
@@ -93,8 +93,8 @@ impl Offline {
         file: BrushFile,
         depth_share: f64,
     ) -> Result<(), EditError> {
-        self.model = BrushModel::new(file.clone(), depth_share);
-        self.sequencer.define_brush(brush, file);
+        self.sequencer.define_brush(brush, file.clone())?;
+        self.model = BrushModel::new(file, depth_share);
         self.brush = brush.to_owned();
         self.me = Origin {
             source: name_hash(brush),
@@ -174,16 +174,16 @@ impl Offline {
         let first = self.samples;
         self.samples += samples.len() as u64;
         let (player, model) = (self.player, &mut self.model);
-        let mut bend = move |(number, (event_ns, sample)): (usize, &(u64, &StylusSample))| {
+        let mut bend = move |(number, &(event_ns, sample)): (usize, &(u64, &StylusSample))| {
             let fits = sample.fault().is_none();
             let serial = first + number as u64;
-            let state = fits.then(|| model.state(player, serial, *event_ns, sample));
+            let state = fits.then(|| model.state(player, serial, event_ns, sample));
             // As the brush node sends them.
             let messages = state.flatten().map_or_else(Vec::new, |state| {
                 state.messages(Flags::REPLAY, Flags::NONE, Flags::NONE)
             });
             let messages = messages.into_iter();
-            messages.map(move |(flags, state)| (number, *event_ns, flags, state))
+            messages.map(move |(flags, state)| (number, event_ns, flags, state))
         };
         let (sequencer, brush, me, next) =
             (&mut self.sequencer, &self.brush, self.me, &mut self.next);
