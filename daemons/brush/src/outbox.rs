@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
-use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::{Flags, Message as _};
+use maulstick_types::Flags;
+use maulstick_types::brush::BrushState;
 
 /// States in order of sending.
 #[derive(Clone, Debug, Default)]
@@ -15,20 +15,9 @@ impl Outbox {
     /// Adds a state of any length; returns how many messages it takes. `first` and `last` are flags
     /// that its first and its last message have beside `flags`.
     pub fn push(&mut self, flags: Flags, first: Flags, last: Flags, state: BrushState) -> usize {
-        let parts = cut(state.solves);
-        let count = parts.len();
-        for (place, solves) in parts.into_iter().enumerate() {
-            let mut flags = flags;
-            if place == 0 {
-                flags = flags.with(first);
-            }
-            flags = flags.with(match place + 1 == count {
-                true => last,
-                false => Flags::CONTINUES,
-            });
-            let part = BrushState { solves, ..state };
-            self.waiting.push_back((flags, part));
-        }
+        let messages = state.messages(flags, first, last);
+        let count = messages.len();
+        self.waiting.extend(messages);
         count
     }
 
@@ -50,26 +39,9 @@ impl Outbox {
     }
 }
 
-/// Cuts solves into runs that each fit into one message; at least one run, which may be empty.
-fn cut(solves: Vec<Solve>) -> Vec<Vec<Solve>> {
-    let (mut runs, mut run) = (Vec::new(), Vec::new());
-    let mut bytes = BrushState::WIRE_BYTES;
-    for solve in solves {
-        let more = solve.wire_bytes();
-        if bytes + more > BrushState::MAX_BYTES && !run.is_empty() {
-            runs.push(std::mem::take(&mut run));
-            bytes = BrushState::WIRE_BYTES;
-        }
-        bytes += more;
-        run.push(solve);
-    }
-    runs.push(run);
-    runs
-}
-
 #[cfg(test)]
 mod tests {
-    use maulstick_types::brush::Contact;
+    use maulstick_types::brush::{Contact, Solve};
     use maulstick_types::{Origin, Pose, encode};
     use proptest::prelude::*;
 

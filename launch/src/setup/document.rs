@@ -24,6 +24,7 @@ pub fn wrong(path: &Path, error: &DocumentError) -> UserError {
     let failure = matches!(
         error,
         DocumentError::Full
+            | DocumentError::Disk(_)
             | DocumentError::ReadOnly(_)
             | DocumentError::InUse { .. }
             | DocumentError::Unwritten(_)

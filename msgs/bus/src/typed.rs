@@ -30,6 +30,8 @@ pub struct Sender<M> {
     topic: String,
     origin: Origin,
     next: u64,
+    /// True once it was said that a message was too long.
+    told: bool,
     message: PhantomData<fn(M)>,
 }
 
@@ -45,29 +47,44 @@ impl<M: Message> Sender<M> {
             topic: topic.to_owned(),
             origin,
             next: 0,
+            told: false,
             message: PhantomData,
         })
     }
 
-    /// Sends a message; `event_ns` is the time at which its content was true.
+    /// Sends a message; `event_ns` is the time at which its content was true. One that exceeds its limit is dropped and
+    /// told: no content may end the node that sends it.
     ///
     /// # Errors
-    /// [`BusError::Message`] if it exceeds its limit, [`BusError::Topic`].
+    /// [`BusError::Topic`].
     pub fn send(&mut self, now_ns: u64, event_ns: u64, message: &M) -> Result<(), BusError> {
         let flags = if self.next == 0 {
             Flags::FIRST
         } else {
             Flags::NONE
         };
-        let bytes = encode(&self.origin, flags, self.next, event_ns, now_ns, message).map_err(
-            |source| BusError::Message {
-                topic: self.topic.clone(),
-                source,
-            },
-        )?;
+        let encoded = encode(&self.origin, flags, self.next, event_ns, now_ns, message);
+        let Some(bytes) = sendable(&self.topic, encoded, &mut self.told) else {
+            return Ok(());
+        };
         self.next += 1;
         self.publish.put(bytes)
     }
+}
+
+/// Bytes of a message of a topic; none for one that exceeds its limit, which is told once.
+pub(crate) fn sendable(
+    topic: &str,
+    encoded: Result<Vec<u8>, DecodeError>,
+    told: &mut bool,
+) -> Option<Vec<u8>> {
+    encoded
+        .inspect_err(|error| {
+            if !std::mem::replace(told, true) {
+                tracing::error!("{topic}: a message is dropped: {error}");
+            }
+        })
+        .ok()
 }
 
 /// Decodes what arrives; says once for each topic and reason what is dropped, and counts it.

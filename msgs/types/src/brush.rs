@@ -1,5 +1,6 @@
 //! Messages of the brush node: the brush file, solved states, and credit to devices.
 
+use crate::Flags;
 use crate::pose::Pose;
 use crate::wire::define::{message, wire_struct};
 
@@ -16,6 +17,9 @@ pub mod solve_flags {
     /// As [`TWICE`], four times.
     pub const FOUR_TIMES: u32 = 16;
 }
+
+/// Brushes of a painting at most.
+pub const BRUSHES_MOST: usize = 64;
 
 wire_struct! {
     /// A joint that touches a surface.
@@ -75,11 +79,70 @@ impl BrushState {
     /// Bytes of a message beside its solves.
     pub const WIRE_BYTES: usize = 2 * 4 + 2 * 8;
 
-    /// Fault of the numbers, if there is one: a path over them would never end.
+    /// Fault of the numbers, if there is one: a path over them would never end, and one that is longer than a message could
+    /// neither be sent nor kept.
     #[must_use]
     pub fn fault(&self) -> Option<&'static str> {
+        if self.wire_bytes() > <Self as crate::Message>::MAX_BYTES {
+            return Some("its solves are longer than a message");
+        }
         self.solves.iter().find_map(Solve::fault)
     }
+
+    /// Bytes of its message.
+    #[must_use]
+    pub fn wire_bytes(&self) -> usize {
+        let solves = self.solves.iter().map(Solve::wire_bytes);
+        Self::WIRE_BYTES + solves.sum::<usize>()
+    }
+
+    /// The state as messages that fit, in order, each with its flags: at least one, and one that may have no solve. `first`
+    /// and `last` are flags that the first and the last message have beside `flags`; all but the last say that they continue.
+    ///
+    /// Whoever solves a brush hands its states on like this, with a bus and without: so the same messages are painted,
+    /// recorded and kept.
+    #[must_use]
+    pub fn messages(self, flags: Flags, first: Flags, last: Flags) -> Vec<(Flags, Self)> {
+        let (device, device_epoch, device_seq) = (self.device, self.device_epoch, self.device_seq);
+        let runs = runs_that_fit(self.solves);
+        let count = runs.len();
+        let runs = runs.into_iter().enumerate();
+        runs.map(|(place, solves)| {
+            let flags = match place {
+                0 => flags.with(first),
+                _ => flags,
+            };
+            let flags = flags.with(match place + 1 == count {
+                true => last,
+                false => Flags::CONTINUES,
+            });
+            let part = Self {
+                device,
+                device_epoch,
+                device_seq,
+                solves,
+            };
+            (flags, part)
+        })
+        .collect()
+    }
+}
+
+/// Cuts solves into runs that each fit into one message; at least one run, which may be empty.
+fn runs_that_fit(solves: Vec<Solve>) -> Vec<Vec<Solve>> {
+    let (mut runs, mut run) = (Vec::new(), Vec::new());
+    let mut bytes = BrushState::WIRE_BYTES;
+    for solve in solves {
+        let more = solve.wire_bytes();
+        if bytes + more > <BrushState as crate::Message>::MAX_BYTES && !run.is_empty() {
+            runs.push(std::mem::take(&mut run));
+            bytes = BrushState::WIRE_BYTES;
+        }
+        bytes += more;
+        run.push(solve);
+    }
+    runs.push(run);
+    runs
 }
 
 impl Solve {
@@ -261,6 +324,37 @@ mod tests {
             bytes.len() - crate::HEADER_BYTES,
             BrushState::WIRE_BYTES + said
         );
+    }
+
+    #[test]
+    fn a_state_of_any_length_is_messages_that_fit_and_no_solve_is_lost() {
+        let origin = crate::Origin {
+            source: 1,
+            epoch: 1,
+        };
+        for (count, joints) in [(0, 0), (1, 1536), (300, 15), (1025, 60), (40, 1536)] {
+            let mut state = state(0.0, 0.1, 0.1);
+            let mut solve = state.solves.remove(0);
+            solve.angles_rad = vec![[0.0; 2]; joints];
+            state.solves = vec![solve; count];
+            for (number, solve) in state.solves.iter_mut().enumerate() {
+                solve.event_ns = number as u64;
+            }
+            let whole = state.wire_bytes() <= <BrushState as crate::Message>::MAX_BYTES;
+            assert_eq!(state.fault().is_none(), whole, "{count} of {joints}");
+            let parts = state.messages(Flags::REPLAY, Flags::FIRST, Flags::LAST);
+            assert_eq!(parts.len() == 1, whole);
+            let mut times = Vec::new();
+            for (place, (flags, part)) in parts.iter().enumerate() {
+                assert!(crate::encode(&origin, *flags, 0, 0, 0, part).is_ok());
+                assert_eq!(part.fault(), None);
+                assert_eq!(flags.has(Flags::FIRST), place == 0);
+                assert_eq!(flags.has(Flags::CONTINUES), place + 1 < parts.len());
+                assert_eq!(flags.has(Flags::LAST), place + 1 == parts.len());
+                times.extend(part.solves.iter().map(|solve| solve.event_ns));
+            }
+            assert_eq!(times, (0..count as u64).collect::<Vec<_>>());
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Errors of edits. They become words where a person reads them: a reply has the sentence and the advice, and each front
 //! end has its own words for that.
 
+use maulstick_types::brush::BRUSHES_MOST;
 use maulstick_types::command::advice::{Advice, choice};
 use maulstick_types::command::{CELLS_M, Outcome};
 use maulstick_types::scene::LightError;
@@ -37,6 +38,9 @@ pub enum EditError {
     /// A paint that the painting does not use.
     #[error("paint '{0}' is not in use in this painting")]
     NoSlot(String),
+    /// One brush more than a painting can have.
+    #[error("'{0}' would be brush {count} of this painting", count = BRUSHES_MOST + 1)]
+    TooManyBrushes(String),
     /// A brush that the rig does not have.
     #[error("there is no brush called '{name}' in this rig")]
     NoBrush {
@@ -245,6 +249,9 @@ impl EditError {
             Self::TooManyPaints(_) => Advice::say(format!(
                 "a painting has at most {SLOTS} paints: mix it from those in use"
             )),
+            Self::TooManyBrushes(_) => {
+                say("paint with one that it has, or give one of them this brush's file")
+            }
             Self::NoSlot(_) => say("load a brush with it first"),
             Self::EmptyBrush(_) => say("load it first"),
             Self::NoPaintThere { .. } => say("choose a place with paint, wet or dry"),

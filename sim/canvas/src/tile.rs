@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::dry::{DryLayer, DryStack};
+use crate::dry::{DRY_LAYERS_MOST, DryLayer, DryStack};
 use crate::own_plane::OwnPlane;
 use crate::page::{Page, Pager};
 use crate::planes::{Planes, painted, plane_counts};
@@ -120,6 +120,9 @@ impl Tile {
         let newest = self.dry.as_ref();
         // Numbers of pages and links rise: a wet page older than the link is what that one left.
         let grows = newest.filter(|link| link.layer().number == number && page.id() < link.id());
+        if grows.is_none() && newest.is_some_and(|link| link.depth() >= DRY_LAYERS_MOST) {
+            return None;
+        }
         let over = |planes: Page<Planes>| {
             let layer = DryLayer { number, planes };
             Some(DryStack::over(self.dry.clone(), layer))

@@ -19,12 +19,14 @@ pub struct Checkpoint {
     pub pictures: Vec<(String, Arc<[u8]>)>,
     /// Change of the record.
     pub record: RecordChange,
+    /// True if it holds all of the painting, and not only what changed.
+    pub is_whole: bool,
     /// What was accepted before it and is not handed over yet.
     pub records: Vec<Record>,
 }
 
 impl Checkpoint {
-    /// Checkpoint of a painting, with the tiles that are newer than the version `since`.
+    /// Checkpoint of a painting, with the tiles that are newer than the version `since`: all of them with 0.
     pub fn of(sequencer: &mut Sequencer, since: u64) -> Self {
         let snapshot = sequencer.kept();
         let records = sequencer.take_records();
@@ -42,6 +44,7 @@ impl Checkpoint {
             painting: checkpoint,
             sequencer: snapshot,
             pictures,
+            is_whole: since == 0,
             records,
         }
     }

@@ -228,6 +228,14 @@ impl Document {
         queues.checkpoint.is_none() && !queues.writing
     }
 
+    /// True if its file lacks parts of the painting, as after its journal was cut short: the next checkpoint has to hold all
+    /// of it ([`Painting::tell_all_again`](maulstick_painting::Painting::tell_all_again), from the version 0 on), and nothing
+    /// is written before.
+    #[must_use]
+    pub fn wants_all(&self) -> bool {
+        self.shared.lock().wants_all
+    }
+
     /// True if everything handed over is written.
     #[must_use]
     pub fn is_saved(&self) -> bool {

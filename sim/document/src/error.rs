@@ -43,9 +43,15 @@ pub enum DocumentError {
     /// No room on the disk.
     #[error("the disk is full")]
     Full,
+    /// The disk does not read or write.
+    #[error("the disk fails: {0}")]
+    Disk(String),
     /// No room on the disk to merge the journal of a painting that is to be closed.
     #[error("the disk of {} has no room to close the painting there", .0.display())]
     Unmerged(PathBuf),
+    /// Tables that another program changed, or that are not a painting's.
+    #[error("another program changed the painting's tables: {0}")]
+    Altered(String),
     /// Rows or bytes that are not intact.
     #[error("the painting is damaged: {0}")]
     Damaged(String),
@@ -70,7 +76,7 @@ impl DocumentError {
         let words = match self {
             Self::NoPainting => return Advice::NamePainting,
             Self::Missing => return Advice::BeginPainting,
-            Self::Damaged(_) => return Advice::Recover,
+            Self::Damaged(_) | Self::Altered(_) => return Advice::Recover,
             Self::Older(_) => "open it with the Maulstick that made it; nothing was changed",
             Self::Newer { .. } => "open it with that newer Maulstick; nothing was changed",
             Self::InUse { .. } => {
@@ -78,6 +84,9 @@ impl DocumentError {
             }
             Self::ReadOnly(_) => "check the permissions of the file and its folder, or copy it",
             Self::Full | Self::Unmerged(_) => "free some space: nothing that was written is lost",
+            Self::Disk(_) => {
+                "nothing that was written before is lost: see what is wrong with it, or save the painting on another"
+            }
             Self::Unwritten(_) => "nothing that was written before is lost",
             Self::OpenHere | Self::Companion => "give another name",
             Self::Taken => "give another name: nothing is written over",
@@ -107,6 +116,7 @@ impl From<rusqlite::Error> for DocumentError {
                 Self::ReadOnly(error.to_string())
             }
             ffi::SQLITE_FULL => Self::Full,
+            ffi::SQLITE_IOERR => Self::Disk(error.to_string()),
             ffi::SQLITE_NOTADB => Self::NoPainting,
             ffi::SQLITE_CORRUPT => Self::Damaged(error.to_string()),
             _ => Self::Other(error.to_string()),

@@ -15,9 +15,11 @@ use crate::file::database::Database;
 use crate::tables::checksum::journal_checksum;
 
 /// Largest number of records in a row: many wait where the disk was full.
-pub(crate) const ROW_RECORDS: usize = 1024;
-/// Largest size of a row's data, bytes.
-const ROW_MAX: usize = 1 << 28;
+pub(crate) const ROW_RECORDS: usize = 64;
+/// Largest size of a row's data, bytes: that of so many of the longest records behind a row of the record, and of the 1024
+/// longest states that earlier versions wrote in one.
+const ROW_MAX: usize = 5 << 24;
+const _: () = assert!(ROW_MAX > (ROW_RECORDS + 5) * (JournalEntry::MAX_BYTES + 64));
 /// Origin of records that did not come from a brush.
 const NO_ORIGIN: Origin = Origin {
     source: 0,
@@ -86,7 +88,8 @@ fn message(record: &Record) -> Result<Vec<u8>, DocumentError> {
             encode(&NO_ORIGIN, Flags::NONE, record.serial, 0, 0, &entry)
         }
     };
-    bytes.map_err(damaged)
+    // The sequencer accepts nothing that is too long.
+    bytes.map_err(|error| DocumentError::Other(error.to_string()))
 }
 
 /// Records, in order, as bytes.

@@ -1,5 +1,7 @@
 //! Writing of a checkpoint, as one transaction.
 
+mod deletion;
+
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Instant;
@@ -39,6 +41,11 @@ pub struct ShownTile {
     pub bytes: Vec<u8>,
 }
 
+/// Removes what a painting that is written as a whole brings again, but pages, layers and loads: those that nothing refers to
+/// go when it is opened.
+const CLEARED: &str = "DELETE FROM tile; DELETE FROM step; DELETE FROM version; \
+     DELETE FROM journal; DELETE FROM record; DELETE FROM beginning; DELETE FROM shown";
+
 /// Callback between two pages, which serves readers that wait for one.
 pub(crate) type YieldHook<'a> = &'a mut dyn FnMut(&Database);
 
@@ -63,6 +70,16 @@ impl Stored {
     }
 }
 
+/// What a writer believes to be in the file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Trust {
+    /// What is marked as stored.
+    #[default]
+    Stored,
+    /// Only what it finds there: the file is another one than that in which it was stored.
+    Nothing,
+}
+
 /// Number, depth and planes of the page that another one is stored as a difference to.
 type Base = (i64, i64, Arc<Planes>);
 
@@ -72,6 +89,7 @@ pub(crate) struct Writer<'a, 'b> {
     yield_hook: YieldHook<'b>,
     stored: Stored,
     written: BTreeSet<u64>,
+    trust: Trust,
 }
 
 impl<'a, 'b> Writer<'a, 'b> {
@@ -81,7 +99,23 @@ impl<'a, 'b> Writer<'a, 'b> {
             yield_hook,
             stored: Stored::default(),
             written: Default::default(),
+            trust: Trust::default(),
         }
+    }
+
+    /// The same writer, which believes this.
+    pub(crate) fn trusting(self, trust: Trust) -> Self {
+        Self { trust, ..self }
+    }
+
+    /// True if a row is in the file that is marked as stored.
+    fn has(&self, table: Table, id: u64, is_stored: bool) -> Result<bool, DocumentError> {
+        if self.trust == Trust::Stored || !is_stored {
+            return Ok(is_stored);
+        }
+        let query = format!("SELECT 1 FROM {} WHERE id = ?1", table.name());
+        let mut statement = self.database.connection.prepare_cached(&query)?;
+        Ok(statement.exists(params![id as i64])?)
     }
 
     /// Writes a checkpoint and deletes rows that it replaces; `records` were accepted before it and are not in the
@@ -93,6 +127,9 @@ impl<'a, 'b> Writer<'a, 'b> {
         records: &[Record],
         until: Instant,
     ) -> Result<(Stored, bool), DocumentError> {
+        if self.trust == Trust::Nothing {
+            self.database.connection.execute_batch(CLEARED)?;
+        }
         let painting = &checkpoint.painting;
         let tiles = painting.tiles.iter().map(|(_, version)| &version.tile);
         let changes = painting.steps.iter().flat_map(|step| step.tiles.values());
@@ -145,11 +182,15 @@ impl<'a, 'b> Writer<'a, 'b> {
             self.write_page(page)?;
         }
         let mut next = tile.dry();
-        while let Some(stack) = next.filter(|stack| !stack.is_stored()) {
-            next = stack.below();
-            if !self.written.insert(stack.id()) {
-                continue;
+        while let Some(stack) = next {
+            // Those below were written with it, or before.
+            if self.written.contains(&stack.id())
+                || self.has(Table::Dry, stack.id(), stack.is_stored())?
+            {
+                break;
             }
+            next = stack.below();
+            self.written.insert(stack.id());
             self.write_page(&stack.layer().planes)?;
             let below = stack.below().map_or(0, |below| below.id());
             let ints = [
@@ -170,7 +211,9 @@ impl<'a, 'b> Writer<'a, 'b> {
     }
 
     fn write_page(&mut self, page: &Page<Planes>) -> Result<(), DocumentError> {
-        if page.stored_bytes() > 0 || !self.written.insert(page.id()) {
+        if self.has(Table::Page, page.id(), page.stored_bytes() > 0)?
+            || !self.written.insert(page.id())
+        {
             return Ok(());
         }
         (self.yield_hook)(self.database);
@@ -227,7 +270,9 @@ impl<'a, 'b> Writer<'a, 'b> {
     }
 
     pub(crate) fn write_load(&mut self, page: &Page<BrushLoad>) -> Result<(), DocumentError> {
-        if page.stored_bytes() > 0 || !self.written.insert(page.id()) {
+        if self.has(Table::Load, page.id(), page.stored_bytes() > 0)?
+            || !self.written.insert(page.id())
+        {
             return Ok(());
         }
         let content = page.peek().ok_or_else(|| {
@@ -386,57 +431,6 @@ impl<'a, 'b> Writer<'a, 'b> {
             .connection
             .prepare_cached("INSERT OR REPLACE INTO state VALUES(1, ?1, ?2, ?3)")?
             .execute(params![key, value, sum])?;
-        Ok(())
-    }
-
-    /// Deletes pages, layers and loads without references. Pages that are differences to one of them are rebased.
-    fn delete_unreferenced(&mut self, dead: &[u64]) -> Result<(), DocumentError> {
-        let connection = &self.database.connection;
-        let dead: BTreeSet<u64> = dead.iter().copied().collect();
-        for id in &dead {
-            for later in self.differences_to(*id)? {
-                if dead.contains(&later) {
-                    continue;
-                }
-                (self.yield_hook)(self.database);
-                match self.database.planes(later) {
-                    Ok(content) => self.rebase(later, &content)?,
-                    // It is lost with or without its base; this checkpoint is not.
-                    Err(DocumentError::Damaged(_)) => {}
-                    Err(error) => return Err(error),
-                }
-            }
-        }
-        for id in &dead {
-            for table in ["page", "dry", "load"] {
-                connection
-                    .prepare_cached(&format!("DELETE FROM {table} WHERE id = ?1"))?
-                    .execute(params![*id as i64])?;
-            }
-        }
-        Ok(())
-    }
-
-    fn differences_to(&self, id: u64) -> Result<Vec<u64>, DocumentError> {
-        let query = "SELECT id FROM page WHERE base = ?1";
-        let mut statement = self.database.connection.prepare_cached(query)?;
-        let later = statement.query_map(params![id as i64], |row| row.get::<_, i64>(0))?;
-        Ok(later
-            .map(|id| Ok(id? as u64))
-            .collect::<Result<_, rusqlite::Error>>()?)
-    }
-
-    /// Writes a page that was a difference without a base.
-    fn rebase(&self, id: u64, content: &Planes) -> Result<(), DocumentError> {
-        let data = planes::encode(content, None, self.database.level)?;
-        let slots = planes::mask(content) as i64;
-        let sum = page_checksum(id, [0, 0, slots], &data);
-        let query =
-            "UPDATE page SET base = 0, depth = 0, slots = ?2, data = ?3, sum = ?4 WHERE id = ?1";
-        self.database
-            .connection
-            .prepare_cached(query)?
-            .execute(params![id as i64, slots, data, sum])?;
         Ok(())
     }
 }

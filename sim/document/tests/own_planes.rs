@@ -141,7 +141,9 @@ fn they_are_undone_redone_saved_and_reopened_byte_for_byte() {
     let settings = DocumentSettings::new(&folder.path().join("toy.maul"), Access::Paint);
     let (document, _) = Document::open(&settings).expect("begun");
     let mut sequencer = studio::sequencer_of("marker", Arc::clone(document.pager()));
-    sequencer.define_brush("main", studio::brush(48));
+    sequencer
+        .define_brush("main", studio::brush(48))
+        .expect("a brush");
     let painting = sequencer.painting_mut();
     painting.set_model(Box::new(Toy::counted()));
     let load = Load {

@@ -50,6 +50,11 @@ fn after_a_kill(path: &Path) -> Vec<String> {
 
 /// Paints, has `harm` done to the file, paints on, and sees what is found where the painting went.
 fn painted_on_after(harm: impl Fn(&Path)) {
+    painted_on(harm, "removed or replaced");
+}
+
+/// The same; that the harm is called by such words.
+fn painted_on(harm: impl Fn(&Path), words: &str) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("sea.maul");
     let mut easel = Easel::begin(&settings(&path));
@@ -62,7 +67,7 @@ fn painted_on_after(harm: impl Fn(&Path)) {
     easel.document.update_path();
     let kept = folder.path().join("sea-kept.maul");
     assert!(
-        said.contains("removed or replaced") && said.contains("sea-kept.maul"),
+        said.contains(words) && said.contains("sea-kept.maul"),
         "{said}"
     );
     assert_eq!(easel.document.path(), kept);
@@ -79,6 +84,54 @@ fn painted_on_after(harm: impl Fn(&Path)) {
     assert_eq!(easel.document.fault(), None);
     easel.close();
     assert_eq!(after_a_kill(&named), seen);
+}
+
+/// Cuts a file to this share of its length, in place.
+fn cut(path: &Path, [part, whole]: [u64; 2]) {
+    let file = std::fs::File::options().write(true).open(path);
+    let file = file.expect("it is there");
+    let bytes = file.metadata().expect("it is there").len();
+    file.set_len(bytes * part / whole).expect("cut");
+}
+
+#[test]
+fn a_journal_cut_short_in_place_loses_nothing() {
+    for share in [[0, 1], [1, 2], [9, 10]] {
+        painted_on(|path| cut(&journal(path), share), "cut short");
+    }
+}
+
+#[test]
+fn a_file_cut_short_in_place_loses_nothing_that_is_in_memory() {
+    for share in [[0, 1], [1, 2]] {
+        painted_on(|path| cut(path, share), "cut short");
+    }
+}
+
+#[test]
+fn a_journal_cut_to_nothing_and_written_on_is_noticed() {
+    painted_on(
+        |path| {
+            let file = std::fs::File::options().write(true).open(journal(path));
+            let file = file.expect("it is there");
+            let bytes = file.metadata().expect("it is there").len();
+            file.set_len(0).expect("cut");
+            file.set_len(2 * bytes).expect("written on");
+        },
+        "cut short",
+    );
+}
+
+#[test]
+fn a_painting_whose_journal_was_cut_can_be_read_after_a_kill() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("sea.maul");
+    let mut easel = Easel::begin(&settings(&path));
+    paint(&mut easel, &mut Painter::new(7));
+    easel.flush();
+    cut(&journal(&path), [0, 1]);
+    // Its program is killed before it can notice.
+    assert!(!after_a_kill(&path).is_empty());
 }
 
 #[test]

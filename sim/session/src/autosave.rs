@@ -53,6 +53,10 @@ impl Autosave {
 
     fn hand_over(&mut self, sequencer: &mut Sequencer) {
         let painting = sequencer.painting_mut();
+        if self.document.wants_all() {
+            painting.tell_all_again();
+            self.since = 0;
+        }
         if self.document.record_bytes() > painting.record_quota() {
             painting.break_record();
         }
@@ -70,7 +74,8 @@ impl Autosave {
         self.document.update_path();
         self.document.record(sequencer.take_records());
         let due = now_ns >= self.saved_ns + PERIOD_NS || now_ns < self.saved_ns;
-        if due && sequencer.serial() != self.serial && self.document.is_ready() {
+        let is_new = sequencer.serial() != self.serial || self.document.wants_all();
+        if due && is_new && self.document.is_ready() {
             self.saved_ns = now_ns;
             self.hand_over(sequencer);
         }

@@ -62,7 +62,7 @@ impl Offline {
     ) -> Result<Self, EditError> {
         let mut model = BrushModel::new(file.clone(), depth_share);
         model.set_scene(sequencer.painting().scene());
-        sequencer.define_brush(brush, file);
+        sequencer.define_brush(brush, file)?;
         let player = Origin {
             source: name_hash("player"),
             epoch: 1,
@@ -96,9 +96,9 @@ impl Offline {
         file: BrushFile,
         depth_share: f64,
     ) -> Result<(), EditError> {
+        self.sequencer.define_brush(brush, file.clone())?;
         self.too_fast_before = self.too_fast();
-        self.model = BrushModel::new(file.clone(), depth_share);
-        self.sequencer.define_brush(brush, file);
+        self.model = BrushModel::new(file, depth_share);
         self.brush = brush.to_owned();
         self.me = Origin {
             source: name_hash(brush),
@@ -184,22 +184,27 @@ impl Offline {
         let first = self.samples;
         self.samples += samples.len() as u64;
         let (player, model) = (self.player, &mut self.model);
-        let mut bend = move |(number, (event_ns, sample)): (usize, &(u64, &StylusSample))| {
+        let mut bend = move |(number, &(event_ns, sample)): (usize, &(u64, &StylusSample))| {
             let fits = sample.fault().is_none();
             let serial = first + number as u64;
-            let state = fits.then(|| model.state(player, serial, *event_ns, sample))?;
-            Some((number, *event_ns, state?))
+            let state = fits.then(|| model.state(player, serial, event_ns, sample));
+            // As the brush node sends them.
+            let messages = state.flatten().map_or_else(Vec::new, |state| {
+                state.messages(Flags::REPLAY, Flags::NONE, Flags::NONE)
+            });
+            let messages = messages.into_iter();
+            messages.map(move |(flags, state)| (number, event_ns, flags, state))
         };
         let (sequencer, brush, me, next) =
             (&mut self.sequencer, &self.brush, self.me, &mut self.next);
         let ticker = &mut self.ticker;
-        let mut paint = |(number, event_ns, state): (usize, u64, BrushState)| {
+        let mut paint = |(number, event_ns, flags, state): (usize, u64, Flags, BrushState)| {
             let header = Header {
                 version: BrushState::VERSION,
                 schema: 0,
                 source: me.source,
                 epoch: me.epoch,
-                flags: Flags::REPLAY,
+                flags,
                 length: 0,
                 seq: *next,
                 event_ns,
@@ -215,20 +220,22 @@ impl Offline {
             // Offline no command waits for a state.
             let (_, painted) = sequencer.state(brush, &header, &state);
             sequencer.drain_journal();
-            each(sequencer, number);
+            if !flags.has(Flags::CONTINUES) {
+                each(sequencer, number);
+            }
             painted
         };
         if let [_] = samples {
             return samples
                 .iter()
                 .enumerate()
-                .filter_map(bend)
+                .flat_map(bend)
                 .try_for_each(paint);
         }
         std::thread::scope(|scope| {
             let (bent, states) = mpsc::sync_channel(AHEAD);
             scope.spawn(move || {
-                for state in samples.iter().enumerate().filter_map(&mut bend) {
+                for state in samples.iter().enumerate().flat_map(&mut bend) {
                     // The painter has given up: what is wrong is said there.
                     if bent.send(state).is_err() {
                         return;

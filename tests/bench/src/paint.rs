@@ -104,7 +104,9 @@ impl Round {
             }
         }
         let mut sequencer = Sequencer::new(painting);
-        sequencer.define_brush(BRUSH, file.clone());
+        sequencer
+            .define_brush(BRUSH, file.clone())
+            .expect("a brush");
         let mixture = || FILM.parse().map_err(fault);
         let load = Load {
             mixture: mixture()?,

@@ -3,9 +3,7 @@
 use maulstick_brush::BrushFile;
 use maulstick_bus::{Announcer, BusError, Request};
 use maulstick_types::brush::BrushDef;
-use maulstick_types::command::{
-    BRUSH_FILE_MAX, BrushCommand, Command, CommandReply, CommandRequest, Outcome,
-};
+use maulstick_types::command::{BrushCommand, Command, CommandReply, CommandRequest, Outcome};
 use maulstick_types::{Flags, encode, name_hash};
 
 use super::BrushNode;
@@ -100,11 +98,6 @@ impl BrushNode {
             Ok(file) => file,
             Err(error) => return refused(error.to_string(), "correct the brush file"),
         };
-        let told = file.to_toml().map_or(usize::MAX, |toml| toml.len());
-        if told > BRUSH_FILE_MAX {
-            let what = format!("the brush file would be {told} bytes long");
-            return refused(what, "make its skin of fewer faces and weights");
-        }
         // A stroke on its way to the painting belongs to the brush that is in hand.
         let painted = self.states.next_seq() - self.states.outstanding();
         let under_way = self.newest_contact.is_some_and(|state| state >= painted);

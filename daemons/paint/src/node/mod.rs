@@ -9,7 +9,7 @@ mod save_as;
 mod status;
 mod time;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -23,7 +23,7 @@ use maulstick_bus::{
 };
 use maulstick_document::{Document, DocumentError, Relocation};
 use maulstick_painting::{Painting, Sequencer};
-use maulstick_types::brush::{BrushDef, BrushState};
+use maulstick_types::brush::{BRUSHES_MOST, BrushDef, BrushState};
 use maulstick_types::paint::{BrushCredit, JournalEntry, PaintConsumed, PaintStatus};
 use maulstick_types::scene::Scene;
 use maulstick_types::wire::topics::{Topics, check_name};
@@ -84,6 +84,8 @@ pub struct PaintNode {
     status_ns: u64,
     told: BTreeMap<Origin, u64>,
     tell_again: bool,
+    /// Sources of the brushes whose files or states were heard since the node began.
+    heard: BTreeSet<u32>,
     refused: u64,
     /// Brushes without a file, and topics with misfits or a stranger on them, of which it was said.
     unknown: Once,
@@ -173,6 +175,7 @@ impl PaintNode {
             told_status: None,
             told: BTreeMap::new(),
             tell_again: false,
+            heard: BTreeSet::new(),
             refused: 0,
             unknown: Once::default(),
             misfits: Once::default(),
@@ -323,11 +326,21 @@ impl PaintNode {
         let refusal = match (check_name(brush), BrushFile::parse(&def.toml)) {
             (Ok(()), Ok(file)) if def.brush == brush => {
                 // A session that is painted again has the brushes of then.
-                match self.knows_brush(brush) {
-                    true => drop(self.newer_brushes.insert(brush.to_owned(), file)),
+                let taken = match self.knows_brush(brush) {
+                    true => {
+                        self.newer_brushes.insert(brush.to_owned(), file);
+                        Ok(())
+                    }
                     false => self.sequencer.define_brush(brush, file),
+                };
+                match taken {
+                    Ok(()) => {
+                        self.heard.insert(name_hash(brush));
+                        self.tell_again = true;
+                        return;
+                    }
+                    Err(error) => format!("{error}: {}", error.advice()),
                 }
-                return;
             }
             (Ok(()), Ok(_)) => "it names another brush".to_owned(),
             (Ok(()), Err(error)) => error.to_string(),
@@ -341,7 +354,10 @@ impl PaintNode {
     fn take_up_brushes(&mut self) {
         if self.session.is_none() {
             for (brush, file) in std::mem::take(&mut self.newer_brushes) {
-                self.sequencer.define_brush(&brush, file);
+                // It is known, so there is room for it.
+                if let Err(error) = self.sequencer.define_brush(&brush, file) {
+                    tracing::error!("{brush}: {error}");
+                }
             }
         }
     }
@@ -380,6 +396,7 @@ impl PaintNode {
             }
             return Ok(true);
         }
+        self.heard.insert(received.header.source);
         self.take_up_brushes();
         let newest = received.message.solves.last();
         self.reliefs.note(&*self.bus, self.me, &brush, newest)?;
@@ -401,9 +418,10 @@ impl PaintNode {
         Ok(true)
     }
 
-    /// Tells the brushes what is consumed.
+    /// Tells the brushes that were heard what is consumed of their states: a painting may know many more.
     fn tell(&mut self, now_ns: u64) -> Result<(), BusError> {
-        let holds = self.sequencer.consumed_all();
+        let mut holds = self.sequencer.consumed_all();
+        holds.retain(|(origin, _)| self.heard.contains(&origin.source));
         let news = holds
             .iter()
             .any(|(origin, next)| self.told.get(origin) != Some(next));
@@ -412,7 +430,7 @@ impl PaintNode {
         }
         self.tell_again = false;
         self.told = holds.iter().copied().collect();
-        let brushes = holds
+        let credits: Vec<BrushCredit> = holds
             .iter()
             .map(|(origin, next)| {
                 let under = self.sequencer.painting().under_brush(origin.source);
@@ -427,19 +445,20 @@ impl PaintNode {
                 }
             })
             .collect();
-        self.consumed
-            .send(now_ns, now_ns, &PaintConsumed { brushes })
+        // Paintings of before may have more brushes than one has now.
+        for brushes in credits.chunks(BRUSHES_MOST) {
+            let brushes = brushes.to_vec();
+            self.consumed
+                .send(now_ns, now_ns, &PaintConsumed { brushes })?;
+        }
+        Ok(())
     }
 
     fn publish_scene(&mut self, now_ns: u64) -> Result<(), BusError> {
         let scene = self.sequencer.painting().scene();
         if scene.version != self.sent_scene {
             self.sent_scene = scene.version;
-            // Nothing that a painter does may end the node: a scene that does not fit is not told.
-            match self.scene.send(now_ns, scene) {
-                Err(error @ BusError::Message { .. }) => tracing::error!("{error}"),
-                sent => sent?,
-            }
+            self.scene.send(now_ns, scene)?;
         }
         self.scene.turn(now_ns)
     }

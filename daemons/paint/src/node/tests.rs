@@ -209,3 +209,93 @@ fn paint_dries_by_the_clock_of_the_node_and_each_tick_is_in_the_journal() {
     }
     assert_eq!(node.sequencer.painting().clock().ticks, before + 240);
 }
+
+/// Sends a brush's file, and returns whether the painting knows it then.
+fn introduced(node: &mut PaintNode, net: &MemoryNet, brush: &str) -> bool {
+    let origin = Origin {
+        source: name_hash(brush),
+        epoch: 1,
+    };
+    let topic = node.topics.brush_def(brush);
+    let mut sender = Sender::new(&net.bus(), &topic, Qos::Cached, origin).expect("a sender");
+    let toml = BrushFile::library_text("round").expect("round").to_owned();
+    let def = BrushDef {
+        brush: brush.to_owned(),
+        hash: name_hash(&toml),
+        toml,
+    };
+    sender.send(0, 0, &def).expect("sent");
+    net.advance(1);
+    node.turn().expect("a turn");
+    node.knows_brush(brush)
+}
+
+#[test]
+fn a_painting_gets_no_more_brushes_than_it_may_have_and_is_painted_on() {
+    let net = MemoryNet::new(1, 1_000_000_000, Faults::default());
+    let (mut node, _) = node(&net);
+    let known = (0..200).filter(|number| introduced(&mut node, &net, &format!("b{number}")));
+    // The first is there already.
+    assert_eq!(known.count(), BRUSHES_MOST - 1);
+    assert!(introduced(&mut node, &net, "b0"), "it may be changed");
+}
+
+#[test]
+fn a_painting_of_before_with_hundreds_of_brushes_is_painted_on() {
+    let net = MemoryNet::new(1, 1_000_000_000, Faults::default());
+    let (mut node, _) = node(&net);
+    let file = BrushFile::library("round").expect("round");
+    let header = |brush: &str| Header {
+        version: 1,
+        schema: 0,
+        source: name_hash(brush),
+        epoch: 1,
+        flags: Flags::NONE,
+        length: 0,
+        seq: 0,
+        event_ns: 0,
+        sent_ns: 0,
+    };
+    let nothing = BrushState {
+        device: 1,
+        device_epoch: 1,
+        device_seq: 0,
+        solves: Vec::new(),
+    };
+    for number in 0..300 {
+        let brush = format!("b{number}");
+        node.painting_mut().define_brush(&brush, file.clone());
+        let (_, consumed) = node.sequencer.state(&brush, &header(&brush), &nothing);
+        consumed.expect("consumed");
+    }
+    let topic = node.topics.paint_consumed();
+    let credit = Receiver::<PaintConsumed>::new(
+        &net.bus(),
+        &topic,
+        Qos::Control,
+        Queue::Ring(64),
+        &Wake::new(),
+    );
+    let mut credit = credit.expect("subscribed");
+    let mut told = |node: &mut PaintNode| {
+        node.turn().expect("a turn");
+        net.advance(1);
+        let messages = std::iter::from_fn(|| credit.try_recv());
+        let credits = messages.flat_map(|received| received.message.brushes);
+        credits
+            .map(|credit| credit.brush)
+            .collect::<BTreeSet<u32>>()
+    };
+    assert!(told(&mut node).is_empty(), "none of them is there");
+    assert!(introduced(&mut node, &net, "b7"));
+    assert_eq!(told(&mut node), BTreeSet::from([name_hash("b7")]));
+    for number in 0..300 {
+        introduced(&mut node, &net, &format!("b{number}"));
+    }
+    node.tell_again = true;
+    assert_eq!(
+        told(&mut node).len(),
+        300,
+        "in as many messages as it takes"
+    );
+}

@@ -121,6 +121,8 @@ pub struct Live {
     pub credit: Receiver<BrushConsumed>,
     pub sent: usize,
     pub epoch: u32,
+    /// Samples of the take that is played.
+    pub of_take: usize,
 }
 
 pub fn settings() -> BrushSettings {
@@ -164,6 +166,7 @@ impl Live {
             credit,
             sent: 0,
             epoch: 3,
+            of_take: take().len(),
         }
     }
 
@@ -278,7 +281,7 @@ impl Live {
                 event_ns: START_NS + time_ns,
             };
             self.sent += 1;
-            let flags = if self.sent == take().len() {
+            let flags = if self.sent == self.of_take {
                 Flags::REPLAY.with(Flags::LAST)
             } else {
                 Flags::REPLAY
@@ -290,10 +293,20 @@ impl Live {
 
     /// Plays until all is painted; `order` decides who turns when. Stops early after `limit` turns.
     pub fn play(&mut self, order: &mut impl FnMut() -> u8, limit: usize) {
-        let samples = take();
+        self.play_take(&take(), order, limit);
+    }
+
+    /// The same with another take.
+    pub fn play_take(
+        &mut self,
+        samples: &[(u64, StylusSample)],
+        order: &mut impl FnMut() -> u8,
+        limit: usize,
+    ) {
+        self.of_take = samples.len();
         for _ in 0..limit {
             match order() % 3 {
-                0 => self.player_turn(&samples),
+                0 => self.player_turn(samples),
                 1 => drop(self.brush.turn().expect("turned")),
                 _ => drop(self.paint.turn().expect("turned")),
             }

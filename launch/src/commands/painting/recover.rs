@@ -50,6 +50,7 @@ pub(super) fn run(options: &RecoverOptions) -> Result<i32, UserError> {
     let salvage = recovered.map_err(|error| match error {
         SalvageError::Document(
             error @ (DocumentError::Taken
+            | DocumentError::Disk(_)
             | DocumentError::ReadOnly(_)
             | DocumentError::Full
             | DocumentError::Unwritten(_)),

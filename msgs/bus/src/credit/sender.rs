@@ -10,7 +10,7 @@ use maulstick_types::{Flags, Header, Message, Origin, encode};
 use super::{RETRY_NS, RING, RING_BYTES, WINDOW};
 use crate::bus::{Bus, BusError, Publish, Qos, Server};
 use crate::inbox::Wake;
-use crate::typed::Reader;
+use crate::typed::{Reader, sendable};
 
 /// An answer to a question for a gap has at most so many bytes, or one message.
 const ANSWER_BYTES: usize = 1 << 20;
@@ -37,6 +37,8 @@ pub struct CreditSender<M> {
     ring: VecDeque<Kept>,
     /// Bytes of the messages in the ring.
     ring_bytes: usize,
+    /// True once it was said that a message was too long.
+    told: bool,
     message: PhantomData<fn(M)>,
 }
 
@@ -70,14 +72,16 @@ impl<M: Message> CreditSender<M> {
             progress_ns: bus.now_ns(),
             ring: VecDeque::new(),
             ring_bytes: 0,
+            told: false,
             message: PhantomData,
         })
     }
 
-    /// Sends a message and returns its number.
+    /// Sends a message and returns its number. One that exceeds its limit is dropped and told, and the next one has its
+    /// number.
     ///
     /// # Errors
-    /// [`BusError::Message`] where it exceeds its limit, [`BusError::Topic`].
+    /// [`BusError::Topic`].
     pub fn send(&mut self, flags: Flags, stamp: Stamp, message: &M) -> Result<u64, BusError> {
         let Stamp { now_ns, event_ns } = stamp;
         let flags = if self.next == 0 {
@@ -86,13 +90,10 @@ impl<M: Message> CreditSender<M> {
             flags
         };
         let seq = self.next;
-        let bytes =
-            encode(&self.origin, flags, seq, event_ns, now_ns, message).map_err(|source| {
-                BusError::Message {
-                    topic: self.topic.clone(),
-                    source,
-                }
-            })?;
+        let encoded = encode(&self.origin, flags, seq, event_ns, now_ns, message);
+        let Some(bytes) = sendable(&self.topic, encoded, &mut self.told) else {
+            return Ok(seq);
+        };
         if self.outstanding() == 0 {
             self.progress_ns = now_ns;
         }

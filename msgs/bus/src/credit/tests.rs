@@ -2,7 +2,7 @@
 
 use maulstick_types::stylus::StylusSample;
 use maulstick_types::wire::topics::Topics;
-use maulstick_types::{Flags, Origin, encode};
+use maulstick_types::{Flags, Message as _, Origin, decode, encode};
 use proptest::prelude::*;
 
 use super::{CreditReceiver, CreditSender, Stamp};
@@ -261,4 +261,34 @@ fn a_gap_that_is_being_filled_is_not_given_up() {
     stream.receiver.poll(&stream.bus).expect("polled");
     assert_eq!(stream.got(), (0..51).collect::<Vec<_>>());
     assert_eq!(stream.receiver.counts().lost, 0);
+}
+
+#[test]
+fn a_message_that_is_too_long_is_dropped_and_the_next_one_has_its_number() {
+    use maulstick_types::brush::BrushDef;
+    let net = MemoryNet::new(1, 0, Faults::default());
+    let (bus, wake) = (net.bus(), Wake::new());
+    let topic = "t/brush/main/def";
+    let mut sender =
+        crate::typed::Sender::new(&bus, topic, Qos::Control, ORIGIN).expect("a sender");
+    let queue = crate::Queue::Ring(8);
+    let heard = bus
+        .subscribe(topic, Qos::Control, queue, &wake)
+        .expect("subscribed");
+    let long = BrushDef {
+        brush: "main".to_owned(),
+        toml: "x".repeat(BrushDef::MAX_BYTES),
+        hash: 0,
+    };
+    let short = BrushDef {
+        toml: String::new(),
+        ..long.clone()
+    };
+    for def in [&long, &short, &long, &short] {
+        sender.send(0, 0, def).expect("no message ends its sender");
+    }
+    net.advance(1);
+    let numbers = std::iter::from_fn(|| heard.try_recv())
+        .map(|arrival| decode::<BrushDef>(&arrival.bytes).expect("whole").0.seq);
+    assert_eq!(numbers.collect::<Vec<_>>(), [0, 1]);
 }

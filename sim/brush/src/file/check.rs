@@ -10,6 +10,8 @@ pub const MOST_JOINTS: usize = 64;
 /// Joints of all spines at most: a state of one solve fits a message many times over.
 pub const MOST_IN_ALL: usize = 512;
 
+/// Strips of a head at most.
+pub const STRIPS_MOST: usize = 4096;
 /// Corners of all faces of a skin at most, once it is subdivided.
 pub const MOST_CORNERS: usize = 60_000;
 /// Half a ferrule is at least this share of half the greatest width or thickness.
@@ -273,7 +275,11 @@ fn chain(chain: &Chain) -> Result<(), BrushError> {
 
 fn strips(file: &BrushFile) -> Result<(), BrushError> {
     let strips = &file.strips;
-    within("strips.count", strips.count as f64, 1.0..=4096.0)?;
+    within(
+        "strips.count",
+        strips.count as f64,
+        1.0..=STRIPS_MOST as f64,
+    )?;
     within("strips.width_mm", strips.width_mm, 0.01..=50.0)?;
     within("strips.thickness_mm", strips.thickness_mm, 0.0..=10.0)?;
     within("strips.taper", strips.taper, 0.0..=1.0)?;

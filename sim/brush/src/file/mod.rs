@@ -36,6 +36,7 @@ pub mod check;
 pub mod library;
 pub mod sections;
 
+use maulstick_types::command::BRUSH_FILE_MAX;
 use serde::{Deserialize, Serialize};
 
 use self::check::within;
@@ -64,6 +65,14 @@ pub enum BrushError {
     /// The file is no brush file.
     #[error("{0}")]
     File(String),
+    /// More bytes than a brush file may have.
+    #[error(
+        "written out it has {bytes} bytes, and may have {BRUSH_FILE_MAX}: make its skin of fewer faces and weights"
+    )]
+    TooLong {
+        /// Its bytes.
+        bytes: usize,
+    },
     /// A number is out of its range.
     #[error("{field} is {value}, but must be {range}")]
     Range {
@@ -122,12 +131,17 @@ impl BrushFile {
         Ok(file)
     }
 
-    /// Checks all numbers.
+    /// Checks all numbers, and that it can be announced and kept: written again, numbers may take more room than in the
+    /// file that was read.
     ///
     /// # Errors
-    /// [`BrushError::Range`].
+    /// [`BrushError::Range`], [`BrushError::TooLong`].
     pub fn check(&self) -> Result<(), BrushError> {
-        check::check(self)
+        check::check(self)?;
+        match self.to_toml()?.len() {
+            0..=BRUSH_FILE_MAX => Ok(()),
+            bytes => Err(BrushError::TooLong { bytes }),
+        }
     }
 
     /// As a file, which [`parse`](Self::parse) reads back to the same brush.
@@ -341,6 +355,27 @@ mod tests {
         assert!(
             skin(&format!("{one}weights = [[[99, 1]]]\nfaces = [[0, 0, 0]]")).contains("joint")
         );
+    }
+
+    #[test]
+    fn a_file_that_grows_beyond_its_limit_when_it_is_written_is_refused() {
+        let text = BrushFile::library_text("round").expect("text");
+        let sizes = |count: usize| {
+            let sizes = vec!["1"; count].join(",");
+            format!("sizes_mm=[{sizes}]\n{}", without_sizes(text))
+        };
+        assert!(BrushFile::parse(&sizes(1000)).is_ok());
+        // Each "1," is written as "1.0, ".
+        let long = sizes(250_000);
+        assert!(long.len() < BRUSH_FILE_MAX);
+        let error = BrushFile::parse(&long).expect_err("too long");
+        assert!(matches!(error, BrushError::TooLong { bytes } if bytes > BRUSH_FILE_MAX));
+    }
+
+    /// A brush file without the widths that it is made in.
+    fn without_sizes(text: &str) -> String {
+        let lines = text.lines().filter(|line| !line.starts_with("sizes_mm"));
+        lines.collect::<Vec<_>>().join("\n")
     }
 
     #[test]

@@ -11,6 +11,11 @@ pub trait Backing: Send + Sync {
     /// # Errors
     /// The defect, in words.
     fn read(&self, id: u64, kind: TypeId) -> Result<Box<dyn Any>, String>;
+
+    /// False while what it stores may not be read back, as where its disk fails: then no page leaves memory.
+    fn is_at_hand(&self) -> bool {
+        true
+    }
 }
 
 /// Content of a page.

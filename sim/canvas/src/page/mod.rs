@@ -155,6 +155,13 @@ impl Pager {
         while ring.front().is_some_and(|what| what.strong_count() == 0) {
             ring.pop_front();
         }
+        if self
+            .backing
+            .get()
+            .is_some_and(|backing| !backing.is_at_hand())
+        {
+            return;
+        }
         // If no page could leave, none is asked again until the document has another one, or many came.
         let rest = self.rest.load(Relaxed);
         if rest > 0 {
@@ -199,9 +206,13 @@ struct Kept<T: Content> {
     used: AtomicBool,
     /// Bytes in the document; 0 while it is not there.
     stored: AtomicUsize,
-    /// The page of which this one is a later state.
-    base: Weak<Kept<T>>,
+    /// The pages of which this one is a later state, the newest first. States in the midst of a stroke are soon forgotten; what
+    /// was there before it stays.
+    bases: Vec<Weak<Kept<T>>>,
 }
+
+/// Pages of which a page knows that it is a later state, at most.
+const BASES: usize = 3;
 
 impl<T: Content> Evict for Kept<T> {
     fn evict(&self) -> Option<usize> {
@@ -244,7 +255,12 @@ impl<T: Content> Clone for Page<T> {
 }
 
 impl<T: Content> Page<T> {
-    fn make(pager: &Arc<Pager>, id: u64, content: Option<Arc<T>>, base: Weak<Kept<T>>) -> Self {
+    fn make(
+        pager: &Arc<Pager>,
+        id: u64,
+        content: Option<Arc<T>>,
+        bases: Vec<Weak<Kept<T>>>,
+    ) -> Self {
         let bytes = content.as_ref().map(|content| content.bytes());
         let kept = Arc::new(Kept {
             id,
@@ -252,7 +268,7 @@ impl<T: Content> Page<T> {
             content: Mutex::new(content),
             used: AtomicBool::new(true),
             stored: AtomicUsize::new(0),
-            base,
+            bases,
         });
         if let Some(bytes) = bytes {
             let weak: Weak<Kept<T>> = Arc::downgrade(&kept);
@@ -264,12 +280,13 @@ impl<T: Content> Page<T> {
     /// A new page; `base` is the one of which it is a later state.
     #[must_use]
     pub fn new(pager: &Arc<Pager>, content: Arc<T>, base: Option<&Self>) -> Self {
-        // A page that is not stored may never be: then it is a later state of the one before.
-        let base = base.map_or_else(Weak::new, |base| match base.stored_bytes() {
-            0 => base.0.base.clone(),
-            _ => Arc::downgrade(&base.0),
+        let bases = base.map_or_else(Vec::new, |base| {
+            // A page that is not stored may never be: then it is a later state of those before.
+            let own = (base.stored_bytes() > 0).then(|| Arc::downgrade(&base.0));
+            let before = base.0.bases.iter().filter(|base| base.strong_count() > 0);
+            own.into_iter().chain(before.cloned()).take(BASES).collect()
         });
-        Self::make(pager, pager.number(), Some(content), base)
+        Self::make(pager, pager.number(), Some(content), bases)
     }
 
     /// A page that belongs to no painting.
@@ -281,7 +298,7 @@ impl<T: Content> Page<T> {
     /// A page that its document has, `stored` bytes of it.
     #[must_use]
     pub fn stored(pager: &Arc<Pager>, id: u64, stored: usize) -> Self {
-        let page = Self::make(pager, id, None, Weak::new());
+        let page = Self::make(pager, id, None, Vec::new());
         page.note_stored(stored);
         page
     }
@@ -304,10 +321,11 @@ impl<T: Content> Page<T> {
         Arc::ptr_eq(&self.0, &other.0)
     }
 
-    /// The page of which it is a later state, if that is still referenced.
+    /// The newest page of which it is a later state and that is still referenced.
     #[must_use]
     pub fn base(&self) -> Option<Self> {
-        self.0.base.upgrade().map(Self)
+        let mut bases = self.0.bases.iter();
+        bases.find_map(Weak::upgrade).map(Self)
     }
 
     /// Bytes that it takes in the document; 0 while it is not there.
@@ -393,69 +411,4 @@ impl<T: Content + PartialEq> PartialEq for Page<T> {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::any::{Any, TypeId};
-
-    use super::*;
-    use crate::planes::{Planes, TILE_CELLS};
-
-    /// Pages whose one plane holds their number.
-    struct Numbers;
-
-    impl Backing for Numbers {
-        fn read(&self, id: u64, _: TypeId) -> Result<Box<dyn Any>, String> {
-            match id {
-                13 => Err("page 13 is damaged".to_owned()),
-                _ => Ok(Box::new(plane(id))),
-            }
-        }
-    }
-
-    fn plane(number: u64) -> Planes {
-        Planes::from_iter([(0, vec![number as f32; TILE_CELLS].into())])
-    }
-
-    const BYTES: usize = TILE_CELLS * 4;
-
-    #[test]
-    fn stored_pages_leave_when_memory_gets_short_and_come_back() {
-        let pager = Pager::backed(Arc::new(Numbers), 4 * BYTES, 1);
-        let pages: Vec<Page<Planes>> = (1..=10)
-            .map(|number| Page::new(&pager, Arc::new(plane(number)), None))
-            .collect();
-        assert_eq!(pager.counts().resident, 10 * BYTES, "none is stored");
-        pages.iter().for_each(|page| page.note_stored(100));
-        assert_eq!(pager.counts().stored, 1000);
-        let more = Page::new(&pager, Arc::new(plane(11)), None);
-        assert!(pager.counts().resident <= 4 * BYTES);
-        assert_eq!(more.resident_bytes(), BYTES, "the newest is not stored");
-        for (page, number) in pages.iter().zip(1..) {
-            assert_eq!(page.get()[0].1[7], number as f32);
-            assert!(pager.counts().resident <= 5 * BYTES);
-        }
-        assert!(pager.counts().fetched >= 6 && pager.fault().is_none());
-    }
-
-    #[test]
-    fn what_nobody_remembers_may_be_deleted_and_what_is_damaged_is_told() {
-        let pager = Pager::backed(Arc::new(Numbers), usize::MAX, 1);
-        let page = Page::new(&pager, Arc::new(plane(1)), None);
-        page.note_stored(50);
-        let unsaved = Page::new(&pager, Arc::new(plane(2)), Some(&page));
-        let newest = Page::new(&pager, Arc::new(plane(3)), Some(&unsaved));
-        for later in [&unsaved, &newest] {
-            assert!(later.base().is_some_and(|base| base.is(&page)));
-        }
-        drop(newest);
-        let clone = page.clone();
-        drop(page);
-        assert!(pager.take_dead().is_empty());
-        drop(clone);
-        assert!(unsaved.base().is_none());
-        drop(unsaved);
-        assert_eq!(pager.take_dead(), [1]);
-        assert_eq!((pager.counts().stored, pager.counts().resident), (0, 0));
-        assert!(Page::<Planes>::stored(&pager, 13, 9).get().is_empty());
-        assert_eq!(pager.fault(), Some("page 13 is damaged"));
-    }
-}
+mod tests;

@@ -9,6 +9,7 @@ use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags, OptionalExtension as _, params};
 
 use crate::error::DocumentError;
+use crate::file::connect::connect;
 use crate::tables::checksum::{load_checksum, page_checksum, shown_checksum};
 use crate::tables::{loads, planes, schema};
 
@@ -64,7 +65,8 @@ pub(crate) fn merged(path: &Path) -> Result<(), DocumentError> {
     }
 }
 
-fn length(path: &Path) -> Option<u64> {
+/// Bytes of a file; `None` if there is none.
+pub(crate) fn length(path: &Path) -> Option<u64> {
     std::fs::metadata(path).ok().map(|about| about.len())
 }
 
@@ -159,12 +161,8 @@ impl Database {
             | OpenFlags::SQLITE_OPEN_CREATE;
         let was_unclosed =
             length(&companion(&resolved(path), "-wal")).is_some_and(|length| length > 0);
-        let connection = match vfs {
-            Some(vfs) => Connection::open_with_flags_and_vfs(path, flags, vfs),
-            None => Connection::open_with_flags(path, flags),
-        };
         let mut database = Self {
-            connection: connection?,
+            connection: connect(path, flags, vfs)?,
             level: planes::LEVEL,
             _registered: FileId::of(path).ok().map(OpenDatabase::new),
             was_unclosed,
@@ -196,9 +194,9 @@ impl Database {
         if new {
             schema::create(&self.connection)?;
         }
-        match access {
-            Access::Paint => schema::migrate(&self.connection)?,
-            Access::Read => drop(schema::version(&self.connection)?),
+        schema::check(&self.connection)?;
+        if access == Access::Paint {
+            schema::migrate(&self.connection)?;
         }
         Ok(new)
     }
@@ -252,7 +250,7 @@ impl Database {
             | OpenFlags::SQLITE_OPEN_NO_MUTEX;
         let uri = format!("file:{escaped}?immutable=1");
         Ok(Self {
-            connection: Connection::open_with_flags(uri, flags)?,
+            connection: connect(Path::new(&uri), flags, None)?,
             level: planes::LEVEL,
             _registered: FileId::of(path).ok().map(OpenDatabase::new),
             was_unclosed: false,
@@ -276,10 +274,7 @@ impl Database {
     /// The error of SQLite.
     pub fn close(self) -> Result<(), DocumentError> {
         if !self.connection.is_readonly("main")? {
-            let merged =
-                self.connection
-                    .query_row("PRAGMA wal_checkpoint(TRUNCATE)", params![], |_| Ok(()));
-            match merged.map_err(DocumentError::from) {
+            match self.try_merge_journal() {
                 // The data are safe in the journal, and are merged once there is room.
                 Err(DocumentError::Full) => {}
                 merged => merged?,
@@ -300,10 +295,18 @@ impl Database {
 
     /// Merges the journal into the file, as far as there is room, and stays open.
     pub(crate) fn merge_journal(&self) {
-        let query = "PRAGMA wal_checkpoint(TRUNCATE)";
-        if let Err(error) = self.connection.query_row(query, params![], |_| Ok(())) {
+        if let Err(error) = self.try_merge_journal() {
             tracing::debug!("the journal is not merged: {error}");
         }
+    }
+
+    /// The same, and what keeps it from being merged.
+    ///
+    /// # Errors
+    /// The error of SQLite.
+    pub(crate) fn try_merge_journal(&self) -> Result<(), DocumentError> {
+        let query = "PRAGMA wal_checkpoint(TRUNCATE)";
+        Ok(self.connection.query_row(query, params![], |_| Ok(()))?)
     }
 
     /// Writes its content, including the journal, to a new file.
@@ -372,17 +375,10 @@ impl Database {
     /// Checks that it has the tables of this version: what was not locked is not migrated.
     ///
     /// # Errors
-    /// [`DocumentError::NoPainting`] if not, or the error of SQLite.
+    /// [`DocumentError::NoPainting`] if not, [`DocumentError::Altered`], or the error of SQLite.
     pub(crate) fn is_of_this_version(&self) -> Result<(), DocumentError> {
-        let number = |query| {
-            self.connection
-                .query_row(query, params![], |row| row.get(0))
-        };
-        let own: [i32; 2] = [
-            number("PRAGMA application_id")?,
-            number("PRAGMA user_version")?,
-        ];
-        match own == [schema::APPLICATION_ID, schema::VERSION] {
+        schema::check(&self.connection)?;
+        match schema::has_record(&self.connection)? {
             true => Ok(()),
             false => Err(DocumentError::NoPainting),
         }

@@ -1,5 +1,6 @@
 //! The file on disk: its lock, its names, and its rows one by one.
 
+pub(crate) mod connect;
 pub mod database;
 pub mod relocate;
 pub(crate) mod watch;

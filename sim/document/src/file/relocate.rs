@@ -9,6 +9,7 @@ use maulstick_files::{FileId, first_free};
 
 use crate::error::DocumentError;
 use crate::file::database::{Access, Database, companion, is_new, merged, resolved};
+use crate::opening;
 
 /// Way to relocate a painting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,6 +122,32 @@ pub(crate) fn rescue(database: &Database, to: &Path, replace: bool) -> Result<()
         std::fs::remove_file(&part).ok();
     })?;
     sync_folder(to)
+}
+
+/// Copies the file of a painting whose journal cannot be read any more, as it was when that was last merged into it; false,
+/// and no file at `to`, if it is no whole painting even so.
+///
+/// # Errors
+/// As [`make_room`], or the error of the file system.
+pub(crate) fn copied_without_journal(from: &Path, to: &Path) -> Result<bool, DocumentError> {
+    make_room(to, false)?;
+    let part = unfinished(to);
+    // Left by a rescue that was interrupted.
+    std::fs::remove_file(&part).ok();
+    std::fs::copy(from, &part)?;
+    File::open(&part)?.sync_all()?;
+    let checked = Database::open(&part, Access::Read, None).and_then(|(database, _)| {
+        let is_whole = opening::next_page(&database).is_ok();
+        database.close()?;
+        Ok(is_whole)
+    });
+    let is_whole = checked.unwrap_or(false);
+    match is_whole {
+        true => rename(&part, to, false)?,
+        false => std::fs::remove_file(&part)?,
+    }
+    sync_folder(to)?;
+    Ok(is_whole)
 }
 
 /// Free name beside a painting: `sea-kept.maul` for `sea.maul`, or `sea-kept-2.maul`.

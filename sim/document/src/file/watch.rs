@@ -1,12 +1,14 @@
 //! Checks that the files of an open painting are still at their paths: SQLite keeps writing into files that no longer
 //! have a name, and what is committed there is lost with the process.
 
+use std::fs::File;
+use std::io::{ErrorKind, Read as _};
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
 
 use maulstick_files::FileId;
 
-use crate::file::database::{companion, resolved};
+use crate::file::database::{companion, length, resolved};
 
 /// The files of an open painting by device and inode.
 #[derive(Debug)]
@@ -16,6 +18,8 @@ pub(crate) struct FileWatch {
     file: Option<FileId>,
     /// `None` until SQLite has created it.
     journal: Option<FileId>,
+    /// Bytes of both after the last write.
+    bytes: [u64; 2],
 }
 
 /// State of the files of an open painting.
@@ -27,17 +31,39 @@ pub(crate) enum FileState {
     Linked,
     /// This one was removed or replaced.
     Gone(PathBuf),
+    /// This one was cut short, or its beginning overwritten, and what was in it is lost.
+    Cut(PathBuf),
 }
+
+/// First bytes of a write-ahead log: its magic number, whose last bit says how its checksums are to be read.
+const JOURNAL_MAGIC: u32 = 0x377f_0682;
 
 impl FileWatch {
     /// Watch over a painting that was just opened.
     pub(crate) fn new(path: &Path) -> Self {
         let path = resolved(path);
-        Self {
+        let mut watch = Self {
             file: FileId::of(&path).ok(),
             journal: FileId::of(&companion(&path, "-wal")).ok(),
+            bytes: [0; 2],
             path,
+        };
+        watch.note_sizes();
+        watch
+    }
+
+    /// Notes how long the files are after a write, which makes neither shorter.
+    pub(crate) fn note_sizes(&mut self) {
+        let paths = [self.path.clone(), companion(&self.path, "-wal")];
+        for (bytes, path) in self.bytes.iter_mut().zip(paths) {
+            *bytes = length(&path).unwrap_or(0).max(*bytes);
         }
+    }
+
+    /// Notes that the journal was merged into the file, which makes it shorter.
+    pub(crate) fn note_merged(&mut self) {
+        self.bytes[1] = 0;
+        self.note_sizes();
     }
 
     /// Compares the files at the paths with those that were opened.
@@ -45,18 +71,31 @@ impl FileWatch {
         let Some(file) = self.file else {
             return FileState::InPlace;
         };
-        let found = std::fs::metadata(&self.path);
-        let links = match found {
-            Ok(found) if FileId::from(&found) == file => found.nlink(),
+        let links = match std::fs::metadata(&self.path) {
+            Ok(found) if FileId::from(&found) == file => {
+                if found.len() < self.bytes[0] {
+                    return FileState::Cut(self.path.clone());
+                }
+                found.nlink()
+            }
+            // A disk that fails says so when it is written to.
+            Err(error) if error.kind() != ErrorKind::NotFound => return FileState::InPlace,
             _ => return FileState::Gone(self.path.clone()),
         };
         let journal = companion(&self.path, "-wal");
-        let found = FileId::of(&journal).ok();
+        let found = match FileId::of(&journal) {
+            Err(error) if error.kind() != ErrorKind::NotFound => return FileState::InPlace,
+            found => found.ok(),
+        };
         self.journal = self.journal.or(found);
-        match self.journal == found {
-            false => FileState::Gone(journal),
-            true if links > 1 => FileState::Linked,
-            true => FileState::InPlace,
+        if self.journal != found {
+            FileState::Gone(journal)
+        } else if length(&journal).unwrap_or(0) < self.bytes[1] || is_overwritten(&journal) {
+            FileState::Cut(journal)
+        } else if links > 1 {
+            FileState::Linked
+        } else {
+            FileState::InPlace
         }
     }
 
@@ -68,4 +107,12 @@ impl FileWatch {
             std::fs::remove_file(journal).ok();
         }
     }
+}
+
+/// True if a journal does not begin as one does: it was cut to nothing and written on since. SQLite locks the painting, not its
+/// journal, so opening and closing that drops no lock.
+fn is_overwritten(journal: &Path) -> bool {
+    let mut magic = [0; 4];
+    let read = File::open(journal).and_then(|mut file| file.read_exact(&mut magic));
+    read.is_ok() && u32::from_be_bytes(magic) & !1 != JOURNAL_MAGIC
 }

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
-use maulstick_canvas::dry::{DryLayer, DryStack};
+use maulstick_canvas::dry::{DRY_LAYERS_MOST, DryLayer, DryStack};
 use maulstick_canvas::page::{Page, Pager};
 use maulstick_canvas::planes::Planes;
 use maulstick_canvas::tile::Tile;
@@ -70,6 +70,10 @@ impl StoredPages {
                 planes: stored.page(page)?,
             };
             let stack = DryStack::known(id as u64, below, layer);
+            if stack.depth() > DRY_LAYERS_MOST {
+                let most = DRY_LAYERS_MOST;
+                return Err(damaged(format!("a tile has more than {most} dry layers")));
+            }
             stack.note_stored();
             stored.stacks.insert(id, stack);
         }

@@ -5,6 +5,7 @@
 //! by who executes it again.
 
 pub(crate) mod beginning;
+mod columns;
 mod rewind;
 mod transposed;
 
@@ -92,14 +93,17 @@ pub(crate) fn bytes_after(database: &Database, change: &RecordChange) -> u64 {
     }
 }
 
-/// Discards the record of a closed painting: the next one that opens it begins another.
+/// Discards the record of a closed painting, and its tiles as they were displayed: the next one that opens it begins another,
+/// and draws them again.
 ///
 /// # Errors
 /// Any [`DocumentError`].
 pub fn discard(path: &Path) -> Result<(), DocumentError> {
     let (database, _) = Database::open(path, Access::Paint, None)?;
     clear(&database)?;
-    database.connection.execute_batch("VACUUM")?;
+    database
+        .connection
+        .execute_batch("DELETE FROM shown; VACUUM")?;
     database.close()
 }
 
@@ -169,7 +173,7 @@ impl<'a> OpenRow<'a> {
         if self.data.is_empty() {
             return Ok(());
         }
-        let data = zstd::bulk::compress(&transposed::transposed(&self.data)?, LEVEL)?;
+        let data = zstd::bulk::compress(&columns::columns(&self.data)?, LEVEL)?;
         self.data.clear();
         self.bytes += data.len() as u64;
         let [first, last] = self.ends;
@@ -276,7 +280,11 @@ pub(crate) fn row_from(
             .optional()?;
         if let Some((ints, data, sum)) = row {
             checked(record_checksum(ints, &data), sum)?;
-            let messages = transposed::in_order(&journal::unpacked(&data)?)?;
+            let row = journal::unpacked(&data)?;
+            let messages = match columns::in_order(&row)? {
+                Some(messages) => messages,
+                None => transposed::in_order(&row)?,
+            };
             found = Some((ints[0] as u64, Some(ints[2] as u64), messages));
         }
     }

@@ -1,5 +1,5 @@
-//! Messages of the same length byte by byte: all first bytes, all second bytes, and so on. States of a brush follow each
-//! other closely, so that a row is a fifth smaller after compression.
+//! Rows of the record that programs of schema 5 wrote: messages of the same length byte by byte, all first bytes, all second
+//! bytes, and so on.
 //!
 //! A group is the number of messages and their length, with index and length of each, as 4 bytes each, and then their bytes.
 
@@ -7,9 +7,11 @@ use super::damaged;
 use crate::error::DocumentError;
 
 /// Bytes of index and length before a message.
+#[cfg(test)]
 const HEAD: usize = 12;
 
 /// Bytes of the first message, with its head.
+#[cfg(test)]
 fn first(messages: &[u8]) -> Result<usize, DocumentError> {
     let head = messages.first_chunk::<HEAD>();
     let [.., a, b, c, d] = *head.ok_or_else(|| damaged("is torn"))?;
@@ -24,7 +26,8 @@ fn first(messages: &[u8]) -> Result<usize, DocumentError> {
 ///
 /// # Errors
 /// [`DocumentError::Damaged`] if the last one is torn.
-pub(super) fn transposed(messages: &[u8]) -> Result<Vec<u8>, DocumentError> {
+#[cfg(test)]
+fn transposed(messages: &[u8]) -> Result<Vec<u8>, DocumentError> {
     let mut groups = Vec::with_capacity(messages.len() + 8);
     let mut rest = messages;
     while !rest.is_empty() {

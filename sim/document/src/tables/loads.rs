@@ -5,9 +5,10 @@
 
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_model::brush::load::BrushLoad;
+use maulstick_model::brush::traits::{STRIPS_MOST, TEXELS_PER_STRIP};
 
-/// A head has at most this many texels.
-const TEXELS_MAX: usize = 1 << 20;
+/// A head has at most this many texels: those of as many strips as a brush may have.
+const TEXELS_MAX: usize = STRIPS_MOST * TEXELS_PER_STRIP;
 
 /// A load as bytes.
 ///

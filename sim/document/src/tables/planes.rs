@@ -8,6 +8,7 @@
 
 mod own;
 
+use std::io::Read as _;
 use std::sync::Arc;
 
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
@@ -48,28 +49,27 @@ fn left_or_below(counts: &[i32], cell: usize) -> i32 {
     }
 }
 
-/// Most bytes of planes that the model keeps of its own.
-const OWN_MOST: usize = 1 << 28;
-
 /// Bit mask of the slots that planes hold.
 #[must_use]
 pub fn mask(planes: &Planes) -> u64 {
     planes.iter().fold(0, |mask, (slot, _)| mask | 1 << slot)
 }
 
-/// What is compressed, and where in it the bytes of the model's own planes begin.
-fn unpacked(mask: u64, bytes: &[u8]) -> Result<(Vec<u8>, usize), String> {
-    let length = 1 + mask.count_ones() as usize * TILE_CELLS * 4;
-    let all =
-        zstd::bulk::decompress(bytes, length + OWN_MOST).map_err(|error| error.to_string())?;
-    let fits = match all.first() {
-        Some(0) => all.len() == length,
-        Some(1) => all.len() > length,
-        _ => false,
-    };
-    match fits {
-        true => Ok((all, length)),
-        false => Err(format!("{} bytes instead of {length}", all.len())),
+/// Bytes of the counts of the slots of a mask, with the byte before them.
+fn counts_bytes(mask: u64) -> usize {
+    1 + mask.count_ones() as usize * TILE_CELLS * 4
+}
+
+/// Bytes of what is compressed, as its head says: no more than the paints of the mask can have.
+fn unpacked_bytes(mask: u64, bytes: &[u8]) -> Result<usize, String> {
+    let least = counts_bytes(mask);
+    let most = least + own::most(mask);
+    let told = zstd::zstd_safe::get_frame_content_size(bytes);
+    let told = told.map_err(|_| "it is not compressed".to_owned())?;
+    match told.and_then(|told| usize::try_from(told).ok()) {
+        Some(told) if (least..=most).contains(&told) => Ok(told),
+        Some(told) => Err(format!("{told} bytes instead of {least} to {most}")),
+        None => Err("it does not say its size".to_owned()),
     }
 }
 
@@ -104,8 +104,10 @@ pub fn encode(planes: &Planes, base: Option<&Planes>, level: i32) -> std::io::Re
 /// # Errors
 /// The defect of the bytes, in words.
 pub fn repack(mask: u64, bytes: &[u8], level: i32) -> Result<Vec<u8>, String> {
-    let (shuffled, _) = unpacked(mask, bytes)?;
-    zstd::bulk::compress(&shuffled, level).map_err(|error| error.to_string())
+    let most = unpacked_bytes(mask, bytes)?;
+    let shuffled = zstd::bulk::decompress(bytes, most);
+    let packed = shuffled.and_then(|shuffled| zstd::bulk::compress(&shuffled, level));
+    packed.map_err(|error| error.to_string())
 }
 
 /// Reads planes of the slots of `mask`.
@@ -114,9 +116,23 @@ pub fn repack(mask: u64, bytes: &[u8], level: i32) -> Result<Vec<u8>, String> {
 /// The defect of the bytes, in words.
 pub fn decode(mask: u64, bytes: &[u8], base: Option<&Planes>) -> Result<Planes, String> {
     let slots: Vec<usize> = (0..SLOTS).filter(|slot| mask >> slot & 1 == 1).collect();
-    let (all, length) = unpacked(mask, bytes)?;
-    let (shuffled, rest) = all.split_at(length);
-    let shuffled = &shuffled[1..];
+    let words = |error: std::io::Error| error.to_string();
+    let length = counts_bytes(mask);
+    let is_all = unpacked_bytes(mask, bytes)? == length;
+    let (all, mut rest) = if is_all {
+        let all = zstd::bulk::decompress(bytes, length).map_err(words)?;
+        (all, None)
+    } else {
+        // Planes of the model's own are read one by one, so that the first that is wrong ends it.
+        let mut stream = zstd::stream::read::Decoder::with_buffer(bytes).map_err(words)?;
+        let mut all = vec![0; length];
+        stream.read_exact(&mut all).map_err(words)?;
+        (all, Some(stream))
+    };
+    if all.len() != length || all[0] != u8::from(rest.is_some()) {
+        return Err("its planes are other ones than it says".to_owned());
+    }
+    let shuffled = &all[1..];
     let mut planes = Planes::new();
     for (slot, bytes) in slots.iter().zip(shuffled.chunks_exact(TILE_CELLS * 4)) {
         let old = base.map(|base| find(base, *slot).map(counts).unwrap_or_default());
@@ -138,13 +154,17 @@ pub fn decode(mask: u64, bytes: &[u8], base: Option<&Planes>) -> Result<Planes, 
         let plane: Arc<[f32]> = now.iter().map(|count| *count as f32).collect();
         planes.push((*slot, plane));
     }
-    Ok(planes.with_own(own::read(rest, base)?))
+    match &mut rest {
+        Some(rest) => Ok(planes.with_own(own::read(rest, base)?)),
+        None => Ok(planes),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
 
+    use maulstick_canvas::layered::shape_of;
     use maulstick_canvas::own_plane::{OwnPlane, OwnShape, ValueType};
     use proptest::prelude::*;
 
@@ -180,7 +200,7 @@ mod tests {
                     values,
                     per_cell,
                 };
-                let bytes = (0..shape.tile_bytes()).map(|i| (i as u8).wrapping_mul(step));
+                let bytes = (0..shape.tile_bytes()).map(|i| (i as u8).wrapping_mul(step | 1));
                 (shape, bytes.collect::<Arc<[u8]>>())
             });
         let own = prop::collection::btree_map(0..9u8, own, 0..3);
@@ -213,8 +233,32 @@ mod tests {
         #[test]
         fn no_bytes_make_it_panic(mask in any::<u64>(), bytes in prop::collection::vec(any::<u8>(), 0..200)) {
             decode(mask, &bytes, None).ok();
-            own::read(&bytes, None).ok();
+            own::read(&mut &bytes[..], None).ok();
         }
+    }
+
+    /// A page of one paint with planes of the model's own of these kinds, as bytes.
+    fn with_own_of(kinds: impl Iterator<Item = u16>, byte: u8) -> Vec<u8> {
+        let mut all = vec![0; counts_bytes(1)];
+        all[0] = 1;
+        for kind in kinds {
+            let head = [kind, 4, 1u16];
+            all.extend(head.iter().flat_map(|number| number.to_le_bytes()));
+            all.resize(all.len() + TILE_CELLS * 4, byte);
+        }
+        zstd::bulk::compress(&all, LEVEL).expect("packed")
+    }
+
+    #[test]
+    fn a_page_is_bounded_by_what_its_paints_can_have() {
+        let layers = |count: usize| (0..count).map(|layer| shape_of(0, layer).kind);
+        let whole = decode(1, &with_own_of(layers(40), 7), None).expect("a model's page");
+        assert_eq!(whole.own().len(), 40);
+        let long = with_own_of(0..2000, 7);
+        let error = decode(1, &long, None).expect_err("more than layers of a paint");
+        assert!(error.contains("bytes instead of"), "{error}");
+        let empty = decode(1, &with_own_of(layers(40), 0), None).expect_err("nothing in it");
+        assert!(empty.contains("holds nothing"), "{empty}");
     }
 
     #[test]

@@ -1,15 +1,17 @@
 //! The tables of a painting. `docs/document.md` describes them for other programs.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
-use rusqlite::{Connection, OpenFlags, params};
+use rusqlite::{Connection, OpenFlags, Row, params};
 
 use crate::error::DocumentError;
+use crate::file::connect::connect;
 
 /// `application_id` of a painting: "Maul".
 pub const APPLICATION_ID: i32 = 0x4D61_756C;
 /// The schema that this program writes.
-pub const VERSION: i32 = 5;
+pub const VERSION: i32 = 6;
 /// The oldest schema that it reads.
 const OLDEST: i32 = 4;
 
@@ -153,14 +155,15 @@ pub fn is_blank(connection: &Connection) -> Result<bool, DocumentError> {
 /// The error of SQLite.
 pub fn is_foreign(path: &Path) -> Result<bool, DocumentError> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let connection = Connection::open_with_flags(path, flags)?;
+    let connection = connect(path, flags, None)?;
     let application: i32 =
         connection.query_row("PRAGMA application_id", params![], |row| row.get(0))?;
     Ok(application != APPLICATION_ID && !is_blank(&connection)?)
 }
 
-/// Steps from each older schema to the next.
-const MIGRATIONS: [&str; (VERSION - OLDEST) as usize] = [RECORD_TABLES];
+/// Steps from each older schema to the next. The rows of the record of schema 6 are columns, and those of schema 5 stay as
+/// they are.
+const MIGRATIONS: [&str; (VERSION - OLDEST) as usize] = [RECORD_TABLES, ""];
 
 /// Schema of a painting; rejects one of a newer program or of before the oldest schema.
 ///
@@ -183,6 +186,50 @@ pub fn version(connection: &Connection) -> Result<i32, DocumentError> {
         });
     }
     Ok(version)
+}
+
+/// An object of a schema: its type, name, table and statement.
+type Object = [String; 4];
+
+/// Objects of a schema, at most so many.
+fn objects(connection: &Connection, most: usize) -> Result<BTreeSet<Object>, DocumentError> {
+    // SQLite's own statistics are no statement of anybody.
+    let query = "SELECT type, name, tbl_name, coalesce(sql, '') FROM sqlite_schema \
+         WHERE NOT (type = 'table' AND name GLOB 'sqlite_stat[14]') LIMIT ?1";
+    let mut statement = connection.prepare(query)?;
+    let object = |row: &Row<'_>| Ok([row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?]);
+    let rows = statement.query_map([most as i64], object)?;
+    Ok(rows.collect::<Result<_, _>>()?)
+}
+
+/// Checks that a painting has the tables and the index that this program makes, and nothing else: a trigger would change
+/// what is written, a view what is read.
+///
+/// # Errors
+/// [`DocumentError::Altered`] with what differs, or as [`version`].
+pub fn check(connection: &Connection) -> Result<(), DocumentError> {
+    let own = Connection::open_in_memory()?;
+    own.execute_batch(TABLES)?;
+    for change in MIGRATIONS
+        .iter()
+        .take((version(connection)? - OLDEST) as usize)
+    {
+        own.execute_batch(change)?;
+    }
+    let own = objects(&own, usize::MAX >> 1)?;
+    // One more than there should be is enough to see that there are more.
+    let found = objects(connection, own.len() + 1)?;
+    let strange = found.difference(&own).next();
+    let differs = strange.or_else(|| own.difference(&found).next());
+    let Some([kind, name, ..]) = differs else {
+        return Ok(());
+    };
+    let known = own.iter().any(|[_, own, ..]| own == name);
+    Err(DocumentError::Altered(match (strange, known) {
+        (Some(_), false) => format!("the {kind} '{name}' is none of its own"),
+        (Some(_), true) => format!("its {kind} '{name}' is another than it was"),
+        (None, _) => format!("its {kind} '{name}' is missing"),
+    }))
 }
 
 /// True if a painting has the tables of the record.

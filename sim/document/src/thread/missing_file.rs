@@ -15,25 +15,34 @@ use crate::file::watch::{FileState, FileWatch};
 /// Advice about a hard link to the file.
 const LINK_ADVICE: &str = "remove that name: opened by it after a crash the painting would lack its journal, and be damaged";
 
+/// What was done to a file that has lost a part of what was in it.
+const CUT_SHORT: &str = "cut short";
+
 impl DocumentThread {
     /// Checks that the files are at their paths, and continues in a new file if they are not.
     pub(super) fn check_files(&mut self, hurry: bool) {
-        let gone = match self.watch.check() {
-            FileState::Gone(gone) => gone,
+        let (lost, harm) = match self.watch.check() {
+            FileState::Gone(gone) => (gone, "removed or replaced"),
+            FileState::Cut(cut) => (cut, CUT_SHORT),
             state => return self.note_links(state == FileState::Linked),
         };
         if !self.file.is_due(hurry) {
             return;
         }
         let to = relocate::free_name_beside(&self.path);
-        // The file may have another name now, or only the journal be gone.
-        self.database.merge_journal();
-        let rescued = relocate::rescue(&self.database, &to, false);
-        match rescued.and_then(|()| self.continue_in(&to)) {
+        let continued = match harm {
+            CUT_SHORT => self.continue_whole_in(&to),
+            _ => {
+                // The file may have another name now, or only the journal be gone.
+                self.database.merge_journal();
+                relocate::rescue(&self.database, &to, false).and_then(|()| self.continue_in(&to))
+            }
+        };
+        match continued {
             Ok(()) => {
                 let what = format!(
-                    "{} was removed or replaced: the painting goes on in {}",
-                    gone.display(),
+                    "{} was {harm}: the painting goes on in {}",
+                    lost.display(),
                     to.display()
                 );
                 let help = "keep that file, or save it under a name of your own";
@@ -44,8 +53,8 @@ impl DocumentThread {
             }
             Err(error) => {
                 let error = DocumentError::Vanished(format!(
-                    "{} was removed or replaced, and {} cannot be made: {error}",
-                    gone.display(),
+                    "{} was {harm}, and {} cannot be made: {error}",
+                    lost.display(),
                     to.display()
                 ));
                 let mut queues = self.shared.lock();
@@ -70,7 +79,19 @@ impl DocumentThread {
         self.watch = FileWatch::new(path);
         path.clone_into(&mut self.path);
         self.clear_notice();
+        self.unmerged = true;
         self.note_written(Part::File);
+        Ok(())
+    }
+
+    /// Continues in a file that begins as the previous one was when its journal was last merged, or as a new one, and wants
+    /// all of the painting: what was in the journal since is in memory alone.
+    fn continue_whole_in(&mut self, path: &Path) -> Result<(), DocumentError> {
+        if !relocate::copied_without_journal(&self.path, path)? {
+            tracing::warn!("{} is not whole any more", self.path.display());
+        }
+        self.continue_in(path)?;
+        self.shared.lock().wants_all = true;
         Ok(())
     }
 

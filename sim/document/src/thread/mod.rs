@@ -1,8 +1,11 @@
 //! Thread that owns a painting's file: it writes the data handed over and reads pages that left memory. Readers that
 //! wait for a page come first.
 
+mod failures;
 mod missing_file;
 pub(crate) mod queues;
+mod reading;
+mod relocating;
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering::SeqCst;
@@ -13,13 +16,15 @@ use maulstick_painting::sequencer::Record;
 
 use crate::checkpoint::Checkpoint;
 use crate::error::DocumentError;
-use crate::file::database::{Access, Database, is_new};
-use crate::file::relocate::{self, Relocate, RelocateRequest};
-use crate::file::watch::{FileState, FileWatch};
+use crate::file::database::Database;
+use crate::file::relocate::RelocateRequest;
+use crate::file::watch::FileWatch;
 use crate::journal;
 use crate::record;
-use crate::writing::{ShownTile, Writer};
-use queues::{EndGuard, Fetch, Life, Shared};
+use crate::writing::{ShownTile, Trust, Writer};
+use failures::{Part, Retry};
+use queues::{EndGuard, Life, Shared};
+use reading::yield_to_readers;
 
 /// Longest time until an accepted record is in the file.
 const COMMIT_PERIOD: Duration = Duration::from_millis(100);
@@ -27,6 +32,8 @@ const COMMIT_PERIOD: Duration = Duration::from_millis(100);
 const FIRST_CHECKPOINT: Duration = Duration::from_secs(3600);
 /// Delay before a failed write is retried.
 const RETRY_DELAY: Duration = Duration::from_secs(1);
+/// The same of a failed read.
+const REREAD_DELAY: Duration = Duration::from_millis(100);
 /// Largest number of displayed tiles in one transaction.
 const SHOWN_BATCH: usize = 128;
 
@@ -48,21 +55,9 @@ pub(crate) struct DocumentThread {
     checkpoint: Retry,
     journal: Retry,
     file: Retry,
-}
-
-/// Failure of the last write of one kind, and when to retry.
-#[derive(Default)]
-struct Retry {
-    failed: Option<Instant>,
-    /// True if it failed on closing, when nothing is retried.
-    given_up: bool,
-}
-
-impl Retry {
-    fn is_due(&self, hurry: bool) -> bool {
-        let waits = self.failed.is_some_and(|when| when.elapsed() < RETRY_DELAY);
-        !self.given_up && (hurry || !waits)
-    }
+    reading: Retry,
+    /// True until the first checkpoint of this file is merged into it: then it can be read without its journal.
+    unmerged: bool,
 }
 
 /// Next work of the thread.
@@ -98,6 +93,8 @@ impl DocumentThread {
             checkpoint: Retry::default(),
             journal: Retry::default(),
             file: Retry::default(),
+            reading: Retry::default(),
+            unmerged: true,
         }
     }
 
@@ -107,58 +104,6 @@ impl DocumentThread {
             is_first: true,
             ..self
         }
-    }
-
-    /// Relocates the painting and continues there, or at its old path if that fails.
-    ///
-    /// # Errors
-    /// If the painting cannot continue in either file.
-    fn relocate(mut self, request: RelocateRequest) -> Result<Self, DocumentError> {
-        self.committed_for_relocation = false;
-        if request.how == Relocate::Leave {
-            let copied = relocate::rescue(&self.database, &request.to, request.replace);
-            request.answer.send(copied).ok();
-            return Ok(self);
-        }
-        let open = |path: &Path| match is_new(path)? {
-            // SQLite would create a blank one.
-            true => Err(DocumentError::Missing),
-            false => Database::open(path, Access::Paint, None).map(|(database, _)| database),
-        };
-        if let FileState::Gone(_) = self.watch.check() {
-            let rescued = relocate::rescue(&self.database, &request.to, request.replace)
-                .and_then(|()| self.continue_in(&request.to));
-            request.answer.send(rescued).ok();
-            return Ok(self);
-        }
-        let relocated = self.database.close().and_then(|()| {
-            relocate::relocate(&self.path, &request)?;
-            open(&request.to).inspect_err(|_| relocate::revert(&self.path, &request))
-        });
-        let (opened, outcome) = match relocated {
-            Ok(database) => (Ok((database, request.to.clone())), Ok(())),
-            Err(error) => (
-                open(&self.path).map(|database| (database, self.path.clone())),
-                Err(error),
-            ),
-        };
-        match opened {
-            Ok((database, path)) => {
-                self.watch = FileWatch::new(&path);
-                (self.database, self.path) = (database, path);
-                if outcome.is_ok() {
-                    self.clear_notice();
-                }
-            }
-            Err(error) => {
-                let mut queues = self.shared.lock();
-                queues.broken = Some(error.to_string());
-                queues.fault = Some((error.to_string(), error.advice()));
-                return Err(error);
-            }
-        }
-        request.answer.send(outcome).ok();
-        Ok(self)
     }
 
     /// Serves until the document is closed.
@@ -175,13 +120,14 @@ impl DocumentThread {
             }
             match work {
                 Work::CheckFiles => {}
-                Work::Fetch => serve_fetches(&self.shared, &self.database),
+                Work::Fetch => self.read_pages(),
                 Work::Checkpoint(checkpoint) => self.write_checkpoint(*checkpoint),
                 Work::Shown(tiles) => self.write_shown(&tiles),
                 Work::Commit(records) => self.commit(records),
                 Work::Relocate(request) => self = self.relocate(request)?,
                 Work::Close => break,
             }
+            self.watch.note_sizes();
         }
         let (fault, left, broken) = {
             let queues = self.shared.lock();
@@ -211,15 +157,25 @@ impl DocumentThread {
     fn next(&mut self) -> Work {
         let mut queues = self.shared.lock();
         loop {
-            if !queues.fetches.is_empty() {
+            let closes = queues.life == Life::Closing;
+            if !queues.unread.is_empty() && (closes || self.reading.has_waited(REREAD_DELAY)) {
+                let mut unread = std::mem::take(&mut queues.unread);
+                queues.retried.append(&mut unread);
+            }
+            if !(queues.fetches.is_empty() && queues.retried.is_empty()) {
                 return Work::Fetch;
             }
             let may_write = self.writes && queues.broken.is_none();
             let closing = queues.life == Life::Closing;
             let hurry = closing || !queues.flushes.is_empty() || !queues.relocations.is_empty();
             let due = hurry || self.last_commit.elapsed() >= COMMIT_PERIOD;
-            let commits =
-                may_write && due && self.journal.is_due(hurry) && !queues.records.is_empty();
+            // A file that lacks a part of the painting gets all of it, and before that nothing else.
+            let is_whole = !queues.wants_all;
+            let commits = may_write
+                && is_whole
+                && due
+                && self.journal.is_due(hurry)
+                && !queues.records.is_empty();
             // A checkpoint includes the records, but needs more room on the disk than they do.
             if commits && self.checkpoint.failed.is_some() {
                 return Work::Commit(std::mem::take(&mut queues.records));
@@ -242,7 +198,7 @@ impl DocumentThread {
                 self.committed_for_relocation = !queues.relocations.is_empty();
                 return Work::Commit(std::mem::take(&mut queues.records));
             }
-            if may_write && self.checkpoint.failed.is_none() {
+            if may_write && is_whole && self.checkpoint.failed.is_none() {
                 // Displayed tiles of a later checkpoint wait for that.
                 let saved = self.saved_version;
                 let ready = queues.shown.extract_if(.., |_, tile| tile.version <= saved);
@@ -260,9 +216,11 @@ impl DocumentThread {
             if closing {
                 return Work::Close;
             }
-            let waits = may_write && self.journal.is_due(false) && !queues.records.is_empty();
+            let waits =
+                may_write && is_whole && self.journal.is_due(false) && !queues.records.is_empty();
             let wait = match waits {
                 true => COMMIT_PERIOD.saturating_sub(self.last_commit.elapsed()),
+                false if !queues.unread.is_empty() => REREAD_DELAY,
                 false => RETRY_DELAY,
             };
             let waited = self
@@ -298,7 +256,7 @@ impl DocumentThread {
     fn write_shown(&self, tiles: &[ShownTile]) {
         let shared = Arc::clone(&self.shared);
         let written = self.transaction(|database| {
-            let mut yield_hook = |database: &Database| serve_fetches(&shared, database);
+            let mut yield_hook = |database: &Database| yield_to_readers(&shared, database);
             Writer::new(database, &mut yield_hook).write_shown(tiles)
         });
         if let Err(error) = written {
@@ -308,6 +266,18 @@ impl DocumentThread {
 
     fn write_checkpoint(&mut self, mut checkpoint: Checkpoint) {
         let shared = Arc::clone(&self.shared);
+        let trust = {
+            let mut queues = shared.lock();
+            match queues.wants_all {
+                false => Trust::Stored,
+                true if checkpoint.is_whole => Trust::Nothing,
+                true => {
+                    // It was handed over before; what it holds is in the whole one, which comes next.
+                    queues.writing = false;
+                    return;
+                }
+            }
+        };
         let serial = checkpoint.sequencer.serial;
         let mut overtaken = Vec::new();
         let written = loop {
@@ -317,15 +287,16 @@ impl DocumentThread {
             overtaken.extend(queues.records.drain(..before));
             drop(queues);
             overtaken.append(&mut checkpoint.records);
-            let longest = if self.is_first {
+            let longest = if self.is_first || trust == Trust::Nothing {
                 FIRST_CHECKPOINT
             } else {
                 COMMIT_PERIOD
             };
             let until = Instant::now() + longest;
             let written = self.transaction(|database| {
-                let mut yield_hook = |database: &Database| serve_fetches(&shared, database);
-                Writer::new(database, &mut yield_hook).checkpoint(&checkpoint, &overtaken, until)
+                let mut yield_hook = |database: &Database| yield_to_readers(&shared, database);
+                let writer = Writer::new(database, &mut yield_hook).trusting(trust);
+                writer.checkpoint(&checkpoint, &overtaken, until)
             });
             match written {
                 // Records accepted meanwhile do not wait for the remaining pages.
@@ -343,6 +314,7 @@ impl DocumentThread {
         queues.writing = false;
         match written {
             Ok(stored) => {
+                queues.wants_all = false;
                 stored.mark();
                 self.is_first = false;
                 self.saved_version = checkpoint.painting.kept.versions;
@@ -355,6 +327,10 @@ impl DocumentThread {
                     .committed
                     .fetch_max(checkpoint.sequencer.next, SeqCst);
                 drop(queues);
+                if std::mem::take(&mut self.unmerged) {
+                    self.database.merge_journal();
+                    self.watch.note_merged();
+                }
                 self.note_written(Part::Checkpoint);
             }
             Err(error) => {
@@ -391,103 +367,4 @@ impl DocumentThread {
             }
         }
     }
-
-    fn note_written(&mut self, part: Part) {
-        let failed = self.retry(part).failed.take().is_some();
-        let all = [&self.checkpoint, &self.journal, &self.file];
-        if failed && all.iter().all(|part| part.failed.is_none()) {
-            tracing::info!("the painting is written again");
-            let mut queues = self.shared.lock();
-            if queues.broken.is_none() {
-                queues.fault = None;
-            }
-        }
-    }
-
-    fn note_failure(&mut self, part: Part, error: &DocumentError) {
-        let mut queues = self.shared.lock();
-        if queues.fault.is_none() {
-            tracing::error!(
-                "the painting cannot be written: {error}; {}",
-                error.advice()
-            );
-        }
-        queues.fault = Some((error.to_string(), error.advice()));
-        let closing = queues.life == Life::Closing;
-        // Threads that wait for a flush must not wait for a retry.
-        queues.flushes.clear();
-        let relocations = std::mem::take(&mut queues.relocations);
-        drop(queues);
-        self.committed_for_relocation = false;
-        for request in relocations {
-            let unwritten = DocumentError::Unwritten(error.to_string());
-            request.answer.send(Err(unwritten)).ok();
-        }
-        *self.retry(part) = Retry {
-            failed: Some(Instant::now()),
-            given_up: closing,
-        };
-    }
-
-    fn retry(&mut self, part: Part) -> &mut Retry {
-        match part {
-            Part::Checkpoint => &mut self.checkpoint,
-            Part::Journal => &mut self.journal,
-            Part::File => &mut self.file,
-        }
-    }
-}
-
-/// Part of the file whose writes fail and are retried together.
-#[derive(Clone, Copy)]
-enum Part {
-    Checkpoint,
-    Journal,
-    File,
-}
-
-/// Processor time of this thread.
-fn thread_cpu() -> Duration {
-    use nix::time::{ClockId, clock_gettime};
-    let now = clock_gettime(ClockId::CLOCK_THREAD_CPUTIME_ID);
-    now.map_or(Duration::ZERO, Duration::from)
-}
-
-/// Reads the pages that readers wait for.
-fn serve_fetches(shared: &Shared, database: &Database) {
-    let fetches = std::mem::take(&mut shared.lock().fetches);
-    if fetches.is_empty() {
-        return;
-    }
-    let begun = thread_cpu();
-    let broken = |error: DocumentError| {
-        let mut queues = shared.lock();
-        queues.fault = Some((error.to_string(), error.advice()));
-        let what = match error {
-            DocumentError::Damaged(what) => what,
-            error => error.to_string(),
-        };
-        queues.broken = Some(what.clone());
-        what
-    };
-    for fetch in fetches {
-        match fetch {
-            Fetch::Planes(id, answer) => answer
-                .send(database.planes(id).map_err(broken))
-                .unwrap_or(()),
-            Fetch::Load(id, answer) => answer.send(database.load(id).map_err(broken)).unwrap_or(()),
-            Fetch::Records(serial, answer) => {
-                answer
-                    .send(record::row_from(database, serial))
-                    .unwrap_or(());
-            }
-            Fetch::Shown([place, version, look], answer) => {
-                answer
-                    .send(database.shown(place, version, look))
-                    .unwrap_or(());
-            }
-        }
-    }
-    let spent = thread_cpu().saturating_sub(begun);
-    shared.page_in_ns.fetch_add(spent.as_nanos() as u64, SeqCst);
 }

@@ -3,8 +3,9 @@
 use std::any::{Any, TypeId};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::atomic::AtomicU64;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::SeqCst};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
+use std::time::Instant;
 
 use maulstick_canvas::page::backing::Backing;
 use maulstick_canvas::planes::Planes;
@@ -46,11 +47,17 @@ pub(crate) enum Life {
 #[derive(Default)]
 pub(crate) struct Queues {
     pub(crate) fetches: Vec<Fetch>,
+    /// Pages that could not be read for a fault of the disk, and since when: they are tried again.
+    pub(crate) unread: Vec<(Fetch, Instant)>,
+    /// Those of them whose turn has come.
+    pub(crate) retried: Vec<(Fetch, Instant)>,
     pub(crate) records: Vec<Record>,
     pub(crate) checkpoint: Option<Checkpoint>,
     pub(crate) shown: BTreeMap<i64, ShownTile>,
     /// True while a checkpoint is written. If that fails, it is written again before any later one.
     pub(crate) writing: bool,
+    /// True if the file lacks parts of the painting, as after its journal was cut short: it is to be handed over as a whole.
+    pub(crate) wants_all: bool,
     /// Threads that wait until everything handed over is written, or writing has failed.
     pub(crate) flushes: Vec<mpsc::Sender<()>>,
     /// Relocations to do once everything handed over is written.
@@ -89,6 +96,8 @@ pub(crate) struct Shared {
     pub(crate) queues: Mutex<Queues>,
     pub(crate) wake: Condvar,
     pub(crate) committed: AtomicU64,
+    /// True while the disk fails: no page leaves memory.
+    pub(crate) fails: AtomicBool,
     /// Bytes of the record.
     pub(crate) record_bytes: AtomicU64,
     /// Processor time spent on reading pages, ns.
@@ -128,6 +137,8 @@ impl Drop for EndGuard {
             queues.fault = Some((PANICKED.to_owned(), Advice::say(help)));
         }
         queues.fetches.clear();
+        queues.unread.clear();
+        queues.retried.clear();
         queues.flushes.clear();
         queues.relocations.clear();
     }
@@ -150,6 +161,10 @@ impl Backing for DocumentBacking {
             return self.page(|answer| Fetch::Load(id, answer));
         }
         Err(format!("page {id} is of a kind that no document holds"))
+    }
+
+    fn is_at_hand(&self) -> bool {
+        !self.0.fails.load(SeqCst)
     }
 }
 

@@ -75,6 +75,8 @@ pub(crate) enum Refused {
     Writes,
     /// To be opened.
     Opening,
+    /// All that is read, written, cut or synced, of the main file and its log: a disk that fails.
+    Everything,
 }
 
 /// The files of a database; none for one that is not there.
@@ -119,7 +121,8 @@ impl Log {
     }
 
     fn refuses(&self, file: FileKind, refused: Refused) -> bool {
-        file == FileKind::Main && self.recorded().refused == refused
+        let own = self.recorded().refused;
+        own == refused && (file == FileKind::Main || own == Refused::Everything)
     }
 
     /// The operations so far.

@@ -251,7 +251,6 @@ macro_rules! pass {
 }
 
 pass! {
-    read = xRead(buffer: *mut c_void, bytes: c_int, offset: ffi::sqlite3_int64);
     file_size = xFileSize(size: *mut ffi::sqlite3_int64);
     lock = xLock(level: c_int);
     unlock = xUnlock(level: c_int);
@@ -272,6 +271,29 @@ unsafe extern "C" fn close(file: *mut ffi::sqlite3_file) -> c_int {
     code
 }
 
+/// True where the disk fails.
+///
+/// # Safety
+/// `file` was opened by [`open`].
+unsafe fn fails(file: *mut ffi::sqlite3_file) -> bool {
+    // SAFETY: `watched` is a box that lives until `close`.
+    let watched = unsafe { (*file.cast::<CrashFile>()).watched.as_ref() };
+    watched.is_some_and(|watched| watched.log.refuses(watched.file, Refused::Everything))
+}
+
+unsafe extern "C" fn read(
+    file: *mut ffi::sqlite3_file,
+    buffer: *mut c_void,
+    bytes: c_int,
+    offset: ffi::sqlite3_int64,
+) -> c_int {
+    // SAFETY: the file is open.
+    if unsafe { fails(file) } {
+        return ffi::SQLITE_IOERR_READ;
+    }
+    base!(file, xRead, buffer, bytes, offset)
+}
+
 unsafe extern "C" fn write(
     file: *mut ffi::sqlite3_file,
     buffer: *const c_void,
@@ -282,6 +304,10 @@ unsafe extern "C" fn write(
     let watched = unsafe { (*file.cast::<CrashFile>()).watched.as_ref() };
     if watched.is_some_and(|watched| watched.log.refuses(watched.file, Refused::Writes)) {
         return ffi::SQLITE_FULL;
+    }
+    // SAFETY: the file is open.
+    if unsafe { fails(file) } {
+        return ffi::SQLITE_IOERR_WRITE;
     }
     let code = base!(file, xWrite, buffer, bytes, offset);
     // SAFETY: SQLite gives `bytes` bytes at `buffer`.
@@ -296,6 +322,10 @@ unsafe extern "C" fn write(
 }
 
 unsafe extern "C" fn truncate(file: *mut ffi::sqlite3_file, size: ffi::sqlite3_int64) -> c_int {
+    // SAFETY: the file is open.
+    if unsafe { fails(file) } {
+        return ffi::SQLITE_IOERR_TRUNCATE;
+    }
     let code = base!(file, xTruncate, size);
     // SAFETY: the file is open.
     unsafe { note(file, code, || Deed::Truncate(size.cast_unsigned())) };
@@ -303,6 +333,10 @@ unsafe extern "C" fn truncate(file: *mut ffi::sqlite3_file, size: ffi::sqlite3_i
 }
 
 unsafe extern "C" fn sync(file: *mut ffi::sqlite3_file, flags: c_int) -> c_int {
+    // SAFETY: the file is open.
+    if unsafe { fails(file) } {
+        return ffi::SQLITE_IOERR_FSYNC;
+    }
     let code = base!(file, xSync, flags);
     // SAFETY: the file is open.
     unsafe { note(file, code, || Deed::Sync) };

@@ -59,6 +59,10 @@ impl Easel {
     }
 
     fn hand_over(&mut self) {
+        if self.document.wants_all() {
+            self.sequencer.painting_mut().tell_all_again();
+            self.since = 0;
+        }
         let checkpoint = Checkpoint::of(&mut self.sequencer, self.since);
         self.since = checkpoint.painting.kept.versions;
         self.document.write_checkpoint(checkpoint);

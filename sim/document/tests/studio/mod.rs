@@ -76,7 +76,7 @@ pub fn sequencer_of(model: &str, pager: Arc<Pager>) -> Sequencer {
 /// Gives a new painting its brushes.
 pub fn equip(sequencer: &mut Sequencer) {
     for name in BRUSHES {
-        sequencer.define_brush(name, brush(48));
+        sequencer.define_brush(name, brush(48)).expect("a brush");
     }
 }
 
@@ -340,7 +340,9 @@ impl Painter {
                 painted.expect("it fits");
             }
             Act::Command(command) => drop(self.command(sequencer, command.clone())),
-            Act::Redefine(b, strips) => sequencer.define_brush(BRUSHES[*b], brush(*strips)),
+            Act::Redefine(b, strips) => sequencer
+                .define_brush(BRUSHES[*b], brush(*strips))
+                .expect("a brush"),
             Act::Ticks(ticks) => {
                 (0..*ticks).for_each(|_| sequencer.tick());
                 sequencer.drain_journal();

@@ -11,6 +11,8 @@ use crate::transfer::Exchanging;
 
 /// Texels along a strip.
 pub const TEXELS_PER_STRIP: usize = 16;
+/// Strips of a head at most, as of a brush file.
+pub const STRIPS_MOST: usize = maulstick_brush::file::check::STRIPS_MOST;
 
 /// Properties of a brush that a paint model needs, in cells of a surface and in quanta.
 #[derive(Clone, Copy, Debug, PartialEq)]

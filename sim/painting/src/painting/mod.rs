@@ -210,6 +210,11 @@ impl Painting {
             .map(|brush| brush.name.as_str())
     }
 
+    /// Names of its brushes.
+    pub fn brushes(&self) -> impl Iterator<Item = &str> {
+        self.brushes.iter().map(|brush| brush.name.as_str())
+    }
+
     /// True if a brush is known.
     #[must_use]
     pub fn knows_brush(&self, name: &str) -> bool {

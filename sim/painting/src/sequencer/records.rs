@@ -2,7 +2,7 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_canvas::EditError;
-use maulstick_types::brush::BrushState;
+use maulstick_types::brush::{BRUSHES_MOST, BrushState};
 use maulstick_types::command::{Command, CommandRequest, Outcome, TakeCommand};
 use maulstick_types::edits::Edit;
 use maulstick_types::paint::Entry;
@@ -160,7 +160,13 @@ impl Sequencer {
     }
 
     /// Introduces a brush, or gives a known one another file.
-    pub fn define_brush(&mut self, brush: &str, file: BrushFile) {
+    ///
+    /// # Errors
+    /// [`EditError::TooManyBrushes`] for a new one where there are [so many](BRUSHES_MOST).
+    pub fn define_brush(&mut self, brush: &str, file: BrushFile) -> Result<(), EditError> {
+        if !self.painting.knows_brush(brush) && self.painting.brushes().count() >= BRUSHES_MOST {
+            return Err(EditError::TooManyBrushes(brush.to_owned()));
+        }
         let toml = file.to_toml().unwrap_or_default();
         if self.painting.define_brush(brush, file) {
             let entry = Entry::Brush {
@@ -170,6 +176,7 @@ impl Sequencer {
             let index = self.enter(entry.clone());
             self.note(index, || Accepted::Entry(entry));
         }
+        Ok(())
     }
 
     /// Accepts a saved record again. Its effect on the painting is repeated; its effect on the outside world is not.

@@ -72,7 +72,7 @@ impl Sequencer {
             }
             Accepted::Entry(Entry::Brush { brush, toml }) => {
                 if let Ok(file) = maulstick_brush::BrushFile::parse(&toml) {
-                    self.define_brush(&brush, file);
+                    self.define_brush(&brush, file)?;
                 }
                 Ok(())
             }

@@ -22,7 +22,9 @@ fn studio(file: &BrushFile) -> Sequencer {
         ..PaintingSetup::default()
     }));
     sequencer.record();
-    sequencer.define_brush(BRUSH, file.clone());
+    sequencer
+        .define_brush(BRUSH, file.clone())
+        .expect("a brush");
     sequencer.edit(load("Bone Black")).expect("loaded");
     sequencer
 }

@@ -137,7 +137,7 @@ impl Drawing {
         }));
         let mut model = BrushModel::new(file.clone(), 0.5);
         model.set_scene(sequencer.painting_mut().scene());
-        sequencer.define_brush(BRUSH, file);
+        sequencer.define_brush(BRUSH, file).expect("a brush");
         sequencer.edit(load("Bone Black")).expect("loaded");
         Self {
             sequencer,

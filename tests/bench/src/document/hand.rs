@@ -78,7 +78,9 @@ impl Easel {
         sequencer.painting_mut().set_quota(quota);
         let autosave = Autosave::new(document, &mut sequencer, 0);
         let file = BrushFile::library("round").map_err(fault)?;
-        sequencer.define_brush(BRUSH, file.clone());
+        sequencer
+            .define_brush(BRUSH, file.clone())
+            .expect("a brush");
         Ok(Self {
             sequencer,
             autosave,

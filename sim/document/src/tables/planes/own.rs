@@ -3,11 +3,24 @@
 //! For each plane, in order of their shapes: its kind, the bytes of a value (4: floating point), and its values a cell, as
 //! three numbers of 16 bits; then its bytes, each as the difference to that of the same plane of an older page.
 
+use std::io::Read;
+
+use maulstick_canvas::layered::MOST_LAYERS;
 use maulstick_canvas::own_plane::{OwnPlane, OwnShape, ValueType};
-use maulstick_canvas::planes::Planes;
+use maulstick_canvas::planes::{Planes, TILE_CELLS};
 
 /// Bytes before those of a plane.
 const HEAD: usize = 6;
+/// Bytes of all planes of a page, at most.
+const ALL_MOST: usize = 1 << 28;
+/// Bytes of planes that are no layers, at most.
+const OTHERS_MOST: usize = 1 << 20;
+
+/// Bytes of the planes on a page of the slots of a mask, at most: each paint may lie in each layer.
+pub(super) fn most(mask: u64) -> usize {
+    let layers = mask.count_ones() as usize * MOST_LAYERS;
+    (OTHERS_MOST + layers * (HEAD + TILE_CELLS * 4)).min(ALL_MOST)
+}
 
 fn older<'a>(base: Option<&'a Planes>, shape: &OwnShape) -> Option<&'a [u8]> {
     let mut planes = base?.own().iter();
@@ -39,15 +52,23 @@ pub(super) fn append(planes: &Planes, base: Option<&Planes>, to: &mut Vec<u8>) {
     }
 }
 
+/// Reads the head of a plane; `None` at the end.
+fn head(from: &mut impl Read) -> std::io::Result<Option<[u8; HEAD]>> {
+    let mut head = [0; HEAD];
+    match from.read(&mut head[..1])? {
+        0 => Ok(None),
+        _ => from.read_exact(&mut head[1..]).map(|()| Some(head)),
+    }
+}
+
 /// Reads what [`append`] wrote.
 ///
 /// # Errors
 /// The defect of the bytes, in words.
-pub(super) fn read(mut bytes: &[u8], base: Option<&Planes>) -> Result<Vec<OwnPlane>, String> {
+pub(super) fn read(from: &mut impl Read, base: Option<&Planes>) -> Result<Vec<OwnPlane>, String> {
     let torn = || "a plane of the model's own is torn".to_owned();
     let mut planes: Vec<OwnPlane> = Vec::new();
-    while !bytes.is_empty() {
-        let (head, rest) = bytes.split_at_checked(HEAD).ok_or_else(torn)?;
+    while let Some(head) = head(from).map_err(|_| torn())? {
         let [kind, size, per_cell] =
             [0, 2, 4].map(|at| u16::from_le_bytes([head[at], head[at + 1]]));
         let values = match size {
@@ -62,16 +83,20 @@ pub(super) fn read(mut bytes: &[u8], base: Option<&Planes>) -> Result<Vec<OwnPla
             per_cell,
         };
         let rises = planes.last().is_none_or(|last| last.shape < shape);
-        let (own, rest) = rest
-            .split_at_checked(shape.tile_bytes())
-            .filter(|_| rises && per_cell > 0)
-            .ok_or_else(torn)?;
-        let own = changed(own, older(base, &shape), u8::wrapping_add);
+        if !rises || per_cell == 0 || shape.tile_bytes() > OTHERS_MOST {
+            return Err(torn());
+        }
+        let mut own = vec![0; shape.tile_bytes()];
+        from.read_exact(&mut own).map_err(|_| torn())?;
+        let own = changed(&own, older(base, &shape), u8::wrapping_add);
+        // None is written: a file that has one may have any number of them in a few bytes.
+        if own.iter().all(|byte| *byte == 0) {
+            return Err("a plane of the model's own holds nothing".to_owned());
+        }
         planes.push(OwnPlane {
             shape,
             bytes: own.into(),
         });
-        bytes = rest;
     }
     Ok(planes)
 }

@@ -13,7 +13,7 @@ pub(super) fn sequencer() -> Sequencer {
         cell_m: CELL_M,
         ..PaintingSetup::default()
     }));
-    sequencer.define_brush(BRUSH, brush());
+    sequencer.define_brush(BRUSH, brush()).expect("a brush");
     sequencer
 }
 

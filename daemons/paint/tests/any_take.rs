@@ -1,0 +1,170 @@
+//! Any take, however the hand leaps in it, gives the same painting with every paint model: live and offline, in memory and in
+//! a file, which holds it when it is opened again.
+
+mod support;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use maulstick_bus::{Bus, Faults, MemoryNet};
+use maulstick_document::{Access, Document, DocumentSettings};
+use maulstick_optics::PaintLibrary;
+use maulstick_painting::models::model_names;
+use maulstick_painting::picture::picture;
+use maulstick_painting::{Painting, PaintingSetup, Sequencer};
+use maulstick_session::{Autosave, Offline};
+use maulstick_types::stylus::StylusSample;
+use proptest::prelude::*;
+use support::{Live, START_NS, file, loads, painting_of, pen, turns};
+
+type Take = Vec<(u64, StylusSample)>;
+
+/// A painting as it is seen.
+type Seen = Vec<u8>;
+
+/// Samples anywhere on the canvas and beside it, mostly pressed: between two of them the hand may leap across all of it.
+fn takes() -> impl Strategy<Value = Take> {
+    let place = (-0.05..0.05f64, -0.04..0.04f64);
+    let pressure = prop_oneof![3 => 0.1..1.0f64, 1 => Just(0.0)];
+    let sample = (place, pressure, 1u64..60);
+    prop::collection::vec(sample, 2..8).prop_map(|samples| {
+        let mut time_ns = 0;
+        let mut take: Take = samples
+            .into_iter()
+            .map(|((x, y), pressure, pause_ms)| {
+                time_ns += pause_ms * 1_000_000;
+                (time_ns, pen(x, y, pressure))
+            })
+            .collect();
+        take.push((time_ns + 8_000_000, pen(0.0, 0.0, 0.0)));
+        take
+    })
+}
+
+/// Three samples in contact, 50 mm from one to the next.
+fn leap() -> Take {
+    let at = |number: u64, x, pressure| (number * 10_000_000, pen(x, 0.0, pressure));
+    vec![
+        at(0, -0.05, 0.5),
+        at(1, 0.0, 0.5),
+        at(2, 0.05, 0.5),
+        at(3, 0.05, 0.0),
+    ]
+}
+
+fn settings(path: &Path) -> DocumentSettings {
+    DocumentSettings::new(path, Access::Paint)
+}
+
+/// A new file, and the painting that begins in it.
+fn begun(model: &str, path: &Path) -> (Document, Painting) {
+    let (document, _) = Document::open(&settings(path)).expect("begun");
+    let setup = PaintingSetup {
+        cells: [256, 192],
+        model: model.to_owned(),
+        ..PaintingSetup::default()
+    };
+    let library = PaintLibrary::measured().expect("whole");
+    let pager = Arc::clone(document.pager());
+    let painting = Painting::paged(&setup, library, pager).expect("a painting");
+    (document, painting)
+}
+
+/// What is seen in a file.
+fn in_file(path: &Path) -> Seen {
+    let (document, opened) = Document::open(&settings(path)).expect("whole");
+    let mut sequencer: Sequencer = opened.expect("a painting").sequencer().expect("whole");
+    let seen = picture(sequencer.painting_mut(), 0).rgb;
+    document.close().expect("closed");
+    seen
+}
+
+fn offline(model: &str, take: &Take) -> Seen {
+    let painting = painting_of(model);
+    let mut offline = Offline::new(painting, "main", file(), 0.5, loads()).expect("set up");
+    for (time_ns, sample) in take {
+        let sampled = offline.sample(START_NS + time_ns, sample);
+        sampled.expect("painted");
+    }
+    assert_eq!(offline.painting_mut().report().quanta_missing, 0);
+    picture(offline.painting_mut(), 0).rgb
+}
+
+/// The same in a file: as it is then, and as the file has it.
+fn offline_in_file(model: &str, take: &Take, path: &Path) -> [Seen; 2] {
+    let (document, painting) = begun(model, path);
+    let mut offline = Offline::new(painting, "main", file(), 0.5, loads()).expect("set up");
+    let mut autosave = Autosave::new(document, offline.sequencer_mut(), 0);
+    let samples: Vec<(u64, &StylusSample)> = take
+        .iter()
+        .map(|(time_ns, sample)| (START_NS + time_ns, sample))
+        .collect();
+    let followed = offline.follow(&samples, |sequencer, number| {
+        autosave.turn(sequencer, samples[number].0);
+    });
+    followed.expect("painted");
+    let seen = picture(offline.painting_mut(), 0).rgb;
+    let closed = autosave.close(offline.sequencer_mut());
+    closed.expect("all of it is written");
+    [seen, in_file(path)]
+}
+
+/// The same by the nodes, in a file.
+fn live_in_file(model: &str, take: &Take, seed: u64, path: &Path) -> [Seen; 2] {
+    let faults = Faults {
+        loss: 0.1,
+        delay_ns: 3_000_000,
+    };
+    let mut live = Live::new(MemoryNet::new(seed, START_NS, faults));
+    let bus: Arc<dyn Bus> = Arc::new(live.net.bus());
+    let (document, painting) = begun(model, path);
+    live.paint = Live::paint_node_on(&bus, &live.topics, 6, painting).keeping(document, 0);
+    live.announce(1);
+    live.play_take(take, &mut turns(seed), 200_000);
+    let seen = picture(live.paint.painting_mut(), 0).rgb;
+    live.paint.close().expect("all of it is written");
+    [seen, in_file(path)]
+}
+
+/// Paints a take in every way, and says which of them gave another painting.
+fn differing(model: &str, take: &Take, seed: u64) -> Vec<&'static str> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let expected = offline(model, take);
+    let [in_memory, kept] = offline_in_file(model, take, &folder.path().join("offline.maul"));
+    let [live, live_kept] = live_in_file(model, take, seed, &folder.path().join("live.maul"));
+    let ways = [
+        ("offline beside a file", in_memory),
+        ("the file written offline", kept),
+        ("live", live),
+        ("the file written live", live_kept),
+    ];
+    let differ = ways.into_iter().filter(|(_, seen)| *seen != expected);
+    differ.map(|(way, _)| way).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 6, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_take_gives_the_same_live_offline_and_in_a_file(
+        take in takes(),
+        model in prop::sample::select(model_names().collect::<Vec<_>>()),
+        seed in any::<u64>(),
+    ) {
+        prop_assert_eq!(differing(model, &take, seed), Vec::<&str>::new());
+    }
+}
+
+#[test]
+fn a_leap_of_the_hand_is_in_the_file_with_every_model() {
+    for model in model_names() {
+        assert_eq!(differing(model, &leap(), 1), Vec::<&str>::new(), "{model}");
+    }
+}
+
+#[test]
+fn another_leap_would_be_seen() {
+    let mut other = leap();
+    other.remove(1);
+    assert!(offline("impasto", &leap()) != offline("impasto", &other));
+}

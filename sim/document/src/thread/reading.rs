@@ -1,0 +1,116 @@
+//! Reading of pages that somebody waits for.
+
+use std::sync::atomic::Ordering::SeqCst;
+use std::sync::mpsc::Sender;
+use std::time::{Duration, Instant};
+
+use super::DocumentThread;
+use super::failures::Part;
+use super::queues::{Fetch, Life, Shared};
+use crate::error::DocumentError;
+use crate::file::database::Database;
+use crate::record;
+
+/// Longest time for which a page is tried again that the disk does not give: who waits for it stands still meanwhile.
+const PATIENCE: Duration = Duration::from_secs(15);
+
+/// Processor time of this thread.
+fn thread_cpu() -> Duration {
+    use nix::time::{ClockId, clock_gettime};
+    let now = clock_gettime(ClockId::CLOCK_THREAD_CPUTIME_ID);
+    now.map_or(Duration::ZERO, Duration::from)
+}
+
+impl DocumentThread {
+    /// Reads the pages that readers wait for, and tells a fault of the disk.
+    pub(super) fn read_pages(&mut self) {
+        match serve_fetches(&self.shared, &self.database) {
+            Ok(()) => self.note_written(Part::Reading),
+            Err(error) => self.note_failure(Part::Reading, &error),
+        }
+    }
+}
+
+/// Makes a painting unreliable in memory: a page of it is not intact, or is not given by the disk for too long.
+fn broken(shared: &Shared, error: &DocumentError) -> String {
+    let what = match error {
+        DocumentError::Damaged(what) => what.clone(),
+        error => error.to_string(),
+    };
+    let mut queues = shared.lock();
+    queues.fault = Some((error.to_string(), error.advice()));
+    queues.broken = Some(what.clone());
+    what
+}
+
+/// Content of a page, or an answer that says why there is none; `None` where it is to be tried again.
+fn answered<T>(
+    shared: &Shared,
+    read: Result<T, DocumentError>,
+    until: Instant,
+    answer: &Sender<Result<T, String>>,
+    failure: &mut Option<DocumentError>,
+) -> Option<()> {
+    let waits = Instant::now() < until && shared.lock().life == Life::Open;
+    let read = match read {
+        Err(error @ DocumentError::Disk(_)) if waits => {
+            *failure = Some(error);
+            return None;
+        }
+        read => read.map_err(|error| broken(shared, &error)),
+    };
+    // Who asked may have given up.
+    answer.send(read).ok();
+    Some(())
+}
+
+/// Reads the pages that readers wait for. One that the disk does not give is kept to be tried again.
+///
+/// # Errors
+/// The fault of the disk.
+fn serve_fetches(shared: &Shared, database: &Database) -> Result<(), DocumentError> {
+    let now = Instant::now();
+    let fetches = {
+        let mut queues = shared.lock();
+        let new = std::mem::take(&mut queues.fetches);
+        let mut all = std::mem::take(&mut queues.retried);
+        all.extend(new.into_iter().map(|fetch| (fetch, now)));
+        all
+    };
+    if fetches.is_empty() {
+        return Ok(());
+    }
+    let begun = thread_cpu();
+    let mut failure = None;
+    for (fetch, since) in fetches {
+        let until = since + PATIENCE;
+        let failed = &mut failure;
+        let done = match &fetch {
+            Fetch::Planes(id, answer) => {
+                answered(shared, database.planes(*id), until, answer, failed)
+            }
+            Fetch::Load(id, answer) => answered(shared, database.load(*id), until, answer, failed),
+            Fetch::Records(serial, answer) => {
+                answer.send(record::row_from(database, *serial)).ok();
+                Some(())
+            }
+            Fetch::Shown([place, version, look], answer) => {
+                answer.send(database.shown(*place, *version, *look)).ok();
+                Some(())
+            }
+        };
+        if done.is_none() {
+            shared.lock().unread.push((fetch, since));
+        }
+    }
+    let spent = thread_cpu().saturating_sub(begun);
+    shared.page_in_ns.fetch_add(spent.as_nanos() as u64, SeqCst);
+    failure.map_or(Ok(()), Err)
+}
+
+/// The same in the midst of a transaction, whose own reads tell a fault of the disk.
+pub(super) fn yield_to_readers(shared: &Shared, database: &Database) {
+    if let Err(error) = serve_fetches(shared, database) {
+        tracing::debug!("a page is not read: {error}");
+    }
+}

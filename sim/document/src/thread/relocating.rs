@@ -1,0 +1,69 @@
+//! Relocation of the file of an open painting.
+
+use std::path::Path;
+
+use super::DocumentThread;
+use crate::error::DocumentError;
+use crate::file::database::{Access, Database, is_new};
+use crate::file::relocate::{self, Relocate, RelocateRequest};
+use crate::file::watch::{FileState, FileWatch};
+
+impl DocumentThread {
+    /// Relocates the painting and continues there, or at its old path if that fails.
+    ///
+    /// # Errors
+    /// If the painting cannot continue in either file.
+    pub(super) fn relocate(mut self, request: RelocateRequest) -> Result<Self, DocumentError> {
+        self.committed_for_relocation = false;
+        if request.how == Relocate::Leave {
+            let copied = relocate::rescue(&self.database, &request.to, request.replace);
+            request.answer.send(copied).ok();
+            return Ok(self);
+        }
+        let open = |path: &Path| match is_new(path)? {
+            // SQLite would create a blank one.
+            true => Err(DocumentError::Missing),
+            false => Database::open(path, Access::Paint, None).map(|(database, _)| database),
+        };
+        if let FileState::Gone(_) = self.watch.check() {
+            let rescued = relocate::rescue(&self.database, &request.to, request.replace)
+                .and_then(|()| self.continue_in(&request.to));
+            request.answer.send(rescued).ok();
+            return Ok(self);
+        }
+        // What fails now would fail when it is closed, and then it could not be opened again.
+        if let Err(error @ DocumentError::Disk(_)) = self.database.try_merge_journal() {
+            request.answer.send(Err(error)).ok();
+            return Ok(self);
+        }
+        self.watch.note_merged();
+        let relocated = self.database.close().and_then(|()| {
+            relocate::relocate(&self.path, &request)?;
+            open(&request.to).inspect_err(|_| relocate::revert(&self.path, &request))
+        });
+        let (opened, outcome) = match relocated {
+            Ok(database) => (Ok((database, request.to.clone())), Ok(())),
+            Err(error) => (
+                open(&self.path).map(|database| (database, self.path.clone())),
+                Err(error),
+            ),
+        };
+        match opened {
+            Ok((database, path)) => {
+                self.watch = FileWatch::new(&path);
+                (self.database, self.path) = (database, path);
+                if outcome.is_ok() {
+                    self.clear_notice();
+                }
+            }
+            Err(error) => {
+                let mut queues = self.shared.lock();
+                queues.broken = Some(error.to_string());
+                queues.fault = Some((error.to_string(), error.advice()));
+                return Err(error);
+            }
+        }
+        request.answer.send(outcome).ok();
+        Ok(self)
+    }
+}

@@ -1,0 +1,142 @@
+//! The disk of an open painting fails for a while: it is painted on, told, and written once the disk is back.
+
+mod crash_vfs;
+mod easel;
+mod studio;
+
+use std::path::Path;
+
+use crash_vfs::{Log, Refused, watch};
+use easel::Easel;
+use maulstick_document::{Access, DocumentSettings, Relocate};
+use studio::{Painter, print};
+use tempfile::TempDir;
+
+struct Session {
+    easel: Easel,
+    painter: Painter,
+    log: Log,
+    settings: DocumentSettings,
+    folder: TempDir,
+}
+
+impl Session {
+    fn begin(memory: usize) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().canonicalize().expect("there").join("a.maul");
+        let log = watch(&path);
+        let settings = DocumentSettings {
+            memory,
+            vfs: Some("crash".to_owned()),
+            ..DocumentSettings::new(&path, Access::Paint)
+        };
+        let mut session = Self {
+            easel: Easel::begin(&settings),
+            painter: Painter::new(7),
+            log,
+            settings,
+            folder,
+        };
+        session.paint(20);
+        session.easel.flush();
+        session
+    }
+
+    fn paint(&mut self, acts: usize) {
+        for _ in 0..acts {
+            let act = self.painter.next();
+            self.easel.act(&mut self.painter, &act);
+            self.easel.checkpoint();
+        }
+    }
+
+    /// Waits until the document says that its disk fails, or that it does not.
+    fn wait_until(&self, fails: bool) {
+        while self.easel.document.fault().is_some() != fails {
+            std::thread::yield_now();
+        }
+    }
+
+    /// What is in the file after it was closed.
+    fn closed(mut self) -> (Vec<String>, Vec<String>) {
+        let seen = print(&mut self.easel.sequencer);
+        self.easel.close();
+        let mut again = Easel::open(&self.settings).expect("whole");
+        (seen, print(&mut again.sequencer))
+    }
+}
+
+const PLENTY: usize = 1 << 30;
+/// So little that most pages are in the file alone.
+const LITTLE: usize = 400_000;
+
+#[test]
+fn a_disk_that_fails_is_painted_on_and_written_when_it_is_back() {
+    let mut session = Session::begin(PLENTY);
+    session.log.refuse(Refused::Everything);
+    session.paint(10);
+    session.wait_until(true);
+    let (what, _) = session.easel.document.fault().expect("told");
+    assert!(what.contains("the disk fails"), "{what}");
+    // It is painted on for as long as it lasts.
+    session.paint(30);
+    assert_eq!(session.easel.document.pager().fault(), None);
+    session.log.refuse(Refused::Nothing);
+    session.wait_until(false);
+    let (seen, found) = session.closed();
+    assert_eq!(found, seen);
+}
+
+#[test]
+fn a_page_that_the_disk_does_not_give_is_waited_for() {
+    let mut session = Session::begin(LITTLE);
+    assert!(session.easel.sequencer.painting().bytes() < PLENTY);
+    session.log.refuse(Refused::Everything);
+    let document = &session.easel.document;
+    let sequencer = &mut session.easel.sequencer;
+    let seen = std::thread::scope(|scope| {
+        let reader = scope.spawn(move || print(sequencer));
+        while document.fault().is_none() && !reader.is_finished() {
+            std::thread::yield_now();
+        }
+        assert!(
+            !reader.is_finished(),
+            "some page has to be in the file alone"
+        );
+        session.log.refuse(Refused::Nothing);
+        reader.join().expect("read")
+    });
+    assert_eq!(session.easel.document.pager().fault(), None);
+    let (again, found) = session.closed();
+    assert_eq!((again, found), (seen.clone(), seen));
+}
+
+#[test]
+fn a_painting_is_not_moved_while_its_disk_fails_and_goes_on_where_it_is() {
+    let mut session = Session::begin(PLENTY);
+    session.log.refuse(Refused::Everything);
+    session.paint(3);
+    session.wait_until(true);
+    let to = session.folder.path().join("b.maul");
+    for how in [Relocate::Copy, Relocate::Rename] {
+        let document = &mut session.easel.document;
+        let moving = document.relocate(&to, how, false);
+        let refused = document.wait_for_relocation(&moving);
+        assert!(refused.is_err(), "{how:?}");
+        assert!(!to.exists());
+    }
+    session.paint(3);
+    session.log.refuse(Refused::Nothing);
+    session.wait_until(false);
+    let (seen, found) = session.closed();
+    assert_eq!(found, seen);
+}
+
+#[test]
+fn a_new_painting_is_in_its_file_at_once_without_its_journal() {
+    let session = Session::begin(PLENTY);
+    let copy = session.folder.path().join("copy.maul");
+    std::fs::copy(&session.settings.path, &copy).expect("copied");
+    let settings = DocumentSettings::new(Path::new(&copy), Access::Read);
+    assert!(Easel::open(&settings).is_ok());
+}
