@@ -140,6 +140,37 @@ impl PathSimplifier {
         self.kept.push(waiting);
     }
 
+    /// Follows a brush with a head of another length; what waits stays.
+    pub fn set_head_length(&mut self, head_length_m: f64) {
+        self.head_length_m = head_length_m;
+    }
+
+    /// The sample that waits for longest.
+    #[must_use]
+    pub fn first(&self) -> Option<&Waiting> {
+        self.kept.first()
+    }
+
+    /// The newest sample.
+    #[must_use]
+    pub fn last(&self) -> Option<&Waiting> {
+        self.kept.last()
+    }
+
+    /// Takes the samples before the first that was taken after `until_ns`.
+    pub fn take_until(&mut self, until_ns: u64) -> Vec<Waiting> {
+        let later = |waiting: &Waiting| waiting.event_ns > until_ns;
+        let count = self.kept.iter().position(later);
+        self.kept
+            .drain(..count.unwrap_or(self.kept.len()))
+            .collect()
+    }
+
+    /// Takes the sample that waits for longest; none or one.
+    pub fn take_first(&mut self) -> Vec<Waiting> {
+        self.kept.drain(..self.kept.len().min(1)).collect()
+    }
+
     /// Takes all that waits.
     pub fn take(&mut self) -> Vec<Waiting> {
         self.joined.clear();
@@ -152,10 +183,11 @@ impl PathSimplifier {
         self.kept.is_empty()
     }
 
-    /// True if a sample of a device waits.
+    /// Number of the first sample of a device that waits.
     #[must_use]
-    pub fn holds(&self, device: Origin) -> bool {
-        self.kept.iter().any(|waiting| waiting.origin == device)
+    pub fn first_of(&self, device: Origin) -> Option<u64> {
+        let mut own = self.kept.iter().filter(|waiting| waiting.origin == device);
+        own.next().map(|waiting| waiting.seq)
     }
 }
 

@@ -9,6 +9,7 @@
 //! | [`files`] | files: whole under their name, of one's own kind, open here |
 //! | [`log`] | log lines |
 //! | [`node_handle`] | joining a rig, living in it, leaving it |
+//! | [`sketches`] | paintings that have no name yet, in the user's state folder |
 //! | [`stop`] | the stop flag: a signal, or the launcher's end |
 
 pub mod command_client;
@@ -16,6 +17,7 @@ pub mod config;
 pub mod log;
 pub mod node_handle;
 pub mod size;
+pub mod sketches;
 pub mod stop;
 pub mod user_devices;
 pub mod user_error;
@@ -23,5 +25,6 @@ pub mod user_error;
 pub use config::RigConfig;
 pub use maulstick_files as files;
 pub use node_handle::{NodeArgs, NodeHandle};
+pub use sketches::Sketches;
 pub use stop::Stop;
 pub use user_error::UserError;

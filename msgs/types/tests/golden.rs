@@ -20,6 +20,7 @@ use maulstick_types::scene::{
     Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, Well, WellKind,
 };
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, TakeEnd, TakeStatus};
+use maulstick_types::window::PendingOrders;
 use maulstick_types::{CATALOGUE, Flags, Message, Mixture, Origin, decode, encode};
 use parts::{
     control, files, force_reply, handling, paint_status, pose, presented, status, takes, thumbnail,
@@ -239,6 +240,7 @@ fn all() -> String {
                 film_m: 1e-4,
                 viscosity_m2_s: 0.01,
                 contact_m: 0.008,
+                file: 4,
             }],
         }),
         line(&Scene {
@@ -396,6 +398,7 @@ fn all() -> String {
             to: 3,
         }),
         line(&presented()),
+        line(&PendingOrders { since_ns: 1 }),
     ]
     .concat()
 }

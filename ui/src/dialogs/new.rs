@@ -46,7 +46,7 @@ pub(crate) struct NewPainting {
     ground: &'static str,
     ground_file: String,
     tooth: String,
-    in_memory: bool,
+    as_sketch: bool,
     path: String,
     unkept: Unkept,
     wrong: Option<String>,
@@ -69,7 +69,7 @@ impl NewPainting {
             ground: GROUNDS[0].0,
             ground_file: String::new(),
             tooth: "linen".to_owned(),
-            in_memory: false,
+            as_sketch: false,
             path,
             unkept,
             wrong: None,
@@ -124,7 +124,7 @@ impl NewPainting {
     fn command(&self) -> Result<Command, String> {
         let canvas = self.canvas()?;
         self.unkept.check()?;
-        let path = match self.in_memory {
+        let path = match self.as_sketch {
             true => None,
             false => Some(self.file()?),
         };
@@ -139,9 +139,7 @@ impl NewPainting {
     /// The whole path of its file.
     fn file(&self) -> Result<WholePath, String> {
         if self.path.trim().is_empty() || self.path.trim().ends_with('/') {
-            return Err(
-                tr!("Keep in: write the name of a file, or choose to keep nothing.").to_owned(),
-            );
+            return Err(tr!("Keep in: write the name of a file, or begin a sketch.").to_owned());
         }
         let path = paths::ending_in(&paths::whole(&self.path), paths::PAINTING);
         if path.exists() {
@@ -258,7 +256,7 @@ impl NewPainting {
             ui.end_row();
             let keep = ui.label(tr!("Keep in"));
             ui.vertical(|ui| {
-                ui.add_enabled_ui(!self.in_memory, |ui| {
+                ui.add_enabled_ui(!self.as_sketch, |ui| {
                     let edit = TextEdit::singleline(&mut self.path).desired_width(f32::INFINITY);
                     let field = ui.add(edit).labelled_by(keep.id);
                     let enter = ui.input(|input| input.key_pressed(Key::Enter));
@@ -266,8 +264,8 @@ impl NewPainting {
                     changed |= field.changed();
                 });
                 ui.checkbox(
-                    &mut self.in_memory,
-                    tr!("Do not save: the sketch is lost when you quit"),
+                    &mut self.as_sketch,
+                    tr!("As a sketch: without a name for now"),
                 );
             });
             ui.end_row();

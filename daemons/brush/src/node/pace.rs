@@ -29,6 +29,11 @@ impl Pace {
         }
     }
 
+    /// Forgets since when samples wait: it was for no fault of the paint.
+    pub(super) fn forget_wait(&mut self) {
+        self.since_ns = None;
+    }
+
     /// Flags the solves of all that waited.
     pub(super) fn flag(&mut self, now_ns: u64, solves: &mut [Solve]) {
         let since_ns = self.since_ns.take().unwrap_or(now_ns);

@@ -68,6 +68,7 @@ pub static CATALOGUE: &[CatalogueEntry] = &[
     entry!(paint::ThumbnailRequest, "paint/thumbnail (query)"),
     entry!(paint::ThumbnailReply, "paint/thumbnail (reply)"),
     entry!(window::Presented, "ui/presented"),
+    entry!(window::PendingOrders, "ui/pending"),
     entry!(command::CommandRequest, "command/<node> (query)"),
     entry!(command::CommandReply, "command/<node> (reply)"),
     entry!(command::GapRequest, "gap/<stream> (query)"),
