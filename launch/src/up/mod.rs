@@ -26,7 +26,7 @@ use maulstick_rig::log::log_to_stderr;
 use maulstick_rig::{Sketches, UserError, user_devices};
 use maulstick_types::Mixture;
 
-use crate::cells::picture_settings;
+use crate::cells::{check_memory, check_speed, picture_settings};
 use crate::destination::{VIEW, export};
 use crate::document::{Presence, measure, presence, wrong};
 use crate::kit::use_kit;
@@ -80,6 +80,9 @@ pub struct UpOptions {
     snapshot: Option<PathBuf>,
     #[command(flatten)]
     painting: PaintingOptions,
+    /// Begin a canvas of so small or so many cells that painting on it is slow
+    #[arg(long)]
+    slow: bool,
     /// Print the default settings, with comments, and exit
     #[arg(long)]
     print_config: bool,
@@ -161,6 +164,12 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
         && let Some(scene) = scene(path).map_err(|error| wrong(path, &error))?
     {
         measure(&mut config.canvas, &scene);
+    }
+    if take.is_none() && presence != Some(Presence::There) {
+        check_speed(&config.canvas, options.slow.into())?;
+    }
+    if presence.is_none() {
+        check_memory(&config.canvas)?;
     }
     let library = library_from(config.paint.paints.as_deref())?;
     let loads = options.painting.kit.mixtures(&embedded, &library)?;

@@ -49,6 +49,8 @@ pub(crate) struct NewPainting {
     as_sketch: bool,
     path: String,
     unkept: Unkept,
+    /// True if the painter accepts that painting on it is slow.
+    may_be_slow: bool,
     wrong: Option<String>,
 }
 
@@ -72,6 +74,7 @@ impl NewPainting {
             as_sketch: false,
             path,
             unkept,
+            may_be_slow: false,
             wrong: None,
         }
     }
@@ -123,6 +126,12 @@ impl NewPainting {
     /// As [`canvas`](Self::canvas), and if the file cannot be created there.
     fn command(&self) -> Result<Command, String> {
         let canvas = self.canvas()?;
+        if canvas.is_slow() && !self.may_be_slow {
+            return Err(tr!(
+                "Painting on so many cells is slow. Choose larger ones, 4 per mm are usual, or tick that it may be slow."
+            )
+            .to_owned());
+        }
         self.unkept.check()?;
         let path = match self.as_sketch {
             true => None,
@@ -161,11 +170,16 @@ impl NewPainting {
     pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
         let answer = dialog::show(context, tr!("New painting"), |ui| {
             let entered = self.fields(ui);
-            let estimate = self.canvas().map(|canvas| estimate(&canvas));
+            let canvas = self.canvas();
+            let estimate = canvas.map(|canvas| (estimate(&canvas), canvas.is_slow()));
             ui.add_space(6.0);
             let wrong = match estimate {
-                Ok(words) => {
+                Ok((words, is_slow)) => {
                     ui.weak(words);
+                    if is_slow {
+                        let words = tr!("It may be slow: the paint falls behind the hand");
+                        ui.checkbox(&mut self.may_be_slow, words);
+                    }
                     self.wrong.clone()
                 }
                 Err(words) => Some(words),

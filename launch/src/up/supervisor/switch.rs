@@ -21,6 +21,7 @@ use super::orders::{refusal, starts_again};
 use super::sketch::{self, Leave};
 use super::starts::start_time;
 use super::{GRACE, Supervisor};
+use crate::cells::check_memory;
 use crate::document::{measure, read, round, wrong};
 use crate::performance::{library_from, painting_setup, refused};
 use crate::up::child::{Ended, State};
@@ -210,6 +211,9 @@ fn begun(
             return Err(wrong(path, &DocumentError::Taken));
         }
         check_writable(path, Kind::Own).map_err(|error| UserError::writing(path, &error))?;
+    }
+    if path.is_none() {
+        check_memory(&config.canvas)?;
     }
     config.paint.document = path;
     let library = library_from(config.paint.paints.as_deref())?;

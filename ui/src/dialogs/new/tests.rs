@@ -97,3 +97,13 @@ fn it_looks_as_in_its_picture() {
         |new| new.width = "0".into(),
     );
 }
+
+#[test]
+fn a_canvas_of_so_many_cells_that_painting_is_slow_is_asked_for() {
+    let fine = |cells: &str, may_be_slow: bool| {
+        asked(|new| (new.fine, new.may_be_slow) = (cells.into(), may_be_slow))
+    };
+    assert!(fine("16", false).is_ok());
+    assert!(fine("48", false).is_err());
+    assert!(fine("48", true).is_ok());
+}
