@@ -28,6 +28,7 @@ enum Kind {
     /// The surfaces are drawn for the view.
     Drawing,
     /// Wet paint dries in time.
+    Drying,
     /// A process does not answer, by its name in the dispatcher.
     Waiting(String),
 }

@@ -307,9 +307,10 @@ impl Studio {
                     "Titanium White",
                     "Yellow Ochre",
                 ];
-                setting.load = paints[self.dice(4) as usize].to_owned();
+                let mixture = Mixture::pure(paints[self.dice(4) as usize]);
+                setting.load = mixture.to_string();
                 self.ask(Load {
-                    mixture: Mixture::pure(&setting.load),
+                    mixture,
                     beside: None,
                     brush: name(),
                 });
