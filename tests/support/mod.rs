@@ -74,7 +74,8 @@ impl Place {
             .args(args)
             .current_dir(self.folder.path())
             .env("XDG_RUNTIME_DIR", self.folder.path())
-            .env("XDG_CONFIG_HOME", self.folder.path());
+            .env("XDG_CONFIG_HOME", self.folder.path())
+            .env("XDG_STATE_HOME", self.folder.path());
         command
     }
 

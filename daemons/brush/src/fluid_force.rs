@@ -92,6 +92,7 @@ mod tests {
             film_m,
             viscosity_m2_s,
             contact_m: 0.01,
+            file: 0,
         }
     }
 

@@ -3,7 +3,7 @@
 use clap::Args;
 use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, RigConfig};
-use maulstick_types::command::CELLS_IN_ALL;
+use maulstick_types::command::{CELLS_IN_ALL, SLOW_CELL_M, SLOW_CELLS};
 
 /// Side of a cell in pictures, mm. A hand that paints has those of its rig, which are larger, so that a
 /// broad brush keeps up with it.
@@ -78,6 +78,61 @@ pub fn check_canvas(canvas: &CanvasSection) -> Result<(), UserError> {
     )))
 }
 
+/// Bytes that a cell takes in memory when it is painted on with three paints: their counts, and what is shown.
+const CELL_BYTES: f64 = 3.0 * 4.0 + 14.0;
+
+/// Whether the painter wants a canvas that is slow to paint on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slowness {
+    /// He has said so.
+    Accepted,
+    /// He may not know.
+    Unknown,
+}
+
+impl From<bool> for Slowness {
+    fn from(accepted: bool) -> Self {
+        match accepted {
+            true => Self::Accepted,
+            false => Self::Unknown,
+        }
+    }
+}
+
+/// Checks that a hand can paint on a new canvas, unless the painter accepts that it is slow.
+///
+/// # Errors
+/// A [`UserError`] with its cells.
+pub fn check_speed(canvas: &CanvasSection, slowness: Slowness) -> Result<(), UserError> {
+    let cells = canvas.cells().map(f64::from);
+    let is_slow =
+        canvas.cell_mm * 1e-3 < SLOW_CELL_M * (1.0 - 1e-9) || cells[0] * cells[1] > SLOW_CELLS;
+    if slowness == Slowness::Accepted || !is_slow {
+        return Ok(());
+    }
+    Err(UserError::usage(format!(
+        "painting on {}×{} cells of {} mm is slow: the paint falls behind the hand, and the window takes long to draw it",
+        cells[0],
+        cells[1],
+        canvas.cell_mm
+    ))
+    .help(format!(
+        "choose cells of {} mm and more, {:.0} million at most, or give --slow",
+        SLOW_CELL_M * 1e3,
+        SLOW_CELLS * 1e-6
+    )))
+}
+
+/// Checks that there is memory for a canvas that is in no file. The pages of one in a file leave memory.
+///
+/// # Errors
+/// A [`UserError`] with what it takes.
+pub fn check_memory(canvas: &CanvasSection) -> Result<(), UserError> {
+    let [width, height] = canvas.cells().map(f64::from);
+    let bytes = width * height * CELL_BYTES;
+    crate::memory::check("a canvas of so many cells", bytes as u64)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -94,6 +149,30 @@ mod tests {
             );
         }
         assert!(parse_cell_mm("fine").is_err_and(|what| what.contains("0.125")));
+    }
+
+    #[test]
+    fn a_canvas_that_is_slow_is_asked_for_and_one_beyond_the_memory_refused() {
+        let canvas = |width_mm: f64, cell_mm: f64| CanvasSection {
+            width_mm,
+            height_mm: 210.0,
+            cell_mm,
+            ..CanvasSection::default()
+        };
+        for (width_mm, cell_mm, is_slow) in [
+            (297.0, 0.25, false),
+            (297.0, 0.0625, false),
+            (297.0, 1.0 / 48.0, true),
+            (10.0, 1.0 / 48.0, true),
+            (10_000.0, 0.125, true),
+        ] {
+            let canvas = canvas(width_mm, cell_mm);
+            let checked = check_speed(&canvas, Slowness::Unknown);
+            assert_eq!(checked.is_err(), is_slow, "{width_mm} {cell_mm}");
+            assert_eq!(check_speed(&canvas, Slowness::Accepted), Ok(()));
+        }
+        check_memory(&canvas(297.0, 0.25)).expect("a few megabytes");
+        check_memory(&canvas(1e9, 0.02)).expect_err("no machine has that");
     }
 
     #[test]

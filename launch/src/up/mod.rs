@@ -23,10 +23,10 @@ use maulstick_optics::PaintLibrary;
 use maulstick_rig::config::{DEFAULT, DeviceSection, RigConfig, is_path};
 use maulstick_rig::files::Kind;
 use maulstick_rig::log::log_to_stderr;
-use maulstick_rig::{UserError, user_devices};
+use maulstick_rig::{Sketches, UserError, user_devices};
 use maulstick_types::Mixture;
 
-use crate::cells::picture_settings;
+use crate::cells::{check_memory, check_speed, picture_settings};
 use crate::destination::{VIEW, export};
 use crate::document::{Presence, measure, presence, wrong};
 use crate::kit::use_kit;
@@ -34,7 +34,7 @@ use crate::outputs::{Relayed, UsedFile, check_outputs, named_by};
 use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
 use crate::up::conductor::Performance;
 use crate::up::plan::{Hands, Window};
-use crate::up::supervisor::Supervisor;
+use crate::up::supervisor::{Supervisor, sketch};
 
 /// Folder of the files embedded in the played take, in the rig's folder.
 const KIT: &str = "kit";
@@ -57,7 +57,7 @@ fn first_load(library: &PaintLibrary) -> Mixture {
 /// Options of `maulstick up`.
 #[derive(Args, Clone, Debug)]
 pub struct UpOptions {
-    /// Painting to open or begin [default: none, in memory only]
+    /// Painting to open or begin [default: a sketch, kept for the next start; in memory only without a window]
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
     /// Settings of the rig [default: the built-in settings]
@@ -80,6 +80,9 @@ pub struct UpOptions {
     snapshot: Option<PathBuf>,
     #[command(flatten)]
     painting: PaintingOptions,
+    /// Begin a canvas of so small or so many cells that painting on it is slow
+    #[arg(long)]
+    slow: bool,
     /// Print the default settings, with comments, and exit
     #[arg(long)]
     print_config: bool,
@@ -146,6 +149,13 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
         Some((path, take)) => use_kit(take, path, &folder.path().join(KIT), &mut config)?,
     };
     let section = options.painting.apply(&mut config)?;
+    let sketches = match (options.headless, &take) {
+        (false, None) => sketches(),
+        _ => None,
+    };
+    if let (None, Some((_, sketch))) = (&config.paint.document, &sketches) {
+        config.paint.document = Some(sketch.clone());
+    }
     let presence = match &config.paint.document {
         Some(path) => Some(presence(path, &options.painting)?),
         None => None,
@@ -154,6 +164,12 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
         && let Some(scene) = scene(path).map_err(|error| wrong(path, &error))?
     {
         measure(&mut config.canvas, &scene);
+    }
+    if take.is_none() && presence != Some(Presence::There) {
+        check_speed(&config.canvas, options.slow.into())?;
+    }
+    if presence.is_none() {
+        check_memory(&config.canvas)?;
     }
     let library = library_from(config.paint.paints.as_deref())?;
     let loads = options.painting.kit.mixtures(&embedded, &library)?;
@@ -220,8 +236,24 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
         (Some(load), _) => Some(load),
         (None, _) => Some(first_load(&library)),
     };
-    let mut supervisor = Supervisor::start(folder, &config, nodes, performance, first_load)?;
-    supervisor.run()
+    let supervisor = Supervisor::start(folder, &config, nodes, performance, first_load)?;
+    let sketches = sketches.map(|(sketches, _)| sketches);
+    supervisor.with_sketches(sketches).run()
+}
+
+/// The sketches of this user, tidied up, and the file of a new one; none where the system has no room for them, which
+/// is told.
+fn sketches() -> Option<(Sketches, PathBuf)> {
+    let begun = Sketches::of_user().and_then(|sketches| {
+        sketch::tidy(&sketches);
+        let file = sketch::fresh(&sketches)?;
+        Ok((sketches, file))
+    });
+    let warn = |fault: &UserError| {
+        let place = fault.place.as_deref().unwrap_or("sketches");
+        tracing::warn!("{place}: {}: a sketch is in memory alone", fault.what);
+    };
+    begun.inspect_err(warn).ok()
 }
 
 /// Settings without the simulated devices that no hand moves: a painter who attached none has the mouse.

@@ -4,6 +4,7 @@ mod devices;
 mod folder;
 mod loads;
 mod orders;
+pub(super) mod sketch;
 mod starts;
 mod switch;
 mod turns;
@@ -17,7 +18,7 @@ use maulstick_bus::sockets::SocketKeeper;
 use maulstick_bus::{Bus, Dial, RigClock, RigFolder, Subscription, Wake, ZenohBus};
 use maulstick_rig::node_handle::{CONFIG_FILE, HUB};
 use maulstick_rig::user_error::EXIT_FAILURE;
-use maulstick_rig::{RigConfig, Stop, UserError};
+use maulstick_rig::{RigConfig, Sketches, Stop, UserError};
 use maulstick_types::Mixture;
 use maulstick_types::wire::topics::Topics;
 
@@ -65,6 +66,8 @@ pub struct Supervisor {
     turns: Turns,
     watchdog: Watchdog,
     folder_watch: FolderWatch,
+    /// The sketches, where paintings without a file of their own are such.
+    sketches: Option<Sketches>,
 }
 
 /// A node whose token is gone for so long is taken for frozen.
@@ -138,11 +141,19 @@ impl Supervisor {
             turns: Turns::default(),
             watchdog,
             folder_watch: FolderWatch::new(sockets),
+            sketches: None,
         };
         for place in 0..supervisor.nodes.len() {
             supervisor.start_node(place)?;
         }
         Ok(supervisor)
+    }
+
+    /// Gives a painting for which nobody names a file one of a sketch.
+    #[must_use]
+    pub fn with_sketches(mut self, sketches: Option<Sketches>) -> Self {
+        self.sketches = sketches;
+        self
     }
 
     fn start_node(&mut self, place: usize) -> Result<(), UserError> {
@@ -178,6 +189,7 @@ impl Supervisor {
         maulstick_bus::clear_shared_memory();
         self.folder.withdraw();
         self.session.close();
+        self.end_sketch();
         match end {
             // Paint itself said why.
             End::Code(0) if !is_kept => Ok(EXIT_FAILURE),
@@ -399,6 +411,10 @@ impl Supervisor {
                     eprintln!("recorded in {}", record.folder.display());
                 }
                 match &self.config.paint.document {
+                    Some(path) if self.sketch().is_some() => eprintln!(
+                        "sketch in {}: it is kept there until it gets a name",
+                        path.display()
+                    ),
                     Some(path) => eprintln!("painting in {}", path.display()),
                     None => eprintln!(
                         "this painting is not kept: `maulstick up FILE.maul` keeps one in a file"

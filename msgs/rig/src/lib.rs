@@ -10,6 +10,7 @@
 //! | [`log`] | log lines |
 //! | [`node_handle`] | joining a rig, living in it, leaving it |
 //! | [`pulse`] | the status of a node, by which the launcher sees that it goes on |
+//! | [`sketches`] | paintings that have no name yet, in the user's state folder |
 //! | [`table_file`] | tables in files that a user names |
 //! | [`stop`] | the stop flag: a signal, or the launcher's end |
 
@@ -19,6 +20,7 @@ pub mod log;
 pub mod node_handle;
 pub mod pulse;
 pub mod size;
+pub mod sketches;
 pub mod stop;
 pub mod table_file;
 pub mod user_devices;
@@ -27,5 +29,6 @@ pub mod user_error;
 pub use config::RigConfig;
 pub use maulstick_files as files;
 pub use node_handle::{NodeArgs, NodeHandle};
+pub use sketches::Sketches;
 pub use stop::Stop;
 pub use user_error::UserError;

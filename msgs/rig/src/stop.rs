@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
 use std::time::Duration;
 
 use maulstick_bus::Wake;
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
 /// Stop flag of this process.
@@ -18,13 +18,13 @@ pub struct Stop {
 }
 
 impl Stop {
-    /// Watches for SIGTERM and SIGINT, and rings `wake` when they come.
+    /// Watches for SIGTERM, SIGINT and SIGHUP (the terminal is closed), and rings `wake` when they come.
     ///
     /// # Errors
     /// The system's error if signals cannot be watched.
     pub fn on_signals(wake: &Wake) -> std::io::Result<Self> {
         let stop = Self::default();
-        let mut signals = Signals::new([SIGTERM, SIGINT])?;
+        let mut signals = Signals::new([SIGTERM, SIGINT, SIGHUP])?;
         let (flag, signal, wake) = (
             Arc::clone(&stop.flag),
             Arc::clone(&stop.signal),
@@ -79,7 +79,7 @@ impl Stop {
         self.signal.load(Ordering::SeqCst) != 0
     }
 
-    /// The exit code after a stop: `interrupted` after Ctrl-C, 128 + SIGTERM after that, else 0.
+    /// The exit code after a stop: `interrupted` after Ctrl-C, 128 and its number after another signal, else 0.
     #[must_use]
     pub fn exit_code(&self, interrupted: i32) -> i32 {
         match self.signal.load(Ordering::SeqCst) {

@@ -1,4 +1,4 @@
-//! Message of the window about the frames that it has shown.
+//! Messages of the window: the frames that it has shown, and what it has asked for.
 
 use crate::paint::FrameHolds;
 use crate::wire::define::message;
@@ -16,5 +16,15 @@ message! {
         pub journal: u64,
         /// The brush states that are in its picture of the canvas.
         pub holds: Vec<FrameHolds>,
+    }
+}
+
+message! {
+    /// Says that something that a painter asked for at the window is not done yet: a stroke that begins after it was asked
+    /// for waits. Sent at least each 50 ms while something is pending, and once when nothing is any more.
+    pub struct PendingOrders [version 1, at most 16 bytes] {
+        /// Samples of a stylus until then were made before the oldest of it was asked for, rig clock, ns; 0 if nothing is
+        /// pending.
+        pub since_ns: u64,
     }
 }

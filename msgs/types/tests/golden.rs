@@ -20,6 +20,7 @@ use maulstick_types::scene::{
     Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, Well, WellKind,
 };
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, TakeEnd, TakeStatus};
+use maulstick_types::window::PendingOrders;
 use maulstick_types::{CATALOGUE, Flags, Message, Mixture, Origin, decode, encode};
 use parts::{
     control, files, force_reply, handling, node_status, paint_status, pose, presented, status,
@@ -241,6 +242,7 @@ fn all() -> String {
                 film_m: 1e-4,
                 viscosity_m2_s: 0.01,
                 contact_m: 0.008,
+                file: 4,
             }],
         }),
         line(&Scene {
@@ -399,6 +401,7 @@ fn all() -> String {
         }),
         line(&presented()),
         line(&node_status()),
+        line(&PendingOrders { since_ns: 1 }),
     ]
     .concat()
 }

@@ -36,7 +36,8 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
         .current_dir(place.path())
         .env("DISPLAY", screen)
         .env("XDG_RUNTIME_DIR", place.path())
-        .env("XDG_CONFIG_HOME", place.path().join("config"));
+        .env("XDG_CONFIG_HOME", place.path().join("config"))
+        .env("XDG_STATE_HOME", place.path().join("state"));
     let mut rig = Running::start(&mut command)?;
     let folder = place.path().join("maulstick/idle");
     joined(&folder, Instant::now() + Duration::from_secs(30))?;

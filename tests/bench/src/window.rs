@@ -84,6 +84,7 @@ fn measured(side_mm: u32, zooms: &[f64], display: &str) -> Result<Vec<u64>, User
         .arg(&rig)
         .current_dir(place.path())
         .env("XDG_RUNTIME_DIR", place.path())
+        .env("XDG_STATE_HOME", place.path().join("state"))
         .env("DISPLAY", display)
         .env_remove("WAYLAND_DISPLAY")
         .stdout(Stdio::null())

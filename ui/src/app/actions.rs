@@ -47,7 +47,7 @@ impl App {
     }
 
     /// Does what concerns the desk.
-    pub(super) fn act(&mut self, act: Action, pixels_per_point: f32) {
+    pub(super) fn act(&mut self, act: Action, context: &Context) {
         let (Some(canvas), Some(view)) = (self.rig.canvas(), &self.view) else {
             return;
         };
@@ -55,19 +55,33 @@ impl App {
         match act {
             Action::Fit => place(&mut self.requests, &view.fitted(canvas), CANVAS),
             Action::Hundred => {
-                let lie = view.hundred(canvas, pixels_per_point);
+                let lie = view.hundred(canvas, context.pixels_per_point());
                 place(&mut self.requests, &lie, CANVAS);
             }
             Action::Palette => self.slide(),
-            Action::LoadFrom => self.load_from(),
+            Action::LoadFrom => self.load_from(context),
             _ => {}
         }
     }
 
+    /// The point of the desk at the pointer.
+    fn pointed_at(&self, context: &Context) -> Option<DVec3> {
+        let (scene, view) = (self.rig.scene.as_ref()?, self.view.as_ref()?);
+        let at = context.input(|input| input.pointer.latest_pos())?;
+        let is_on_desk = view.area.contains(at) && !is_panel(context, at);
+        is_on_desk.then(|| view.to_desk(at, &scene.surfaces))
+    }
+
     /// Loads the brush in the hand with the mixture under it.
-    fn load_from(&mut self) {
+    fn load_from(&mut self, context: &Context) {
         let name = self.rig.brush_name();
-        let under = self.tracker.aim(name).and_then(|(at, _)| {
+        // The mouse's newest sample comes back a frame later: it is where its pointer is.
+        let pointer = match self.tracker.is_led_by_mouse(name) {
+            true => self.pointed_at(context),
+            false => None,
+        };
+        let aim = pointer.or(self.tracker.aim(name).map(|(at, _)| at));
+        let under = aim.and_then(|at| {
             let plane = self.rig.desk.as_ref()?.under(at)?;
             let plane = plane.holds(at).then_some(plane)?;
             let at = plane.to_desk.inverse().point(at) / plane.zoom;
@@ -117,8 +131,8 @@ impl App {
             over_panel: over_panel(context) || self.overlay.motions.is_placing(),
             keys: &self.preferences.keys,
         };
-        let (navigation, requests) = (&mut self.navigation, &mut self.requests);
-        context.input(|input| navigation.follow(input, &around, requests));
+        let navigation = &mut self.navigation;
+        context.input(|input| navigation.follow(input, &around));
         let brush = self.rig.brush_name();
         let aim = self.tracker.aim(brush);
         let now_s = context.input(|input| input.time);
@@ -139,8 +153,7 @@ impl App {
             });
         }
         let handling = self.rig.handling();
-        self.clean_key
-            .follow(now_s, is_down, painting, &handling, &mut self.requests);
+        self.clean_key.follow(now_s, is_down, painting, &handling);
         if self.clean_key.is_down() {
             context.request_repaint_after(STILL);
         }

@@ -7,6 +7,7 @@
 //! | `sides`, `column` | what stands at the sides of the window; the column of panels |
 //! | `overlay` | what lies over the desk: panels, dialogs, help |
 //! | [`rack`] | the brush rack at the edge |
+//! | `sending` | requests, in their order among the strokes |
 //! | `first_run` | the line of help for a new painter |
 //! | `help_pages` | a first painting in steps; what program this is |
 //! | `window_memory` | title and size of the window, and the painter's habits |
@@ -22,7 +23,7 @@ use maulstick_brush::palette_place::Side;
 use maulstick_bus::typed::random_epoch;
 use maulstick_bus::{Bus, Wake};
 use maulstick_optics::PaintLibrary;
-use maulstick_rig::{NodeHandle, Stop, UserError};
+use maulstick_rig::{NodeHandle, Sketches, Stop, UserError};
 use maulstick_types::scene::{PALETTE, Surface};
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
@@ -46,15 +47,17 @@ use crate::rig::device_commands::DeviceCommands;
 use crate::rig::dispatcher::CommandDispatcher;
 use crate::rig::health::HealthMonitor;
 use crate::rig::listener::RigListener;
-use crate::rig::requests::Requests;
+use crate::rig::requests::{Request, Requests};
 use crate::rig::state::RigState;
 use crate::rig::stroke_barrier::StrokeBarrier;
+use crate::rig::stroke_barrier::pending::PendingTeller;
 use crate::rig::thumbnails::ThumbnailFetcher;
 use crate::sessions::SessionProcesses;
 use crate::settings::look::Look;
 use crate::settings::preferences::Preferences;
 use crate::tracing::TracingPicture;
 use crate::view::camera::{DESK_COLOUR, View};
+use crate::view::held_view::{self, HeldView};
 use crate::view::palette_slide::PaletteSlide;
 use crate::widgets::context::PanelContext;
 use crate::widgets::notifications::Notifications;
@@ -67,6 +70,7 @@ mod first_run;
 mod help_pages;
 pub(crate) mod overlay;
 pub mod rack;
+mod sending;
 pub(crate) mod sides;
 #[cfg(test)]
 mod tests;
@@ -81,8 +85,6 @@ const STATUS_LOOK: Duration = Duration::from_millis(100);
 const SILENCE: Duration = Duration::from_nanos(SILENCE_NS);
 /// Interval at which an idle window is drawn.
 const IDLE_LOOK: Duration = Duration::from_secs(60);
-/// Interval at which a request that waits for its stroke is checked again.
-const BARRIER_LOOK: Duration = Duration::from_millis(50);
 
 /// The painter's view.
 pub struct App {
@@ -102,6 +104,9 @@ pub struct App {
     pen: WindowPen,
     brush_turn: BrushTurn,
     view: Option<View>,
+    held_view: HeldView,
+    /// Requests that move a surface, until no brush touches one.
+    held_places: Vec<Request>,
     pointer_path: PointerPath,
     navigation: Navigation,
     palette_slide: PaletteSlide,
@@ -113,6 +118,7 @@ pub struct App {
     tracing: TracingPicture,
     requests: Requests,
     barrier: StrokeBarrier,
+    pending: PendingTeller,
     dispatcher: CommandDispatcher,
     device_commands: DeviceCommands,
     session_processes: SessionProcesses,
@@ -180,7 +186,10 @@ impl App {
             progress: Progress::default(),
             watch: HealthMonitor::default(),
             listener: RigListener::new(&**bus, topics, &member.wake)?,
-            rig: RigState::new(&member.config.rig.name, &names, Arc::new(library)),
+            rig: RigState {
+                sketches: Sketches::of_user().ok(),
+                ..RigState::new(&member.config.rig.name, &names, Arc::new(library))
+            },
             dispatcher: CommandDispatcher::new(Arc::clone(bus), topics, &member.wake),
             device_commands: DeviceCommands::own(),
             session_processes: SessionProcesses::own(),
@@ -199,11 +208,14 @@ impl App {
             presenter: None,
             lost,
             view: None,
+            held_view: HeldView::default(),
+            held_places: Vec::new(),
             pointer_path: PointerPath::default(),
             overlay: Overlay::default(),
             tracing: TracingPicture::default(),
             requests: Requests::default(),
             barrier: StrokeBarrier::new(&**bus, topics)?,
+            pending: PendingTeller::new(&**bus, topics)?,
             notifications,
             title: String::new(),
             look: Look::default(),
@@ -283,28 +295,6 @@ impl App {
         }
     }
 
-    /// Sends the requests whose preceding strokes are painted.
-    fn send(&mut self, context: &Context) {
-        let now_ns = self.bus.now_ns();
-        let is_shown = self.shows_devices();
-        let orders = self.requests.take_device_orders();
-        let told = (&mut self.rig, &mut self.notifications);
-        self.device_commands.turn(context, orders, is_shown, told);
-        let orders = self.requests.take_session_orders();
-        let told = (&mut self.rig, &mut self.notifications);
-        self.session_processes.turn(context, orders, told);
-        for request in self.requests.take() {
-            self.barrier
-                .push(now_ns, request, self.tracker.newest(now_ns));
-        }
-        while let Some(ready) = self.barrier.next_ready(now_ns) {
-            self.dispatcher.send(ready);
-        }
-        if self.barrier.is_waiting() {
-            context.request_repaint_after(BARRIER_LOOK);
-        }
-    }
-
     /// True while the panel of the devices is open.
     fn shows_devices(&self) -> bool {
         self.preferences.panels && self.preferences.is_open("Device")
@@ -318,7 +308,7 @@ impl App {
                 || status.drying.is_some()
                 || status.export.is_some()
                 || status.lag_ns > 0
-                // A sketch without a file is never saved.
+                // What is in memory alone is never saved.
                 || !status.path.is_empty() && !status.all_committed
         });
         match works || self.shows_devices() || !self.dispatcher.waits().is_empty() {
@@ -335,8 +325,14 @@ impl eframe::App for App {
     }
 
     fn logic(&mut self, context: &Context, _frame: &mut eframe::Frame) {
-        if self.stop.requested() || self.lost.is_lost() {
+        let ends = self.stop.requested() || self.lost.is_lost();
+        if ends {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+        let is_asked = context.input(|input| input.viewport().close_requested());
+        if is_asked && !ends && !self.overlay.may_close(&self.rig) {
+            context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            context.request_repaint();
         }
         presses::return_keyboard(context);
         let places = self.pointer(context);
@@ -357,6 +353,7 @@ impl eframe::App for App {
         // After the mouse has sent its position: its brush is drawn there.
         self.take_in(now_ns);
         self.barrier.take_in(now_ns);
+        self.rig.painting = self.is_painting();
         self.send(context);
         self.follow(context, now_ns);
         if self.pointer_path.is_pressed() || self.brush_turn.is_waiting() {
@@ -386,10 +383,18 @@ impl eframe::App for App {
                     left
                 }
             };
-            self.view = canvas.and_then(|canvas| View::of(area, canvas, palette, side, taken));
+            let mut wanted = canvas.and_then(|canvas| View::of(area, canvas, palette, side, taken));
             if self.preferences.mirrored {
-                self.view = self.view.map(View::mirrored);
+                wanted = wanted.map(View::mirrored);
             }
+            let pixels_per_point = ui.ctx().pixels_per_point();
+            let corner = ui.input(|input| input.viewport().inner_rect.map(|rect| rect.min));
+            let frame = held_view::Frame {
+                pixels_per_point,
+                corner_px: corner.unwrap_or_default() * pixels_per_point,
+            };
+            let is_held = self.holds_desk();
+            self.view = self.held_view.follow(wanted, frame, is_held);
             let surfaces = self.rig.scene.as_ref().map(|scene| &scene.surfaces[..]);
             let shown = self.view.as_ref().zip(surfaces);
             let brush = self.rig.brush_name();
@@ -407,7 +412,6 @@ impl eframe::App for App {
             if self.palette_slide.show(now_s, &mut surfaces) {
                 ui.ctx().request_repaint();
             }
-            let pixels_per_point = ui.ctx().pixels_per_point();
             let work = &mut PanelContext {
                 rig: &mut self.rig,
                 requests: &mut self.requests,
@@ -466,7 +470,10 @@ impl eframe::App for App {
             },
         );
         for act in acts {
-            self.act(act, ui.ctx().pixels_per_point());
+            self.act(act, ui.ctx());
+        }
+        if self.overlay.closes() {
+            ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
         }
         self.change_hands();
         self.remember_size(ui.ctx());

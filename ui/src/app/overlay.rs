@@ -26,6 +26,7 @@ use crate::panels::light::lamp_undo::LampUndo;
 use crate::reference::Reference;
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
+use crate::rig::state::RigState;
 use crate::sessions::SessionOrder;
 use crate::sessions::transport_bar::TransportBar;
 use crate::settings::brush_load;
@@ -145,6 +146,17 @@ impl Overlay {
             Some(_) => [0.0; 2],
             None => sides::taken(preferences),
         }
+    }
+
+    /// True if the window may close now; where the painting has no name yet the painter is asked first.
+    pub(crate) fn may_close(&mut self, rig: &RigState) -> bool {
+        self.files.may_close(rig)
+    }
+
+    /// True once the painter has agreed to close.
+    #[must_use]
+    pub(crate) fn closes(&self) -> bool {
+        self.files.closes()
     }
 
     /// Keeps back what hides the panels until no control of theirs is dragged, so that its end is not missed.

@@ -12,6 +12,7 @@ impl App {
     pub(super) fn name_window(&mut self, context: &Context) {
         let path = self.rig.paint.as_ref().map(|node| &*node.status.path);
         let title = match path.filter(|path| !path.is_empty()) {
+            Some(_) if self.rig.is_sketch() => tr!("Sketch · Maulstick").to_owned(),
             Some(path) => format!("{} · Maulstick", paths::name(Path::new(path))),
             None => "Maulstick".to_owned(),
         };

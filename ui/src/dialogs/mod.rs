@@ -5,12 +5,15 @@
 //! | --- | --- |
 //! | `dialog`, `browser`, `paths` | parts of dialogs: frame, file chooser with the listing of a folder, paths |
 //! | `new`, `open`, `recent`, `save_as`, `export`, `choose` | one dialog each |
-//! | `discard_prompt` | asks before an unsaved painting is closed |
+//! | `discard_prompt` | asks before a painting in memory alone gives way to another |
+//! | `close` | asks before the window closes on a painting without a name |
+//! | `sketch_offer` | the sketches of before |
 //! | `dropped` | files dropped on the window |
 //! | `save_status`, `exporting` | line at the lower edge; progress of an export |
 
 mod browser;
 mod choose;
+mod close;
 pub(crate) mod dialog;
 mod discard_prompt;
 mod dropped;
@@ -22,11 +25,13 @@ pub(crate) mod paths;
 mod recent;
 mod save_as;
 mod save_status;
+mod sketch_offer;
 
 use std::path::{Path, PathBuf};
 use std::task::Poll;
 
 use eframe::egui::Context;
+use maulstick_rig::Sketches;
 use maulstick_types::command::{Command, FileCommand, RigCommand};
 
 use crate::background_task::BackgroundTask;
@@ -35,9 +40,11 @@ use crate::language::translated;
 use crate::reference::Reference;
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
+use crate::rig::state::RigState;
 use crate::sessions::SessionOrder;
 use crate::widgets::context::PanelContext;
 use choose::ChooseFile;
+use close::{ClosePainting, Decision};
 pub(crate) use dialog::wrong;
 use dialog::{Answer, in_words};
 use discard_prompt::Unkept;
@@ -47,6 +54,7 @@ use new::NewPainting;
 use open::OpenPainting;
 use recent::RecentList;
 use save_as::SaveAs;
+use sketch_offer::{Choice, SketchOffer};
 
 /// The launcher, as a node.
 #[cfg(test)]
@@ -62,6 +70,7 @@ enum Dialog {
     Picture(ChooseFile),
     Tracing(ChooseFile),
     Recording(ChooseFile),
+    Close(ClosePainting),
 }
 
 /// Files in the window.
@@ -74,6 +83,9 @@ pub(crate) struct Files {
     dropping: Option<BackgroundTask<Dropped>>,
     /// The painting that was last seen to be open.
     open: Option<PathBuf>,
+    offer: SketchOffer,
+    /// True once the painter has agreed to close the window.
+    closes: bool,
 }
 
 impl Files {
@@ -81,6 +93,26 @@ impl Files {
     #[must_use]
     pub(crate) fn is_open(&self) -> bool {
         self.dialog.is_some()
+    }
+
+    /// True if the window may close now; else the painter is asked.
+    pub(crate) fn may_close(&mut self, rig: &RigState) -> bool {
+        if self.closes {
+            return true;
+        }
+        match ClosePainting::of(rig) {
+            None => true,
+            Some(ask) => {
+                self.begin(Dialog::Close(ask));
+                false
+            }
+        }
+    }
+
+    /// True once the painter has agreed to close the window.
+    #[must_use]
+    pub(crate) fn closes(&self) -> bool {
+        self.closes
     }
 
     /// Does what a key asks for; `false` where it is about no file.
@@ -130,7 +162,9 @@ impl Files {
     fn choose(&self, context: &Context, work: &PanelContext<'_>) -> OpenPainting {
         let open = self.open.as_deref().unwrap_or(Path::new(""));
         let recent = RecentList::new(context, &work.preferences.recent, open);
+        let sketches = work.rig.sketches.as_ref();
         OpenPainting::new(&folder(work), recent, Unkept::of(work.rig))
+            .with_sketches(sketches.map(Sketches::folder))
     }
 
     /// The dialog that picks a picture: beside the one that is known, else beside the painting.
@@ -166,6 +200,7 @@ impl Files {
         };
         match (node.status.path.as_str(), node.status.all_committed) {
             ("", _) => self.save_as(work),
+            _ if work.rig.is_sketch() => self.save_as(work),
             (path, all) => {
                 let file = paths::shown(Path::new(path));
                 work.notifications.note(match all {
@@ -195,7 +230,22 @@ impl Files {
             self.follow(context, act, work);
         }
         exporting::show(context, work);
+        if self.dialog.is_none() {
+            self.offer_sketches(context, work);
+        }
         self.show_dialog(context, reference, work);
+    }
+
+    fn offer_sketches(&mut self, context: &Context, work: &mut PanelContext<'_>) {
+        match self.offer.show(context, work.rig) {
+            Some(Choice::Open(path)) => self.open_path(context, &path, work),
+            Some(Choice::All) => {
+                let mut open = self.choose(context, work);
+                open.list_sketches();
+                self.begin(Dialog::Open(open));
+            }
+            None => {}
+        }
     }
 
     fn show_dialog(
@@ -213,6 +263,16 @@ impl Files {
             Dialog::Open(open) => open.show(context, busy),
             Dialog::SaveAs(save_as) => save_as.show(context, busy),
             Dialog::Export(export) => export.show(context, busy),
+            Dialog::Close(close) => match close.show(context) {
+                Decision::None => return,
+                Decision::Stay => return self.dialog = None,
+                Decision::Name => return self.save_as(work),
+                Decision::Close => {
+                    self.dialog = None;
+                    self.closes = true;
+                    return;
+                }
+            },
             Dialog::Picture(picture) => {
                 let (answer, path) = picture.show(context);
                 if let Some(path) = path {
@@ -295,6 +355,7 @@ impl Files {
                     Some(Dialog::SaveAs(save_as)) => save_as.refused(words),
                     Some(
                         Dialog::Export(_)
+                        | Dialog::Close(_)
                         | Dialog::Picture(_)
                         | Dialog::Tracing(_)
                         | Dialog::Recording(_),
@@ -328,7 +389,7 @@ impl Files {
         // Empty for one in memory: the one before is no longer open then.
         let path = PathBuf::from(&node.status.path);
         if self.open.as_ref() != Some(&path) {
-            if !path.as_os_str().is_empty() {
+            if !path.as_os_str().is_empty() && !work.rig.is_sketch() {
                 work.preferences.opened(&path);
             }
             self.open = Some(path);
@@ -361,7 +422,7 @@ impl Files {
         };
         self.dropping = None;
         match found {
-            Some(Dropped::Painting(path)) => self.open_dropped(context, &path, work),
+            Some(Dropped::Painting(path)) => self.open_path(context, &path, work),
             Some(Dropped::Picture(path)) => reference.pin(context, &path, work.preferences),
             Some(Dropped::Recording(path)) => self.choose_recording(Some(&path), work),
             Some(Dropped::Brush(file)) => work.take_up(*file),
@@ -373,7 +434,8 @@ impl Files {
         }
     }
 
-    fn open_dropped(&mut self, context: &Context, path: &Path, work: &mut PanelContext<'_>) {
+    /// Opens a painting without a dialog, unless there is something to ask.
+    fn open_path(&mut self, context: &Context, path: &Path, work: &mut PanelContext<'_>) {
         if let Err(words) = Unkept::of(work.rig).check() {
             let mut open = self.choose(context, work);
             open.propose(path);
@@ -413,7 +475,7 @@ fn done(command: &Command) -> Option<String> {
         Command::Rig(RigCommand::Open { path, .. }) => tr!("Opened {file}.", file = file(path)),
         Command::Rig(RigCommand::New { path, .. }) => match path {
             Some(path) => tr!("A new painting, kept in {file}.", file = file(path)),
-            None => tr!("A new painting, in no file.").to_owned(),
+            None => tr!("A new sketch, without a name for now.").to_owned(),
         },
         Command::Rig(RigCommand::SaveAs(save_as)) | Command::File(FileCommand::SaveAs(save_as)) => {
             tr!("The painting is in {file} now.", file = file(&save_as.path))
@@ -436,7 +498,7 @@ fn done(command: &Command) -> Option<String> {
 /// The folder in which a dialog begins: that of the painting, or of the one before.
 fn folder(work: &PanelContext<'_>) -> PathBuf {
     let status = work.rig.paint.as_ref().map(|node| &node.status);
-    let open = status.filter(|status| !status.path.is_empty());
+    let open = status.filter(|status| !status.path.is_empty() && !work.rig.is_sketch());
     let open = open.map(|status| PathBuf::from(&status.path));
     let known = open.as_ref().or(work.preferences.recent.first());
     let folder = known.and_then(|path| path.parent());
@@ -447,7 +509,8 @@ fn folder(work: &PanelContext<'_>) -> PathBuf {
 
 /// File stem of the painting.
 fn stem(work: &PanelContext<'_>) -> String {
-    let status = work.rig.paint.as_ref().map(|node| &node.status);
+    let node = work.rig.paint.as_ref().filter(|_| !work.rig.is_sketch());
+    let status = node.map(|node| &node.status);
     let stem = status.and_then(|status| Path::new(&status.path).file_stem());
     stem.map_or_else(
         || tr!("Painting").to_owned(),

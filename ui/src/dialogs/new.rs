@@ -46,9 +46,11 @@ pub(crate) struct NewPainting {
     ground: &'static str,
     ground_file: String,
     tooth: String,
-    in_memory: bool,
+    as_sketch: bool,
     path: String,
     unkept: Unkept,
+    /// True if the painter accepts that painting on it is slow.
+    may_be_slow: bool,
     wrong: Option<String>,
 }
 
@@ -69,9 +71,10 @@ impl NewPainting {
             ground: GROUNDS[0].0,
             ground_file: String::new(),
             tooth: "linen".to_owned(),
-            in_memory: false,
+            as_sketch: false,
             path,
             unkept,
+            may_be_slow: false,
             wrong: None,
         }
     }
@@ -123,8 +126,14 @@ impl NewPainting {
     /// As [`canvas`](Self::canvas), and if the file cannot be created there.
     fn command(&self) -> Result<Command, String> {
         let canvas = self.canvas()?;
+        if canvas.is_slow() && !self.may_be_slow {
+            return Err(tr!(
+                "Painting on so many cells is slow. Choose larger ones, 4 per mm are usual, or tick that it may be slow."
+            )
+            .to_owned());
+        }
         self.unkept.check()?;
-        let path = match self.in_memory {
+        let path = match self.as_sketch {
             true => None,
             false => Some(self.file()?),
         };
@@ -139,9 +148,7 @@ impl NewPainting {
     /// The whole path of its file.
     fn file(&self) -> Result<WholePath, String> {
         if self.path.trim().is_empty() || self.path.trim().ends_with('/') {
-            return Err(
-                tr!("Keep in: write the name of a file, or choose to keep nothing.").to_owned(),
-            );
+            return Err(tr!("Keep in: write the name of a file, or begin a sketch.").to_owned());
         }
         let path = paths::ending_in(&paths::whole(&self.path), paths::PAINTING);
         if path.exists() {
@@ -163,11 +170,16 @@ impl NewPainting {
     pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
         let answer = dialog::show(context, tr!("New painting"), |ui| {
             let entered = self.fields(ui);
-            let estimate = self.canvas().map(|canvas| estimate(&canvas));
+            let canvas = self.canvas();
+            let estimate = canvas.map(|canvas| (estimate(&canvas), canvas.is_slow()));
             ui.add_space(6.0);
             let wrong = match estimate {
-                Ok(words) => {
+                Ok((words, is_slow)) => {
                     ui.weak(words);
+                    if is_slow {
+                        let words = tr!("It may be slow: the paint falls behind the hand");
+                        ui.checkbox(&mut self.may_be_slow, words);
+                    }
                     self.wrong.clone()
                 }
                 Err(words) => Some(words),
@@ -259,7 +271,7 @@ impl NewPainting {
             ui.end_row();
             let keep = ui.label(tr!("Keep in"));
             ui.vertical(|ui| {
-                ui.add_enabled_ui(!self.in_memory, |ui| {
+                ui.add_enabled_ui(!self.as_sketch, |ui| {
                     let edit = TextEdit::singleline(&mut self.path).desired_width(f32::INFINITY);
                     let field = ui.add(edit).labelled_by(keep.id);
                     let enter = ui.input(|input| input.key_pressed(Key::Enter));
@@ -267,8 +279,8 @@ impl NewPainting {
                     changed |= field.changed();
                 });
                 ui.checkbox(
-                    &mut self.in_memory,
-                    tr!("Do not save: the sketch is lost when you quit"),
+                    &mut self.as_sketch,
+                    tr!("As a sketch: without a name for now"),
                 );
             });
             ui.end_row();

@@ -20,6 +20,8 @@ pub(crate) struct OpenPainting {
     recent: RecentList,
     browser: Browser,
     unkept: Unkept,
+    /// The folder of the sketches, if there is one.
+    sketches: Option<PathBuf>,
     wrong: Option<String>,
 }
 
@@ -33,7 +35,22 @@ impl OpenPainting {
             recent,
             browser: Browser::at(&begin, Purpose::Read, PAINTINGS).with_pictures(),
             unkept,
+            sketches: None,
             wrong: None,
+        }
+    }
+
+    /// Also leads to the sketches, which are in this folder.
+    #[must_use]
+    pub(crate) fn with_sketches(mut self, folder: Option<&Path>) -> Self {
+        self.sketches = folder.filter(|folder| folder.is_dir()).map(Path::to_owned);
+        self
+    }
+
+    /// Lists the sketches.
+    pub(crate) fn list_sketches(&mut self) {
+        if let Some(folder) = &self.sketches {
+            self.browser.set(format!("{}/", paths::shown(folder)));
         }
     }
 
@@ -81,6 +98,9 @@ impl OpenPainting {
                 taken
                     .iter()
                     .for_each(|path| self.browser.set(paths::shown(path)));
+            }
+            if self.sketches.is_some() && ui.button(tr!("Sketches")).clicked() {
+                self.list_sketches();
             }
             let typed = self.browser.show(ui, tr!("File"));
             taken = taken.take().or(typed);

@@ -47,14 +47,21 @@ fn words(context: &Context, work: &PanelContext<'_>) -> String {
             },
         };
     }
-    let name = paths::name(Path::new(&status.path));
     let since = work.rig.now_ns.saturating_sub(status.committed_ns);
     let state = match (status.fault.is_empty(), status.all_committed) {
         (false, _) => tr!("not saved"),
         (true, false) if since > LATE_NS => tr!("saving …"),
         _ => tr!("saved"),
     };
-    format!("{name} · {state}")
+    if !work.rig.is_sketch() {
+        let name = paths::name(Path::new(&status.path));
+        return format!("{name} · {state}");
+    }
+    match work.preferences.keys.written(context, Action::Save) {
+        _ if status.blank => tr!("New sketch").to_owned(),
+        key if key.is_empty() => tr!("Sketch · {state}", state),
+        key => tr!("Sketch · {state} · {key} names it", state, key),
+    }
 }
 
 /// Shows the line; what was chosen under it.

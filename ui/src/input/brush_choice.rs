@@ -143,9 +143,18 @@ impl PanelContext<'_> {
         self.rig.brush()?.wanted()
     }
 
+    /// True if the brush may be changed now. While the hand has it on a surface it stays as it is, which is said once.
+    pub fn may_change_brush(&mut self) -> bool {
+        if self.rig.painting {
+            let words = tr!("The brush is painting: lift it, and ask again.");
+            self.notifications.value("painting", words.to_owned());
+        }
+        !self.rig.painting
+    }
+
     /// Gives the hand another brush; the brush already in the hand is not requested again.
     pub fn take_up(&mut self, file: BrushFile) {
-        if self.in_hand() == Some(&file) {
+        if self.in_hand() == Some(&file) || !self.may_change_brush() {
             return;
         }
         let toml = match file.check().and_then(|()| file.to_toml()) {
@@ -217,9 +226,9 @@ impl PanelContext<'_> {
         if newest.is_some_and(|newest| newest.ok().as_deref() != Some(toml.as_str())) {
             return;
         }
-        let then = own.then.take();
+        let (then, then_ns) = (own.then.take(), own.then_ns);
         match (&outcome.result, then) {
-            (Ok(_), Some(command)) => self.requests.send(command),
+            (Ok(_), Some(command)) => self.requests.follow_up(command, then_ns),
             (Ok(_), None) => {}
             (Err(_), _) => own.asked = None,
         }
@@ -271,9 +280,14 @@ impl PanelContext<'_> {
 
     /// Sends a command to the paint node once the brush in the hand has its requested file.
     pub fn then(&mut self, command: Command) {
-        let in_hand = self.rig.in_hand;
+        if !self.may_change_brush() {
+            return;
+        }
+        let (in_hand, now_ns) = (self.rig.in_hand, self.rig.now_ns);
         match self.rig.brushes.get_mut(in_hand) {
-            Some(own) if own.asked.is_some() => own.then = Some(command),
+            Some(own) if own.asked.is_some() => {
+                (own.then, own.then_ns) = (Some(command), now_ns);
+            }
             _ => self.requests.send(command),
         }
     }
@@ -281,6 +295,9 @@ impl PanelContext<'_> {
     /// Takes a brush at the width that it was last used at, or at its own. What a preset made of the one before ends with
     /// it: another brush lays full paint.
     pub fn choose(&mut self, file: &BrushFile) {
+        if !self.may_change_brush() {
+            return;
+        }
         self.lay_full_paint();
         let width_mm = self.preferences.widths_mm.get(&file.kind);
         let scaled = width_mm.and_then(|width_mm| file.scaled_to(*width_mm).ok());
@@ -301,6 +318,9 @@ impl PanelContext<'_> {
 
     /// The next wider brush of its kind, or the next narrower one.
     pub fn step_width(&mut self, up: bool) {
+        if !self.may_change_brush() {
+            return;
+        }
         let Some(file) = self.in_hand() else {
             return;
         };

@@ -4,7 +4,7 @@ use maulstick_types::edits::{Clean, Handle};
 use maulstick_types::scene::{BrushHandling, BrushMode};
 use maulstick_types::values::BrushName;
 
-use crate::rig::requests::Requests;
+use crate::rig::requests::{Request, Requests};
 
 /// Longest press that counts as a tap, s.
 const TAP_S: f64 = 0.25;
@@ -19,9 +19,11 @@ struct Down {
 }
 
 /// The cleaning key.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct CleanKey {
     down: Option<Down>,
+    /// What it asks for; in a stroke too.
+    requests: Requests,
 }
 
 impl CleanKey {
@@ -33,8 +35,8 @@ impl CleanKey {
         is_down: bool,
         painting: bool,
         now: &BrushHandling,
-        requests: &mut Requests,
     ) {
+        let requests = &mut self.requests;
         if !is_down {
             match self.down.take() {
                 Some(Down {
@@ -65,6 +67,12 @@ impl CleanKey {
         }
     }
 
+    /// Takes what it asks for.
+    #[must_use]
+    pub(crate) fn take(&mut self) -> Vec<Request> {
+        self.requests.take()
+    }
+
     /// True while the key is down: it has to be checked again soon.
     #[must_use]
     pub(crate) fn is_down(&self) -> bool {
@@ -85,22 +93,21 @@ mod tests {
     use maulstick_types::edits::Edit;
 
     use super::*;
-    use crate::rig::requests::Request;
 
     fn asked(steps: &[(f64, bool, bool)]) -> Vec<Command> {
         let now = BrushHandling {
             mode: BrushMode::NoPush,
             ..BrushHandling::normal("main")
         };
-        let (mut key, mut requests) = (CleanKey::default(), Requests::default());
+        let mut key = CleanKey::default();
         for (at, down, painting) in steps {
-            key.follow(*at, *down, *painting, &now, &mut requests);
+            key.follow(*at, *down, *painting, &now);
         }
         let command = |order| match order {
             Request::Command { command, .. } => command,
             Request::Force { .. } => panic!("no force"),
         };
-        requests.take().into_iter().map(command).collect()
+        key.take().into_iter().map(command).collect()
     }
 
     fn modes(commands: &[Command]) -> Vec<BrushMode> {

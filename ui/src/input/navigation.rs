@@ -11,7 +11,7 @@ use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 use crate::input::keymap::Keymap;
 use crate::input::keys::Action;
 use crate::input::presses;
-use crate::rig::requests::Requests;
+use crate::rig::requests::{Request, Requests};
 use crate::view::camera::View;
 
 /// A line of the wheel zooms by e to this power.
@@ -64,6 +64,8 @@ pub(crate) struct Navigation {
     drag: Option<Drag>,
     /// The surface that was last sent, its placement, and the time; the scene follows.
     sent: Option<(u32, SurfacePlacement, f64)>,
+    /// What it asks for; in a stroke too.
+    requests: Requests,
 }
 
 /// After this the scene has followed the hand, s.
@@ -77,16 +79,11 @@ impl Navigation {
     }
 
     /// Follows the input of a frame; asks for what it does.
-    pub(crate) fn follow(
-        &mut self,
-        input: &InputState,
-        around: &Around<'_>,
-        requests: &mut Requests,
-    ) {
+    pub(crate) fn follow(&mut self, input: &InputState, around: &Around<'_>) {
         if let Some(touch) = input.multi_touch() {
             self.drag = None;
             if !around.over_panel {
-                self.touch(input.time, &touch, around, requests);
+                self.touch(input.time, &touch, around);
             }
             return;
         }
@@ -109,7 +106,7 @@ impl Navigation {
                     pressed: false,
                     ..
                 } if self.drag.is_some_and(|drag| drag.button == *button) => self.drag = None,
-                Event::PointerMoved(at) => self.drag_to(input.time, *at, around, requests),
+                Event::PointerMoved(at) => self.drag_to(input.time, *at, around),
                 // A pointer that leaves the window still holds, but a button may be let go over another one.
                 Event::WindowFocused(false) => self.drag = None,
                 Event::MouseWheel { unit, delta, .. } if !around.over_panel => {
@@ -119,11 +116,17 @@ impl Navigation {
                             MouseWheelUnit::Line => 1.0,
                             MouseWheelUnit::Page => 10.0,
                         };
-                    self.zoom(input, exp(WHEEL * lines), around, requests);
+                    self.zoom(input, exp(WHEEL * lines), around);
                 }
                 _ => {}
             }
         }
+    }
+
+    /// Takes what it asks for.
+    #[must_use]
+    pub(crate) fn take(&mut self) -> Vec<Request> {
+        self.requests.take()
     }
 
     /// Forgets where it has sent the surfaces: something else moves them.
@@ -155,7 +158,7 @@ impl Navigation {
         })
     }
 
-    fn drag_to(&mut self, now: f64, at: Pos2, around: &Around<'_>, requests: &mut Requests) {
+    fn drag_to(&mut self, now: f64, at: Pos2, around: &Around<'_>) {
         let Some(drag) = &mut self.drag else {
             return;
         };
@@ -178,7 +181,7 @@ impl Navigation {
         };
         drag.at = at;
         if drag.lie != lie {
-            place(requests, &drag.lie, drag.surface);
+            place(&mut self.requests, &drag.lie, drag.surface);
             self.sent = Some((drag.surface, drag.lie, now));
         }
     }
@@ -191,35 +194,17 @@ impl Navigation {
         }
     }
 
-    fn zoom(
-        &mut self,
-        input: &InputState,
-        factor: f64,
-        around: &Around<'_>,
-        requests: &mut Requests,
-    ) {
+    fn zoom(&mut self, input: &InputState, factor: f64, around: &Around<'_>) {
         let Some(canvas) = find(around.surfaces, CANVAS) else {
             return;
         };
         let at = input.pointer.latest_pos();
         let about = at.map_or(DVec3::ZERO, |at| around.view.on_desk(at));
         let from = self.newest(input.time, canvas);
-        self.send(
-            input.time,
-            canvas.id,
-            from,
-            from.zoomed(about, factor),
-            requests,
-        );
+        self.send(input.time, canvas.id, from, from.zoomed(about, factor));
     }
 
-    fn touch(
-        &mut self,
-        now: f64,
-        touch: &eframe::egui::MultiTouchInfo,
-        around: &Around<'_>,
-        requests: &mut Requests,
-    ) {
+    fn touch(&mut self, now: f64, touch: &eframe::egui::MultiTouchInfo, around: &Around<'_>) {
         let Some(canvas) = find(around.surfaces, CANVAS) else {
             return;
         };
@@ -234,19 +219,12 @@ impl Navigation {
                 -around.view.seen_x(touch.rotation_delta.into()),
             )
             .moved(around.view.along(touch.translation_delta, height_m));
-        self.send(now, canvas.id, from, to, requests);
+        self.send(now, canvas.id, from, to);
     }
 
-    fn send(
-        &mut self,
-        now: f64,
-        surface: u32,
-        from: SurfacePlacement,
-        to: SurfacePlacement,
-        requests: &mut Requests,
-    ) {
+    fn send(&mut self, now: f64, surface: u32, from: SurfacePlacement, to: SurfacePlacement) {
         if to != from {
-            place(requests, &to, surface);
+            place(&mut self.requests, &to, surface);
             self.sent = Some((surface, to, now));
         }
     }
@@ -308,15 +286,11 @@ mod tests {
     use maulstick_types::edits::Edit;
 
     use super::*;
-    use crate::rig::requests::Request;
 
     /// Placement commands that result from events on the scene's surfaces.
     fn placed(free: bool, events: impl IntoIterator<Item = Event>) -> Vec<(u32, SurfacePlacement)> {
         let surfaces = PaintingSetup::default().scene().surfaces;
-        let (hand, requests) = (
-            RefCell::new(Navigation::default()),
-            RefCell::new(Requests::default()),
-        );
+        let hand = RefCell::new(Navigation::default());
         let (view, keys) = (view(&surfaces), Keymap::default());
         let mut harness = Harness::builder()
             .with_size(vec2(1000.0, 600.0))
@@ -328,17 +302,14 @@ mod tests {
                     over_panel: false,
                     keys: &keys,
                 };
-                ui.input(|input| {
-                    hand.borrow_mut()
-                        .follow(input, &around, &mut requests.borrow_mut());
-                });
+                ui.input(|input| hand.borrow_mut().follow(input, &around));
             });
         for event in events {
             harness.event(event);
             harness.step();
         }
         drop(harness);
-        let requests = requests.into_inner().take();
+        let requests = hand.into_inner().take();
         let lie = |order| match order {
             Request::Command {
                 command: Command::Edit(Edit::Place(place)),

@@ -82,6 +82,7 @@ pub struct FrameInbox {
     replies: Arc<Mutex<Vec<Shown>>>,
     wanted: Arc<Mutex<Option<Wanted>>>,
     fault: Arc<Mutex<Option<DecodeError>>>,
+    progress: Arc<Mutex<[u32; 2]>>,
     asking: Wake,
 }
 
@@ -112,6 +113,12 @@ impl FrameInbox {
     #[must_use]
     pub fn fault(&self) -> Option<DecodeError> {
         locked(&self.fault).clone()
+    }
+
+    /// Tiles that have arrived of those that are missing in the view, and those in all.
+    #[must_use]
+    pub fn progress(&self) -> [u32; 2] {
+        *locked(&self.progress)
     }
 
     fn wanted(&self) -> Option<Wanted> {
@@ -151,7 +158,9 @@ pub fn pull(source: &FrameSource, inbox: &FrameInbox, wake: &Wake, stop: &Stop) 
                 if before.replace(wanted) != Some(wanted) {
                     puller.wait_ms = WAIT_MS;
                 }
-                match puller.turn(&wanted) {
+                let shown = puller.turn(&wanted);
+                *locked(&inbox.progress) = puller.plan.progress();
+                match shown {
                     Some(shown) => {
                         locked(&inbox.replies).push(shown);
                         wake.ring();

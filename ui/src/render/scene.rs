@@ -156,6 +156,8 @@ impl SceneRenderer {
                 rig.events.push(RigEvent::Refused(refusal));
             }
         }
+        let progress = self.surfaces.iter().map(|layer| layer.inbox.progress());
+        rig.drawn = progress.fold([0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);
         let (Some(painter), Some(scene)) = (&self.painter, &rig.scene) else {
             return;
         };

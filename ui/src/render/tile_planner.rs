@@ -55,8 +55,10 @@ struct TileAtlas {
     state: AtlasState,
     /// Journal state of the tiles in the atlas.
     since: u64,
-    /// The tiles in flight, and how many of them have arrived.
+    /// The tiles in flight, and up to which version they have arrived.
     coming: Option<(TileRect, u64)>,
+    /// How many of them have arrived.
+    arrived: u32,
     /// True if more changes of the tiles in the atlas are pending.
     more: bool,
 }
@@ -81,7 +83,10 @@ impl TileAtlas {
                 Some((rect, since))
             }
             (Some((rect, since)), Some(strip)) if rect == strip => Some((rect, since)),
-            (_, strip) => strip.map(|strip| (strip, 0)),
+            (_, strip) => {
+                self.arrived = 0;
+                strip.map(|strip| (strip, 0))
+            }
         };
     }
 
@@ -149,6 +154,17 @@ impl TilePlanner {
     #[must_use]
     pub fn atlas(&self, part: Part) -> AtlasState {
         self.atlases[part as usize].state
+    }
+
+    /// Tiles that have arrived of those in flight, and those in all.
+    #[must_use]
+    pub fn progress(&self) -> [u32; 2] {
+        let coming = self.atlases.iter().filter_map(|atlas| {
+            let (rect, _) = atlas.coming?;
+            let [across, up] = rect.size();
+            Some([atlas.arrived, across * up])
+        });
+        coming.fold([0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]])
     }
 
     fn begin(&mut self, part: Part, level: u32, room: [u32; 2], wet: bool) {
@@ -239,7 +255,10 @@ impl TilePlanner {
         (self.epoch, self.look) = (reply.epoch, reply.look);
         let atlas = &mut self.atlases[asked.part as usize];
         match &mut atlas.coming {
-            Some((_, since)) if reply.more => *since = reply.version,
+            Some((_, since)) if reply.more => {
+                *since = reply.version;
+                atlas.arrived += reply.tiles.len() as u32;
+            }
             Some((tiles, _)) => {
                 let whole = atlas.state.held.is_empty();
                 atlas.since = if whole {

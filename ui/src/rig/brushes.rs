@@ -251,6 +251,20 @@ impl BrushTracker {
         sample.in_range.then(|| (aim(sample, length), !touches))
     }
 
+    /// True while any brush touches a surface.
+    #[must_use]
+    pub fn touches(&self) -> bool {
+        let mut names = self.known.keys();
+        names.any(|name| self.aim(name).is_some_and(|(_, in_air)| !in_air))
+    }
+
+    /// True if the window's own mouse has a brush in its hand.
+    #[must_use]
+    pub fn is_led_by_mouse(&self, name: &str) -> bool {
+        let known = self.known.get(name).and_then(|known| known.device);
+        known == Some(self.quiet)
+    }
+
     /// True while a device other than the window's own mouse is in range.
     #[must_use]
     pub fn hears_another(&self) -> bool {

@@ -45,6 +45,20 @@ pub struct Outcome {
     pub result: Result<String, UserError>,
 }
 
+/// Outcomes that the window has not taken, and when the oldest of those for which strokes wait was asked for, ns.
+#[derive(Debug, Default)]
+struct Outcomes {
+    list: Vec<Outcome>,
+    oldest_ns: Option<u64>,
+}
+
+impl Outcomes {
+    fn push(&mut self, outcome: Outcome, asked_ns: Option<u64>) {
+        self.list.push(outcome);
+        self.oldest_ns = self.oldest_ns.into_iter().chain(asked_ns).min();
+    }
+}
+
 /// Requests for one process.
 #[derive(Debug, Default)]
 struct Queue {
@@ -57,6 +71,8 @@ struct QueueState {
     waiting: VecDeque<Ready>,
     /// Time at which the request in flight was sent.
     since: Option<Instant>,
+    /// When it was asked for, ns, if strokes wait for it.
+    asked_ns: Option<u64>,
     /// True if the painter no longer waits for it.
     given_up: bool,
     ended: bool,
@@ -67,7 +83,7 @@ pub(crate) struct CommandDispatcher {
     bus: Arc<dyn Bus>,
     topics: Topics,
     wake: Wake,
-    outcomes: Arc<Mutex<Vec<Outcome>>>,
+    outcomes: Arc<Mutex<Outcomes>>,
     queues: BTreeMap<String, (Arc<Queue>, Option<JoinHandle<()>>)>,
 }
 
@@ -119,7 +135,27 @@ impl CommandDispatcher {
     /// Outcomes since the last call.
     #[must_use]
     pub(crate) fn outcomes(&self) -> Vec<Outcome> {
-        std::mem::take(&mut *self.outcomes.lock().unwrap_or_else(PoisonError::into_inner))
+        let mut outcomes = self.outcomes.lock().unwrap_or_else(PoisonError::into_inner);
+        outcomes.oldest_ns = None;
+        std::mem::take(&mut outcomes.list)
+    }
+
+    /// When the oldest request for which strokes wait was asked for, ns, of those whose outcome was not
+    /// [taken](Self::outcomes).
+    #[must_use]
+    pub(crate) fn oldest_ns(&self) -> Option<u64> {
+        let queues = self.queues.values().filter_map(|(queue_of, _)| {
+            let queue = queue_of
+                .state
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner);
+            let waiting = queue.waiting.iter().filter_map(Ready::holds_strokes_ns);
+            waiting.chain(queue.asked_ns).min()
+        });
+        // In this order: an outcome is told before its request leaves the queue.
+        let queued = queues.min();
+        let outcomes = self.outcomes.lock().unwrap_or_else(PoisonError::into_inner);
+        queued.into_iter().chain(outcomes.oldest_ns).min()
     }
 }
 
@@ -155,10 +191,12 @@ impl CommandDispatcher {
                 .lock()
                 .unwrap_or_else(PoisonError::into_inner);
             queue.given_up = queue.since.is_some();
-            outcomes.extend(queue.waiting.drain(..).map(|ready| Outcome {
-                request: ready.request,
-                result: Err(UserError::failure(tr!("it was not sent"))),
-            }));
+            for ready in queue.waiting.drain(..) {
+                let asked_ns = ready.holds_strokes_ns();
+                let result = Err(UserError::failure(tr!("it was not sent")));
+                let request = ready.request;
+                outcomes.push(Outcome { request, result }, asked_ns);
+            }
         }
         drop(outcomes);
         self.wake.ring();
@@ -225,7 +263,7 @@ struct Worker {
     topics: Topics,
     commander: Option<CommandClient>,
     queue_of: Arc<Queue>,
-    outcomes: Arc<Mutex<Vec<Outcome>>>,
+    outcomes: Arc<Mutex<Outcomes>>,
     wake: Wake,
 }
 
@@ -233,6 +271,7 @@ impl Worker {
     fn run(&mut self) {
         while let Some(ready) = self.next() {
             let result = self.deliver(&ready);
+            let asked_ns = ready.holds_strokes_ns();
             let outcome = Outcome {
                 request: ready.request,
                 result,
@@ -240,20 +279,21 @@ impl Worker {
             self.outcomes
                 .lock()
                 .unwrap_or_else(PoisonError::into_inner)
-                .push(outcome);
+                .push(outcome, asked_ns);
             self.wake.ring();
         }
     }
 
     fn next(&self) -> Option<Ready> {
         let mut queue = self.queue();
-        (queue.since, queue.given_up) = (None, false);
+        (queue.since, queue.asked_ns, queue.given_up) = (None, None, false);
         loop {
             if queue.ended {
                 return None;
             }
             if let Some(ready) = queue.waiting.pop_front() {
                 queue.since = Some(Instant::now());
+                queue.asked_ns = ready.holds_strokes_ns();
                 return Some(ready);
             }
             queue = self

@@ -39,6 +39,52 @@ impl Request {
         Self::Command { node, command }
     }
 
+    /// True if it moves a surface.
+    #[must_use]
+    pub fn moves_surface(&self) -> bool {
+        matches!(
+            self,
+            Self::Command {
+                command: Command::Edit(Edit::Place(_)),
+                ..
+            }
+        )
+    }
+
+    /// True if it changes the brush, its paint or how it is used.
+    #[must_use]
+    pub fn changes_brush(&self) -> bool {
+        let Self::Command { command, .. } = self else {
+            return false;
+        };
+        match command {
+            Command::Brush(_) => true,
+            Command::Edit(edit) => matches!(
+                edit,
+                Edit::Tune(_)
+                    | Edit::Handle(_)
+                    | Edit::Load(_)
+                    | Edit::LoadFrom(_)
+                    | Edit::Clean(_)
+            ),
+            _ => false,
+        }
+    }
+
+    /// True if strokes that begin after it was asked for are painted when it is done: a change of the brush, and every edit
+    /// that has its place among the strokes.
+    #[must_use]
+    pub fn precedes_strokes(&self) -> bool {
+        let is_edit = matches!(
+            self,
+            Self::Command {
+                command: Command::Edit(_),
+                ..
+            }
+        );
+        self.changes_brush() || is_edit && self.sets().is_none()
+    }
+
     /// Key of the value it sets, if only the newest of its kind counts.
     #[must_use]
     pub fn sets(&self) -> Option<(&'static str, String)> {
@@ -70,6 +116,8 @@ impl Request {
 #[derive(Debug, Default)]
 pub struct Requests {
     waiting: Vec<Request>,
+    /// Requests that an answer brings about, each with the time at which it was asked for, rig clock, ns.
+    follow_ups: Vec<(Request, u64)>,
     acts: Vec<Action>,
     devices: Vec<DeviceOrder>,
     sessions: Vec<SessionOrder>,
@@ -79,6 +127,17 @@ impl Requests {
     /// Asks the node that carries out a command.
     pub fn send(&mut self, command: impl Into<Command>) {
         self.waiting.push(Request::of(command));
+    }
+
+    /// Asks for what was to follow another request, which is done; the painter asked for it at this time.
+    pub fn follow_up(&mut self, command: impl Into<Command>, asked_ns: u64) {
+        self.follow_ups.push((Request::of(command), asked_ns));
+    }
+
+    /// Takes what was to follow other requests, the oldest first, with the times at which it was asked for.
+    #[must_use]
+    pub fn take_follow_ups(&mut self) -> Vec<(Request, u64)> {
+        std::mem::take(&mut self.follow_ups)
     }
 
     /// Requests a change of the force of a device.
@@ -126,6 +185,15 @@ impl Requests {
     #[must_use]
     pub fn take_acts(&mut self) -> Vec<Action> {
         std::mem::take(&mut self.acts)
+    }
+
+    /// Takes what waits and what follows, as if it had been asked for at once.
+    #[cfg(test)]
+    pub(crate) fn take_all(&mut self) -> Vec<Request> {
+        let follow_ups = self.take_follow_ups().into_iter();
+        let mut all = self.take();
+        all.extend(follow_ups.map(|(request, _)| request));
+        all
     }
 
     /// Takes what waits, the oldest first.

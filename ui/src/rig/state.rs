@@ -1,12 +1,14 @@
 //! State of the rig as the window knows it: plain data, filled by the [`listener`](crate::rig::listener).
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::Arc;
 
 use maulstick_appearance::picture::Export;
 use maulstick_brush::BrushFile;
 use maulstick_brush::desk::Desk;
 use maulstick_optics::PaintLibrary;
+use maulstick_rig::Sketches;
 use maulstick_types::command::Command;
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::{BrushHandling, CANVAS, PALETTE, Scene, Surface, Tuning};
@@ -36,6 +38,8 @@ pub struct RigBrush {
     pub asked: Option<BrushFile>,
     /// Command for the paint node once the brush has that file.
     pub then: Option<Command>,
+    /// When that was asked for, rig clock, ns.
+    pub then_ns: u64,
     /// The paint on it; `None` until that is known.
     pub carried: Option<CarriedPaint>,
 }
@@ -101,6 +105,12 @@ pub struct RigState {
     pub pen_pressure: Option<f64>,
     /// True while a change of a device is not in the listing yet.
     pub changes_devices: bool,
+    /// Tiles of the view that have arrived of those that are missing, and those in all.
+    pub drawn: [u32; 2],
+    /// True while a hand has the brush of the panels on a surface: it is not changed then.
+    pub painting: bool,
+    /// The sketches of this user, if the system has a folder for them.
+    pub sketches: Option<Sketches>,
     /// The paints of the rig.
     pub library: Arc<PaintLibrary>,
     /// True if the wet paint of the canvas is tinted.
@@ -139,6 +149,9 @@ impl RigState {
             replay: None,
             pen_pressure: None,
             changes_devices: false,
+            drawn: [0; 2],
+            painting: false,
+            sketches: None,
             library,
             show_wet: false,
             thumbnails: Thumbnails::default(),
@@ -151,6 +164,15 @@ impl RigState {
     pub fn lay(&mut self, scene: Scene) {
         self.desk = Some(Desk::of(&scene));
         self.scene = Some(scene);
+    }
+
+    /// True if the painting has no name yet: it is in the file of a sketch.
+    #[must_use]
+    pub fn is_sketch(&self) -> bool {
+        let (Some(sketches), Some(node)) = (&self.sketches, &self.paint) else {
+            return false;
+        };
+        sketches.has(Path::new(&node.status.path))
     }
 
     /// A surface of the scene.

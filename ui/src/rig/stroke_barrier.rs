@@ -1,6 +1,8 @@
 //! Delays a command until the stroke that preceded it is painted. A key is pressed before the newest samples
 //! of a stylus have become paint, and what it undoes or dries is the whole stroke.
 
+pub(crate) mod pending;
+
 use std::collections::{BTreeMap, VecDeque};
 
 use maulstick_bus::typed::Receiver;
@@ -58,6 +60,8 @@ struct Waiting {
     request: Request,
     samples: Vec<SampleStage>,
     until_ns: u64,
+    /// When it was asked for, ns.
+    asked_ns: u64,
 }
 
 /// A request that may be sent.
@@ -67,6 +71,8 @@ pub(crate) struct Ready {
     pub request: Request,
     /// The state of a brush behind which the painting carries it out; at once if absent.
     pub after: Option<After>,
+    /// Samples until then were made before it was asked for, rig clock, ns.
+    pub asked_ns: u64,
 }
 
 /// Requests that wait for a stroke.
@@ -135,7 +141,7 @@ impl StrokeBarrier {
     pub(crate) fn push(
         &mut self,
         now_ns: u64,
-        request: Request,
+        (request, asked_ns): (Request, u64),
         newest: impl IntoIterator<Item = SampleNumber>,
     ) {
         let follows = follows(&request);
@@ -151,7 +157,26 @@ impl StrokeBarrier {
             request,
             samples,
             until_ns: now_ns.saturating_add(LONGEST_NS),
+            asked_ns,
         });
+    }
+
+    /// Takes a request that follows one that is done, and so waits for no stroke.
+    pub(crate) fn push_follow_up(&mut self, (request, asked_ns): (Request, u64)) {
+        self.waiting.push_back(Waiting {
+            request,
+            samples: Vec::new(),
+            until_ns: 0,
+            asked_ns,
+        });
+    }
+
+    /// When the oldest request that waits, and for which strokes wait, was asked for, ns.
+    #[must_use]
+    pub(crate) fn oldest_ns(&self) -> Option<u64> {
+        let waiting = self.waiting.iter();
+        let holding = waiting.filter(|waiting| waiting.request.precedes_strokes());
+        holding.map(|waiting| waiting.asked_ns).min()
     }
 
     /// The newest state of each brush, where it is not painted yet; none of a brush that these samples move.
@@ -203,6 +228,7 @@ impl StrokeBarrier {
         }
         Some(Ready {
             after: waiting.after(),
+            asked_ns: waiting.asked_ns,
             request: waiting.request,
         })
     }
@@ -214,11 +240,19 @@ impl StrokeBarrier {
     }
 }
 
+impl Ready {
+    /// When it was asked for, ns, if strokes wait for it.
+    pub(crate) fn holds_strokes_ns(&self) -> Option<u64> {
+        self.request.precedes_strokes().then_some(self.asked_ns)
+    }
+}
+
 impl From<Request> for Ready {
     fn from(request: Request) -> Self {
         Self {
             request,
             after: None,
+            asked_ns: 0,
         }
     }
 }
@@ -261,7 +295,7 @@ fn follows(request: &Request) -> bool {
             ..
         }
         | Request::Force { .. } => false,
-        Request::Command { .. } => request.sets().is_none(),
+        Request::Command { .. } => request.sets().is_none() || request.changes_brush(),
     }
 }
 
@@ -289,5 +323,7 @@ fn is_painted(
     credit.is_some_and(|credit| credit.epoch == epoch && credit.next > state)
 }
 
+#[cfg(test)]
+mod order_tests;
 #[cfg(test)]
 mod tests;

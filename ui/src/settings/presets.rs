@@ -195,6 +195,9 @@ impl Preset {
     /// # Errors
     /// A [`UserError`] where something of it is wrong; then nothing is changed.
     pub fn apply(&self, work: &mut PanelContext<'_>) -> Result<(), UserError> {
+        if !work.may_change_brush() {
+            return Ok(());
+        }
         let file = self.brush()?;
         let brush = work.rig.brush_name().to_owned();
         let (tune, handle) = self.edits(&brush)?;

@@ -63,7 +63,7 @@ impl Bench {
 
     /// Commands that were asked for since the last call.
     pub(crate) fn commands(&mut self) -> Vec<Command> {
-        let requests = self.requests.take().into_iter();
+        let requests = self.requests.take_all().into_iter();
         let command = |order| match order {
             Request::Command { command, .. } => Some(command),
             Request::Force { .. } => None,

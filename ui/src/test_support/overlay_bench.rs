@@ -46,7 +46,7 @@ impl Bench {
 
     /// Everything that was asked since the last call: the node, and of it.
     pub(crate) fn asked(&mut self) -> Vec<(String, Command)> {
-        let requests = self.requests.take().into_iter();
+        let requests = self.requests.take_all().into_iter();
         let command = |request| match request {
             Request::Command { node, command } => (node, command),
             other @ Request::Force { .. } => panic!("no command: {other:?}"),

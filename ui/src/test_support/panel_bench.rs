@@ -109,7 +109,7 @@ impl<P> Bench<P> {
 
     /// The commands to the paint node since the last call.
     pub(crate) fn asked(&mut self) -> Vec<Command> {
-        let requests = self.requests.take().into_iter();
+        let requests = self.requests.take_all().into_iter();
         let paint = |order| match order {
             Request::Command { node, command } if node == crate::rig::requests::PAINT => command,
             other => panic!("not to the paint node: {other:?}"),

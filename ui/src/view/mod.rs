@@ -11,6 +11,7 @@
 
 pub mod camera;
 pub(crate) mod fit_crosses;
+pub(crate) mod held_view;
 pub(crate) mod palette_slide;
 pub(crate) mod quad;
 pub mod visible_tiles;

@@ -25,6 +25,8 @@ const BAR: f32 = 160.0;
 enum Kind {
     /// Dry layers are computed for another light.
     Relighting,
+    /// The surfaces are drawn for the view.
+    Drawing,
     /// Wet paint dries in time.
     Drying,
     /// A process does not answer, by its name in the dispatcher.
@@ -109,6 +111,7 @@ impl Progress {
         let mut jobs: Vec<Job> = waits.iter().map(|name| waiting(name)).collect();
         let waited = jobs.len();
         jobs.extend(self.relighting(rig));
+        jobs.extend(drawing(rig));
         jobs.extend(drying(rig));
         let now_ns = rig.now_ns;
         self.since_ns
@@ -181,6 +184,18 @@ fn lines(status: &PaintStatus) -> impl Iterator<Item = String> {
         )
     });
     unsaved.into_iter().chain(behind).chain(late)
+}
+
+/// A surface of very many cells is drawn in parts.
+fn drawing(rig: &RigState) -> Option<Job> {
+    let [done, all] = rig.drawn;
+    (done < all).then(|| Job {
+        kind: Kind::Drawing,
+        words: tr!("Drawing the painting").to_owned(),
+        share: Some(f64::from(done) / f64::from(all)),
+        cancel: None,
+        hint: "",
+    })
 }
 
 fn drying(rig: &RigState) -> Option<Job> {

@@ -3,31 +3,32 @@
 mod commands;
 mod contact_publisher;
 mod haste;
+mod hold;
 mod pace;
 mod progress;
 mod settings;
+mod solving;
 mod takes;
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
 
 use glam::DVec3;
 use maulstick_brush::BrushModel;
 use maulstick_brush::desk::aim;
-use maulstick_bus::credit::Stamp;
 use maulstick_bus::rivals::Once;
 use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
 use maulstick_bus::{
     Announcer, Bus, BusError, CreditReceiver, CreditSender, Qos, Queue, Recent, Server,
     Subscription, Wake,
 };
-use maulstick_types::brush::{BrushConsumed, BrushDef, BrushRelief, BrushState, Solve};
+use maulstick_types::brush::{BrushConsumed, BrushDef, BrushRelief, BrushState};
 use maulstick_types::command::reply_cache::ReplyCache;
 use maulstick_types::haptics::{ContactModel, Grain};
 use maulstick_types::paint::PaintConsumed;
 use maulstick_types::scene::Scene;
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample};
+use maulstick_types::window::PendingOrders;
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin, name_hash};
 
@@ -37,8 +38,10 @@ use crate::fluid_force::{Held, drag};
 use crate::outbox::Outbox;
 use crate::path_simplifier::{PathSimplifier, Place, Start, Waiting};
 
+use commands::{AskedBrush, ToldFile};
 use contact_publisher::DragSent;
 use haste::Haste;
+use hold::Hold;
 use pace::Pace;
 use progress::Progress;
 pub use settings::{BrushDevices, BrushSettings};
@@ -112,6 +115,14 @@ pub struct BrushNode {
     /// Devices of whose faulty samples it was said.
     faulty: Once,
     def: Announcer<BrushDef>,
+    /// The brush that is taken up when the strokes before it are painted.
+    asked_brush: Option<AskedBrush>,
+    /// The file that was told, until the painting has it.
+    told_file: Option<ToldFile>,
+    orders: Receiver<PendingOrders>,
+    hold: Hold,
+    /// True while a stroke waits for what was asked for before it.
+    holds: bool,
     commands: Server,
     replies: ReplyCache,
     reader: Reader,
@@ -188,6 +199,17 @@ impl BrushNode {
             newest_contact: None,
             faulty: Once::default(),
             def,
+            asked_brush: None,
+            told_file: None,
+            orders: Receiver::new(
+                b,
+                &topics.pending_orders(),
+                Qos::Control,
+                Queue::Ring(16),
+                wake,
+            )?,
+            hold: Hold::default(),
+            holds: false,
             commands: b.serve(&topics.command(name), 16, wake)?,
             replies: ReplyCache::default(),
             reader: Reader::default(),
@@ -226,14 +248,16 @@ impl BrushNode {
             self.sample(received, now_ns)?;
         }
         self.flush(now_ns)?;
+        self.take_up_asked_brush(now_ns)?;
+        self.tell_file_again(now_ns)?;
         self.states.serve(now_ns)?;
         for topic in self.samples.unheard() {
             let device = self.topics.middle(&topic).unwrap_or_default();
             self.progress.forget_told(device);
         }
         let backlog = &self.backlog;
-        let waits = |device: Origin| backlog.holds(device);
-        self.progress.tell(now_ns, &mut self.consumed, waits)?;
+        let first = |device: Origin| backlog.first_of(device);
+        self.progress.tell(now_ns, &mut self.consumed, first)?;
         Ok(match self.solves_left {
             0 => Duration::ZERO,
             _ => Duration::from_millis(20),
@@ -253,7 +277,7 @@ impl BrushNode {
                 self.sample(received, now_ns)?;
             }
             self.solve(now_ns);
-            if !self.backlog.is_empty() {
+            if self.solves_left == 0 && !self.backlog.is_empty() {
                 // In the turns to come.
                 self.next_scene = Some(scene);
                 return Ok(());
@@ -265,6 +289,18 @@ impl BrushNode {
             self.model.soak(scene.message.wetness(&self.settings.name));
         }
         Ok(())
+    }
+
+    /// Time after which no stroke begins before something that was asked for is done, ns; absent if all is done.
+    fn pending_since_ns(&self, now_ns: u64) -> Option<u64> {
+        let asked = self.asked_brush.as_ref().map(AskedBrush::since_ns);
+        let told = self.told_file.as_ref();
+        let told = told.and_then(|told| told.since_ns(now_ns));
+        asked
+            .into_iter()
+            .chain(told)
+            .chain(self.hold.since_ns(now_ns))
+            .min()
     }
 
     /// Credit, and what the devices are.
@@ -295,7 +331,12 @@ impl BrushNode {
             {
                 self.states.consumed(brush.epoch, brush.next, now_ns);
                 self.drag_n_s_m = drag(brush);
+                self.told_file.take_if(|told| told.hash == brush.file);
             }
+        }
+        while let Some(orders) = self.orders.try_recv() {
+            let window = orders.header.origin();
+            self.hold.hear(window, orders.message.since_ns, now_ns);
         }
         if let Some(relief) = self.reliefs.newest() {
             self.relief = Some(relief.message);
@@ -423,89 +464,5 @@ impl BrushNode {
             true => Place::Air,
             false => Place::Surface,
         }
-    }
-
-    /// Sends what is solved while there is credit, and solves what waits, if paint keeps up: what
-    /// has waited is one state.
-    fn flush(&mut self, now_ns: u64) -> Result<(), BusError> {
-        self.send(now_ns)?;
-        let late = self.states.oldest_age_ns(now_ns) > OLDEST_NS;
-        let busy = !self.outbox.is_empty() || !self.states.has_credit();
-        if late || busy {
-            return Ok(());
-        }
-        self.solve(now_ns);
-        self.send(now_ns)
-    }
-
-    /// Solves what waits, as one state, as far as this turn allows.
-    fn solve(&mut self, now_ns: u64) {
-        let (mut solves, mut newest) = (Vec::new(), None);
-        let mut devices = BTreeSet::new();
-        while self.solves_left > 0
-            && let Some((start, waiting)) = self.backlog.pop()
-        {
-            if start == Start::AfterLoss {
-                self.model.begin_anew();
-            }
-            let (origin, event_ns) = (waiting.origin, waiting.event_ns);
-            let more = self.model.follow(origin, event_ns, &waiting.sample);
-            self.solves_left = self.solves_left.saturating_sub(more.len().max(1));
-            devices.insert((origin.source, origin.epoch));
-            newest = Some((origin, waiting.seq));
-            solves.extend::<Vec<Solve>>(more);
-        }
-        let Some((origin, device_seq)) = newest else {
-            return;
-        };
-        self.pace.flag(now_ns, &mut solves);
-        if self.backlog.is_empty() {
-            self.pace.caught_up();
-        }
-        self.tell_haste();
-        let state = BrushState {
-            device: origin.source,
-            device_epoch: origin.epoch,
-            device_seq,
-            solves,
-        };
-        if !state.solves.is_empty() {
-            let number = self.post(Flags::NONE, Flags::NONE, Flags::NONE, state);
-            for (source, epoch) in devices {
-                self.progress.posted(Origin { source, epoch }, number);
-            }
-        }
-    }
-
-    /// Puts a state into the outbox; the number by which its last part will go.
-    fn post(&mut self, flags: Flags, first: Flags, last: Flags, state: BrushState) -> u64 {
-        if let Some(newest) = state.solves.last() {
-            self.touching = !newest.contacts.is_empty();
-        }
-        let touches = state.solves.iter().any(|solve| solve.stroke != 0);
-        let origin = Origin {
-            source: state.device,
-            epoch: state.device_epoch,
-        };
-        self.outbox.push(flags, first, last, state);
-        let number = self.states.next_seq() + self.outbox.len() as u64 - 1;
-        if touches {
-            self.newest_contact = Some(number);
-        }
-        self.progress.posted(origin, number);
-        number
-    }
-
-    /// Sends what waits in the outbox while there is credit.
-    fn send(&mut self, now_ns: u64) -> Result<(), BusError> {
-        while self.states.has_credit() {
-            let Some((flags, state)) = self.outbox.pop() else {
-                return Ok(());
-            };
-            let event_ns = state.solves.last().map_or(now_ns, |last| last.event_ns);
-            self.states
-                .send(flags, Stamp { now_ns, event_ns }, &state)?;
-        }
-        Ok(())
     }
 }

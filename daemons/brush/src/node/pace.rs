@@ -29,8 +29,8 @@ impl Pace {
         }
     }
 
-    /// Nothing waits any more.
-    pub(super) fn caught_up(&mut self) {
+    /// Nothing waits any more, or what waits does so for no fault of the paint.
+    pub(super) fn forget_wait(&mut self) {
         self.since_ns = None;
     }
 

@@ -69,21 +69,28 @@ impl Progress {
         }
     }
 
-    /// Reports the consumed samples to devices; those whose samples wait to be solved get their report then.
+    /// Reports the consumed samples to devices; `first` is the first sample of a device that waits to be solved.
     pub(super) fn tell(
         &mut self,
         now_ns: u64,
         to: &mut Sender<BrushConsumed>,
-        waits: impl Fn(Origin) -> bool,
+        first: impl Fn(Origin) -> Option<u64>,
     ) -> Result<(), BusError> {
         for Consumed { newest, told } in self.devices.values_mut() {
             let origin = Origin {
                 source: newest.device,
                 epoch: newest.device_epoch,
             };
-            if *told != Some(newest.next) && !waits(origin) {
-                *told = Some(newest.next);
-                to.send(now_ns, now_ns, newest)?;
+            let waits = first(origin);
+            let next = waits.map_or(newest.next, |first| first.min(newest.next));
+            // Of one that has only begun there is nothing to report.
+            if *told != Some(next) && (waits.is_none() || told.is_some()) {
+                *told = Some(next);
+                let report = BrushConsumed {
+                    next,
+                    ..newest.clone()
+                };
+                to.send(now_ns, now_ns, &report)?;
             }
         }
         Ok(())

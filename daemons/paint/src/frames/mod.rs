@@ -218,10 +218,13 @@ impl FrameServer {
         {
             tracing::error!("the paint on a brush cannot be told: {error}");
         }
+        // A tile that takes long is gone on with at once.
+        let mut begun = false;
         for waiting in std::mem::take(&mut self.waiting) {
             let reply = self.reply(&fed, &waiting.asked);
             let asked = (waiting.asked.epoch, waiting.asked.look);
             let news = !reply.tiles.is_empty() || asked != (reply.epoch, reply.look);
+            begun |= reply.more;
             if !news && now_ns < waiting.deadline_ns {
                 self.waiting.push(waiting);
                 continue;
@@ -235,7 +238,7 @@ impl FrameServer {
             self.want(now_ns);
             deadline_ns - now_ns
         });
-        if self.bake_ahead(&fed) {
+        if self.bake_ahead(&fed) || begun && !self.waiting.is_empty() {
             return Duration::ZERO;
         }
         LOOK.min(Duration::from_nanos(soonest_ns))
@@ -327,7 +330,8 @@ impl FrameServer {
             }
         }
         changed.sort();
-        let (mut bytes, begun) = (0, Instant::now());
+        let (mut bytes, late) = (0, Instant::now() + REPLY_WORK);
+        let mut told = since;
         for (place, (version, id)) in changed.iter().enumerate() {
             if place % BATCH == 0 {
                 let part = &changed[place..(place + BATCH).min(changed.len())];
@@ -337,13 +341,22 @@ impl FrameServer {
                     .iter()
                     .filter(|(_, id)| !pyramid.recall(look, asked.surface, surface, level, *id));
                 let new: Vec<TileId> = new.map(|(_, id)| *id).collect();
-                let ids = new
-                    .iter()
-                    .flat_map(|id| self.pyramid.stale(asked.surface, surface, level, *id));
-                let ids: Vec<TileId> = ids.take(MOST_TILES).collect();
+                let mut ids = Vec::new();
+                for id in &new {
+                    let (tile, most) = ((level, *id), MOST_TILES - ids.len());
+                    if most > 0 {
+                        ids.extend(self.pyramid.stale(asked.surface, surface, tile, most));
+                    }
+                }
                 self.pyramid.shade(look, asked.surface, surface, &ids);
             }
-            let shown = self.pyramid.tile(look, asked.surface, surface, level, *id);
+            let tile = (level, *id);
+            let made = self.pyramid.tile(look, asked.surface, surface, tile, late);
+            let Some(shown) = made else {
+                (reply.more, reply.version) = (true, told);
+                break;
+            };
+            told = *version;
             let planes = shown.to_bytes();
             bytes += planes.len();
             reply.tiles.push(FrameTile {
@@ -352,7 +365,7 @@ impl FrameServer {
                 planes: planes.into(),
             });
             // No two tiles share a version, so the rest can be asked for from any of them on.
-            let enough = bytes >= REPLY_BYTES || begun.elapsed() > REPLY_WORK;
+            let enough = bytes >= REPLY_BYTES || Instant::now() >= late;
             if enough && place + 1 < changed.len() {
                 (reply.more, reply.version) = (true, *version);
                 break;

@@ -135,29 +135,33 @@ impl Pyramid {
         }
     }
 
-    /// The tiles of full detail of a rectangle of a level that are not cached or have changed.
+    /// Tiles of full detail that a tile of a level is still to be made of: those that are not cached, nor a tile that is
+    /// made of them. `most` are found at most.
     pub(super) fn stale(
         &self,
         number: u32,
         surface: &FedSurface,
-        level: u32,
-        id: TileId,
+        (level, id): (u32, TileId),
+        most: usize,
     ) -> Vec<TileId> {
-        let [across, up] = surface.grid;
-        let span = |from: u32, most: u32| {
-            let side = 1u64 << level;
-            let to = (u64::from(from) + 1) * side;
-            (u64::from(from) * side).min(u64::from(most)) as u32..to.min(u64::from(most)) as u32
-        };
-        let columns = span(id.x, across);
-        let all = span(id.y, up).flat_map(|y| columns.clone().map(move |x| TileId { x, y }));
-        let stale = |id: &TileId| {
-            let version = Self::painted(surface, 0, *id);
-            self.kept
-                .get(&(number, 0, *id))
-                .is_none_or(|(kept, _)| *kept != version)
-        };
-        all.filter(stale).collect()
+        let (mut found, mut left) = (Vec::new(), vec![(level, id)]);
+        while let Some((level, id)) = left.pop() {
+            let [across, up] = grid(surface, level);
+            let version = Self::painted(surface, level, id);
+            let kept = self.kept.get(&(number, level, id));
+            let is_kept = kept.is_some_and(|(kept, _)| *kept == version);
+            if is_kept || id.x >= across || id.y >= up {
+                continue;
+            }
+            match level {
+                0 => found.push(id),
+                _ => left.extend((0..4).rev().map(|quarter| (level - 1, child(id, quarter)))),
+            }
+            if found.len() >= most {
+                break;
+            }
+        }
+        found
     }
 
     /// Computes tiles of full detail together.
@@ -295,7 +299,7 @@ impl Pyramid {
         if let Some(plain) = self.plain.get(&number) {
             return Arc::clone(plain);
         }
-        let near = self.tile(look, number, surface, 0, TileId { x: 0, y: 0 });
+        let near = self.finest(look, number, surface, TileId { x: 0, y: 0 });
         let plain = Arc::new(near.even());
         self.plain.insert(number, Arc::clone(&plain));
         plain
@@ -304,50 +308,53 @@ impl Pyramid {
     fn keep(&mut self, place: (u32, u32, TileId), version: u64, tile: Arc<DisplayTile>) {
         if self.kept.len() >= KEPT_TILES {
             // A coarse tile is made of many: it is kept as long as there is room.
-            self.kept.retain(|(_, level, _), _| *level > 0);
-            if self.kept.len() >= KEPT_TILES {
-                self.kept.clear();
-            }
+            let finest = self.kept.keys().map(|(_, level, _)| *level).min();
+            self.kept.retain(|(_, level, _), _| Some(*level) > finest);
         }
         self.kept.insert(place, (version, tile));
     }
 
+    /// A tile of a level; `None` where it is made of so many others that this takes longer than until `late`. What was
+    /// made of it is kept for the next call.
     pub(super) fn tile(
         &mut self,
         look: &Appearance,
         number: u32,
         surface: &FedSurface,
-        level: u32,
-        id: TileId,
-    ) -> Arc<DisplayTile> {
+        (level, id): (u32, TileId),
+        late: Instant,
+    ) -> Option<Arc<DisplayTile>> {
         self.turn_to(look);
         let version = Self::painted(surface, level, id);
         if let Some((kept, tile)) = self.kept.get(&(number, level, id))
             && *kept == version
         {
-            return Arc::clone(tile);
+            return Some(Arc::clone(tile));
         }
         if version == 0 && level >= PLAIN_LEVEL && is_plain(surface) {
-            return self.plain(look, number, surface);
+            return Some(self.plain(look, number, surface));
         }
         if let Some(shown) = self.shown(look, (number, level, id), version) {
             self.keep((number, level, id), version, Arc::clone(&shown));
-            return shown;
+            return Some(shown);
         }
         if level == 0 {
-            self.shade(look, number, surface, &[id]);
-            let kept = self.kept.get(&(number, level, id));
-            let kept = kept.map(|(_, tile)| Arc::clone(tile));
-            return kept.unwrap_or_else(|| self.outside(look, number, surface));
+            return Some(self.finest(look, number, surface, id));
         }
         let tile = Arc::new({
             let outside = self.outside(look, number, surface);
             let [across, up] = grid(surface, level - 1);
-            let children: [Option<Arc<DisplayTile>>; 4] = std::array::from_fn(|quarter| {
+            let mut children: [Option<Arc<DisplayTile>>; 4] = Default::default();
+            for (quarter, tile) in children.iter_mut().enumerate() {
                 let child = child(id, quarter as u32);
-                let inside = child.x < across && child.y < up;
-                inside.then(|| self.tile(look, number, surface, level - 1, child))
-            });
+                if child.x < across && child.y < up {
+                    if Instant::now() >= late {
+                        return None;
+                    }
+                    let place = (level - 1, child);
+                    *tile = Some(self.tile(look, number, surface, place, late)?);
+                }
+            }
             let children = children.each_ref().map(|child| child.as_deref());
             let finer = (1u64 << (level - 1).min(31)) as f32;
             let cell_m = finer / surface.bare.relief.cells_per_m();
@@ -355,7 +362,21 @@ impl Pyramid {
         });
         self.put_aside(look, (number, level, id), version, &tile);
         self.keep((number, level, id), version, Arc::clone(&tile));
-        tile
+        Some(tile)
+    }
+
+    /// A tile of full detail.
+    fn finest(
+        &mut self,
+        look: &Appearance,
+        number: u32,
+        surface: &FedSurface,
+        id: TileId,
+    ) -> Arc<DisplayTile> {
+        self.shade(look, number, surface, &[id]);
+        let kept = self.kept.get(&(number, 0, id));
+        let kept = kept.map(|(_, tile)| Arc::clone(tile));
+        kept.unwrap_or_else(|| self.outside(look, number, surface))
     }
 }
 

@@ -98,6 +98,8 @@ pub struct PaintNode {
     /// Commit counter at the newest commit seen, and its time, ns.
     committed: (u64, u64),
     ticker: Ticker,
+    /// Files with which the next states of brushes are painted, by the brushes' sources: their FNV-1a.
+    file_hashes: BTreeMap<u32, u32>,
     /// Other files of known brushes, until something is done with them.
     newer_brushes: BTreeMap<String, BrushFile>,
     /// The recorded session that is painted again.
@@ -185,6 +187,7 @@ impl PaintNode {
             memory: 1 << 30,
             committed: (0, 0),
             ticker: Ticker::default(),
+            file_hashes: BTreeMap::new(),
             newer_brushes: BTreeMap::new(),
             session: sequencer
                 .is_repeating()
@@ -336,6 +339,8 @@ impl PaintNode {
                 match taken {
                     Ok(()) => {
                         self.heard.insert(name_hash(brush));
+                        self.file_hashes
+                            .insert(name_hash(brush), name_hash(&def.toml));
                         self.tell_again = true;
                         return;
                     }
@@ -430,18 +435,28 @@ impl PaintNode {
         }
         self.tell_again = false;
         self.told = holds.iter().copied().collect();
+        // A brush may wait to be told that its file is here before its first state.
+        let is_new = |source: &u32| holds.iter().all(|(origin, _)| origin.source != *source);
+        let new = self.file_hashes.keys().filter(|source| is_new(source));
+        let new = new.map(|source| {
+            let (source, epoch) = (*source, 0);
+            (Origin { source, epoch }, 0)
+        });
         let credits: Vec<BrushCredit> = holds
             .iter()
+            .copied()
+            .chain(new)
             .map(|(origin, next)| {
                 let under = self.sequencer.painting().under_brush(origin.source);
                 BrushCredit {
                     brush: origin.source,
                     epoch: origin.epoch,
-                    next: *next,
+                    next,
                     wetness: self.sequencer.painting().fullness(origin.source),
                     film_m: under.film_m as f32,
                     viscosity_m2_s: under.viscosity_m2_s as f32,
                     contact_m: under.contact_m as f32,
+                    file: self.file_hashes.get(&origin.source).copied().unwrap_or(0),
                 }
             })
             .collect();

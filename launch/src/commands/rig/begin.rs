@@ -8,6 +8,7 @@ use maulstick_rig::config::{CanvasSection, is_path};
 use maulstick_types::command::{NewCanvas, RigCommand};
 use maulstick_types::values::MaterialName;
 
+use crate::cells::check_speed;
 use crate::commands::client::{Client, Target};
 use crate::commands::open::{LONGEST, whole};
 use crate::commands::say;
@@ -15,7 +16,7 @@ use crate::commands::say;
 /// Options of `maulstick new`.
 #[derive(Args, Clone, Debug)]
 pub struct NewOptions {
-    /// New file for the painting [default: none, in memory only]
+    /// New file for the painting [default: a sketch; in memory only in a rig without a window]
     file: Option<PathBuf>,
     /// Size of the canvas in cm, such as 40x30 [default: that of rig.toml]
     #[arg(long, value_name = "WxH", value_parser = parse_cm)]
@@ -40,6 +41,9 @@ pub struct NewOptions {
     /// Discard the current painting if it is in memory only
     #[arg(long)]
     forget: bool,
+    /// Begin a canvas of so small or so many cells that painting on it is slow
+    #[arg(long)]
+    slow: bool,
     #[command(flatten)]
     target: Target,
 }
@@ -73,6 +77,13 @@ pub fn run(options: &NewOptions) -> Result<i32, UserError> {
         stain_m: usual.stain_um * 1e-6,
     };
     canvas.check()?;
+    let section = CanvasSection {
+        width_mm: width * 10.0,
+        height_mm: height * 10.0,
+        cell_mm: canvas.cell_m * 1e3,
+        ..usual
+    };
+    check_speed(&section, options.slow.into())?;
     let command = RigCommand::New {
         path: options.file.as_deref().map(whole).transpose()?,
         canvas,

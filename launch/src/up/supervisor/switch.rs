@@ -8,18 +8,20 @@ use std::time::{Duration, Instant};
 
 use maulstick_bus::Bus;
 use maulstick_document::DocumentError;
-use maulstick_rig::UserError;
 use maulstick_rig::command_client::CommandClient;
 use maulstick_rig::config::{RigConfig, is_path};
 use maulstick_rig::files::{Kind, check_writable, write_whole};
 use maulstick_rig::node_handle::CONFIG_FILE;
+use maulstick_rig::{Sketches, UserError};
 use maulstick_types::Mixture;
 use maulstick_types::command::{FileCommand, NewCanvas, Outcome, SaveAs};
 use maulstick_types::wire::topics::Topics;
 
 use super::orders::{refusal, starts_again};
+use super::sketch::{self, Leave};
 use super::starts::start_time;
 use super::{GRACE, Supervisor};
+use crate::cells::check_memory;
 use crate::document::{measure, read, round, wrong};
 use crate::performance::{library_from, painting_setup, refused};
 use crate::up::child::{Ended, State};
@@ -104,6 +106,7 @@ impl Switch {
     ) -> Result<Self, UserError> {
         let mut config = supervisor.config.clone();
         let wake = supervisor.wake.clone();
+        let sketches = supervisor.sketches.clone();
         let stage = match ask {
             Ask::SaveAs(save_as) => {
                 let path = PathBuf::from(save_as.path.as_str());
@@ -133,6 +136,7 @@ impl Switch {
             ),
             Ask::New(path, canvas, forget) => Stage::Checking(
                 beside(move || {
+                    let path = path.or_else(|| sketches.as_ref().and_then(begin_sketch));
                     let checked = begun(&mut config, path, &canvas);
                     wake.ring();
                     let load = Some(checked?);
@@ -143,6 +147,16 @@ impl Switch {
         };
         Ok(Self { asker, stage })
     }
+}
+
+/// The file of another sketch; where it cannot be had the painting is in memory alone, as its status says.
+fn begin_sketch(sketches: &Sketches) -> Option<PathBuf> {
+    let begun = sketch::fresh(sketches);
+    let warn = |fault: &UserError| {
+        let place = fault.place.as_deref().unwrap_or_default();
+        tracing::warn!("{place}: {}: the sketch is in memory alone", fault.what);
+    };
+    begun.inspect_err(warn).ok()
 }
 
 /// Does work on a thread of its own.
@@ -205,6 +219,9 @@ fn begun(
         }
         check_writable(path, Kind::Own).map_err(|error| UserError::writing(path, &error))?;
     }
+    if path.is_none() {
+        check_memory(&config.canvas)?;
+    }
     config.paint.document = path;
     let library = library_from(config.paint.paints.as_deref())?;
     painting_setup(config, &library)?
@@ -262,7 +279,9 @@ impl Supervisor {
             },
             Stage::Saving(to, gone, saved) => match saved.try_recv() {
                 Ok(Ok(_)) => {
-                    self.config.paint.document = Some(to.clone());
+                    if let Some(before) = self.config.paint.document.replace(to.clone()) {
+                        self.leave_sketch(&before, Leave::Named);
+                    }
                     if let Err(fault) = self.write_config() {
                         tracing::warn!("{}: {}", fault.place.unwrap_or_default(), fault.what);
                     }
@@ -324,6 +343,9 @@ impl Supervisor {
             }
         }
         let name = plan.name();
+        if let Some(former) = &before.paint.document {
+            self.leave_sketch(former, Leave::Left);
+        }
         if plan.load.is_some() {
             (self.first_load, self.unloaded) = (plan.load, true);
         }

@@ -27,13 +27,15 @@ wire_struct! {
         pub viscosity_m2_s: f32,
         /// Length of the contact: the side of a square as large, m.
         pub contact_m: f32,
+        /// FNV-1a of the brush file with which the next of its states are painted; 0 where none is known.
+        pub file: u32,
     }
 }
 
 message! {
     /// Credit to the brushes.
-    pub struct PaintConsumed [version 2, at most 4096 bytes] {
-        /// One a brush.
+    pub struct PaintConsumed [version 3, at most 4096 bytes] {
+        /// One a brush; of a brush without a state so far epoch and number are 0.
         pub brushes: Vec<BrushCredit>,
     }
 }

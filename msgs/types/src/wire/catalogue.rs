@@ -69,6 +69,7 @@ pub static CATALOGUE: &[CatalogueEntry] = &[
     entry!(paint::ThumbnailReply, "paint/thumbnail (reply)"),
     entry!(window::Presented, "ui/presented"),
     entry!(node::NodeStatus, "node/<node>/status"),
+    entry!(window::PendingOrders, "ui/pending"),
     entry!(command::CommandRequest, "command/<node> (query)"),
     entry!(command::CommandReply, "command/<node> (reply)"),
     entry!(command::GapRequest, "gap/<stream> (query)"),

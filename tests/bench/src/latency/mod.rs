@@ -33,7 +33,8 @@ pub(crate) fn rig_with(place: &Path, options: &[&str]) -> Result<Command, UserEr
         .args(["up", "--name", "latency", "--load", "Bone Black"])
         .args(options)
         .current_dir(place)
-        .env("XDG_RUNTIME_DIR", place);
+        .env("XDG_RUNTIME_DIR", place)
+        .env("XDG_STATE_HOME", place.join("state"));
     Ok(command)
 }
 

@@ -140,6 +140,7 @@ pub(super) fn write(path: &Path) -> Result<(), UserError> {
                 film_m: 1e-4,
                 viscosity_m2_s: 1e-3,
                 contact_m: 1e-3,
+                file: 0,
             };
             credit.send(&mut to, at_ns, &PaintConsumed { brushes: vec![own] })?;
         }

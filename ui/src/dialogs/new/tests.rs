@@ -4,7 +4,7 @@ use crate::test_support::overlay_bench::picture;
 fn asked(change: impl FnOnce(&mut NewPainting)) -> Result<Command, String> {
     let mut new =
         NewPainting::kept_in("/nowhere/Painting".into(), Units::Metric, Unkept::default());
-    new.in_memory = true;
+    new.as_sketch = true;
     change(&mut new);
     new.command()
 }
@@ -40,7 +40,7 @@ fn it_is_kept_in_a_file_that_is_not_there_yet() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| {
         let path = folder.path().join(name).display().to_string();
-        asked(|new| (new.in_memory, new.path) = (false, path))
+        asked(|new| (new.as_sketch, new.path) = (false, path))
     };
     let Ok(Command::Rig(RigCommand::New { path, .. })) = at("sea") else {
         panic!("refused");
@@ -96,4 +96,14 @@ fn it_looks_as_in_its_picture() {
         |_| {},
         |new| new.width = "0".into(),
     );
+}
+
+#[test]
+fn a_canvas_of_so_many_cells_that_painting_is_slow_is_asked_for() {
+    let fine = |cells: &str, may_be_slow: bool| {
+        asked(|new| (new.fine, new.may_be_slow) = (cells.into(), may_be_slow))
+    };
+    assert!(fine("16", false).is_ok());
+    assert!(fine("48", false).is_err());
+    assert!(fine("48", true).is_ok());
 }

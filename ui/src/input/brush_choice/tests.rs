@@ -168,7 +168,7 @@ fn a_brush_that_refuses_keeps_what_it_has_and_one_that_does_takes_up_its_paint()
         node: PAINT.to_owned(),
         command: load(),
     };
-    assert_eq!(bench.requests.take(), [then]);
+    assert_eq!(bench.requests.take_all(), [then]);
 }
 
 #[test]

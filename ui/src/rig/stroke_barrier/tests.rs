@@ -70,6 +70,7 @@ impl Desk {
             film_m: 0.0,
             viscosity_m2_s: 0.0,
             contact_m: 0.0,
+            file: 0,
         };
         let painted = PaintConsumed {
             brushes: vec![credit],
@@ -89,7 +90,7 @@ impl Desk {
             seq,
         };
         let now_ns = self.net.bus().now_ns();
-        self.barrier.push(now_ns, request, [sample]);
+        self.barrier.push(now_ns, (request, now_ns), [sample]);
     }
 
     /// The next command, and the state that it goes behind.
@@ -142,7 +143,7 @@ fn another_node_is_asked_when_the_stroke_is_painted() {
         epoch: 3,
         seq: 9,
     };
-    desk.barrier.push(START_NS, request.clone(), [sample]);
+    desk.barrier.push(START_NS, (request.clone(), 0), [sample]);
     desk.consumed(10, 40);
     // What is painted later does not hold it up.
     assert_eq!(desk.barrier.next_ready(START_NS), None);
@@ -179,7 +180,7 @@ fn a_stroke_that_is_not_painted_is_not_overtaken_however_long_the_hand_rests() {
             command: UNDO,
         };
         let now_ns = desk.net.bus().now_ns();
-        desk.barrier.push(now_ns, request, []);
+        desk.barrier.push(now_ns, (request, now_ns), []);
     };
     push(&mut desk);
     assert_eq!(desk.next_ready(), Some((UNDO, Some(40))));
@@ -220,6 +221,7 @@ fn nobody_waits_for_a_brush_that_ended_nor_for_a_stylus_that_moves_none() {
         node: PAINT.into(),
         command: UNDO,
     };
-    desk.barrier.push(START_NS, request.clone(), [stranger]);
+    desk.barrier
+        .push(START_NS, (request.clone(), 0), [stranger]);
     assert_eq!(desk.barrier.next_ready(START_NS), Some(request.into()));
 }

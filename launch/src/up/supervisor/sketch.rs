@@ -1,0 +1,181 @@
+//! The sketch of a rig with a window: the file of a painting for which nobody gave one.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
+
+use jiff::Zoned;
+use maulstick_document::{Access, Document, DocumentSettings, glance};
+use maulstick_rig::UserError;
+use maulstick_rig::sketches::{Sketch, Sketches};
+
+use super::Supervisor;
+
+/// A file so young may be of a rig that is just being started.
+const YOUNG: Duration = Duration::from_secs(60);
+/// The file of a blank sketch takes less, bytes.
+const BLANK_BYTES: u64 = 4 << 20;
+
+/// The file of a new sketch, called by the time at which it was begun.
+///
+/// # Errors
+/// As [`Sketches::fresh`].
+pub(in crate::up) fn fresh(sketches: &Sketches) -> Result<PathBuf, UserError> {
+    sketches.fresh(&Zoned::now().strftime("%Y-%m-%d %H.%M.%S").to_string())
+}
+
+/// Removes the sketches that leave and of which the painter was told, and those on which nothing was ever painted. One
+/// that is open in another rig stays.
+pub(in crate::up) fn tidy(sketches: &Sketches) {
+    for sketch in sketches.told() {
+        // Who has it open has it locked.
+        if glance(&sketch.path).is_ok() {
+            tracing::info!("{} goes: the newer sketches stay", sketch.path.display());
+            remove(sketches, &sketch.path);
+        }
+    }
+    let now = SystemTime::now();
+    let is_old = |sketch: &Sketch| {
+        now.duration_since(sketch.changed)
+            .is_ok_and(|age| age > YOUNG)
+    };
+    for sketch in sketches.all().iter().filter(|sketch| is_old(sketch)) {
+        if sketch.bytes < BLANK_BYTES && is_blank(&sketch.path) {
+            remove(sketches, &sketch.path);
+        }
+    }
+}
+
+fn remove(sketches: &Sketches, path: &Path) {
+    if let Err(fault) = sketches.remove(path) {
+        tracing::warn!("{}: {}", fault.place.unwrap_or_default(), fault.what);
+    }
+}
+
+/// True if nobody has a painting open, and nothing was ever painted on it.
+fn is_blank(path: &Path) -> bool {
+    if std::fs::metadata(path).is_ok_and(|about| about.len() == 0) {
+        return true;
+    }
+    let settings = DocumentSettings::new(path, Access::Read);
+    let Ok((document, opened)) = Document::open(&settings) else {
+        return false;
+    };
+    let sequencer = opened.map(|opened| opened.sequencer());
+    let is_blank = sequencer.is_some_and(|read| read.is_ok_and(|read| read.painting().is_blank()));
+    document.close().is_ok() && is_blank
+}
+
+impl Supervisor {
+    /// The file of the sketch that a painting is, if it is one.
+    pub(super) fn sketch(&self) -> Option<(&Sketches, &Path)> {
+        let sketches = self.sketches.as_ref()?;
+        let path = self.config.paint.document.as_deref()?;
+        sketches.has(path).then_some((sketches, path))
+    }
+
+    /// The painting was saved under a name, or is left: its sketch goes if nothing is lost with it.
+    pub(super) fn leave_sketch(&self, path: &Path, why: Leave) {
+        let Some(sketches) = self.sketches.as_ref().filter(|sketches| sketches.has(path)) else {
+            return;
+        };
+        if why == Leave::Named || is_blank(path) {
+            remove(sketches, path);
+        }
+    }
+
+    /// At the end of the rig: says where the sketch is kept; one on which nothing was painted goes. The terminal may be
+    /// closed.
+    pub(super) fn end_sketch(&self) {
+        let Some((_, path)) = self.sketch() else {
+            return;
+        };
+        self.leave_sketch(path, Leave::Left);
+        if path.exists() {
+            let words = format!(
+                "the sketch is kept in {}: `maulstick up` offers it, and `maulstick up FILE` opens it",
+                path.display()
+            );
+            writeln!(std::io::stderr(), "{words}").ok();
+        }
+    }
+}
+
+/// Why a sketch is not painted on any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Leave {
+    /// It has a name of its own now.
+    Named,
+    /// Another painting is on the easel, or none.
+    Left,
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_document::Checkpoint;
+    use maulstick_optics::PaintLibrary;
+    use maulstick_painting::{Painting, PaintingSetup, Sequencer};
+    use maulstick_types::edits::{Fill, FillPaint};
+    use maulstick_types::scene::CANVAS;
+    use maulstick_types::values::FilmThickness;
+
+    use super::*;
+
+    /// A painting in a file, painted on or blank, that was left ten minutes ago; while the document lives it is open.
+    fn painting(path: &Path, is_painted: bool) -> Document {
+        let settings = DocumentSettings::new(path, Access::Paint);
+        let (document, _) = Document::open(&settings).expect("new");
+        let setup = PaintingSetup {
+            cells: [64, 64],
+            ..PaintingSetup::default()
+        };
+        let library = PaintLibrary::measured().expect("the paints that come with it");
+        let pager = document.pager().clone();
+        let painting = Painting::paged(&setup, library, pager).expect("a painting");
+        let mut sequencer = Sequencer::new(painting);
+        if is_painted {
+            let paint = FillPaint::Mixture {
+                mixture: "Titanium White".parse().expect("a paint"),
+            };
+            let thickness = FilmThickness::new(4e-5).expect("in range");
+            let fill = Fill {
+                paint,
+                thickness,
+                surface: CANVAS,
+            };
+            sequencer.edit(fill).expect("laid");
+        }
+        document.write_checkpoint(Checkpoint::of(&mut sequencer, 0));
+        document
+    }
+
+    fn age(path: &Path) {
+        let file = std::fs::File::options().append(true).open(path);
+        let then = SystemTime::now() - 10 * YOUNG;
+        file.expect("there").set_modified(then).expect("set");
+    }
+
+    #[test]
+    fn what_was_never_painted_on_goes_and_nothing_else() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let sketches = Sketches::in_folder(folder.path());
+        let named = |name: &str| sketches.fresh(name).expect("free");
+        let (blank, painted, empty, young) = (
+            named("blank"),
+            named("painted"),
+            named("empty"),
+            named("young"),
+        );
+        painting(&blank, false).close().expect("closed");
+        painting(&painted, true).close().expect("closed");
+        for path in [&empty, &young] {
+            std::fs::write(path, "").expect("written");
+        }
+        for path in [&blank, &painted, &empty] {
+            age(path);
+        }
+        tidy(&sketches);
+        assert!(!blank.exists() && !empty.exists());
+        assert!(painted.exists() && young.exists());
+    }
+}

@@ -1,0 +1,103 @@
+//! Requests on their way to the rig, in their order among the strokes; what has to wait for a brush to lift, or is
+//! refused until then.
+
+use std::time::Duration;
+
+use eframe::egui::Context;
+use maulstick_rig::UserError;
+
+use super::App;
+use crate::rig::dispatcher::Outcome;
+use crate::rig::requests::Request;
+use crate::widgets::context::PanelContext;
+
+/// Interval at which a request that waits for its stroke is checked again.
+const BARRIER_LOOK: Duration = Duration::from_millis(50);
+
+impl App {
+    /// Sends the requests whose preceding strokes are painted.
+    pub(super) fn send(&mut self, context: &Context) {
+        let now_ns = self.bus.now_ns();
+        let is_shown = self.shows_devices();
+        let orders = self.requests.take_device_orders();
+        let told = (&mut self.rig, &mut self.notifications);
+        self.device_commands.turn(context, orders, is_shown, told);
+        let orders = self.requests.take_session_orders();
+        let told = (&mut self.rig, &mut self.notifications);
+        self.session_processes.turn(context, orders, told);
+        // The mouse's samples until then are sent.
+        let asked_ns = self.rig.now_ns;
+        for follow_up in self.requests.take_follow_ups() {
+            self.barrier.push_follow_up(follow_up);
+        }
+        let waits = self.holds_desk();
+        let mut requests = match waits {
+            true => Vec::new(),
+            false => std::mem::take(&mut self.held_places),
+        };
+        requests.append(&mut self.requests.take());
+        for request in requests {
+            if waits && request.moves_surface() {
+                self.held_places.push(request);
+            } else if !self.refuses(&request) {
+                let newest = self.tracker.newest(now_ns);
+                self.barrier.push(now_ns, (request, asked_ns), newest);
+            }
+        }
+        // The cleaning key acts within a stroke, and so does the free hand.
+        let mut within = self.clean_key.take();
+        within.append(&mut self.navigation.take());
+        for request in within {
+            let newest = self.tracker.newest(now_ns);
+            self.barrier.push(now_ns, (request, asked_ns), newest);
+        }
+        while let Some(ready) = self.barrier.next_ready(now_ns) {
+            self.dispatcher.send(ready);
+        }
+        let oldest = [self.barrier.oldest_ns(), self.dispatcher.oldest_ns()];
+        let since_ns = oldest.into_iter().flatten().min();
+        if let Err(error) = self.pending.tell(now_ns, since_ns) {
+            tracing::warn!("the brushes are not told what is pending: {error}");
+        }
+        if self.barrier.is_waiting() || since_ns.is_some() {
+            context.request_repaint_after(BARRIER_LOOK);
+        }
+    }
+
+    /// True while the hand has the brush of the panels on a surface. What the mouse's own samples say comes late.
+    pub(super) fn is_painting(&self) -> bool {
+        let name = self.rig.brush_name();
+        match self.tracker.is_led_by_mouse(name) {
+            true => self.pointer_path.is_pressed(),
+            false => self.tracker.aim(name).is_some_and(|(_, in_air)| !in_air),
+        }
+    }
+
+    /// True while a brush touches the desk: neither the view nor a surface is moved under it, whoever asks for that, but
+    /// for the painter's free hand.
+    pub(super) fn holds_desk(&self) -> bool {
+        self.pointer_path.is_pressed() || self.tracker.touches()
+    }
+
+    /// True if a request is refused: the brush is not changed while the hand has it on a surface.
+    fn refuses(&mut self, request: &Request) -> bool {
+        if !self.rig.painting || !request.changes_brush() {
+            return false;
+        }
+        let outcome = Outcome {
+            request: request.clone(),
+            result: Err(UserError::failure(tr!(
+                "The brush is painting: lift it, and ask again."
+            ))),
+        };
+        let work = &mut PanelContext {
+            rig: &mut self.rig,
+            requests: &mut self.requests,
+            preferences: &mut self.preferences,
+            notifications: &mut self.notifications,
+        };
+        work.may_change_brush();
+        work.brush_answered(&outcome);
+        true
+    }
+}

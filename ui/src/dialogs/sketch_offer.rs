@@ -1,0 +1,234 @@
+//! The sketches of before, offered over a blank one: whoever closed the window on a painting without a name finds it
+//! again. The first paint takes the offer away.
+
+use std::path::PathBuf;
+use std::task::Poll;
+use std::time::SystemTime;
+
+use eframe::egui::{Align2, Button, Context, RichText, Sense, Ui, Window};
+use maulstick_rig::Sketches;
+use maulstick_rig::sketches::{Sketch, leaving};
+
+use crate::background_task::BackgroundTask;
+use crate::dialogs::browser::PICTURE;
+use crate::dialogs::browser::pictures::Pictures;
+use crate::dialogs::paths;
+use crate::rig::state::RigState;
+
+/// So many are offered.
+const MOST: usize = 4;
+/// Width of the offer, points.
+const WIDTH: f32 = 300.0;
+
+/// Choice of the painter.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Choice {
+    /// This one goes on.
+    Open(PathBuf),
+    /// All of them are to be seen.
+    All,
+}
+
+/// What is there beside the sketch on the easel.
+#[derive(Debug, Default)]
+struct Found {
+    newest: Vec<Sketch>,
+    count: usize,
+    /// Those that go at the next start, in words.
+    leaving: Vec<String>,
+}
+
+#[derive(Debug, Default)]
+enum State {
+    /// The painting is not known yet.
+    #[default]
+    Waiting,
+    Looking(BackgroundTask<Found>),
+    Shown(Found),
+    /// The painter began to paint, chose, or closed it.
+    Done,
+}
+
+/// The offer.
+#[derive(Debug, Default)]
+pub(super) struct SketchOffer {
+    state: State,
+    pictures: Pictures,
+}
+
+/// Looks for the sketches beside the one that is open; who is told of those that leave is told in the file too.
+fn found(sketches: &Sketches, open: &std::path::Path) -> Found {
+    let all = sketches.all();
+    let leaving = leaving(&all);
+    if let Err(fault) = sketches.tell(leaving)
+        && !leaving.is_empty()
+    {
+        tracing::warn!("{}: {}", fault.place.unwrap_or_default(), fault.what);
+    }
+    let leaving = leaving.iter().map(|sketch| stem(sketch)).collect();
+    let others = all.iter().filter(|sketch| sketch.path != open);
+    Found {
+        newest: others.clone().take(MOST).cloned().collect(),
+        count: others.count(),
+        leaving,
+    }
+}
+
+fn stem(sketch: &Sketch) -> String {
+    let stem = sketch.path.file_stem().unwrap_or_default();
+    stem.to_string_lossy().into_owned()
+}
+
+impl SketchOffer {
+    /// Follows the painting, and shows the offer over a blank sketch; the choice that was made.
+    pub(super) fn show(&mut self, context: &Context, rig: &RigState) -> Option<Choice> {
+        self.follow(context, rig);
+        let State::Shown(found) = &self.state else {
+            return None;
+        };
+        self.pictures.take_in(context);
+        let (mut is_open, mut chosen) = (true, None);
+        Window::new(tr!("Your sketches"))
+            .open(&mut is_open)
+            .collapsible(false)
+            .resizable(false)
+            .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
+            .show(context, |ui| {
+                ui.set_width(WIDTH);
+                chosen = list(ui, found, &mut self.pictures);
+            });
+        if chosen.is_some() || !is_open {
+            self.state = State::Done;
+        }
+        chosen
+    }
+
+    fn follow(&mut self, context: &Context, rig: &RigState) {
+        let (Some(sketches), Some(node)) = (&rig.sketches, &rig.paint) else {
+            return;
+        };
+        match &self.state {
+            State::Done => {}
+            _ if !node.status.blank || !rig.is_sketch() => self.state = State::Done,
+            State::Waiting => {
+                let (sketches, open) = (sketches.clone(), PathBuf::from(&node.status.path));
+                let look = move || found(&sketches, &open);
+                self.state = State::Looking(BackgroundTask::start(context, "sketches", look));
+            }
+            State::Looking(task) => {
+                if let Poll::Ready(found) = task.poll() {
+                    self.state = match found.filter(|found| found.count > 0) {
+                        Some(found) => State::Shown(found),
+                        None => State::Done,
+                    };
+                }
+            }
+            State::Shown(_) => {}
+        }
+    }
+}
+
+fn list(ui: &mut Ui, found: &Found, pictures: &mut Pictures) -> Option<Choice> {
+    let mut chosen = None;
+    let now = SystemTime::now();
+    for sketch in &found.newest {
+        ui.horizontal(|ui| {
+            let (place, _) = ui.allocate_exact_size(PICTURE, Sense::hover());
+            pictures.draw(ui, place, &sketch.path);
+            let age = RichText::new(paths::age(sketch.changed, now))
+                .weak()
+                .small();
+            let button = Button::new(stem(sketch))
+                .right_text(age)
+                .truncate()
+                .min_size([ui.available_width(), 24.0].into());
+            if ui.add(button).clicked() {
+                chosen = Some(Choice::Open(sketch.path.clone()));
+            }
+        });
+    }
+    if found.count > found.newest.len() {
+        let words = tr!("All {count} sketches …", count = found.count);
+        if ui.button(words).clicked() {
+            chosen = Some(Choice::All);
+        }
+    }
+    ui.add_space(4.0);
+    ui.weak(tr!("Or begin a new one: paint, and this goes away."));
+    if !found.leaving.is_empty() {
+        ui.add_space(4.0);
+        let colour = crate::dialogs::dialog::wrong(ui.visuals());
+        let words = tr!(
+            "There are many. At the next start the oldest go, unless you save them under a name: {names}",
+            names = found.leaving.join(", ")
+        );
+        ui.label(RichText::new(words).color(colour));
+    }
+    chosen
+}
+
+#[cfg(test)]
+mod tests {
+    use egui_kittest::kittest::Queryable as _;
+    use maulstick_rig::sketches::MOST as STAY;
+    use maulstick_types::command::{Command, RigCommand};
+
+    use super::*;
+    use crate::test_support::overlay_bench::{until, window_of};
+    use crate::test_support::panel_bench;
+
+    /// A rig with a blank sketch on its easel, and so many others.
+    fn rig(sketches: &Sketches, others: usize) -> RigState {
+        let open = sketches.fresh("open").expect("free");
+        for number in 0..others {
+            let path = sketches.fresh(&format!("sketch {number:02}"));
+            std::fs::write(path.expect("free"), "").expect("written");
+        }
+        let mut rig = panel_bench::rig();
+        rig.sketches = Some(sketches.clone());
+        rig.paint.as_mut().expect("a node").status.path = open.display().to_string();
+        rig
+    }
+
+    #[test]
+    fn a_sketch_of_before_goes_on_with_a_click_and_the_first_paint_takes_the_offer_away() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let sketches = Sketches::in_folder(folder.path());
+        let rig = rig(&sketches, 2);
+        let window = || window_of([900.0, 700.0], rig.clone(), Default::default());
+        let mut harness = window();
+        until(&mut harness, |harness| {
+            harness.query_by_label_contains("sketch 01").is_some()
+        });
+        harness.get_by_label_contains("sketch 01").click();
+        harness.run_steps(3);
+        let asked = harness.state_mut().asked();
+        let opens = matches!(&asked[..], [(_, Command::Rig(RigCommand::Open { path, forget: false }))]
+            if path.ends_with("sketch 01.maul"));
+        assert!(opens, "{asked:?}");
+        assert!(harness.query_by_label_contains("sketch 01").is_none());
+
+        let mut harness = window();
+        until(&mut harness, |harness| {
+            harness.query_by_label_contains("sketch 01").is_some()
+        });
+        let node = harness.state_mut().rig.paint.as_mut();
+        node.expect("a node").status.blank = false;
+        harness.run_steps(3);
+        assert!(harness.query_by_label_contains("sketch 01").is_none());
+    }
+
+    #[test]
+    fn who_has_too_many_is_told_which_go_before_they_do() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let sketches = Sketches::in_folder(folder.path());
+        let mut harness = window_of([900.0, 700.0], rig(&sketches, STAY + 1), Default::default());
+        assert_eq!(sketches.told(), []);
+        until(&mut harness, |harness| {
+            harness
+                .query_by_label_contains("At the next start")
+                .is_some()
+        });
+        assert_eq!(sketches.told().len(), 1);
+    }
+}
