@@ -26,7 +26,8 @@ impl App {
         let told = (&mut self.rig, &mut self.notifications);
         self.session_processes.turn(context, orders, told);
         // The mouse's samples until then are sent, and those of others heard.
-        let asked_ns = self.rig.now_ns.max(self.tracker.heard_until_ns());
+        let heard_ns = self.tracker.heard_until_ns().min(now_ns);
+        let asked_ns = self.rig.now_ns.max(heard_ns);
         for follow_up in self.requests.take_follow_ups() {
             self.barrier.push_follow_up(follow_up);
         }
