@@ -25,8 +25,9 @@ impl App {
         let orders = self.requests.take_session_orders();
         let told = (&mut self.rig, &mut self.notifications);
         self.session_processes.turn(context, orders, told);
-        // The mouse's samples until then are sent.
-        let asked_ns = self.rig.now_ns;
+        // The mouse's samples until then are sent, and those of others heard.
+        let heard_ns = self.tracker.heard_until_ns().min(now_ns);
+        let asked_ns = self.rig.now_ns.max(heard_ns);
         for follow_up in self.requests.take_follow_ups() {
             self.barrier.push_follow_up(follow_up);
         }

@@ -275,6 +275,14 @@ impl BrushTracker {
         others.into_iter().any(|(_, heard)| heard.sample.in_range)
     }
 
+    /// Time of the newest sample, rig clock, ns; 0 before the first.
+    #[must_use]
+    pub fn heard_until_ns(&self) -> u64 {
+        self.recent
+            .front()
+            .map_or(0, |((_, event_ns), _)| *event_ns)
+    }
+
     /// The newest sample of each device received within the last second.
     pub fn newest(&self, now_ns: u64) -> impl Iterator<Item = SampleNumber> {
         let is_new = move |heard: &Heard| now_ns < heard.arrived_ns.saturating_add(SILENCE_NS);
