@@ -20,6 +20,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use maulstick_rig::UserError;
+use maulstick_rig::files::create_private;
 use maulstick_streams::Traffic;
 use maulstick_streams::topic_pattern::matches;
 
@@ -141,7 +142,7 @@ pub(crate) fn record(
         if breaks_off || goes_on {
             let next = ring.next().to_owned();
             finish(part, &mut state, listener, voice, Some(&next))?;
-            part = begin(&next, |path| std::fs::File::create_new(path), listener)?;
+            part = begin(&next, create_private, listener)?;
             let file = part.path();
             voice.say(&match breaks_off {
                 true => RecorderNews::BreaksOff { file },
