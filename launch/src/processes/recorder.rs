@@ -1,9 +1,9 @@
 //! The process that records each run of a rig.
 
-use std::fs::File;
 use std::time::Duration;
 
 use maulstick_rig::UserError;
+use maulstick_rig::files::create_private;
 use nix::sys::signal::Signal;
 
 use super::{NodeOptions, RECORDER};
@@ -50,9 +50,7 @@ pub(super) fn run(options: &RecorderOptions) -> Result<i32, UserError> {
     let ring = Ring::dated(folder, rig, &jiff::Zoned::now(), settings.division)?;
     let mut listener = Listener::over(member, ALL)?;
     listener.member.ready()?;
-    record_files(&settings, &mut listener, ring, |path| {
-        File::create_new(path)
-    })?;
+    record_files(&settings, &mut listener, ring, create_private)?;
     listener.member.leave();
     Ok(0)
 }

@@ -5,16 +5,19 @@
 //! | [`kind`] | kinds of files by their first bytes; which file may be written over |
 //! | [`free`] | names that are not taken |
 //! | [`open`] | databases that this process has open, by device and inode |
+//! | [`private`] | files that their user alone may read |
 //! | [`whole`] | files that are whole under their name, or not there at all |
 
 pub mod free;
 pub mod kind;
 pub mod open;
+pub mod private;
 pub mod whole;
 
 pub use free::first_free;
 pub use kind::{Kind, allow_overwriting, gives_way, is_companion, is_painting};
 pub use open::{FileId, OpenDatabase, read_head};
+pub use private::{create_private, open_private};
 pub use whole::{
     Unfinished, check_folder, check_writable, clear_on_signals, write_folder, write_whole,
     write_whole_at,

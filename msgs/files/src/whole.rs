@@ -10,6 +10,7 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
 use crate::kind::{Kind, destination};
+use crate::private::create;
 
 /// Files that are being written and have not their name yet.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -85,7 +86,7 @@ pub fn write_whole(
     fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), Error>,
 ) -> Result<(), Error> {
     write_whole_at(path, kind, |beside| {
-        let mut file = BufWriter::new(File::create(beside)?);
+        let mut file = BufWriter::new(create(beside, kind)?);
         fill(&mut file)?;
         file.flush()?;
         file.get_ref().sync_all()

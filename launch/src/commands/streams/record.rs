@@ -1,13 +1,13 @@
 //! `maulstick record`: the streams of a running rig into a file, by a process of its own that no node waits for.
 
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::{File, TryLockError};
 use std::io::{Error, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
 use maulstick_rig::UserError;
-use maulstick_rig::files::Kind;
+use maulstick_rig::files::{Kind, open_private};
 
 use super::listener::Listener;
 use super::recorder::{Division, LEAST_LAST, RecorderSettings, Ring, Voice, record};
@@ -96,12 +96,7 @@ pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
 
 /// Opens a file to be written anew, once no other program records into it.
 fn begin_anew(path: &Path) -> std::io::Result<File> {
-    let mut options = OpenOptions::new();
-    let file = options
-        .write(true)
-        .create(true)
-        .truncate(false)
-        .open(path)?;
+    let file = open_private(path)?;
     file.try_lock().map_err(|error| match error {
         TryLockError::WouldBlock => {
             Error::new(ErrorKind::ResourceBusy, "another program records into it")

@@ -18,6 +18,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use maulstick_rig::UserError;
+use maulstick_rig::files::create_private;
 use maulstick_streams::Traffic;
 use maulstick_streams::topic_pattern::matches;
 
@@ -142,11 +143,7 @@ pub(crate) fn record(
         // A copy belongs to the file at whose beginning it was asked for.
         if is_full && !copy.as_ref().is_some_and(PaintingCopy::is_made) {
             finish(part, &mut state, listener, voice)?;
-            part = begin(
-                ring.next(),
-                |path| std::fs::File::create_new(path),
-                listener,
-            )?;
+            part = begin(ring.next(), create_private, listener)?;
             voice.say(&RecorderNews::GoesOn { file: part.path() })?;
             ring.trim()?;
             // What is sent rarely is in each file, from its beginning on.
