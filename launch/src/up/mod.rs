@@ -2,11 +2,13 @@
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | [`bar_terminal`] | the terminal of the bar while a take is played |
 //! | [`plan`] | which processes a rig has |
 //! | [`child`] | one process: started, watched, stopped |
 //! | [`supervisor`] | all of them: tokens, restarts, the table, the end |
 //! | [`conductor`] | a take that is played from its start to its picture |
 
+mod bar_terminal;
 pub mod child;
 pub mod conductor;
 pub mod plan;

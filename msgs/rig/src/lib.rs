@@ -9,12 +9,14 @@
 //! | [`files`] | files: whole under their name, of one's own kind, open here |
 //! | [`log`] | log lines |
 //! | [`node_handle`] | joining a rig, living in it, leaving it |
+//! | [`program`] | the program of this process, for those that it starts |
 //! | [`stop`] | the stop flag: a signal, or the launcher's end |
 
 pub mod command_client;
 pub mod config;
 pub mod log;
 pub mod node_handle;
+pub mod program;
 pub mod size;
 pub mod stop;
 pub mod user_devices;
