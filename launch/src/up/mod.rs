@@ -82,6 +82,9 @@ pub struct UpOptions {
     snapshot: Option<PathBuf>,
     #[command(flatten)]
     painting: PaintingOptions,
+    /// Let a device load this vendor's library, outside of the folders of the system; may be given several times
+    #[arg(long, value_name = "PATH")]
+    allow_library: Vec<PathBuf>,
     /// Print the default settings, with comments, and exit
     #[arg(long)]
     print_config: bool,
@@ -134,6 +137,9 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
     };
     if let Some(name) = &options.name {
         config.rig.name.clone_from(name);
+    }
+    for library in &options.allow_library {
+        config.allowed_libraries.push(absolute(library)?);
     }
     if let Some(file) = &options.file {
         config.paint.document = Some(absolute(file)?);
