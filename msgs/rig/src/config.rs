@@ -388,7 +388,7 @@ mod tests {
             text.contains("no node called 'piant'") && text.contains("did you mean 'paint'"),
             "{text}"
         );
-        assert!(text.contains("rig.toml:88"), "{text}");
+        assert!(text.contains("rig.toml:89"), "{text}");
         let text = error("[node.paint]", "[node.brush-mian]");
         assert!(text.contains("did you mean 'brush-main'"), "{text}");
         for node in ["brush", "brush-main", "ui", "player", "recorder", "phantom"] {
@@ -397,10 +397,10 @@ mod tests {
         }
         let text = error("profile = \"srgb\"", "profile = \"sgrb\"");
         assert!(text.contains("'srgb'") && text.contains("ICC"), "{text}");
-        assert!(text.contains("rig.toml:78"), "{text}");
+        assert!(text.contains("rig.toml:79"), "{text}");
         let text = error("gamut = \"soft\"", "gamut = \"sfot\"");
         assert!(
-            text.contains("did you mean 'soft'") && text.contains("rig.toml:79"),
+            text.contains("did you mean 'soft'") && text.contains("rig.toml:80"),
             "{text}"
         );
     }

@@ -2,6 +2,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | [`asker`] | who asks for something |
 //! | [`command_client`] | commands to a node, repeated until answered |
 //! | [`config`] | the settings of a rig |
 //! | [`user_devices`] | the devices of a user, for any rig |
@@ -12,6 +13,7 @@
 //! | [`program`] | the program of this process, for those that it starts |
 //! | [`stop`] | the stop flag: a signal, or the launcher's end |
 
+pub mod asker;
 pub mod command_client;
 pub mod config;
 pub mod log;
@@ -22,6 +24,7 @@ pub mod stop;
 pub mod user_devices;
 pub mod user_error;
 
+pub use asker::asker;
 pub use config::RigConfig;
 pub use maulstick_files as files;
 pub use node_handle::{NodeArgs, NodeHandle};

@@ -5,11 +5,13 @@
 //! | [`session`] | a session is painted again |
 //! | [`streams`] | messages of chosen topics are sent again |
 //! | [`driven`] | the device whose hand feels it |
+//! | [`consent`] | its consent |
 //! | [`guide`], [`traced`] | its strokes guide a hand that paints |
 //! | [`place`] | a take elsewhere on the desk |
 //! | [`transport`], [`orders`] | pause, seek, step, rate |
 //! | [`events`] | what is to come |
 
+mod consent;
 mod driven;
 mod events;
 mod guide;

@@ -61,6 +61,11 @@ pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
             "take it out: this device gives no force",
         ),
         (
+            "driven_by",
+            !device.driven_by.is_empty() && device.is_hid(),
+            "take it out: this device gives no force",
+        ),
+        (
             "relief",
             device.relief != usual.relief && device.is_hid(),
             "take it out: this device gives no force",

@@ -94,6 +94,9 @@ pub struct DeviceSection {
     /// A take that a simulated hand follows, feeling the canvas.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hand: Option<PathBuf>,
+    /// Names of programs beside the brush whose contact models, forces of paint and guides move the hand.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub driven_by: Vec<String>,
 }
 
 impl DeviceSection {
@@ -120,6 +123,7 @@ impl DeviceSection {
             pressure_curve: straight(),
             switches: None,
             hand: None,
+            driven_by: Vec::new(),
         }
     }
 
