@@ -6,7 +6,7 @@ use std::any::Any;
 use std::fmt::{self, Debug};
 use std::fs::File;
 use std::io::{self, ErrorKind, IsTerminal as _, Write};
-use std::os::fd::AsFd as _;
+use std::os::fd::AsFd;
 use std::panic::{Location, PanicHookInfo};
 use std::sync::OnceLock;
 use std::time::Duration;
@@ -23,6 +23,9 @@ use lossy_writer::LossyWriter;
 
 /// Time that the last lines of a process have; a node has not much more to end in.
 const LAST_WORDS: Duration = Duration::from_millis(200);
+
+/// Time that they have on a busy machine, while the standard error is read.
+const BUSY: Duration = Duration::from_secs(2);
 
 /// The log of this process, if it has one.
 static LOG: OnceLock<LossyWriter> = OnceLock::new();
@@ -60,9 +63,23 @@ pub fn show(display: &str) {
 
 /// Gives what was said a short time to be written: for a process that ends.
 pub fn flush() {
-    if let Some(log) = LOG.get() {
-        log.flush_within(LAST_WORDS);
+    if let Some(log) = LOG.get()
+        && !log.flush_within(LAST_WORDS)
+        && has_room(&io::stderr())
+    {
+        log.flush_within(BUSY);
     }
+}
+
+/// True if bytes could be written at once: a terminal that stands still, or a full pipe, has no room.
+fn has_room(to: &impl AsFd) -> bool {
+    let mut ready = [PollFd::new(to.as_fd(), PollFlags::POLLOUT)];
+    let polled = poll(&mut ready, PollTimeout::ZERO);
+    let is_ready = |fd: &PollFd<'_>| {
+        fd.revents()
+            .is_some_and(|events| events.contains(PollFlags::POLLOUT))
+    };
+    polled.is_ok() && ready.iter().any(is_ready)
 }
 
 /// Says a panic as the standard library does, but waits for no reader, except a while in the thread that ends the process.
@@ -161,6 +178,8 @@ mod tests {
     use std::io::Write;
     use std::sync::{Arc, Mutex, PoisonError};
 
+    use nix::fcntl::OFlag;
+
     use super::*;
 
     #[derive(Clone, Default)]
@@ -194,6 +213,15 @@ mod tests {
         let first = " WARN x\\n INFO the painting is saved\\u{1b}[2J: is refused\n";
         assert!(said.starts_with(first), "{said}");
         assert!(!said.contains('\u{1b}'));
+    }
+
+    #[test]
+    fn a_full_pipe_has_no_room() {
+        let (_read, write) = nix::unistd::pipe2(OFlag::O_NONBLOCK).expect("a pipe");
+        let write = File::from(write);
+        assert!(has_room(&write));
+        while (&write).write(&[b'.'; 512]).is_ok() {}
+        assert!(!has_room(&write));
     }
 
     #[test]
