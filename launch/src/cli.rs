@@ -6,6 +6,7 @@ use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use maulstick_rig::UserError;
 use maulstick_rig::files::{allow_overwriting, clear_on_signals};
 use maulstick_types::edits::commands;
+use nix::sys::prctl::set_name;
 
 use crate::advice;
 use crate::commands::measure::Measure;
@@ -184,6 +185,8 @@ pub fn run() -> Result<i32, UserError> {
     if overwrite {
         allow_overwriting();
     }
+    // What a window starts is called after the link in /proc that leads to its program.
+    set_name(c"maulstick").ok();
     // A rig ends its processes first, a node its work, a fitting its device.
     let handles_signals = match &command {
         Command::Up(_) | Command::Node(_) => true,

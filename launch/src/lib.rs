@@ -54,17 +54,20 @@ pub use setup::{
 };
 
 use maulstick_rig::UserError;
+use maulstick_rig::log::{flush, say};
 
 /// Exit code after Ctrl-C.
 pub const EXIT_INTERRUPTED: i32 = 130;
 
 /// Ends the process: with a fault as the user sees it, or with a code.
 pub fn finish(result: Result<i32, UserError>) -> ! {
-    match result {
-        Ok(code) => std::process::exit(code),
+    let code = match result {
+        Ok(code) => code,
         Err(fault) => {
-            eprintln!("{fault}");
-            std::process::exit(fault.code);
+            say(&format!("{fault}\n"));
+            fault.code
         }
-    }
+    };
+    flush();
+    std::process::exit(code)
 }

@@ -208,7 +208,7 @@ fn devices_that_are_not_there_are_told_once_and_the_rig_goes_on_with_the_others(
                 "phantom",
                 "main",
                 9,
-                "driver = \"openhaptics\"\nlibrary = \"nowhere/libHD.so\"\n",
+                "driver = \"openhaptics\"\nlibrary = \"/nowhere/libHD.so\"\n",
             ),
             (
                 "wooden",

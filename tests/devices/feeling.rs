@@ -11,7 +11,7 @@ use maulstick_bus::{Bus as _, Qos};
 use maulstick_haptics::Limits;
 use maulstick_types::haptics::{ContactModel, FluidForce, ForceLaw};
 use maulstick_types::stylus::{StylusSample, StylusStatus};
-use maulstick_types::{Origin, Pose};
+use maulstick_types::{Origin, Pose, name_hash};
 use nix::sys::signal::Signal;
 use support::{Launcher, PATIENCE, Place, drain, hear, listen, pressed, signal, wait_for};
 
@@ -86,10 +86,11 @@ fn whichever_of_brush_and_paint_dies_the_force_fades_without_a_leap_and_comes_ba
     bus.close();
 }
 
-/// The largest force of a device in four seconds of samples, N, and whether it leaped.
-fn strongest(samples: &mut Receiver<StylusSample>) -> (f64, bool) {
+/// The largest force of a device in four seconds of samples, N, and whether it leaped. `meanwhile` is done over and over.
+fn strongest(samples: &mut Receiver<StylusSample>, mut meanwhile: impl FnMut()) -> (f64, bool) {
     let (mut first_ns, mut last, mut most, mut leaped) = (None, None, 0.0f64, false);
     let ended = wait_for(PATIENCE, || {
+        meanwhile();
         while let Some(received) = samples.try_recv() {
             let (event_ns, force_n) = (received.header.event_ns, received.message.force_n);
             most = most.max(size(&received.message));
@@ -120,7 +121,7 @@ fn recorded_models_drive_a_device_by_the_rules_of_its_servo() {
     let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Qos::RealTime);
     let felt = |sample: &StylusSample| size(sample) > 0.1;
     assert!(hear(&mut samples, felt).is_some(), "{}", launcher.said());
-    let (live, _) = strongest(&mut samples);
+    let (live, _) = strongest(&mut samples, || {});
     place.done(&[
         "record",
         "-o",
@@ -143,7 +144,7 @@ fn recorded_models_drive_a_device_by_the_rules_of_its_servo() {
     assert!(hear(&mut models, pushes).is_some(), "{}", player.said());
     drain(&mut samples);
     assert!(hear(&mut samples, felt).is_some(), "{}", player.said());
-    let (most, leaped) = strongest(&mut samples);
+    let (most, leaped) = strongest(&mut samples, || {});
     // The same hand presses; it is elsewhere in its stroke than when the models were recorded.
     assert!(
         most > 0.5 * live && most < 1.5 * live,
@@ -156,6 +157,71 @@ fn recorded_models_drive_a_device_by_the_rules_of_its_servo() {
         hear(&mut models, is_free).is_some(),
         "the live brush has it again"
     );
+    bus.close();
+}
+
+#[test]
+fn a_second_sender_neither_takes_the_wall_away_nor_kicks() {
+    let place = Place::new();
+    support::press_for_minutes(&place.path("press.mcap"));
+    let config = String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
+    let hand = config.replace("# hand = \"demo.mcap\"", "hand = \"press.mcap\"");
+    std::fs::write(place.path("rig.toml"), hand).expect("written");
+    let launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
+    let (bus, topics) = support::join(&place);
+    let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Qos::RealTime);
+    let status = topics.stylus_status("phantom");
+    let mut statuses = listen::<StylusStatus>(&bus, &status, Qos::Background);
+    let pressed = hear(&mut samples, |sample| size(sample) > 0.1);
+    assert!(pressed.is_some(), "no force: {}", launcher.said());
+    let (live, _) = strongest(&mut samples, || {});
+    let refused = hear(&mut statuses, |_| true).map(|status| status.refused_senders);
+    assert_eq!(
+        refused,
+        Some(0),
+        "the brush is refused: {}",
+        launcher.said()
+    );
+    let device = wait_for(PATIENCE, || {
+        samples.try_recv().map(|received| received.header.origin())
+    });
+    let device = device.expect("a sample");
+    let model = |law: ForceLaw, height_m: f64| ContactModel {
+        device: device.source,
+        device_epoch: device.epoch,
+        plane_point_m: [0.0, 0.0, height_m],
+        ..ContactModel::bare(law, 0.025)
+    };
+    let hard = ForceLaw::Rigid {
+        stiffness_n_m: 400.0,
+    };
+    // One by a name of its own and one in the place of the brush: no wall, and a wall above the hand.
+    let topic = topics.contact_model("phantom");
+    let mut others = [
+        (7, model(ForceLaw::None, 0.0)),
+        (name_hash("main"), model(hard, 0.05)),
+    ]
+    .map(|(source, model)| {
+        let me = Origin { source, epoch: 1 };
+        let sender = Sender::new(&bus, &topic, Qos::RealTime, me);
+        (sender.expect("a sender"), model)
+    });
+    let (most, leaped) = strongest(&mut samples, || {
+        for (sender, model) in &mut others {
+            let now_ns = bus.now_ns();
+            sender.send(now_ns, now_ns, model).expect("sent");
+        }
+    });
+    assert!(
+        most > 0.8 * live && most < 1.25 * live,
+        "{most} N, {live} N without them: {}",
+        launcher.said()
+    );
+    assert!(!leaped, "the force leaps");
+    let counted = hear(&mut statuses, |status| status.refused_senders > 100);
+    assert!(counted.is_some_and(|status| status.faults.is_empty()));
+    let told = launcher.said().matches(&topic).count();
+    assert_eq!(told, others.len(), "{}", launcher.said());
     bus.close();
 }
 
@@ -181,7 +247,9 @@ fn a_force_of_paint_is_felt_without_a_leap_and_one_that_pushes_is_dropped() {
     support::press_for_minutes(&place.path("press.mcap"));
     let config = String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
     let hand = config.replace("# hand = \"demo.mcap\"", "hand = \"press.mcap\"");
-    std::fs::write(place.path("rig.toml"), hand).expect("written");
+    let consents = hand.replace("# driven_by = [\"lesson\"]", "driven_by = [\"tester\"]");
+    assert_ne!(consents, hand);
+    std::fs::write(place.path("rig.toml"), consents).expect("written");
     let launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
     let (bus, topics) = support::join(&place);
     let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Qos::RealTime);
@@ -194,7 +262,7 @@ fn a_force_of_paint_is_felt_without_a_leap_and_one_that_pushes_is_dropped() {
     });
     let device = device.expect("a sample");
     let me = Origin {
-        source: 7,
+        source: name_hash("tester"),
         epoch: 1,
     };
     let topic = topics.fluid_force("phantom");

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use support::{
     Launcher, PATIENCE, Place, fault, has, press_for_minutes, printed, python, wait_for,
 };
-use tungstenite::{ClientRequestBuilder, Message, WebSocket};
+use tungstenite::{ClientRequestBuilder, Error, HandshakeError, Message, WebSocket};
 
 /// A rig that plays a take, 100 samples a second.
 fn playing(place: &Place) -> Launcher {
@@ -103,19 +103,35 @@ struct Viewer {
 }
 
 impl Viewer {
-    /// Connects once the bridge listens.
-    fn connect(port: u16) -> Self {
-        let stream = wait_for(PATIENCE, || TcpStream::connect(("127.0.0.1", port)).ok());
-        let stream = stream.expect("the bridge listens");
-        stream.set_read_timeout(Some(PATIENCE)).expect("set");
-        let address = format!("ws://127.0.0.1:{port}")
-            .parse()
-            .expect("an address");
-        let request = ClientRequestBuilder::new(address).with_sub_protocol("foxglove.sdk.v1");
-        let (socket, _) = tungstenite::client(request, stream).expect("connected");
+    /// Connects with the token of the bridge in a place, once it listens.
+    fn connect(place: &Place, port: u16) -> Self {
+        let token = wait_for(PATIENCE, || {
+            std::fs::read_to_string(place.path("maulstick/bridge-token")).ok()
+        });
+        let token = token.expect("a token");
+        let query = format!("/?token={}", token.trim());
+        let socket = Self::ask(port, &query, None).expect("admitted");
         Self {
             socket,
             channels: BTreeMap::new(),
+        }
+    }
+
+    /// Asks for a connection, as a page of an origin or as a program; the status of a refusal.
+    fn ask(port: u16, query: &str, origin: Option<&str>) -> Result<WebSocket<TcpStream>, u16> {
+        let stream = wait_for(PATIENCE, || TcpStream::connect(("127.0.0.1", port)).ok());
+        let stream = stream.expect("the bridge listens");
+        stream.set_read_timeout(Some(PATIENCE)).expect("set");
+        let address = format!("ws://127.0.0.1:{port}{query}");
+        let address = address.parse().expect("an address");
+        let mut request = ClientRequestBuilder::new(address).with_sub_protocol("foxglove.sdk.v1");
+        if let Some(origin) = origin {
+            request = request.with_header("Origin", origin);
+        }
+        match tungstenite::client(request, stream) {
+            Ok((socket, _)) => Ok(socket),
+            Err(HandshakeError::Failure(Error::Http(answer))) => Err(answer.status().as_u16()),
+            Err(other) => panic!("{other}"),
         }
     }
 
@@ -183,7 +199,13 @@ fn a_viewer_watches_a_rig_by_the_bridge() {
     let number = port.to_string();
     let bridge = ["bridge", "--port", &number, "--hz", "20"];
     let mut first = Launcher::start(place.maulstick(&bridge));
-    let mut viewer = Viewer::connect(port);
+    let mut viewer = Viewer::connect(&place, port);
+    // Neither other programs of the machine nor pages that the user looks at.
+    assert_eq!(Viewer::ask(port, "/", None).err(), Some(403));
+    let wrong = "/?token=00000000000000000000000000000000";
+    assert_eq!(Viewer::ask(port, wrong, None).err(), Some(403));
+    let page = Some("https://evil.example");
+    assert_eq!(Viewer::ask(port, "/", page).err(), Some(403));
     // The scene is sent rarely: a viewer has the one that is kept.
     viewer.subscribe("scene", 1);
     let (_, mut scene) = viewer.hear(1);
@@ -213,7 +235,7 @@ fn a_viewer_watches_a_rig_by_the_bridge() {
     first.signal(Signal::SIGINT);
     assert!(first.wait(PATIENCE).success(), "{}", first.said());
     let mut second = Launcher::start(place.maulstick(&bridge));
-    drop(Viewer::connect(port));
+    drop(Viewer::connect(&place, port));
     launcher.close(&place);
     second.wait(PATIENCE);
     has(&fault(&place, &bridge, 1), &["is running"]);

@@ -1,31 +1,34 @@
 //! The thread that talks to the rig: samples and status out, contact models and force orders in.
 
+mod orders;
+
 use std::time::Duration;
 
 use maulstick_bus::credit::Stamp;
-use maulstick_bus::typed::{Reader, Sender};
-use maulstick_bus::{CreditSender, Qos, Server};
+use maulstick_bus::typed::{Receiver, Sender};
+use maulstick_bus::{CreditSender, Qos, Queue};
 use maulstick_device::actions::{Action, Actions, Actor};
 use maulstick_device::device_missing::report_missing;
 use maulstick_device::registration::Registration;
 use maulstick_haptics::{Contact, Fluid, Guide, Limits, Recipient, ServoMemory, Switch};
 use maulstick_num::geometry::Rigid;
 use maulstick_rig::{NodeHandle, RigConfig, UserError};
-use maulstick_types::haptics::{
-    ContactModel, FluidForce, ForceOrder, ForceReply, ForceRequest, GuideModel,
-};
+use maulstick_types::Flags;
+use maulstick_types::brush::BrushConsumed;
+use maulstick_types::haptics::{ContactModel, FluidForce, GuideModel};
 use maulstick_types::node::NodeWork;
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus};
-use maulstick_types::{Flags, encode};
 
 use crate::device::mounted_device::MountedDevice;
 use crate::device::open::{HapticSettings, open};
 use crate::force_state_file::{ForceState, ForceStateFile};
 use crate::inlet::Inlet;
+use crate::senders::{Means, Senders};
 use crate::servo::channels::TickRecord;
 use crate::servo::force_control::ForceControl;
 use crate::servo::servo_loop::PreviousServo;
 use crate::servo::servo_thread::{BINS, Ended, ServoThread, bin};
+use orders::Orders;
 
 /// Time between two statuses, ns.
 const STATUS_PERIOD_NS: u64 = 100_000_000;
@@ -74,8 +77,10 @@ struct Daemon {
     models: Inlet<ContactModel, Contact>,
     guides: Inlet<GuideModel, Guide>,
     fluids: Inlet<FluidForce, Fluid>,
-    orders: Server,
-    reader: Reader,
+    /// What brushes have consumed of the samples.
+    consumed: Receiver<BrushConsumed>,
+    senders: Senders,
+    orders: Orders,
     control: ForceControl,
     status: Sender<StylusStatus>,
     info: Sender<StylusInfo>,
@@ -131,19 +136,34 @@ impl Daemon {
             samples,
             models: Inlet::new(
                 (bus, &topic),
+                Means::Contact,
                 Recipient::accepts,
                 move |model| Contact::with_relief(model, relief),
                 wake,
             )?,
-            guides: Inlet::new((bus, &guides), Recipient::accepts_guide, Guide::new, wake)?,
+            guides: Inlet::new(
+                (bus, &guides),
+                Means::Guide,
+                Recipient::accepts_guide,
+                Guide::new,
+                wake,
+            )?,
             fluids: Inlet::new(
                 (bus, &fluids),
+                Means::Paint,
                 Recipient::accepts_fluid,
                 move |force| Fluid::new(force, paint_drag),
                 wake,
             )?,
-            orders: bus.serve(&topics.force(&device.name), 16, &member.wake)?,
-            reader: Reader::default(),
+            consumed: Receiver::new(
+                bus,
+                &topics.brush_consumed(&device.brush),
+                Qos::Control,
+                Queue::Ring(64),
+                wake,
+            )?,
+            senders: Senders::new(&device.brush, &device.driven_by),
+            orders: Orders::new(bus.serve(&topics.force(&device.name), 16, wake)?),
             control: ForceControl {
                 switch: state.switch,
                 strength: state.strength,
@@ -181,7 +201,7 @@ impl Daemon {
             self.attempt(now_ns)?;
         }
         self.obey(now_ns);
-        self.deliver();
+        self.deliver(now_ns);
         while let Some(Ok(record)) = self.servo.as_mut().map(|servo| servo.ticks.pop()) {
             self.publish(&record, now_ns)?;
         }
@@ -315,53 +335,18 @@ impl Daemon {
         Ok(())
     }
 
-    /// Follows the force orders that have come, and answers each with the resulting state.
-    fn obey(&mut self, now_ns: u64) {
-        while let Some(request) = self.orders.try_recv() {
-            let read = self
-                .reader
-                .read::<ForceRequest>(&request.key, &request.bytes);
-            let Some((_, asked)) = read else { continue };
-            match asked.order {
-                ForceOrder::Off => self.control.switch = Switch::Off,
-                ForceOrder::On => self.control.switch = Switch::On,
-                ForceOrder::Strength { share } => self.control.strength = share_of(share),
-                ForceOrder::Guidance { share } => self.control.guidance = share_of(share),
-                ForceOrder::Rearm => {
-                    self.control.rearms += 1;
-                    self.told.faults.clear();
-                    self.latched = None;
-                }
-            }
-            self.tell_control();
-            if let Some(servo) = &mut self.servo {
-                servo.controls.write(self.control);
-            }
-            self.write_state();
-            let reply = ForceReply {
-                is_on: self.control.switch == Switch::On,
-                strength: self.control.strength,
-                fault: self.fault(),
-                guidance: self.control.guidance,
-            };
-            let me = self.samples.origin();
-            match encode(&me, Flags::NONE, 0, now_ns, now_ns, &reply) {
-                Ok(bytes) => {
-                    if let Err(error) = request.answer(bytes) {
-                        tracing::debug!("a client is gone: {error}");
-                    }
-                }
-                Err(error) => tracing::error!("an order cannot be answered: {error}"),
+    /// Hands the newest model, guide and force of paint to the servo.
+    fn deliver(&mut self, now_ns: u64) {
+        while let Some(received) = self.consumed.try_recv() {
+            let (me, consumed) = (self.recipient.device, &received.message);
+            if (consumed.device, consumed.device_epoch) == (me.source, me.epoch) {
+                self.senders.consumed_by(received.header.origin(), now_ns);
             }
         }
-    }
-
-    /// Hands the newest model, guide and force of paint to the servo.
-    fn deliver(&mut self) {
-        let (to, foreign) = (&self.recipient, &mut self.told.foreign_models);
-        let model = self.models.newest(to, foreign);
-        let guide = self.guides.newest(to, foreign);
-        let fluid = self.fluids.newest(to, foreign);
+        let (to, senders, told) = (&self.recipient, &mut self.senders, &mut self.told);
+        let model = self.models.newest(to, senders, told, now_ns);
+        let guide = self.guides.newest(to, senders, told, now_ns);
+        let fluid = self.fluids.newest(to, senders, told, now_ns);
         let Some(servo) = &mut self.servo else {
             return;
         };
@@ -468,9 +453,4 @@ impl Daemon {
             false => self.told.faults.join("; "),
         }
     }
-}
-
-/// A share from 0 to 1; NaN counts as 0.
-fn share_of(share: f64) -> f64 {
-    if share > 0.0 { share.min(1.0) } else { 0.0 }
 }

@@ -17,6 +17,7 @@ pub mod device;
 pub mod drivers;
 pub mod force_state_file;
 mod inlet;
+mod senders;
 pub mod servo;
 
 pub use device::driver::Driver;

@@ -1,8 +1,11 @@
 //! Force Dimension's arms: the driver as it is, over a libdhd of our own.
 
+use std::path::PathBuf;
+
 use glam::DVec3;
 use maulstick_haptic::device::driver::{Opened, Wrench};
 use maulstick_haptic::drivers::force_dimension::{library, open};
+use maulstick_haptic::drivers::vendor_library::allow_library;
 use maulstick_haptics::Switch;
 use maulstick_libdhd::{Call, Control, Script};
 use maulstick_num::geometry::rotation;
@@ -11,9 +14,15 @@ use maulstick_rig::config::DeviceSection;
 use maulstick_scripted::Script as _;
 use maulstick_types::stylus::axes;
 
+/// A library that lies in no folder of the system.
+fn trusted(path: PathBuf) -> PathBuf {
+    allow_library(&path);
+    path
+}
+
 fn section(address: Option<&str>) -> DeviceSection {
     DeviceSection {
-        library: Some(Script::path().expect("a path")),
+        library: Some(trusted(Script::path().expect("a path"))),
         address: address.map(str::to_owned),
         ..DeviceSection::new("arm", "forcedimension", "main")
     }
@@ -159,7 +168,7 @@ fn of_several_the_meant_one_is_opened_and_the_others_are_let_go() {
 #[test]
 fn another_library_is_told_apart() {
     let wrong = DeviceSection {
-        library: Some(maulstick_libhd::control::path().expect("a path")),
+        library: Some(trusted(maulstick_libhd::control::path().expect("a path"))),
         ..section(None)
     };
     let fault = open(&wrong).err().expect("refused").to_string();

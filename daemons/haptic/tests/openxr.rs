@@ -1,8 +1,11 @@
 //! A headset's controller: the driver as it is, over an OpenXR loader and runtime of our own.
 
+use std::path::PathBuf;
+
 use glam::{DQuat, DVec3};
 use maulstick_haptic::device::driver::{Driver, Opened, Reading, Wrench};
 use maulstick_haptic::drivers::openxr::{open, runtime};
+use maulstick_haptic::drivers::vendor_library::allow_library;
 use maulstick_libopenxr::{Call, Control, Script};
 use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
@@ -12,9 +15,15 @@ use maulstick_scripted::Script as _;
 const CANVAS: DVec3 = DVec3::new(0.0, -0.25, -0.45);
 const RIGHT: &str = "/user/hand/right";
 
+/// A library that lies in no folder of the system.
+fn trusted(path: PathBuf) -> PathBuf {
+    allow_library(&path);
+    path
+}
+
 fn section(address: Option<&str>) -> DeviceSection {
     DeviceSection {
-        library: Some(Script::path().expect("a path")),
+        library: Some(trusted(Script::path().expect("a path"))),
         address: address.map(str::to_owned),
         ..DeviceSection::new("hand", "openxr", "main")
     }
@@ -283,7 +292,7 @@ fn what_is_missing_is_said_with_what_to_do() {
     let other = open(&section(Some("both"))).err().expect("refused");
     assert!(told(other).contains("`left` or `right`"));
     let wrong = DeviceSection {
-        library: Some(maulstick_libhd::control::path().expect("a path")),
+        library: Some(trusted(maulstick_libhd::control::path().expect("a path"))),
         ..section(None)
     };
     let fault = open(&wrong).err().expect("refused").to_string();

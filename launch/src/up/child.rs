@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 
 use maulstick_rig::UserError;
 use maulstick_rig::config::Restart;
+use maulstick_rig::program::own_program;
 use nix::sys::signal::{Signal, killpg};
 use nix::unistd::Pid;
 
@@ -113,9 +114,10 @@ impl Node {
         let program = self.spec.program;
         let failed = |error: std::io::Error| {
             let what = format!("node '{}' cannot be started: {error}", self.spec.name);
-            UserError::failure(what).help("is the program still installed? start the rig anew")
+            UserError::failure(what)
+                .help("the machine may be out of memory or processes: end what is not needed")
         };
-        let mut child = Command::new(std::env::current_exe().map_err(failed)?)
+        let mut child = Command::new(own_program())
             .arg0(program.process_name())
             .args(["node", program.subcommand(), "--folder"])
             .arg(folder)

@@ -2,11 +2,13 @@
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | [`bar_terminal`] | the terminal of the bar while a take is played |
 //! | [`plan`] | which processes a rig has |
 //! | [`child`] | one process: started, watched, stopped |
 //! | [`supervisor`] | all of them: tokens, restarts, the table, the end |
 //! | [`conductor`] | a take that is played from its start to its picture |
 
+mod bar_terminal;
 pub mod child;
 pub mod conductor;
 pub mod plan;
@@ -83,6 +85,9 @@ pub struct UpOptions {
     /// Begin a canvas of so small or so many cells that painting on it is slow
     #[arg(long)]
     slow: bool,
+    /// Let a device load this vendor's library, outside of the folders of the system; may be given several times
+    #[arg(long, value_name = "PATH")]
+    allow_library: Vec<PathBuf>,
     /// Print the default settings, with comments, and exit
     #[arg(long)]
     print_config: bool,
@@ -135,6 +140,9 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
     };
     if let Some(name) = &options.name {
         config.rig.name.clone_from(name);
+    }
+    for library in &options.allow_library {
+        config.allowed_libraries.push(absolute(library)?);
     }
     if let Some(file) = &options.file {
         config.paint.document = Some(absolute(file)?);

@@ -69,11 +69,16 @@ pub fn node(
 /// The daemon of a device.
 #[must_use]
 pub fn device(config: &RigConfig, device: &DeviceSection) -> NodeSpec {
-    let args = vec!["--device".to_owned(), device.name.clone()];
+    let mut args = vec!["--device".to_owned(), device.name.clone()];
     let program = match device.is_hid() {
         true => Program::Hid,
         false => Program::Haptic,
     };
+    if program == Program::Haptic {
+        for library in &config.allowed_libraries {
+            args.extend(["--allow-library".to_owned(), library.display().to_string()]);
+        }
+    }
     node(config, &device.name, Role::Device, program, args)
 }
 
@@ -121,4 +126,24 @@ pub fn nodes(config: &RigConfig, window: Window, hands: Hands) -> Vec<NodeSpec> 
         nodes.push(node(config, "ui", Role::Window, Program::Ui, Vec::new()));
     }
     nodes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_user_trusts_is_told_to_devices_with_force_alone() {
+        let mut config = RigConfig::default();
+        let arm = DeviceSection::new("arm", "openhaptics", "main");
+        let trusts = |config: &RigConfig, section: &DeviceSection| {
+            let args = device(config, section).args;
+            args.windows(2)
+                .any(|pair| pair == ["--allow-library", "/home/me/libHD.so"])
+        };
+        assert!(!trusts(&config, &arm));
+        config.allowed_libraries.push("/home/me/libHD.so".into());
+        assert!(trusts(&config, &arm));
+        assert!(!trusts(&config, &DeviceSection::new("pen", "pen", "main")));
+    }
 }

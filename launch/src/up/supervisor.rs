@@ -16,6 +16,7 @@ use std::time::{Duration, Instant};
 use indicatif::ProgressBar;
 use maulstick_bus::sockets::SocketKeeper;
 use maulstick_bus::{Bus, Dial, RigClock, RigFolder, Subscription, Wake, ZenohBus};
+use maulstick_rig::log::say;
 use maulstick_rig::node_handle::{CONFIG_FILE, HUB};
 use maulstick_rig::user_error::EXIT_FAILURE;
 use maulstick_rig::{RigConfig, Sketches, Stop, UserError};
@@ -24,11 +25,13 @@ use maulstick_types::wire::topics::Topics;
 
 use crate::EXIT_INTERRUPTED;
 use crate::commands::progress_bar;
+use crate::up::bar_terminal::BarTerminal;
 use crate::up::child::{Ended, Failures, Node, State};
 use crate::up::conductor::{Conductor, Performance};
 use crate::up::plan::{NodeSpec, Role};
 use folder::FolderWatch;
 use orders::Orders;
+use starts::FailedStarts;
 use switch::Switch;
 use turns::Turns;
 use watchdog::Watchdog;
@@ -52,6 +55,7 @@ pub struct Supervisor {
     tokens: Subscription,
     nodes: Vec<Node>,
     failures: Failures,
+    failed_starts: FailedStarts,
     due: Vec<(String, Instant)>,
     started: Vec<(String, Instant)>,
     conductor: Option<Conductor>,
@@ -129,6 +133,7 @@ impl Supervisor {
             stop,
             tokens,
             failures: Failures::default(),
+            failed_starts: FailedStarts::default(),
             due: Vec::new(),
             started: Vec::new(),
             conductor,
@@ -144,7 +149,7 @@ impl Supervisor {
             sketches: None,
         };
         for place in 0..supervisor.nodes.len() {
-            supervisor.start_node(place)?;
+            supervisor.try_start(place)?;
         }
         Ok(supervisor)
     }
@@ -156,10 +161,17 @@ impl Supervisor {
         self
     }
 
+    /// Starts a node, now or when the system allows it.
     fn start_node(&mut self, place: usize) -> Result<(), UserError> {
+        self.try_start(place)
+            .or_else(|fault| self.put_off(place, fault))
+    }
+
+    fn try_start(&mut self, place: usize) -> Result<(), UserError> {
         let node = &mut self.nodes[place];
         node.start(self.folder.path())?;
         let name = node.spec.name.clone();
+        self.failed_starts.forget(&name);
         self.started.retain(|(other, _)| *other != name);
         self.started.push((name, Instant::now()));
         Ok(())
@@ -390,43 +402,46 @@ impl Supervisor {
             return;
         }
         self.shown = true;
-        eprintln!(
-            "rig '{}' is up: {}",
-            self.folder.rig(),
-            self.folder.locator(HUB)
+        say(&self.table());
+        if let Some(conductor) = &self.conductor {
+            let bar = progress_bar(conductor.performance.length_ns);
+            bar.set_draw_target(BarTerminal::target());
+            self.bar = Some(bar.with_message("playing"));
+        }
+    }
+
+    /// The nodes, where the painting is, and how to end it.
+    fn table(&self) -> String {
+        let (rig, locator) = (self.folder.rig(), self.folder.locator(HUB));
+        let mut text = format!(
+            "rig '{rig}' is up: {locator}\n  {:<16} {:>8}  {:<10} program\n",
+            "node", "pid", "state"
         );
-        eprintln!("  {:<16} {:>8}  {:<10} program", "node", "pid", "state");
         for node in &self.nodes {
             let program = node.spec.program.process_name();
-            eprintln!(
-                "  {:<16} {:>8}  {:<10} {program}",
+            text += &format!(
+                "  {:<16} {:>8}  {:<10} {program}\n",
                 node.spec.name,
                 node.pid().unwrap_or(0),
                 node.state.word(),
             );
         }
-        match &self.conductor {
-            None => {
-                if let Some(record) = &self.config.record {
-                    eprintln!("recorded in {}", record.folder.display());
-                }
-                match &self.config.paint.document {
-                    Some(path) if self.sketch().is_some() => eprintln!(
-                        "sketch in {}: it is kept there until it gets a name",
-                        path.display()
-                    ),
-                    Some(path) => eprintln!("painting in {}", path.display()),
-                    None => eprintln!(
-                        "this painting is not kept: `maulstick up FILE.maul` keeps one in a file"
-                    ),
-                }
-                eprintln!("Ctrl-C stops it");
+        if self.conductor.is_none() {
+            if let Some(record) = &self.config.record {
+                text += &format!("recorded in {}\n", record.folder.display());
             }
-            Some(conductor) => {
-                let bar = progress_bar(conductor.performance.length_ns);
-                self.bar = Some(bar.with_message("playing"));
-            }
+            text += &match &self.config.paint.document {
+                Some(path) if self.sketch().is_some() => format!(
+                    "sketch in {}: it is kept there until it gets a name\n",
+                    path.display()
+                ),
+                Some(path) => format!("painting in {}\n", path.display()),
+                None => "this painting is not kept: `maulstick up FILE.maul` keeps one in a file\n"
+                    .to_owned(),
+            };
+            text += "Ctrl-C stops it\n";
         }
+        text
     }
 
     /// Starts the player when all others are ready; has the picture written at the take's end.

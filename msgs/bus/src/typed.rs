@@ -194,11 +194,22 @@ impl Reader {
 /// Largest number of streams that are remembered; beyond it the one that was silent for longest is forgotten.
 const STREAMS: usize = 64;
 
+/// Choice among several senders of a real-time stream.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Choice {
+    /// The one that started last is followed.
+    Newest,
+    /// Whoever reads the messages chooses.
+    Readers,
+}
+
 /// Receives one kind of message; of two senders of a real-time stream the one that started last.
 pub struct Receiver<M> {
     subscription: Subscription,
     reader: Reader,
     qos: Qos,
+    /// Who chooses among the senders of a real-time stream.
+    choice: Choice,
     /// By topic and source.
     streams: BTreeMap<(String, u32), Rivals>,
     /// Error of a message that decodes, if any.
@@ -222,9 +233,17 @@ impl<M: Message> Receiver<M> {
             subscription,
             reader: Reader::default(),
             qos,
+            choice: Choice::Newest,
             streams: BTreeMap::new(),
             fault: |_| None,
         })
+    }
+
+    /// Hands on the messages of all senders: whoever reads them chooses.
+    #[must_use]
+    pub fn of_all_senders(mut self) -> Self {
+        self.choice = Choice::Readers;
+        self
     }
 
     /// Drops messages that `fault` says something against.
@@ -263,7 +282,8 @@ impl<M: Message> Receiver<M> {
                     self.reader.refuse(&key, Reason::Fault(fault));
                     continue;
                 }
-                if self.qos == Qos::RealTime && !self.follows(&header, &key, arrived_ns) {
+                let chooses = self.qos == Qos::RealTime && self.choice == Choice::Newest;
+                if chooses && !self.follows(&header, &key, arrived_ns) {
                     continue;
                 }
                 return Some(Received {

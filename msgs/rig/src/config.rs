@@ -217,6 +217,10 @@ pub struct RigConfig {
     /// Nodes by name.
     #[serde(default)]
     pub node: BTreeMap<String, NodeSection>,
+    /// Libraries outside of the folders of the system that devices may load. No file of settings says so: the user does,
+    /// by `--allow-library`.
+    #[serde(skip)]
+    pub allowed_libraries: Vec<PathBuf>,
 }
 
 impl Default for RigConfig {
@@ -259,12 +263,6 @@ impl RigConfig {
             .iter_mut()
             .flat_map(|device| [&mut device.hand, &mut device.replay])
             .flatten()
-            .for_each(whole);
-        // A library's name alone is for the system to find.
-        self.device
-            .iter_mut()
-            .filter_map(|device| device.library.as_mut())
-            .filter(|library| library.components().count() > 1)
             .for_each(whole);
         let texts = [
             &mut self.light.illuminant,
@@ -390,7 +388,7 @@ mod tests {
             text.contains("no node called 'piant'") && text.contains("did you mean 'paint'"),
             "{text}"
         );
-        assert!(text.contains("rig.toml:88"), "{text}");
+        assert!(text.contains("rig.toml:89"), "{text}");
         let text = error("[node.paint]", "[node.brush-mian]");
         assert!(text.contains("did you mean 'brush-main'"), "{text}");
         for node in ["brush", "brush-main", "ui", "player", "recorder", "phantom"] {
@@ -399,10 +397,10 @@ mod tests {
         }
         let text = error("profile = \"srgb\"", "profile = \"sgrb\"");
         assert!(text.contains("'srgb'") && text.contains("ICC"), "{text}");
-        assert!(text.contains("rig.toml:78"), "{text}");
+        assert!(text.contains("rig.toml:79"), "{text}");
         let text = error("gamut = \"soft\"", "gamut = \"sfot\"");
         assert!(
-            text.contains("did you mean 'soft'") && text.contains("rig.toml:79"),
+            text.contains("did you mean 'soft'") && text.contains("rig.toml:80"),
             "{text}"
         );
     }
@@ -424,16 +422,14 @@ mod tests {
     }
 
     #[test]
-    fn a_library_lies_beside_the_settings_unless_it_is_a_name_alone() {
-        for (library, expected) in [
-            ("libHD.so.3.4", "libHD.so.3.4"),
-            ("vendor/libHD.so", "/rigs/vendor/libHD.so"),
-            ("/opt/libHD.so", "/opt/libHD.so"),
-        ] {
-            let mut config = RigConfig::default();
-            config.device[0].library = Some(library.into());
-            config.resolve(Path::new("/rigs"));
-            assert_eq!(config.device[0].library, Some(PathBuf::from(expected)));
-        }
+    fn no_file_says_which_libraries_are_trusted() {
+        let trusting = format!("allowed_libraries = [\"/tmp/a.so\"]\n{DEFAULT}");
+        assert!(RigConfig::parse(&trusting, "rig.toml").is_err());
+        let mut config = RigConfig::default();
+        config.allowed_libraries.push("/tmp/a.so".into());
+        assert!(!config.to_toml().expect("text").contains("a.so"));
+        let arm = DeviceSection::new("arm", "polhem", "main");
+        let with = config.with_device(arm).expect("it fits");
+        assert_eq!(with.allowed_libraries, config.allowed_libraries);
     }
 }

@@ -1,25 +1,148 @@
-//! The log of a process: one line an event, whatever the texts in it hold.
+//! The log of a process: one line an event, whatever the texts in it hold. Nobody waits until it is read.
 
+mod lossy_writer;
+
+use std::any::Any;
 use std::fmt::{self, Debug};
-use std::io::IsTerminal as _;
+use std::fs::File;
+use std::io::{self, ErrorKind, IsTerminal as _, Write};
+use std::os::fd::AsFd;
+use std::panic::{Location, PanicHookInfo};
+use std::sync::OnceLock;
+use std::time::Duration;
 
 use maulstick_bus::reason::reason;
 use maulstick_types::plain;
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use tracing::field::Field;
 use tracing_subscriber::EnvFilter;
 use tracing_subscriber::field::MakeExt as _;
 use tracing_subscriber::fmt::format::{FormatFields, Writer, debug_fn};
 use tracing_subscriber::fmt::{MakeWriter, SubscriberBuilder};
 
-/// Sends log lines of `level` and above to the standard error; of the libraries only what a painter
-/// can do something about.
+use lossy_writer::LossyWriter;
+
+/// Time that the last lines of a process have; a node has not much more to end in.
+const LAST_WORDS: Duration = Duration::from_millis(200);
+
+/// Time that they have on a busy machine, while the standard error is read.
+const BUSY: Duration = Duration::from_secs(2);
+
+/// The log of this process, if it has one.
+static LOG: OnceLock<LossyWriter> = OnceLock::new();
+
+/// Sends log lines of `level` and above to the standard error, by a thread of their own; of the libraries only what a
+/// painter can do something about. Panics are said there, too.
 pub fn log_to_stderr(level: &str) {
     let quiet = "zenoh=error,zenoh::api::session=off,zenoh_transport=off,zenoh_shm=off,zenoh_link=off,\
                  wgpu=error,wgpu_core=error,wgpu_hal=error,winit=error,egui_winit=error,egui_wgpu=error,eframe=error,naga=error";
-    lines(std::io::stderr, std::io::stderr().is_terminal())
+    let Ok(log) = own_stderr().and_then(LossyWriter::start) else {
+        return;
+    };
+    let log = LOG.get_or_init(|| log);
+    lines(log.clone(), io::stderr().is_terminal())
         .with_env_filter(EnvFilter::new(format!("{quiet},{level}")))
         .try_init()
         .ok();
+    std::panic::set_hook(Box::new(say_panic));
+}
+
+/// Says text that ends lines, beside the log lines; where this process has no log, on the standard error.
+pub fn say(text: &str) {
+    match LOG.get() {
+        Some(log) => log.push(text.as_bytes()),
+        None => io::stderr().write_all(text.as_bytes()).unwrap_or_default(),
+    }
+}
+
+/// Shows a passing display on the standard error, unless something waits to be said.
+pub fn show(display: &str) {
+    if let Some(log) = LOG.get() {
+        log.show(display.as_bytes());
+    }
+}
+
+/// Gives what was said a short time to be written: for a process that ends.
+pub fn flush() {
+    if let Some(log) = LOG.get()
+        && !log.flush_within(LAST_WORDS)
+        && has_room(&io::stderr())
+    {
+        log.flush_within(BUSY);
+    }
+}
+
+/// True if bytes could be written at once: a terminal that stands still, or a full pipe, has no room.
+fn has_room(to: &impl AsFd) -> bool {
+    let mut ready = [PollFd::new(to.as_fd(), PollFlags::POLLOUT)];
+    let polled = poll(&mut ready, PollTimeout::ZERO);
+    let is_ready = |fd: &PollFd<'_>| {
+        fd.revents()
+            .is_some_and(|events| events.contains(PollFlags::POLLOUT))
+    };
+    polled.is_ok() && ready.iter().any(is_ready)
+}
+
+/// Says a panic as the standard library does, but waits for no reader, except a while in the thread that ends the process.
+fn say_panic(panic: &PanicHookInfo<'_>) {
+    let thread = std::thread::current();
+    let name = thread.name().unwrap_or("<unnamed>");
+    let place = panic.location().map_or_else(String::new, place);
+    let what = plain(words(panic.payload()));
+    say(&format!("thread '{name}' panicked at {place}: {what}\n"));
+    if name == "main" {
+        flush();
+    }
+}
+
+/// Message of a panic.
+fn words(payload: &(dyn Any + Send)) -> &str {
+    match (
+        payload.downcast_ref::<&str>(),
+        payload.downcast_ref::<String>(),
+    ) {
+        (Some(words), _) => words,
+        (None, Some(words)) => words,
+        (None, None) => "",
+    }
+}
+
+/// A place in the source, without the folders of the machine that built it.
+fn place(at: &Location<'_>) -> String {
+    let file = at.file();
+    let known = ["/registry/src/", "/rustc/"];
+    let short = known.iter().find_map(|mark| {
+        let (_, rest) = file.split_once(mark)?;
+        rest.split_once('/').map(|(_, rest)| rest)
+    });
+    format!("{}:{}", short.unwrap_or(file), at.line())
+}
+
+/// The standard error of this process, beside the one of the standard library: that is locked while it is written to.
+fn own_stderr() -> io::Result<Stderr> {
+    let stderr = io::stderr().as_fd().try_clone_to_owned()?;
+    Ok(Stderr(stderr.into()))
+}
+
+/// Standard error that is waited for, even if another program has asked that nobody wait for it.
+struct Stderr(File);
+
+impl Write for Stderr {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        loop {
+            match self.0.write(bytes) {
+                Err(error) if error.kind() == ErrorKind::WouldBlock => {
+                    let mut ready = [PollFd::new(self.0.as_fd(), PollFlags::POLLOUT)];
+                    poll(&mut ready, PollTimeout::NONE)?;
+                }
+                written => return written,
+            }
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }
 
 /// Events as lines without time and place.
@@ -56,6 +179,8 @@ mod tests {
     use std::io::Write;
     use std::sync::{Arc, Mutex, PoisonError};
 
+    use nix::fcntl::OFlag;
+
     use super::*;
 
     #[derive(Clone, Default)]
@@ -89,5 +214,21 @@ mod tests {
         let first = " WARN x\\n INFO the painting is saved\\u{1b}[2J: is refused\n";
         assert!(said.starts_with(first), "{said}");
         assert!(!said.contains('\u{1b}'));
+    }
+
+    #[test]
+    fn a_full_pipe_has_no_room() {
+        let (_read, write) = nix::unistd::pipe2(OFlag::O_NONBLOCK).expect("a pipe");
+        let write = File::from(write);
+        assert!(has_room(&write));
+        while (&write).write(&[b'.'; 512]).is_ok() {}
+        assert!(!has_room(&write));
+    }
+
+    #[test]
+    fn a_panic_is_said_whatever_it_holds() {
+        let (text, string): (Box<dyn Any + Send>, Box<dyn Any + Send>) =
+            (Box::new("a"), Box::new("b".to_owned()));
+        assert_eq!([words(&*text), words(&*string), words(&1)], ["a", "b", ""]);
     }
 }

@@ -74,10 +74,8 @@ mod tests {
                     library = 'own/libHD.so'\n";
         let read = parse(text, path).expect("valid");
         assert_eq!((read.len(), read[0].brush.as_str()), (1, "second"));
-        assert_eq!(
-            read[0].library.as_deref(),
-            Some(Path::new("/home/me/own/libHD.so"))
-        );
+        // A rig refuses it: a library is found by a whole path or by its name.
+        assert_eq!(read[0].library.as_deref(), Some(Path::new("own/libHD.so")));
         assert_eq!(parse("", path), Ok(Vec::new()));
         let fault = parse("[canvas]\nwidth_mm = 3\n", path)
             .expect_err("no device")

@@ -203,14 +203,38 @@ wire_enum! {
             /// Share of the guides' force, 0 to 1.
             share: f64,
         },
+        /// Consent to another sender than the device's brush: for three seconds its contact models, forces of paint and
+        /// guides count. Who drives a hand for longer asks again in time.
+        Drive {
+            /// Source of its messages.
+            source: u32,
+            /// Their epoch.
+            epoch: u32,
+        },
     }
 }
 
 message! {
     /// Request to a device to change its force; asking again is safe.
-    pub struct ForceRequest [contract of hash 0xf795_6c2b, version 2, at most 256 bytes] {
+    pub struct ForceRequest [contract of hash 0xf795_6c2b, version 3, at most 256 bytes] {
         /// The change.
         pub order: ForceOrder,
+        /// Who asks, for the log: program, user, terminal; at most [`ForceRequest::ASKER_BYTES`] bytes.
+        pub asker: String,
+    }
+}
+
+impl ForceRequest {
+    /// Most bytes of the name of who asks.
+    pub const ASKER_BYTES: usize = 128;
+
+    /// A request of `asker`, whose name is cut where it is too long.
+    #[must_use]
+    pub fn by(asker: &str, order: ForceOrder) -> Self {
+        Self {
+            order,
+            asker: asker[..asker.floor_char_boundary(Self::ASKER_BYTES)].to_owned(),
+        }
     }
 }
 

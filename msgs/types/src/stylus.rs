@@ -105,6 +105,7 @@ impl StylusStatus {
             motor_temperature: 0.0,
             is_guided: false,
             guidance: 1.0,
+            refused_senders: 0,
         }
     }
 }
@@ -201,7 +202,7 @@ message! {
 
 message! {
     /// Status of a device, ten times a second.
-    pub struct StylusStatus [contract of hash 0x06b9_def3, version 3, at most 4096 bytes] {
+    pub struct StylusStatus [contract of hash 0x06b9_def3, version 4, at most 4096 bytes] {
         /// Samples published since the start.
         pub samples: u64,
         /// Samples that did not fit into the ring to the publisher.
@@ -236,6 +237,8 @@ message! {
         pub is_guided: bool,
         /// Share of the guides' force, 0 to 1.
         pub guidance: f64,
+        /// Messages that would move the hand, dropped because their sender is neither the device's brush nor has consent.
+        pub refused_senders: u64,
     }
 }
 

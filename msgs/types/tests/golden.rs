@@ -181,12 +181,21 @@ fn all() -> String {
             time_to_live_ns: 4,
             recovery_ns: 5,
         }),
-        line(&ForceRequest {
-            order: ForceOrder::Strength { share: 0.5 },
-        }),
-        line(&ForceRequest {
-            order: ForceOrder::Guidance { share: 0.5 },
-        }),
+        line(&ForceRequest::by(
+            "hand",
+            ForceOrder::Strength { share: 0.5 },
+        )),
+        line(&ForceRequest::by(
+            "hand",
+            ForceOrder::Guidance { share: 0.5 },
+        )),
+        line(&ForceRequest::by(
+            "hand",
+            ForceOrder::Drive {
+                source: 1,
+                epoch: 2,
+            },
+        )),
         line(&force_reply()),
         line(&BrushDef {
             brush: "main".into(),

@@ -1,7 +1,6 @@
 //! A `maulstick` command that runs beside the window and is read line by line.
 
 use std::io::{BufRead as _, BufReader, Read, Write as _};
-use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -33,12 +32,6 @@ pub(crate) struct ChildProcess {
     child: Child,
     lines: Receiver<String>,
     errors: Receiver<String>,
-}
-
-/// The program of this process.
-#[must_use]
-pub(crate) fn own_program() -> PathBuf {
-    std::env::current_exe().unwrap_or_else(|_| "maulstick".into())
 }
 
 impl ChildProcess {

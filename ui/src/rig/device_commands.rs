@@ -8,10 +8,11 @@ use std::time::SystemTime;
 
 use eframe::egui::Context;
 use maulstick_device::node_watch::NodeWatch;
+use maulstick_rig::program::{command, own_program};
 use serde::Deserialize;
 
 use crate::background_task::BackgroundTask;
-use crate::rig::child_process::{ChildProcess, Ended, Refused, complaint, own_program};
+use crate::rig::child_process::{ChildProcess, Ended, Refused, complaint};
 use crate::rig::device_listing::DeviceListing;
 use crate::rig::state::RigState;
 use crate::widgets::notifications::Notifications;
@@ -198,7 +199,7 @@ impl DeviceCommands {
     }
 
     fn command(&self, words: &[String], rig: &str) -> Command {
-        let mut command = Command::new(&self.program);
+        let mut command = command(&self.program);
         command.arg("device").args(words);
         if words.first().is_none_or(|word| word != "allow") {
             command.args(["--name", rig]);

@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::{ask, random_epoch};
 use maulstick_bus::{Bus, Qos, Wake};
-use maulstick_rig::UserError;
 use maulstick_rig::command_client::CommandClient;
+use maulstick_rig::{UserError, asker};
 use maulstick_types::command::{Command, FileCommand};
 use maulstick_types::edits::{Edit, Relight};
 use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
@@ -341,9 +341,7 @@ impl Worker {
                     epoch: random_epoch(),
                 };
                 let topic = self.topics.force(device);
-                let request = ForceRequest {
-                    order: order.clone(),
-                };
+                let request = ForceRequest::by(&asker("the window"), order.clone());
                 let reply: ForceReply =
                     ask(&*self.bus, &topic, Qos::Control, me, &request, ANSWER)?;
                 match reply.fault.is_empty() {

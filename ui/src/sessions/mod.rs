@@ -18,8 +18,8 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use eframe::egui::Context;
+use maulstick_rig::program::{command, own_program};
 
-use crate::rig::child_process::own_program;
 use crate::rig::state::RigState;
 use crate::sessions::player::{Player, TransportOrder};
 use crate::sessions::recorder::Recorder;
@@ -149,7 +149,7 @@ impl SessionProcesses {
     }
 
     fn command(&self, name: &str, rig: &RigState) -> Command {
-        let mut command = Command::new(&self.program);
+        let mut command = command(&self.program);
         command.args([name, "--name", &rig.rig]);
         command.stdin(Stdio::null());
         command

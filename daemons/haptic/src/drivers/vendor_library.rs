@@ -3,8 +3,77 @@
 #![allow(unsafe_code, reason = "a shared library runs its initialisers")]
 
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use maulstick_rig::UserError;
+use maulstick_rig::log::flush;
+
+/// Folders whose files the administrator of the system alone puts there.
+const SYSTEM: [&str; 7] = [
+    "/lib",
+    "/lib64",
+    "/usr/lib",
+    "/usr/lib64",
+    "/usr/local/lib",
+    "/usr/local/lib64",
+    "/opt",
+];
+
+/// Libraries in other folders that the user of this process lets it load.
+static ALLOWED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+/// Libraries of which it was said that they are loaded.
+static SAID: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Lets this process load a library that is in no folder of the system, as `--allow-library` asks: settings alone, which
+/// may be anybody's, do not.
+pub fn allow_library(path: &Path) {
+    let mut allowed = ALLOWED.lock().unwrap_or_else(PoisonError::into_inner);
+    allowed.push(path.to_owned());
+}
+
+/// Checks that a library may be loaded by the path that settings give.
+///
+/// # Errors
+/// A [`UserError`]: the path is relative, nothing is there, or it is in no folder of the system and not allowed.
+fn check(path: &Path) -> Result<(), UserError> {
+    let refused = |what: &str, help: String| {
+        Err(UserError::usage(what)
+            .at(path.display().to_string())
+            .help(help))
+    };
+    if !path.is_absolute() {
+        let help = "give the whole path from the root, or its name alone, which the system finds";
+        return refused("the path of a library is relative", help.to_owned());
+    }
+    let Ok(real) = path.canonicalize() else {
+        let help = "correct `library` in rig.toml, or leave it out";
+        return refused("there is no such library", help.to_owned());
+    };
+    let allowed = ALLOWED.lock().unwrap_or_else(PoisonError::into_inner);
+    let is_allowed = allowed
+        .iter()
+        .any(|own| own == path || own.canonicalize().is_ok_and(|own| own == real));
+    match is_allowed || SYSTEM.iter().any(|folder| real.starts_with(folder)) {
+        true => Ok(()),
+        false => refused(
+            "a library outside of the folders of the system is not loaded unasked",
+            format!(
+                "if you trust it: `maulstick up --allow-library {}`; or install it below /usr/local/lib or /opt",
+                path.display()
+            ),
+        ),
+    }
+}
+
+/// Says once that a library is loaded, before it is: its first act may be its last.
+fn say_loading(product: &str, path: &Path) {
+    let mut said = SAID.lock().unwrap_or_else(PoisonError::into_inner);
+    if !said.iter().any(|own| own == path) {
+        said.push(path.to_owned());
+        tracing::info!("loading the library of {product}: {}", path.display());
+        flush();
+    }
+}
 
 /// A library as its vendor calls it.
 #[derive(Clone, Copy, Debug)]
@@ -47,11 +116,10 @@ impl VendorLibrary {
         open: impl Fn(&Path) -> Result<T, Unusable>,
     ) -> Result<T, UserError> {
         if let Some(path) = asked {
-            if path.components().count() > 1 && !path.exists() {
-                return Err(UserError::usage("there is no such library")
-                    .at(path.display().to_string())
-                    .help("correct `library` in rig.toml, or leave it out"));
+            if !is_name(path) {
+                check(path)?;
             }
+            say_loading(self.product, path);
             return open(path).map_err(|why| self.fault(why, path));
         }
         let mut broken = None;
@@ -123,6 +191,11 @@ impl Unusable {
     }
 }
 
+/// True for the name of a library alone, which the system finds.
+fn is_name(library: &Path) -> bool {
+    library.file_name() == Some(library.as_os_str())
+}
+
 /// Loads a library, which its vendor's users load in the same way.
 ///
 /// # Errors
@@ -169,6 +242,32 @@ mod tests {
         let other = says("libfeel.so: undefined symbol: something");
         let symbol = "undefined symbol: something";
         assert!(other.what.contains(symbol), "{other}");
+    }
+
+    #[test]
+    fn a_library_in_anybodys_folder_is_loaded_by_consent_alone() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let own = folder.path().join("libfeel.so");
+        std::fs::write(&own, "no library").expect("written");
+        let find = |path: &Path| {
+            let opened = OURS.find(Some(path), |_| Ok(()));
+            opened.map_err(|fault| fault.what)
+        };
+        let outside = "a library outside of the folders of the system is not loaded unasked";
+        assert_eq!(find(&own), Err(outside.to_owned()));
+        // A name in a folder of the system does not lead out of it.
+        let roundabout = Path::new("/usr/lib/../..").join(own.strip_prefix("/").expect("absolute"));
+        assert_eq!(find(&roundabout), Err(outside.to_owned()));
+        for relative in ["feel/libfeel.so", "./libfeel.so", "libfeel.so/"] {
+            let refused = find(Path::new(relative)).expect_err(relative);
+            assert_eq!(refused, "the path of a library is relative");
+        }
+        assert_eq!(find(Path::new("libfeel.so")), Ok(()));
+        allow_library(&own);
+        assert_eq!(find(&own), Ok(()));
+        let other = folder.path().join("other.so");
+        std::fs::write(&other, "no library").expect("written");
+        assert_eq!(find(&other), Err(outside.to_owned()));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! What the tests share: a section of `rig.toml`, a servo with a wall, the log, what is told.
 
 use std::io::Write;
+use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -8,6 +9,7 @@ use maulstick_device::registration::Registration;
 use maulstick_haptic::MountedDevice;
 use maulstick_haptic::device::driver::Opened;
 use maulstick_haptic::device::open::HapticSettings;
+use maulstick_haptic::drivers::vendor_library::allow_library;
 use maulstick_haptic::servo::channels::{Delivery, TickRecord};
 use maulstick_haptic::servo::servo_thread::ServoThread;
 use maulstick_haptics::{Contact, Limits};
@@ -19,10 +21,16 @@ use maulstick_types::haptics::{ContactModel, ForceLaw};
 /// Beyond this a test gives up.
 const PATIENCE: Duration = Duration::from_secs(60);
 
+/// A library that lies in no folder of the system.
+pub(crate) fn trusted(path: PathBuf) -> PathBuf {
+    allow_library(&path);
+    path
+}
+
 /// A device of our libHD, of which nothing else is said.
 pub(crate) fn section() -> DeviceSection {
     DeviceSection {
-        library: Some(maulstick_libhd::control::path().expect("a path")),
+        library: Some(trusted(maulstick_libhd::control::path().expect("a path"))),
         ..DeviceSection::new("phantom", "openhaptics", "main")
     }
 }

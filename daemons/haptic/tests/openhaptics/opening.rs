@@ -4,7 +4,7 @@ use maulstick_haptics::Limits;
 use maulstick_libhd::{Call, Script};
 use maulstick_types::stylus::axes;
 
-use crate::bench::{calls, open, play, refusal, section, serve, tick};
+use crate::bench::{calls, open, play, refusal, section, serve, tick, trusted};
 
 /// The names under which a device was tried.
 fn tried(calls: &[Call]) -> Vec<&str> {
@@ -221,8 +221,8 @@ fn what_is_no_library_of_openhaptics_is_told_apart() {
     let missing = folder.path().join("missing.so");
     for (library, what, help) in [
         (missing, "there is no such library", "`library`"),
-        (text, "no library for this machine", "64-bit"),
-        (narrow, "no library for this machine (", "64-bit"),
+        (trusted(text), "no library for this machine", "64-bit"),
+        (trusted(narrow), "no library for this machine (", "64-bit"),
         (
             "libc.so.6".into(),
             "it has no function hdInitDevice",

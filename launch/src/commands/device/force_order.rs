@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use clap::{Args, Subcommand};
 use maulstick_bus::Qos;
-use maulstick_rig::UserError;
 use maulstick_rig::config::DeviceSection;
+use maulstick_rig::{UserError, asker};
 use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::stylus::{StylusInfo, axes};
 
@@ -41,12 +41,28 @@ pub enum Order {
     Rearm(Whose),
 }
 
+impl Order {
+    /// The devices that it is for, and the request to them.
+    fn parts(&self) -> (&Whose, ForceOrder) {
+        match self {
+            Self::Off(whose) => (whose, ForceOrder::Off),
+            Self::On(whose) => (whose, ForceOrder::On),
+            Self::Strength { share, whose } => (whose, ForceOrder::Strength { share: *share }),
+            Self::Guidance { share, whose } => (whose, ForceOrder::Guidance { share: *share }),
+            Self::Rearm(whose) => (whose, ForceOrder::Rearm),
+        }
+    }
+}
+
 /// The devices that a command is for.
 #[derive(Args, Clone, Debug)]
 pub struct Whose {
-    /// Device of rig.toml [default: all that give force]
+    /// Device of rig.toml [default: the one that gives force; `off` is for all]
     #[arg(long, value_name = "DEVICE")]
     device: Option<String>,
+    /// All devices that give force
+    #[arg(long, conflicts_with = "device")]
+    all: bool,
     #[command(flatten)]
     target: Target,
 }
@@ -73,20 +89,14 @@ fn share(text: &str) -> Result<f64, String> {
 /// # Errors
 /// A [`UserError`] if no rig runs, or no device of it gives force or answers.
 pub fn give(order: &Order) -> Result<i32, UserError> {
-    let (whose, order) = match order {
-        Order::Off(whose) => (whose, ForceOrder::Off),
-        Order::On(whose) => (whose, ForceOrder::On),
-        Order::Strength { share, whose } => (whose, ForceOrder::Strength { share: *share }),
-        Order::Guidance { share, whose } => (whose, ForceOrder::Guidance { share: *share }),
-        Order::Rearm(whose) => (whose, ForceOrder::Rearm),
-    };
+    let (whose, order) = order.parts();
     let client = Client::open(&whose.target)?;
     let known = client.config()?.device;
     let devices = match &whose.device {
         Some(device) => vec![chosen(&known, device, &client)?],
-        None => all(&known, &client)?,
+        None => meant(all(&known, &client)?, whose, &order)?,
     };
-    let request = ForceRequest { order };
+    let request = ForceRequest::by(&asker("`maulstick force`"), order);
     let (mut text, mut silent) = (String::new(), Vec::new());
     for device in devices {
         let topic = client.topics().force(&device);
@@ -105,6 +115,23 @@ pub fn give(order: &Order) -> Result<i32, UserError> {
         .at(client.topics().force("*"))
         .help("`maulstick up` shows its nodes; ended by Ctrl-C they leave no force")),
     }
+}
+
+/// All of the devices where the command says so, or there is one: a hand at another one would get force unawares. Force is
+/// taken off all.
+fn meant(
+    devices: Vec<String>,
+    whose: &Whose,
+    order: &ForceOrder,
+) -> Result<Vec<String>, UserError> {
+    if whose.all || *order == ForceOrder::Off || devices.len() < 2 {
+        return Ok(devices);
+    }
+    let names = devices.join(", ");
+    Err(
+        UserError::usage(format!("several devices give force: {names}"))
+            .help("name the one that is meant by --device DEVICE, or say --all"),
+    )
 }
 
 /// The device of that name, if it is one that gives force.
@@ -196,6 +223,33 @@ mod tests {
         for wrong in ["", "%", "-1", "101%", "60", "NaN", "inf", "six"] {
             assert!(share(wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn force_comes_to_several_hands_only_where_all_are_meant() {
+        #[derive(clap::Parser)]
+        struct Line {
+            #[command(subcommand)]
+            order: Order,
+        }
+        let meant_by = |words: &str, devices: &[&str]| {
+            let words = std::iter::once("force").chain(words.split(' '));
+            let line = <Line as clap::Parser>::try_parse_from(words).expect("read");
+            let (whose, order) = line.order.parts();
+            let devices = devices.iter().map(|name| (*name).to_owned()).collect();
+            meant(devices, whose, &order).map(|devices| devices.len())
+        };
+        for order in ["on", "rearm", "strength 60%", "guidance 60%"] {
+            assert_eq!(meant_by(order, &["arm"]), Ok(1));
+            let refused = meant_by(order, &["left", "right"]).expect_err(order);
+            assert!(refused.what.contains("left, right"), "{refused}");
+            assert_eq!(refused.code, maulstick_rig::user_error::EXIT_USAGE);
+            assert_eq!(
+                meant_by(&format!("{order} --all"), &["left", "right"]),
+                Ok(2)
+            );
+        }
+        assert_eq!(meant_by("off", &["left", "right"]), Ok(2));
     }
 
     #[test]

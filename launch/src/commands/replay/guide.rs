@@ -18,6 +18,7 @@ use maulstick_types::haptics::GuideModel;
 use maulstick_types::stylus::{StylusPose, StylusSample};
 use serde_json::json;
 
+use super::consent::Consent;
 use super::driven::{Driven, PATIENCE};
 use super::orders::{GUIDE_KEYS, Orders};
 use super::traced::{Touch, Traced};
@@ -171,6 +172,7 @@ struct Guiding<'a> {
     traced: Traced,
     samples: Receiver<StylusSample>,
     guides: Sender<GuideModel>,
+    consent: Consent,
     orders: Orders,
     strength: f64,
     paused: bool,
@@ -190,13 +192,16 @@ impl<'a> Guiding<'a> {
         let (bus, topics) = (&*member.bus, &member.topics);
         let sample = topics.sample(&device.name);
         let topic = topics.guide(&device.name);
+        let me = member.origin(&member.node);
+        let consent = Consent::ask(member, &device.name, me)?;
         let orders = Orders::listen(options.json)?;
         if orders.are_keys() {
             eprintln!("{GUIDE_KEYS}");
         }
         Ok(Self {
             samples: Receiver::new(bus, &sample, Qos::RealTime, Queue::Ring(16), &member.wake)?,
-            guides: Sender::new(bus, &topic, Qos::RealTime, member.origin(&member.node))?,
+            guides: Sender::new(bus, &topic, Qos::RealTime, me)?,
+            consent,
             options,
             member,
             device,
@@ -223,6 +228,7 @@ impl<'a> Guiding<'a> {
             return Ok(true);
         }
         self.due = now + PERIOD;
+        self.consent.renew(self.member)?;
         let Some(sample) = self.samples.newest() else {
             return Ok(true);
         };

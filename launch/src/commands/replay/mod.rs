@@ -6,11 +6,13 @@
 //! | [`streams`] | messages of chosen topics are sent again |
 //! | [`pacing`] | no faster than brushes follow |
 //! | [`driven`] | the device whose hand feels it |
+//! | [`consent`] | its consent |
 //! | [`guide`], [`traced`] | its strokes guide a hand that paints |
 //! | [`place`] | a take elsewhere on the desk |
 //! | [`transport`], [`orders`] | pause, seek, step, rate |
 //! | [`events`] | what is to come |
 
+mod consent;
 mod driven;
 mod events;
 mod guide;

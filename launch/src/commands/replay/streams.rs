@@ -14,6 +14,7 @@ use maulstick_types::stylus::{StylusInfo, StylusSample};
 use maulstick_types::wire::header::HEADER_BYTES;
 use maulstick_types::{Flags, Header, Origin, decode, encode, name_hash};
 
+use super::consent::Consent;
 use super::driven::Driven;
 use super::events::Events;
 use super::pacing::Pacing;
@@ -76,9 +77,17 @@ pub(super) fn replay(options: &ReplayOptions, recording: &Recording) -> Result<i
         Some(device) => Some(Driven::find(&member, device)?),
         None => None,
     };
+    let driver = Origin {
+        source: name_hash(&member.node),
+        epoch: random_epoch(),
+    };
+    let mut consent = match &driven {
+        Some(driven) => Some(Consent::ask(&member, &driven.name, driver)?),
+        None => None,
+    };
     let mut senders = Senders {
         member: &member,
-        epoch: random_epoch(),
+        driver,
         senders: BTreeMap::new(),
         renamed,
         device: options.device.as_deref(),
@@ -94,6 +103,9 @@ pub(super) fn replay(options: &ReplayOptions, recording: &Recording) -> Result<i
     let mut events = events(recording, &patterns, range_ns)?;
     let mut played_ns = 0;
     while !member.stop.requested() {
+        if let Some(consent) = &mut consent {
+            consent.renew(&member)?;
+        }
         let next_ns = events.next_ns()?;
         let turn = playback.turn(next_ns, played_ns)?;
         let has_ended = next_ns.is_none() && turn == Turn::On;
@@ -180,7 +192,8 @@ fn events(
 /// Senders by topic, each with the number of its next message.
 struct Senders<'a> {
     member: &'a NodeHandle,
-    epoch: u32,
+    /// As whom contact models and forces of paint are sent.
+    driver: Origin,
     senders: BTreeMap<String, (Box<dyn Publish>, u64)>,
     renamed: BTreeMap<String, String>,
     device: Option<&'a str>,
@@ -242,16 +255,15 @@ impl Senders<'_> {
         self.put(&topic, Qos::Cached, bytes)
     }
 
-    /// Sender of a topic: the one that is named in it; of what drives a device the brush, whose own ones are then set aside.
+    /// Sender of a topic: the one that is named in it; of what drives a device the replay, by whose consent the brush's
+    /// own ones are set aside.
     fn origin(&self, topic: &str) -> Origin {
-        let named = topic.split('/').nth(1).unwrap_or(topic);
-        let sender = match &self.driven {
-            Some(driven) if drives(topic) => driven.brush.as_str(),
-            _ => named,
-        };
+        if drives(topic) {
+            return self.driver;
+        }
         Origin {
-            source: name_hash(sender),
-            epoch: self.epoch,
+            source: name_hash(topic.split('/').nth(1).unwrap_or(topic)),
+            epoch: self.driver.epoch,
         }
     }
 

@@ -7,13 +7,12 @@
 //! | [`graph`] | the processes of a rig, and what they send each other, as a picture |
 //! | [`recorder`], [`record`] | recordings, made and kept within bounds |
 //! | [`recording`], [`foxglove_export`] | recordings, looked at and written for Foxglove |
-//! | [`bridge`], [`foxglove_server`] | live streams for Foxglove |
+//! | [`bridge`] | live streams for Foxglove |
 //! | [`message_lines`] | messages as rows of a table and as lines of JSON |
 
 pub mod bridge;
 pub mod echo;
 mod foxglove_export;
-mod foxglove_server;
 pub mod graph;
 pub(crate) mod listener;
 pub mod measure;

@@ -29,7 +29,7 @@ impl Supervisor {
         // One that was about to be started again is started with these settings.
         self.due.retain(|(due, _)| *due != section.name);
         if !self.nodes[place].renew()
-            && let Err(fault) = self.start_node(place)
+            && let Err(fault) = self.try_start(place)
         {
             self.nodes[place].state = State::Failed;
             self.set_config(before)?;

@@ -61,6 +61,11 @@ pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
             "take it out: this device gives no force",
         ),
         (
+            "driven_by",
+            !device.driven_by.is_empty() && device.is_hid(),
+            "take it out: this device gives no force",
+        ),
+        (
             "relief",
             device.relief != usual.relief && device.is_hid(),
             "take it out: this device gives no force",
@@ -70,6 +75,18 @@ pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
         if is_ignored {
             return wrong(key, help);
         }
+    }
+    if let Some(library) = &device.library
+        && !library.is_absolute()
+        && library.file_name() != Some(library.as_os_str())
+    {
+        return Err(Wrong {
+            what: format!("the path of the library of '{}' is relative", device.name),
+            key: "library",
+            value: String::new(),
+            help: "give the whole path from the root, or the name alone, which the system finds"
+                .into(),
+        });
     }
     let mut actions = device.switches.iter().flatten();
     if device.is_hid() && actions.any(|action| action == "clutch") {
@@ -126,6 +143,22 @@ mod tests {
                 );
                 assert!(refused.help.is_some(), "{text}");
             }
+        }
+    }
+
+    #[test]
+    fn a_library_has_a_whole_path_or_a_name_alone() {
+        let section = |library: &str| {
+            let text = DEFAULT.replace("driver = \"simulated\"", "driver = \"openhaptics\"");
+            let line = format!("library = \"{library}\"\nmax_force_n = 3.0");
+            RigConfig::parse(&text.replace("max_force_n = 3.0", &line), "rig.toml")
+        };
+        for library in ["libHD.so.3.4", "/opt/OpenHaptics/lib/libHD.so"] {
+            section(library).expect(library);
+        }
+        for library in ["vendor/libHD.so", "./libHD.so", "../libHD.so", "libHD.so/"] {
+            let refused = section(library).expect_err(library).to_string();
+            assert!(refused.contains("rig.toml:37"), "{refused}");
         }
     }
 

@@ -44,7 +44,8 @@ pub struct DeviceSection {
     /// first that fits if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub address: Option<String>,
-    /// The vendor's library of `openhaptics` or `forcedimension`, the loader of `openxr`, where it is not in the system's folders.
+    /// The vendor's library of `openhaptics` or `forcedimension`, the loader of `openxr`, by another name than its usual ones,
+    /// or by a whole path: in a folder of the system, or [allowed](RigConfig::allowed_libraries).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub library: Option<PathBuf>,
     /// A recording that is played in the place of a HID device or an event device, in the text format of hid-recorder or
@@ -93,6 +94,9 @@ pub struct DeviceSection {
     /// A take that a simulated hand follows, feeling the canvas.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hand: Option<PathBuf>,
+    /// Names of programs beside the brush whose contact models, forces of paint and guides move the hand.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub driven_by: Vec<String>,
 }
 
 impl DeviceSection {
@@ -119,6 +123,7 @@ impl DeviceSection {
             pressure_curve: straight(),
             switches: None,
             hand: None,
+            driven_by: Vec::new(),
         }
     }
 
@@ -165,9 +170,13 @@ impl RigConfig {
             None => config.device.push(device),
         }
         // The line would be one that nobody wrote.
-        Self::parse(&config.to_toml()?, "").map_err(|fault| UserError {
+        let read = Self::parse(&config.to_toml()?, "").map_err(|fault| UserError {
             place: None,
             ..fault
+        })?;
+        Ok(Self {
+            allowed_libraries: config.allowed_libraries,
+            ..read
         })
     }
 

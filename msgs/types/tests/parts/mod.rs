@@ -64,6 +64,7 @@ pub(crate) fn status() -> StylusStatus {
         motor_temperature: 0.2,
         is_guided: true,
         guidance: 0.7,
+        refused_senders: 8,
     }
 }
 

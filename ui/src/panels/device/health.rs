@@ -40,11 +40,11 @@ pub(super) fn show(ui: &mut Ui, status: &StylusStatus) {
                 "{samples} samples, {dropped} dropped, {strange} strange models",
                 samples = status.samples,
                 dropped = status.dropped,
-                strange = status.foreign_models
+                strange = status.foreign_models.saturating_add(status.refused_senders)
             ))
             .on_hover_text(tr!(
-                "Dropped: the publisher was behind. Strange: contact models that named another \
-                 device or brush."
+                "Dropped: the publisher was behind. Strange: contact models for another device or \
+                 brush, or of a program that may not move the hand."
             ));
         });
 }

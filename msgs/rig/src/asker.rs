@@ -1,0 +1,20 @@
+//! Who asks for something, for the log of who does it.
+
+use std::os::fd::AsFd as _;
+
+use nix::unistd::{User, getpid, getuid, ttyname};
+
+/// This process as one that asks: what it is, whose, at which terminal.
+#[must_use]
+pub fn asker(program: &str) -> String {
+    let user = getuid();
+    let user = match User::from_uid(user) {
+        Ok(Some(user)) => user.name,
+        _ => format!("user {user}"),
+    };
+    let terminal = match ttyname(std::io::stdin().as_fd()) {
+        Ok(path) => format!(", {}", path.display()),
+        Err(_) => String::new(),
+    };
+    format!("{program} ({user}{terminal}, process {})", getpid())
+}
