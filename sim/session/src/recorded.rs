@@ -42,13 +42,19 @@ pub enum SessionFault {
         /// Index of the entry that followed.
         found: u64,
     },
-    /// The session does not reach a place of the journal, or begins behind it.
-    #[error("place {place} of the painting's journal is not in it: it has {first} to {last}")]
-    Elsewhere {
+    /// The session begins behind a place of the journal.
+    #[error("it begins behind place {place} of the painting's journal, at {first}")]
+    Before {
         /// The place.
         place: u64,
         /// Index of its first entry.
         first: u64,
+    },
+    /// The session does not reach a place of the journal.
+    #[error("it ends before place {place} of the painting's journal, at {last}")]
+    Behind {
+        /// The place.
+        place: u64,
         /// Index of its last entry.
         last: u64,
     },
@@ -208,15 +214,13 @@ impl RecordedSession {
     /// # Errors
     /// [`SessionFault`] with what is missing before it.
     pub fn end(&self) -> Result<(), SessionFault> {
-        let place = self.last;
-        let is_before = place.checked_add(1).is_some_and(|next| next < self.first);
-        let is_behind = place < u64::MAX && self.next <= place && self.entries.is_empty();
-        if is_before || is_behind {
-            return Err(SessionFault::Elsewhere {
-                place,
-                first: self.first,
-                last: self.next.saturating_sub(1),
-            });
+        let (place, first) = (self.last, self.first);
+        if place.checked_add(1).is_some_and(|next| next < first) {
+            return Err(SessionFault::Before { place, first });
+        }
+        if place < u64::MAX && self.next <= place && self.entries.is_empty() {
+            let last = self.next.saturating_sub(1);
+            return Err(SessionFault::Behind { place, last });
         }
         if self.is_past() {
             return Ok(());
@@ -375,16 +379,20 @@ mod tests {
         assert_eq!(session.entry(&restarted, tick(first)), Ok(()));
         assert_eq!(session.entry(&header, tick(first + 9)), Ok(()));
         assert_eq!(session.end(), Ok(()));
-        for place in [first + 7, first - 2] {
-            let mut session = RecordedSession::after(offline.sequencer_mut()).until(place);
+        let end = |sequencer: &Sequencer, place: u64| {
+            let mut session = RecordedSession::after(sequencer).until(place);
             session.entry(&header, tick(first)).expect("known");
             session.next_record().expect("whole");
-            let end = session.end();
-            assert!(
-                matches!(end, Err(SessionFault::Elsewhere { .. })),
-                "{end:?}"
-            );
-        }
+            session.end()
+        };
+        let sequencer = offline.sequencer_mut();
+        let (place, last) = (first + 7, first);
+        let behind = SessionFault::Behind { place, last };
+        assert_eq!(end(sequencer, place), Err(behind));
+        let place = first - 2;
+        let before = SessionFault::Before { place, first };
+        assert_eq!(end(sequencer, place), Err(before));
+        assert_eq!(end(sequencer, first - 1), Ok(()), "its beginning");
     }
 
     #[test]

@@ -167,7 +167,7 @@ impl SessionFile {
                     .saturating_sub(less * u64::from(at_ns.is_multiple_of(100_000_000)));
                 tenths as f64 * 0.1
             });
-            if let SessionFault::Elsewhere { .. } = fault {
+            if let SessionFault::Before { .. } | SessionFault::Behind { .. } = fault {
                 return UserError::usage(fault.to_string())
                     .at(&place)
                     .help("`maulstick snapshot` says at which place of the journal it was made");
@@ -212,7 +212,9 @@ impl SessionFile {
         done?;
         // Of a recording that was cut off the last message may be anywhere.
         match session.end() {
-            Err(fault @ SessionFault::Elsewhere { .. }) => return Err(broken(&fault, newest_ns)),
+            Err(fault @ (SessionFault::Before { .. } | SessionFault::Behind { .. })) => {
+                return Err(broken(&fault, newest_ns));
+            }
             Err(fault) if to_ns == u64::MAX && !self.is_cut_off() => {
                 return Err(broken(&fault, newest_ns));
             }
