@@ -206,7 +206,7 @@ mod tests {
         let opens = matches!(&asked[..], [(_, Command::Rig(RigCommand::Open { path, forget: false }))]
             if path.ends_with("sketch 01.maul"));
         assert!(opens, "{asked:?}");
-        assert!(harness.query_by_label_contains("sketch 01").is_none());
+        assert!(harness.query_by_label("Your sketches").is_none());
 
         let mut harness = window();
         until(&mut harness, |harness| {
@@ -222,8 +222,9 @@ mod tests {
     fn who_has_too_many_is_told_which_go_before_they_do() {
         let folder = tempfile::tempdir().expect("a folder");
         let sketches = Sketches::in_folder(folder.path());
-        let mut harness = window_of([900.0, 700.0], rig(&sketches, STAY + 1), Default::default());
+        let rig = rig(&sketches, STAY + 1);
         assert_eq!(sketches.told(), []);
+        let mut harness = window_of([900.0, 700.0], rig, Default::default());
         until(&mut harness, |harness| {
             harness
                 .query_by_label_contains("At the next start")

@@ -2,7 +2,7 @@
 //! asks is often ahead of the paint; the hand goes on, and its next stroke begins when all of that is done.
 
 use maulstick_bus::Recent;
-use maulstick_types::Origin;
+use maulstick_types::Header;
 
 /// A window that is silent for so long holds nothing up any more, ns.
 const SILENCE_NS: u64 = 500_000_000;
@@ -12,58 +12,72 @@ const LONGEST_NS: u64 = 10_000_000_000;
 /// What is pending, by the windows that say so.
 #[derive(Debug, Default)]
 pub(super) struct Hold {
-    windows: Recent<Pending>,
+    windows: Recent<Heard>,
 }
 
+/// What a window said last.
 #[derive(Debug)]
-struct Pending {
+struct Heard {
+    /// Since when something is pending, ns; 0 if nothing is.
     since_ns: u64,
     heard_ns: u64,
+    seq: u64,
 }
 
 impl Hold {
-    /// A window says since when something is pending; 0 if nothing is.
-    pub(super) fn hear(&mut self, window: Origin, since_ns: u64, now_ns: u64) {
-        let name = format!("{:x}-{:x}", window.source, window.epoch);
-        match since_ns {
-            0 => self.windows.remove(&name),
-            _ => self.windows.set(
-                &name,
-                Pending {
-                    since_ns,
-                    heard_ns: now_ns,
-                },
-            ),
+    /// A window says since when something is pending; 0 if nothing is. A message that was overtaken counts no more.
+    pub(super) fn hear(&mut self, header: &Header, since_ns: u64, heard_ns: u64) {
+        let window = format!("{:x}-{:x}", header.source, header.epoch);
+        let seq = header.seq;
+        let before = self.windows.get(&window);
+        if before.is_none_or(|before| before.seq < seq) {
+            let heard = Heard {
+                since_ns,
+                heard_ns,
+                seq,
+            };
+            self.windows.set(&window, heard);
         }
     }
 
     /// Time after which no stroke begins, ns; absent where nothing is pending.
     pub(super) fn since_ns(&self, now_ns: u64) -> Option<u64> {
-        let counts = |pending: &&Pending| {
-            now_ns < pending.heard_ns.saturating_add(SILENCE_NS)
-                && now_ns < pending.since_ns.saturating_add(LONGEST_NS)
+        let counts = |heard: &&Heard| {
+            heard.since_ns != 0
+                && now_ns < heard.heard_ns.saturating_add(SILENCE_NS)
+                && now_ns < heard.since_ns.saturating_add(LONGEST_NS)
         };
-        let pending = self.windows.iter().map(|(_, pending)| pending);
-        pending.filter(counts).map(|pending| pending.since_ns).min()
+        let windows = self.windows.iter().map(|(_, heard)| heard);
+        windows.filter(counts).map(|heard| heard.since_ns).min()
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use maulstick_types::window::PendingOrders;
+    use maulstick_types::{Flags, Origin, decode, encode};
+
     use super::*;
+
+    fn header(epoch: u32, seq: u64) -> Header {
+        let window = Origin { source: 1, epoch };
+        let message = PendingOrders { since_ns: 0 };
+        let bytes = encode(&window, Flags::NONE, seq, 0, 0, &message).expect("encoded");
+        decode::<PendingOrders>(&bytes).expect("its own").0
+    }
 
     #[test]
     fn the_oldest_of_what_is_pending_counts_and_nobody_holds_a_brush_for_ever() {
-        let window = |epoch: u32| Origin { source: 1, epoch };
         let mut hold = Hold::default();
-        hold.hear(window(1), 70, 100);
-        hold.hear(window(2), 60, 100);
+        hold.hear(&header(1, 1), 70, 100);
+        hold.hear(&header(2, 8), 60, 100);
         assert_eq!(hold.since_ns(110), Some(60));
-        hold.hear(window(2), 0, 120);
-        assert_eq!(hold.since_ns(130), Some(70));
+        hold.hear(&header(2, 9), 0, 120);
+        hold.hear(&header(2, 7), 60, 121);
+        assert_eq!(hold.since_ns(130), Some(70), "it was overtaken");
         assert_eq!(hold.since_ns(100 + SILENCE_NS), None, "its window ended");
         let late = 70 + LONGEST_NS;
-        hold.hear(window(1), 70, late);
+        hold.hear(&header(1, 2), 70, late);
         assert_eq!(hold.since_ns(late), None);
     }
 }

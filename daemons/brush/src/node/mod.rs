@@ -335,8 +335,8 @@ impl BrushNode {
             }
         }
         while let Some(orders) = self.orders.try_recv() {
-            let window = orders.header.origin();
-            self.hold.hear(window, orders.message.since_ns, now_ns);
+            let since_ns = orders.message.since_ns;
+            self.hold.hear(&orders.header, since_ns, now_ns);
         }
         if let Some(relief) = self.reliefs.newest() {
             self.relief = Some(relief.message);
