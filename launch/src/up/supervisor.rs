@@ -4,6 +4,7 @@ mod devices;
 mod folder;
 mod loads;
 mod orders;
+mod shown;
 pub(super) mod sketch;
 mod starts;
 mod switch;
@@ -16,7 +17,6 @@ use std::time::{Duration, Instant};
 use indicatif::ProgressBar;
 use maulstick_bus::sockets::SocketKeeper;
 use maulstick_bus::{Bus, Dial, RigClock, RigFolder, Subscription, Wake, ZenohBus};
-use maulstick_rig::log::say;
 use maulstick_rig::node_handle::{CONFIG_FILE, HUB};
 use maulstick_rig::user_error::EXIT_FAILURE;
 use maulstick_rig::{RigConfig, Sketches, Stop, UserError};
@@ -24,8 +24,6 @@ use maulstick_types::Mixture;
 use maulstick_types::wire::topics::Topics;
 
 use crate::EXIT_INTERRUPTED;
-use crate::commands::progress_bar;
-use crate::up::bar_terminal::BarTerminal;
 use crate::up::child::{Ended, Failures, Node, State};
 use crate::up::conductor::{Conductor, Performance};
 use crate::up::plan::{NodeSpec, Role};
@@ -395,53 +393,6 @@ impl Supervisor {
         self.nodes
             .iter()
             .all(|node| !matches!(node.state, State::Starting | State::Restarting))
-    }
-
-    fn show_when_ready(&mut self) {
-        if self.shown || !self.ready() {
-            return;
-        }
-        self.shown = true;
-        say(&self.table());
-        if let Some(conductor) = &self.conductor {
-            let bar = progress_bar(conductor.performance.length_ns);
-            bar.set_draw_target(BarTerminal::target());
-            self.bar = Some(bar.with_message("playing"));
-        }
-    }
-
-    /// The nodes, where the painting is, and how to end it.
-    fn table(&self) -> String {
-        let (rig, locator) = (self.folder.rig(), self.folder.locator(HUB));
-        let mut text = format!(
-            "rig '{rig}' is up: {locator}\n  {:<16} {:>8}  {:<10} program\n",
-            "node", "pid", "state"
-        );
-        for node in &self.nodes {
-            let program = node.spec.program.process_name();
-            text += &format!(
-                "  {:<16} {:>8}  {:<10} {program}\n",
-                node.spec.name,
-                node.pid().unwrap_or(0),
-                node.state.word(),
-            );
-        }
-        if self.conductor.is_none() {
-            if let Some(record) = &self.config.record {
-                text += &format!("recorded in {}\n", record.folder.display());
-            }
-            text += &match &self.config.paint.document {
-                Some(path) if self.sketch().is_some() => format!(
-                    "sketch in {}: it is kept there until it gets a name\n",
-                    path.display()
-                ),
-                Some(path) => format!("painting in {}\n", path.display()),
-                None => "this painting is not kept: `maulstick up FILE.maul` keeps one in a file\n"
-                    .to_owned(),
-            };
-            text += "Ctrl-C stops it\n";
-        }
-        text
     }
 
     /// Starts the player when all others are ready; has the picture written at the take's end.
