@@ -6,6 +6,8 @@ mod support;
 use std::path::Path;
 use std::sync::Arc;
 
+use maulstick_brush::{BrushFile, BrushModel};
+use maulstick_brush_node::BrushSettings;
 use maulstick_bus::{Bus, Faults, MemoryNet};
 use maulstick_document::{Access, Document, DocumentSettings};
 use maulstick_optics::PaintLibrary;
@@ -13,7 +15,9 @@ use maulstick_painting::models::model_names;
 use maulstick_painting::picture::picture;
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_session::{Autosave, Offline};
+use maulstick_types::brush::BrushState;
 use maulstick_types::stylus::StylusSample;
+use maulstick_types::{Message as _, Origin};
 use proptest::prelude::*;
 use support::{Live, START_NS, file, loads, painting_of, pen, turns};
 
@@ -22,9 +26,16 @@ type Take = Vec<(u64, StylusSample)>;
 /// A painting as it is seen.
 type Seen = Vec<u8>;
 
+/// A brush of so many joints that the way of a leap is longer than a message.
+fn brush() -> BrushFile {
+    let mut file = file();
+    file.spines.joints = 12;
+    file
+}
+
 /// Samples anywhere on the canvas and beside it, mostly pressed: between two of them the hand may leap across all of it.
 fn takes() -> impl Strategy<Value = Take> {
-    let place = (-0.05..0.05f64, -0.04..0.04f64);
+    let place = (-0.018..0.018f64, -0.014..0.014f64);
     let pressure = prop_oneof![3 => 0.1..1.0f64, 1 => Just(0.0)];
     let sample = (place, pressure, 1u64..60);
     prop::collection::vec(sample, 2..8).prop_map(|samples| {
@@ -41,14 +52,14 @@ fn takes() -> impl Strategy<Value = Take> {
     })
 }
 
-/// Three samples in contact, 50 mm from one to the next.
+/// Three samples in contact, as far apart as the canvas lets them be.
 fn leap() -> Take {
-    let at = |number: u64, x, pressure| (number * 10_000_000, pen(x, 0.0, pressure));
+    let at = |number: u64, x, y, pressure| (number * 10_000_000, pen(x, y, pressure));
     vec![
-        at(0, -0.05, 0.5),
-        at(1, 0.0, 0.5),
-        at(2, 0.05, 0.5),
-        at(3, 0.05, 0.0),
+        at(0, -0.015, -0.011, 0.5),
+        at(1, 0.015, 0.011, 0.5),
+        at(2, -0.015, 0.011, 0.5),
+        at(3, -0.015, 0.011, 0.0),
     ]
 }
 
@@ -81,7 +92,7 @@ fn in_file(path: &Path) -> Seen {
 
 fn offline(model: &str, take: &Take) -> Seen {
     let painting = painting_of(model);
-    let mut offline = Offline::new(painting, "main", file(), 0.5, loads()).expect("set up");
+    let mut offline = Offline::new(painting, "main", brush(), 0.5, loads()).expect("set up");
     for (time_ns, sample) in take {
         let sampled = offline.sample(START_NS + time_ns, sample);
         sampled.expect("painted");
@@ -93,7 +104,7 @@ fn offline(model: &str, take: &Take) -> Seen {
 /// The same in a file: as it is then, and as the file has it.
 fn offline_in_file(model: &str, take: &Take, path: &Path) -> [Seen; 2] {
     let (document, painting) = begun(model, path);
-    let mut offline = Offline::new(painting, "main", file(), 0.5, loads()).expect("set up");
+    let mut offline = Offline::new(painting, "main", brush(), 0.5, loads()).expect("set up");
     let mut autosave = Autosave::new(document, offline.sequencer_mut(), 0);
     let samples: Vec<(u64, &StylusSample)> = take
         .iter()
@@ -115,7 +126,11 @@ fn live_in_file(model: &str, take: &Take, seed: u64, path: &Path) -> [Seen; 2] {
         loss: 0.1,
         delay_ns: 3_000_000,
     };
-    let mut live = Live::new(MemoryNet::new(seed, START_NS, faults));
+    let settings = BrushSettings {
+        file: brush(),
+        ..support::settings()
+    };
+    let mut live = Live::with(MemoryNet::new(seed, START_NS, faults), settings);
     let bus: Arc<dyn Bus> = Arc::new(live.net.bus());
     let (document, painting) = begun(model, path);
     live.paint = Live::paint_node_on(&bus, &live.topics, 6, painting).keeping(document, 0);
@@ -163,8 +178,23 @@ fn a_leap_of_the_hand_is_in_the_file_with_every_model() {
 }
 
 #[test]
+fn a_leap_is_longer_than_a_message() {
+    let mut model = BrushModel::new(brush(), 0.5);
+    model.set_scene(painting_of("impasto").scene());
+    let device = Origin {
+        source: 1,
+        epoch: 1,
+    };
+    let states = leap().into_iter().filter_map(|(time_ns, sample)| {
+        let state = model.state(device, 0, START_NS + time_ns, &sample)?;
+        Some(state.wire_bytes())
+    });
+    assert!(states.max() > Some(BrushState::MAX_BYTES));
+}
+
+#[test]
 fn another_leap_would_be_seen() {
     let mut other = leap();
-    other.remove(1);
+    other[1].1 = pen(0.0, 0.011, 0.5);
     assert!(offline("impasto", &leap()) != offline("impasto", &other));
 }

@@ -80,6 +80,8 @@ impl Document {
         let writes = settings.access == Access::Paint;
         let database = (database, &*settings.path);
         let thread = DocumentThread::new(Arc::clone(&shared), database, writes, saved_version);
+        let unread = found.as_ref().filter(|_| writes).map(Opened::pages);
+        let thread = thread.reading(unread.unwrap_or_default());
         let document = Self::run(thread, &settings.path, shared, pager)?;
         Ok((document, found))
     }

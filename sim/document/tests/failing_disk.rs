@@ -9,7 +9,7 @@ use std::path::Path;
 use crash_vfs::{Log, Refused, watch};
 use easel::Easel;
 use maulstick_document::{Access, DocumentSettings, Relocate};
-use studio::{Painter, print};
+use studio::{Act, Painter, print};
 use tempfile::TempDir;
 
 struct Session {
@@ -21,12 +21,11 @@ struct Session {
 }
 
 impl Session {
-    fn begin(memory: usize) -> Self {
+    fn begin() -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().canonicalize().expect("there").join("a.maul");
         let log = watch(&path);
         let settings = DocumentSettings {
-            memory,
             vfs: Some("crash".to_owned()),
             ..DocumentSettings::new(&path, Access::Paint)
         };
@@ -50,6 +49,31 @@ impl Session {
         }
     }
 
+    /// Strokes alone: an undo may need what is in the file alone.
+    fn paint_strokes(&mut self, strokes: usize) {
+        let mut left = strokes;
+        while left > 0 {
+            let act = self.painter.next();
+            if matches!(act, Act::Paint(..)) {
+                self.easel.act(&mut self.painter, &act);
+                self.easel.checkpoint();
+                left -= 1;
+            }
+        }
+    }
+
+    /// Closes the painting and opens it again: then its pages are in the file alone.
+    fn open_again(self) -> Self {
+        self.easel.close();
+        // With room for none of them nothing is read ahead.
+        let settings = DocumentSettings {
+            memory: 1,
+            ..self.settings.clone()
+        };
+        let easel = Easel::open(&settings).expect("whole");
+        Self { easel, ..self }
+    }
+
     /// Waits until the document says that its disk fails, or that it does not.
     fn wait_until(&self, fails: bool) {
         while self.easel.document.fault().is_some() != fails {
@@ -66,13 +90,9 @@ impl Session {
     }
 }
 
-const PLENTY: usize = 1 << 30;
-/// So little that most pages are in the file alone.
-const LITTLE: usize = 400_000;
-
 #[test]
 fn a_disk_that_fails_is_painted_on_and_written_when_it_is_back() {
-    let mut session = Session::begin(PLENTY);
+    let mut session = Session::begin();
     session.log.refuse(Refused::Everything);
     session.paint(10);
     session.wait_until(true);
@@ -89,8 +109,7 @@ fn a_disk_that_fails_is_painted_on_and_written_when_it_is_back() {
 
 #[test]
 fn a_page_that_the_disk_does_not_give_is_waited_for() {
-    let mut session = Session::begin(LITTLE);
-    assert!(session.easel.sequencer.painting().bytes() < PLENTY);
+    let mut session = Session::begin().open_again();
     session.log.refuse(Refused::Everything);
     let document = &session.easel.document;
     let sequencer = &mut session.easel.sequencer;
@@ -112,8 +131,41 @@ fn a_page_that_the_disk_does_not_give_is_waited_for() {
 }
 
 #[test]
+fn a_painting_that_was_opened_again_is_painted_on_though_its_disk_fails() {
+    let mut session = Session::begin();
+    session.easel.close();
+    session.easel = Easel::open(&session.settings).expect("whole");
+    // What nobody waits for is read after all that somebody waits for.
+    let pager = session.easel.document.pager().clone();
+    let painting = session.easel.sequencer.painting();
+    let stores = [0, 1].map(|surface| painting.store(surface).expect("a surface"));
+    let tiles = stores.into_iter().flat_map(|store| store.iter());
+    let pages: Vec<_> = tiles
+        .filter_map(|(_, version)| version.tile.as_deref())
+        .flat_map(|tile| {
+            let dry = tile.dry().into_iter().flat_map(|stack| stack.layers());
+            let dry = dry.map(|layer| layer.planes.clone());
+            tile.wet_page().cloned().into_iter().chain(dry)
+        })
+        .collect();
+    assert!(!pages.is_empty());
+    while pages.iter().any(|page| page.peek().is_none()) {
+        std::thread::yield_now();
+    }
+    session.log.refuse(Refused::Everything);
+    session.paint_strokes(10);
+    session.wait_until(true);
+    session.paint_strokes(10);
+    assert_eq!(pager.fault(), None);
+    session.log.refuse(Refused::Nothing);
+    session.wait_until(false);
+    let (seen, found) = session.closed();
+    assert_eq!(found, seen);
+}
+
+#[test]
 fn a_painting_is_not_moved_while_its_disk_fails_and_goes_on_where_it_is() {
-    let mut session = Session::begin(PLENTY);
+    let mut session = Session::begin();
     session.log.refuse(Refused::Everything);
     session.paint(3);
     session.wait_until(true);
@@ -134,7 +186,7 @@ fn a_painting_is_not_moved_while_its_disk_fails_and_goes_on_where_it_is() {
 
 #[test]
 fn a_new_painting_is_in_its_file_at_once_without_its_journal() {
-    let session = Session::begin(PLENTY);
+    let session = Session::begin();
     let copy = session.folder.path().join("copy.maul");
     std::fs::copy(&session.settings.path, &copy).expect("copied");
     let settings = DocumentSettings::new(Path::new(&copy), Access::Read);

@@ -379,6 +379,21 @@ fn paint_that_never_was_is_seen() {
 }
 
 #[test]
+fn what_another_program_added_is_left_out() {
+    let painted = Painted::new(5, 40);
+    let path = painted.folder.path().join("altered.maul");
+    std::fs::write(&path, &painted.bytes).expect("written");
+    let db = rusqlite::Connection::open(&path).expect("opens");
+    let added = "CREATE TABLE mine(what TEXT); CREATE VIEW seen AS SELECT * FROM page; \
+         CREATE TRIGGER t BEFORE INSERT ON journal BEGIN SELECT raise(ignore); END";
+    db.execute_batch(added).expect("altered");
+    db.close().expect("closed");
+    let bytes = std::fs::read(&path).expect("read");
+    let (new, salvage) = painted.recover(&bytes).expect("recovered");
+    assert_eq!(painted.check(&painted.rows, &new, &salvage), Ok(()));
+}
+
+#[test]
 fn nothing_is_written_over_and_nothing_made_of_nothing() {
     let painted = Painted::new(3, 5);
     let path = painted.folder.path().join("a.maul");

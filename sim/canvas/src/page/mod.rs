@@ -206,13 +206,9 @@ struct Kept<T: Content> {
     used: AtomicBool,
     /// Bytes in the document; 0 while it is not there.
     stored: AtomicUsize,
-    /// The pages of which this one is a later state, the newest first. States in the midst of a stroke are soon forgotten; what
-    /// was there before it stays.
-    bases: Vec<Weak<Kept<T>>>,
+    /// The page of which this one is a later state.
+    base: Weak<Kept<T>>,
 }
-
-/// Pages of which a page knows that it is a later state, at most.
-const BASES: usize = 3;
 
 impl<T: Content> Evict for Kept<T> {
     fn evict(&self) -> Option<usize> {
@@ -255,12 +251,7 @@ impl<T: Content> Clone for Page<T> {
 }
 
 impl<T: Content> Page<T> {
-    fn make(
-        pager: &Arc<Pager>,
-        id: u64,
-        content: Option<Arc<T>>,
-        bases: Vec<Weak<Kept<T>>>,
-    ) -> Self {
+    fn make(pager: &Arc<Pager>, id: u64, content: Option<Arc<T>>, base: Weak<Kept<T>>) -> Self {
         let bytes = content.as_ref().map(|content| content.bytes());
         let kept = Arc::new(Kept {
             id,
@@ -268,7 +259,7 @@ impl<T: Content> Page<T> {
             content: Mutex::new(content),
             used: AtomicBool::new(true),
             stored: AtomicUsize::new(0),
-            bases,
+            base,
         });
         if let Some(bytes) = bytes {
             let weak: Weak<Kept<T>> = Arc::downgrade(&kept);
@@ -280,13 +271,12 @@ impl<T: Content> Page<T> {
     /// A new page; `base` is the one of which it is a later state.
     #[must_use]
     pub fn new(pager: &Arc<Pager>, content: Arc<T>, base: Option<&Self>) -> Self {
-        let bases = base.map_or_else(Vec::new, |base| {
-            // A page that is not stored may never be: then it is a later state of those before.
-            let own = (base.stored_bytes() > 0).then(|| Arc::downgrade(&base.0));
-            let before = base.0.bases.iter().filter(|base| base.strong_count() > 0);
-            own.into_iter().chain(before.cloned()).take(BASES).collect()
+        // A page that is not stored may never be: then it is a later state of the one before.
+        let base = base.map_or_else(Weak::new, |base| match base.stored_bytes() {
+            0 => base.0.base.clone(),
+            _ => Arc::downgrade(&base.0),
         });
-        Self::make(pager, pager.number(), Some(content), bases)
+        Self::make(pager, pager.number(), Some(content), base)
     }
 
     /// A page that belongs to no painting.
@@ -298,7 +288,7 @@ impl<T: Content> Page<T> {
     /// A page that its document has, `stored` bytes of it.
     #[must_use]
     pub fn stored(pager: &Arc<Pager>, id: u64, stored: usize) -> Self {
-        let page = Self::make(pager, id, None, Vec::new());
+        let page = Self::make(pager, id, None, Weak::new());
         page.note_stored(stored);
         page
     }
@@ -321,11 +311,10 @@ impl<T: Content> Page<T> {
         Arc::ptr_eq(&self.0, &other.0)
     }
 
-    /// The newest page of which it is a later state and that is still referenced.
+    /// The page of which it is a later state, if that is still referenced.
     #[must_use]
     pub fn base(&self) -> Option<Self> {
-        let mut bases = self.0.bases.iter();
-        bases.find_map(Weak::upgrade).map(Self)
+        self.0.base.upgrade().map(Self)
     }
 
     /// Bytes that it takes in the document; 0 while it is not there.
@@ -386,6 +375,15 @@ impl<T: Content> Page<T> {
             pager.fault.set(what).ok();
             T::nothing()
         }));
+        self.keep(read)
+    }
+
+    /// Gives it its content, as its document has it, before anybody reads it.
+    pub fn put_back(&self, content: T) {
+        self.keep(Arc::new(content));
+    }
+
+    fn keep(&self, read: Arc<T>) -> Arc<T> {
         let mut content = locked(&self.0.content);
         if let Some(content) = &*content {
             return Arc::clone(content);
@@ -393,7 +391,7 @@ impl<T: Content> Page<T> {
         *content = Some(Arc::clone(&read));
         drop(content);
         let weak: Weak<Kept<T>> = Arc::downgrade(&self.0);
-        pager.enter(read.bytes(), weak);
+        self.0.pager.enter(read.bytes(), weak);
         read
     }
 }

@@ -66,24 +66,6 @@ fn no_page_leaves_memory_while_the_disk_fails() {
 }
 
 #[test]
-fn a_page_is_a_later_state_of_the_newest_that_is_left() {
-    let pager = Arc::default();
-    let later = |base: &Page<Planes>| {
-        let page = Page::new(&pager, Arc::new(plane(1)), Some(base));
-        page.note_stored(9);
-        page
-    };
-    let before = Page::new(&pager, Arc::new(plane(0)), None);
-    before.note_stored(9);
-    // States of a long stroke, each of which is forgotten as the next is there.
-    let mut newest = later(&before);
-    for _ in 0..20 {
-        newest = later(&newest);
-        assert!(newest.base().is_some_and(|base| base.is(&before)));
-    }
-}
-
-#[test]
 fn what_nobody_remembers_may_be_deleted_and_what_is_damaged_is_told() {
     let pager = Pager::backed(Arc::new(Numbers), usize::MAX, 1);
     let page = Page::new(&pager, Arc::new(plane(1)), None);

@@ -10,6 +10,7 @@ use rusqlite::{Connection, OpenFlags, OptionalExtension as _, params};
 
 use crate::error::DocumentError;
 use crate::file::connect::connect;
+use crate::file::probe::Probe;
 use crate::tables::checksum::{load_checksum, page_checksum, shown_checksum};
 use crate::tables::{loads, planes, schema};
 
@@ -35,6 +36,8 @@ pub struct Database {
     pub(crate) connection: Connection,
     /// zstd's level of the data that is written.
     pub(crate) level: i32,
+    /// Tells a disk that fails from a damaged file. It is dropped after the connection.
+    probe: Option<Probe>,
     /// Registration that keeps the rest of the process from opening the file, which would drop its locks.
     _registered: Option<OpenDatabase>,
     /// True if it was not closed the last time: its journal may hold rows to recover.
@@ -164,6 +167,7 @@ impl Database {
         let mut database = Self {
             connection: connect(path, flags, vfs)?,
             level: planes::LEVEL,
+            probe: None,
             _registered: FileId::of(path).ok().map(OpenDatabase::new),
             was_unclosed,
         };
@@ -176,7 +180,10 @@ impl Database {
                     holder: lock_holder(path),
                 });
             }
-            locked => locked?,
+            locked => {
+                locked?;
+                database.probe = Probe::new(path);
+            }
         }
         match database.set_up(new, access) {
             Ok(new) => Ok((database, new)),
@@ -252,6 +259,7 @@ impl Database {
         Ok(Self {
             connection: connect(Path::new(&uri), flags, None)?,
             level: planes::LEVEL,
+            probe: None,
             _registered: FileId::of(path).ok().map(OpenDatabase::new),
             was_unclosed: false,
         })
@@ -319,6 +327,14 @@ impl Database {
             .ok_or_else(|| DocumentError::Other(format!("{} is not UTF-8", to.display())))?;
         self.connection.execute("VACUUM INTO ?1", params![to])?;
         Ok(())
+    }
+
+    /// The error of the disk, where that is why something is said to be damaged.
+    pub(crate) fn judged(&self, error: DocumentError) -> DocumentError {
+        match &self.probe {
+            Some(probe) => probe.judged(error),
+            None => error,
+        }
     }
 
     /// Planes of a page.

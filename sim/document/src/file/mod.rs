@@ -2,5 +2,6 @@
 
 pub(crate) mod connect;
 pub mod database;
+pub(crate) mod probe;
 pub mod relocate;
 pub(crate) mod watch;

@@ -9,7 +9,8 @@ use std::sync::Arc;
 
 use maulstick_canvas::EditError;
 use maulstick_canvas::assets::Assets;
-use maulstick_canvas::page::Pager;
+use maulstick_canvas::page::{Page, Pager};
+use maulstick_canvas::planes::Planes;
 use maulstick_canvas::tile::{TileId, Version};
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::history::{Step, TilePlace, TileRef};
@@ -55,6 +56,19 @@ impl Opened {
     #[must_use]
     pub fn pending(&self) -> usize {
         self.records.len()
+    }
+
+    /// Pages of its tiles, wet and dry.
+    pub(crate) fn pages(&self) -> Vec<Page<Planes>> {
+        let tiles = self.restored.tiles.iter();
+        let tiles = tiles.filter_map(|(_, version)| version.tile.as_deref());
+        tiles
+            .flat_map(|tile| {
+                let dry = tile.dry().into_iter().flat_map(|stack| stack.layers());
+                let dry = dry.map(|layer| layer.planes.clone());
+                tile.wet_page().cloned().into_iter().chain(dry)
+            })
+            .collect()
     }
 
     /// Library of its paints.

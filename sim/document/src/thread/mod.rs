@@ -12,6 +12,8 @@ use std::sync::atomic::Ordering::SeqCst;
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
+use maulstick_canvas::page::Page;
+use maulstick_canvas::planes::Planes;
 use maulstick_painting::sequencer::Record;
 
 use crate::checkpoint::Checkpoint;
@@ -56,6 +58,9 @@ pub(crate) struct DocumentThread {
     journal: Retry,
     file: Retry,
     reading: Retry,
+    /// Pages of the painting as it is that were not read yet: they are, while there is nothing else to do, so that a disk that
+    /// fails later is painted on.
+    unread: Vec<Page<Planes>>,
     /// True until the first checkpoint of this file is merged into it: then it can be read without its journal.
     unmerged: bool,
 }
@@ -67,6 +72,8 @@ enum Work {
     Shown(Vec<ShownTile>),
     Commit(Vec<Record>),
     Relocate(RelocateRequest),
+    /// Page that nobody waits for.
+    Read(Page<Planes>),
     /// Check of the files alone.
     CheckFiles,
     Close,
@@ -94,8 +101,14 @@ impl DocumentThread {
             journal: Retry::default(),
             file: Retry::default(),
             reading: Retry::default(),
+            unread: Vec::new(),
             unmerged: true,
         }
+    }
+
+    /// Reads these pages while there is nothing else to do.
+    pub(crate) fn reading(self, unread: Vec<Page<Planes>>) -> Self {
+        Self { unread, ..self }
     }
 
     /// Thread for a painting of which nothing is in the file yet.
@@ -114,13 +127,14 @@ impl DocumentThread {
         let _guard = EndGuard(Arc::clone(&self.shared));
         loop {
             let work = self.next();
-            if self.writes && !matches!(work, Work::Fetch) {
+            if self.writes && !matches!(work, Work::Fetch | Work::Read(_)) {
                 let hurry = matches!(work, Work::Close);
                 self.check_files(hurry);
             }
             match work {
                 Work::CheckFiles => {}
                 Work::Fetch => self.read_pages(),
+                Work::Read(page) => self.read_ahead(&page),
                 Work::Checkpoint(checkpoint) => self.write_checkpoint(*checkpoint),
                 Work::Shown(tiles) => self.write_shown(&tiles),
                 Work::Commit(records) => self.commit(records),
@@ -216,6 +230,12 @@ impl DocumentThread {
             if closing {
                 return Work::Close;
             }
+            if self.reading.failed.is_none()
+                && queues.broken.is_none()
+                && let Some(page) = self.unread.pop()
+            {
+                return Work::Read(page);
+            }
             let waits =
                 may_write && is_whole && self.journal.is_due(false) && !queues.records.is_empty();
             let wait = match waits {
@@ -241,15 +261,16 @@ impl DocumentThread {
         write: impl FnOnce(&Database) -> Result<T, DocumentError>,
     ) -> Result<T, DocumentError> {
         let connection = &self.database.connection;
-        connection.execute_batch("BEGIN IMMEDIATE")?;
-        let written = write(&self.database).and_then(|written| {
+        let begun = connection.execute_batch("BEGIN IMMEDIATE");
+        let written = begun.map_err(DocumentError::from).and_then(|()| {
+            let written = write(&self.database)?;
             connection.execute_batch("COMMIT")?;
             Ok(written)
         });
         if written.is_err() && !connection.is_autocommit() {
             connection.execute_batch("ROLLBACK").ok();
         }
-        written
+        written.map_err(|error| self.database.judged(error))
     }
 
     /// Writes displayed tiles. Those that cannot be written are drawn again on demand.

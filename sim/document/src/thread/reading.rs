@@ -4,6 +4,9 @@ use std::sync::atomic::Ordering::SeqCst;
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
+use maulstick_canvas::page::Page;
+use maulstick_canvas::planes::Planes;
+
 use super::DocumentThread;
 use super::failures::Part;
 use super::queues::{Fetch, Life, Shared};
@@ -27,6 +30,22 @@ impl DocumentThread {
         match serve_fetches(&self.shared, &self.database) {
             Ok(()) => self.note_written(Part::Reading),
             Err(error) => self.note_failure(Part::Reading, &error),
+        }
+    }
+}
+
+impl DocumentThread {
+    /// Reads a page that nobody waits for, as long as half of the memory is free. What is wrong with it is told to who needs it.
+    pub(super) fn read_ahead(&mut self, page: &Page<Planes>) {
+        let counts = page.pager().counts();
+        if counts.resident > counts.bound / 2 {
+            self.unread.clear();
+            return;
+        }
+        if page.peek().is_none()
+            && let Ok(planes) = self.database.planes(page.id())
+        {
+            page.put_back(planes);
         }
     }
 }
@@ -87,9 +106,15 @@ fn serve_fetches(shared: &Shared, database: &Database) -> Result<(), DocumentErr
         let failed = &mut failure;
         let done = match &fetch {
             Fetch::Planes(id, answer) => {
-                answered(shared, database.planes(*id), until, answer, failed)
+                let read = database.planes(*id);
+                let read = read.map_err(|error| database.judged(error));
+                answered(shared, read, until, answer, failed)
             }
-            Fetch::Load(id, answer) => answered(shared, database.load(*id), until, answer, failed),
+            Fetch::Load(id, answer) => {
+                let read = database.load(*id);
+                let read = read.map_err(|error| database.judged(error));
+                answered(shared, read, until, answer, failed)
+            }
             Fetch::Records(serial, answer) => {
                 answer.send(record::row_from(database, *serial)).ok();
                 Some(())

@@ -1,14 +1,12 @@
 //! Deletion of pages, layers and loads that nothing refers to any more.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 use maulstick_canvas::planes::Planes;
-use rusqlite::{OptionalExtension as _, params};
+use rusqlite::params;
 
-use super::{Base, Writer};
+use super::Writer;
 use crate::error::DocumentError;
-use crate::file::database::DEPTH_MAX;
 use crate::tables::checksum::page_checksum;
 use crate::tables::planes;
 
@@ -24,10 +22,7 @@ impl Writer<'_, '_> {
                 }
                 (self.yield_hook)(self.database);
                 match self.database.planes(later) {
-                    Ok(content) => {
-                        let onto = self.living_base(*id, &dead)?;
-                        self.rebase(later, &content, onto)?;
-                    }
+                    Ok(content) => self.rebase(later, &content)?,
                     // It is lost with or without its base; this checkpoint is not.
                     Err(DocumentError::Damaged(_)) => {}
                     Err(error) => return Err(error),
@@ -53,47 +48,17 @@ impl Writer<'_, '_> {
             .collect::<Result<_, rusqlite::Error>>()?)
     }
 
-    /// The page that one which is deleted is a difference to, if it stays.
-    fn living_base(&self, id: u64, dead: &BTreeSet<u64>) -> Result<Option<Base>, DocumentError> {
-        let mut statement = self
-            .database
-            .connection
-            .prepare_cached("SELECT base, depth FROM page WHERE id = ?1")?;
-        let mut row = |id: i64| -> Result<Option<[i64; 2]>, DocumentError> {
-            let row = statement.query_row(params![id], |row| Ok([row.get(0)?, row.get(1)?]));
-            Ok(row.optional()?)
-        };
-        let mut base = row(id as i64)?.map_or(0, |[base, _]| base);
-        for _ in 0..=DEPTH_MAX {
-            let Some([next, depth]) = row(base)? else {
-                break;
-            };
-            if !dead.contains(&(base as u64)) {
-                return match self.database.planes(base as u64) {
-                    Ok(content) => Ok(Some((base, depth, Arc::new(content)))),
-                    // Nothing new may depend on a damaged page.
-                    Err(DocumentError::Damaged(_)) => Ok(None),
-                    Err(error) => Err(error),
-                };
-            }
-            base = next;
-        }
-        Ok(None)
-    }
-
-    /// Writes a page that was a difference to one which is deleted as a difference to another, or without one.
-    fn rebase(&self, id: u64, content: &Planes, onto: Option<Base>) -> Result<(), DocumentError> {
-        let base = onto.as_ref().map(|(_, _, content)| &**content);
-        let data = planes::encode(content, base, self.database.level)?;
-        let (base, depth) = onto.map_or((0, 0), |(base, depth, _)| (base, depth + 1));
+    /// Writes a page that was a difference without a base.
+    fn rebase(&self, id: u64, content: &Planes) -> Result<(), DocumentError> {
+        let data = planes::encode(content, None, self.database.level)?;
         let slots = planes::mask(content) as i64;
-        let sum = page_checksum(id, [base, depth, slots], &data);
+        let sum = page_checksum(id, [0, 0, slots], &data);
         let query =
-            "UPDATE page SET base = ?2, depth = ?3, slots = ?4, data = ?5, sum = ?6 WHERE id = ?1";
+            "UPDATE page SET base = 0, depth = 0, slots = ?2, data = ?3, sum = ?4 WHERE id = ?1";
         self.database
             .connection
             .prepare_cached(query)?
-            .execute(params![id as i64, base, depth, slots, data, sum])?;
+            .execute(params![id as i64, slots, data, sum])?;
         Ok(())
     }
 }

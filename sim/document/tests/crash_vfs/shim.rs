@@ -289,7 +289,8 @@ unsafe extern "C" fn read(
 ) -> c_int {
     // SAFETY: the file is open.
     if unsafe { fails(file) } {
-        return ffi::SQLITE_IOERR_READ;
+        // As the unix VFS says it; SQLite then calls the database malformed.
+        return ffi::SQLITE_IOERR_CORRUPTFS;
     }
     base!(file, xRead, buffer, bytes, offset)
 }

@@ -1,0 +1,56 @@
+//! Whether a disk still gives the bytes of a painting.
+//!
+//! Where the system reports an error on reading, SQLite says that the database is malformed
+//! (`SQLITE_IOERR_CORRUPTFS` in `vdbe.c`), as of a file with wrong bytes. A painting on a disk that fails is not damaged.
+
+use std::fs::File;
+use std::os::unix::fs::FileExt as _;
+use std::path::{Path, PathBuf};
+
+use crate::error::DocumentError;
+use crate::file::database::{companion, resolved};
+
+/// Bytes that are read at once.
+const PIECE: usize = 1 << 20;
+
+/// A file that is read beside SQLite. It is opened once it is locked, and closed after SQLite has closed it: when any file
+/// descriptor of it is closed, the system drops all locks that this process has on it.
+#[derive(Debug)]
+pub(crate) struct Probe {
+    file: File,
+    path: PathBuf,
+}
+
+impl Probe {
+    /// A probe of a painting that this process has locked; none where it cannot be opened.
+    pub(crate) fn new(path: &Path) -> Option<Self> {
+        let path = resolved(path);
+        let file = File::open(&path).ok()?;
+        Some(Self { file, path })
+    }
+
+    /// The error of the disk where bytes of the painting or its journal cannot be read, else the error as it is.
+    pub(crate) fn judged(&self, error: DocumentError) -> DocumentError {
+        if !matches!(error, DocumentError::Damaged(_)) {
+            return error;
+        }
+        // SQLite has no locks on the journal.
+        let journal = File::open(companion(&self.path, "-wal")).ok();
+        let mut files = [Some(&self.file), journal.as_ref()].into_iter().flatten();
+        match files.find_map(|file| read_through(file).err()) {
+            Some(fault) => DocumentError::Disk(fault.to_string()),
+            None => error,
+        }
+    }
+}
+
+fn read_through(file: &File) -> std::io::Result<()> {
+    let mut piece = vec![0; PIECE];
+    let mut at = 0;
+    loop {
+        match file.read_at(&mut piece, at)? {
+            0 => return Ok(()),
+            read => at += read as u64,
+        }
+    }
+}
