@@ -239,7 +239,7 @@ fn bad_tables_are_refused_with_their_line() {
     };
     has(
         &import("0 1 2 0\n0.1 1 2\n"),
-        &["t.dat:2", "pressure", "missing", "help:"],
+        &["t.dat:2", "3 columns", "pressure", "help:"],
     );
     has(
         &import("0 1 2 0\n0.1 a 2 0\n"),
