@@ -209,7 +209,8 @@ impl BrushNode {
         let asked = AskedBrush {
             asker: (asked.client, asked.number),
             file,
-            since_ns: now_ns,
+            // A stroke that is held for it is not one before it.
+            since_ns: self.hold.since_ns(now_ns).unwrap_or(now_ns).min(now_ns),
         };
         // Of two between the same strokes the later one is taken up.
         if let Some(before) = self.asked_brush.replace(asked) {
