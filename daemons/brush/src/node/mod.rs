@@ -36,7 +36,7 @@ use crate::arbiter::{Arbiter, Range, Stroke};
 use crate::contact_model::{NO_GRAIN, grain};
 use crate::fluid_force::{Held, drag};
 use crate::outbox::Outbox;
-use crate::path_simplifier::{PathSimplifier, Place, Start, Waiting};
+use crate::path_simplifier::{PathSimplifier, Place, Waiting};
 
 use commands::{AskedBrush, ToldFile};
 use contact_publisher::DragSent;
