@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use maulstick_bus::Qos;
 use maulstick_bus::bus::Publish;
 use maulstick_bus::typed::random_epoch;
+use maulstick_device::player::Rate;
 use maulstick_rig::{NodeHandle, UserError};
 use maulstick_streams::Recording;
 use maulstick_streams::recording::RecordedMessage;
