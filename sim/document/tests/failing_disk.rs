@@ -8,6 +8,8 @@ use std::path::Path;
 
 use crash_vfs::{Log, Refused, watch};
 use easel::Easel;
+use maulstick_canvas::page::Page;
+use maulstick_canvas::planes::Planes;
 use maulstick_document::{Access, DocumentSettings, Relocate};
 use studio::{Act, Painter, print};
 use tempfile::TempDir;
@@ -37,8 +39,26 @@ impl Session {
             folder,
         };
         session.paint(20);
+        while session.pages().is_empty() {
+            session.paint(1);
+        }
         session.easel.flush();
         session
+    }
+
+    /// Pages of all tiles, wet and dry.
+    fn pages(&self) -> Vec<Page<Planes>> {
+        let painting = self.easel.sequencer.painting();
+        let stores = [0, 1].map(|surface| painting.store(surface).expect("a surface"));
+        let tiles = stores.into_iter().flat_map(|store| store.iter());
+        tiles
+            .filter_map(|(_, version)| version.tile.as_deref())
+            .flat_map(|tile| {
+                let dry = tile.dry().into_iter().flat_map(|stack| stack.layers());
+                let dry = dry.map(|layer| layer.planes.clone());
+                tile.wet_page().cloned().into_iter().chain(dry)
+            })
+            .collect()
     }
 
     fn paint(&mut self, acts: usize) {
@@ -137,18 +157,7 @@ fn a_painting_that_was_opened_again_is_painted_on_though_its_disk_fails() {
     session.easel = Easel::open(&session.settings).expect("whole");
     // What nobody waits for is read after all that somebody waits for.
     let pager = session.easel.document.pager().clone();
-    let painting = session.easel.sequencer.painting();
-    let stores = [0, 1].map(|surface| painting.store(surface).expect("a surface"));
-    let tiles = stores.into_iter().flat_map(|store| store.iter());
-    let pages: Vec<_> = tiles
-        .filter_map(|(_, version)| version.tile.as_deref())
-        .flat_map(|tile| {
-            let dry = tile.dry().into_iter().flat_map(|stack| stack.layers());
-            let dry = dry.map(|layer| layer.planes.clone());
-            tile.wet_page().cloned().into_iter().chain(dry)
-        })
-        .collect();
-    assert!(!pages.is_empty());
+    let pages = session.pages();
     while pages.iter().any(|page| page.peek().is_none()) {
         std::thread::yield_now();
     }

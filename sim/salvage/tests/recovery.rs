@@ -389,6 +389,7 @@ fn what_another_program_added_is_left_out() {
     db.execute_batch(added).expect("altered");
     db.close().expect("closed");
     let bytes = std::fs::read(&path).expect("read");
+    std::fs::remove_file(&path).expect("removed");
     let (new, salvage) = painted.recover(&bytes).expect("recovered");
     assert_eq!(painted.check(&painted.rows, &new, &salvage), Ok(()));
 }

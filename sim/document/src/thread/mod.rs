@@ -347,7 +347,7 @@ impl DocumentThread {
                 self.shared
                     .committed
                     .fetch_max(checkpoint.sequencer.next, SeqCst);
-                drop(queues);
+                drop((queues, checkpoint));
                 if std::mem::take(&mut self.unmerged) {
                     self.database.merge_journal();
                     self.watch.note_merged();

@@ -38,7 +38,7 @@ impl DocumentThread {
     /// Reads a page that nobody waits for, as long as half of the memory is free. What is wrong with it is told to who needs it.
     pub(super) fn read_ahead(&mut self, page: &Page<Planes>) {
         let counts = page.pager().counts();
-        if counts.resident > counts.bound / 2 {
+        if counts.resident >= counts.bound / 2 {
             self.unread.clear();
             return;
         }
