@@ -19,7 +19,9 @@ use maulstick_rig::UserError;
 pub enum DeviceCommand {
     /// List attached devices, the drivers that fit, and what is missing
     List(list::ListOptions),
-    /// Let the user at this machine use its devices: installs the rule for udev, asking for the password
+    /// Let the user at this machine use its devices
+    ///
+    /// It installs the rule for udev, and asks for the password.
     Allow(allow::AllowOptions),
     /// Paint with a device from now on: it is kept for this user, and starts in the running rig
     Add(add::AddOptions),

@@ -234,7 +234,7 @@ fn the_marks_of_a_png_are_obeyed_by_their_precedence() {
         info.icc_profile = Some(icc.clone().into());
         let encoder = png::Encoder::with_info(&mut bytes, info).expect("an encoder");
         let mut writer = encoder.write_header().expect("a header");
-        for codes in codes {
+        if let Some(codes) = codes {
             let kind = png::chunk::ChunkType(*b"cICP");
             writer.write_chunk(kind, &codes).expect("a chunk");
         }

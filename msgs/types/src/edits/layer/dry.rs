@@ -85,7 +85,7 @@ mod cli {
     use super::Dry;
     use crate::edits::{CommandForm, StopDrying};
 
-    /// `dry`, with which a drying is stopped as well.
+    /// Dry the wet paint into a new layer, at once or over time; or stop a drying.
     #[derive(clap::Args)]
     struct DryOrStop {
         #[command(flatten)]
