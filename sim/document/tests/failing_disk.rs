@@ -82,18 +82,6 @@ impl Session {
         }
     }
 
-    /// Closes the painting and opens it again: then its pages are in the file alone.
-    fn open_again(self) -> Self {
-        self.easel.close();
-        // With room for none of them nothing is read ahead.
-        let settings = DocumentSettings {
-            memory: 1,
-            ..self.settings.clone()
-        };
-        let easel = Easel::open(&settings).expect("whole");
-        Self { easel, ..self }
-    }
-
     /// Waits until the document says that its disk fails, or that it does not.
     fn wait_until(&self, fails: bool) {
         while self.easel.document.fault().is_some() != fails {
@@ -125,29 +113,6 @@ fn a_disk_that_fails_is_painted_on_and_written_when_it_is_back() {
     session.wait_until(false);
     let (seen, found) = session.closed();
     assert_eq!(found, seen);
-}
-
-#[test]
-fn a_page_that_the_disk_does_not_give_is_waited_for() {
-    let mut session = Session::begin().open_again();
-    session.log.refuse(Refused::Everything);
-    let document = &session.easel.document;
-    let sequencer = &mut session.easel.sequencer;
-    let seen = std::thread::scope(|scope| {
-        let reader = scope.spawn(move || print(sequencer));
-        while document.fault().is_none() && !reader.is_finished() {
-            std::thread::yield_now();
-        }
-        assert!(
-            !reader.is_finished(),
-            "some page has to be in the file alone"
-        );
-        session.log.refuse(Refused::Nothing);
-        reader.join().expect("read")
-    });
-    assert_eq!(session.easel.document.pager().fault(), None);
-    let (again, found) = session.closed();
-    assert_eq!((again, found), (seen.clone(), seen));
 }
 
 #[test]

@@ -381,7 +381,8 @@ fn paint_that_never_was_is_seen() {
 #[test]
 fn what_another_program_added_is_left_out() {
     let painted = Painted::new(5, 40);
-    let path = painted.folder.path().join("altered.maul");
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("altered.maul");
     std::fs::write(&path, &painted.bytes).expect("written");
     let db = rusqlite::Connection::open(&path).expect("opens");
     let added = "CREATE TABLE mine(what TEXT); CREATE VIEW seen AS SELECT * FROM page; \
@@ -389,7 +390,6 @@ fn what_another_program_added_is_left_out() {
     db.execute_batch(added).expect("altered");
     db.close().expect("closed");
     let bytes = std::fs::read(&path).expect("read");
-    std::fs::remove_file(&path).expect("removed");
     let (new, salvage) = painted.recover(&bytes).expect("recovered");
     assert_eq!(painted.check(&painted.rows, &new, &salvage), Ok(()));
 }
