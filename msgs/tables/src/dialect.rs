@@ -49,7 +49,7 @@ impl Separator {
         let best = found
             .iter()
             .rev()
-            .max_by_key(|(_, score)| score.numbers - score.words);
+            .max_by_key(|(_, score)| (score.numbers - score.words, -score.words_above));
         best.map_or(Self::Comma, |(separator, _)| *separator)
     }
 }
@@ -62,6 +62,8 @@ struct Score {
     numbers: i64,
     /// Cells below the first line, which may be headings, that are neither numbers nor empty.
     words: i64,
+    /// Those of the first line.
+    words_above: i64,
 }
 
 impl Score {
@@ -75,7 +77,8 @@ impl Score {
                 match (cell.is_empty(), is_number(cell)) {
                     (true, _) => {}
                     (_, true) => score.numbers += 1,
-                    (_, false) => score.words += i64::from(number > 0),
+                    (_, false) if number > 0 => score.words += 1,
+                    (_, false) => score.words_above += 1,
                 }
             });
             score.parts |= cut.is_ok() && cells > 1;
