@@ -42,7 +42,7 @@ impl Separator {
             .filter(|(_, score)| score.parts)
             .copied()
             .collect::<Vec<_>>();
-        if found.is_empty() || blanks.1.words == 0 {
+        if found.is_empty() || (blanks.1.words == 0 && blanks.1.numbers > 0) {
             found.push(blanks);
         }
         // The first of the best.
