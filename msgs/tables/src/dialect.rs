@@ -42,14 +42,14 @@ impl Separator {
             .filter(|(_, score)| score.parts)
             .copied()
             .collect::<Vec<_>>();
-        if found.is_empty() || blanks.1.words == 0 {
+        if found.is_empty() || (blanks.1.words == 0 && blanks.1.numbers > 0) {
             found.push(blanks);
         }
         // The first of the best.
         let best = found
             .iter()
             .rev()
-            .max_by_key(|(_, score)| score.numbers - score.words);
+            .max_by_key(|(_, score)| (score.numbers - score.words, -score.words_above));
         best.map_or(Self::Comma, |(separator, _)| *separator)
     }
 }
@@ -62,6 +62,8 @@ struct Score {
     numbers: i64,
     /// Cells below the first line, which may be headings, that are neither numbers nor empty.
     words: i64,
+    /// Those of the first line.
+    words_above: i64,
 }
 
 impl Score {
@@ -75,7 +77,8 @@ impl Score {
                 match (cell.is_empty(), is_number(cell)) {
                     (true, _) => {}
                     (_, true) => score.numbers += 1,
-                    (_, false) => score.words += i64::from(number > 0),
+                    (_, false) if number > 0 => score.words += 1,
+                    (_, false) => score.words_above += 1,
                 }
             });
             score.parts |= cut.is_ok() && cells > 1;

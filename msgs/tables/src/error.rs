@@ -141,9 +141,9 @@ impl Fault {
             Self::MissingColumn { .. } => "give the column, or correct the headings",
             Self::Missing => "fill it in, or drop the line",
             Self::NotANumber { .. } => {
-                "correct it or drop the line; write a number as 0.25, without separators of thousands"
+                "correct it or drop the line; write 0.25, for example, without separators of thousands"
             }
-            Self::NotFinite { .. } => "drop the line",
+            Self::NotFinite { .. } => "drop the line, or write 0.25, for example",
             Self::TwoReadings { .. } => {
                 "write numbers with a decimal point, without separators of thousands"
             }

@@ -76,6 +76,12 @@ fn words_with_blanks_and_numbers_are_no_columns() {
 }
 
 #[test]
+fn headings_alone_are_parted() {
+    let table = Table::parse("t,x,y z\n", HeadingLine::First).expect("a table");
+    assert_eq!(table.headings(), ["t", "x", "y z"]);
+}
+
+#[test]
 fn notes_and_blank_lines_are_told() {
     let text = "# Surface: 0.03, 0.65\nx y\n\n0 0\n1 1\n\n\n2 2\n,\n3 3\n4 4\n\"# source: me\";;\n";
     let table = parsed(text);

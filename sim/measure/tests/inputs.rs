@@ -69,7 +69,7 @@ fn readings_that_none_can_be() {
         ),
         (
             "x,,1,,,,0.5,0.5,0.5,0.5,0.5",
-            "column 11: 11 cells under 10 headings",
+            "column 11: 11 columns, but the table has 10",
             "heading",
         ),
         (

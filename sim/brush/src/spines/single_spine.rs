@@ -454,15 +454,15 @@ mod tests {
             Ok(1)
         );
         says(error(""), 1, "empty");
-        says(error("0,0,0,1,0,0,0,1\n"), 1, "not the header");
+        says(error("0,0,0,1,0,0,0,1\n"), 1, "column 1");
         says(error(HEADER), 1, "no poses");
         says(rows("0,0,0,1,0,0,0"), 2, "7 columns");
         says(rows("0,0,0,1,0,0,0,1,2"), 2, "9 columns");
-        says(rows("0,0,0,a,0,0,0,1"), 2, "z: 'a' is not a number");
+        says(rows("0,0,0,a,0,0,0,1"), 2, "(z): 'a' is not a number");
         says(
             rows("0,0,0,1,0,0,0,1\n1,nan,0,1,0,0,0,1"),
             3,
-            "x: 'nan' is not finite",
+            "(x): 'nan' is not finite",
         );
         says(
             rows("0,0,0,1,0,0,0,1\n0,0,0,1,0,0,0,1"),

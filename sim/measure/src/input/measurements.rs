@@ -239,8 +239,11 @@ fn shares(table: &Table, headings: &Headings, row: Row<'_>) -> Result<Vec<f64>, 
         let share = match table.number(cell) {
             Ok(share) => share,
             Err(Fault::Missing) => 0.0,
+            Err(wrong @ Fault::TwoReadings { .. }) => {
+                return fault(wrong.to_string(), wrong.help());
+            }
             Err(wrong) => {
-                let what = format!("no share of '{paint}': {wrong}");
+                let what = format!("'{}' is not a share of '{paint}'", shown(cell));
                 return fault(what, wrong.help());
             }
         };
