@@ -13,7 +13,7 @@
 //! | `health` | events of the other processes |
 //! | `thumbnails` | pictures of versions and steps |
 //! | `requests` | commands that wait to be sent |
-//! | `stroke_barrier` | delays a command until the strokes before it are painted |
+//! | `stroke_barrier` | delays a command until the strokes before it are painted, and tells brushes what is pending |
 //! | `carried_paint` | what a brush carries, for its gauge |
 //! | `dispatcher` | a queue and a thread for each node |
 

@@ -3,6 +3,7 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`camera`] | desk points to window points and back |
+//! | `held_view` | the view while a brush touches the desk |
 //! | [`visible_tiles`] | the tiles of a surface that are in view |
 //! | `quad` | a surface in perspective |
 //! | `fit_crosses` | what a device is to touch while it is fitted |
