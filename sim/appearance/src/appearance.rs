@@ -108,65 +108,84 @@ impl Appearance {
         self.opacities.get(&layer).copied().unwrap_or(1.0)
     }
 
-    /// Internal reflectances over `under` with one more dry layer. If the backend fails, which is a fault of the
-    /// program, the layer is left out.
-    fn with_layer(
-        &self,
-        layer: &DryLayer,
-        under: Under<'_>,
-        backend: &mut dyn FilmBackend,
-    ) -> Vec<f32> {
-        let films = thickness(&layer.planes.get());
-        let paints: Vec<(usize, &[f32])> = films
-            .iter()
-            .map(|(slot, film)| (*slot, film.as_slice()))
-            .collect();
-        let opacity = self.opacity(layer.number);
-        let films = FilmPlanes {
-            paints: &paints,
-            opacity,
-            under,
-        };
-        let baked = backend.bake(&self.studio, &[films]).ok();
-        baked.and_then(|mut tiles| tiles.pop()).unwrap_or_else(|| {
-            let nothing = FilmPlanes {
-                paints: &[],
-                ..films
-            };
-            self.studio.bake(&nothing, TILE_CELLS)
-        })
+    /// Internal reflectances of stacks, a layer of all of them together: so all cores have work. If the backend fails,
+    /// which is a fault of the program, the layer is left out.
+    fn bake(&self, tiles: &[Unbaked<'_>], backend: &mut dyn FilmBackend) -> Vec<Vec<f32>> {
+        let (links, mut baked): (Vec<Vec<&DryStack>>, Vec<Option<Vec<f32>>>) =
+            tiles.iter().map(Unbaked::from_below).unzip();
+        let deepest = links.iter().map(Vec::len).max().unwrap_or(0);
+        for depth in 0..deepest {
+            let at: Vec<(usize, &DryLayer)> = links
+                .iter()
+                .enumerate()
+                .filter_map(|(tile, links)| Some((tile, links.get(depth)?.layer())))
+                .collect();
+            let films: Vec<Vec<(usize, Vec<f32>)>> = at
+                .iter()
+                .map(|(_, layer)| thickness(&layer.planes.get()))
+                .collect();
+            let paints: Vec<Vec<(usize, &[f32])>> = films
+                .iter()
+                .map(|films| {
+                    let slots = films.iter();
+                    slots.map(|(slot, film)| (*slot, film.as_slice())).collect()
+                })
+                .collect();
+            let batch: Vec<FilmPlanes<'_>> = at
+                .iter()
+                .zip(&paints)
+                .map(|((tile, layer), paints)| FilmPlanes {
+                    paints,
+                    opacity: self.opacity(layer.number),
+                    under: match &baked[*tile] {
+                        Some(planes) => Under::Planes(planes),
+                        None => tiles[*tile].ground,
+                    },
+                })
+                .collect();
+            let layers = backend.bake(&self.studio, &batch).unwrap_or_else(|_| {
+                let nothing = |films: &FilmPlanes<'_>| {
+                    let nothing = FilmPlanes {
+                        paints: &[],
+                        ..*films
+                    };
+                    self.studio.bake(&nothing, TILE_CELLS)
+                };
+                batch.iter().map(nothing).collect()
+            });
+            for ((tile, _), planes) in at.iter().zip(layers) {
+                baked[*tile] = Some(planes);
+            }
+        }
+        baked.into_iter().map(Option::unwrap_or_default).collect()
     }
+}
 
-    /// Internal reflectances of a stack over a ground, from `baked`, those of the stack's lower part
-    /// `known`, on.
-    fn bake(
-        &self,
-        stack: &DryStack,
-        ground: Under<'_>,
-        known: Option<(&DryStack, &[f32])>,
-        backend: &mut dyn FilmBackend,
-    ) -> Vec<f32> {
-        let mut above: Vec<&DryStack> = Vec::new();
-        let mut next = Some(stack);
-        let mut start = None;
+/// A stack over a ground that is to be baked.
+struct Unbaked<'a> {
+    stack: &'a DryStack,
+    ground: Under<'a>,
+    /// A lower part of it that is baked.
+    known: Option<(&'a DryStack, &'a [f32])>,
+}
+
+impl Unbaked<'_> {
+    /// Its layers from the lowest on that is not baked, and what is.
+    fn from_below(&self) -> (Vec<&DryStack>, Option<Vec<f32>>) {
+        let mut links = Vec::new();
+        let (mut next, mut start) = (Some(self.stack), None);
         while let Some(link) = next {
-            if let Some((stack, baked)) = known
+            if let Some((stack, baked)) = self.known
                 && std::ptr::eq(stack, link)
             {
                 start = Some(baked.to_vec());
                 break;
             }
-            above.push(link);
+            links.push(link);
             next = link.below().map(|below| &**below);
         }
-        let mut baked = start;
-        for link in above.iter().rev() {
-            let under = baked
-                .as_ref()
-                .map_or(ground, |planes| Under::Planes(planes));
-            baked = Some(self.with_layer(link.layer(), under, backend));
-        }
-        baked.unwrap_or_default()
+        links.reverse();
+        (links, start)
     }
 }
 
@@ -219,28 +238,63 @@ impl Bakery {
     /// stack that only grew since, just the new layers are computed.
     pub fn planes(
         &mut self,
-        (look, backend): (&Appearance, &mut dyn FilmBackend),
+        sight: (&Appearance, &mut dyn FilmBackend),
         surface: u32,
         id: TileId,
         (stack, ground): (&Arc<DryStack>, Under<'_>),
     ) -> Arc<[f32]> {
+        let mut planes = self.planes_of(sight, surface, &[(id, stack, ground)]);
+        planes.pop().unwrap_or_default()
+    }
+
+    /// As [`planes`](Self::planes), of several tiles of a surface, computed together.
+    pub fn planes_of(
+        &mut self,
+        (look, backend): (&Appearance, &mut dyn FilmBackend),
+        surface: u32,
+        tiles: &[(TileId, &Arc<DryStack>, Under<'_>)],
+    ) -> Vec<Arc<[f32]>> {
         if self.generation != look.generation {
             self.kept.clear();
             (self.generation, self.bytes) = (look.generation, 0);
         }
         self.looks += 1;
-        let (place, used) = ((surface, id), self.looks);
-        let kept = self.kept.get_mut(&place);
-        if let Some(kept) = kept
-            && Arc::ptr_eq(&kept.stack, stack)
-        {
-            kept.used = used;
-            return Arc::clone(&kept.planes);
+        let used = self.looks;
+        let mut all: Vec<Option<Arc<[f32]>>> = Vec::with_capacity(tiles.len());
+        let mut before = Vec::new();
+        for (tile, (id, stack, _)) in tiles.iter().enumerate() {
+            let place = (surface, *id);
+            let kept = self.kept.get_mut(&place);
+            all.push(kept.and_then(|kept| {
+                kept.used = used;
+                Arc::ptr_eq(&kept.stack, stack).then(|| Arc::clone(&kept.planes))
+            }));
+            if all[tile].is_none() {
+                let kept = self.kept.remove(&place);
+                self.bytes -= kept.as_ref().map_or(0, |kept| size_of_val(&*kept.planes));
+                before.push((tile, kept));
+            }
         }
-        let kept = self.kept.remove(&place);
-        self.bytes -= kept.as_ref().map_or(0, |kept| size_of_val(&*kept.planes));
-        let known = kept.as_ref().map(|kept| (&*kept.stack, &*kept.planes));
-        let planes: Arc<[f32]> = look.bake(stack, ground, known, backend).into();
+        let unbaked: Vec<Unbaked<'_>> = before
+            .iter()
+            .map(|(tile, kept)| Unbaked {
+                stack: tiles[*tile].1,
+                ground: tiles[*tile].2,
+                known: kept.as_ref().map(|kept| (&*kept.stack, &*kept.planes)),
+            })
+            .collect();
+        let baked = look.bake(&unbaked, backend);
+        for ((tile, _), planes) in before.iter().zip(baked) {
+            let planes: Arc<[f32]> = planes.into();
+            all[*tile] = Some(Arc::clone(&planes));
+            let (id, stack, _) = tiles[*tile];
+            self.keep((surface, id), stack, planes);
+        }
+        all.into_iter().flatten().collect()
+    }
+
+    /// Caches a baked tile, in the place of those that were looked at longest ago.
+    fn keep(&mut self, place: (u32, TileId), stack: &Arc<DryStack>, planes: Arc<[f32]>) {
         self.bytes += size_of_val(&*planes);
         while self.bytes > KEPT_BYTES {
             let oldest = self.kept.iter().min_by_key(|(_, kept)| kept.used);
@@ -250,16 +304,15 @@ impl Bakery {
             let gone = self.kept.remove(&place);
             self.bytes -= gone.map_or(0, |gone| size_of_val(&*gone.planes));
         }
-        let (stack, shared) = (Arc::clone(stack), Arc::clone(&planes));
+        let (stack, used) = (Arc::clone(stack), self.looks);
         self.kept.insert(
             place,
             Baked {
                 stack,
-                planes: shared,
+                planes,
                 used,
             },
         );
-        planes
     }
 }
 

@@ -7,6 +7,8 @@ use maulstick_types::brush::{BrushState, Solve, solve_flags};
 use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::stylus::{StylusPose, StylusSample};
 
+use setting_down::{Begins, Waiting};
+
 use crate::desk::{Desk, Obstacle, Plane, aim, ferrule};
 use crate::file::BrushFile;
 use crate::follow::stroke_count::StrokeCount;
@@ -68,6 +70,8 @@ struct TrackedBrush {
     before: Option<Sampled>,
     /// Cells from the newest sample back to where the head was solved last.
     left_over_m: f64,
+    /// Samples since the pen was set down, while it is not known where it goes.
+    waits: Waiting,
 }
 
 impl BrushModel {
@@ -159,17 +163,18 @@ impl BrushModel {
     /// last at the sample itself.
     ///
     /// A touching brush is solved each time it has moved by about a step, counted on across samples, so that its path
-    /// does not depend on how often it is sampled; between two of these a sample gives a preview. A pen lands and lifts
-    /// at its sample. A pause of up to [`BRIDGED_NS`] in contact is crossed like any path between two samples. A longer
+    /// does not depend on how often it is sampled; between two of these a sample gives a preview. A pen lifts at its
+    /// sample; one that is set down is shown at once, and [waits](setting_down) for the direction of its stroke. A pause of up to [`BRIDGED_NS`] in contact is crossed like any path between two samples. A longer
     /// one, another device, time that does not advance and a zoom restart the solver at the new pose: the solve says
     /// so, and nothing is painted from the one before to it. After a pause alone the head stays bent as it was.
     pub fn follow(&mut self, origin: Origin, event_ns: u64, sample: &StylusSample) -> Vec<Solve> {
+        let mut solves = Vec::new();
         if self.follows != Some(origin) {
             self.follows = Some(origin);
-            self.tracked = None;
+            solves = self.give_up();
         }
         let Some(plane) = self.plane_under(sample) else {
-            return Vec::new();
+            return solves;
         };
         let length = self.file.length_m();
         let in_desk = ferrule(sample, length, self.depth_share, &plane.half_space());
@@ -187,21 +192,36 @@ impl BrushModel {
             // While it hovers there is time.
             self.solve_table();
         }
-        let before = self.tracked.take().filter(|tracked| {
+        let goes_on = |tracked: &TrackedBrush| {
             event_ns > tracked.newest.event_ns
                 && (tracked.surface, tracked.zoom, tracked.is_pen) == (plane.id, plane.zoom, is_pen)
-        });
+        };
+        if !self.tracked.as_ref().is_some_and(goes_on) {
+            solves.extend(self.give_up());
+        }
+        let mut before = self.tracked.take();
         let stays = |tracked: &TrackedBrush| tracked.head.touches() && !sample.in_air();
         let paused = |tracked: &TrackedBrush| event_ns - tracked.newest.event_ns > BRIDGED_NS;
-        let (mut tracked, solves) = match before {
+        if let Some(tracked) = before.as_mut().filter(|tracked| !tracked.waits.is_empty()) {
+            let goes_on = !sample.in_air() && !paused(tracked);
+            let waits = goes_on.then(|| self.wait(tracked, here, &plane)).flatten();
+            if let Some(preview) = waits {
+                tracked.newest = here;
+                self.tracked = before;
+                solves.push(preview);
+                return solves;
+            }
+            solves.extend(self.set_down(tracked, goes_on.then_some(&here), &plane));
+        }
+        let mut tracked = match before {
             Some(mut tracked) if stays(&tracked) && !paused(&tracked) => {
-                let solves = self.go(&mut tracked, here, &plane);
+                solves.extend(self.go(&mut tracked, here, &plane));
                 tracked.before = Some(tracked.newest);
-                (tracked, solves)
+                tracked
             }
             Some(mut tracked) if stays(&tracked) => {
-                let solve = self.resume(&mut tracked, here, &plane);
-                (tracked, vec![solve])
+                solves.push(self.resume(&mut tracked, here, &plane));
+                tracked
             }
             Some(mut tracked) if !paused(&tracked) => {
                 (tracked.before, tracked.left_over_m) = (None, 0.0);
@@ -211,25 +231,47 @@ impl BrushModel {
                 if !sample.in_air() {
                     self.stay(&tracked, event_ns);
                 }
-                let mut solve = self.land(&mut tracked, here, sample.in_air(), &plane);
+                let begins =
+                    self.begin_to_wait(&mut tracked, (here, Begins::GoesOn), sample, &plane);
+                let mut solve = begins
+                    .unwrap_or_else(|| self.land(&mut tracked, here, sample.in_air(), &plane));
                 if is_pen && sample.in_air() && tracked.head.touches() {
                     // It was let go so far away that no bend could be followed there.
                     tracked.head = SolvedHead::at_rest(&self.tuft, &here.pose);
                     solve = self.land(&mut tracked, here, true, &plane);
                 }
-                (tracked, vec![solve])
+                solves.push(solve);
+                tracked
             }
             _ => {
                 let mut tracked = self.fresh(&plane, here, is_pen);
-                let mut solve = self.land(&mut tracked, here, sample.in_air(), &plane);
+                let begins = self.begin_to_wait(&mut tracked, (here, Begins::Anew), sample, &plane);
+                let mut solve = begins
+                    .unwrap_or_else(|| self.land(&mut tracked, here, sample.in_air(), &plane));
                 solve.flags |= solve_flags::RESTARTED;
-                (tracked, vec![solve])
+                solves.push(solve);
+                tracked
             }
         };
         tracked.newest = here;
         tracked.is_pressed = is_pen && !sample.in_air();
         self.tracked = Some(tracked);
         solves
+    }
+
+    /// Forgets where the brush was; what had waited to be set down is.
+    fn give_up(&mut self) -> Vec<Solve> {
+        let Some(mut tracked) = self.tracked.take() else {
+            return Vec::new();
+        };
+        let plane = |desk: &Desk| desk.plane(tracked.surface).copied();
+        match self.desk.as_ref().and_then(plane) {
+            Some(plane) => {
+                let zoom = tracked.zoom;
+                self.set_down(&mut tracked, None, &Plane { zoom, ..plane })
+            }
+            None => Vec::new(),
+        }
     }
 
     /// Begins another stroke with a head that is bent as it was before a pause in contact: one that
@@ -410,6 +452,7 @@ impl BrushModel {
             force_n: 0.0,
             before: None,
             left_over_m: 0.0,
+            waits: Waiting::default(),
         }
     }
 }
@@ -417,6 +460,7 @@ impl BrushModel {
 mod force;
 mod height;
 mod path;
+mod setting_down;
 #[cfg(test)]
 mod stroke_tests;
 #[cfg(test)]

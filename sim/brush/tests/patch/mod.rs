@@ -8,7 +8,7 @@ use maulstick_types::brush::Solve;
 use maulstick_types::stylus::{StylusPose, StylusSample};
 
 /// Side of the cells that count as touched, m.
-const CELL_M: f64 = 2.5e-4;
+pub(crate) const CELL_M: f64 = 2.5e-4;
 /// Places between two stations of a strip that are looked at.
 const BETWEEN: u32 = 16;
 
@@ -42,12 +42,23 @@ impl Bench {
 
     /// Follows a pen for 8 ms; the last solve.
     pub(crate) fn pen(&mut self, at: DVec2, tilt_rad: [f64; 2], pressure: f64) -> Solve {
+        let solves = self.pen_turned(at, (tilt_rad, 0.0), pressure);
+        solves.last().expect("a solve").clone()
+    }
+
+    /// Follows a pen with a tilt and a turn for 8 ms; all solves.
+    pub(crate) fn pen_turned(
+        &mut self,
+        at: DVec2,
+        (tilt_rad, twist_rad): ([f64; 2], f64),
+        pressure: f64,
+    ) -> Vec<Solve> {
         self.ns += 8_000_000;
         let sample = StylusSample {
             pose: StylusPose::Contact {
                 point_m: [at.x, at.y, 0.0],
                 tilt_rad,
-                twist_rad: 0.0,
+                twist_rad,
                 pressure,
             },
             in_range: true,
@@ -57,8 +68,7 @@ impl Bench {
             source: 1,
             epoch: 1,
         };
-        let solves = self.model.follow(origin, self.ns, &sample);
-        solves.last().expect("a solve").clone()
+        self.model.follow(origin, self.ns, &sample)
     }
 
     /// Middles of the cells that a solve touches, m.

@@ -1,0 +1,221 @@
+//! A pen that is set down: its first samples wait until it is known where it goes.
+//!
+//! A pressed pen gives a point and a pressure, and not how the hand came there. A head that is lowered straight down
+//! spreads, or buckles to any side, and is dragged round as soon as the hand moves: the stroke would begin with an anvil
+//! or a hook. So what the brush does waits for a bit of way, and the head is then laid down as one that has come along
+//! it: unseen, over a run-up before the first point. A pen that rests prints where it is.
+
+use glam::DVec2;
+use maulstick_types::brush::{Solve, solve_flags};
+use maulstick_types::stylus::StylusSample;
+
+use super::{BrushModel, TrackedBrush};
+use crate::desk::{Obstacle, Plane};
+use crate::handle_path::Sampled;
+use crate::head_solver::SolvedHead;
+use crate::lead::Lead;
+use crate::mark::point_of;
+
+/// Way of the point after which the direction of a stroke is known, m.
+const KNOWN_M: f64 = 1e-3;
+/// Way that tells a direction after [`TELLS_NS`], m.
+const TELLING_M: f64 = 0.2e-3;
+/// See [`TELLING_M`], ns.
+const TELLS_NS: u64 = 50_000_000;
+/// Longest time for which a pen that rests waits, ns: then it is a dab.
+const RESTS_NS: u64 = 100_000_000;
+/// Length of a run-up, by the length of the head and how deep it is pressed.
+const RUN_UP: (f64, f64) = (0.15, 3.0);
+/// Share of a run-up in which the head comes down.
+const COMES_DOWN: f64 = 0.5;
+/// Greatest distance between two solves of a run-up, m, and most of them.
+const STRIDE_M: f64 = 0.5e-3;
+/// See [`STRIDE_M`].
+const MOST_STRIDES: f64 = 64.0;
+
+/// Samples of a pen that was set down and whose direction is not known.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Waiting {
+    samples: Vec<Sampled>,
+    begins: Begins,
+}
+
+/// How a brush comes to a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Begins {
+    /// From the air.
+    #[default]
+    GoesOn,
+    /// Anew, where nothing leads from the pose before.
+    Anew,
+}
+
+impl Waiting {
+    /// True while no sample waits.
+    pub(super) fn is_empty(&self) -> bool {
+        self.samples.is_empty()
+    }
+
+    /// Direction of a stroke to `here`; `None` while it may still be found out. Zero is that of a pen that rests.
+    fn direction(&self, here: &Sampled) -> Option<DVec2> {
+        let first = self.samples.first()?;
+        let way = point_of(&here.pose) - point_of(&first.pose);
+        let waited_ns = here.event_ns.saturating_sub(first.event_ns);
+        if way.length() >= KNOWN_M {
+            return Some(self.known(way));
+        }
+        let tells = way.length() >= TELLING_M;
+        match tells && waited_ns >= TELLS_NS || waited_ns >= RESTS_NS {
+            true => Some(self.told(way)),
+            false => None,
+        }
+    }
+
+    /// Direction of a way that ends before it is known.
+    fn told(&self, way: DVec2) -> DVec2 {
+        match way.length() >= TELLING_M {
+            true => way.normalize_or_zero(),
+            false => DVec2::ZERO,
+        }
+    }
+
+    /// Direction of the place where the way from the first point to `way` beside it is [`KNOWN_M`] long: however often
+    /// it was sampled.
+    fn known(&self, way: DVec2) -> DVec2 {
+        let (Some(first), Some(last)) = (self.samples.first(), self.samples.last()) else {
+            return DVec2::ZERO;
+        };
+        let before = point_of(&last.pose) - point_of(&first.pose);
+        let piece = way - before;
+        // |before + s·piece| = KNOWN_M.
+        let (a, b) = (piece.length_squared(), before.dot(piece));
+        let c = before.length_squared() - KNOWN_M * KNOWN_M;
+        let s = ((b * b - a * c).max(0.0).sqrt() - b) / a.max(f64::MIN_POSITIVE);
+        (before + piece * s.clamp(0.0, 1.0)).normalize_or_zero()
+    }
+}
+
+impl BrushModel {
+    /// Begins to wait with a pen that comes down at `here`; how it would land, as a preview. `None` where it touches
+    /// nothing, or does not come down.
+    pub(super) fn begin_to_wait(
+        &mut self,
+        tracked: &mut TrackedBrush,
+        (here, begins): (Sampled, Begins),
+        sample: &StylusSample,
+        plane: &Plane,
+    ) -> Option<Solve> {
+        if sample.in_air() || !tracked.is_pen {
+            return None;
+        }
+        let mut landed = tracked.clone();
+        let mut solve = self.land(&mut landed, here, false, plane);
+        if !landed.head.touches() {
+            return None;
+        }
+        tracked.waits = Waiting {
+            samples: vec![here],
+            begins,
+        };
+        (tracked.stroke, tracked.force_n) = (landed.stroke, landed.force_n);
+        solve.flags |= solve_flags::PREVIEW;
+        Some(solve)
+    }
+
+    /// Waits with one more sample, and gives how the brush would land there as a preview; `None` where it need not wait
+    /// any longer.
+    pub(super) fn wait(
+        &mut self,
+        tracked: &mut TrackedBrush,
+        here: Sampled,
+        plane: &Plane,
+    ) -> Option<Solve> {
+        if tracked.waits.direction(&here).is_some() {
+            return None;
+        }
+        tracked.waits.samples.push(here);
+        let mut landed = tracked.clone();
+        self.stay(&landed, here.event_ns);
+        let mut solve = self.land(&mut landed, here, false, plane);
+        tracked.force_n = landed.force_n;
+        solve.flags |= solve_flags::PREVIEW;
+        Some(solve)
+    }
+
+    /// Sets down a brush that has waited, toward `here` if it goes on pressed, and goes the way of the samples that
+    /// waited.
+    pub(super) fn set_down(
+        &mut self,
+        tracked: &mut TrackedBrush,
+        here: Option<&Sampled>,
+        plane: &Plane,
+    ) -> Vec<Solve> {
+        let waits = std::mem::take(&mut tracked.waits);
+        let Some((first, others)) = waits.samples.split_first() else {
+            return Vec::new();
+        };
+        let (first, others) = (*first, others.to_vec());
+        let toward = match here.and_then(|here| waits.direction(here)) {
+            Some(toward) => toward,
+            None => {
+                let last = others.last().unwrap_or(&first);
+                waits.told(point_of(&last.pose) - point_of(&first.pose))
+            }
+        };
+        let mut landing = match toward == DVec2::ZERO {
+            true => self.land(tracked, first, false, plane),
+            false => self.land_along(tracked, first, toward, plane),
+        };
+        if waits.begins == Begins::Anew {
+            landing.flags |= solve_flags::RESTARTED;
+        }
+        let mut solves = vec![landing];
+        (tracked.newest, tracked.before, tracked.left_over_m) = (first, None, 0.0);
+        for next in others {
+            solves.extend(self.go(tracked, next, plane));
+            tracked.before = Some(tracked.newest);
+            tracked.newest = next;
+        }
+        solves
+    }
+
+    /// Solves a brush that touched nothing, and comes down at a sample as one that has been drawn there in the
+    /// direction `toward`, a unit vector.
+    pub(super) fn land_along(
+        &mut self,
+        tracked: &mut TrackedBrush,
+        here: Sampled,
+        toward: DVec2,
+        plane: &Plane,
+    ) -> Solve {
+        self.run_up(tracked, here, toward);
+        let solve = self.solve(tracked, here, plane);
+        tracked.force_n = tracked.head.force_n();
+        solve
+    }
+
+    /// Bends a head as the way to a sample would: it comes down on an endless plane and is drawn along.
+    fn run_up(&mut self, tracked: &mut TrackedBrush, here: Sampled, toward: DVec2) {
+        let (by_length, by_depth) = RUN_UP;
+        let depth_m = (-self.lowest_at_rest(&here.pose)).max(0.0);
+        let way_m = by_length * self.file.length_m() + by_depth * depth_m;
+        let strides = (way_m / STRIDE_M).ceil().clamp(1.0, MOST_STRIDES);
+        let ground = [Obstacle::ground()];
+        tracked.lead = Lead::default();
+        for stride in 0..=strides as u32 {
+            let gone = f64::from(stride) / strides;
+            let above_m = depth_m * (1.0 - gone / COMES_DOWN).max(0.0);
+            let mut at = here;
+            at.pose.translation += (toward * way_m * (gone - 1.0)).extend(above_m);
+            let brush = self.placed(tracked, &at);
+            if stride == 0 {
+                tracked.head = SolvedHead::at_rest(&self.tuft, &brush);
+            }
+            let (room, settings) = (&mut self.solver, &self.settings);
+            tracked
+                .head
+                .solve(room, &self.tuft, &brush, &ground, settings);
+            self.lead(tracked, &at, way_m / strides);
+        }
+    }
+}
