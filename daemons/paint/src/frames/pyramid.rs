@@ -171,14 +171,21 @@ impl Pyramid {
         self.turn_to(look);
         let painted = |id: &TileId| surface.tiles.get(id).and_then(|(_, tile)| tile.as_deref());
         let grounds: Vec<_> = ids.iter().map(|id| surface.bare.ground.tile(*id)).collect();
-        let mut baked = Vec::with_capacity(ids.len());
-        for (id, ground) in ids.iter().zip(&grounds) {
-            baked.push(surface.bare.baked(painted(id)).map(|stack| {
-                let sight = (look, &mut self.films as &mut dyn FilmBackend);
-                self.bakery
-                    .planes(sight, number, *id, (stack, ground.under()))
-            }));
-        }
+        let stacks: Vec<Option<&Arc<DryStack>>> = ids
+            .iter()
+            .map(|id| surface.bare.baked(painted(id)))
+            .collect();
+        let dry: Vec<(TileId, &Arc<DryStack>, Under<'_>)> = ids
+            .iter()
+            .zip(stacks.iter().zip(&grounds))
+            .filter_map(|(id, (stack, ground))| Some((*id, (*stack)?, ground.under())))
+            .collect();
+        let sight = (look, &mut self.films as &mut dyn FilmBackend);
+        let mut planes = self.bakery.planes_of(sight, number, &dry).into_iter();
+        let baked: Vec<Option<Arc<[f32]>>> = stacks
+            .iter()
+            .map(|stack| stack.and_then(|_| planes.next()))
+            .collect();
         let bare = &surface.bare;
         let films: Vec<WetFilms> = ids.iter().map(|id| bare.films(painted(id))).collect();
         let planes: Vec<Vec<(usize, &[f32])>> = films.iter().map(WetFilms::planes).collect();
