@@ -28,6 +28,7 @@ const GROUPS: [(&str, &[Action]); 4] = [
             Action::Undo,
             Action::Redo,
             Action::Dry,
+            Action::Quit,
         ],
     ),
     (
@@ -65,12 +66,24 @@ const GROUPS: [(&str, &[Action]); 4] = [
     ),
     (
         tr_noop!("Help"),
-        &[Action::Keys, Action::Settings, Action::ForceOff],
+        &[
+            Action::Tutorial,
+            Action::Keys,
+            Action::Settings,
+            Action::ForceOff,
+            Action::About,
+        ],
     ),
 ];
 
 /// Distance from the window's edges, points.
 const MARGIN: f32 = 6.0;
+
+/// Its area.
+#[must_use]
+pub(crate) fn id() -> Id {
+    Id::unique("bar")
+}
 
 /// Shows the bar; the action that was chosen.
 pub(super) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action> {
@@ -78,7 +91,7 @@ pub(super) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action>
     let (_, corner, inward) = side.anchors();
     let aside = MARGIN + sides::column_at(work.preferences, side);
     let mut chosen = None;
-    Area::new(Id::unique("bar"))
+    Area::new(id())
         .order(Order::Middle)
         .anchor(corner, [inward * aside, -MARGIN])
         .accessible_name(tr!("Commands"))

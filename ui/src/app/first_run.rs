@@ -5,14 +5,15 @@ use std::time::Duration;
 
 use eframe::egui::{Area, Color32, Context, Frame, Id, Margin, Order, Rect, RichText, Stroke};
 
-use crate::app::{rack, sides};
+use crate::app::sides;
+use crate::input::keys::Action;
 use crate::language::translated;
 use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 use crate::settings::window_side::WindowSide;
 use crate::widgets::key_picture;
 
-/// The line of help.
+/// The line of help with a clean brush.
 pub(super) const HELP: &str =
     tr_noop!("Drag the brush through a paint of the palette, then over the canvas.");
 /// Duration of the line over another painting, s.
@@ -22,6 +23,8 @@ const AGAIN_S: f64 = 10.0;
 const BESIDE: f32 = 24.0;
 /// Width of the picture beside the rack, where an ordinary window has no canvas, points.
 const WIDTH: f32 = 320.0;
+/// Height of the line over the window's edge beside the rack, where the painting's name stands, points.
+const ABOVE_NAME: f32 = 48.0;
 /// Height of the line over the window's edge where it stands over the bar, and its width there, points.
 const ABOVE_BAR: f32 = 56.0;
 const LEAST_WIDTH: f32 = 256.0;
@@ -67,13 +70,22 @@ impl FirstRun {
             }
             context.request_repaint_after(Duration::from_secs_f64(left));
         }
-        line(context, palette, preferences);
+        let hand = rig.brushes.get(rig.in_hand);
+        let carried = hand.and_then(|brush| brush.carried.as_ref());
+        let help = match carried.is_some_and(|carried| carried.load_share > 0.0) {
+            true => tr!(
+                "The brush is full: drag it over the canvas. For another colour clean it with {key}, and drag it through a paint of the palette.",
+                key = preferences.keys.written(context, Action::Clean)
+            ),
+            false => translated(HELP).to_owned(),
+        };
+        line(context, &help, palette, preferences);
     }
 }
 
 /// Light on dark, with an edge: it is read over any canvas and in either theme. It stands beside the rack, or over the bar
 /// while the palette is beside the rack: it covers no paint.
-fn line(context: &Context, palette: Option<Rect>, preferences: &Preferences) {
+fn line(context: &Context, help: &str, palette: Option<Rect>, preferences: &Preferences) {
     let rack = sides::rack_side(preferences);
     let middle = context.content_rect().center().x;
     let is_out = |palette: Rect| match rack {
@@ -81,7 +93,12 @@ fn line(context: &Context, palette: Option<Rect>, preferences: &Preferences) {
         WindowSide::Left => palette.left() < middle,
     };
     let (side, aside, above, most) = match palette.is_some_and(is_out) {
-        false => (rack, rack::WIDTH + BESIDE, 32.0, WIDTH),
+        false => (
+            rack,
+            sides::rack_at(preferences, rack) + BESIDE,
+            ABOVE_NAME,
+            WIDTH,
+        ),
         true => (rack.other(), BESIDE, ABOVE_BAR, LEAST_WIDTH),
     };
     let (_, corner, inward) = side.anchors();
@@ -99,7 +116,7 @@ fn line(context: &Context, palette: Option<Rect>, preferences: &Preferences) {
                 .show(ui, |ui| {
                     ui.set_max_width(most);
                     let light = Color32::from_gray(240);
-                    ui.label(RichText::new(translated(HELP)).color(light).size(15.0));
+                    ui.label(RichText::new(help).color(light).size(15.0));
                     ui.add_space(6.0);
                     key_picture::show(ui, &preferences.keys, most, light);
                 });
@@ -113,6 +130,7 @@ mod tests {
     use maulstick_types::paint::PaintStatus;
 
     use super::*;
+    use crate::rig::carried_paint::CarriedPaint;
     use crate::test_support::panel_bench::{rig, status};
 
     struct Day {
@@ -170,6 +188,23 @@ mod tests {
         assert!(says(&mut harness, |status| *status = another));
         harness.run_steps(10);
         assert!(harness.query_by_label_contains(HELP).is_none());
+    }
+
+    #[test]
+    fn a_full_brush_is_told_to_paint_and_a_clean_one_to_take_paint() {
+        for (load_share, is_full) in [(0.0, false), (0.8, true)] {
+            let mut harness = day(false);
+            harness.state_mut().rig.brushes[0].carried = Some(CarriedPaint {
+                colours: Vec::new(),
+                load_share,
+            });
+            harness.run_steps(2);
+            let takes = harness.query_by_label(HELP).is_some();
+            let paints = harness
+                .query_by_label_contains("The brush is full")
+                .is_some();
+            assert_eq!((takes, paints), (!is_full, is_full));
+        }
     }
 
     #[test]

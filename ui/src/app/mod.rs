@@ -8,6 +8,7 @@
 //! | `overlay` | what lies over the desk: panels, dialogs, help |
 //! | [`rack`] | the brush rack at the edge |
 //! | `first_run` | the line of help for a new painter |
+//! | `help_pages` | a first painting in steps; what program this is |
 //! | `window_memory` | title and size of the window, and the painter's habits |
 
 use std::path::PathBuf;
@@ -60,9 +61,10 @@ use crate::widgets::notifications::Notifications;
 use crate::widgets::progress::Progress;
 
 mod actions;
-mod bar;
+pub(crate) mod bar;
 mod column;
 mod first_run;
+mod help_pages;
 pub(crate) mod overlay;
 pub mod rack;
 pub(crate) mod sides;
@@ -342,7 +344,10 @@ impl eframe::App for App {
         let brush = self.rig.brush_name();
         let taken = self.mouse.take(now_ns, brush);
         let grip = self.preferences.mouse;
-        let places = self.brush_turn.turned(now_ns, &places, &grip);
+        let pixels_per_point = f64::from(context.pixels_per_point());
+        let pixel_m = |view: &View| 1.0 / (view.scale * pixels_per_point);
+        let pixel_m = self.view.as_ref().map_or(0.0, pixel_m);
+        let places = self.brush_turn.turned(now_ns, &places, &grip, pixel_m);
         if let Err(error) = taken.and_then(|()| self.mouse.send(now_ns, &places, grip.pressure)) {
             tracing::warn!("the mouse: {error}");
         }
@@ -361,6 +366,7 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         self.look.follow(ui.ctx(), &mut self.preferences);
+        self.preferences.is_narrow = ui.max_rect().width() < sides::NARROW;
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
             let side = match self.preferences.rack_is_left() {
                 false => Side::Left,

@@ -1,15 +1,16 @@
 //! Everything over the desk: rack, panels, dialogs, notifications, the line of help; and the keys for them.
 
-use eframe::egui::{self, Align2, Context, Rect, Ui};
+use eframe::egui::{self, Align, Align2, Context, Layout, Rect, Ui};
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Clean, Dry, Edit, Redo, Scrape, Undo};
-use maulstick_types::scene::{CANVAS, PALETTE};
+use maulstick_types::edits::{Clean, Dry, Edit, Redo, Relight, Scrape, Undo};
+use maulstick_types::scene::{CANVAS, Light, PALETTE};
 use maulstick_types::values::BrushName;
 
 use crate::app::bar;
 use crate::app::column::Column;
 use crate::app::first_run::FirstRun;
+use crate::app::help_pages::HelpPages;
 use crate::app::rack;
 use crate::app::sides;
 use crate::dialogs::Files;
@@ -21,6 +22,7 @@ use crate::language::{step, translated};
 use crate::matching::colour_window::ColourWindow;
 use crate::motions::Motions;
 use crate::panels;
+use crate::panels::light::lamp_undo::LampUndo;
 use crate::reference::Reference;
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
@@ -58,6 +60,8 @@ pub(crate) struct Overlay {
     reference: Reference,
     colour: ColourWindow,
     first_run: FirstRun,
+    help_pages: HelpPages,
+    lamp_undo: LampUndo,
     size_drag: SizeDrag,
     transport: TransportBar,
     pub(crate) motions: Motions,
@@ -73,6 +77,8 @@ impl Overlay {
     pub(crate) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) -> Vec<Action> {
         let context = ui.ctx().clone();
         let mut rest = Vec::new();
+        self.lamp_undo
+            .follow(work.rig, context.egui_is_using_pointer());
         // Keys are a dialog's while one is open.
         let in_dialog = self.files.is_open() || self.settings.is_open() || self.motions.is_open();
         if !in_dialog {
@@ -102,7 +108,9 @@ impl Overlay {
         }
         if self.alone.is_none() {
             self.transport.show(&context, work);
-            rack::show(&context, work);
+            if sides::has_rack(work.preferences) {
+                rack::show(&context, work);
+            }
             if work.preferences.panels {
                 self.column.show(&context, work);
             }
@@ -121,6 +129,7 @@ impl Overlay {
             self.files.follow(&context, act, work);
         }
         self.colour.show(&context, work);
+        self.help_pages.show(&context, work);
         self.files.show(&context, &mut self.reference, work);
         self.settings.show(&context, work);
         self.motions.show(&context, work);
@@ -175,12 +184,18 @@ impl Overlay {
 
     /// Does what a key asks for; `false` where it concerns the desk.
     fn follow(&mut self, context: &Context, act: Action, work: &mut PanelContext<'_>) -> bool {
-        if self.motions.follow(act) {
+        if self.motions.follow(act) || self.help_pages.follow(act) {
             return true;
         }
         match act {
-            Action::Undo => work.requests.send(Undo { brush: None }),
-            Action::Redo => work.requests.send(Redo { brush: None }),
+            Action::Undo => match self.lamp_undo.undo(work.rig) {
+                Some(light) => relight(work, light),
+                None => work.requests.send(Undo { brush: None }),
+            },
+            Action::Redo => match self.lamp_undo.redo(work.rig) {
+                Some(light) => relight(work, light),
+                None => work.requests.send(Redo { brush: None }),
+            },
             Action::Dry => work.requests.send(Dry::whole(CANVAS)),
             Action::Scrape => work.requests.send(Scrape {
                 region: None,
@@ -256,6 +271,7 @@ impl Overlay {
             }),
             Action::Keys => self.keys = !self.keys,
             Action::Colour => self.colour.toggle(),
+            Action::Quit => context.send_viewport_cmd(egui::ViewportCommand::Close),
             Action::Settings => self.settings.open(),
             Action::Motions => self.motions.open(work),
             Action::Clean => {
@@ -304,21 +320,32 @@ impl Overlay {
                             for (binding, key) in keymap.bindings() {
                                 // What has no key is in the menu, and in the settings.
                                 if let Some(key) = key {
-                                    ui.monospace(keys::written(context, &key));
-                                    ui.label(translated(binding.words));
-                                    ui.end_row();
+                                    key_row(ui, &keys::written(context, &key), binding.words);
                                 }
                             }
                             for (keys, words) in keys::HELD {
-                                ui.monospace(translated(keys));
-                                ui.label(translated(words));
-                                ui.end_row();
+                                key_row(ui, translated(keys), words);
                             }
                         });
                 });
             });
         self.keys = open;
     }
+}
+
+/// Brings back a light that undo or redo leads to.
+fn relight(work: &mut PanelContext<'_>, light: Light) {
+    let expose = false;
+    work.requests.send(Relight { light, expose });
+    work.notifications
+        .note(tr!("The light is as it was").to_owned());
+}
+
+/// A row of the table of keys: a key at the right of its column, beside what it does.
+fn key_row(ui: &mut Ui, key: &str, words: &str) {
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.monospace(key));
+    ui.label(translated(words));
+    ui.end_row();
 }
 
 fn fills_screen(context: &Context) -> bool {
@@ -360,9 +387,12 @@ fn past_tense(request: &Request) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use eframe::egui::{Key, Modifiers};
+    use egui_kittest::Harness;
+    use maulstick_types::command::Command;
+    use maulstick_types::edits::{Edit, Relight};
 
     use crate::settings::preferences::Preferences;
-    use crate::test_support::overlay_bench::{ctrl, press, window};
+    use crate::test_support::overlay_bench::{Bench, ctrl, press, window};
     use crate::tracing::settings::{Tracing, Tracings};
 
     #[test]
@@ -385,6 +415,40 @@ mod tests {
             let lines = bench.told();
             assert!(lines.lines().any(|line| line.trim_end() == told), "{lines}");
         }
+    }
+
+    #[test]
+    fn undo_takes_back_a_lamp_that_was_changed_last() {
+        let mut harness = window(None);
+        let light = |harness: &Harness<'_, Bench>| {
+            let scene = harness.state().rig.scene.as_ref().expect("a scene");
+            scene.light.clone()
+        };
+        let before = light(&harness);
+        let scene = harness.state_mut().rig.scene.as_mut().expect("a scene");
+        scene.light.direction = [0.3, 0.2, 0.9];
+        harness.run_steps(2);
+        ctrl(&mut harness, Key::Z, Modifiers::NONE);
+        let asked = harness.state_mut().asked();
+        let back = Command::from(Relight {
+            light: before.clone(),
+            expose: false,
+        });
+        assert_eq!(asked, [("paint".to_owned(), back)]);
+        harness
+            .state_mut()
+            .rig
+            .scene
+            .as_mut()
+            .expect("a scene")
+            .light = before;
+        harness.run_steps(2);
+        ctrl(&mut harness, Key::Z, Modifiers::NONE);
+        let asked = harness.state_mut().asked();
+        assert!(
+            matches!(asked[0].1, Command::Edit(Edit::Undo(_))),
+            "{asked:?}"
+        );
     }
 
     #[test]

@@ -8,6 +8,8 @@ use crate::settings::window_side::WindowSide;
 pub(crate) const COLUMN: f32 = 314.0;
 /// Distance of the column from what is beside it, points.
 pub(crate) const MARGIN: f32 = 8.0;
+/// In a window narrower than this the rack gives way to the column, points.
+pub(crate) const NARROW: f32 = 1000.0;
 
 /// The side of the rack, as it is seen.
 #[must_use]
@@ -35,10 +37,16 @@ pub(crate) fn column_at(preferences: &Preferences, side: WindowSide) -> f32 {
     }
 }
 
+/// True if the rack is shown: in a narrow window it gives way to the column.
+#[must_use]
+pub(crate) fn has_rack(preferences: &Preferences) -> bool {
+    !(preferences.is_narrow && preferences.panels)
+}
+
 /// Width of the rack at a side, points; 0 if it is not there.
 #[must_use]
 pub(crate) fn rack_at(preferences: &Preferences, side: WindowSide) -> f32 {
-    match rack_side(preferences) == side {
+    match has_rack(preferences) && rack_side(preferences) == side {
         true => rack::WIDTH,
         false => 0.0,
     }
@@ -72,5 +80,14 @@ mod tests {
         let left = Some(WindowSide::Left);
         assert_eq!(of(true, false, left), [wide, rack::WIDTH]);
         assert_eq!(of(true, true, left), [rack::WIDTH + wide, 0.0]);
+        let narrow = |panels| {
+            taken(&Preferences {
+                panels,
+                is_narrow: true,
+                ..Preferences::default()
+            })
+        };
+        assert_eq!(narrow(true), [0.0, wide], "the rack gives way");
+        assert_eq!(narrow(false), [0.0, rack::WIDTH]);
     }
 }

@@ -78,7 +78,7 @@ impl ChooseFile {
                 go,
                 wrong: self.wrong.clone(),
                 entered: taken.is_some(),
-                busy: None,
+                ..Foot::default()
             }
         });
         let chosen = (answer == Answer::Go).then(|| {

@@ -19,6 +19,8 @@ pub(crate) struct Foot {
     pub entered: bool,
     /// The pending work; it cannot be started twice.
     pub busy: Option<&'static str>,
+    /// What is asked for first, where nothing is chosen that could be confirmed.
+    pub lacks: Option<&'static str>,
 }
 
 /// Decision of the painter.
@@ -102,16 +104,18 @@ fn below(ui: &mut Ui, foot: &Foot) -> Answer {
         ui.label(RichText::new(wrong_words).color(colour));
         ui.add_space(4.0);
     }
-    let mut answer = match foot.entered && foot.busy.is_none() {
+    let can = foot.busy.is_none() && foot.lacks.is_none();
+    let mut answer = match foot.entered && can {
         true => Answer::Go,
         false => Answer::Stay,
     };
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         let go = RichText::new(foot.go).strong();
-        let go = ui.add_enabled(
-            foot.busy.is_none(),
-            eframe::egui::Button::new(go).min_size([96.0, 28.0].into()),
-        );
+        let button = eframe::egui::Button::new(go).min_size([96.0, 28.0].into());
+        let mut go = ui.add_enabled(can, button);
+        if let Some(lacks) = foot.lacks {
+            go = go.on_disabled_hover_text(lacks);
+        }
         if go.clicked() {
             answer = Answer::Go;
         }

@@ -175,6 +175,7 @@ impl ExportPicture {
                 wrong: self.wrong.clone(),
                 entered: taken.is_some() || entered,
                 busy: busy.then_some(tr!("Beginning …")),
+                ..Foot::default()
             }
         });
         let asked = (answer == Answer::Go).then(|| {

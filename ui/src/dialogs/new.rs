@@ -178,6 +178,7 @@ impl NewPainting {
                 wrong,
                 entered,
                 busy: busy.then_some(tr!("Laying out the canvas …")),
+                ..Foot::default()
             }
         });
         let asked = (answer == Answer::Go).then(|| self.command());

@@ -90,6 +90,7 @@ impl OpenPainting {
                 wrong: self.wrong.clone(),
                 entered: taken.is_some(),
                 busy: busy.then_some(tr!("Opening …")),
+                ..Foot::default()
             }
         });
         let asked = (answer == Answer::Go).then(|| {

@@ -96,6 +96,7 @@ impl SaveAs {
                 wrong: self.wrong.clone(),
                 entered: taken.is_some(),
                 busy: busy.then_some(tr!("Writing …")),
+                ..Foot::default()
             }
         });
         let asked = (answer == Answer::Go).then(|| {

@@ -3,22 +3,30 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::DVec2;
-use maulstick_num::atan2;
+use maulstick_num::{atan2, sin_cos};
 
 use crate::input::mouse_stylus::Pointer;
+use crate::input::pixel_path::PixelPath;
 use crate::settings::grip::Grip;
 
-/// Travel of the pointer after which the direction of a stroke is known, m.
-const KNOWN_M: f64 = 1.5e-3;
-/// Time for which a stroke waits for its direction, ns: then any way is enough, of which this much tells one, m.
+/// Travel of the pointer after which the direction of a stroke is known, m, and in pixels: a shorter way in whole pixels
+/// has hardly one.
+const KNOWN_M: f64 = 2.5e-3;
+const KNOWN_PIXELS: f64 = 8.0;
+/// Time for which a stroke waits for its direction, ns: then any way is enough, of which this much tells one, m and in
+/// pixels.
 const WAIT_NS: u64 = 80_000_000;
-const TELLING_M: f64 = 0.4e-3;
+const TELLING_M: f64 = 0.8e-3;
+const TELLING_PIXELS: f64 = 3.0;
 /// Longest time for which it waits, ns: a hand is slow to start, and a dab has no direction.
 const LONGEST_NS: u64 = 250_000_000;
-/// Length of the string at which the pointer draws the turning point behind it, m.
+/// Length of the string at which the pointer draws the turning point behind it, m and in pixels.
 const STRING_M: f64 = 6e-3;
-/// The pointer may be so far beside the way before the brush turns, m: a way drawn in whole pixels has steps.
+const STRING_PIXELS: f64 = 16.0;
+/// The pointer may be so far beside the way before the brush turns, m and in pixels: a way drawn in whole pixels has
+/// steps.
 const SLACK_M: f64 = 0.4e-3;
+const SLACK_PIXELS: f64 = 1.2;
 
 /// The turn of the brush over a stroke.
 #[derive(Debug, Default)]
@@ -29,53 +37,60 @@ pub(crate) struct BrushTurn {
     turning_point: Option<DVec2>,
     /// Time at which a stroke began, ns, and its places, while its direction is unknown.
     waiting: Option<(u64, Vec<Pointer>)>,
+    path: PixelPath,
 }
 
 impl BrushTurn {
-    /// The places with the turn of the brush there. The first of a stroke wait until its direction is known, so that
-    /// the brush is set down across it; meanwhile it hovers where the stroke begins.
-    pub(crate) fn turned(&mut self, now_ns: u64, places: &[Pointer], grip: &Grip) -> Vec<Pointer> {
+    /// The places with the turn of the brush there, of a pointer that goes in pixels of `pixel_m`. The first of a stroke
+    /// wait until its direction is known, so that the brush is set down across it; meanwhile it hovers where the stroke
+    /// begins.
+    pub(crate) fn turned(
+        &mut self,
+        now_ns: u64,
+        places: &[Pointer],
+        grip: &Grip,
+        pixel_m: f64,
+    ) -> Vec<Pointer> {
         let mut turned = Vec::new();
         // Fingers or navigation took over: what waits was no stroke.
         if places.is_empty() {
             (self.waiting, self.turning_point) = (None, None);
+            self.path = PixelPath::default();
         }
         for place in places {
-            let at = DVec2::new(place.at[0], place.at[1]);
+            let at = point(place);
             if !place.pressed {
-                self.release(&mut turned, grip);
+                self.release(&mut turned, grip, pixel_m);
                 self.turning_point = None;
+                self.path = PixelPath::default();
             } else if !grip.follows {
-                self.release(&mut turned, grip);
+                self.release(&mut turned, grip, pixel_m);
             } else if let Some(point) = self.turning_point {
-                self.draw(point, at);
+                self.draw(point, at, pixel_m);
             } else {
                 self.turning_point = Some(at);
                 self.waiting = Some((now_ns, Vec::new()));
             }
             match &mut self.waiting {
                 Some((_, waiting)) => waiting.push(*place),
-                None => turned.push(self.with_turn(place, grip)),
+                None => turned.push(self.with_turn(place, grip, pixel_m)),
             }
         }
         if let Some((since_ns, waiting)) = &self.waiting {
             let ends = waiting.first().zip(waiting.last());
-            let way = ends.map_or(DVec2::ZERO, |(first, last)| {
-                DVec2::from_array([0, 1].map(|i| last.at[i] - first.at[i]))
-            });
+            let way = ends.map_or(DVec2::ZERO, |(first, last)| point(last) - point(first));
             let waits_ns = now_ns.saturating_sub(*since_ns);
-            let tells = waits_ns > WAIT_NS && way.length() >= TELLING_M;
-            if tells && way.length() < KNOWN_M {
-                self.across_rad = atan2(way.y, way.x) + FRAC_PI_2;
-            }
-            if way.length() >= KNOWN_M || tells || waits_ns > LONGEST_NS {
-                self.release(&mut turned, grip);
+            let is_known = way.length() >= KNOWN_M.max(KNOWN_PIXELS * pixel_m);
+            let telling_m = TELLING_M.max(TELLING_PIXELS * pixel_m);
+            let tells = waits_ns > WAIT_NS && way.length() >= telling_m;
+            if is_known || tells || waits_ns > LONGEST_NS {
+                self.release(&mut turned, grip, pixel_m);
             } else if let Some(first) = waiting.first() {
                 let hovers = Pointer {
                     pressed: false,
                     ..*first
                 };
-                turned.push(self.with_turn(&hovers, grip));
+                turned.push(self.with_turn(&hovers, grip, pixel_m));
             }
         }
         turned
@@ -88,44 +103,83 @@ impl BrushTurn {
     }
 
     /// Draws the turning point to a place, and turns the brush across the string.
-    fn draw(&mut self, point: DVec2, at: DVec2) {
-        let string = at - point;
+    fn draw(&mut self, turning_point: DVec2, at: DVec2, pixel_m: f64) {
+        let string = at - turning_point;
         let length = string.length();
-        if length >= KNOWN_M {
+        if self.waiting.is_none() && length >= KNOWN_M.max(KNOWN_PIXELS * pixel_m) {
             let across = atan2(string.y, string.x) + FRAC_PI_2;
-            // A stroke begins by its direction alone, so that the colours of a double load keep their sides; within it
-            // the brush turns the shorter way, and is not flipped where the stroke goes back.
-            let period = if self.waiting.is_some() { TAU } else { PI };
-            let turns = ((self.across_rad - across) / period).round();
-            let off = across + turns * period - self.across_rad;
-            let slack = match self.waiting.is_some() {
-                true => 0.0,
-                false => SLACK_M / length,
-            };
+            // Within a stroke the brush turns the shorter way, and is not flipped where the stroke goes back.
+            let off = self.off(across, PI);
+            let slack = SLACK_M.max(SLACK_PIXELS * pixel_m) / length;
             self.across_rad += off.signum() * (off.abs() - slack).max(0.0);
         }
-        self.turning_point = Some(at - string * (STRING_M / length.max(STRING_M)));
+        let longest = STRING_M.max(STRING_PIXELS * pixel_m);
+        self.turning_point = Some(at - string * (longest / length.max(longest)));
     }
 
-    fn with_turn(&self, place: &Pointer, grip: &Grip) -> Pointer {
+    /// The turn from the present one to `across` or, nearer, so many periods beside it, rad.
+    fn off(&self, across: f64, period: f64) -> f64 {
+        let turns = ((self.across_rad - across) / period).round();
+        across + turns * period - self.across_rad
+    }
+
+    fn with_turn(&mut self, place: &Pointer, grip: &Grip, pixel_m: f64) -> Pointer {
         let across = if grip.follows { self.across_rad } else { 0.0 };
+        let at = match place.pressed {
+            true => self.path.smooth(point(place), pixel_m),
+            false => point(place),
+        };
         Pointer {
+            at: [at.x, at.y, place.at[2]],
             twist_rad: across + grip.turn_deg.to_radians(),
             ..*place
         }
     }
 
-    fn release(&mut self, into: &mut Vec<Pointer>, grip: &Grip) {
-        if let Some((_, waiting)) = self.waiting.take() {
-            into.extend(waiting.iter().map(|place| self.with_turn(place, grip)));
+    /// Sets the brush down across the way of the places that waited.
+    fn release(&mut self, into: &mut Vec<Pointer>, grip: &Grip, pixel_m: f64) {
+        let Some((_, waiting)) = self.waiting.take() else {
+            return;
+        };
+        if let Some(along) = direction(&waiting, TELLING_M.max(TELLING_PIXELS * pixel_m)) {
+            // A stroke begins by its direction alone, so that the colours of a double load keep their sides.
+            self.across_rad += self.off(along + FRAC_PI_2, TAU);
+            let (sine, cosine) = sin_cos(along);
+            self.path.begin(DVec2::new(cosine, sine));
         }
+        for place in &waiting {
+            into.push(self.with_turn(place, grip, pixel_m));
+        }
+    }
+}
+
+fn point(place: &Pointer) -> DVec2 {
+    DVec2::new(place.at[0], place.at[1])
+}
+
+/// Direction of places, rad: that of the line nearest to them all, from the first to the last; `None` where these are
+/// less than `least_m` apart.
+fn direction(places: &[Pointer], least_m: f64) -> Option<f64> {
+    let way = point(places.last()?) - point(places.first()?);
+    if way.length() < least_m {
+        return None;
+    }
+    let mean = places.iter().map(point).sum::<DVec2>() / places.len() as f64;
+    let [mut xx, mut xy, mut yy] = [0.0; 3];
+    for place in places {
+        let off = point(place) - mean;
+        (xx, xy, yy) = (xx + off.x * off.x, xy + off.x * off.y, yy + off.y * off.y);
+    }
+    let along = 0.5 * atan2(2.0 * xy, xx - yy);
+    let (sine, cosine) = sin_cos(along);
+    match DVec2::new(cosine, sine).dot(way) < 0.0 {
+        true => Some(along + PI),
+        false => Some(along),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use maulstick_num::sin_cos;
-
     use super::*;
 
     const FOLLOWS: Grip = Grip {
@@ -146,13 +200,18 @@ mod tests {
     /// Places of a stroke that begins at the origin, a frame each.
     fn stroke(grip: &Grip, to: impl Fn(f64) -> [f64; 2]) -> Vec<Pointer> {
         let mut turn = BrushTurn::default();
-        let mut all = turn.turned(0, &[at(0.0, 0.0, false)], grip);
+        let mut all = turn.turned(0, &[at(0.0, 0.0, false)], grip, 0.0);
         for frame in 0..40_u32 {
             let [x, y] = to(f64::from(frame) * 1e-3);
-            all.extend(turn.turned(FRAME_NS * u64::from(frame + 1), &[at(x, y, true)], grip));
+            all.extend(turn.turned(
+                FRAME_NS * u64::from(frame + 1),
+                &[at(x, y, true)],
+                grip,
+                0.0,
+            ));
         }
         let [x, y] = to(0.04);
-        all.extend(turn.turned(FRAME_NS * 41, &[at(x, y, false)], grip));
+        all.extend(turn.turned(FRAME_NS * 41, &[at(x, y, false)], grip, 0.0));
         all
     }
 
@@ -209,6 +268,54 @@ mod tests {
         assert!(all < 0.2, "{all}: {turns:?}");
     }
 
+    /// The pointer of a hand that goes straight, on a display whose pixels are large or small, fast or slowly: the brush
+    /// is set down across the stroke, stays so, and its path has no steps, but it does not leave the hand's either.
+    #[test]
+    fn a_straight_stroke_in_whole_pixels_is_straight_from_its_beginning() {
+        let (mut slanted, mut turns, mut steps, mut aside) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
+        for pixel_m in [0.2e-3, 0.4e-3, 0.8e-3] {
+            for speed_m_s in [0.03, 0.1, 0.4] {
+                for degree in (0..360).step_by(7) {
+                    let along = f64::from(degree).to_radians();
+                    let (sine, cosine) = sin_cos(along);
+                    let whole = |m: f64| (m / pixel_m).round() * pixel_m;
+                    let mut turn = BrushTurn::default();
+                    let mut all = Vec::new();
+                    // A mouse of 125 Hz in frames of two.
+                    for frame in 0..400_u32 {
+                        let place = |number: u32| {
+                            let way = speed_m_s * 8e-3 * f64::from(2 * frame + number);
+                            at(whole(way * cosine), whole(way * sine), true)
+                        };
+                        let now_ns = FRAME_NS * u64::from(frame + 1);
+                        let places = [place(0), place(1)];
+                        all.extend(turn.turned(now_ns, &places, &FOLLOWS, pixel_m));
+                        if speed_m_s * 16e-3 * f64::from(frame) > 0.06 {
+                            break;
+                        }
+                    }
+                    let places = pressed(&all);
+                    let off = |place: &&&Pointer| between(place.twist_rad, along + FRAC_PI_2);
+                    slanted = slanted.max(places.first().map_or(0.0, |first| off(&first)));
+                    turns = turns.max(places.iter().map(|place| off(&place)).fold(0.0, f64::max));
+                    let beside = |place: &Pointer| {
+                        (place.at[1] * cosine - place.at[0] * sine).abs() / pixel_m
+                    };
+                    aside = aside.max(places.iter().map(|place| beside(place)).fold(0.0, f64::max));
+                    let late = places
+                        .iter()
+                        .filter(|place| place.at[0] * cosine + place.at[1] * sine > 0.02);
+                    steps = steps.max(late.map(|place| beside(place)).fold(0.0, f64::max));
+                }
+            }
+        }
+        println!(
+            "slanted {slanted:.3}, turned {turns:.3} rad; {aside:.2}, later {steps:.2} pixels beside"
+        );
+        assert!(slanted < 0.1 && turns < 0.12, "{slanted} {turns} rad");
+        assert!(aside < 1.0 && steps < 0.5, "{aside} {steps} pixels");
+    }
+
     #[test]
     fn in_a_curve_it_turns_evenly_and_by_the_shorter_way() {
         let radius = 0.01;
@@ -228,14 +335,14 @@ mod tests {
     #[test]
     fn a_dab_is_painted_with_the_turn_it_had() {
         let mut turn = BrushTurn::default();
-        let first = turn.turned(0, &[at(0.0, 0.0, true)], &FOLLOWS);
+        let first = turn.turned(0, &[at(0.0, 0.0, true)], &FOLLOWS, 0.0);
         assert_eq!(first, [at(0.0, 0.0, false)], "it hovers meanwhile");
         assert!(turn.is_waiting());
-        let later = turn.turned(LONGEST_NS + 1, &[at(0.0, 0.0, true)], &FOLLOWS);
+        let later = turn.turned(LONGEST_NS + 1, &[at(0.0, 0.0, true)], &FOLLOWS, 0.0);
         assert_eq!(later, [at(0.0, 0.0, true); 2]);
         let click = [at(0.0, 0.0, true), at(0.0, 0.0, false)];
         let mut turn = BrushTurn::default();
-        assert_eq!(turn.turned(0, &click, &FOLLOWS), click);
+        assert_eq!(turn.turned(0, &click, &FOLLOWS, 0.0), click);
     }
 
     #[test]

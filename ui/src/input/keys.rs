@@ -75,6 +75,12 @@ pub enum Action {
     Alone,
     /// Show the keys.
     Keys,
+    /// Show the steps of a first painting.
+    Tutorial,
+    /// Show what program this is.
+    About,
+    /// Close the window.
+    Quit,
     /// No device gives force any more.
     ForceOff,
     /// Text size, theme, units and keys.
@@ -133,7 +139,7 @@ const fn key(act: Action, modifiers: Modifiers, key: Key, words: &'static str) -
 }
 
 /// The keys of a new painter.
-pub(crate) const BINDINGS: [Binding; 41] = [
+pub(crate) const BINDINGS: [Binding; 44] = [
     key(
         Action::Palette,
         Modifiers::NONE,
@@ -294,6 +300,19 @@ pub(crate) const BINDINGS: [Binding; 41] = [
         "Show these keys",
     ),
     key(Action::Keys, Modifiers::NONE, Key::F1, "Show these keys"),
+    key(
+        Action::Tutorial,
+        Modifiers::SHIFT,
+        Key::F1,
+        "A first painting, step by step",
+    ),
+    key(
+        Action::About,
+        Modifiers::COMMAND,
+        Key::F1,
+        "About Maulstick",
+    ),
+    key(Action::Quit, Modifiers::COMMAND, Key::Q, "Quit"),
     key(
         Action::ForceOff,
         Modifiers::NONE,

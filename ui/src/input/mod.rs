@@ -6,6 +6,7 @@
 //! | [`keymap`] | the keys that the painter has chosen |
 //! | [`presses`] | presses of keys |
 //! | [`pointer_path`] | path of the pointer, and where its button presses the brush |
+//! | [`pixel_path`] | the same without the steps of whole pixels |
 //! | [`ruler`] | straight strokes |
 //! | [`size_drag`] | width of the brush by dragging |
 //! | [`mouse_stylus`] | the mouse as a stylus |
@@ -27,6 +28,7 @@ pub(crate) mod navigation;
 pub(crate) mod palette_gesture;
 pub(crate) mod palette_wells;
 pub(crate) mod pen;
+pub(crate) mod pixel_path;
 pub(crate) mod pointer_path;
 pub(crate) mod presses;
 pub(crate) mod ruler;

@@ -6,7 +6,7 @@ use eframe::egui::ecolor::Hsva;
 use eframe::egui::{Align2, Context, Id, Key, TextEdit, Ui, Window};
 use maulstick_optics::colour::srgb_decode;
 
-use crate::app::{rack, sides};
+use crate::app::sides;
 use crate::dialogs::wrong;
 use crate::matching::colour_square;
 use crate::matching::picker::{Ask, Picker, of_palette};
@@ -84,7 +84,9 @@ impl ColourWindow {
         };
         let at = corner.pos_in_rect(&context.content_rect());
         let side = sides::rack_side(work.preferences);
-        let aside = rack::WIDTH + sides::column_at(work.preferences, side) + ASIDE;
+        let beside =
+            sides::rack_at(work.preferences, side) + sides::column_at(work.preferences, side);
+        let aside = beside + ASIDE;
         let mut open = true;
         // The first Escape leaves the field.
         let had_keyboard = std::mem::replace(

@@ -1,6 +1,6 @@
 //! Rows of proposed mixtures: how far off each is, and what can be done with it.
 
-use eframe::egui::{self, Color32, RichText, Role, Sense, StrokeKind, Ui, WidgetInfo, vec2};
+use eframe::egui::{self, Color32, Role, Sense, StrokeKind, Ui, WidgetInfo, vec2};
 use maulstick_types::edits::Load;
 use maulstick_types::values::BrushName;
 
@@ -36,7 +36,7 @@ fn proposal(ui: &mut Ui, found: &Match, work: &mut PanelContext<'_>) {
             distance = format_args!("{:.1}", found.delta_e)
         );
         swatch(ui, found.rgb, &near);
-        ui.label(RichText::new(format!("ΔE {:.1}", found.delta_e)).small())
+        ui.label(format!("ΔE {:.1}", found.delta_e))
             .on_hover_text(tr!("How far it is from the colour, ΔE₀₀: 1 is hardly seen"));
         let load = ui
             .button(tr!("Load"))
@@ -65,7 +65,7 @@ fn proposal(ui: &mut Ui, found: &Match, work: &mut PanelContext<'_>) {
             ui.ctx().copy_text(found.mixture.to_string());
         }
     });
-    ui.add(egui::Label::new(RichText::new(&words).small()).wrap());
+    ui.add(egui::Label::new(&words).wrap());
 }
 
 /// A mixture in a painter's words.

@@ -13,6 +13,8 @@ use crate::motions::library::{Known, Library, Motion};
 use crate::settings::preferences::Preferences;
 use crate::widgets::context::PanelContext;
 
+/// The guide to motions.
+const GUIDE: &str = concat!(env!("CARGO_PKG_REPOSITORY"), "/blob/main/docs/motions.md");
 /// Height of the list, points.
 const HEIGHT: f32 = 280.0;
 /// A picture, and the line below it, points.
@@ -74,6 +76,9 @@ impl ChooseMotion {
                 wrong: wrong.clone(),
                 entered: is_taken,
                 busy: None,
+                lacks: marked
+                    .is_none()
+                    .then_some(tr!("Choose one of the motions.")),
             }
         });
         if answer != Answer::Go {
@@ -83,12 +88,8 @@ impl ChooseMotion {
             };
         }
         let Some(chosen) = self.chosen() else {
-            let why = match self.marked {
-                None => tr!("Choose one of the motions."),
-                // It is still being read.
-                Some(_) => tr!("Looking …"),
-            };
-            self.wrong = Some(why.to_owned());
+            // It is still being read.
+            self.wrong = Some(tr!("Looking …").to_owned());
             return Chosen::default();
         };
         let is_usual = folder == Library::default_folder();
@@ -119,11 +120,13 @@ fn head_m(work: &PanelContext<'_>) -> f64 {
 /// The motions of the folder; true if one was taken by two clicks.
 fn list(ui: &mut Ui, library: &Library, marked: &mut Option<PathBuf>) -> bool {
     let is_usable = |known: &Known| !matches!(known, Known::Unusable);
+    let has_none = |files: &Vec<(PathBuf, Known)>| !files.iter().any(|(_, known)| is_usable(known));
+    let is_empty = !library.is_coming() && library.files.as_ref().is_ok_and(has_none);
     let told = match &library.files {
         _ if library.is_coming() => Some(tr!("Looking …").to_owned()),
         Err(what) => Some(dialog::in_words(what, "")),
-        Ok(files) if !files.iter().any(|(_, known)| is_usable(known)) => Some(
-            tr!("No takes are here. `maulstick motion cut` cuts them out of longer ones; lay them into this folder.")
+        Ok(_) if is_empty => Some(
+            tr!("No motions are here. A motion is a file of recorded strokes, which can be painted again anywhere. Lay some into this folder, or write another folder above.")
                 .to_owned(),
         ),
         Ok(_) => None,
@@ -134,6 +137,9 @@ fn list(ui: &mut Ui, library: &Library, marked: &mut Option<PathBuf>) -> bool {
         ui.set_min_size(vec2(ui.available_width(), HEIGHT));
         if let Some(told) = told {
             ui.weak(told);
+            if is_empty {
+                ui.hyperlink_to(tr!("How motions are made"), GUIDE);
+            }
             return;
         }
         let scroll = ScrollArea::vertical().max_height(HEIGHT).auto_shrink(false);

@@ -50,6 +50,9 @@ pub struct Preferences {
     pub pen_senses: u32,
     /// Width and height of the window, points.
     pub size: [f32; 2],
+    /// True while the window is too narrow for rack and panels; not kept.
+    #[serde(skip)]
+    pub is_narrow: bool,
     /// Factor on the size of texts and controls.
     pub text_size: f32,
     /// Theme of panels and dialogs.
@@ -95,6 +98,7 @@ impl Default for Preferences {
     fn default() -> Self {
         Self {
             panels: false,
+            is_narrow: false,
             panel_side: None,
             open: vec!["Brush".to_owned(), "Tubes".to_owned()],
             left_handed: false,

@@ -11,8 +11,9 @@ use crate::input::keymap::{Holder, Keymap, fits};
 use crate::input::keys::{BINDINGS, Binding, written};
 use crate::language::translated;
 
-/// Height of the list, points.
+/// Height of the list, and the least in a small window, points.
 const HEIGHT: f32 = 220.0;
+const LEAST_HEIGHT: f32 = 60.0;
 
 /// What the rows wait for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -78,7 +79,8 @@ impl KeyRows {
         };
     }
 
-    pub(super) fn show(&mut self, ui: &mut Ui, keymap: &mut Keymap) {
+    /// Shows them in a list that is at most so high, points.
+    pub(super) fn show(&mut self, ui: &mut Ui, most: f32, keymap: &mut Keymap) {
         ui.horizontal(|ui| {
             ui.strong(tr!("Keys"));
             if ui
@@ -94,7 +96,7 @@ impl KeyRows {
         });
         self.answer(ui, keymap);
         let list = ScrollArea::vertical()
-            .max_height(HEIGHT)
+            .max_height(most.clamp(LEAST_HEIGHT, HEIGHT))
             .auto_shrink([false, true]);
         list.show(ui, |ui| {
             let grid = Grid::new("keys to change").num_columns(3).striped(true);
@@ -144,8 +146,8 @@ impl KeyRows {
         }
     }
 
+    /// A key, beside it what it does.
     fn row(&mut self, ui: &mut Ui, place: usize, binding: &Binding, keymap: &mut Keymap) {
-        ui.label(translated(binding.words));
         let key = keymap.key(place);
         let now = key.map_or_else(|| tr!("none").to_owned(), |key| written(ui.ctx(), &key));
         let is_waiting = self.waits == Waits::Key(place);
@@ -153,7 +155,7 @@ impl KeyRows {
         let button = ui.add(
             Button::new(text)
                 .selected(is_waiting)
-                .min_size([96.0, 0.0].into()),
+                .min_size([120.0, 0.0].into()),
         );
         button.widget_info(|| {
             let name = tr!(
@@ -180,6 +182,7 @@ impl KeyRows {
                 false => Waits::Key(place),
             };
         }
+        ui.label(translated(binding.words));
         if keymap.is_changed(place) {
             let usual = written(ui.ctx(), &binding.shortcut);
             let reset = ui.small_button(tr!("Reset"));

@@ -7,7 +7,7 @@
 mod key_rows;
 
 use eframe::egui::{
-    Align, Button, Context, Frame, Grid, Id, Layout, Margin, Modal, RichText, Role, Ui, WidgetInfo,
+    Align, Button, Context, Frame, Id, Layout, Margin, Modal, RichText, Role, Ui, WidgetInfo,
     gui_zoom,
 };
 
@@ -16,10 +16,18 @@ use crate::language::translated;
 use crate::settings::look::{TEXT_SIZES, Theme};
 use crate::settings::units::Units;
 use crate::widgets::context::PanelContext;
+use crate::widgets::rows::cell;
 use key_rows::KeyRows;
 
 /// Width of the dialog, points.
 const WIDTH: f32 = 460.0;
+/// Space around it in a small window, points.
+const AROUND: f32 = 48.0;
+/// Width of a setting's name, and space between two settings, points.
+const NAME: f32 = 84.0;
+const BETWEEN: f32 = 4.0;
+/// Height of what is around the list of keys below the settings, and of the window around the dialog, points.
+const FOOT: f32 = 160.0;
 
 /// The dialog; closed at first.
 #[derive(Debug, Default)]
@@ -49,13 +57,15 @@ impl SettingsPage {
         let modal = Modal::new(Id::unique("settings"))
             .frame(frame)
             .show(context, |ui| {
-                ui.set_width(WIDTH);
+                let window = context.content_rect().size();
+                ui.set_width(WIDTH.min(window.x - AROUND));
                 ui.heading(RichText::new(tr!("Settings")).strong());
                 ui.add_space(8.0);
                 look(ui, work);
                 ui.add_space(6.0);
                 ui.separator();
-                rows.show(ui, &mut work.preferences.keys);
+                let height = window.y - ui.min_rect().height() - FOOT;
+                rows.show(ui, height, &mut work.preferences.keys);
                 ui.add_space(8.0);
                 let layout = Layout::right_to_left(Align::Center);
                 let close = Button::new(tr!("Close")).min_size([80.0, 28.0].into());
@@ -75,29 +85,29 @@ impl SettingsPage {
 /// Text size, language, theme and units.
 fn look(ui: &mut Ui, work: &mut PanelContext<'_>) {
     let preferences = &mut *work.preferences;
-    let grid = Grid::new("look").num_columns(2).spacing([12.0, 8.0]);
-    grid.show(ui, |ui| {
-        ui.label(tr!("Text size"));
-        ui.horizontal(text_size);
-        ui.end_row();
-        ui.label(tr!("Language"));
-        ui.horizontal_wrapped(|ui| language_choice(ui, &mut preferences.language));
-        ui.end_row();
-        ui.label(tr!("Theme"));
-        ui.horizontal(|ui| {
-            for (theme, words) in Theme::WORDS {
-                ui.selectable_value(&mut preferences.theme, theme, translated(words));
-            }
-        });
-        ui.end_row();
-        ui.label(tr!("Lengths"));
-        ui.horizontal(|ui| {
-            for (units, words) in Units::WORDS {
-                ui.selectable_value(&mut preferences.units, units, translated(words));
-            }
-        });
-        ui.end_row();
+    setting(ui, tr!("Text size"), text_size);
+    setting(ui, tr!("Language"), |ui| {
+        language_choice(ui, &mut preferences.language);
     });
+    setting(ui, tr!("Theme"), |ui| {
+        for (theme, words) in Theme::WORDS {
+            ui.selectable_value(&mut preferences.theme, theme, translated(words));
+        }
+    });
+    setting(ui, tr!("Lengths"), |ui| {
+        for (units, words) in Units::WORDS {
+            ui.selectable_value(&mut preferences.units, units, translated(words));
+        }
+    });
+}
+
+/// A setting: its name, beside it the choices, in as many lines as they need.
+fn setting(ui: &mut Ui, name: &str, choices: impl FnOnce(&mut Ui)) {
+    ui.horizontal_top(|ui| {
+        cell(ui, NAME, |ui| ui.label(name));
+        ui.horizontal_wrapped(choices);
+    });
+    ui.add_space(BETWEEN);
 }
 
 /// The languages by their own names; the window speaks the chosen one at once.

@@ -1,12 +1,14 @@
-use eframe::egui::{Key, Modifiers};
+use eframe::egui::{Key, Modifiers, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use maulstick_types::command::Command;
 use maulstick_types::edits::Edit;
 
 use crate::input::keymap::Keymap;
+use crate::settings::preferences::Preferences;
 use crate::settings::units::Units;
-use crate::test_support::overlay_bench::{Bench, ctrl, picture, press, window};
+use crate::test_support::overlay_bench::{Bench, ctrl, picture, press, window, window_of};
+use crate::test_support::panel_bench::rig;
 
 fn opened() -> Harness<'static, Bench> {
     let mut harness = window(None);
@@ -103,6 +105,49 @@ fn text_and_units_are_changed_and_brushes_have_widths_in_them() {
     assert!(harness.query_by_label("Text size").is_none());
     assert!(harness.query_all_by_label_contains(" in").count() > 5);
     assert_eq!(harness.query_all_by_label_contains(" mm").count(), 0);
+}
+
+/// Greatest distance of a key from its meaning, points.
+const BESIDE: f32 = 32.0;
+
+#[test]
+fn keys_stand_beside_their_meaning() {
+    let gap = |key: Rect, words: Rect| words.left() - key.right();
+    let mut harness = opened();
+    let words = "Held, and drag: zoom";
+    let key = harness.get_by_label(&format!("Key of “{words}”: Z")).rect();
+    let apart = gap(key, harness.get_by_label(words).rect());
+    assert!((0.0..BESIDE).contains(&apart), "settings: {apart}");
+    press(&mut harness, Key::Escape);
+    press(&mut harness, Key::F1);
+    harness.run_steps(3);
+    let key = harness.get_by_label("Z").rect();
+    let apart = gap(key, harness.get_by_label(words).rect());
+    assert!((0.0..BESIDE).contains(&apart), "table: {apart}");
+}
+
+#[test]
+fn settings_do_not_touch_at_double_scale() {
+    let mut harness = window_of([640.0, 400.0], rig(), Preferences::default());
+    ctrl(&mut harness, Key::Comma, Modifiers::NONE);
+    let rows = [
+        &["Smaller text", "Larger text"][..],
+        &["English", "Deutsch", "Français"],
+        &["Dark"],
+        &["mm and cm", "Inches"],
+    ];
+    let rows = rows.map(|row| {
+        let rects = row.iter().map(|label| harness.get_by_label(label).rect());
+        rects.fold(Rect::NOTHING, |whole, own| whole | own)
+    });
+    for pair in rows.windows(2) {
+        let apart = pair[1].top() - pair[0].bottom();
+        assert!(apart >= 3.0, "{pair:?}");
+    }
+    let close = harness.get_by_label("Close").rect();
+    assert!(close.bottom() < 400.0, "{close:?}");
+    let list = harness.get_by_label("Click a key to change it.").rect();
+    assert!(list.bottom() < close.top());
 }
 
 #[test]

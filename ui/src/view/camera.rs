@@ -11,11 +11,17 @@ use crate::view::quad::Quad;
 
 /// Colour of the desk around the surfaces.
 pub const DESK_COLOUR: Color32 = Color32::from_gray(60);
-/// Margin above and below the surfaces, and at the side without a palette, points.
+/// Margin above the surfaces, and at the side without a palette, points.
 const MARGIN: f32 = 12.0;
+/// Margin below the surfaces, points: the bar and the name of the painting lie there, over neither wells nor jars.
+const BELOW: f32 = 42.0;
 /// Room for so much of the palette is always left, m: its wells and the cleaner, and what perspective takes of a board
 /// that lies higher than the canvas.
 const SLIVER_M: f64 = 0.0527;
+/// So much of its middle, where paint is mixed, shows as well as long as the canvas is not smaller than [`SMALL`], m.
+const MIXING_M: f64 = 0.06;
+/// Width of a canvas that gives the palette no more room, points.
+const SMALL: f64 = 400.0;
 /// Height of the eye over the desk by the longer side of the view: a painter before an easel.
 const EYE: f64 = 2.5;
 
@@ -45,8 +51,8 @@ pub fn corners(surface: &Surface) -> [DVec3; 4] {
 
 impl View {
     /// The view in `area` of a canvas at rest: the canvas fills the view, the palette beside it shows as far as there
-    /// is room, but at least its wells, and `rack` points on the other side are left free. `None` if a surface has no
-    /// size.
+    /// is room, but at least its wells and, unless the window is small, a part of its middle, and `rack` points on the
+    /// other side are left free. `None` if a surface has no size.
     #[must_use]
     pub fn of(
         area: Rect,
@@ -62,10 +68,13 @@ impl View {
         }
         let gap = if palette.is_some() { GAP_M } else { 0.0 };
         let sliver = board.x.min(SLIVER_M);
-        let room = [area.width() - rack - MARGIN, area.height() - 2.0 * MARGIN];
+        let room = [area.width() - rack - MARGIN, area.height() - MARGIN - BELOW];
         let room = room.map(|points| f64::from(points.max(1.0)));
         let high = size.y.max(board.y);
-        let scale = (room[0] / (size.x + gap + sliver)).min(room[1] / high);
+        let beside = |board: f64| room[0] / (size.x + gap + board);
+        let mixing = beside(board.x.min(SLIVER_M + MIXING_M));
+        let across = beside(sliver).min(mixing.max(SMALL / size.x));
+        let scale = across.min(room[1] / high);
         // What is left of the width shows more of the palette, then lies on both sides alike.
         let left = room[0] / scale - (size.x + gap + sliver);
         let more = left
@@ -75,9 +84,10 @@ impl View {
         // From the middle of the area to that of the canvas, m.
         let half = 0.5 * f64::from(area.width()) / scale;
         let off = aside + 0.5 * size.x - half;
+        let down = 0.5 * f64::from(BELOW - MARGIN) / scale;
         let middle = match side {
-            Side::Left => DVec2::new(-off, 0.0),
-            Side::Right => DVec2::new(off, 0.0),
+            Side::Left => DVec2::new(-off, -down),
+            Side::Right => DVec2::new(off, -down),
         };
         Some(Self {
             area,
@@ -290,19 +300,49 @@ mod tests {
         let (canvas, palette) = (&surfaces[0], &surfaces[1]);
         let own = view(&surfaces);
         let shown = bounds(&own, canvas);
-        let free = shown.height() - own.area.height() + 2.0 * MARGIN;
+        let free = shown.height() - own.area.height() + MARGIN + BELOW;
         assert!(free.abs() < 1e-2, "{shown:?}");
+        assert!(
+            (own.area.bottom() - shown.bottom() - BELOW).abs() < 1e-2,
+            "{shown:?}"
+        );
         assert!(shown.right() < own.area.right() - 72.0, "beside the rack");
         let board = bounds(&own, palette);
         assert!(board.right() < shown.left() && board.left() > own.area.left());
         // In a narrow window the wells are still visible.
-        let narrow = Rect::from_min_size(pos2(0.0, 0.0), vec2(900.0, 900.0));
+        let narrow = Rect::from_min_size(pos2(0.0, 0.0), vec2(600.0, 900.0));
         let tight = View::of(narrow, canvas, Some(palette), Side::Left, 72.0).expect("a view");
         let board = bounds(&tight, palette);
         let seen = f64::from(board.right() - narrow.left()) / tight.scale;
         let is_cut = board.left() < narrow.left();
-        assert!((0.052..0.0525).contains(&seen) && is_cut, "{seen}");
-        assert!(bounds(&tight, canvas).right() < 900.0 - 72.0);
+        assert!((0.052..0.07).contains(&seen) && is_cut, "{seen}");
+        assert!(bounds(&tight, canvas).right() < 600.0 - 72.0);
+    }
+
+    /// Windows with and without panels: the least of the canvas's width, points, and of the palette's that shows, mm.
+    #[test]
+    fn paint_can_be_mixed_beside_the_canvas_unless_the_window_is_small() {
+        let surfaces = surfaces();
+        let panels = 72.0 + 362.0;
+        for (size, aside, canvas, palette) in [
+            ([1280.0, 800.0], 72.0, 700.0, 112.0),
+            ([1280.0, 800.0], panels, 540.0, 112.0),
+            ([1600.0, 1000.0], panels, 740.0, 112.0),
+            ([800.0, 600.0], 72.0, 450.0, 112.0),
+            ([800.0, 600.0], 362.0, 340.0, 52.0),
+            ([800.0, 600.0], panels, 280.0, 52.0),
+        ] {
+            let area = Rect::from_min_size(pos2(0.0, 0.0), size.into());
+            let view = View::of(area, &surfaces[0], Some(&surfaces[1]), Side::Left, aside);
+            let view = view.expect("a view");
+            let [own, board] = [0, 1].map(|i| bounds(&view, &surfaces[i]));
+            let seen_mm = 1e3 * f64::from(board.right()) / view.scale;
+            assert!(
+                own.width() >= canvas && seen_mm >= palette,
+                "{size:?} beside {aside}: canvas {} points, palette {seen_mm} mm",
+                own.width()
+            );
+        }
     }
 
     #[test]

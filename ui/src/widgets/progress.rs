@@ -138,6 +138,10 @@ impl Progress {
             (*now, self.stood_ns) = (light.cloned(), rig.now_ns);
         }
         let share = f64::from(status.baked) / f64::from(status.baking.max(1));
+        let begun_ns = self.since_ns.get(&Kind::Relighting);
+        let begun_ns = begun_ns.copied().unwrap_or(rig.now_ns);
+        // Otherwise a layer has another opacity.
+        let is_relit = self.stood_ns.saturating_add(STOOD_NS) >= begun_ns;
         let back = |light: &Light| {
             let light = light.clone();
             let expose = false;
@@ -145,9 +149,12 @@ impl Progress {
         };
         (status.baked < status.baking).then(|| Job {
             kind: Kind::Relighting,
-            words: tr!("Relighting dry layers").into(),
+            words: match is_relit {
+                true => tr!("Relighting dry layers").into(),
+                false => tr!("Showing the layers anew").into(),
+            },
             share: Some(share),
-            cancel: before.as_ref().map(back),
+            cancel: before.as_ref().filter(|_| is_relit).map(back),
             hint: tr!("Go back to the light before"),
         })
     }
@@ -164,10 +171,7 @@ fn lines(status: &PaintStatus) -> impl Iterator<Item = String> {
     let unsaved =
         (!fault.is_empty()).then(|| tr!("A fault of the painting's file: {fault}", fault));
     let late = (*longer > 1).then(|| {
-        tr!(
-            "Painting falls behind: until the brush lifts, its steps are {longer} times as long",
-            longer
-        )
+        tr!("Painting falls behind: until the brush lifts, its marks are coarser").to_owned()
     });
     let behind = (*lag_ns >= SHORT_NS).then(|| {
         let seconds = *lag_ns as f64 * 1e-9;
@@ -349,6 +353,24 @@ mod tests {
     }
 
     #[test]
+    fn another_opacity_is_told_and_is_not_ended_by_another_light() {
+        let mut harness = harness();
+        harness.state_mut().rig.now_ns = 1_000_000_000;
+        harness.step();
+        let mut other = harness.state().rig.scene.clone().expect("a scene");
+        other.light.intensity = 2.0;
+        harness.state_mut().rig.lay(other);
+        harness.state_mut().baked(10.0, 100);
+        harness.step();
+        harness.state_mut().baked(20.0, 0);
+        harness.step();
+        harness.state_mut().baked(21.0, 50);
+        harness.run_steps(2);
+        harness.get_by_label("Showing the layers anew");
+        assert!(harness.query_by_label("Cancel").is_none());
+    }
+
+    #[test]
     fn who_is_waited_for_is_named_and_the_wait_can_be_given_up() {
         for (name, words) in [
             ("node paint", "Waiting for the painting engine …"),
@@ -369,7 +391,7 @@ mod tests {
     fn that_painting_falls_behind_is_told_while_it_does() {
         let mut harness = harness();
         harness.state_mut().baked(1.0, 100);
-        let words = "Painting falls behind: until the brush lifts, its steps are 4 times as long";
+        let words = "Painting falls behind: until the brush lifts, its marks are coarser";
         for longer in [1, 4, 1] {
             let paint = harness.state_mut().rig.paint.as_mut();
             paint.expect("paint").status.longer = longer;

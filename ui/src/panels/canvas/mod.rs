@@ -15,7 +15,7 @@ use maulstick_canvas::relief::tooth;
 use maulstick_painting::models::model_names;
 use maulstick_types::edits::{Convert, Ground, Piles, Place, Size, Tooth};
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
-use maulstick_types::values::{MaterialName, ModelName, StainThickness};
+use maulstick_types::values::{MaterialName, ModelName, StainThickness, ValueError};
 
 use crate::input::keys::Action;
 use crate::panels::Panel;
@@ -89,8 +89,8 @@ impl Panel for CanvasPanel {
             return;
         };
         size(ui, work, &canvas);
-        self.tooth(ui, work, &canvas);
-        self.ground(ui, work, &canvas);
+        tooth(ui, work, &canvas);
+        ground(ui, work, &canvas);
         let change = self.sliders.row(ui, &SIZING, canvas.stain_m * 1e6);
         if let Some(um) = change.settled {
             let surface = CANVAS;
@@ -104,6 +104,7 @@ impl Panel for CanvasPanel {
         preferences(ui, work);
         ui.separator();
         tracing::show(ui, work, &mut self.sliders);
+        CollapsingHeader::new(tr!("Advanced")).show(ui, |ui| self.advanced(ui, work, &canvas));
         CollapsingHeader::new(tr!("Cover the canvas with paint"))
             .show(ui, |ui| self.film.show(ui, work));
     }
@@ -177,49 +178,52 @@ fn preferences(ui: &mut Ui, work: &mut PanelContext<'_>) {
     }
 }
 
-impl CanvasPanel {
-    fn tooth(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
-        let (name, seed) = (&canvas.tooth, canvas.tooth_seed);
-        let edit = |tooth: &str, seed: u64| {
-            Ok(Tooth {
-                tooth: MaterialName::new(tooth)?,
-                seed,
-                surface: CANVAS,
-            })
-        };
-        let chosen = choice(ui, tr!("Tooth"), shown(name, name), tooth::Tooth::names());
-        if let Some(tooth) = chosen {
-            ask(work, edit(&tooth, seed));
-        }
-        if name.starts_with(IMAGE) {
-            return;
-        }
-        let mut piece = seed;
-        let changed = row(ui, tr!("Pattern no."), |ui| {
-            let number = DragValue::new(&mut piece)
-                .speed(0.1)
-                .update_while_editing(false);
-            ui.add(number)
-                .on_hover_text(tr!("Another number is another piece of the same cloth"))
-        });
-        if changed.changed() && piece != seed {
-            ask(work, edit(name, piece));
-        }
-    }
+/// Gives the canvas a piece of a tooth.
+fn tooth_edit(tooth: &str, seed: u64) -> Result<Tooth, ValueError> {
+    Ok(Tooth {
+        tooth: MaterialName::new(tooth)?,
+        seed,
+        surface: CANVAS,
+    })
+}
 
-    fn ground(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
-        let names = GROUNDS.map(|(name, _)| name);
-        let chosen = choice(
-            ui,
-            tr!("Ground"),
-            shown(&canvas.ground, tr!("a measured one")),
-            names,
-        );
-        if let Some(ground) = chosen {
-            ask(work, Ground::named(CANVAS, &ground));
+fn tooth(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
+    let (name, seed) = (&canvas.tooth, canvas.tooth_seed);
+    let chosen = choice(ui, tr!("Tooth"), shown(name, name), tooth::Tooth::names());
+    if let Some(tooth) = chosen {
+        ask(work, tooth_edit(&tooth, seed));
+    }
+}
+
+fn ground(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
+    let names = GROUNDS.map(|(name, _)| name);
+    let shown = shown(&canvas.ground, tr!("a measured one"));
+    let chosen = choice(ui, tr!("Ground"), shown, names);
+    if let Some(ground) = chosen {
+        ask(work, Ground::named(CANVAS, &ground));
+    }
+}
+
+impl CanvasPanel {
+    /// The piece of cloth that is the tooth, and a measured ground.
+    fn advanced(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
+        let (name, seed) = (&canvas.tooth, canvas.tooth_seed);
+        if !name.starts_with(IMAGE) {
+            let mut piece = seed;
+            let changed = row(ui, tr!("Cloth piece"), |ui| {
+                let number = DragValue::new(&mut piece)
+                    .speed(0.1)
+                    .update_while_editing(false);
+                ui.add(number)
+                    .on_hover_text(tr!("Another number is another piece of the same cloth"))
+            });
+            if changed.changed() && piece != seed {
+                ask(work, tooth_edit(name, piece));
+            }
         }
-        row(ui, tr!("From a file"), |ui| {
-            let edit = TextEdit::singleline(&mut self.file).hint_text(tr!("CSV of nm,reflectance"));
+        row(ui, tr!("Ground from"), |ui| {
+            let edit =
+                TextEdit::singleline(&mut self.file).hint_text(tr!("a file of measurements"));
             let edit = ui.add(edit.desired_width(f32::INFINITY));
             let entered = ui.input(|input| input.key_pressed(Key::Enter));
             if edit.lost_focus() && entered && !self.file.trim().is_empty() {
@@ -231,7 +235,9 @@ impl CanvasPanel {
                     Err(fault) => self.told = spectrum_file::told(&fault),
                 }
             }
-            edit.on_hover_text(tr!("The whole path of a measured ground; Enter reads it"))
+            edit.on_hover_text(tr!(
+                "The whole path of a measured ground, a line for each wavelength in nm and its reflectance; Enter reads it"
+            ))
         });
         if !self.told.is_empty() {
             wrong(ui, &self.told);

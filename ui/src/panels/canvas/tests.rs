@@ -40,12 +40,19 @@ fn another_paint_model_is_asked_for() {
     assert_ne!(harness.state_mut().asked(), expected, "a fault would pass");
 }
 
+/// Unfolds what few painters need.
+fn advanced(harness: &mut Harness<'static, Bench<CanvasPanel>>) {
+    harness.get_by_label("Advanced").click();
+    harness.run();
+}
+
 #[test]
 fn tooth_ground_and_sizing_are_asked_for() {
     let mut harness = panel();
     let seed = harness.state().rig.canvas().expect("one").tooth_seed;
     choose(&mut harness, "Tooth", "paper");
-    set(&mut harness, Role::SpinButton, "Pattern no.", 7.0);
+    advanced(&mut harness);
+    set(&mut harness, Role::SpinButton, "Cloth piece", 7.0);
     choose(&mut harness, "Ground", "grey");
     set(&mut harness, Role::Slider, "Absorbency", 12.0);
     let tooth = |tooth: &str, seed: u64| {
@@ -80,8 +87,9 @@ fn a_measured_ground_is_read_or_told_with_its_line() {
     let path = folder.path().join("toned.csv");
     std::fs::write(&path, "400,0.4\n700,1.6\n").expect("written");
     let mut harness = panel();
+    advanced(&mut harness);
     let field = |harness: &mut Harness<'static, Bench<CanvasPanel>>, text: &str| {
-        let label = "From a file";
+        let label = "Ground from";
         harness
             .get_by_role_and_label(Role::TextInput, label)
             .focus();

@@ -138,7 +138,8 @@ impl DevicePanel {
     fn device(&mut self, ui: &mut Ui, name: &str, device: &Device, work: &mut PanelContext<'_>) {
         ui.label(RichText::new(worded(name)).strong());
         if let Some(info) = &device.info {
-            ui.label(what(info));
+            ui.label(moves(info, work.rig.brushes.len()))
+                .on_hover_text(driven(info));
             if info.senses != 0 {
                 ui.small(tr!("Senses {list}", list = senses(info.senses)));
             }
@@ -321,17 +322,24 @@ fn worded(name: &str) -> String {
     }
 }
 
-/// Driver, brush and rate.
-fn what(info: &StylusInfo) -> String {
-    let (driver, brush) = (&info.driver, &info.brush);
+/// The brush that a device moves, by its name where the rig has several.
+fn moves(info: &StylusInfo, brushes: usize) -> String {
+    match brushes {
+        0 | 1 => tr!("Moves the brush").to_owned(),
+        _ => tr!("Moves the brush “{brush}”", brush = info.brush),
+    }
+}
+
+/// Driver and rate.
+fn driven(info: &StylusInfo) -> String {
+    let driver = &info.driver;
     match info.rate_hz >= 1.0 {
         true => tr!(
-            "{driver}, controls brush '{brush}', {rate} Hz",
+            "Driver “{driver}”, {rate} times a second",
             driver,
-            brush,
             rate = format_args!("{:.0}", info.rate_hz)
         ),
-        false => tr!("{driver}, controls brush '{brush}'", driver, brush),
+        false => tr!("Driver “{driver}”", driver),
     }
 }
 

@@ -18,7 +18,7 @@ use crate::widgets::rows::{Number, Sliders, ask, choice, row};
 const PLACES: [&str; 2] = [tr_noop!("Whole canvas"), tr_noop!("A part")];
 
 const SHARE: Number<'_> = Number {
-    word: tr_noop!("Share"),
+    word: tr_noop!("How much"),
     hover: tr_noop!("How much of the wet film dries, from below: 100 % leaves nothing wet"),
     range: 1.0..=100.0,
     unit: " %",

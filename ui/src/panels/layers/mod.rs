@@ -9,7 +9,7 @@
 use std::collections::BTreeMap;
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Button, Key, TextEdit, Ui, WidgetInfo};
+use eframe::egui::{Align, Button, Key, Layout, TextEdit, Ui, WidgetInfo};
 use maulstick_types::edits::{LayerRef, NameLayer, Opacity};
 use maulstick_types::scene::Layer;
 use maulstick_types::values::{LayerName, OpacityFactor, ValueError};
@@ -17,6 +17,7 @@ use maulstick_types::values::{LayerName, OpacityFactor, ValueError};
 use crate::language::layer_name;
 use crate::panels::Panel;
 use crate::widgets::context::PanelContext;
+use crate::widgets::pending::Pending;
 use crate::widgets::rows::{Number, Sliders, ask, cell, note};
 
 mod drying;
@@ -42,6 +43,8 @@ pub(crate) struct LayersPanel {
     sliders: Sliders,
     /// Opacities of layers before they were hidden.
     hidden: BTreeMap<u32, f32>,
+    /// Opacities that were asked for, until the rig has them.
+    asked: BTreeMap<u32, Pending<f32>>,
     /// The layer that is given a name, and the name as far as it is typed.
     naming: Option<(u32, String)>,
     drying: drying::DryingForm,
@@ -57,10 +60,20 @@ impl Panel for LayersPanel {
             return;
         };
         let layers = scene.layers.clone();
-        ui.checkbox(&mut work.rig.show_wet, tr!("Highlight wet paint"))
-            .on_hover_text(tr!(
-                "Wet paint is shown under a tint, so that it is told from dry paint"
-            ));
+        let now_s = ui.input(|input| input.time);
+        let is_coming = self.is_coming(now_s, &layers, work);
+        ui.horizontal(|ui| {
+            ui.checkbox(&mut work.rig.show_wet, tr!("Highlight wet paint"))
+                .on_hover_text(tr!(
+                    "Wet paint is shown under a tint, so that it is told from dry paint"
+                ));
+            if is_coming {
+                let layout = Layout::right_to_left(Align::Center);
+                ui.with_layout(layout, |ui| ui.spinner())
+                    .inner
+                    .on_hover_text(tr!("The picture of the layers is on its way"));
+            }
+        });
         self.hidden
             .retain(|number, _| layers.iter().any(|layer| layer.number == *number));
         for layer in layers.iter().rev() {
@@ -83,13 +96,40 @@ fn opaque(number: u32, opacity: f32) -> Result<Opacity, ValueError> {
 }
 
 impl LayersPanel {
+    /// True while an opacity was asked for and is not in the picture of the canvas.
+    fn is_coming(&mut self, now_s: f64, layers: &[Layer], work: &PanelContext<'_>) -> bool {
+        self.asked
+            .retain(|number, _| layers.iter().any(|layer| layer.number == *number));
+        let mut asked = layers.iter().filter_map(|layer| {
+            let asked = self.asked.get_mut(&layer.number)?;
+            Some(asked.shown(now_s, &layer.opacity) != layer.opacity)
+        });
+        let is_asked = asked.any(|differs| differs);
+        let status = work.rig.paint.as_ref().map(|node| &node.status);
+        is_asked || status.is_some_and(|status| status.baked < status.baking)
+    }
+
+    /// Asks for an opacity, and shows it from now on.
+    fn ask(&mut self, now_s: f64, work: &mut PanelContext<'_>, (number, opacity): (u32, f32)) {
+        if ask(work, opaque(number, opacity)) {
+            let asked = self.asked.entry(number).or_default();
+            asked.hold(now_s, opacity);
+        }
+    }
+
     /// The row of a layer.
     fn layer(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, layer: &Layer) {
         let number = layer.number;
         ui.push_id(number, |ui| {
             ui.horizontal(|ui| {
+                let now_s = ui.input(|input| input.time);
+                let asked = self.asked.entry(number).or_default();
+                let layer = &Layer {
+                    opacity: asked.shown(now_s, &layer.opacity),
+                    ..layer.clone()
+                };
                 if let Some(opacity) = self.eye(ui, layer) {
-                    ask(work, opaque(number, opacity));
+                    self.ask(now_s, work, (number, opacity));
                 }
                 match &self.naming {
                     Some((named, _)) if *named == number => self.name(ui, work),
@@ -109,7 +149,7 @@ impl LayersPanel {
                 });
                 // All layers above are computed anew, and an opacity is a step to undo: once is enough.
                 if let Some(percent) = change.settled {
-                    ask(work, opaque(number, (percent * 1e-2) as f32));
+                    self.ask(now_s, work, (number, (percent * 1e-2) as f32));
                 }
             });
         });

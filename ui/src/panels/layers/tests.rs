@@ -1,4 +1,5 @@
-use eframe::egui::{Key, accesskit::Role, vec2};
+use eframe::egui::accesskit::{Role, Toggled};
+use eframe::egui::{Key, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use maulstick_types::Region;
@@ -43,17 +44,55 @@ fn opacity(layer: u32, opacity: f32) -> Command {
 fn the_eye_hides_a_layer_and_shows_it_as_it_was() {
     let mut harness = panel();
     harness.get_by_label("Show Sky").click();
-    harness.run();
+    harness.run_steps(4);
     assert_eq!(harness.state_mut().asked(), [opacity(2, 0.0)]);
     let scene = harness.state_mut().rig.scene.as_mut().expect("a scene");
     scene.layers[1].opacity = 0.0;
-    harness.run();
+    harness.run_steps(4);
     harness.get_by_label("Show Sky").click();
-    harness.run();
+    harness.run_steps(4);
     harness.get_by_label("Show Trees").click();
-    harness.run();
+    harness.run_steps(4);
     let asked = harness.state_mut().asked();
     assert_eq!(asked, [opacity(2, 0.6), opacity(3, 1.0)]);
+}
+
+#[test]
+fn a_hidden_layer_is_shown_as_hidden_at_once_and_that_its_picture_comes() {
+    let mut harness = panel();
+    let comes = |harness: &Harness<'static, Bench<LayersPanel>>| {
+        harness
+            .query_all_by_role(Role::ProgressIndicator)
+            .next()
+            .is_some()
+    };
+    let is_shown = |harness: &Harness<'static, Bench<LayersPanel>>| {
+        let eye = harness.get_by_label("Show Sky");
+        eye.accesskit_node().toggled() == Some(Toggled::True)
+    };
+    assert!(!comes(&harness) && is_shown(&harness));
+    harness.get_by_label("Show Sky").click();
+    harness.run_steps(3);
+    assert!(
+        comes(&harness) && !is_shown(&harness),
+        "the rig has not answered"
+    );
+    let rig = &mut harness.state_mut().rig;
+    rig.scene.as_mut().expect("a scene").layers[1].opacity = 0.0;
+    let status = &mut rig.paint.as_mut().expect("a node").status;
+    (status.baking, status.baked) = (100, 20);
+    harness.run_steps(3);
+    assert!(comes(&harness), "it is computed");
+    let status = &mut harness
+        .state_mut()
+        .rig
+        .paint
+        .as_mut()
+        .expect("a node")
+        .status;
+    status.baked = 100;
+    harness.run_steps(3);
+    assert!(!comes(&harness) && !is_shown(&harness));
 }
 
 #[test]
@@ -65,13 +104,13 @@ fn an_opacity_is_sent_when_it_is_let_go_and_shown_while_it_is_dragged() {
     harness.drag_at(at(0.6));
     harness.hover_at(at(0.4));
     harness.hover_at(at(0.25));
-    harness.run();
+    harness.run_steps(4);
     assert!(harness.state_mut().asked().is_empty(), "still in the hand");
     let shown = harness.get_by_role_and_label(Role::Slider, "Opacity of Sky");
     let value = shown.accesskit_node().numeric_value().expect("a number");
     assert!((10.0..40.0).contains(&value), "{value}");
     harness.drop_at(at(0.25));
-    harness.run();
+    harness.run_steps(4);
     let asked = harness.state_mut().asked();
     assert_eq!(asked, [opacity(2, (value * 1e-2) as f32)]);
 }
@@ -80,22 +119,22 @@ fn an_opacity_is_sent_when_it_is_let_go_and_shown_while_it_is_dragged() {
 fn a_click_on_a_name_gives_another_one() {
     let mut harness = panel();
     harness.get_by_label("Sky").click();
-    harness.run();
+    harness.run_steps(4);
     let field = harness.get_by_label("Name of the layer");
     assert!(field.is_focused());
     field.type_text(" at dusk");
-    harness.run();
+    harness.run_steps(4);
     harness.key_press(Key::Enter);
-    harness.run();
+    harness.run_steps(4);
     let named = Command::from(NameLayer {
         layer: 2,
         name: LayerName::new("Sky at dusk").expect("valid"),
     });
     assert_eq!(harness.state_mut().asked(), [named]);
     harness.get_by_label("Trees").click();
-    harness.run();
+    harness.run_steps(4);
     harness.key_press(Key::Escape);
-    harness.run();
+    harness.run_steps(4);
     assert!(harness.state_mut().asked().is_empty(), "left as it was");
     assert!(harness.query_by_label("Name of the layer").is_none());
 }
@@ -103,25 +142,25 @@ fn a_click_on_a_name_gives_another_one() {
 #[test]
 fn paint_dries_at_once_in_time_or_becomes_wet_again() {
     let mut harness = panel();
-    let share = harness.get_by_role_and_label(Role::Slider, "Share");
+    let share = harness.get_by_role_and_label(Role::Slider, "How much");
     share.set_value_accesskit(40.0);
-    harness.run();
+    harness.run_steps(4);
     harness
         .get_by_role_and_label(Role::TextInput, "Name")
         .focus();
-    harness.run();
+    harness.run_steps(4);
     harness
         .get_by_role_and_label(Role::TextInput, "Name")
         .type_text("Fog");
-    harness.run();
+    harness.run_steps(4);
     harness.get_by_label("Dry").click();
-    harness.run();
+    harness.run_steps(4);
     harness.get_by_label("Start").click();
-    harness.run();
+    harness.run_steps(4);
     harness.get_by_label("Stop").click();
-    harness.run();
+    harness.run_steps(4);
     harness.get_by_label("Wet again").click();
-    harness.run();
+    harness.run_steps(4);
     let surface = CANVAS;
     let expected = [
         Command::from(Dry {
@@ -149,18 +188,18 @@ fn a_part_is_drawn_and_one_that_is_none_is_told() {
     harness
         .get_by_role_and_label(Role::ComboBox, "Where")
         .click();
-    harness.run();
+    harness.run_steps(4);
     harness.get_by_label("A part").click();
-    harness.run();
+    harness.run_steps(4);
     let map = harness.get_by_label("Map of the canvas").rect();
     let at = |x: f32, y: f32| map.left_bottom() + vec2(x * map.width(), -y * map.height());
     harness.drag_at(at(0.25, 0.25));
     harness.hover_at(at(0.5, 0.5));
     harness.hover_at(at(0.75, 0.5));
     harness.drop_at(at(0.75, 0.5));
-    harness.run();
+    harness.run_steps(4);
     harness.get_by_label("Dry").click();
-    harness.run();
+    harness.run_steps(4);
     let asked = harness.state_mut().asked();
     let [
         Command::Edit(Edit::Dry(Dry {
@@ -183,9 +222,9 @@ fn a_part_is_drawn_and_one_that_is_none_is_told() {
     harness
         .get_by_role_and_label(Role::SpinButton, "Width")
         .set_value_accesskit(-3.0);
-    harness.run();
+    harness.run_steps(4);
     harness.get_by_label("Dry").click();
-    harness.run();
+    harness.run_steps(4);
     assert!(harness.state_mut().asked().is_empty());
     let told = harness.state().notifications.told();
     assert!(
@@ -200,9 +239,9 @@ fn the_panel_looks_as_it_did() {
         harness
             .get_by_role_and_label(Role::ComboBox, "Where")
             .click();
-        harness.run();
+        harness.run_steps(4);
         harness.get_by_label("A part").click();
-        harness.run();
+        harness.run_steps(4);
         harness.remove_cursor();
     };
     picture::<LayersPanel>("layers", &layered(), part, |rig| {

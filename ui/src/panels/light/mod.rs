@@ -2,6 +2,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | `lamp_undo` | changes of the light, as undo takes them |
 //! | `pad` | pad on which the lamp is dragged |
 //! | `sphere` | a ball lit by the lamp |
 
@@ -20,6 +21,7 @@ use crate::widgets::context::PanelContext;
 use crate::widgets::pending::Pending;
 use crate::widgets::rows::{Number, Sliders, ask, below, choice, note, row, wrong};
 
+pub(crate) mod lamp_undo;
 mod pad;
 mod sphere;
 
@@ -179,8 +181,17 @@ impl LightPanel {
             ILLUMINANTS[place].clone_into(&mut light.illuminant);
             light.spectrum.clear();
         }
-        row(ui, tr!("From a file"), |ui| {
-            let edit = TextEdit::singleline(&mut self.file).hint_text(tr!("CSV of nm,power"));
+        ui.checkbox(&mut light.adapted, tr!("White-balance to this light"))
+            .on_hover_text(tr!(
+                "White looks white; else the light's own colour is seen"
+            ));
+    }
+
+    /// A measured lamp, and the conversion of its light to colour.
+    fn research(&mut self, ui: &mut Ui, light: &mut Light) {
+        row(ui, tr!("Light from"), |ui| {
+            let edit =
+                TextEdit::singleline(&mut self.file).hint_text(tr!("a file of measurements"));
             let edit = ui.add(edit.desired_width(f32::INFINITY));
             let entered = ui.input(|input| input.key_pressed(eframe::egui::Key::Enter));
             if edit.lost_focus() && entered && !self.file.trim().is_empty() {
@@ -193,19 +204,13 @@ impl LightPanel {
                     Err(fault) => self.told = spectrum_file::told(&fault),
                 }
             }
-            edit.on_hover_text(tr!("The whole path of a measured spectrum; Enter reads it"))
+            edit.on_hover_text(tr!(
+                "The whole path of a measured lamp, a line for each wavelength in nm and its power; Enter reads it"
+            ))
         });
         if !self.told.is_empty() {
             wrong(ui, &self.told);
         }
-        ui.checkbox(&mut light.adapted, tr!("White-balance to this light"))
-            .on_hover_text(tr!(
-                "White looks white; else the light's own colour is seen"
-            ));
-    }
-
-    /// Conversion of its light to colour.
-    fn research(&mut self, ui: &mut Ui, light: &mut Light) {
         let year = OBSERVERS.iter().find(|(_, year)| *year == light.observer);
         let (shown, _) = year.unwrap_or(&OBSERVERS[0]);
         let chosen = choice(ui, tr!("Observer"), shown, OBSERVERS.map(|(name, _)| name));

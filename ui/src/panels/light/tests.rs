@@ -106,15 +106,17 @@ fn a_spectrum_is_read_from_a_file_or_told_with_its_line() {
     let path = folder.path().join("candle.csv");
     std::fs::write(&path, "nm,power\n380,0.1\n500,x\n780,2\n").expect("written");
     let mut harness = panel();
+    harness.get_by_label("Advanced colour").click();
+    harness.run();
     let enter = |harness: &mut Harness<'static, Bench<LightPanel>>| {
         harness
-            .get_by_role_and_label(Role::TextInput, "From a file")
+            .get_by_role_and_label(Role::TextInput, "Light from")
             .focus();
         harness.run();
     };
     enter(&mut harness);
     harness
-        .get_by_role_and_label(Role::TextInput, "From a file")
+        .get_by_role_and_label(Role::TextInput, "Light from")
         .type_text(&path.display().to_string());
     harness.run();
     harness.key_press(Key::Enter);
