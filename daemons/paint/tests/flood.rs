@@ -3,7 +3,7 @@
 mod support;
 
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Bus as _, Faults, MemoryNet, Qos, Queue, Wake};
+use maulstick_bus::{Faults, MemoryNet, Qos, Queue, Wake};
 use maulstick_types::brush::BrushState;
 use support::{Live, START_NS, pen};
 

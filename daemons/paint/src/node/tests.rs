@@ -223,6 +223,7 @@ fn introduced(node: &mut PaintNode, net: &MemoryNet, brush: &str) -> bool {
         brush: brush.to_owned(),
         hash: name_hash(&toml),
         toml,
+        head_length_m: 0.03,
     };
     sender.send(0, 0, &def).expect("sent");
     net.advance(1);

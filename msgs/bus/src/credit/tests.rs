@@ -279,6 +279,7 @@ fn a_message_that_is_too_long_is_dropped_and_the_next_one_has_its_number() {
         brush: "main".to_owned(),
         toml: "x".repeat(BrushDef::MAX_BYTES),
         hash: 0,
+        head_length_m: 0.03,
     };
     let short = BrushDef {
         toml: String::new(),
