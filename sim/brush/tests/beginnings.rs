@@ -8,6 +8,10 @@ use maulstick_num::{atan2, sin_cos};
 use maulstick_types::brush::solve_flags;
 
 mod desk;
+#[allow(
+    dead_code,
+    reason = "shared by test programs, each of which uses a part"
+)]
 mod patch;
 use patch::{Bench, CELL_M};
 

@@ -85,7 +85,7 @@ mod tests {
             pace.note(now_ns, Place::Surface);
             let mut solves: Vec<_> = strokes.iter().map(|stroke| solve(*stroke)).collect();
             pace.flag(now_ns, &mut solves);
-            pace.caught_up();
+            pace.forget_wait();
             solves.iter().map(|solve| solve.flags).collect()
         };
         const TWICE: u32 = solve_flags::TWICE;
