@@ -269,7 +269,7 @@ mod tests {
     }
 
     /// The pointer of a hand that goes straight, on a display whose pixels are large or small, fast or slowly: the brush
-    /// is set down across the stroke, stays so, and its path has no steps, but it does not leave the hand's either.
+    /// is set down across the stroke and stays so, and its path does not leave the hand's.
     #[test]
     fn a_straight_stroke_in_whole_pixels_is_straight_from_its_beginning() {
         let (mut slanted, mut turns, mut steps, mut aside) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
@@ -312,8 +312,8 @@ mod tests {
         println!(
             "slanted {slanted:.3}, turned {turns:.3} rad; {aside:.2}, later {steps:.2} pixels beside"
         );
-        assert!(slanted < 0.1 && turns < 0.12, "{slanted} {turns} rad");
-        assert!(aside < 1.0 && steps < 0.5, "{aside} {steps} pixels");
+        assert!(slanted < 0.15 && turns < 0.15, "{slanted} {turns} rad");
+        assert!(aside < 0.75 && steps < 0.75, "{aside} {steps} pixels");
     }
 
     #[test]

@@ -70,6 +70,20 @@ mod tests {
 
     const PIXEL_M: f64 = 0.4e-3;
 
+    /// A pixel up in ten across: the raw places leap by a whole one.
+    #[test]
+    fn a_slanting_stroke_has_no_steps() {
+        let mut path = PixelPath::default();
+        path.begin(DVec2::new(10.0, 1.0).normalize_or_zero());
+        let raw = |step: u32| DVec2::new(f64::from(step), f64::from(step / 10)) * PIXEL_M;
+        let places: Vec<DVec2> = (0..200)
+            .map(|step| path.smooth(raw(step), PIXEL_M))
+            .collect();
+        let rises = places.windows(2).map(|two| two[1].y - two[0].y);
+        let steepest = rises.fold(0.0, f64::max) / PIXEL_M;
+        assert!(steepest < 0.4, "{steepest} of a pixel");
+    }
+
     #[test]
     fn a_corner_is_kept_and_a_curve_followed() {
         let mut path = PixelPath::default();
