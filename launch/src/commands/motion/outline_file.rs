@@ -214,7 +214,7 @@ mod tests {
     #[test]
     fn a_table_has_points_and_says_which_is_none() {
         let contours =
-            of_text(b"x,y\n# a leaf\n0,0\n10,0\n10,20\n\n1 1\n2 1\n2 2\n").expect("read");
+            of_text(b"x,y\n# a leaf\n0,0\n10,0\n10,20\n\n1,1\n2,1\n2,2\n").expect("read");
         assert_eq!(contours.iter().map(Vec::len).collect::<Vec<_>>(), [3, 3]);
         assert_eq!(contours[0][2], [0.01, 0.02]);
         for text in [
@@ -232,6 +232,8 @@ mod tests {
             let (line, ..) = of_text(text.as_bytes()).expect_err(text);
             assert_eq!(line, Some(2), "{text:?}");
         }
+        let (line, ..) = of_text(b"x,y\n0,0\n10,0\n1 1\n").expect_err("two separators");
+        assert_eq!(line, Some(4));
         let (line, ..) = of_text(b"10,20 30,40\n").expect_err("two readings");
         assert_eq!(line, Some(1));
         assert!(of_text(b"\xff\xfe").is_err());

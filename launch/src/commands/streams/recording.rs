@@ -430,6 +430,7 @@ mod tests {
     fn a_topic_is_listed_once_however_many_sent_it() {
         let mut traffic = Traffic::default();
         let mut send = |topic: &str, epoch: u32, seq: u64| {
+            let sent_ns = u64::from(epoch) * 1_000_000_000 + seq * 10_000_000;
             let header = Header {
                 version: 1,
                 schema: 1,
@@ -439,12 +440,12 @@ mod tests {
                 length: 0,
                 seq,
                 event_ns: 0,
-                sent_ns: 0,
+                sent_ns,
             };
             let arrived = Arrived {
                 header,
                 bytes: 100,
-                arrived_ns: u64::from(epoch) * 1_000_000_000 + seq * 10_000_000,
+                arrived_ns: sent_ns,
             };
             traffic.add(topic, &arrived);
         };
