@@ -79,7 +79,7 @@ pub fn run(options: &ExportOptions) -> Result<i32, UserError> {
         Some(name) => Format::named(name),
         None => Format::of(file),
     };
-    let kind = format.map_or(Kind::Png, kind_of);
+    let kind = format.map_or(Kind::Own, kind_of);
     check_outputs(&[UsedFile::new("the export", file).of(kind)], &inputs)?;
     let file = Relayed::new(file, kind)?;
     let command = FileCommand::Export(ExportOrder {

@@ -154,7 +154,7 @@ impl Kind {
                 let own: Vec<String> = self.endings().map(|own| format!(".{own}")).collect();
                 let what = self.name();
                 Err(Error::new(
-                    ErrorKind::InvalidInput,
+                    ErrorKind::InvalidFilename,
                     format!(
                         "{what} is no .{ending} file: end its name in {}",
                         own.join(" or ")

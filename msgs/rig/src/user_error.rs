@@ -95,6 +95,11 @@ impl UserError {
     /// A file that cannot be written.
     #[must_use]
     pub fn writing(path: &std::path::Path, error: &std::io::Error) -> Self {
+        if error.kind() == std::io::ErrorKind::InvalidFilename {
+            return Self::usage(error.to_string())
+                .at(path.display().to_string())
+                .help("give it a name of its own kind");
+        }
         Self::failure(format!("cannot write the file: {error}")).on_disk(
             path,
             error,
