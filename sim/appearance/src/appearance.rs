@@ -112,7 +112,7 @@ impl Appearance {
     /// which is a fault of the program, the layer is left out.
     fn bake(&self, tiles: &[Unbaked<'_>], backend: &mut dyn FilmBackend) -> Vec<Vec<f32>> {
         let (links, mut baked): (Vec<Vec<&DryStack>>, Vec<Option<Vec<f32>>>) =
-            tiles.iter().map(Unbaked::from_below).unzip();
+            tiles.iter().map(Unbaked::bottom_up).unzip();
         let deepest = links.iter().map(Vec::len).max().unwrap_or(0);
         for depth in 0..deepest {
             let at: Vec<(usize, &DryLayer)> = links
@@ -171,7 +171,7 @@ struct Unbaked<'a> {
 
 impl Unbaked<'_> {
     /// Its layers from the lowest on that is not baked, and what is.
-    fn from_below(&self) -> (Vec<&DryStack>, Option<Vec<f32>>) {
+    fn bottom_up(&self) -> (Vec<&DryStack>, Option<Vec<f32>>) {
         let mut links = Vec::new();
         let (mut next, mut start) = (Some(self.stack), None);
         while let Some(link) = next {
