@@ -358,7 +358,7 @@ fn the_jar_of_medium_thins_what_the_brush_carries() {
         of("Thinner") / report.accounts_m3["brush"]
     };
     let (mut hands, mut shares) = (Vec::new(), Vec::new());
-    for dips in [0, 3, 8] {
+    for dips in [0, 4, 8] {
         let mut hand = Hand::new();
         let blue = hand.well(Some("Ultramarine Blue"));
         hand.drag_through(blue);
