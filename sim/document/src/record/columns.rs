@@ -97,7 +97,7 @@ pub(super) fn in_order(row: &[u8]) -> Result<Option<Vec<u8>>, DocumentError> {
         let length = u32::from_le_bytes(*length) as usize;
         let (bytes, after) = after.split_at_checked(length).ok_or_else(torn)?;
         rest = after;
-        if length % width != 0 {
+        if !length.is_multiple_of(width) {
             return Err(torn());
         }
         let count = length / width;

@@ -61,8 +61,16 @@ pub(crate) struct DocumentThread {
     /// Pages of the painting as it is that were not read yet: they are, while there is nothing else to do, so that a disk that
     /// fails later is painted on.
     unread: Vec<Page<Planes>>,
-    /// True until the first checkpoint of this file is merged into it: then it can be read without its journal.
-    unmerged: bool,
+    merged: Merged,
+}
+
+/// Whether a file can be read without its journal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Merged {
+    /// Its first checkpoint is still to be merged into it.
+    Not,
+    /// Its first checkpoint is merged.
+    First,
 }
 
 /// Next work of the thread.
@@ -102,7 +110,7 @@ impl DocumentThread {
             file: Retry::default(),
             reading: Retry::default(),
             unread: Vec::new(),
-            unmerged: true,
+            merged: Merged::Not,
         }
     }
 
@@ -348,7 +356,7 @@ impl DocumentThread {
                     .committed
                     .fetch_max(checkpoint.sequencer.next, SeqCst);
                 drop((queues, checkpoint));
-                if std::mem::take(&mut self.unmerged) {
+                if std::mem::replace(&mut self.merged, Merged::First) == Merged::Not {
                     self.database.merge_journal();
                     self.watch.note_merged();
                 }

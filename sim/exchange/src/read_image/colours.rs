@@ -117,17 +117,17 @@ impl Colours {
         };
         let pixels = encoded.chunks_exact(3);
         let light = pixels.map(|pixel| [0, 1, 2].map(|c| self.light[usize::from(pixel[c])]));
-        light.map(|light| self.into_srgb(light)).collect()
+        light.map(|light| self.in_srgb(light)).collect()
     }
 
     /// The same of floats that are light.
     pub(super) fn of_light(&self, row: &[f32], channels: usize) -> Vec<[f32; 3]> {
         let pixels = row.chunks_exact(channels);
         let light = pixels.map(|pixel| [0, 1, 2].map(|c| bounded(pixel[c.min(channels - 1)])));
-        light.map(|light| self.into_srgb(light)).collect()
+        light.map(|light| self.in_srgb(light)).collect()
     }
 
-    fn into_srgb(&self, light: [f32; 3]) -> [f32; 3] {
+    fn in_srgb(&self, light: [f32; 3]) -> [f32; 3] {
         match &self.to_srgb {
             None => light,
             Some(rows) => rows.map(|row| row[0] * light[0] + row[1] * light[1] + row[2] * light[2]),
