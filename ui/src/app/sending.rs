@@ -9,6 +9,7 @@ use maulstick_rig::UserError;
 use super::App;
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
+use crate::rig::state::BrushContact;
 use crate::widgets::context::PanelContext;
 
 /// Interval at which a request that waits for its stroke is checked again.
@@ -82,7 +83,7 @@ impl App {
 
     /// True if a request is refused: the brush is not changed while the hand has it on a surface.
     fn refuses(&mut self, request: &Request) -> bool {
-        if !self.rig.painting || !request.changes_brush() {
+        if self.rig.contact == BrushContact::Lifted || !request.changes_brush() {
             return false;
         }
         let outcome = Outcome {

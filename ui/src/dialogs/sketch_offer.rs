@@ -65,7 +65,7 @@ fn found(sketches: &Sketches, open: &std::path::Path) -> Found {
     {
         tracing::warn!("{}: {}", fault.place.unwrap_or_default(), fault.what);
     }
-    let leaving = leaving.iter().map(|sketch| stem(sketch)).collect();
+    let leaving = leaving.iter().map(stem).collect();
     let others = all.iter().filter(|sketch| sketch.path != open);
     Found {
         newest: others.clone().take(MOST).cloned().collect(),

@@ -16,7 +16,7 @@ use maulstick_types::values::{BrushName, BrushToml};
 use crate::language::{capitalized, known};
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
-use crate::rig::state::RigBrush;
+use crate::rig::state::{BrushContact, RigBrush};
 use crate::settings::brush_load::{BrushLoad, written};
 use crate::widgets::context::PanelContext;
 
@@ -145,11 +145,12 @@ impl PanelContext<'_> {
 
     /// True if the brush may be changed now. While the hand has it on a surface it stays as it is, which is said once.
     pub fn may_change_brush(&mut self) -> bool {
-        if self.rig.painting {
+        let is_lifted = self.rig.contact == BrushContact::Lifted;
+        if !is_lifted {
             let words = tr!("The brush is painting: lift it, and ask again.");
             self.notifications.value("painting", words.to_owned());
         }
-        !self.rig.painting
+        is_lifted
     }
 
     /// Gives the hand another brush; the brush already in the hand is not requested again.

@@ -68,6 +68,15 @@ pub struct PaintNode {
     pub heard_ns: u64,
 }
 
+/// Whether a brush is on a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BrushContact {
+    /// It is lifted.
+    Lifted,
+    /// A hand has it on a surface.
+    Held,
+}
+
 /// The rig as the window knows it.
 #[derive(Clone, Debug)]
 pub struct RigState {
@@ -107,8 +116,8 @@ pub struct RigState {
     pub changes_devices: bool,
     /// Tiles of the view that have arrived of those that are missing, and those in all.
     pub drawn: [u32; 2],
-    /// True while a hand has the brush of the panels on a surface: it is not changed then.
-    pub painting: bool,
+    /// Whether a hand has the brush of the panels on a surface: it is not changed then.
+    pub contact: BrushContact,
     /// The sketches of this user, if the system has a folder for them.
     pub sketches: Option<Sketches>,
     /// The paints of the rig.
@@ -150,7 +159,7 @@ impl RigState {
             pen_pressure: None,
             changes_devices: false,
             drawn: [0; 2],
-            painting: false,
+            contact: BrushContact::Lifted,
             sketches: None,
             library,
             show_wet: false,

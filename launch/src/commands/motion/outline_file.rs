@@ -167,7 +167,10 @@ fn of_table(text: &str) -> Result<Contours, Fault> {
             contour.push(point);
         }
     }
-    Ok(contours)
+    match contours.is_empty() {
+        true => Err((None, "it has no points".to_owned(), LINE)),
+        false => Ok(contours),
+    }
 }
 
 #[cfg(test)]

@@ -164,7 +164,7 @@ impl Studio {
             self.busy_ns = self.now_ns() + (after - before) * u64::from(self.dice(30)) * MS;
             self.behind_ns = self.behind_ns.max(self.busy_ns - self.now_ns());
         }
-        if self.now_ns() / MS % FRAME_MS == 0 {
+        if (self.now_ns() / MS).is_multiple_of(FRAME_MS) {
             self.frame();
         }
     }
