@@ -1,6 +1,8 @@
 //! Sixty faults in a random order while a hand paints: processes that die or freeze, garbage, floods, hands that are too
 //! fast, sockets that are removed, a machine that stands still. Nothing committed is lost, and the rig paints again.
 
+#![allow(clippy::panic, reason = "helpers of tests say what they saw")]
+
 #[path = "../support/mod.rs"]
 mod support;
 

@@ -22,13 +22,15 @@ fn full_pipe() -> (File, File) {
     let write = File::from(write);
     let wait = |flags: OFlag| fcntl(write.as_fd(), FcntlArg::F_SETFL(flags)).expect("set");
     wait(OFlag::O_NONBLOCK);
+    let mut written = 0;
     let full = loop {
         match (&write).write(&[b'.'; 512]) {
-            Ok(_) => {}
+            Ok(more) => written += more,
             Err(error) => break error,
         }
     };
     assert_eq!(full.kind(), ErrorKind::WouldBlock);
+    assert!(written > 0, "it had no room at all");
     wait(OFlag::empty());
     (read.into(), write)
 }

@@ -1,6 +1,8 @@
 //! A newcomer paints without a file: what was painted outlives the window, whatever ends it, and is offered again; and what
 //! moves the desk waits while the brush is held.
 
+#![allow(clippy::panic, reason = "helpers of tests say what they saw")]
+
 #[path = "../support/mod.rs"]
 mod support;
 
@@ -96,7 +98,7 @@ fn a_sketch_outlives_a_closed_terminal_and_a_window_is_not_closed_on_one_unasked
         !status.blank && status.all_committed && status.lag_ns == 0
     });
     let sketch = PathBuf::from(&status.path);
-    assert_eq!(sketches(&place), [sketch.clone()]);
+    assert_eq!(sketches(&place), std::slice::from_ref(&sketch));
 
     // A window manager asks it to close, and a dialog dims the desk.
     studio.display.close(studio.window);

@@ -1,5 +1,7 @@
 //! Streams in Foxglove: recordings with JSON channels, exports of them, and the bridge to a running rig.
 
+#![allow(clippy::panic, reason = "helpers of tests say what they saw")]
+
 #[path = "../support/mod.rs"]
 mod support;
 

@@ -1,6 +1,5 @@
-//! A hand that paints circles from a thread of its own, whatever happens to the rig, and what it can do amiss.
+//! A hand that paints from a thread of its own, whatever happens to the rig, and what it can do amiss.
 
-use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::thread::JoinHandle;
@@ -54,10 +53,11 @@ impl Hand {
             Sender::new(&bus, &topics.sample("hand"), Qos::RealTime, origin).expect("declared");
         let (running, leaping) = (Arc::clone(&run), Arc::clone(&leaps));
         let thread = std::thread::spawn(move || {
-            let mut number = 0;
+            let mut number = 0_u64;
             while running.load(Ordering::Relaxed) {
-                let angle = TAU * (number % 200) as f64 / 200.0;
-                let mut at = [0.03 * angle.cos(), 0.03 * angle.sin()];
+                // A rhombus, once a second.
+                let wave = |number: u64| ((number % 200) as f64 / 100.0 - 1.0).abs() - 0.5;
+                let mut at = [0.06 * wave(number), 0.06 * wave(number + 50)];
                 let left = leaping.load(Ordering::Relaxed);
                 if left > 0 {
                     leaping.store(left - 1, Ordering::Relaxed);
