@@ -129,10 +129,10 @@ fn a_node_that_runs_by_fits_and_starts_changes_nothing() {
             }
             signal(pid, Signal::SIGSTOP);
             stops += 1;
-            // The first time for as long as a loaded machine stands still; with the statuses, which come twice a second,
-            // on either side it is less than the 4.5 s after which a node is taken for frozen.
+            // The first time for as long as a loaded machine stands still. What is heard meanwhile comes twice a second, and
+            // late on such a machine: together that is less than the 4.5 s after which a node is taken for frozen.
             let still_ns = if stops == 1 {
-                3_000_000_000
+                2_000_000_000
             } else {
                 300_000_000
             };
