@@ -28,6 +28,9 @@ const BREAK: Duration = Duration::from_millis(300);
 /// A process may hold so much more memory after all floods than before the first.
 const MORE_BYTES: u64 = 64 << 20;
 
+/// The launcher takes three failures of a node within ten seconds for one that does not stay up: there are two at most.
+const APART: Duration = Duration::from_secs(11);
+
 /// What is done to a rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fault {
@@ -55,6 +58,20 @@ const FAULTS: [Fault; 10] = [
     Fault::SocketGone,
     Fault::MachineStandsStill,
 ];
+
+impl Fault {
+    /// True if a process ends by it.
+    fn ends_a_node(self) -> bool {
+        matches!(
+            self,
+            Self::BrushDies
+                | Self::PaintDies
+                | Self::BrushFreezes
+                | Self::PaintFreezes
+                | Self::SocketGone
+        )
+    }
+}
 
 /// A rig under attack.
 struct Attack<'a> {
@@ -180,9 +197,14 @@ fn attack(each: usize) {
     wait_for(PATIENCE, &mut accepted).expect("the hand paints");
 
     let mut committed = 0;
-    let mut times = Vec::new();
+    let (mut times, mut ended) = (Vec::new(), Vec::new());
     let mut held: Vec<(u64, u64)> = Vec::new();
     for (number, fault) in order(&mut attack.dice, each).into_iter().enumerate() {
+        if fault.ends_a_node() {
+            let before_last: Option<&Instant> = ended.iter().nth_back(1);
+            let passed = before_last.map_or(APART, Instant::elapsed);
+            wait_for(APART.saturating_sub(passed), || None::<()>);
+        }
         let struck = Instant::now();
         attack.strike(fault, &launcher);
         // A machine that stood still painted nothing then, which is nobody's fault.
@@ -209,6 +231,9 @@ fn attack(each: usize) {
             again.as_secs_f64()
         );
         times.push(again);
+        if fault.ends_a_node() {
+            ended.push(Instant::now());
+        }
         drain(&mut status);
         let told = hear(&mut status, |_| true).expect("a status");
         assert!(
