@@ -53,17 +53,28 @@ fn fades(samples: &mut Receiver<StylusSample>, head_length_m: f64) -> Option<()>
     })
 }
 
+/// A rig whose simulated hand presses for minutes, with other lines in its settings.
+fn pressing_rig(place: &Place, others: &[(&str, &str)]) -> Launcher {
+    support::press_for_minutes(&place.path("press.mcap"));
+    let output = place.done(&["up", "--print-config"]);
+    let mut config = String::from_utf8(output.stdout).expect("UTF-8");
+    for (line, other) in [("# hand = \"demo.mcap\"", "hand = \"press.mcap\"")]
+        .iter()
+        .chain(others)
+    {
+        assert!(config.contains(line), "{line}");
+        config = config.replace(line, other);
+    }
+    std::fs::write(place.path("rig.toml"), config).expect("written");
+    Launcher::up(place, &["--rig", "rig.toml"])
+}
+
 #[test]
 fn whichever_of_brush_and_paint_dies_the_force_fades_without_a_leap_and_comes_back() {
     let place = Place::new();
-    support::press_for_minutes(&place.path("press.mcap"));
     let brush = BrushFile::library("round").expect("a brush");
     let head_length_m = brush.scaled_to(10.0).expect("a size").length_m();
-    let config = String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
-    let hand = config.replace("# hand = \"demo.mcap\"", "hand = \"press.mcap\"");
-    assert_ne!(hand, config);
-    std::fs::write(place.path("rig.toml"), hand).expect("written");
-    let mut launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
+    let mut launcher = pressing_rig(&place, &[]);
     let (bus, topics) = support::join(&place);
     let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Qos::RealTime);
     let felt = |sample: &StylusSample| size(sample) > 0.1;
@@ -111,12 +122,7 @@ fn strongest(samples: &mut Receiver<StylusSample>, mut meanwhile: impl FnMut()) 
 #[test]
 fn recorded_models_drive_a_device_by_the_rules_of_its_servo() {
     let place = Place::new();
-    support::press_for_minutes(&place.path("press.mcap"));
-    let config = String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
-    let hand = config.replace("# hand = \"demo.mcap\"", "hand = \"press.mcap\"");
-    std::fs::write(place.path("rig.toml"), &hand).expect("written");
-    let mut launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
-    launcher.wait_says("is up");
+    let launcher = pressing_rig(&place, &[]);
     let (bus, topics) = support::join(&place);
     let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Qos::RealTime);
     let felt = |sample: &StylusSample| size(sample) > 0.1;
@@ -163,11 +169,7 @@ fn recorded_models_drive_a_device_by_the_rules_of_its_servo() {
 #[test]
 fn a_second_sender_neither_takes_the_wall_away_nor_kicks() {
     let place = Place::new();
-    support::press_for_minutes(&place.path("press.mcap"));
-    let config = String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
-    let hand = config.replace("# hand = \"demo.mcap\"", "hand = \"press.mcap\"");
-    std::fs::write(place.path("rig.toml"), hand).expect("written");
-    let launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
+    let launcher = pressing_rig(&place, &[]);
     let (bus, topics) = support::join(&place);
     let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Qos::RealTime);
     let status = topics.stylus_status("phantom");
@@ -244,13 +246,8 @@ fn paint(device: Origin, along_n: f64, damping_n_s_m: f64) -> FluidForce {
 #[test]
 fn a_force_of_paint_is_felt_without_a_leap_and_one_that_pushes_is_dropped() {
     let place = Place::new();
-    support::press_for_minutes(&place.path("press.mcap"));
-    let config = String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
-    let hand = config.replace("# hand = \"demo.mcap\"", "hand = \"press.mcap\"");
-    let consents = hand.replace("# driven_by = [\"lesson\"]", "driven_by = [\"tester\"]");
-    assert_ne!(consents, hand);
-    std::fs::write(place.path("rig.toml"), consents).expect("written");
-    let launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
+    let consents = ("# driven_by = [\"lesson\"]", "driven_by = [\"tester\"]");
+    let launcher = pressing_rig(&place, &[consents]);
     let (bus, topics) = support::join(&place);
     let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Qos::RealTime);
     let status = topics.stylus_status("phantom");

@@ -147,3 +147,18 @@ fn a_rig_outlasts_its_upgrade_and_a_start_that_the_system_does_not_allow() {
     bus.close();
     rig.close(&place);
 }
+
+#[test]
+fn a_frozen_brush_is_replaced() {
+    let place = Place::new();
+    let mut launcher = Launcher::up(&place, &[]);
+    let brush = place.pid("maulstick-brush").expect("a brush");
+    signal(brush, Signal::SIGSTOP);
+    launcher.wait_says("is started again");
+    let anew = wait_for(PATIENCE, || {
+        place.pid("maulstick-brush").filter(|anew| *anew != brush)
+    });
+    assert!(anew.is_some(), "{}", launcher.said());
+    launcher.signal(Signal::SIGTERM);
+    launcher.wait(PATIENCE);
+}

@@ -289,21 +289,6 @@ fn nothing_survives_a_killed_launcher() {
 }
 
 #[test]
-fn a_frozen_brush_is_replaced() {
-    let place = Place::new();
-    let mut launcher = Launcher::up(&place, &[]);
-    let brush = place.pid("maulstick-brush").expect("a brush");
-    signal(brush, Signal::SIGSTOP);
-    launcher.wait_says("is started again");
-    let anew = wait_for(PATIENCE, || {
-        place.pid("maulstick-brush").filter(|anew| *anew != brush)
-    });
-    assert!(anew.is_some(), "{}", launcher.said());
-    launcher.signal(Signal::SIGTERM);
-    launcher.wait(PATIENCE);
-}
-
-#[test]
 fn a_closed_window_ends_the_rig_with_success() {
     let display = Display::start();
     let place = Place::new();

@@ -3,7 +3,8 @@
 use clap::Args;
 use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, RigConfig};
-use maulstick_types::command::{CELLS_IN_ALL, SLOW_CELL_M, SLOW_CELLS};
+use maulstick_types::command::CELLS_IN_ALL;
+use maulstick_types::command::slow_canvas::{SLOW_CELL_M, SLOW_CELLS, is_slow};
 
 /// Side of a cell in pictures, mm. A hand that paints has those of its rig, which are larger, so that a
 /// broad brush keeps up with it.
@@ -105,9 +106,7 @@ impl From<bool> for Slowness {
 /// A [`UserError`] with its cells.
 pub fn check_speed(canvas: &CanvasSection, slowness: Slowness) -> Result<(), UserError> {
     let cells = canvas.cells().map(f64::from);
-    let is_slow =
-        canvas.cell_mm * 1e-3 < SLOW_CELL_M * (1.0 - 1e-9) || cells[0] * cells[1] > SLOW_CELLS;
-    if slowness == Slowness::Accepted || !is_slow {
+    if slowness == Slowness::Accepted || !is_slow(canvas.cell_mm * 1e-3, cells[0] * cells[1]) {
         return Ok(());
     }
     Err(UserError::usage(format!(

@@ -48,7 +48,7 @@ use crate::rig::dispatcher::CommandDispatcher;
 use crate::rig::health::HealthMonitor;
 use crate::rig::listener::RigListener;
 use crate::rig::requests::{Request, Requests};
-use crate::rig::state::{BrushContact, RigState};
+use crate::rig::state::RigState;
 use crate::rig::stroke_barrier::StrokeBarrier;
 use crate::rig::stroke_barrier::pending::PendingTeller;
 use crate::rig::thumbnails::ThumbnailFetcher;
@@ -353,10 +353,7 @@ impl eframe::App for App {
         // After the mouse has sent its position: its brush is drawn there.
         self.take_in(now_ns);
         self.barrier.take_in(now_ns);
-        self.rig.contact = match self.is_painting() {
-            true => BrushContact::Held,
-            false => BrushContact::Lifted,
-        };
+        self.rig.contact = self.contact();
         self.send(context);
         self.follow(context, now_ns);
         if self.pointer_path.is_pressed() || self.brush_turn.is_waiting() {

@@ -66,12 +66,16 @@ impl App {
         }
     }
 
-    /// True while the hand has the brush of the panels on a surface. What the mouse's own samples say comes late.
-    pub(super) fn is_painting(&self) -> bool {
+    /// Whether the hand has the brush of the panels on a surface. What the mouse's own samples say comes late.
+    pub(super) fn contact(&self) -> BrushContact {
         let name = self.rig.brush_name();
-        match self.tracker.is_led_by_mouse(name) {
+        let is_held = match self.tracker.is_led_by_mouse(name) {
             true => self.pointer_path.is_pressed(),
             false => self.tracker.aim(name).is_some_and(|(_, in_air)| !in_air),
+        };
+        match is_held {
+            true => BrushContact::Held,
+            false => BrushContact::Lifted,
         }
     }
 

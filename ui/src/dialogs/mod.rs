@@ -52,6 +52,7 @@ use dropped::Dropped;
 use export::ExportPicture;
 use new::NewPainting;
 use open::OpenPainting;
+use paths::{folder, stem};
 use recent::RecentList;
 use save_as::SaveAs;
 use sketch_offer::{Choice, SketchOffer};
@@ -493,29 +494,6 @@ fn done(command: &Command) -> Option<String> {
         | Command::Brush(_)
         | Command::Session(_) => return None,
     })
-}
-
-/// The folder in which a dialog begins: that of the painting, or of the one before.
-fn folder(work: &PanelContext<'_>) -> PathBuf {
-    let status = work.rig.paint.as_ref().map(|node| &node.status);
-    let open = status.filter(|status| !status.path.is_empty() && !work.rig.is_sketch());
-    let open = open.map(|status| PathBuf::from(&status.path));
-    let known = open.as_ref().or(work.preferences.recent.first());
-    let folder = known.and_then(|path| path.parent());
-    folder
-        .filter(|folder| folder.is_dir())
-        .map_or_else(paths::pictures, Path::to_owned)
-}
-
-/// File stem of the painting.
-fn stem(work: &PanelContext<'_>) -> String {
-    let node = work.rig.paint.as_ref().filter(|_| !work.rig.is_sketch());
-    let status = node.map(|node| &node.status);
-    let stem = status.and_then(|status| Path::new(&status.path).file_stem());
-    stem.map_or_else(
-        || tr!("Painting").to_owned(),
-        |stem| stem.to_string_lossy().into_owned(),
-    )
 }
 
 #[cfg(test)]

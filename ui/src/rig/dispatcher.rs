@@ -1,6 +1,8 @@
 //! Sends requests, with a queue and a thread for each node, so that no node waits for another and the window
 //! for none.
 
+mod outcomes;
+
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -19,6 +21,7 @@ use maulstick_types::{Origin, name_hash};
 use crate::advice;
 use crate::rig::requests::Request;
 use crate::rig::stroke_barrier::Ready;
+use outcomes::Outcomes;
 
 /// Longest wait for a node's answer to a command.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -43,20 +46,6 @@ pub struct Outcome {
     pub request: Request,
     /// Answer of the process.
     pub result: Result<String, UserError>,
-}
-
-/// Outcomes that the window has not taken, and when the oldest of those for which strokes wait was asked for, ns.
-#[derive(Debug, Default)]
-struct Outcomes {
-    list: Vec<Outcome>,
-    oldest_ns: Option<u64>,
-}
-
-impl Outcomes {
-    fn push(&mut self, outcome: Outcome, asked_ns: Option<u64>) {
-        self.list.push(outcome);
-        self.oldest_ns = self.oldest_ns.into_iter().chain(asked_ns).min();
-    }
 }
 
 /// Requests for one process.

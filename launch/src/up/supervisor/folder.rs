@@ -47,6 +47,11 @@ impl FolderWatch {
         is_due
     }
 
+    /// Makes it time to look.
+    pub(super) fn hasten(&mut self) {
+        self.looked = None;
+    }
+
     /// Looks at the sockets, and touches them where it is time.
     fn look(&mut self, now: Instant) -> SocketNews {
         let rests = |since: Instant| now.duration_since(since) < TOUCH;

@@ -24,6 +24,16 @@ pub(in crate::up) fn fresh(sketches: &Sketches) -> Result<PathBuf, UserError> {
     sketches.fresh(&Zoned::now().strftime("%Y-%m-%d %H.%M.%S").to_string())
 }
 
+/// The file of another sketch; where it cannot be had the painting is in memory alone, as its status says.
+pub(super) fn begin(sketches: &Sketches) -> Option<PathBuf> {
+    let begun = fresh(sketches);
+    let warn = |fault: &UserError| {
+        let place = fault.place.as_deref().unwrap_or_default();
+        tracing::warn!("{place}: {}: the sketch is in memory alone", fault.what);
+    };
+    begun.inspect_err(warn).ok()
+}
+
 /// Removes the sketches that leave and of which the painter was told, and those on which nothing was ever painted. One
 /// that is open in another rig stays.
 pub(in crate::up) fn tidy(sketches: &Sketches) {

@@ -12,7 +12,7 @@ use maulstick_rig::command_client::CommandClient;
 use maulstick_rig::config::{RigConfig, is_path};
 use maulstick_rig::files::{Kind, check_writable, write_whole};
 use maulstick_rig::node_handle::CONFIG_FILE;
-use maulstick_rig::{Sketches, UserError};
+use maulstick_rig::UserError;
 use maulstick_types::Mixture;
 use maulstick_types::command::{FileCommand, NewCanvas, Outcome, SaveAs};
 use maulstick_types::wire::topics::Topics;
@@ -136,7 +136,7 @@ impl Switch {
             ),
             Ask::New(path, canvas, forget) => Stage::Checking(
                 beside(move || {
-                    let path = path.or_else(|| sketches.as_ref().and_then(begin_sketch));
+                    let path = path.or_else(|| sketches.as_ref().and_then(sketch::begin));
                     let checked = begun(&mut config, path, &canvas);
                     wake.ring();
                     let load = Some(checked?);
@@ -147,16 +147,6 @@ impl Switch {
         };
         Ok(Self { asker, stage })
     }
-}
-
-/// The file of another sketch; where it cannot be had the painting is in memory alone, as its status says.
-fn begin_sketch(sketches: &Sketches) -> Option<PathBuf> {
-    let begun = sketch::fresh(sketches);
-    let warn = |fault: &UserError| {
-        let place = fault.place.as_deref().unwrap_or_default();
-        tracing::warn!("{place}: {}: the sketch is in memory alone", fault.what);
-    };
-    begun.inspect_err(warn).ok()
 }
 
 /// Does work on a thread of its own.

@@ -3,6 +3,7 @@
 pub mod advice;
 pub mod reply_cache;
 pub mod session;
+pub mod slow_canvas;
 
 use serde::de::Error as _;
 
@@ -49,10 +50,6 @@ pub const CELLS_M: std::ops::RangeInclusive<f64> = 1e-5..=1e-2;
 pub const CELLS: std::ops::RangeInclusive<f64> = 0.5..=65_536.0;
 /// Cells of a new canvas in all, at most: twice what can be shown in comfort on a large machine.
 pub const CELLS_IN_ALL: f64 = 1_073_741_824.0;
-/// Cells with smaller sides are slow under any brush, m: a sixteenth of a millimetre.
-pub const SLOW_CELL_M: f64 = 6.25e-5;
-/// A canvas of more cells takes long to draw.
-pub const SLOW_CELLS: f64 = 100e6;
 /// A surface has at most this many wells.
 pub const WELLS_MAX: usize = 64;
 /// Factors on the stiffness of a brush.
@@ -122,13 +119,6 @@ impl TryFrom<CanvasFields> for NewCanvas {
 }
 
 impl NewCanvas {
-    /// True if painting on it is slow: nobody wants that by accident.
-    #[must_use]
-    pub fn is_slow(&self) -> bool {
-        let cells = self.width_m * self.height_m / (self.cell_m * self.cell_m);
-        self.cell_m < SLOW_CELL_M * (1.0 - 1e-9) || cells > SLOW_CELLS
-    }
-
     /// Checks that it can be made: whether there are such a ground and tooth is seen later.
     ///
     /// # Errors
