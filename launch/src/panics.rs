@@ -4,6 +4,7 @@ use std::io::Write as _;
 use std::panic::PanicHookInfo;
 
 use maulstick_bus::reason::{place, reason};
+use maulstick_rig::log::words;
 use maulstick_types::plain;
 
 /// Tells panics of this process as errors. Who asks for a backtrace gets what Rust says.
@@ -17,9 +18,6 @@ pub fn tell() {
 }
 
 fn in_words(info: &PanicHookInfo<'_>) -> String {
-    let payload = info.payload();
-    let text = payload.downcast_ref::<&str>().copied();
-    let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
     let thread = std::thread::current();
     let at = info.location().map_or_else(String::new, |at| {
         format!("\n  --> {}:{}", place(at.file()), at.line())
@@ -27,6 +25,6 @@ fn in_words(info: &PanicHookInfo<'_>) -> String {
     format!(
         "error: internal error: thread '{}' panicked: {}{at}\n help: report it, with what you did before",
         thread.name().unwrap_or("without a name"),
-        plain(&reason(text.unwrap_or("without a word"))),
+        plain(&reason(words(info.payload()))),
     )
 }

@@ -13,7 +13,9 @@ use maulstick_types::haptics::{ContactModel, FluidForce, ForceLaw};
 use maulstick_types::stylus::{StylusSample, StylusStatus};
 use maulstick_types::{Origin, Pose, name_hash};
 use nix::sys::signal::Signal;
-use support::{Launcher, PATIENCE, Place, drain, hear, listen, pressed, signal, wait_for};
+use support::{
+    Launcher, PATIENCE, Place, drain, hear, listen, pressed, printed, python, signal, wait_for,
+};
 
 fn size(sample: &StylusSample) -> f64 {
     sample.force_n.iter().map(|f| f * f).sum::<f64>().sqrt()
@@ -310,6 +312,32 @@ fn a_force_of_paint_is_felt_without_a_leap_and_one_that_pushes_is_dropped() {
     });
     assert!(gone.is_some(), "the last good one is held");
     bus.close();
+}
+
+#[test]
+fn the_documents_program_plots_force_against_depth() {
+    let place = Place::new();
+    let launcher = pressing_rig(&place, &[]);
+    let (bus, topics) = support::join(&place);
+    let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Qos::RealTime);
+    let felt = hear(&mut samples, |sample| size(sample) > 0.1);
+    assert!(felt.is_some(), "nothing is felt: {}", launcher.said());
+    place.done(&["record", "-o", "s.mcap", "--seconds", "2"]);
+    bus.close();
+    let [recording, plot] = ["s.mcap", "force.png"].map(|name| place.path(name));
+    let words = [&recording, &plot].map(|path| path.to_str().expect("text"));
+    let program = "../../docs/examples/plot_force.py";
+    let said = printed(&mut python(&place, program, &words), b"");
+    // "900 contact models, 5.1 mm at most, 0.52 N at most"
+    let numbers: Vec<f64> = said
+        .split(' ')
+        .filter_map(|word| word.parse().ok())
+        .collect();
+    assert_eq!(numbers.len(), 3, "{said}");
+    assert!(numbers[0] > 100.0, "{said}");
+    assert!((1.0..30.0).contains(&numbers[1]), "{said}");
+    assert!((0.1..3.3).contains(&numbers[2]), "{said}");
+    assert!(place.bytes("force.png").starts_with(b"\x89PNG"));
 }
 
 /// The seeded fault: a force that goes at once is a leap.

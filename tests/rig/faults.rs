@@ -20,6 +20,8 @@ use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng as _, SeedableRng as _};
 use support::{Launcher, PATIENCE, Place, drain, hear, info, join, listen, signal, wait_for};
 
+/// How often each fault strikes.
+const EACH: usize = 6;
 /// Seed of the order and of the garbage.
 const SEED: u64 = 20_261_127;
 /// Painting goes on once states have been accepted for so long without a longer break than [`BREAK`].
@@ -165,16 +167,18 @@ fn resident(pid: u32) -> u64 {
     kib.unwrap_or_default() << 10
 }
 
-/// Six of each, shuffled.
-fn order(dice: &mut Pcg64Mcg, each: usize) -> Vec<Fault> {
-    let mut order = FAULTS.repeat(each);
+/// [`EACH`] of each, shuffled.
+fn order(dice: &mut Pcg64Mcg) -> Vec<Fault> {
+    let mut order = FAULTS.repeat(EACH);
     for last in (1..order.len()).rev() {
         order.swap(last, dice.next_u32() as usize % (last + 1));
     }
     order
 }
 
-fn attack(each: usize) {
+#[test]
+#[ignore = "takes ten minutes"]
+fn sixty_faults_lose_nothing_and_the_rig_paints_again() {
     let place = Place::new();
     let launcher = Launcher::up(&place, &["p.maul", "--cell-mm", "0.5"]);
     let (bus, topics) = join(&place);
@@ -199,7 +203,7 @@ fn attack(each: usize) {
     let mut committed = 0;
     let (mut times, mut ended) = (Vec::new(), Vec::new());
     let mut held: Vec<(u64, u64)> = Vec::new();
-    for (number, fault) in order(&mut attack.dice, each).into_iter().enumerate() {
+    for (number, fault) in order(&mut attack.dice).into_iter().enumerate() {
         if fault.ends_a_node() {
             let before_last: Option<&Instant> = ended.iter().nth_back(1);
             let passed = before_last.map_or(APART, Instant::elapsed);
@@ -268,10 +272,4 @@ fn attack(each: usize) {
     let there = info(&place, "p.maul");
     assert!(there["journal"].as_u64() >= Some(committed), "{there}");
     assert_eq!(there["ledger"]["quanta_missing"], 0);
-}
-
-#[test]
-#[ignore = "takes ten minutes"]
-fn sixty_faults_lose_nothing_and_the_rig_paints_again() {
-    attack(6);
 }

@@ -84,6 +84,27 @@ fn a_rig_whose_messages_nobody_reads_paints_on_mends_itself_and_ends() {
     drop(unread);
 }
 
+#[test]
+fn a_recording_whose_words_nobody_reads_goes_on_and_ends() {
+    let place = Place::new();
+    let launcher = Launcher::up(&place, &[]);
+    let (unread, write) = full_pipe();
+    let mut command = place.maulstick(&["record", "-o", "s.mcap"]);
+    command.stdout(write).stderr(Stdio::null());
+    let mut recorder = Ended(command.spawn().expect("started"));
+    drop(command);
+    let bytes = || std::fs::metadata(place.path("s.mcap")).map_or(0, |file| file.len());
+    let begun = wait_for(PATIENCE, || (bytes() > 0).then(bytes));
+    let grown = wait_for(PATIENCE, || (Some(bytes()) > begun).then_some(()));
+    assert!(grown.is_some(), "the recorder stands still at {begun:?}");
+    signal(recorder.0.id(), Signal::SIGTERM);
+    let ended = wait_for(PATIENCE, || recorder.0.try_wait().expect("waited"));
+    assert!(ended.is_some_and(|status| status.success()), "{ended:?}");
+    launcher.close(&place);
+    place.done(&["recording", "info", "s.mcap"]);
+    drop(unread);
+}
+
 /// A process that does not outlast its test.
 struct Ended(Child);
 

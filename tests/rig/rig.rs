@@ -189,12 +189,11 @@ fn a_take_is_played_again_when_a_node_ends_in_mid_stroke() {
 fn a_stopped_paint_node_comes_back_with_loaded_brushes() {
     let place = Place::new();
     let mut launcher = Launcher::up(&place, &[]);
-    let loaded = || wait_for(PATIENCE, || (account(&place, "brush") > 0.0).then_some(()));
-    assert!(
-        loaded().is_some(),
-        "the brush is clean: {}",
-        launcher.said()
-    );
+    let is_loaded = |launcher: &Launcher| {
+        let carried = wait_for(PATIENCE, || (account(&place, "brush") > 0.0).then_some(()));
+        assert!(carried.is_some(), "it is clean: {}", launcher.said());
+    };
+    is_loaded(&launcher);
     let pid = place.pid("maulstick-paint").expect("a paint node");
     signal(pid, Signal::SIGTERM);
     launcher.wait_says("is started again");
@@ -202,11 +201,7 @@ fn a_stopped_paint_node_comes_back_with_loaded_brushes() {
         place.pid("maulstick-paint").filter(|anew| *anew != pid)
     });
     assert!(anew.is_some(), "no paint node: {}", launcher.said());
-    assert!(
-        loaded().is_some(),
-        "the brush is clean: {}",
-        launcher.said()
-    );
+    is_loaded(&launcher);
 }
 
 /// Kills a node as often as the rig starts it, and sees that the rig gives up with words.

@@ -6,7 +6,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use maulstick_bus::typed::Receiver;
@@ -14,6 +14,7 @@ use maulstick_bus::{Qos, ZenohBus};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::stylus::{StylusPose, StylusSample};
 use maulstick_types::wire::topics::Topics;
+use maulstick_ui::settings::preferences::Preferences;
 use nix::sys::signal::Signal;
 use support::display::{Display, TAB, over};
 use support::{Launcher, PATIENCE, Place, listen, wait_for};
@@ -58,6 +59,15 @@ fn line(from: [f64; 2], to: [f64; 2]) -> Vec<[i16; 2]> {
 }
 
 impl Studio {
+    /// Pixels of the window, a grid of them.
+    fn pixels(&self) -> Vec<[u8; 3]> {
+        let [width, height] = Preferences::default().size.map(|side| side as i16 / 32);
+        (1..32)
+            .flat_map(|row| (1..32).map(move |column| (column * width, row * height)))
+            .map(|(x, y)| self.display.pixel(self.window, x, y))
+            .collect()
+    }
+
     /// The status, once it is as wanted.
     fn status(&self, what: &str, wanted: impl Fn(&PaintStatus) -> bool) -> PaintStatus {
         let mut statuses =
@@ -85,19 +95,34 @@ fn sketches(place: &Place) -> Vec<PathBuf> {
         .collect()
 }
 
+impl Studio {
+    /// Paints a stroke of the hand: the file that has it.
+    fn stroke(&mut self) -> PathBuf {
+        let shown = wait_for(PATIENCE, || self.is_light(0.0, 0.0).then_some(()));
+        assert!(shown.is_some(), "the canvas is not shown");
+        let way = line([-60.0, 40.0], [60.0, 40.0]);
+        self.display.drag(&way, &mut self.mouse);
+        let status = self.status("a stroke in its file", |status| {
+            !status.blank && status.all_committed && status.lag_ns == 0
+        });
+        PathBuf::from(status.path)
+    }
+}
+
+/// A painting is whole, and not blank.
+fn check(place: &Place, painting: &Path) {
+    let checked = ["painting", "info", "--json", "--check"];
+    let file = painting.to_str().expect("text");
+    let said = place.done(&[&checked[..], &[file]].concat()).stdout;
+    let said: serde_json::Value = serde_json::from_slice(&said).expect("JSON");
+    assert_eq!(said["record"]["strokes"], 1, "{said}");
+}
+
 #[test]
 fn a_sketch_outlives_a_closed_terminal_and_a_window_is_not_closed_on_one_unasked() {
     let place = Place::new();
     let mut studio = sit_down(&place);
-    let shown = wait_for(PATIENCE, || studio.is_light(0.0, 0.0).then_some(()));
-    assert!(shown.is_some(), "the canvas is not shown");
-    studio
-        .display
-        .drag(&line([-60.0, 40.0], [60.0, 40.0]), &mut studio.mouse);
-    let status = studio.status("a stroke in its file", |status| {
-        !status.blank && status.all_committed && status.lag_ns == 0
-    });
-    let sketch = PathBuf::from(&status.path);
+    let sketch = studio.stroke();
     assert_eq!(sketches(&place), std::slice::from_ref(&sketch));
 
     // A window manager asks it to close, and a dialog dims the desk.
@@ -109,8 +134,7 @@ fn a_sketch_outlives_a_closed_terminal_and_a_window_is_not_closed_on_one_unasked
     studio.launcher.signal(Signal::SIGHUP);
     studio.launcher.wait(PATIENCE);
     place.wait_empty(PATIENCE);
-    let info = place.done(&["painting", "info", &sketch.display().to_string(), "--check"]);
-    assert!(info.status.success());
+    check(&place, &sketch);
 
     // Nothing is painted on the next one: it is closed at once, and goes.
     let mut studio = sit_down(&place);
@@ -121,6 +145,19 @@ fn a_sketch_outlives_a_closed_terminal_and_a_window_is_not_closed_on_one_unasked
     let ended = studio.launcher.wait(PATIENCE);
     assert_eq!(ended.code(), Some(0), "{}", studio.launcher.said());
     assert_eq!(sketches(&place), [sketch]);
+}
+
+#[test]
+fn a_sketch_outlives_a_lost_display() {
+    let place = Place::new();
+    let mut studio = sit_down(&place);
+    let sketch = studio.stroke();
+    studio.bus.close();
+    drop(studio.display);
+    studio.launcher.wait(PATIENCE);
+    place.wait_empty(PATIENCE);
+    assert_eq!(sketches(&place), std::slice::from_ref(&sketch));
+    check(&place, &sketch);
 }
 
 #[test]
@@ -143,6 +180,7 @@ fn a_panel_that_opens_under_a_held_brush_drags_it_nowhere() {
     };
     let held = wait_for(PATIENCE, || at(&mut studio).filter(|at| at[0].abs() < 1e-3));
     let held = held.expect("the brush is down");
+    let before = studio.pixels();
     studio.display.keys(&[TAB]);
     // It stands still: for a while it stays where it is, whatever the window shows.
     let end = std::time::Instant::now() + Duration::from_millis(1500);
@@ -152,6 +190,13 @@ fn a_panel_that_opens_under_a_held_brush_drags_it_nowhere() {
         assert!(way_m < 1e-4, "it was dragged {way_m} m");
     }
     studio.display.release(1, &[]);
+    // What waited comes now: the panels and another view are more than the stroke.
+    let opened = wait_for(PATIENCE, || {
+        let now = studio.pixels();
+        let others = now.iter().zip(&before).filter(|(now, then)| now != then);
+        (10 * others.count() > before.len()).then_some(())
+    });
+    assert!(opened.is_some(), "the panels never open");
     studio.bus.close();
     studio.launcher.signal(Signal::SIGTERM);
     studio.launcher.wait(PATIENCE);

@@ -364,7 +364,7 @@ pub fn python(place: &Place, program: &str, words: &[&str]) -> Command {
     let python = root.join("target/test-venv/bin/python");
     assert!(
         python.exists(),
-        "run ./test: it installs zenoh and mcap for Python"
+        "run ./test: it installs zenoh, mcap and matplotlib for Python"
     );
     let mut command = Command::new(python);
     command

@@ -8,14 +8,14 @@ use maulstick_rig::UserError;
 use maulstick_rig::table_file::table_text;
 use maulstick_types::command::SPECTRUM_MAX;
 
-/// The text of a table; a folder, a device or a huge file is rejected.
+/// The text of a table with such rows; a folder, a device or a huge file is rejected.
 fn text(path: &Path, row: &str) -> Result<String, UserError> {
     let failed = |error: std::io::Error| UserError::reading(path, &error);
     let place = || path.display().to_string();
     if !std::fs::metadata(path).map_err(failed)?.is_file() {
         return Err(UserError::usage(tr!("this is no file"))
             .at(place())
-            .help(tr!("name a CSV file: {row}", row)));
+            .help(tr!("name a file: {row}", row)));
     }
     let file = std::fs::File::open(path).map_err(failed)?;
     let mut bytes = Vec::new();
@@ -26,35 +26,43 @@ fn text(path: &Path, row: &str) -> Result<String, UserError> {
     if bytes.len() > SPECTRUM_MAX {
         return Err(UserError::usage(tr!("a file of this size is no spectrum"))
             .at(place())
-            .help(tr!("give a row a wavelength: {row}", row)));
+            .help(tr!("write no more than {row}", row)));
     }
     table_text(path, &bytes)
 }
 
-/// The light of a CSV file of nm,power, called as the file.
+/// The light of a CSV file of wavelengths, nm, and powers; its name is the file's.
 ///
 /// # Errors
 /// A [`UserError`] with file and line.
 pub(crate) fn light(path: &Path) -> Result<Illuminant, UserError> {
-    let text = text(path, "nm,power")?;
+    let row = tr!("a line for each wavelength in nm and its power");
+    let text = text(path, row)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     Illuminant::parse(&stem, &text).map_err(|error| {
         UserError::usage(error.what)
             .at(format!("{}:{}", path.display(), error.line))
-            .help(tr!("a row a wavelength: nm,power, rising"))
+            .help(tr!(
+                "write {row}, a comma between; the wavelengths rise",
+                row
+            ))
     })
 }
 
-/// The text of a CSV file of nm,reflectance.
+/// The text of a CSV file of wavelengths, nm, and reflectances, 0 to 1.
 ///
 /// # Errors
 /// A [`UserError`] with file and line.
 pub(crate) fn reflectance(path: &Path) -> Result<String, UserError> {
-    let text = text(path, "nm,reflectance")?;
+    let row = tr!("a line for each wavelength in nm and its reflectance");
+    let text = text(path, row)?;
     Reflectance::parse(&text).map_err(|error| {
         UserError::usage(error.what)
             .at(format!("{}:{}", path.display(), error.line))
-            .help(tr!("a row a wavelength: nm,reflectance, rising, 0 to 1"))
+            .help(tr!(
+                "write {row}, 0 to 1, a comma between; the wavelengths rise",
+                row
+            ))
     })?;
     Ok(text)
 }
@@ -91,7 +99,7 @@ mod tests {
         );
         write(&"380,1\n".repeat(50_000));
         let line = told(&light(&path).expect_err("too large"));
-        assert!(line.contains("size") && line.contains("row"), "{line}");
+        assert!(line.contains("size") && line.contains("line"), "{line}");
         for (path, word) in [
             (folder.path(), "no file"),
             (Path::new("/none"), "check the path"),

@@ -163,6 +163,8 @@ pub fn contact_model(
 
 #[cfg(test)]
 mod tests {
+    use glam::DQuat;
+    use maulstick_num::geometry::Rigid;
     use maulstick_painting::PaintingSetup;
 
     use super::*;
@@ -184,5 +186,42 @@ mod tests {
         assert!(of("panel").amplitude < 0.1 * linen.amplitude);
         assert_eq!(grain(&scene("linen", 0.1)), NO_GRAIN);
         assert_eq!(of("no tooth"), NO_GRAIN);
+    }
+
+    #[test]
+    fn a_model_has_the_depth_of_the_unbent_tip_along_the_normal_and_the_length_of_the_head() {
+        let file = BrushFile::library("round").expect("a brush");
+        // A plane through (0, 0, 30 mm) that leans by 30° to +y.
+        let lean = DQuat::from_rotation_x(-std::f64::consts::FRAC_PI_6);
+        let plane = Plane {
+            id: CANVAS,
+            to_desk: Rigid {
+                rotation: lean,
+                translation: DVec3::new(0.0, 0.0, 0.03),
+            },
+            zoom: 1.0,
+            size_m: [0.2, 0.1],
+            cell_m: 1e-3,
+            radii_m: [0.0; 4],
+        };
+        let deep = |tip: DVec3| {
+            let felt = SurfaceFeel {
+                law: ForceLaw::None,
+                grain: NO_GRAIN,
+                relief: HeightPatch::flat(),
+            };
+            let hand = Origin {
+                source: 1,
+                epoch: 1,
+            };
+            contact_model(hand, "main", (&file, tip), &plane, felt)
+        };
+        // 20 mm below the point above which it lies, and 6 mm beside it.
+        let tip = DVec3::new(6e-3, 0.0, 0.01);
+        let expected_m = 0.02 * 3f64.sqrt() / 2.0;
+        assert!((deep(tip).depth_m - expected_m).abs() < 1e-12);
+        let above = DVec3::new(0.0, 0.0, 0.04);
+        assert!(deep(above).depth_m < 0.0, "it is in the air");
+        assert!((deep(tip).head_length_m - file.length_m()).abs() < 1e-12);
     }
 }

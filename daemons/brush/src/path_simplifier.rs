@@ -39,8 +39,10 @@ pub enum Place {
 pub enum Start {
     /// From the sample before.
     GoesOn,
-    /// It begins anew there: its hand was too fast, or time did not advance.
+    /// It begins anew there, for time did not advance.
     Anew,
+    /// It begins anew there, for its hand was too fast.
+    TooFast,
     /// It begins anew there, for samples before were dropped.
     AfterLoss,
 }
@@ -192,7 +194,8 @@ impl PathSimplifier {
             self.replace(added);
             self.joined.clear();
         } else if self.begins_anew_again(&added) {
-            (added.start, self.superseded) = (Start::AfterLoss, self.superseded + 1);
+            self.superseded += u64::from(added.start == Start::TooFast);
+            added.start = Start::AfterLoss;
             self.replace(added);
             self.joined.clear();
         } else if let Some(middle) = self.joins(&added) {
@@ -225,9 +228,14 @@ impl PathSimplifier {
         };
         let advances = waiting.event_ns > before_ns;
         let time_ns = waiting.event_ns.saturating_sub(before_ns);
-        match advances && self.speed.passes(way_m, time_ns) || !touches {
+        let start = match advances {
+            false => Start::Anew,
+            true if self.speed.passes(way_m, time_ns) => Start::GoesOn,
+            true => Start::TooFast,
+        };
+        match start == Start::GoesOn || !touches {
             true => (Start::GoesOn, way_m),
-            false => (Start::Anew, 0.0),
+            false => (start, 0.0),
         }
     }
 
@@ -321,7 +329,7 @@ impl PathSimplifier {
         self.kept.len()
     }
 
-    /// Samples so far that were too fast, and in whose place the next one is solved, which was so too.
+    /// Samples so far that were too fast and took the place of one before them at which the brush began anew too.
     #[must_use]
     pub fn superseded(&self) -> u64 {
         self.superseded

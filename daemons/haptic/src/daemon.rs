@@ -224,7 +224,7 @@ impl Daemon {
         NodeWork {
             produced: self.told.samples,
             lost: self.told.dropped,
-            refused: self.told.foreign_models,
+            refused: self.told.foreign_models + self.told.refused_senders,
             ..NodeWork::default()
         }
     }

@@ -67,6 +67,17 @@ impl Heard {
     }
 }
 
+/// Answer to a sender that asks to move the hand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Consent {
+    /// It may from now on.
+    Given,
+    /// It might before.
+    Renewed,
+    /// Too many others do.
+    Refused,
+}
+
 impl Senders {
     /// The senders of a device that moves `brush`; those called as in `named` have consent.
     pub(crate) fn new(brush: &str, named: &[String]) -> Self {
@@ -88,15 +99,19 @@ impl Senders {
         }
     }
 
-    /// Lets a sender move the hand for a while; true if it could not before.
-    pub(crate) fn consent(&mut self, origin: Origin, now_ns: u64) -> bool {
-        let is_new = !self.has_consent(origin, now_ns);
+    /// Lets a sender move the hand for a while.
+    pub(crate) fn consent(&mut self, origin: Origin, now_ns: u64) -> Consent {
+        let had_it = self.has_consent(origin, now_ns);
         self.consents
             .retain(|(other, until_ns)| *other != origin && *until_ns > now_ns);
-        if self.consents.len() < MOST_CONSENTS {
-            self.consents.push((origin, now_ns + CONSENT_NS));
+        if self.consents.len() >= MOST_CONSENTS {
+            return Consent::Refused;
         }
-        is_new
+        self.consents.push((origin, now_ns + CONSENT_NS));
+        match had_it {
+            true => Consent::Renewed,
+            false => Consent::Given,
+        }
     }
 
     fn has_consent(&self, origin: Origin, now_ns: u64) -> bool {
@@ -219,8 +234,8 @@ mod tests {
             let mut senders = senders(names);
             let (brush, other) = (session("main", 1), session("other", 7));
             if !named {
-                assert!(senders.consent(other, 0));
-                assert!(!senders.consent(other, MS), "it has asked before");
+                assert_eq!(senders.consent(other, 0), Consent::Given);
+                assert_eq!(senders.consent(other, MS), Consent::Renewed);
             }
             assert_eq!(senders.judge(Means::Contact, other, MS), Verdict::Followed);
             assert_eq!(senders.judge(Means::Contact, brush, MS), Verdict::SetAside);

@@ -33,21 +33,24 @@ fn brush() -> BrushFile {
     file
 }
 
-/// Samples anywhere on the canvas and beside it, mostly pressed: between two of them the hand may leap across all of it.
+/// Samples anywhere on the canvas and beside it, mostly pressed: between two of them the hand may leap across all of it, or
+/// half a metre away, faster than any hand. At the end it is lifted or not.
 fn takes() -> impl Strategy<Value = Take> {
-    let place = (-0.018..0.018f64, -0.014..0.014f64);
+    let near = ((-0.018..0.018f64, -0.014..0.014f64), 1u64..60);
+    let far = ((0.5..0.6f64, -0.014..0.014f64), 1u64..3);
+    let place = prop_oneof![7 => near, 1 => far];
     let pressure = prop_oneof![3 => 0.1..1.0f64, 1 => Just(0.0)];
-    let sample = (place, pressure, 1u64..60);
-    prop::collection::vec(sample, 2..8).prop_map(|samples| {
+    let samples = prop::collection::vec((place, pressure), 2..8);
+    (samples, any::<bool>()).prop_map(|(samples, lifts)| {
         let mut time_ns = 0;
         let mut take: Take = samples
             .into_iter()
-            .map(|((x, y), pressure, pause_ms)| {
+            .map(|(((x, y), pause_ms), pressure)| {
                 time_ns += pause_ms * 1_000_000;
                 (time_ns, pen(x, y, pressure))
             })
             .collect();
-        take.push((time_ns + 8_000_000, pen(0.0, 0.0, 0.0)));
+        take.extend(lifts.then(|| (time_ns + 8_000_000, pen(0.0, 0.0, 0.0))));
         take
     })
 }
@@ -60,6 +63,18 @@ fn leap() -> Take {
         at(1, 0.015, 0.011, 0.5),
         at(2, -0.015, 0.011, 0.5),
         at(3, -0.015, 0.011, 0.0),
+    ]
+}
+
+/// A stroke whose hand is half a metre away for a moment, in no time, and which ends as its pen is set down again.
+fn fast() -> Take {
+    let at = |ms: u64, x, y, pressure| (ms * 1_000_000, pen(x, y, pressure));
+    vec![
+        at(0, -0.01, -0.005, 0.0),
+        at(10, -0.01, -0.005, 0.5),
+        at(20, -0.005, -0.005, 0.5),
+        at(21, 0.55, 0.0, 0.5),
+        at(31, 0.01, 0.005, 0.5),
     ]
 }
 
@@ -81,10 +96,11 @@ fn begun(model: &str, path: &Path) -> (Document, Painting) {
     (document, painting)
 }
 
-/// What is seen in a file.
+/// What is seen in a file, with the brush where it was left.
 fn in_file(path: &Path) -> Seen {
     let (document, opened) = Document::open(&settings(path)).expect("whole");
-    let mut sequencer: Sequencer = opened.expect("a painting").sequencer().expect("whole");
+    let opened = opened.expect("a painting");
+    let mut sequencer: Sequencer = opened.in_its_midst().expect("whole");
     let seen = picture(sequencer.painting_mut(), 0).rgb;
     document.close().expect("closed");
     seen
@@ -97,6 +113,7 @@ fn offline(model: &str, take: &Take) -> Seen {
         let sampled = offline.sample(START_NS + time_ns, sample);
         sampled.expect("painted");
     }
+    offline.end_take().expect("painted");
     assert_eq!(offline.painting_mut().report().quanta_missing, 0);
     picture(offline.painting_mut(), 0).rgb
 }
@@ -120,8 +137,8 @@ fn offline_in_file(model: &str, take: &Take, path: &Path) -> [Seen; 2] {
     [seen, in_file(path)]
 }
 
-/// The same by the nodes, in a file.
-fn live_in_file(model: &str, take: &Take, seed: u64, path: &Path) -> [Seen; 2] {
+/// The nodes of a rig.
+fn nodes(seed: u64) -> (Live, Arc<dyn Bus>) {
     let faults = Faults {
         loss: 0.1,
         delay_ns: 3_000_000,
@@ -130,8 +147,23 @@ fn live_in_file(model: &str, take: &Take, seed: u64, path: &Path) -> [Seen; 2] {
         file: brush(),
         ..support::settings()
     };
-    let mut live = Live::with(MemoryNet::new(seed, START_NS, faults), settings);
+    let live = Live::with(MemoryNet::new(seed, START_NS, faults), settings);
     let bus: Arc<dyn Bus> = Arc::new(live.net.bus());
+    (live, bus)
+}
+
+/// The same by the nodes.
+fn live(model: &str, take: &Take, seed: u64) -> Seen {
+    let (mut live, bus) = nodes(seed);
+    live.paint = Live::paint_node_on(&bus, &live.topics, 6, painting_of(model));
+    live.announce(1);
+    live.play_take(take, &mut turns(seed), 200_000);
+    picture(live.paint.painting_mut(), 0).rgb
+}
+
+/// The same by the nodes, in a file.
+fn live_in_file(model: &str, take: &Take, seed: u64, path: &Path) -> [Seen; 2] {
+    let (mut live, bus) = nodes(seed);
     let (document, painting) = begun(model, path);
     live.paint = Live::paint_node_on(&bus, &live.topics, 6, painting).keeping(document, 0);
     live.announce(1);
@@ -146,11 +178,12 @@ fn differing(model: &str, take: &Take, seed: u64) -> Vec<&'static str> {
     let folder = tempfile::tempdir().expect("a folder");
     let expected = offline(model, take);
     let [in_memory, kept] = offline_in_file(model, take, &folder.path().join("offline.maul"));
-    let [live, live_kept] = live_in_file(model, take, seed, &folder.path().join("live.maul"));
+    let [beside, live_kept] = live_in_file(model, take, seed, &folder.path().join("live.maul"));
     let ways = [
         ("offline beside a file", in_memory),
         ("the file written offline", kept),
-        ("live", live),
+        ("live", live(model, take, seed)),
+        ("live beside a file", beside),
         ("the file written live", live_kept),
     ];
     let differ = ways.into_iter().filter(|(_, seen)| *seen != expected);
@@ -158,7 +191,7 @@ fn differing(model: &str, take: &Take, seed: u64) -> Vec<&'static str> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 6, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 4, ..ProptestConfig::default() })]
 
     #[test]
     fn any_take_gives_the_same_live_offline_and_in_a_file(
@@ -175,6 +208,24 @@ fn a_leap_of_the_hand_is_in_the_file_with_every_model() {
     for model in model_names() {
         assert_eq!(differing(model, &leap(), 1), Vec::<&str>::new(), "{model}");
     }
+}
+
+#[test]
+fn a_take_that_is_too_fast_and_ends_as_its_pen_is_set_down_is_the_same_everywhere() {
+    let mut model = BrushModel::new(brush(), 0.5);
+    model.set_scene(painting_of("impasto").scene());
+    let device = Origin {
+        source: 1,
+        epoch: 1,
+    };
+    for (time_ns, sample) in fast() {
+        model.follow(device, START_NS + time_ns, &sample);
+    }
+    assert_eq!(model.too_fast(), 1);
+    assert!(!model.finish().is_empty(), "it waits at the end");
+    assert_eq!(differing("impasto", &fast(), 1), Vec::<&str>::new());
+    let without_its_end = fast()[..4].to_vec();
+    assert!(offline("impasto", &fast()) != offline("impasto", &without_its_end));
 }
 
 #[test]

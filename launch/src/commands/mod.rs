@@ -25,7 +25,7 @@ pub(crate) use streams::recorder::{
 pub use streams::{bridge, echo, graph, measure, nodes, record, recording};
 pub use takes::{demo, import, render, take};
 
-use std::io::{ErrorKind, Write as _};
+use std::io::ErrorKind;
 use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -65,8 +65,7 @@ pub fn print_line(line: &str) -> Result<(), UserError> {
 /// # Errors
 /// A [`UserError`] where it cannot be written.
 pub fn print_text(text: &str) -> Result<(), UserError> {
-    let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match maulstick_rig::log::print(text) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(UserError::failure(format!("cannot print: {error}")))
         }

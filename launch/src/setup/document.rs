@@ -25,6 +25,7 @@ pub fn wrong(path: &Path, error: &DocumentError) -> UserError {
         error,
         DocumentError::Full
             | DocumentError::Disk(_)
+            | DocumentError::Incomplete(_)
             | DocumentError::ReadOnly(_)
             | DocumentError::InUse { .. }
             | DocumentError::Unwritten(_)

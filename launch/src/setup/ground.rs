@@ -10,6 +10,7 @@ use maulstick_optics::Reflectance;
 use maulstick_painting::PaintingSetup;
 use maulstick_rig::UserError;
 use maulstick_rig::config::is_path;
+use maulstick_rig::log::say;
 use maulstick_rig::table_file::read_table;
 
 use crate::performance::refused;
@@ -50,10 +51,10 @@ impl GroundFile {
                 .help("a row a wavelength: nm,reflectance, rising, 0 to 1")
         })?;
         if read.limited > 0 {
-            eprintln!(
-                "note: {name}: {} reflectances lie a little outside of 0 to 1: taken as 0 and 1",
+            say(&format!(
+                "note: {name}: {} reflectances lie a little outside of 0 to 1: taken as 0 and 1\n",
                 read.limited
-            );
+            ));
         }
         Ok(Self::Spectrum(text))
     }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use maulstick_exchange::{Image, ImportError};
 use maulstick_rig::UserError;
+use maulstick_rig::log::say;
 
 /// Reads a picture, and says so where its colours may be off.
 ///
@@ -12,7 +13,7 @@ use maulstick_rig::UserError;
 pub fn open_picture(path: &Path) -> Result<Image, UserError> {
     let image = Image::open(path).map_err(|error| no_picture(path, &error))?;
     if let Some(mark) = image.unused_mark() {
-        eprintln!("note: {}: {mark}", path.display());
+        say(&format!("note: {}: {mark}\n", path.display()));
     }
     Ok(image)
 }

@@ -161,8 +161,8 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
         (false, None) => sketches(),
         _ => None,
     };
-    if let (None, Some((_, sketch))) = (&config.paint.document, &sketches) {
-        config.paint.document = Some(sketch.clone());
+    if config.paint.document.is_none() {
+        config.paint.document = sketches.as_ref().and_then(sketch::begin);
     }
     let presence = match &config.paint.document {
         Some(path) => Some(presence(path, &options.painting)?),
@@ -245,23 +245,21 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
         (None, _) => Some(first_load(&library)),
     };
     let supervisor = Supervisor::start(folder, &config, nodes, performance, first_load)?;
-    let sketches = sketches.map(|(sketches, _)| sketches);
     supervisor.with_sketches(sketches).run()
 }
 
-/// The sketches of this user, tidied up, and the file of a new one; none where the system has no room for them, which
-/// is told.
-fn sketches() -> Option<(Sketches, PathBuf)> {
-    let begun = Sketches::of_user().and_then(|sketches| {
-        sketch::tidy(&sketches);
-        let file = sketch::fresh(&sketches)?;
-        Ok((sketches, file))
-    });
+/// The sketches of this user, tidied up; none where the system has no room for them, which is told.
+fn sketches() -> Option<Sketches> {
     let warn = |fault: &UserError| {
         let place = fault.place.as_deref().unwrap_or("sketches");
-        tracing::warn!("{place}: {}: a sketch is in memory alone", fault.what);
+        tracing::warn!(
+            "{place}: {}: a painting without a name is in memory alone",
+            fault.what
+        );
     };
-    begun.inspect_err(warn).ok()
+    let sketches = Sketches::of_user().inspect_err(warn).ok()?;
+    sketch::tidy(&sketches);
+    Some(sketches)
 }
 
 /// Settings without the simulated devices that no hand moves: a painter who attached none has the mouse.

@@ -166,6 +166,9 @@ impl Supervisor {
     }
 
     fn try_start(&mut self, place: usize) -> Result<(), UserError> {
+        // It dials the sockets of the others once.
+        self.folder_watch.hasten();
+        self.watch_folder();
         let node = &mut self.nodes[place];
         node.start(self.folder.path())?;
         let name = node.spec.name.clone();
@@ -351,11 +354,6 @@ impl Supervisor {
             .map(|(name, _)| name.clone())
             .collect();
         self.due.retain(|(name, _)| !due.contains(name));
-        if !due.is_empty() {
-            // A node that starts dials the sockets of the others once.
-            self.folder_watch.hasten();
-            self.watch_folder();
-        }
         for name in due {
             if let Some(place) = self.nodes.iter().position(|node| node.spec.name == name) {
                 self.nodes[place].restarts += 1;

@@ -52,6 +52,12 @@ impl<M: Message> Sender<M> {
         })
     }
 
+    /// Messages sent so far.
+    #[must_use]
+    pub fn sent(&self) -> u64 {
+        self.next
+    }
+
     /// Sends a message; `event_ns` is the time at which its content was true. One that exceeds its limit is dropped and
     /// told: no content may end the node that sends it.
     ///

@@ -13,13 +13,16 @@ pub fn first_free(from: u32, named: impl Fn(u32) -> PathBuf) -> (u32, PathBuf) {
         .unwrap_or_else(|| (u32::MAX, named(u32::MAX)))
 }
 
+/// The file that lies beside another under its name and `suffix`: of SQLite's one of [`COMPANIONS`].
+#[must_use]
+pub fn companion(path: &Path, suffix: &str) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_os_string();
+    name.push(suffix);
+    path.with_file_name(name)
+}
+
 fn is_free(path: &Path) -> bool {
-    let companion = |suffix: &&str| {
-        let mut name = path.file_name().unwrap_or_default().to_os_string();
-        name.push(suffix);
-        path.with_file_name(name)
-    };
-    let companions = COMPANIONS.iter().map(companion);
+    let companions = COMPANIONS.iter().map(|suffix| companion(path, suffix));
     std::iter::once(path.to_owned())
         .chain(companions)
         .all(|path| path.symlink_metadata().is_err())

@@ -85,7 +85,7 @@ const HEAD: usize = 64;
 /// The first bytes of every SQLite file.
 const DATABASE: &[u8] = b"SQLite format 3\0";
 /// Suffixes of the files that SQLite keeps beside a database.
-pub(crate) const COMPANIONS: [&str; 3] = ["-wal", "-shm", "-journal"];
+pub const COMPANIONS: [&str; 3] = ["-wal", "-shm", "-journal"];
 /// True if the user asked to write over files of other kinds.
 static OVERWRITE: AtomicBool = AtomicBool::new(false);
 

@@ -14,8 +14,8 @@ pub mod open;
 pub mod private;
 pub mod whole;
 
-pub use free::first_free;
-pub use kind::{Kind, allow_overwriting, ending, gives_way, is_companion, is_painting};
+pub use free::{companion, first_free};
+pub use kind::{COMPANIONS, Kind, allow_overwriting, ending, gives_way, is_companion, is_painting};
 pub use open::{FileId, OpenDatabase, read_head};
 pub use private::{create_private, open_private};
 pub use whole::{

@@ -1,4 +1,5 @@
-//! The log of a process: one line an event, whatever the texts in it hold. Nobody waits until it is read.
+//! What a process says: its log, one line an event, whatever the texts in it hold, and what it prints. Nobody waits until
+//! the log is read, nor for what is printed where that was asked for.
 
 mod lossy_writer;
 
@@ -7,11 +8,11 @@ use std::fmt::{self, Debug};
 use std::fs::File;
 use std::io::{self, ErrorKind, IsTerminal as _, Write};
 use std::os::fd::AsFd;
-use std::panic::{Location, PanicHookInfo};
+use std::panic::PanicHookInfo;
 use std::sync::OnceLock;
 use std::time::Duration;
 
-use maulstick_bus::reason::reason;
+use maulstick_bus::reason;
 use maulstick_types::plain;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use tracing::field::Field;
@@ -31,6 +32,9 @@ const BUSY: Duration = Duration::from_secs(2);
 /// The log of this process, if it has one.
 static LOG: OnceLock<LossyWriter> = OnceLock::new();
 
+/// The standard output of this process, once a thread of its own writes to it.
+static OUTPUT: OnceLock<LossyWriter> = OnceLock::new();
+
 /// Sends log lines of `level` and above to the standard error, by a thread of their own; of the libraries only what a
 /// painter can do something about. Panics are said there, too.
 pub fn log_to_stderr(level: &str) {
@@ -44,7 +48,9 @@ pub fn log_to_stderr(level: &str) {
         .with_env_filter(EnvFilter::new(format!("{quiet},{level}")))
         .try_init()
         .ok();
-    std::panic::set_hook(Box::new(say_panic));
+    if std::env::var_os("RUST_BACKTRACE").is_none_or(|asked| asked == "0") {
+        std::panic::set_hook(Box::new(say_panic));
+    }
 }
 
 /// Says text that ends lines, beside the log lines; where this process has no log, on the standard error.
@@ -55,6 +61,27 @@ pub fn say(text: &str) {
     }
 }
 
+/// Has the standard output written by a thread of its own: for a command whose work goes on while its terminal stands still.
+pub fn print_beside() {
+    if let Ok(output) = LossyWriter::start(io::stdout()) {
+        OUTPUT.set(output).ok();
+    }
+}
+
+/// Prints text on the standard output, and waits until it is taken, except after [`print_beside`].
+///
+/// # Errors
+/// The system's, where it waits.
+pub fn print(text: &str) -> io::Result<()> {
+    if let Some(output) = OUTPUT.get() {
+        output.push(text.as_bytes());
+        return Ok(());
+    }
+    let mut output = io::stdout().lock();
+    output.write_all(text.as_bytes())?;
+    output.flush()
+}
+
 /// Shows a passing display on the standard error, unless something waits to be said.
 pub fn show(display: &str) {
     if let Some(log) = LOG.get() {
@@ -62,13 +89,19 @@ pub fn show(display: &str) {
     }
 }
 
-/// Gives what was said a short time to be written: for a process that ends.
+/// Gives what was said and printed a short time to be written: for a process that ends.
 pub fn flush() {
-    if let Some(log) = LOG.get()
-        && !log.flush_within(LAST_WORDS)
-        && has_room(&io::stderr())
-    {
-        log.flush_within(BUSY);
+    if let Some(log) = LOG.get() {
+        last_words(log, &io::stderr());
+    }
+    if let Some(output) = OUTPUT.get() {
+        last_words(output, &io::stdout());
+    }
+}
+
+fn last_words(lines: &LossyWriter, to: &impl AsFd) {
+    if !lines.flush_within(LAST_WORDS) && has_room(to) {
+        lines.flush_within(BUSY);
     }
 }
 
@@ -87,16 +120,20 @@ fn has_room(to: &impl AsFd) -> bool {
 fn say_panic(panic: &PanicHookInfo<'_>) {
     let thread = std::thread::current();
     let name = thread.name().unwrap_or("<unnamed>");
-    let place = panic.location().map_or_else(String::new, place);
-    let what = plain(words(panic.payload()));
+    let place = panic.location().map_or_else(String::new, |at| {
+        format!("{}:{}", reason::place(at.file()), at.line())
+    });
+    let what = reason::reason(words(panic.payload()));
+    let what = plain(&what);
     say(&format!("thread '{name}' panicked at {place}: {what}\n"));
     if name == "main" {
         flush();
     }
 }
 
-/// Message of a panic.
-fn words(payload: &(dyn Any + Send)) -> &str {
+/// Message of a panic; empty if it has none.
+#[must_use]
+pub fn words(payload: &(dyn Any + Send)) -> &str {
     match (
         payload.downcast_ref::<&str>(),
         payload.downcast_ref::<String>(),
@@ -105,17 +142,6 @@ fn words(payload: &(dyn Any + Send)) -> &str {
         (None, Some(words)) => words,
         (None, None) => "",
     }
-}
-
-/// A place in the source, without the folders of the machine that built it.
-fn place(at: &Location<'_>) -> String {
-    let file = at.file();
-    let known = ["/registry/src/", "/rustc/"];
-    let short = known.iter().find_map(|mark| {
-        let (_, rest) = file.split_once(mark)?;
-        rest.split_once('/').map(|(_, rest)| rest)
-    });
-    format!("{}:{}", short.unwrap_or(file), at.line())
 }
 
 /// The standard error of this process, beside the one of the standard library: that is locked while it is written to.
@@ -169,7 +195,7 @@ where
 fn write_field(to: &mut Writer<'_>, field: &Field, value: &dyn Debug) -> fmt::Result {
     let text = format!("{value:?}");
     match field.name() {
-        "message" => write!(to, "{}", plain(&reason(text))),
+        "message" => write!(to, "{}", plain(&reason::reason(text))),
         name => write!(to, "{name}={}", plain(&text)),
     }
 }

@@ -11,7 +11,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use maulstick_files::{Kind, first_free, write_whole};
+use maulstick_files::{COMPANIONS, Kind, companion, first_free, write_whole};
 
 use crate::user_error::UserError;
 
@@ -24,8 +24,6 @@ pub const MOST_BYTES: u64 = 4 << 30;
 const PAINTING: &str = "maul";
 /// Names of the sketches of which the painter was told that they leave, a line each.
 const TOLD: &str = "leaving.txt";
-/// What lies beside a painting: its journals.
-const COMPANIONS: [&str; 3] = ["-wal", "-shm", "-journal"];
 
 /// A sketch that is there.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -42,12 +40,6 @@ pub struct Sketch {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sketches {
     folder: PathBuf,
-}
-
-fn beside(path: &Path, suffix: &str) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(suffix);
-    name.into()
 }
 
 impl Sketches {
@@ -94,7 +86,7 @@ impl Sketches {
             .filter(|path| self.has(path))
             .filter_map(|path| {
                 let about = std::fs::metadata(&path).ok().filter(|a| a.is_file())?;
-                let wal = std::fs::metadata(beside(&path, "-wal")).ok();
+                let wal = std::fs::metadata(companion(&path, "-wal")).ok();
                 let changed = [Some(&about), wal.as_ref()].into_iter().flatten();
                 let changed = changed.filter_map(|about| about.modified().ok()).max()?;
                 let bytes = about.len() + wal.map_or(0, |about| about.len());
@@ -138,7 +130,7 @@ impl Sketches {
     pub fn remove(&self, path: &Path) -> Result<(), UserError> {
         std::fs::remove_file(path).map_err(|error| UserError::writing(path, &error))?;
         for suffix in COMPANIONS {
-            std::fs::remove_file(beside(path, suffix)).ok();
+            std::fs::remove_file(companion(path, suffix)).ok();
         }
         Ok(())
     }
@@ -224,12 +216,12 @@ mod tests {
         for other in ["/tmp/day.maul", "day 000.maul-wal", "deep/day.maul"] {
             assert!(!sketches.has(&sketches.folder().join(other)), "{other}");
         }
-        std::fs::write(beside(&paths[0], "-wal"), [0; 100]).expect("written");
+        std::fs::write(companion(&paths[0], "-wal"), [0; 100]).expect("written");
         let all = sketches.all();
         assert_eq!((all.len(), all[0].bytes), (1, 105));
         sketches.remove(&paths[0]).expect("removed");
         assert_eq!(sketches.all(), []);
-        assert!(!beside(&paths[0], "-wal").exists());
+        assert!(!companion(&paths[0], "-wal").exists());
     }
 
     #[test]

@@ -172,6 +172,17 @@ impl Stream {
         self.next_seq = Some(header.seq.saturating_add(1));
     }
 
+    /// One that was missing, and came after the end: how late it is says nothing, for nobody looked.
+    fn add_late(&mut self, message: &Arrived) {
+        if self.missing.remove(&message.header.seq) {
+            self.lost -= 1;
+            self.messages += 1;
+            self.bytes += message.bytes as u64;
+            self.disordered += 1;
+            self.sent.add(message.header.sent_ns);
+        }
+    }
+
     /// True while some are missing that may still come.
     #[must_use]
     pub fn lacks_some(&self) -> bool {
@@ -224,8 +235,9 @@ impl Traffic {
         let key = (topic.to_owned(), message.header.origin());
         let late = self.streams.get_mut(&key);
         let late = late.filter(|stream| stream.missing.contains(&message.header.seq));
-        late.into_iter()
-            .for_each(|stream| stream.add(message, self.since_ns));
+        if let Some(stream) = late {
+            stream.add_late(message);
+        }
     }
 
     /// True while messages of some stream are missing that may still come.

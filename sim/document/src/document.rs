@@ -80,8 +80,8 @@ impl Document {
         let writes = settings.access == Access::Paint;
         let database = (database, &*settings.path);
         let thread = DocumentThread::new(Arc::clone(&shared), database, writes, saved_version);
-        let unread = found.as_ref().filter(|_| writes).map(Opened::pages);
-        let thread = thread.reading(unread.unwrap_or_default());
+        let pages = found.as_ref().filter(|_| writes).map(Opened::pages);
+        let thread = thread.reading_ahead(pages.unwrap_or_default());
         let document = Self::run(thread, &settings.path, shared, pager)?;
         Ok((document, found))
     }
@@ -138,7 +138,8 @@ impl Document {
     }
 
     /// Relocates the painting, with everything handed over until then, while painting goes on.
-    /// [`poll_relocation`](Self::poll_relocation) returns the result.
+    /// [`poll_relocation`](Self::poll_relocation) returns the result: [`DocumentError::Incomplete`] while its file
+    /// [lacks parts](Self::wants_all) of it.
     pub fn relocate(&self, to: &Path, how: Relocate, replace: bool) -> Relocation {
         let (answer, outcome) = mpsc::channel();
         let mut queues = self.shared.lock();
@@ -238,12 +239,12 @@ impl Document {
         self.shared.lock().wants_all
     }
 
-    /// True if everything handed over is written.
+    /// True if everything handed over is written, and the file lacks nothing of the painting.
     #[must_use]
     pub fn is_saved(&self) -> bool {
         let queues = self.shared.lock();
         let idle = queues.checkpoint.is_none() && queues.records.is_empty();
-        idle && !queues.writing && queues.fault.is_none()
+        idle && !queues.writing && !queues.wants_all && queues.fault.is_none()
     }
 
     /// Hands over a checkpoint. It has to include all records handed over before, and the previous one has to be written
@@ -314,7 +315,8 @@ impl Document {
     /// Writes everything handed over, merges the journal and closes the file.
     ///
     /// # Errors
-    /// The reason why data could not be written.
+    /// The reason why data could not be written; [`DocumentError::Incomplete`] if the file still
+    /// [lacks parts](Self::wants_all) of the painting.
     pub fn close(mut self) -> Result<(), DocumentError> {
         self.end()
     }

@@ -58,6 +58,9 @@ pub enum DocumentError {
     /// The latest strokes could not be written.
     #[error("what was painted last is not in the file: {0}")]
     Unwritten(String),
+    /// File that lost a part of the painting, or in which it goes on after that, and that did not get that part again.
+    #[error("{} lacks a part of the painting", .0.display())]
+    Incomplete(PathBuf),
     /// The file of an open painting is gone, and no other could be made.
     #[error("{0}")]
     Vanished(String),
@@ -88,12 +91,20 @@ impl DocumentError {
                 "nothing that was written before is lost: see what is wrong with it, or save the painting on another"
             }
             Self::Unwritten(_) => "nothing that was written before is lost",
+            Self::Incomplete(_) => {
+                "while it is open, ask again in a second; once it is closed, recover from the file before it what is whole"
+            }
             Self::OpenHere | Self::Companion => "give another name",
             Self::Taken => "give another name: nothing is written over",
             Self::Vanished(_) => "save it under another name now: until then it is in memory alone",
             Self::Other(_) => "check the path and the disk",
         };
         Advice::say(words)
+    }
+
+    /// True if it does not speak of the bytes in the file: what cannot be read now may be whole, and be read later.
+    pub(crate) fn may_pass(&self) -> bool {
+        !matches!(self, Self::Damaged(_) | Self::Altered(_) | Self::NoPainting)
     }
 }
 

@@ -223,6 +223,28 @@ fn a_painting_that_cannot_be_opened_where_it_went_goes_on_where_it_was() {
 }
 
 #[test]
+fn a_painting_whose_journal_cannot_be_read_is_not_moved_and_goes_on_where_it_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [first, second] = ["a.maul", "b.maul"].map(|name| folder.path().join(name));
+    let log = crash_vfs::watch_by_default(&first);
+    let mut easel = Easel::begin(&settings(&first));
+    let mut painter = Painter::new(5);
+    paint(&mut easel, &mut painter, 10);
+    easel.flush();
+    for left in [Relocate::Copy, Relocate::Rename] {
+        log.refuse(Refused::Reads);
+        let refused = moved(&mut easel.document, &second, left, false);
+        log.refuse(Refused::Nothing);
+        assert!(refused.is_err(), "{left:?}");
+        assert!(!second.exists());
+    }
+    paint(&mut easel, &mut painter, 10);
+    let end = print(&mut easel.sequencer);
+    easel.close();
+    assert_eq!(seen(&first), end);
+}
+
+#[test]
 fn a_link_leads_to_the_painting_that_took_the_place_of_another() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);

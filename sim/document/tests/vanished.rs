@@ -135,6 +135,95 @@ fn a_painting_whose_journal_was_cut_can_be_read_after_a_kill() {
 }
 
 #[test]
+fn a_painting_is_not_saved_while_its_file_lacks_a_part_of_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // It is noticed while it is open, or only when it is closed.
+    for is_noticed in [true, false] {
+        let path = folder.path().join(format!("sea-{is_noticed}.maul"));
+        let mut easel = Easel::begin(&settings(&path));
+        paint(&mut easel, &mut Painter::new(7));
+        easel.flush();
+        assert!(easel.document.is_saved());
+        cut(&journal(&path), [0, 1]);
+        if is_noticed {
+            told(&easel.document);
+            assert!(!easel.document.is_saved());
+        }
+        let closed = easel.document.close();
+        assert!(
+            matches!(closed, Err(DocumentError::Incomplete(_))),
+            "{closed:?}"
+        );
+    }
+}
+
+#[test]
+fn a_painting_is_moved_only_when_its_file_has_all_of_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [path, named] = ["sea.maul", "named.maul"].map(|name| folder.path().join(name));
+    let mut easel = Easel::begin(&settings(&path));
+    let mut painter = Painter::new(7);
+    paint(&mut easel, &mut painter);
+    easel.flush();
+    cut(&journal(&path), [0, 1]);
+    for how in [Relocate::Leave, Relocate::Copy, Relocate::Rename] {
+        let moving = easel.document.relocate(&named, how, false);
+        let refused = easel.document.wait_for_relocation(&moving);
+        assert!(
+            matches!(refused, Err(DocumentError::Incomplete(_))),
+            "{how:?}: {refused:?}"
+        );
+        assert!(!named.exists());
+        // What is accepted meanwhile does not keep it from being answered.
+        let act = painter.next();
+        easel.act(&mut painter, &act);
+    }
+    assert!(!easel.document.is_saved());
+    easel.checkpoint();
+    easel.document.flush();
+    assert!(easel.document.is_saved());
+    let moving = easel.document.relocate(&named, Relocate::Copy, false);
+    easel.document.wait_for_relocation(&moving).expect("moved");
+    let seen = print(&mut easel.sequencer);
+    assert_eq!(after_a_kill(&named), seen);
+    easel.close();
+    assert_eq!(after_a_kill(&named), seen);
+}
+
+#[test]
+fn a_painting_that_was_cut_short_and_gets_no_file_beside_it_goes_on_where_it_is_saved() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // A name has 255 bytes at most: this one has room for its journal, but the name of a copy is too long.
+    let name = format!("{}.maul", "a".repeat(242));
+    let [path, to] = [&*name, "b.maul"].map(|name| folder.path().join(name));
+    let mut easel = Easel::begin(&settings(&path));
+    let mut painter = Painter::new(7);
+    paint(&mut easel, &mut painter);
+    easel.flush();
+    cut(&journal(&path), [0, 1]);
+    let said = told(&easel.document);
+    assert!(
+        said.contains("cut short") && said.contains("cannot be made"),
+        "{said}"
+    );
+    assert!(!easel.document.is_saved());
+    let moving = easel.document.relocate(&to, Relocate::Copy, false);
+    let refused = easel.document.wait_for_relocation(&moving);
+    assert!(
+        matches!(refused, Err(DocumentError::Incomplete(_))),
+        "{refused:?}"
+    );
+    easel.document.update_path();
+    assert_eq!(easel.document.path(), to);
+    paint(&mut easel, &mut painter);
+    easel.flush();
+    assert!(easel.document.is_saved());
+    let seen = print(&mut easel.sequencer);
+    easel.close();
+    assert_eq!(after_a_kill(&to), seen);
+}
+
+#[test]
 fn a_removed_journal_loses_nothing() {
     painted_on_after(|path| std::fs::remove_file(journal(path)).expect("removed"));
 }

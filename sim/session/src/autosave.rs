@@ -89,7 +89,12 @@ impl Autosave {
             self.hand_over(sequencer);
             self.document.flush();
         }
-        self.document.is_ready()
+        // The file may have turned out to lack a part of the painting: then it gets all of it.
+        if self.document.wants_all() && self.document.is_ready() {
+            self.hand_over(sequencer);
+            self.document.flush();
+        }
+        self.document.is_saved()
     }
 
     /// Writes all and closes the file.
@@ -99,5 +104,73 @@ impl Autosave {
     pub fn close(mut self, sequencer: &mut Sequencer) -> Result<(), DocumentError> {
         self.settle(sequencer);
         self.document.close()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use maulstick_document::{Access, DocumentSettings};
+    use maulstick_optics::PaintLibrary;
+    use maulstick_painting::{Painting, PaintingSetup};
+
+    use super::*;
+
+    /// A saved painting with a version, whose journal was cut short just now, and another version since.
+    fn cut_short(path: &Path) -> (Autosave, Sequencer) {
+        let settings = DocumentSettings::new(path, Access::Paint);
+        let (document, _) = Document::open(&settings).expect("begun");
+        let setup = PaintingSetup {
+            cells: [128, 64],
+            ..PaintingSetup::default()
+        };
+        let library = PaintLibrary::measured().expect("whole");
+        let pager = document.pager().clone();
+        let painting = Painting::paged(&setup, library, pager).expect("a painting");
+        let mut sequencer = Sequencer::new(painting);
+        let mut autosave = Autosave::new(document, &mut sequencer, 0);
+        assert!(autosave.settle(&mut sequencer));
+        sequencer.painting_mut().keep("before").expect("kept");
+        assert!(autosave.settle(&mut sequencer));
+        let journal = path.with_extension("maul-wal");
+        let journal = std::fs::File::options().write(true).open(journal);
+        journal.expect("it is there").set_len(0).expect("cut");
+        sequencer.painting_mut().keep("after").expect("kept");
+        (autosave, sequencer)
+    }
+
+    /// True if a closed painting has both versions.
+    fn is_whole(path: &Path) -> bool {
+        let settings = DocumentSettings::new(path, Access::Read);
+        let (document, opened) = Document::open(&settings).expect("opened");
+        let opened = opened.expect("a painting");
+        let sequencer = opened.sequencer().expect("whole");
+        let names: Vec<&str> = sequencer
+            .painting()
+            .named()
+            .map(|version| &*version.name)
+            .collect();
+        let is_whole = names.contains(&"before") && names.contains(&"after");
+        document.close().expect("closed");
+        is_whole
+    }
+
+    #[test]
+    fn a_file_that_lost_a_part_is_settled_with_all_of_the_painting() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (mut autosave, mut sequencer) = cut_short(&folder.path().join("sea.maul"));
+        assert!(autosave.settle(&mut sequencer));
+        assert!(!autosave.document().wants_all());
+        autosave.close(&mut sequencer).expect("closed");
+        assert!(is_whole(&folder.path().join("sea-kept.maul")));
+    }
+
+    #[test]
+    fn a_file_that_lost_a_part_is_closed_with_all_of_the_painting() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (autosave, mut sequencer) = cut_short(&folder.path().join("sea.maul"));
+        autosave.close(&mut sequencer).expect("closed");
+        assert!(is_whole(&folder.path().join("sea-kept.maul")));
     }
 }

@@ -86,7 +86,7 @@ impl Offline {
         Ok(offline)
     }
 
-    /// Puts the brush down and takes up another one, with what it carried when it was put down.
+    /// Puts the brush down and takes up another one, with what it carried when it was put down; the take before has ended.
     ///
     /// # Errors
     /// [`EditError`] where the painting refuses it.
@@ -96,6 +96,7 @@ impl Offline {
         file: BrushFile,
         depth_share: f64,
     ) -> Result<(), EditError> {
+        self.end_take()?;
         self.sequencer.define_brush(brush, file.clone())?;
         self.too_fast_before = self.too_fast();
         self.model = BrushModel::new(file, depth_share);
@@ -108,11 +109,12 @@ impl Offline {
         self.begin_take(Vec::new())
     }
 
-    /// Begins another take with the brush in hand; its strokes take the next of `loads` in turn.
+    /// Begins another take with the brush in hand; its strokes take the next of `loads` in turn. The take before has ended.
     ///
     /// # Errors
-    /// [`EditError`] where a load is wrong.
+    /// [`EditError`] where a load is wrong, or as [`end_take`](Self::end_take).
     pub fn begin_take(&mut self, loads: Vec<Mixture>) -> Result<(), EditError> {
+        self.end_take()?;
         self.ticker.pause();
         let player = [self.player.source, self.player.epoch];
         self.sequencer.begin_own_take(&self.brush, player, loads)?;
@@ -163,65 +165,72 @@ impl Offline {
         }
     }
 
-    /// Follows one sample.
+    /// Follows one sample of a take that goes on.
     ///
     /// # Errors
     /// [`EditError`] where the painting refuses its state.
     pub fn sample(&mut self, event_ns: u64, sample: &StylusSample) -> Result<(), EditError> {
-        self.follow(&[(event_ns, sample)], |_, _| {})
+        self.follow_with(Flags::NONE, &[(event_ns, sample)], |_, _| {})
     }
 
-    /// Follows samples, each with its time, ns. The brush is bent on a thread of its own, ahead of the
-    /// paint. `each` is told after which sample the painting is.
+    /// Ends a take whose samples came one by one: a pen that still waits to be set down is.
+    ///
+    /// # Errors
+    /// [`EditError`] where the painting refuses its state.
+    pub fn end_take(&mut self) -> Result<(), EditError> {
+        let (player, samples) = (self.player, self.samples);
+        let (model, mut painter) = self.halves();
+        let solves = model.finish();
+        let Some(event_ns) = solves.last().map(|last| last.event_ns) else {
+            return Ok(());
+        };
+        let state = BrushState {
+            device: player.source,
+            device_epoch: player.epoch,
+            device_seq: samples.saturating_sub(1),
+            solves,
+        };
+        let mut messages = messages(state).into_iter();
+        messages.try_for_each(|(flags, state)| painter.paint(event_ns, flags, &state))
+    }
+
+    /// Follows the samples of a take to its end, each with its time, ns. The brush is bent on a thread of its own, ahead of
+    /// the paint. `each` is told after which sample the painting is.
     ///
     /// # Errors
     /// [`EditError`] where the painting refuses a state.
     pub fn follow(
         &mut self,
         samples: &[(u64, &StylusSample)],
+        each: impl FnMut(&mut Sequencer, usize),
+    ) -> Result<(), EditError> {
+        self.follow_with(Flags::LAST, samples, each)
+    }
+
+    /// Follows samples; the last of them has the flags `last`.
+    fn follow_with(
+        &mut self,
+        last: Flags,
+        samples: &[(u64, &StylusSample)],
         mut each: impl FnMut(&mut Sequencer, usize),
     ) -> Result<(), EditError> {
-        let first = self.samples;
-        self.samples += samples.len() as u64;
-        let (player, model) = (self.player, &mut self.model);
+        let (player, first, count) = (self.player, self.samples, samples.len());
+        self.samples += count as u64;
+        let (model, mut painter) = self.halves();
         let mut bend = move |(number, &(event_ns, sample)): (usize, &(u64, &StylusSample))| {
-            let fits = sample.fault().is_none();
+            let flags = match number + 1 == count {
+                true => last,
+                false => Flags::NONE,
+            };
             let serial = first + number as u64;
-            let state = fits.then(|| model.state(player, serial, event_ns, sample));
-            // As the brush node sends them.
-            let messages = state.flatten().map_or_else(Vec::new, |state| {
-                state.messages(Flags::REPLAY, Flags::NONE, Flags::NONE)
-            });
-            let messages = messages.into_iter();
+            let state = model.state_in_take(player, serial, event_ns, sample, flags);
+            let messages = state.map_or_else(Vec::new, messages).into_iter();
             messages.map(move |(flags, state)| (number, event_ns, flags, state))
         };
-        let (sequencer, brush, me, next) =
-            (&mut self.sequencer, &self.brush, self.me, &mut self.next);
-        let ticker = &mut self.ticker;
         let mut paint = |(number, event_ns, flags, state): (usize, u64, Flags, BrushState)| {
-            let header = Header {
-                version: BrushState::VERSION,
-                schema: 0,
-                source: me.source,
-                epoch: me.epoch,
-                flags,
-                length: 0,
-                seq: *next,
-                event_ns,
-                sent_ns: event_ns,
-            };
-            *next += 1;
-            // However long a gap is, time passes only for what dries.
-            let ticks = ticker.look(event_ns, u64::MAX);
-            let _ = (0..ticks).try_for_each(|_| {
-                sequencer.tick();
-                sequencer.painting().is_drying().then_some(())
-            });
-            // Offline no command waits for a state.
-            let (_, painted) = sequencer.state(brush, &header, &state);
-            sequencer.drain_journal();
+            let painted = painter.paint(event_ns, flags, &state);
             if !flags.has(Flags::CONTINUES) {
-                each(sequencer, number);
+                each(painter.sequencer, number);
             }
             painted
         };
@@ -247,7 +256,19 @@ impl Offline {
         })
     }
 
-    /// The painting, done.
+    /// The brush, and the half that paints.
+    fn halves(&mut self) -> (&mut BrushModel, Painter<'_>) {
+        let painter = Painter {
+            sequencer: &mut self.sequencer,
+            brush: &self.brush,
+            me: self.me,
+            next: &mut self.next,
+            ticker: &mut self.ticker,
+        };
+        (&mut self.model, painter)
+    }
+
+    /// The painting, done. A take whose samples came one by one has [ended](Self::end_take) before.
     #[must_use]
     pub fn into_painting(self) -> Painting {
         let mut painting = self.sequencer.into_painting();
@@ -263,5 +284,117 @@ impl Offline {
     /// The painting.
     pub fn painting_mut(&mut self) -> &mut Painting {
         self.sequencer.painting_mut()
+    }
+}
+
+/// A state as the brush node sends it.
+fn messages(state: BrushState) -> Vec<(Flags, BrushState)> {
+    state.messages(Flags::REPLAY, Flags::NONE, Flags::NONE)
+}
+
+/// What paints the states of the brush in hand.
+struct Painter<'a> {
+    sequencer: &'a mut Sequencer,
+    brush: &'a str,
+    me: Origin,
+    next: &'a mut u64,
+    ticker: &'a mut Ticker,
+}
+
+impl Painter<'_> {
+    /// Paints a message of the brush.
+    fn paint(&mut self, event_ns: u64, flags: Flags, state: &BrushState) -> Result<(), EditError> {
+        let header = Header {
+            version: BrushState::VERSION,
+            schema: 0,
+            source: self.me.source,
+            epoch: self.me.epoch,
+            flags,
+            length: 0,
+            seq: *self.next,
+            event_ns,
+            sent_ns: event_ns,
+        };
+        *self.next += 1;
+        // However long a gap is, time passes only for what dries.
+        let ticks = self.ticker.look(event_ns, u64::MAX);
+        let sequencer = &mut *self.sequencer;
+        let _ = (0..ticks).try_for_each(|_| {
+            sequencer.tick();
+            sequencer.painting().is_drying().then_some(())
+        });
+        // Offline no command waits for a state.
+        let (_, painted) = sequencer.state(self.brush, &header, state);
+        sequencer.drain_journal();
+        painted
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_optics::PaintLibrary;
+    use maulstick_painting::PaintingSetup;
+    use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose};
+
+    use super::*;
+
+    const MS: u64 = 1_000_000;
+
+    fn offline() -> Offline {
+        let setup = PaintingSetup {
+            cells: [128, 96],
+            ..PaintingSetup::default()
+        };
+        let library = PaintLibrary::measured().expect("built in");
+        let painting = Painting::new(&setup, library).expect("valid");
+        let file = BrushFile::library("round").expect("built in");
+        let loads = vec!["Cobalt Blue".parse().expect("a mixture")];
+        Offline::new(painting, "main", file, 0.5, loads).expect("valid")
+    }
+
+    fn pen(pressure: f64) -> StylusSample {
+        StylusSample {
+            pose: StylusPose::Contact {
+                point_m: [0.0; 3],
+                tilt_rad: DEFAULT_TILT_RAD,
+                twist_rad: 0.0,
+                pressure,
+            },
+            in_range: true,
+            ..StylusSample::away()
+        }
+    }
+
+    fn covered(offline: &mut Offline) -> u64 {
+        offline.painting_mut().report().covered_cells
+    }
+
+    /// A take that ends as its pen is set down.
+    fn take() -> [(u64, StylusSample); 2] {
+        [(1000 * MS, pen(0.0)), (1008 * MS, pen(0.4))]
+    }
+
+    #[test]
+    fn a_take_that_ends_as_its_pen_is_set_down_has_its_mark() {
+        let take = take();
+        let mut whole = offline();
+        let samples: Vec<(u64, &StylusSample)> = take.iter().map(|(ns, s)| (*ns, s)).collect();
+        whole.follow(&samples, |_, _| {}).expect("painted");
+        let cells = covered(&mut whole);
+        assert!(cells > 0);
+        let single = || {
+            let mut offline = offline();
+            for (ns, sample) in &take {
+                offline.sample(*ns, sample).expect("painted");
+            }
+            assert_eq!(covered(&mut offline), 0, "it waits");
+            offline
+        };
+        let mut ended = single();
+        ended.end_take().expect("painted");
+        assert_eq!(covered(&mut ended), cells);
+        let mut followed = single();
+        followed.begin_take(Vec::new()).expect("begun");
+        assert_eq!(covered(&mut followed), cells);
     }
 }

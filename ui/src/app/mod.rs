@@ -7,7 +7,7 @@
 //! | `sides`, `column` | what stands at the sides of the window; the column of panels |
 //! | `overlay` | what lies over the desk: panels, dialogs, help |
 //! | [`rack`] | the brush rack at the edge |
-//! | `sending` | requests, in their order among the strokes |
+//! | `sending`, `held_places` | requests, in their order among the strokes; placements that wait for a brush to lift |
 //! | `first_run` | the line of help for a new painter |
 //! | `help_pages` | a first painting in steps; what program this is |
 //! | `window_memory` | title and size of the window, and the painter's habits |
@@ -28,6 +28,7 @@ use maulstick_types::scene::{PALETTE, Surface};
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
+use crate::app::held_places::HeldPlaces;
 use crate::app::overlay::Overlay;
 use crate::input::brush_turn::BrushTurn;
 use crate::input::clean_key::CleanKey;
@@ -47,7 +48,7 @@ use crate::rig::device_commands::DeviceCommands;
 use crate::rig::dispatcher::CommandDispatcher;
 use crate::rig::health::HealthMonitor;
 use crate::rig::listener::RigListener;
-use crate::rig::requests::{Request, Requests};
+use crate::rig::requests::Requests;
 use crate::rig::state::RigState;
 use crate::rig::stroke_barrier::StrokeBarrier;
 use crate::rig::stroke_barrier::pending::PendingTeller;
@@ -67,6 +68,7 @@ mod actions;
 pub(crate) mod bar;
 mod column;
 mod first_run;
+mod held_places;
 mod help_pages;
 pub(crate) mod overlay;
 pub mod rack;
@@ -105,8 +107,7 @@ pub struct App {
     brush_turn: BrushTurn,
     view: Option<View>,
     held_view: HeldView,
-    /// Requests that move a surface, until no brush touches one.
-    held_places: Vec<Request>,
+    held_places: HeldPlaces,
     pointer_path: PointerPath,
     navigation: Navigation,
     palette_slide: PaletteSlide,
@@ -209,7 +210,7 @@ impl App {
             lost,
             view: None,
             held_view: HeldView::default(),
-            held_places: Vec::new(),
+            held_places: HeldPlaces::default(),
             pointer_path: PointerPath::default(),
             overlay: Overlay::default(),
             tracing: TracingPicture::default(),

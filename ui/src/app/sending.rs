@@ -4,10 +4,8 @@
 use std::time::Duration;
 
 use eframe::egui::Context;
-use maulstick_rig::UserError;
 
 use super::App;
-use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
 use crate::rig::state::BrushContact;
 use crate::widgets::context::PanelContext;
@@ -32,23 +30,20 @@ impl App {
         for follow_up in self.requests.take_follow_ups() {
             self.barrier.push_follow_up(follow_up);
         }
-        let waits = self.holds_desk();
-        let mut requests = match waits {
-            true => Vec::new(),
-            false => std::mem::take(&mut self.held_places),
+        // The cleaning key acts within a stroke, and so does the free hand.
+        let mut within = self.clean_key.take();
+        within.append(&mut self.navigation.take());
+        let contact = match self.holds_desk() {
+            true => BrushContact::Held,
+            false => BrushContact::Lifted,
         };
-        requests.append(&mut self.requests.take());
-        for request in requests {
-            if waits && request.moves_surface() {
-                self.held_places.push(request);
-            } else if !self.refuses(&request) {
+        let asked = self.requests.take();
+        for request in self.held_places.release(contact, asked, &within) {
+            if !self.refuses(&request) {
                 let newest = self.tracker.newest(now_ns);
                 self.barrier.push(now_ns, (request, asked_ns), newest);
             }
         }
-        // The cleaning key acts within a stroke, and so does the free hand.
-        let mut within = self.clean_key.take();
-        within.append(&mut self.navigation.take());
         for request in within {
             let newest = self.tracker.newest(now_ns);
             self.barrier.push(now_ns, (request, asked_ns), newest);
@@ -87,23 +82,12 @@ impl App {
 
     /// True if a request is refused: the brush is not changed while the hand has it on a surface.
     fn refuses(&mut self, request: &Request) -> bool {
-        if self.rig.contact == BrushContact::Lifted || !request.changes_brush() {
-            return false;
-        }
-        let outcome = Outcome {
-            request: request.clone(),
-            result: Err(UserError::failure(tr!(
-                "The brush is painting: lift it, and ask again."
-            ))),
-        };
         let work = &mut PanelContext {
             rig: &mut self.rig,
             requests: &mut self.requests,
             preferences: &mut self.preferences,
             notifications: &mut self.notifications,
         };
-        work.may_change_brush();
-        work.brush_answered(&outcome);
-        true
+        work.refuses(request)
     }
 }

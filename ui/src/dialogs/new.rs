@@ -98,7 +98,7 @@ impl NewPainting {
         let ground = match self.ground {
             FILE if self.ground_file.trim().is_empty() => {
                 return Err(tr!(
-                    "Ground: write the path of a picture, or of a CSV file of nm,reflectance."
+                    "Ground: write the path of a picture, or of a measured ground, a line for each wavelength in nm and its reflectance."
                 )
                 .to_owned());
             }

@@ -34,8 +34,8 @@ pub(super) enum Choice {
 struct Found {
     newest: Vec<Sketch>,
     count: usize,
-    /// Those that go at the next start, in words.
-    leaving: Vec<String>,
+    /// Those that go at the next start, once the painter was told.
+    leaving: Vec<Sketch>,
 }
 
 #[derive(Debug, Default)]
@@ -44,7 +44,11 @@ enum State {
     #[default]
     Waiting,
     Looking(BackgroundTask<Found>),
-    Shown(Found),
+    Shown {
+        found: Found,
+        /// True once the painter has seen which ones go.
+        is_told: bool,
+    },
     /// The painter began to paint, chose, or closed it.
     Done,
 }
@@ -56,21 +60,21 @@ pub(super) struct SketchOffer {
     pictures: Pictures,
 }
 
-/// Looks for the sketches beside the one that is open; who is told of those that leave is told in the file too.
+/// Looks for the sketches beside the one that is open.
 fn found(sketches: &Sketches, open: &std::path::Path) -> Found {
     let all = sketches.all();
-    let leaving = leaving(&all);
-    if let Err(fault) = sketches.tell(leaving)
-        && !leaving.is_empty()
-    {
-        tracing::warn!("{}: {}", fault.place.unwrap_or_default(), fault.what);
-    }
-    let leaving = leaving.iter().map(stem).collect();
     let others = all.iter().filter(|sketch| sketch.path != open);
     Found {
         newest: others.clone().take(MOST).cloned().collect(),
         count: others.count(),
-        leaving,
+        leaving: leaving(&all).to_vec(),
+    }
+}
+
+/// Writes down which sketches the painter has seen named: the next start removes them.
+fn tell(sketches: &Sketches, leaving: &[Sketch]) {
+    if let Err(fault) = sketches.tell(leaving) {
+        tracing::warn!("{}: {}", fault.place.unwrap_or_default(), fault.what);
     }
 }
 
@@ -83,12 +87,12 @@ impl SketchOffer {
     /// Follows the painting, and shows the offer over a blank sketch; the choice that was made.
     pub(super) fn show(&mut self, context: &Context, rig: &RigState) -> Option<Choice> {
         self.follow(context, rig);
-        let State::Shown(found) = &self.state else {
+        let State::Shown { found, is_told } = &mut self.state else {
             return None;
         };
         self.pictures.take_in(context);
         let (mut is_open, mut chosen) = (true, None);
-        Window::new(tr!("Your sketches"))
+        let shown = Window::new(tr!("Your sketches"))
             .open(&mut is_open)
             .collapsible(false)
             .resizable(false)
@@ -97,6 +101,10 @@ impl SketchOffer {
                 ui.set_width(WIDTH);
                 chosen = list(ui, found, &mut self.pictures);
             });
+        if let (true, Some(_), Some(sketches), false) = (is_open, shown, &rig.sketches, *is_told) {
+            tell(sketches, &found.leaving);
+            *is_told = true;
+        }
         if chosen.is_some() || !is_open {
             self.state = State::Done;
         }
@@ -118,12 +126,15 @@ impl SketchOffer {
             State::Looking(task) => {
                 if let Poll::Ready(found) = task.poll() {
                     self.state = match found.filter(|found| found.count > 0) {
-                        Some(found) => State::Shown(found),
+                        Some(found) => State::Shown {
+                            found,
+                            is_told: false,
+                        },
                         None => State::Done,
                     };
                 }
             }
-            State::Shown(_) => {}
+            State::Shown { .. } => {}
         }
     }
 }
@@ -158,9 +169,10 @@ fn list(ui: &mut Ui, found: &Found, pictures: &mut Pictures) -> Option<Choice> {
     if !found.leaving.is_empty() {
         ui.add_space(4.0);
         let colour = crate::dialogs::dialog::wrong(ui.visuals());
+        let names: Vec<String> = found.leaving.iter().map(stem).collect();
         let words = tr!(
             "There are many. At the next start the oldest go, unless you save them under a name: {names}",
-            names = found.leaving.join(", ")
+            names = names.join(", ")
         );
         ui.label(RichText::new(words).color(colour));
     }
@@ -169,6 +181,9 @@ fn list(ui: &mut Ui, found: &Found, pictures: &mut Pictures) -> Option<Choice> {
 
 #[cfg(test)]
 mod tests {
+    use std::time::{Duration, Instant};
+
+    use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable as _;
     use maulstick_rig::sketches::MOST as STAY;
     use maulstick_types::command::{Command, RigCommand};
@@ -231,5 +246,34 @@ mod tests {
                 .is_some()
         });
         assert_eq!(sketches.told().len(), 1);
+    }
+
+    #[test]
+    fn sketches_that_are_found_and_not_named_yet_do_not_count_as_told() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let sketches = Sketches::in_folder(folder.path());
+        let rig = rig(&sketches, STAY + 1);
+        // Another dialog is open meanwhile: the offer finds them, and is not shown.
+        let mut offer = SketchOffer::default();
+        let end = Instant::now() + Duration::from_secs(60);
+        while !matches!(offer.state, State::Shown { .. }) {
+            assert!(Instant::now() < end, "they are not found");
+            offer.follow(&Context::default(), &rig);
+            std::thread::yield_now();
+        }
+        assert_eq!(sketches.told(), []);
+        let show = |ui: &mut Ui, offer: &mut SketchOffer| {
+            assert_eq!(offer.show(ui.ctx(), &rig), None);
+        };
+        let mut harness = Harness::builder()
+            .with_size([900.0, 700.0])
+            .build_ui_state(show, offer);
+        harness.run_steps(2);
+        assert_eq!(sketches.told().len(), 1);
+        let name = stem(&sketches.told()[0]);
+        harness.get_by_label_contains(&name);
+        sketches.tell(&[]).expect("forgotten");
+        harness.run_steps(2);
+        assert_eq!(sketches.told(), [], "it is told once");
     }
 }

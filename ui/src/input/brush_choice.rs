@@ -147,10 +147,27 @@ impl PanelContext<'_> {
     pub fn may_change_brush(&mut self) -> bool {
         let is_lifted = self.rig.contact == BrushContact::Lifted;
         if !is_lifted {
-            let words = tr!("The brush is painting: lift it, and ask again.");
-            self.notifications.value("painting", words.to_owned());
+            self.tell_refusal();
         }
         is_lifted
+    }
+
+    /// True if a request is refused, which is said once: it changes the brush while the hand has it on a surface.
+    pub fn refuses(&mut self, request: &Request) -> bool {
+        if self.rig.contact == BrushContact::Lifted || !request.changes_brush() {
+            return false;
+        }
+        let result = Err(UserError::failure(self.tell_refusal()));
+        let request = request.clone();
+        self.brush_answered(&Outcome { request, result });
+        true
+    }
+
+    /// Tells in the place of the last such sentence that the brush is not changed while it paints; the sentence.
+    fn tell_refusal(&mut self) -> &'static str {
+        let words = tr!("The brush is painting: lift it, and ask again.");
+        self.notifications.value("painting", words);
+        words
     }
 
     /// Gives the hand another brush; the brush already in the hand is not requested again.
@@ -227,9 +244,8 @@ impl PanelContext<'_> {
         if newest.is_some_and(|newest| newest.ok().as_deref() != Some(toml.as_str())) {
             return;
         }
-        let (then, then_ns) = (own.then.take(), own.then_ns);
-        match (&outcome.result, then) {
-            (Ok(_), Some(command)) => self.requests.follow_up(command, then_ns),
+        match (&outcome.result, own.then.take()) {
+            (Ok(_), Some((command, asked_ns))) => self.requests.follow_up(command, asked_ns),
             (Ok(_), None) => {}
             (Err(_), _) => own.asked = None,
         }
@@ -286,9 +302,7 @@ impl PanelContext<'_> {
         }
         let (in_hand, now_ns) = (self.rig.in_hand, self.rig.now_ns);
         match self.rig.brushes.get_mut(in_hand) {
-            Some(own) if own.asked.is_some() => {
-                (own.then, own.then_ns) = (Some(command), now_ns);
-            }
+            Some(own) if own.asked.is_some() => own.then = Some((command, now_ns)),
             _ => self.requests.send(command),
         }
     }

@@ -36,10 +36,8 @@ pub struct RigBrush {
     pub epoch: u32,
     /// The brush file requested for it; `None` once its node has answered.
     pub asked: Option<BrushFile>,
-    /// Command for the paint node once the brush has that file.
-    pub then: Option<Command>,
-    /// When that was asked for, rig clock, ns.
-    pub then_ns: u64,
+    /// Command for the paint node once the brush has that file, and when it was asked for, rig clock, ns.
+    pub then: Option<(Command, u64)>,
     /// The paint on it; `None` until that is known.
     pub carried: Option<CarriedPaint>,
 }

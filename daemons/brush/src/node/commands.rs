@@ -132,6 +132,11 @@ impl BrushNode {
 
     /// Takes up the brush that was asked for, once the strokes before are painted; true if it was.
     pub(super) fn take_up_asked_brush(&mut self, now_ns: u64) -> Result<bool, BusError> {
+        let held_ns = self.hold.since_ns(now_ns);
+        if let (Some(asked), Some(held_ns)) = (&mut self.asked_brush, held_ns) {
+            // A stroke that is held for it is not one before it, whenever that is heard.
+            asked.since_ns = asked.since_ns.min(held_ns);
+        }
         // A stroke on its way to the painting belongs to the brush that is in hand.
         let painted = self.states.next_seq() - self.states.outstanding();
         let under_way = self.newest_contact.is_some_and(|state| state >= painted);
@@ -209,8 +214,7 @@ impl BrushNode {
         let asked = AskedBrush {
             asker: (asked.client, asked.number),
             file,
-            // A stroke that is held for it is not one before it.
-            since_ns: self.hold.since_ns(now_ns).unwrap_or(now_ns).min(now_ns),
+            since_ns: now_ns,
         };
         // Of two between the same strokes the later one is taken up.
         if let Some(before) = self.asked_brush.replace(asked) {
@@ -221,5 +225,28 @@ impl BrushNode {
             true => Ok(Outcome::done("")),
             false => Ok(Outcome::Waiting),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{MS, node, order, waiting};
+    use super::*;
+
+    #[test]
+    fn a_stroke_that_is_held_for_a_brush_is_not_before_it_though_that_is_heard_later() {
+        let (mut node, _) = node();
+        node.asked_brush = Some(AskedBrush {
+            asker: (1, 1),
+            file: BrushFile::library("flat").expect("flat"),
+            since_ns: 1100 * MS,
+        });
+        node.backlog.push(waiting(1060 * MS, 0.0, 0.4));
+        let taken_up = node.take_up_asked_brush(1110 * MS).expect("a bus");
+        assert!(!taken_up, "the stroke is before it");
+        node.hold.hear(&order(1), 1050 * MS, 1120 * MS);
+        assert!(node.take_up_asked_brush(1130 * MS).expect("a bus"));
+        let told = node.told_file.as_ref().map(|told| told.asked_ns);
+        assert_eq!(told, Some(1050 * MS), "the stroke waits for the painting");
     }
 }

@@ -19,12 +19,12 @@ impl BrushNode {
         let counts = self.samples.counts();
         let waiting = (self.backlog.len() + self.outbox.len()) as u64;
         // While paint has no room for more it is not this node that is late.
-        let is_free = self.states.has_credit() && self.solves_left == 0;
+        let is_behind = self.states.has_credit() && self.solves_left == 0;
         NodeWork {
             consumed: counts.received,
             produced: self.states.next_seq(),
-            waiting: if is_free { waiting } else { 0 },
-            held: if is_free { 0 } else { waiting },
+            waiting: if is_behind { waiting } else { 0 },
+            held: if is_behind { 0 } else { waiting },
             refused: counts.refused,
             lost: counts.lost + self.backlog.dropped(),
             too_fast: self.too_fast(),

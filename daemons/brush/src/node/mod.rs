@@ -90,7 +90,7 @@ pub struct BrushNode {
     backlog: PathSimplifier,
     /// Solves left in this turn.
     solves_left: usize,
-    /// Samples too fast, and dropped, that were told, and whether each was logged.
+    /// Warnings of samples that are too fast, or dropped, that were logged.
     told_haste: Haste,
     pace: Pace,
     outbox: Outbox,
@@ -102,6 +102,7 @@ pub struct BrushNode {
     /// Presence of the paint node, as far as it is known.
     painter: Painter,
     tokens: Subscription,
+    /// True while the brush touches at its newest solve.
     touching: bool,
     /// Drag of the paint under the brush, N·s/m.
     drag_n_s_m: f64,
@@ -120,6 +121,7 @@ pub struct BrushNode {
     /// The file that was told, until the painting has it.
     told_file: Option<ToldFile>,
     orders: Receiver<PendingOrders>,
+    /// What windows say is pending.
     hold: Hold,
     /// True while a stroke waits for what was asked for before it.
     holds: bool,
@@ -303,7 +305,7 @@ impl BrushNode {
             .min()
     }
 
-    /// Credit, and what the devices are.
+    /// Takes in who is there, credit, pending orders, the relief, and what the devices say they are.
     fn take_in(&mut self, now_ns: u64) {
         while let Some(token) = self.tokens.try_recv() {
             let node = self.topics.node_of(&token.key).unwrap_or_default();
@@ -466,3 +468,6 @@ impl BrushNode {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -28,10 +28,6 @@ impl BrushNode {
     /// for that is not done yet.
     pub(super) fn solve(&mut self, now_ns: u64) {
         let since_ns = self.pending_since_ns(now_ns);
-        if since_ns.is_none() && std::mem::take(&mut self.holds) {
-            // It was not the paint that was late.
-            self.pace.forget_wait();
-        }
         let mut touching = self.touching;
         let (mut solves, mut newest) = (Vec::new(), None);
         let mut devices = BTreeSet::new();
@@ -43,14 +39,19 @@ impl BrushNode {
                 self.holds = true;
                 break;
             }
+            if std::mem::take(&mut self.holds) {
+                // It was not the paint that was late.
+                self.pace.forget_wait();
+            }
             let Some((start, waiting)) = self.backlog.pop() else {
                 break;
             };
-            if start == Start::AfterLoss {
-                self.model.begin_anew();
-            }
+            let mut more = match start {
+                Start::AfterLoss => self.model.begin_anew(),
+                _ => Vec::new(),
+            };
             let (origin, event_ns) = (waiting.origin, waiting.event_ns);
-            let more = self.model.follow(origin, event_ns, &waiting.sample);
+            more.extend(self.model.follow(origin, event_ns, &waiting.sample));
             self.solves_left = self.solves_left.saturating_sub(more.len().max(1));
             if let Some(last) = more.last() {
                 touching = !last.contacts.is_empty();

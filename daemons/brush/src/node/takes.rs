@@ -44,17 +44,17 @@ impl BrushNode {
             }
             self.gone.remove(device);
             self.backlog.clear();
-            self.pace = Pace::default();
+            // A hand that waits to be set down goes with its backlog: its mark would be a stroke of the take.
+            drop(self.model.finish());
+            (self.pace, self.holds) = (Pace::default(), false);
             self.take = Some(take);
             first = Flags::FIRST;
         }
         let (origin, sample) = (header.origin(), &received.message);
-        let state = match sample.fault() {
-            None => self
-                .model
-                .state(origin, header.seq, header.event_ns, sample),
-            Some(_) => None,
-        };
+        let (seq, event_ns) = (header.seq, header.event_ns);
+        let state = self
+            .model
+            .state_in_take(origin, seq, event_ns, sample, header.flags);
         self.tell_haste();
         if header.flags.has(Flags::LAST) {
             self.take = None;

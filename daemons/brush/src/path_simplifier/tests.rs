@@ -110,6 +110,22 @@ fn time_that_runs_backward_is_kept() {
 }
 
 #[test]
+fn time_that_stands_still_is_not_too_fast() {
+    let mut backlog = PathSimplifier::new(0.025);
+    for seq in 0..5 {
+        let waiting = sample(seq, 1e-5 * seq as f64, 0.0, 0.5);
+        backlog.push(Waiting {
+            event_ns: 5_000_000,
+            ..waiting
+        });
+    }
+    assert_eq!(backlog.superseded(), 0);
+    let kept = std::iter::from_fn(|| backlog.pop()).map(|(start, w)| (start, w.seq));
+    let kept: Vec<(Start, u64)> = kept.collect();
+    assert_eq!(kept, [(Start::GoesOn, 0), (Start::AfterLoss, 4)]);
+}
+
+#[test]
 fn what_is_too_fast_leaves_its_newest_sample_and_the_rest_goes_on_from_there() {
     let mut backlog = PathSimplifier::new(0.025);
     // A metre each millisecond, there and back; then a hand of 1 m/s that turns off.

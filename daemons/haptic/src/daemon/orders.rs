@@ -7,6 +7,7 @@ use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::{Flags, Origin, encode, plain};
 
 use super::Daemon;
+use crate::senders::Consent;
 
 /// Time between two lines about shares that the same hand drags to and fro, ns.
 const SHARES_PERIOD_NS: u64 = 1_000_000_000;
@@ -79,6 +80,7 @@ impl Daemon {
                 .reader
                 .read::<ForceRequest>(&request.key, &request.bytes);
             let Some((_, asked)) = read else { continue };
+            let mut refusal = None;
             let is_news = match asked.order {
                 ForceOrder::Off => self.switch(Switch::Off),
                 ForceOrder::On => self.switch(Switch::On),
@@ -97,21 +99,27 @@ impl Daemon {
                     true
                 }
                 ForceOrder::Drive { source, epoch } => {
-                    self.senders.consent(Origin { source, epoch }, now_ns)
+                    let consent = self.senders.consent(Origin { source, epoch }, now_ns);
+                    if consent == Consent::Refused {
+                        refusal = Some("too many programs move this hand".to_owned());
+                    }
+                    consent == Consent::Given
                 }
             };
             self.tell_control();
             if let Some(servo) = &mut self.servo {
                 servo.controls.write(self.control);
             }
-            self.write_state();
+            if !matches!(asked.order, ForceOrder::Drive { .. }) {
+                self.write_state();
+            }
             if is_news && let Some(said) = self.orders.log.note(asked, now_ns) {
                 self.say(&said);
             }
             let reply = ForceReply {
                 is_on: self.control.switch == Switch::On,
                 strength: self.control.strength,
-                fault: self.fault(),
+                fault: refusal.unwrap_or_else(|| self.fault()),
                 guidance: self.control.guidance,
             };
             let me = self.samples.origin();

@@ -339,7 +339,8 @@ impl Pyramid {
             return Some(shown);
         }
         if level == 0 {
-            return Some(self.finest(look, number, surface, id));
+            // What is shaded already is put together, however late it is: so each call gets farther.
+            return (Instant::now() < late).then(|| self.finest(look, number, surface, id));
         }
         let tile = Arc::new({
             let outside = self.outside(look, number, surface);
@@ -348,9 +349,6 @@ impl Pyramid {
             for (quarter, tile) in children.iter_mut().enumerate() {
                 let child = child(id, quarter as u32);
                 if child.x < across && child.y < up {
-                    if Instant::now() >= late {
-                        return None;
-                    }
                     let place = (level - 1, child);
                     *tile = Some(self.tile(look, number, surface, place, late)?);
                 }

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use maulstick_document::{
     Access, Document, DocumentError, DocumentSettings, Relocate, Relocation, make_room, unfinished,
 };
+use maulstick_files::{COMPANIONS, companion};
 use maulstick_types::command::Outcome;
 use maulstick_types::command::advice::Advice;
 
@@ -237,10 +238,8 @@ impl PaintNode {
         self.unnamed = false;
         let path = autosave.document().path().to_owned();
         autosave.abandon(&mut self.sequencer);
-        for ending in ["", "-wal", "-shm", "-journal"] {
-            let mut name = path.as_os_str().to_owned();
-            name.push(ending);
-            std::fs::remove_file(name).ok();
+        for ending in std::iter::once("").chain(COMPANIONS) {
+            std::fs::remove_file(companion(&path, ending)).ok();
         }
     }
 }

@@ -53,7 +53,7 @@ impl PaintNode {
         let counts = self.states.counts();
         NodeWork {
             consumed: counts.received,
-            produced: self.sequencer.journal_next(),
+            produced: self.journal.sent(),
             waiting: waiting.len() as u64,
             held: held.len() as u64,
             refused: self.refused_in_all(),

@@ -1,6 +1,6 @@
 //! `maulstick nodes`: the processes of a running rig, and what they have done.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
 
 use clap::Args;
@@ -39,7 +39,7 @@ pub fn run(options: &NodesOptions) -> Result<i32, UserError> {
     let (topic, queue) = (topics.node_status("*"), Queue::Ring(1024));
     let mut statuses =
         Receiver::<NodeStatus>::new(&*member.bus, &topic, Qos::Background, queue, &member.wake)?;
-    let (mut nodes, mut said) = (BTreeMap::new(), BTreeMap::new());
+    let (mut nodes, mut said) = (BTreeSet::new(), BTreeMap::new());
     let until = Instant::now() + PATIENCE;
     while Instant::now() < until && !listener.is_over() {
         while let Some(token) = tokens.try_recv() {
@@ -47,7 +47,7 @@ pub fn run(options: &NodesOptions) -> Result<i32, UserError> {
                 continue;
             };
             match token.present {
-                true => nodes.insert(name.to_owned(), ()),
+                true => nodes.insert(name.to_owned()),
                 false => nodes.remove(name),
             };
         }
@@ -59,8 +59,8 @@ pub fn run(options: &NodesOptions) -> Result<i32, UserError> {
             .wake
             .wait(until.saturating_duration_since(Instant::now()));
     }
-    let names = nodes.into_keys();
-    let nodes: Vec<(String, Option<NodeStatus>)> = names
+    let nodes: Vec<(String, Option<NodeStatus>)> = nodes
+        .into_iter()
         .map(|name| {
             let status = said.remove(&name);
             (name, status)

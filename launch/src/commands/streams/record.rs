@@ -8,6 +8,7 @@ use std::time::Duration;
 use clap::Args;
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, open_private};
+use maulstick_rig::log::print_beside;
 
 use super::listener::Listener;
 use super::recorder::{Division, LEAST_LAST, RecorderSettings, Ring, Voice, record};
@@ -54,6 +55,7 @@ pub struct RecordOptions {
 /// # Errors
 /// A [`UserError`] where no rig runs, or the file cannot be written: what was written until then can be read.
 pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
+    print_beside();
     let bounded = |name: &str, seconds: Option<f64>| match seconds {
         Some(s) if !(0.1..=1e7).contains(&s) => {
             Err(UserError::usage(format!("--{name} {s} is out of range"))

@@ -185,12 +185,15 @@ impl Source {
     /// Its length, and where it goes on.
     fn length_in_words(&self) -> String {
         let length_s = self.length_ns() as f64 * 1e-9;
-        match self {
-            Self::Session(session) if session.next().is_some() => format!(
-                "it is {length_s:.1} s long, and the recording goes on in {}",
-                session.next().unwrap_or_default()
-            ),
-            _ => format!("it is {length_s:.1} s long"),
+        let next = match self {
+            Self::Session(session) => session.next(),
+            Self::Painting(_) => None,
+        };
+        match next {
+            Some(next) => {
+                format!("it is {length_s:.1} s long, and the recording goes on in {next}")
+            }
+            None => format!("it is {length_s:.1} s long"),
         }
     }
 

@@ -1,15 +1,17 @@
 //! The sketch of a rig with a window: the file of a painting for which nobody gave one.
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use jiff::Zoned;
 use maulstick_document::{Access, Document, DocumentSettings, glance};
 use maulstick_rig::UserError;
+use maulstick_rig::files::companion;
+use maulstick_rig::log::say;
 use maulstick_rig::sketches::{Sketch, Sketches};
 
 use super::Supervisor;
+use super::orders::is_same;
 
 /// A file so young may be of a rig that is just being started.
 const YOUNG: Duration = Duration::from_secs(60);
@@ -20,12 +22,12 @@ const BLANK_BYTES: u64 = 4 << 20;
 ///
 /// # Errors
 /// As [`Sketches::fresh`].
-pub(in crate::up) fn fresh(sketches: &Sketches) -> Result<PathBuf, UserError> {
+fn fresh(sketches: &Sketches) -> Result<PathBuf, UserError> {
     sketches.fresh(&Zoned::now().strftime("%Y-%m-%d %H.%M.%S").to_string())
 }
 
 /// The file of another sketch; where it cannot be had the painting is in memory alone, as its status says.
-pub(super) fn begin(sketches: &Sketches) -> Option<PathBuf> {
+pub(in crate::up) fn begin(sketches: &Sketches) -> Option<PathBuf> {
     let begun = fresh(sketches);
     let warn = |fault: &UserError| {
         let place = fault.place.as_deref().unwrap_or_default();
@@ -50,7 +52,7 @@ pub(in crate::up) fn tidy(sketches: &Sketches) {
             .is_ok_and(|age| age > YOUNG)
     };
     for sketch in sketches.all().iter().filter(|sketch| is_old(sketch)) {
-        if sketch.bytes < BLANK_BYTES && is_blank(&sketch.path) {
+        if is_blank(&sketch.path) {
             remove(sketches, &sketch.path);
         }
     }
@@ -62,10 +64,15 @@ fn remove(sketches: &Sketches, path: &Path) {
     }
 }
 
-/// True if nobody has a painting open, and nothing was ever painted on it.
+/// True if nobody has a painting open, and nothing was ever painted on it. A file beyond [`BLANK_BYTES`] is not read.
 fn is_blank(path: &Path) -> bool {
-    if std::fs::metadata(path).is_ok_and(|about| about.len() == 0) {
-        return true;
+    let bytes = |path: &Path| std::fs::metadata(path).map_or(0, |about| about.len());
+    match (bytes(path), bytes(&companion(path, "-wal"))) {
+        (0, 0) => return true,
+        // Its journal may have what it lacks.
+        (0, _) => return false,
+        (file, journal) if file + journal >= BLANK_BYTES => return false,
+        _ => {}
     }
     let settings = DocumentSettings::new(path, Access::Read);
     let Ok((document, opened)) = Document::open(&settings) else {
@@ -94,8 +101,20 @@ impl Supervisor {
         }
     }
 
-    /// At the end of the rig: says where the sketch is kept; one on which nothing was painted goes. The terminal may be
-    /// closed.
+    /// The painting is in the file `to` from now on. The sketch that it was goes once nodes that start again are told of
+    /// that, and only if it is another file.
+    pub(super) fn is_saved_as(&mut self, to: &Path) {
+        let before = self.config.paint.document.replace(to.to_owned());
+        if let Err(fault) = self.write_config() {
+            tracing::warn!("{}: {}", fault.place.unwrap_or_default(), fault.what);
+            return;
+        }
+        if let Some(before) = before.filter(|before| !is_same(before, to)) {
+            self.leave_sketch(&before, Leave::Named);
+        }
+    }
+
+    /// At the end of the rig: says where the sketch is kept; one on which nothing was painted goes.
     pub(super) fn end_sketch(&self) {
         let Some((_, path)) = self.sketch() else {
             return;
@@ -106,7 +125,7 @@ impl Supervisor {
                 "the sketch is kept in {}: `maulstick up` offers it, and `maulstick up FILE` opens it",
                 path.display()
             );
-            writeln!(std::io::stderr(), "{words}").ok();
+            say(&format!("{words}\n"));
         }
     }
 }

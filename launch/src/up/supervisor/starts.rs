@@ -94,7 +94,8 @@ impl Supervisor {
                 node.terminate();
                 node.kill();
                 if !node.fail(&mut self.failures) {
-                    if node.spec.role == Role::Recorder {
+                    if node.spec.role.is_spare() {
+                        tracing::error!("node '{}' is not started again", node.spec.name);
                         continue;
                     }
                     return Err(UserError::failure(format!(

@@ -8,11 +8,11 @@ use std::time::{Duration, Instant};
 
 use maulstick_bus::Bus;
 use maulstick_document::DocumentError;
+use maulstick_rig::UserError;
 use maulstick_rig::command_client::CommandClient;
 use maulstick_rig::config::{RigConfig, is_path};
 use maulstick_rig::files::{Kind, check_writable, write_whole};
 use maulstick_rig::node_handle::CONFIG_FILE;
-use maulstick_rig::UserError;
 use maulstick_types::Mixture;
 use maulstick_types::command::{FileCommand, NewCanvas, Outcome, SaveAs};
 use maulstick_types::wire::topics::Topics;
@@ -203,14 +203,12 @@ fn begun(
     section.tooth_seed = canvas.tooth_seed;
     section.ground = canvas.ground.to_string();
     section.tooth = canvas.tooth.to_string();
-    if let Some(path) = &path {
-        if path.exists() {
-            return Err(wrong(path, &DocumentError::Taken));
+    match &path {
+        Some(path) if path.exists() => return Err(wrong(path, &DocumentError::Taken)),
+        Some(path) => {
+            check_writable(path, Kind::Own).map_err(|error| UserError::writing(path, &error))?;
         }
-        check_writable(path, Kind::Own).map_err(|error| UserError::writing(path, &error))?;
-    }
-    if path.is_none() {
-        check_memory(&config.canvas)?;
+        None => check_memory(&config.canvas)?,
     }
     config.paint.document = path;
     let library = library_from(config.paint.paints.as_deref())?;
@@ -269,12 +267,7 @@ impl Supervisor {
             },
             Stage::Saving(to, gone, saved) => match saved.try_recv() {
                 Ok(Ok(_)) => {
-                    if let Some(before) = self.config.paint.document.replace(to.clone()) {
-                        self.leave_sketch(&before, Leave::Named);
-                    }
-                    if let Err(fault) = self.write_config() {
-                        tracing::warn!("{}: {}", fault.place.unwrap_or_default(), fault.what);
-                    }
+                    self.is_saved_as(&to);
                     let name = to.display().to_string();
                     tracing::info!("painting in {name}");
                     Err(Outcome::done(name))

@@ -112,6 +112,11 @@ impl Watched {
         }
     }
 
+    /// Time passed in which nobody looked.
+    fn postpone(&mut self, by: Duration) {
+        (self.since, self.looks) = (self.since + by, None);
+    }
+
     /// Takes in a status: progress, unless nothing was done of what waits.
     fn hear(&mut self, now: Instant, work: &NodeWork) {
         let stands = self.work.as_ref().is_some_and(|before| {
@@ -180,7 +185,7 @@ impl Watchdog {
     /// Gives all nodes so much more time.
     pub(super) fn postpone(&mut self, by: Duration) {
         for node in self.nodes.values_mut() {
-            (node.since, node.looks) = (node.since + by, None);
+            node.postpone(by);
         }
     }
 }
@@ -334,7 +339,7 @@ mod tests {
             watched.is_hanging(now, Patience::with(Role::Paint), Activity::default)
         };
         let resumed = start + Duration::from_secs(60);
-        (watched.since, watched.looks) = (watched.since + Duration::from_secs(60), None);
+        watched.postpone(Duration::from_secs(60));
         assert!(!is_hanging(&mut watched, resumed));
         watched.hear(resumed + Duration::from_millis(400), &work(1, 0));
         assert!(!is_hanging(&mut watched, resumed + Duration::from_secs(1)));

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use maulstick_num::geometry::Rigid;
 use maulstick_types::Origin;
-use maulstick_types::brush::{BrushState, Solve, solve_flags};
+use maulstick_types::brush::{Solve, solve_flags};
 use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::stylus::{StylusPose, StylusSample};
 
@@ -171,9 +171,11 @@ impl BrushModel {
         self.too_fast
     }
 
-    /// Begins anew at the next sample: those between it and the newest one are not known.
-    pub fn begin_anew(&mut self) {
-        self.tracked = None;
+    /// Begins anew at the next sample: those between it and the newest one are not known. The solves of a pen that still
+    /// waited to be set down.
+    #[must_use]
+    pub fn begin_anew(&mut self) -> Vec<Solve> {
+        self.give_up()
     }
 
     /// Follows one sample of the device `origin`: empty while there is no scene, else the solves on the path to it, the
@@ -280,21 +282,6 @@ impl BrushModel {
         tracked.is_pressed = is_pen && !sample.in_air();
         self.tracked = Some(tracked);
         solves
-    }
-
-    /// Forgets where the brush was; what had waited to be set down is.
-    fn give_up(&mut self) -> Vec<Solve> {
-        let Some(mut tracked) = self.tracked.take() else {
-            return Vec::new();
-        };
-        let plane = |desk: &Desk| desk.plane(tracked.surface).copied();
-        match self.desk.as_ref().and_then(plane) {
-            Some(plane) => {
-                let zoom = tracked.zoom;
-                self.set_down(&mut tracked, None, &Plane { zoom, ..plane })
-            }
-            None => Vec::new(),
-        }
     }
 
     /// Begins another stroke with a head that is bent as it was before a pause in contact: one that
@@ -433,23 +420,6 @@ impl BrushModel {
             .solve(room, &self.tuft, brush, &obstacles, settings)
     }
 
-    /// As [`follow`](Self::follow), as a whole message.
-    pub fn state(
-        &mut self,
-        origin: Origin,
-        device_seq: u64,
-        event_ns: u64,
-        sample: &StylusSample,
-    ) -> Option<BrushState> {
-        let solves = self.follow(origin, event_ns, sample);
-        (!solves.is_empty()).then_some(BrushState {
-            device: origin.source,
-            device_epoch: origin.epoch,
-            device_seq,
-            solves,
-        })
-    }
-
     /// A stroke lasts from one solve to the next, however long the pause between samples, while the brush touches or its
     /// pen presses on: also where it touches nothing, beyond an edge.
     fn stay(&mut self, tracked: &TrackedBrush, until_ns: u64) {
@@ -482,9 +452,12 @@ impl BrushModel {
 
 mod force;
 mod height;
+mod messages;
 mod path;
 mod setting_down;
 #[cfg(test)]
 mod stroke_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod waiting_tests;

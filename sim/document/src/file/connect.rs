@@ -32,3 +32,59 @@ pub(crate) fn connect(
     }
     Ok(connection)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::file::database::{Access, Database};
+
+    /// What keeps a file from having anything executed: name, setting, and how it has to be.
+    const SETTINGS: [(&str, DbConfig, bool); 4] = [
+        ("DEFENSIVE", DbConfig::SQLITE_DBCONFIG_DEFENSIVE, true),
+        (
+            "TRUSTED_SCHEMA",
+            DbConfig::SQLITE_DBCONFIG_TRUSTED_SCHEMA,
+            false,
+        ),
+        ("triggers", DbConfig::SQLITE_DBCONFIG_ENABLE_TRIGGER, false),
+        ("views", DbConfig::SQLITE_DBCONFIG_ENABLE_VIEW, false),
+    ];
+
+    /// Names of the settings that SQLite itself says to be otherwise.
+    fn left_open(connection: &Connection) -> Vec<&'static str> {
+        let settings = SETTINGS.into_iter();
+        settings
+            .filter(|(_, config, wanted)| {
+                connection.db_config(*config).expect("read back") != *wanted
+            })
+            .map(|(name, ..)| name)
+            .collect()
+    }
+
+    #[test]
+    fn every_way_to_open_a_painting_executes_nothing_of_it() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("sea.maul");
+        for access in [Access::Paint, Access::Paint, Access::Read] {
+            let (database, _) = Database::open(&path, access, None).expect("opened");
+            let left = left_open(database.connection());
+            assert!(left.is_empty(), "{access:?}: {left:?}");
+            database.close().expect("closed");
+        }
+        let database = Database::open_immutable(&path).expect("opened");
+        let left = left_open(database.connection());
+        assert!(left.is_empty(), "immutable: {left:?}");
+    }
+
+    #[test]
+    fn a_setting_that_is_left_open_is_found() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("sea.maul");
+        for (name, config, wanted) in SETTINGS {
+            let connection = connect(&path, OpenFlags::default(), None).expect("opened");
+            assert!(left_open(&connection).is_empty(), "a fault would pass");
+            connection.set_db_config(config, !wanted).expect("set");
+            assert_eq!(left_open(&connection), [name]);
+        }
+    }
+}

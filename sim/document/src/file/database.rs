@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use maulstick_canvas::planes::Planes;
+pub use maulstick_files::companion;
 use maulstick_files::{FileId, OpenDatabase, is_companion, read_head};
 use maulstick_model::brush::load::BrushLoad;
 use rusqlite::config::DbConfig;
@@ -42,14 +43,6 @@ pub struct Database {
     _registered: Option<OpenDatabase>,
     /// True if it was not closed the last time: its journal may hold rows to recover.
     was_unclosed: bool,
-}
-
-/// Path of a file that SQLite keeps beside a database: `-wal` or `-journal`.
-#[must_use]
-pub fn companion(path: &Path, suffix: &str) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(suffix);
-    name.into()
 }
 
 /// Real path of a file: the target of a link, beside which SQLite puts its journal.

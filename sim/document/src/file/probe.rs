@@ -54,3 +54,37 @@ fn read_through(file: &File) -> std::io::Result<()> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn damaged() -> DocumentError {
+        DocumentError::Damaged("page 7 is missing".to_owned())
+    }
+
+    #[test]
+    fn a_file_whose_bytes_cannot_be_read_is_a_fault_of_the_disk() {
+        let folder = tempfile::tempdir().expect("a folder");
+        // A folder is opened as a file is, and each read of it fails (EISDIR).
+        let probe = Probe::new(folder.path()).expect("opened");
+        let judged = probe.judged(damaged());
+        assert!(matches!(judged, DocumentError::Disk(_)), "{judged:?}");
+        // Only damage is judged.
+        let judged = probe.judged(DocumentError::Full);
+        assert!(matches!(judged, DocumentError::Full), "{judged:?}");
+    }
+
+    #[test]
+    fn a_journal_whose_bytes_cannot_be_read_is_a_fault_of_the_disk() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("sea.maul");
+        std::fs::write(&path, "paint").expect("written");
+        let probe = Probe::new(&path).expect("opened");
+        let judged = probe.judged(damaged());
+        assert!(matches!(judged, DocumentError::Damaged(_)), "{judged:?}");
+        std::fs::create_dir(companion(&path, "-wal")).expect("made");
+        let judged = probe.judged(damaged());
+        assert!(matches!(judged, DocumentError::Disk(_)), "{judged:?}");
+    }
+}

@@ -41,10 +41,14 @@ impl DocumentThread {
     pub(super) fn note_written(&mut self, part: Part) {
         let failed = self.retry(part).failed.take().is_some();
         let all = [&self.checkpoint, &self.journal, &self.file, &self.reading];
-        if failed && all.iter().all(|part| part.failed.is_none()) {
+        if all.iter().any(|part| part.failed.is_some()) {
+            return;
+        }
+        let mut queues = self.shared.lock();
+        let is_sound = queues.broken.is_none() && !queues.wants_all;
+        self.shared.fails.store(!is_sound, SeqCst);
+        if failed {
             tracing::info!("the painting is read and written again");
-            self.shared.fails.store(false, SeqCst);
-            let mut queues = self.shared.lock();
             if queues.broken.is_none() {
                 queues.fault = None;
             }

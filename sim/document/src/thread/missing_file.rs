@@ -1,6 +1,7 @@
 //! Response to a file that was removed, replaced or linked while its painting is open.
 
 use std::path::Path;
+use std::sync::atomic::Ordering::SeqCst;
 use std::time::Instant;
 
 use maulstick_types::command::advice::Advice;
@@ -15,23 +16,23 @@ use crate::file::watch::{FileState, FileWatch};
 /// Advice about a hard link to the file.
 const LINK_ADVICE: &str = "remove that name: opened by it after a crash the painting would lack its journal, and be damaged";
 
-/// What was done to a file that has lost a part of what was in it.
-const CUT_SHORT: &str = "cut short";
-
 impl DocumentThread {
     /// Checks that the files are at their paths, and continues in a new file if they are not.
     pub(super) fn check_files(&mut self, hurry: bool) {
-        let (lost, harm) = match self.watch.check() {
-            FileState::Gone(gone) => (gone, "removed or replaced"),
-            FileState::Cut(cut) => (cut, CUT_SHORT),
-            state => return self.note_links(state == FileState::Linked),
+        let state = self.watch.check();
+        let (lost, harm) = match &state {
+            FileState::InPlace | FileState::Linked => {
+                return self.note_links(state == FileState::Linked);
+            }
+            FileState::Gone(lost) => (lost, "removed or replaced"),
+            FileState::Cut(lost) => (lost, "cut short"),
         };
         if !self.file.is_due(hurry) {
             return;
         }
         let to = relocate::free_name_beside(&self.path);
-        let continued = match harm {
-            CUT_SHORT => self.continue_whole_in(&to),
+        let continued = match &state {
+            FileState::Cut(_) => self.continue_whole_in(&to),
             _ => {
                 // The file may have another name now, or only the journal be gone.
                 self.database.merge_journal();
@@ -57,6 +58,7 @@ impl DocumentThread {
                     lost.display(),
                     to.display()
                 ));
+                self.shared.fails.store(true, SeqCst);
                 let mut queues = self.shared.lock();
                 if self.file.failed.is_none() {
                     tracing::error!("{error}; {}", error.advice());
@@ -86,12 +88,14 @@ impl DocumentThread {
 
     /// Continues in a file that begins as the previous one was when its journal was last merged, or as a new one, and wants
     /// all of the painting: what was in the journal since is in memory alone.
-    fn continue_whole_in(&mut self, path: &Path) -> Result<(), DocumentError> {
+    pub(super) fn continue_whole_in(&mut self, path: &Path) -> Result<(), DocumentError> {
         if !relocate::copied_without_journal(&self.path, path)? {
             tracing::warn!("{} is not whole any more", self.path.display());
         }
         self.continue_in(path)?;
         self.shared.lock().wants_all = true;
+        // Pages that are stored are not in this file: they must not leave memory before they are.
+        self.shared.fails.store(true, SeqCst);
         Ok(())
     }
 

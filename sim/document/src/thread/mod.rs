@@ -6,6 +6,8 @@ mod missing_file;
 pub(crate) mod queues;
 mod reading;
 mod relocating;
+#[cfg(test)]
+mod tests;
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering::SeqCst;
@@ -60,7 +62,7 @@ pub(crate) struct DocumentThread {
     reading: Retry,
     /// Pages of the painting as it is that were not read yet: they are, while there is nothing else to do, so that a disk that
     /// fails later is painted on.
-    unread: Vec<Page<Planes>>,
+    to_read_ahead: Vec<Page<Planes>>,
     merged: Merged,
 }
 
@@ -109,14 +111,17 @@ impl DocumentThread {
             journal: Retry::default(),
             file: Retry::default(),
             reading: Retry::default(),
-            unread: Vec::new(),
+            to_read_ahead: Vec::new(),
             merged: Merged::Not,
         }
     }
 
     /// Reads these pages while there is nothing else to do.
-    pub(crate) fn reading(self, unread: Vec<Page<Planes>>) -> Self {
-        Self { unread, ..self }
+    pub(crate) fn reading_ahead(self, to_read_ahead: Vec<Page<Planes>>) -> Self {
+        Self {
+            to_read_ahead,
+            ..self
+        }
     }
 
     /// Thread for a painting of which nothing is in the file yet.
@@ -151,10 +156,11 @@ impl DocumentThread {
             }
             self.watch.note_sizes();
         }
-        let (fault, left, broken) = {
+        let (fault, left, broken, wants_all) = {
             let queues = self.shared.lock();
             let left = queues.checkpoint.is_some() || !queues.records.is_empty();
-            (queues.fault_text(), left, queues.broken.clone())
+            let (broken, wants_all) = (queues.broken.clone(), queues.wants_all);
+            (queues.fault_text(), left || wants_all, broken, wants_all)
         };
         if self.file.failed.is_some() {
             self.database.abandon();
@@ -171,6 +177,8 @@ impl DocumentThread {
         self.database.close()?;
         match left && !fault.is_empty() {
             true => Err(DocumentError::Unwritten(fault)),
+            // What the file lacks was in memory alone.
+            false if wants_all => Err(DocumentError::Incomplete(self.path)),
             false => Ok(()),
         }
     }
@@ -179,16 +187,16 @@ impl DocumentThread {
     fn next(&mut self) -> Work {
         let mut queues = self.shared.lock();
         loop {
-            let closes = queues.life == Life::Closing;
-            if !queues.unread.is_empty() && (closes || self.reading.has_waited(REREAD_DELAY)) {
-                let mut unread = std::mem::take(&mut queues.unread);
-                queues.retried.append(&mut unread);
+            let closing = queues.life == Life::Closing;
+            let may_retry = closing || self.reading.has_waited(REREAD_DELAY);
+            if !queues.failed_fetches.is_empty() && may_retry {
+                let mut failed = std::mem::take(&mut queues.failed_fetches);
+                queues.retried.append(&mut failed);
             }
             if !(queues.fetches.is_empty() && queues.retried.is_empty()) {
                 return Work::Fetch;
             }
             let may_write = self.writes && queues.broken.is_none();
-            let closing = queues.life == Life::Closing;
             let hurry = closing || !queues.flushes.is_empty() || !queues.relocations.is_empty();
             let due = hurry || self.last_commit.elapsed() >= COMMIT_PERIOD;
             // A file that lacks a part of the painting gets all of it, and before that nothing else.
@@ -209,9 +217,10 @@ impl DocumentThread {
                 queues.writing = true;
                 return Work::Checkpoint(Box::new(checkpoint));
             }
-            // New records come all the time while somebody paints: one commit is enough.
+            // New records come all the time while somebody paints: one commit is enough. A file that lacks a part of the
+            // painting takes none, and is not relocated: that is said at once.
             if may_write
-                && (queues.records.is_empty() || self.committed_for_relocation)
+                && (queues.records.is_empty() || self.committed_for_relocation || !is_whole)
                 && let Some(request) = queues.relocations.pop()
             {
                 return Work::Relocate(request);
@@ -240,7 +249,7 @@ impl DocumentThread {
             }
             if self.reading.failed.is_none()
                 && queues.broken.is_none()
-                && let Some(page) = self.unread.pop()
+                && let Some(page) = self.to_read_ahead.pop()
             {
                 return Work::Read(page);
             }
@@ -248,7 +257,7 @@ impl DocumentThread {
                 may_write && is_whole && self.journal.is_due(false) && !queues.records.is_empty();
             let wait = match waits {
                 true => COMMIT_PERIOD.saturating_sub(self.last_commit.elapsed()),
-                false if !queues.unread.is_empty() => REREAD_DELAY,
+                false if !queues.failed_fetches.is_empty() => REREAD_DELAY,
                 false => RETRY_DELAY,
             };
             let waited = self

@@ -47,8 +47,8 @@ pub(crate) enum Life {
 #[derive(Default)]
 pub(crate) struct Queues {
     pub(crate) fetches: Vec<Fetch>,
-    /// Pages that could not be read for a fault of the disk, and since when: they are tried again.
-    pub(crate) unread: Vec<(Fetch, Instant)>,
+    /// Pages that could not be read for a fault that may pass, and since when: they are tried again.
+    pub(crate) failed_fetches: Vec<(Fetch, Instant)>,
     /// Those of them whose turn has come.
     pub(crate) retried: Vec<(Fetch, Instant)>,
     pub(crate) records: Vec<Record>,
@@ -96,7 +96,8 @@ pub(crate) struct Shared {
     pub(crate) queues: Mutex<Queues>,
     pub(crate) wake: Condvar,
     pub(crate) committed: AtomicU64,
-    /// True while the disk fails: no page leaves memory.
+    /// True while what was stored may not be read back, as where the disk fails or the file lacks parts of the painting: no page
+    /// leaves memory.
     pub(crate) fails: AtomicBool,
     /// Bytes of the record.
     pub(crate) record_bytes: AtomicU64,
@@ -129,6 +130,7 @@ pub(crate) struct EndGuard(pub(crate) Arc<Shared>);
 
 impl Drop for EndGuard {
     fn drop(&mut self) {
+        self.0.fails.store(true, SeqCst);
         let mut queues = self.0.lock();
         queues.life = Life::Ended;
         if std::thread::panicking() {
@@ -137,7 +139,7 @@ impl Drop for EndGuard {
             queues.fault = Some((PANICKED.to_owned(), Advice::say(help)));
         }
         queues.fetches.clear();
-        queues.unread.clear();
+        queues.failed_fetches.clear();
         queues.retried.clear();
         queues.flushes.clear();
         queues.relocations.clear();

@@ -27,8 +27,12 @@ fn thread_cpu() -> Duration {
 impl DocumentThread {
     /// Reads the pages that readers wait for, and tells a fault of the disk.
     pub(super) fn read_pages(&mut self) {
-        match serve_fetches(&self.shared, &self.database) {
-            Ok(()) => self.note_written(Part::Reading),
+        let served = serve_fetches(&self.shared, &self.database);
+        // Those that failed before may still wait while others are read.
+        let is_done = self.shared.lock().failed_fetches.is_empty();
+        match served {
+            Ok(()) if is_done => self.note_written(Part::Reading),
+            Ok(()) => {}
             Err(error) => self.note_failure(Part::Reading, &error),
         }
     }
@@ -39,7 +43,7 @@ impl DocumentThread {
     pub(super) fn read_ahead(&mut self, page: &Page<Planes>) {
         let counts = page.pager().counts();
         if counts.resident >= counts.bound / 2 {
-            self.unread.clear();
+            self.to_read_ahead.clear();
             return;
         }
         if page.peek().is_none()
@@ -56,6 +60,7 @@ fn broken(shared: &Shared, error: &DocumentError) -> String {
         DocumentError::Damaged(what) => what.clone(),
         error => error.to_string(),
     };
+    shared.fails.store(true, SeqCst);
     let mut queues = shared.lock();
     queues.fault = Some((error.to_string(), error.advice()));
     queues.broken = Some(what.clone());
@@ -72,7 +77,7 @@ fn answered<T>(
 ) -> Option<()> {
     let waits = Instant::now() < until && shared.lock().life == Life::Open;
     let read = match read {
-        Err(error @ DocumentError::Disk(_)) if waits => {
+        Err(error) if waits && error.may_pass() => {
             *failure = Some(error);
             return None;
         }
@@ -81,6 +86,16 @@ fn answered<T>(
     // Who asked may have given up.
     answer.send(read).ok();
     Some(())
+}
+
+/// The error of the disk, where that is why something is said to be damaged. Once the painting is known to be broken, nothing
+/// depends on it any more, and the file, which may be long, is not read through again.
+fn judged(shared: &Shared, database: &Database, error: DocumentError) -> DocumentError {
+    let is_broken = shared.lock().broken.is_some();
+    match is_broken {
+        true => error,
+        false => database.judged(error),
+    }
 }
 
 /// Reads the pages that readers wait for. One that the disk does not give is kept to be tried again.
@@ -107,12 +122,12 @@ fn serve_fetches(shared: &Shared, database: &Database) -> Result<(), DocumentErr
         let done = match &fetch {
             Fetch::Planes(id, answer) => {
                 let read = database.planes(*id);
-                let read = read.map_err(|error| database.judged(error));
+                let read = read.map_err(|error| judged(shared, database, error));
                 answered(shared, read, until, answer, failed)
             }
             Fetch::Load(id, answer) => {
                 let read = database.load(*id);
-                let read = read.map_err(|error| database.judged(error));
+                let read = read.map_err(|error| judged(shared, database, error));
                 answered(shared, read, until, answer, failed)
             }
             Fetch::Records(serial, answer) => {
@@ -125,7 +140,7 @@ fn serve_fetches(shared: &Shared, database: &Database) -> Result<(), DocumentErr
             }
         };
         if done.is_none() {
-            shared.lock().unread.push((fetch, since));
+            shared.lock().failed_fetches.push((fetch, since));
         }
     }
     let spent = thread_cpu().saturating_sub(begun);

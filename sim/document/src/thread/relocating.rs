@@ -15,6 +15,11 @@ impl DocumentThread {
     /// If the painting cannot continue in either file.
     pub(super) fn relocate(mut self, request: RelocateRequest) -> Result<Self, DocumentError> {
         self.committed_for_relocation = false;
+        let state = self.watch.check();
+        if let Some(refusal) = self.refusal_of_a_part(&state, &request) {
+            request.answer.send(Err(refusal)).ok();
+            return Ok(self);
+        }
         if request.how == Relocate::Leave {
             let copied = relocate::rescue(&self.database, &request.to, request.replace);
             request.answer.send(copied).ok();
@@ -25,16 +30,21 @@ impl DocumentThread {
             true => Err(DocumentError::Missing),
             false => Database::open(path, Access::Paint, None).map(|(database, _)| database),
         };
-        if let FileState::Gone(_) = self.watch.check() {
+        if let FileState::Gone(_) = state {
             let rescued = relocate::rescue(&self.database, &request.to, request.replace)
                 .and_then(|()| self.continue_in(&request.to));
             request.answer.send(rescued).ok();
             return Ok(self);
         }
         // What fails now would fail when it is closed, and then it could not be opened again.
-        if let Err(error @ DocumentError::Disk(_)) = self.database.try_merge_journal() {
-            request.answer.send(Err(error)).ok();
-            return Ok(self);
+        match self.database.try_merge_journal() {
+            // It is closed with its journal then, and refused.
+            Ok(()) | Err(DocumentError::Full) => {}
+            Err(error) => {
+                let error = self.database.judged(error);
+                request.answer.send(Err(error)).ok();
+                return Ok(self);
+            }
         }
         self.watch.note_merged();
         let relocated = self.database.close().and_then(|()| {
@@ -65,5 +75,24 @@ impl DocumentThread {
         }
         request.answer.send(outcome).ok();
         Ok(self)
+    }
+
+    /// Why a painting is not relocated whose file lacks a part of it; `None` if the file has all of it. One that was cut short,
+    /// and got no other file beside it, goes on at the new path all the same, as soon as it is handed over as a whole.
+    fn refusal_of_a_part(
+        &mut self,
+        state: &FileState,
+        request: &RelocateRequest,
+    ) -> Option<DocumentError> {
+        let is_cut = matches!(state, FileState::Cut(_));
+        if is_cut && request.how != Relocate::Leave {
+            if let Err(error) = self.continue_whole_in(&request.to) {
+                return Some(error);
+            }
+            self.shared.lock().moved_to = Some(request.to.clone());
+            return Some(DocumentError::Incomplete(request.to.clone()));
+        }
+        let lacks = is_cut || self.shared.lock().wants_all;
+        lacks.then(|| DocumentError::Incomplete(self.path.clone()))
     }
 }

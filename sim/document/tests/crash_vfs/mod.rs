@@ -75,6 +75,8 @@ pub(crate) enum Refused {
     Writes,
     /// To be opened.
     Opening,
+    /// What is read, of the main file and its log.
+    Reads,
     /// All that is read, written, cut or synced, of the main file and its log: a disk that fails.
     Everything,
 }
@@ -122,7 +124,8 @@ impl Log {
 
     fn refuses(&self, file: FileKind, refused: Refused) -> bool {
         let own = self.recorded().refused;
-        own == refused && (file == FileKind::Main || own == Refused::Everything)
+        let is_of_all = matches!(own, Refused::Reads | Refused::Everything);
+        own == refused && (file == FileKind::Main || is_of_all)
     }
 
     /// The operations so far.

@@ -271,14 +271,23 @@ unsafe extern "C" fn close(file: *mut ffi::sqlite3_file) -> c_int {
     code
 }
 
+/// True where this is refused of a file.
+///
+/// # Safety
+/// `file` was opened by [`open`].
+unsafe fn refuses(file: *mut ffi::sqlite3_file, refused: Refused) -> bool {
+    // SAFETY: `watched` is a box that lives until `close`.
+    let watched = unsafe { (*file.cast::<CrashFile>()).watched.as_ref() };
+    watched.is_some_and(|watched| watched.log.refuses(watched.file, refused))
+}
+
 /// True where the disk fails.
 ///
 /// # Safety
 /// `file` was opened by [`open`].
 unsafe fn fails(file: *mut ffi::sqlite3_file) -> bool {
-    // SAFETY: `watched` is a box that lives until `close`.
-    let watched = unsafe { (*file.cast::<CrashFile>()).watched.as_ref() };
-    watched.is_some_and(|watched| watched.log.refuses(watched.file, Refused::Everything))
+    // SAFETY: the caller's.
+    unsafe { refuses(file, Refused::Everything) }
 }
 
 unsafe extern "C" fn read(
@@ -288,9 +297,10 @@ unsafe extern "C" fn read(
     offset: ffi::sqlite3_int64,
 ) -> c_int {
     // SAFETY: the file is open.
-    if unsafe { fails(file) } {
-        // As the unix VFS says it; SQLite then calls the database malformed.
-        return ffi::SQLITE_IOERR_CORRUPTFS;
+    if unsafe { fails(file) || refuses(file, Refused::Reads) } {
+        // As the unix VFS says it of a disk that does not answer (`ETIMEDOUT`). Of `EIO` it says `SQLITE_IOERR_CORRUPTFS`, from
+        // which SQLite concludes that the database is malformed; that takes a look at the file itself, not at this one.
+        return ffi::SQLITE_IOERR_READ;
     }
     base!(file, xRead, buffer, bytes, offset)
 }

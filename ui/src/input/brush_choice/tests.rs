@@ -1,7 +1,7 @@
 //! Requests of rack, keys and presets.
 
 use maulstick_rig::UserError;
-use maulstick_types::edits::Clean;
+use maulstick_types::edits::{Clean, Undo};
 use maulstick_types::values::BrushName;
 
 use super::*;
@@ -169,6 +169,29 @@ fn a_brush_that_refuses_keeps_what_it_has_and_one_that_does_takes_up_its_paint()
         command: load(),
     };
     assert_eq!(bench.requests.take_all(), [then]);
+}
+
+#[test]
+fn a_brush_on_a_surface_is_not_changed_which_is_told_once() {
+    let mut bench = Bench::new();
+    bench.work().widen(12.0);
+    let define = bench.requests.take().remove(0);
+    let clean = Request::of(Clean {
+        brush: BrushName::main(),
+    });
+    assert!(!bench.work().refuses(&clean), "it is lifted");
+    assert!(bench.told().is_empty());
+    bench.rig.contact = BrushContact::Held;
+    for request in [&define, &clean] {
+        assert!(bench.work().refuses(request), "{request:?}");
+    }
+    assert_eq!(width(&mut bench), 10.0, "it keeps what it has");
+    bench.work().step_width(true);
+    assert!(bench.commands().is_empty());
+    let words = "The brush is painting: lift it, and ask again.";
+    assert_eq!(bench.told(), [words]);
+    let undo = Request::of(Undo { brush: None });
+    assert!(!bench.work().refuses(&undo), "it changes no brush");
 }
 
 #[test]

@@ -280,7 +280,7 @@ fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
     };
     let then = harness.state().rig.brushes[0].then.clone();
     assert!(
-        matches!(then, Some(Command::Edit(Edit::Load(_)))),
+        matches!(then, Some((Command::Edit(Edit::Load(_)), _))),
         "once it is a round one"
     );
     assert_eq!(harness.state().preferences.loading.paint, "Bone Black");

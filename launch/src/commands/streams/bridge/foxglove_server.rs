@@ -17,7 +17,7 @@ use maulstick_streams::{RateLimit, json_channel};
 use maulstick_types::HEADER_BYTES;
 
 use super::admission::{Admission, Refusal};
-use super::viewer::{Viewer, Wish, greet};
+use super::viewer::{Viewer, Wish, greet, turn_away};
 use crate::commands::streams::listener::{Listener, ReceivedMessage};
 
 /// Most connections at a time.
@@ -77,6 +77,7 @@ impl Lobby {
             people.connections += usize::from(!is_full);
             drop(people);
             if is_full {
+                turn_away(stream, &Refusal::Full);
                 self.refusals.send(Refusal::Full).ok();
                 continue;
             }

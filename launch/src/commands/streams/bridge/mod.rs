@@ -17,6 +17,7 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use maulstick_rig::UserError;
+use maulstick_rig::log::print_beside;
 
 use self::admission::{Admission, FOXGLOVE, Refusals, origin};
 use self::foxglove_server::FoxgloveServer;
@@ -61,6 +62,7 @@ const LOOK: Duration = Duration::from_secs(1);
 /// A [`UserError`] where no rig runs, or the port is taken.
 pub fn run(options: &BridgeOptions) -> Result<i32, UserError> {
     let BridgeOptions { address, port, .. } = *options;
+    print_beside();
     let mut listener = Listener::open(&options.target, &options.topic)?;
     let name = format!("maulstick {}", options.target.rig());
     let token = match options.no_token {

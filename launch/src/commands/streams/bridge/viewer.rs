@@ -1,18 +1,19 @@
 //! One viewer of the bridge: its connection, on a thread of its own, and what waits to be sent to it.
 
 use std::collections::{BTreeMap, VecDeque};
+use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use foxglove::ws_protocol::client::ClientMessage;
 use foxglove::ws_protocol::server::MessageData;
 use foxglove::ws_protocol::{BinaryMessage as _, JsonMessage};
-use tungstenite::handshake::server::{ErrorResponse, Request, Response};
+use tungstenite::handshake::server::{ErrorResponse, Request, Response, write_response};
 use tungstenite::http::HeaderValue;
 use tungstenite::http::header::SEC_WEBSOCKET_PROTOCOL;
-use tungstenite::protocol::WebSocketConfig;
+use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Error, Message, WebSocket, accept_hdr_with_config};
 
 use super::admission::{Admission, PROTOCOL, Refusal};
@@ -21,7 +22,7 @@ use super::admission::{Admission, PROTOCOL, Refusal};
 const BACKLOG: usize = 1024;
 /// Bytes of the largest message of a viewer.
 const LARGEST: usize = 1 << 20;
-/// Longest wait for the next bytes of a viewer that connects.
+/// Longest time until a viewer that connects is admitted: until then another user may have its place.
 const GREETING: Duration = Duration::from_secs(2);
 /// Longest wait for a viewer's message while others may have to be sent.
 const TURN: Duration = Duration::from_millis(10);
@@ -140,6 +141,51 @@ fn is_pause(error: &std::io::Error) -> bool {
     matches!(error.kind(), WouldBlock | TimedOut | Interrupted)
 }
 
+/// Connection of one that is not yet admitted: all that is read and written ends by one time.
+struct Greeting<'a> {
+    stream: &'a TcpStream,
+    until: Instant,
+}
+
+impl Greeting<'_> {
+    /// The time that is left; none is an error, for a socket takes 0 for no limit.
+    fn left(&self) -> std::io::Result<Option<Duration>> {
+        match self.until.saturating_duration_since(Instant::now()) {
+            Duration::ZERO => Err(ErrorKind::TimedOut.into()),
+            left => Ok(Some(left)),
+        }
+    }
+}
+
+impl Read for Greeting<'_> {
+    fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
+        self.stream.set_read_timeout(self.left()?)?;
+        self.stream.read(bytes)
+    }
+}
+
+impl Write for Greeting<'_> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.stream.set_write_timeout(self.left()?)?;
+        self.stream.write(bytes)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.stream.flush()
+    }
+}
+
+/// Answers one that connects in vain, whatever it asks; nobody waits until it takes the answer.
+pub(super) fn turn_away(mut stream: TcpStream, why: &Refusal) {
+    let response = why.response();
+    let mut answer = Vec::new();
+    if write_response(&mut answer, &response).is_ok() {
+        answer.extend_from_slice(response.body().as_deref().unwrap_or_default().as_bytes());
+        let sent = stream.set_nonblocking(true);
+        sent.and_then(|()| stream.write_all(&answer)).ok();
+    }
+}
+
 /// Greets one that connects: a viewer's connection, where it is admitted.
 ///
 /// # Errors
@@ -148,13 +194,6 @@ pub(super) fn greet(
     stream: TcpStream,
     admission: &Admission,
 ) -> Result<WebSocket<TcpStream>, Option<Refusal>> {
-    let set = |stream: &TcpStream, patience: Duration| {
-        stream
-            .set_read_timeout(Some(patience))
-            .and_then(|()| stream.set_write_timeout(Some(STUCK)))
-            .map_err(|_| None::<Refusal>)
-    };
-    set(&stream, GREETING)?;
     let mut refusal = None;
     #[allow(
         clippy::result_large_err,
@@ -179,8 +218,75 @@ pub(super) fn greet(
     let config = WebSocketConfig::default()
         .max_message_size(Some(LARGEST))
         .max_frame_size(Some(LARGEST));
-    let accepted = accept_hdr_with_config(stream, judge, Some(config)).ok();
-    let socket = accepted.ok_or(refusal)?;
-    set(socket.get_ref(), TURN)?;
-    Ok(socket)
+    let greeting = Greeting {
+        stream: &stream,
+        until: Instant::now() + GREETING,
+    };
+    let is_admitted = accept_hdr_with_config(greeting, judge, Some(config)).is_ok();
+    if !is_admitted {
+        return Err(refusal);
+    }
+    stream
+        .set_read_timeout(Some(TURN))
+        .and_then(|()| stream.set_write_timeout(Some(STUCK)))
+        .map_err(|_| None)?;
+    // What came with the request would have been refused, so nothing of it is lost.
+    Ok(WebSocket::from_raw_socket(
+        stream,
+        Role::Server,
+        Some(config),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::TcpListener;
+
+    use super::*;
+
+    /// Time of a greeting.
+    const SHORT: Duration = Duration::from_millis(50);
+
+    /// Both ends of a connection.
+    fn connected() -> [TcpStream; 2] {
+        let listener = TcpListener::bind(("127.0.0.1", 0)).expect("a port");
+        let at = listener.local_addr().expect("an address");
+        let client = TcpStream::connect(at).expect("connected");
+        [client, listener.accept().expect("accepted").0]
+    }
+
+    #[test]
+    fn one_who_trickles_bytes_is_not_greeted_for_longer_than_one_who_is_silent() {
+        let [mut client, stream] = connected();
+        let mut greeting = Greeting {
+            stream: &stream,
+            until: Instant::now() + SHORT,
+        };
+        let ended = loop {
+            assert!(Instant::now() < greeting.until + Duration::from_secs(60));
+            client.write_all(b"G").expect("sent");
+            if let Err(error) = greeting.read(&mut [0]) {
+                break error;
+            }
+        };
+        assert!(is_pause(&ended) && Instant::now() >= greeting.until);
+        assert!(greeting.write(b"late").is_err());
+        let [_silent, stream] = connected();
+        let mut greeting = Greeting {
+            stream: &stream,
+            until: Instant::now() + SHORT,
+        };
+        assert!(is_pause(&greeting.read(&mut [0]).expect_err("silence")));
+    }
+
+    #[test]
+    fn one_for_whom_there_is_no_place_has_an_answer() {
+        let [mut client, stream] = connected();
+        turn_away(stream, &Refusal::Full);
+        let mut answer = String::new();
+        client.read_to_string(&mut answer).expect("an answer");
+        let (head, why) = answer.split_once("\r\n\r\n").expect("a body");
+        assert!(head.starts_with("HTTP/1.1 503 "), "{head}");
+        assert_eq!(why, Refusal::Full.to_string());
+    }
 }

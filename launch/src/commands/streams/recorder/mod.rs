@@ -114,19 +114,19 @@ pub(crate) fn record(
     voice.say(&RecorderNews::Begun { file: part.path() })?;
     ring.trim()?;
     let mut flush_at = begun + FLUSH;
-    let mut copy = paints.then(|| PaintingCopy::new(false, BTreeMap::new()));
+    let mut copy = paints.then(|| PaintingCopy::new(None, BTreeMap::new()));
     let mut watch = JournalWatch::default();
     // True where the rest of the file is no part of its session.
     let mut is_broken = false;
     while !listener.is_over() && end.is_none_or(|end| Instant::now() < end) {
         let until = end.map_or(flush_at, |end| end.min(flush_at));
         let received = listener.next(until);
-        match (received.as_ref().and_then(|own| watch.note(own)), &copy) {
+        match received.as_ref().and_then(|own| watch.note(own)) {
             // What is missing is in the painting that the file will begin with.
-            (Some(Break::Gap), Some(own)) => {
-                copy = Some(PaintingCopy::new(own.is_told(), watch.unpainted()));
+            Some(Break::Gap) if copy.is_some() => {
+                copy = Some(PaintingCopy::new(copy.take(), watch.unpainted()));
             }
-            (found, _) => is_broken |= paints && found.is_some(),
+            found => is_broken |= paints && found.is_some(),
         }
         let is_due = Instant::now() >= flush_at;
         let is_full = is_due
@@ -156,8 +156,7 @@ pub(crate) fn record(
                 again.message.arrived_ns = now_ns;
                 part.write(&again)?;
             }
-            let is_told = copy.as_ref().is_some_and(PaintingCopy::is_told);
-            copy = paints.then(|| PaintingCopy::new(is_told, watch.unpainted()));
+            copy = paints.then(|| PaintingCopy::new(copy.take(), watch.unpainted()));
             is_broken = false;
         }
         if let Some(received) = received {

@@ -32,13 +32,18 @@ const IN_MEMORY: &str = "a painting in memory only cannot be copied";
 /// Interval at which a copy that is waited for is looked at.
 const LOOK: Duration = Duration::from_millis(20);
 
+/// Thread that makes a copy: the painting's file.
+type Copying = JoinHandle<Result<Vec<u8>, UserError>>;
+
 /// A copy of the painting, made by a thread of its own while the recording goes on.
 #[derive(Debug)]
 pub(super) struct PaintingCopy {
     /// When the paint node is asked at the latest, unless states are known to be on their way.
     at: Instant,
     on_the_way: OnTheWay,
-    copying: Option<JoinHandle<Result<Vec<u8>, UserError>>>,
+    copying: Option<Copying>,
+    /// A copy that is of no use any more. The paint node makes one at a time, so the next waits for its end.
+    former: Option<Copying>,
     /// True once it was refused.
     is_refused: bool,
     /// True once that was said.
@@ -46,13 +51,18 @@ pub(super) struct PaintingCopy {
 }
 
 impl PaintingCopy {
-    /// A copy for a file that begins now, with the brushes of whose states some are not painted; `is_told` where it was said of
-    /// the file before that it lacks the painting.
-    pub(super) fn new(is_told: bool, unpainted: BTreeMap<Brush, u64>) -> Self {
+    /// A copy for a file that begins now, in the place of the copy `before`, with the brushes of whose states some are not
+    /// painted.
+    pub(super) fn new(before: Option<Self>, unpainted: BTreeMap<Brush, u64>) -> Self {
+        let (former, is_told) = match before {
+            Some(before) => (before.copying.or(before.former), before.is_told),
+            None => (None, false),
+        };
         Self {
             at: Instant::now() + SETTLES,
             on_the_way: OnTheWay::after(unpainted),
             copying: None,
+            former,
             is_refused: false,
             is_told,
         }
@@ -90,8 +100,14 @@ impl PaintingCopy {
         }
     }
 
-    /// True if the painting has all that was sent before the file.
+    /// True if the painting has all that was sent before the file, and no other copy is being made.
     fn is_due(&self) -> bool {
+        let is_first = self.former.as_ref().is_none_or(JoinHandle::is_finished);
+        is_first && self.is_painted()
+    }
+
+    /// True if the painting has all that was sent before the file.
+    fn is_painted(&self) -> bool {
         match self.on_the_way.painted() {
             Painted::No => Instant::now() >= self.at + LONGEST_LAG,
             Painted::Yes if !self.is_refused => true,
@@ -122,11 +138,6 @@ impl PaintingCopy {
         };
         self.refused(&fault, voice)?;
         Ok(None)
-    }
-
-    /// True once it was said that it is refused.
-    pub(super) fn is_told(&self) -> bool {
-        self.is_told
     }
 
     /// True while it is being made.
@@ -163,4 +174,35 @@ fn copy(target: &Target) -> Result<Vec<u8>, UserError> {
     document.close().map_err(|error| wrong(&copy, &error))?;
     record::discard(&copy).map_err(|error| wrong(&copy, &error))?;
     std::fs::read(&copy).map_err(|error| UserError::reading(&copy, &error))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::channel;
+
+    use super::*;
+
+    #[test]
+    fn a_copy_waits_for_the_end_of_one_that_is_of_no_use_any_more() {
+        let (end, ended) = channel::<()>();
+        let mut copy = PaintingCopy::new(None, BTreeMap::new());
+        copy.is_told = true;
+        copy.copying = Some(std::thread::spawn(move || {
+            ended.recv().ok();
+            Ok(Vec::new())
+        }));
+        // A second gap may come before the first copy has ended.
+        for _ in 0..2 {
+            copy = PaintingCopy::new(Some(copy), BTreeMap::new());
+            copy.at = Instant::now();
+            assert!(copy.is_painted() && !copy.is_due() && !copy.is_made());
+            assert!(copy.is_told);
+        }
+        drop(end);
+        let runs = |former: &Copying| !former.is_finished();
+        while copy.former.as_ref().is_some_and(runs) {
+            std::thread::yield_now();
+        }
+        assert!(copy.is_due());
+    }
 }

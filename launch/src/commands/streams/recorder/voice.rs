@@ -142,6 +142,7 @@ impl RecorderNews<'_> {
                 "bytes": summary.bytes,
                 "lost": summary.lost,
                 "dropped": summary.dropped,
+                "without_painting": summary.lacks_painting,
             }),
         }
     }

@@ -42,9 +42,21 @@ impl BrushModel {
         passes.then_some(tracked)
     }
 
-    /// Solves a touching brush at each step of its path to a sample, and gives a preview of it there. The path is finite and
-    /// as slow as [`SpeedLimit`](crate::speed_limit::SpeedLimit) says.
+    /// Solves a touching brush at each step of its path to a sample, and gives a preview of it there.
     pub(super) fn go(
+        &mut self,
+        tracked: &mut TrackedBrush,
+        here: Sampled,
+        plane: &Plane,
+    ) -> Vec<Solve> {
+        let mut solves = self.walk_to(tracked, here, plane);
+        solves.push(self.preview(tracked, here, plane));
+        solves
+    }
+
+    /// Solves a touching brush at each step of its path to a sample. The path is finite and as slow as
+    /// [`SpeedLimit`](crate::speed_limit::SpeedLimit) says.
+    pub(super) fn walk_to(
         &mut self,
         tracked: &mut TrackedBrush,
         here: Sampled,
@@ -74,13 +86,22 @@ impl BrushModel {
             (gone_m, at) = (gone_m + part_m, s);
         }
         tracked.left_over_m = whole_m - (gone_m - part_m);
+        solves
+    }
+
+    /// A touching brush as it is at a sample, beyond its last step. It stays where that was.
+    pub(super) fn preview(
+        &mut self,
+        tracked: &mut TrackedBrush,
+        here: Sampled,
+        plane: &Plane,
+    ) -> Solve {
         let mut seen = tracked.clone();
         self.stay(&seen, here.event_ns);
         let mut preview = self.solve(&mut seen, here, plane);
         tracked.force_n = seen.head.force_n();
         preview.flags |= solve_flags::PREVIEW;
-        solves.push(preview);
-        solves
+        preview
     }
 
     /// Solves the end of a piece of the path, and first its middle where a joint in contact would move more than a

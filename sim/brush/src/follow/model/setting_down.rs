@@ -10,7 +10,7 @@ use maulstick_types::brush::{Solve, solve_flags};
 use maulstick_types::stylus::StylusSample;
 
 use super::{BrushModel, TrackedBrush};
-use crate::desk::{Obstacle, Plane};
+use crate::desk::{Desk, Obstacle, Plane};
 use crate::handle_path::Sampled;
 use crate::head_solver::SolvedHead;
 use crate::lead::Lead;
@@ -24,6 +24,8 @@ const TELLING_M: f64 = 0.2e-3;
 const TELLS_NS: u64 = 50_000_000;
 /// Longest time for which a pen that rests waits, ns: then it is a dab.
 const RESTS_NS: u64 = 100_000_000;
+/// Samples that wait at most: more than a device of 8 kHz gives in [`RESTS_NS`].
+const MOST_WAITING: usize = 1024;
 /// Length of a run-up, by the length of the head and how deep it is pressed.
 const RUN_UP: (f64, f64) = (0.15, 3.0);
 /// Share of a run-up in which the head comes down.
@@ -64,8 +66,9 @@ impl Waiting {
         if way.length() >= KNOWN_M {
             return Some(self.known(way));
         }
-        let tells = way.length() >= TELLING_M;
-        match tells && waited_ns >= TELLS_NS || waited_ns >= RESTS_NS {
+        let tells = way.length() >= TELLING_M && waited_ns >= TELLS_NS;
+        let rests = waited_ns >= RESTS_NS || self.samples.len() >= MOST_WAITING;
+        match tells || rests {
             true => Some(self.told(way)),
             false => None,
         }
@@ -96,6 +99,32 @@ impl Waiting {
 }
 
 impl BrushModel {
+    /// Sets down a pen that still waits, where no sample will tell its direction any more; the brush goes on from there.
+    /// Empty where none waits.
+    #[must_use]
+    pub fn finish(&mut self) -> Vec<Solve> {
+        let Some(mut tracked) = self.tracked.take() else {
+            return Vec::new();
+        };
+        let plane = |desk: &Desk| desk.plane(tracked.surface).copied();
+        let solves = match self.desk.as_ref().and_then(plane) {
+            Some(plane) => {
+                let zoom = tracked.zoom;
+                self.set_down(&mut tracked, None, &Plane { zoom, ..plane })
+            }
+            None => Vec::new(),
+        };
+        self.tracked = Some(tracked);
+        solves
+    }
+
+    /// Forgets where the brush was; a pen that still waits is set down before.
+    pub(super) fn give_up(&mut self) -> Vec<Solve> {
+        let solves = self.finish();
+        self.tracked = None;
+        solves
+    }
+
     /// Begins to wait with a pen that comes down at `here`; how it would land, as a preview. `None` where it touches
     /// nothing, or does not come down.
     pub(super) fn begin_to_wait(
@@ -133,8 +162,10 @@ impl BrushModel {
         if tracked.waits.direction(&here).is_some() {
             return None;
         }
-        tracked.waits.samples.push(here);
+        let mut waits = std::mem::take(&mut tracked.waits);
+        waits.samples.push(here);
         let mut landed = tracked.clone();
+        tracked.waits = waits;
         self.stay(&landed, here.event_ns);
         let mut solve = self.land(&mut landed, here, false, plane);
         tracked.force_n = landed.force_n;
@@ -143,7 +174,7 @@ impl BrushModel {
     }
 
     /// Sets down a brush that has waited, toward `here` if it goes on pressed, and goes the way of the samples that
-    /// waited.
+    /// waited, with a preview at the last of them.
     pub(super) fn set_down(
         &mut self,
         tracked: &mut TrackedBrush,
@@ -171,10 +202,13 @@ impl BrushModel {
         }
         let mut solves = vec![landing];
         (tracked.newest, tracked.before, tracked.left_over_m) = (first, None, 0.0);
-        for next in others {
-            solves.extend(self.go(tracked, next, plane));
+        for next in &others {
+            solves.extend(self.walk_to(tracked, *next, plane));
             tracked.before = Some(tracked.newest);
-            tracked.newest = next;
+            tracked.newest = *next;
+        }
+        if let Some(last) = others.last() {
+            solves.push(self.preview(tracked, *last, plane));
         }
         solves
     }

@@ -1,0 +1,51 @@
+//! Solves of a sample as one message.
+
+use maulstick_types::brush::{BrushState, Solve};
+use maulstick_types::stylus::StylusSample;
+use maulstick_types::{Flags, Origin};
+
+use super::BrushModel;
+
+impl BrushModel {
+    /// As [`follow`](Self::follow), as a whole message.
+    pub fn state(
+        &mut self,
+        origin: Origin,
+        device_seq: u64,
+        event_ns: u64,
+        sample: &StylusSample,
+    ) -> Option<BrushState> {
+        let solves = self.follow(origin, event_ns, sample);
+        message(origin, device_seq, solves)
+    }
+
+    /// As [`state`](Self::state), for a sample of a take with the flags of its header: a faulty sample is passed over, and a
+    /// pen that still waits at the [last](Flags::LAST) one is set down.
+    pub fn state_in_take(
+        &mut self,
+        origin: Origin,
+        device_seq: u64,
+        event_ns: u64,
+        sample: &StylusSample,
+        flags: Flags,
+    ) -> Option<BrushState> {
+        let mut solves = match sample.fault() {
+            None => self.follow(origin, event_ns, sample),
+            Some(_) => Vec::new(),
+        };
+        if flags.has(Flags::LAST) {
+            solves.extend(self.finish());
+        }
+        message(origin, device_seq, solves)
+    }
+}
+
+/// The message of solves; absent where there are none.
+fn message(origin: Origin, device_seq: u64, solves: Vec<Solve>) -> Option<BrushState> {
+    (!solves.is_empty()).then_some(BrushState {
+        device: origin.source,
+        device_epoch: origin.epoch,
+        device_seq,
+        solves,
+    })
+}
