@@ -71,13 +71,19 @@ pub(super) fn spread(
     }
     let middle = steps.len() / 2;
     let usual = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let is_tied = |one: &Row, other: &Row| one.stroke == other.stroke && one.time() == other.time();
+    let most = rows.chunk_by(is_tied).map(<[Row]>::len).max().unwrap_or(1);
     let mut at = 0;
     while at < rows.len() {
         let (time, stroke) = (rows[at].time(), rows[at].stroke);
-        let tied = |row: &&Row| row.stroke == stroke && row.time() == time;
-        let count = rows[at..].iter().take_while(tied).count();
+        let tied = rows[at..].iter().take_while(|row| is_tied(row, &rows[at]));
+        let count = tied.count();
         let next = rows.get(at + count).filter(|row| row.stroke == stroke);
-        let span = next.map_or(usual, |next| usual.min(next.time() - time));
+        let span = match next {
+            Some(next) => usual.min(next.time() - time),
+            // The stroke may end before its last step of the clock does: it ends at the pace of the densest step.
+            None => usual * count as f64 / most as f64,
+        };
         for (place, row) in rows[at..at + count].iter_mut().enumerate() {
             row.values[0] = time + span * place as f64 / count as f64;
         }

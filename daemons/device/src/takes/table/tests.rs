@@ -242,6 +242,10 @@ fn samples_of_one_time_are_spread_and_none_is_lost() {
     for (i, (time, ..)) in (0..).zip(&found) {
         assert!((time - 0.01 * f64::from(i)).abs() < 1e-9, "{i}: {time}");
     }
+    // The last step of the clock has two samples of ten.
+    let short: String = coarse.split_inclusive('\n').take(192).collect();
+    let found = samples(&format!("t,x,y,pressure\n{short}"));
+    assert!((found[191].0 - 1.91).abs() < 1e-9, "{:?}", found[191]);
     // Never over a longer pause.
     let paused = samples("0 1 1 .5\n.01 2 1 .5\n.01 3 1 .5\n5 4 1 .5\n5.01 5 1 .5\n");
     assert!((paused[2].0 - 0.015).abs() < 1e-9, "{paused:?}");
