@@ -314,7 +314,7 @@ fn a_recording_holds_what_was_sent_and_is_exported() {
             &["control/puck/sample"],
         );
         has(&fault(place, &["recording", "info", csv], 2), &["no MCAP"]);
-        fault(place, &["record", "-o", csv, "--seconds", "1"], 1);
+        fault(place, &["record", "-o", csv, "--seconds", "1"], 2);
     });
     assert!(recorded <= sent);
 }
