@@ -73,8 +73,10 @@ fn fast() -> Take {
         at(0, -0.01, -0.005, 0.0),
         at(10, -0.01, -0.005, 0.5),
         at(20, -0.005, -0.005, 0.5),
-        at(21, 0.55, 0.0, 0.0),
-        at(31, 0.01, 0.005, 0.5),
+        at(21, 0.55, 0.0, 0.5),
+        at(31, 0.55, 0.0, 0.0),
+        at(60, 0.01, 0.005, 0.0),
+        at(70, 0.01, 0.005, 0.5),
     ]
 }
 
@@ -224,7 +226,7 @@ fn a_take_that_is_too_fast_and_ends_as_its_pen_is_set_down_is_the_same_everywher
     assert_eq!(model.too_fast(), 1);
     assert!(!model.finish().is_empty(), "it waits at the end");
     assert_eq!(differing("impasto", &fast(), 1), Vec::<&str>::new());
-    let without_its_end = fast()[..4].to_vec();
+    let without_its_end = fast()[..6].to_vec();
     assert!(offline("impasto", &fast()) != offline("impasto", &without_its_end));
 }
 
