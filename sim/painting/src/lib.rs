@@ -82,6 +82,9 @@
 //!   brushes and history.
 //! - Backend: processor, or a graphics device whose steps stay unsettled until somebody reads them; surfaces with wells
 //!   are the processor's.
+//! - An edit that takes or dries wet paint stops a drying (`clock.stop`), leaves the paint of wells
+//!   (`SurfaceState::staying`) and decides about planes of a model's own (`Planes::own`). One that moves paint has open
+//!   windows written back first; `begin_step` ends open steps.
 
 mod apply;
 pub mod beginning;
