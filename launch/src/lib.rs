@@ -29,6 +29,34 @@
 //! | [`paintings`] | the bundled paintings |
 //! | [`panics`] | panics as errors that a user can read |
 //! | [`performance`] | setup that `render` and `up --play` share: take, brush, loads, canvas |
+//!
+//! # The rig
+//!
+//! - One program runs as every process. The launcher starts, watches and ends them, and restarts what fails. A frozen
+//!   brush or paint is ended after 4.5 s; one that works or waits for a disk has longer; while the launcher stood still
+//!   itself, its clocks did too. A start that the system does not allow is tried again, later each time.
+//! - When paint, brush or player of a take dies, all three start afresh and the take is played from its start, as fast
+//!   as it can up to where it was.
+//! - Devices come and go in a running rig: the launcher checks one within the whole of the settings, writes those and
+//!   starts or ends one daemon. Renaming is both orders, with the force's state carried over. Brush nodes read
+//!   priorities and laws of force when the file changes.
+//! - Another painting is checked on another thread; the paint node then ends and starts with other settings, which
+//!   counts as no crash. Another file of the same painting needs no new node.
+//! - A rig with a window and no file begins a sketch in the user's state folder, a document like any other. The newest
+//!   32 within 4 GiB stay; others are removed at a start, after the window has named them. Without a window, or with a
+//!   take, a painting is in memory.
+//!
+//! # Recordings
+//!
+//! - The recorder is a member that no node waits for; with `[record]` it runs in every rig and ends last. A recording
+//!   of a session holds a copy of the painting's file, taken once the paint's credit covers what was on its way, or
+//!   half a second later. Where the journal breaks off (another paint node, a lost entry or state), another file
+//!   begins.
+//! - `take from` makes a take of a session, or of a painting's own record: a copy of the painting taken back to its
+//!   beginning.
+//! - `replay --rate max` sends as the brushes have credit. `replay --at` puts a motion down live under the name
+//!   `motion`, so it is undone like any stroke.
+//! - `bridge` serves JSON of what is watched only. `graph` reads zenoh's administration space.
 
 pub mod advice;
 pub mod attached;

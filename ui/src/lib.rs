@@ -19,6 +19,51 @@
 //! | [`settings`] | settings that outlive the window |
 //! | `background_task` | work on a thread beside the window |
 //! | `spectrum_file` | spectra from CSV files |
+//!
+//! # Three parts
+//!
+//! What is known of the rig (plain data that a listener fills), what is asked of it (requests, sent on a thread for
+//! each node so that nobody waits), and what is drawn from the first. A panel reads one, writes the other, and is
+//! tested with neither bus nor window.
+//!
+//! Devices are changed in one way, that of `maulstick device`. A painting is left only once its paint node has sent a
+//! status that is newer than the request.
+//!
+//! # Order and input
+//!
+//! - A request behind a stroke (dry, undo, load, export) waits until the samples that were newest then are states of a
+//!   brush, at most a second without credit, and takes its place right behind them. Where the hand has rested for a
+//!   second, it goes behind the newest state that is not painted. Brush changes do the same, and later strokes wait for
+//!   them (`ui/pending`).
+//! - Under a held brush the view and surfaces stay; only the free hand moves the canvas. Surfaces move by `Place`
+//!   alone; where one may lie is one type for mouse, touch and 6-DOF mouse.
+//! - A press counts where it falls, and held keys if they were held before it. A resting pointer is sent once and keeps
+//!   its brush. The mouse has neither twist nor pressure: its brush is set down across the stroke once 1.5 mm or 80 ms
+//!   have shown its direction, then follows as if drawn by a string. A pen is read on its own thread.
+//!
+//! # Drawing
+//!
+//! - The window is drawn when a scene, state, frame or answer changes what is seen. Samples, statuses and credits
+//!   signal nothing, and are looked at ten times a second while they show work, else every one to three seconds.
+//! - A frame is begun when something has come and the device has drawn the last one. `ui/presented` names the brush
+//!   states that it holds. Brushes are drawn where the newest sample holds them, bent as in their newest state, with
+//!   shadows of three lights; a dark ground is lightened so that shadows show.
+//! - A surface is two sheets of tiles, each a torus, so a pan copies nothing: a *detail* for what is in view, and a
+//!   *base* of at most 512 cells a side. A sheet has at most two cells a pixel, whatever the canvas. The outer 25 cells
+//!   of a detail, whose shadows lack what lies beyond, are not shown. Another level is another sheet, shown once it is
+//!   whole.
+//! - The eye is above the middle of the desk, 2.5 times as high as the view is long. A mirror is a matter of the camera
+//!   alone.
+//!
+//! # Files, colours, words
+//!
+//! - Dialogs are the window's own and the desk goes on; folders and pictures are read on threads. A reference picture
+//!   is kept at 2048 pixels a side; a colour of it, the mean of 5×5 pixels, is searched among the palette's paints
+//!   under the scene's light. A tracing picture multiplies what is drawn between canvas and palette, remembered for
+//!   each painting.
+//! - History lists thirty steps around the present one; `GoTo` undoes or redoes to one.
+//! - `tr!` keys are the English sentences; `languages` has a file for each language, and a test compares them with the
+//!   sources.
 
 #[macro_use]
 mod language;

@@ -19,6 +19,16 @@
 //! | [`pressure_curve`] | pressure of a pen as it is sensed and given |
 //! | [`pen_stream`] | samples of a pen on the bus |
 //! | [`hid_collections`] | application collections of a HID report descriptor |
+//!
+//! # Notes
+//!
+//! - A device is any program that publishes `StylusSample`; `docs/devices.md` has one in Python.
+//! - Switches send commands to the paint node, so they lie in the journal and a replay repeats them; only the clutch is
+//!   the daemon's own. The free hand moves the canvas by `Place` commands.
+//! - A take is MCAP, with chunks of 64 KB, checksums, and a schema that alone tells how its messages are decoded. A
+//!   damaged take is reported, and read on behind the damage.
+//! - A player waits for credit. Brush credit tells it which state holds its last sample, and the launcher's snapshot
+//!   waits for exactly that state.
 
 pub mod actions;
 pub mod brush;

@@ -22,6 +22,11 @@
 //! | [`stylus`] | a pen on the bus |
 //! | [`spacemouse_node`] | a 6-DOF mouse on the bus |
 //! | [`daemon`] | the daemon |
+//!
+//! # Notes
+//!
+//! A device is opened .1 s after its node appears or becomes readable (inotify), otherwise once a second. A tablet that
+//! the rig reads is taken from the system and moves no pointer.
 
 pub mod daemon;
 pub mod evdev;

@@ -11,6 +11,23 @@
 //! | [`snapshots`] | pictures as files, on a thread beside the painting |
 //! | [`thumbnails`] | small pictures of the painting and of its versions |
 //! | [`worker`] | a thread whose panic ends the node |
+//!
+//! # Frames
+//!
+//! Views pull: one query in flight for each surface waits for a change, up to 1.6 s at rest. Colour is computed on a
+//! thread of its own, only for tiles in view and at their level of detail; coarse tiles are made in parts, for a tenth
+//! of a second a reply, and kept. Films over hair follow 15 times a second at most, while a view asks. The status comes
+//! ten times a second while it changes, else twice, since each one wakes every listener.
+//!
+//! # Takes and sessions
+//!
+//! - `TakeCommand::Begin` says which take a player plays and what its strokes load; replayed states of any other take
+//!   paint nothing. Until the sample with the flag *last*, or until the player's token is gone, no other device moves
+//!   that brush and its live states paint nothing. So a take gives the same bytes whoever else is at the desk, and can
+//!   be played again after a crash without the half-painted one.
+//! - A repeated session is accepted in batches; its player is gone after ten seconds of silence.
+//!
+//! Exports, snapshots and thumbnails work on a still, beside the painting. The journal says when the backend changes.
 
 pub mod exporter;
 pub mod frames;

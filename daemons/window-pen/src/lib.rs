@@ -13,6 +13,11 @@
 //! | [`wayland`] | tablet-v2 of Wayland |
 //! | [`xinput`] | XInput 2 of X11 |
 //! | [`thread`](mod@thread) | the thread that reads |
+//!
+//! # Who moves the pointer
+//!
+//! A Wayland compositor moves no pointer of a window that binds tablet-v2, so the window makes those events itself. An
+//! X server does; that pointer does nothing on the desk while the pen is near and for 200 ms after.
 
 pub mod clock;
 pub mod reading;

@@ -17,6 +17,45 @@
 //! | [`reason`](mod@reason) | what a library says, without paths of the machine that built it |
 //! | [`rig`] | the rig's folder, and the file by which a foreign program finds it |
 //! | [`sockets`] | the sockets in it, put back where they were removed |
+//!
+//! # Streams without loss
+//!
+//! The transport may drop anything. A sender numbers its messages, rejects and reports one that exceeds its size limit,
+//! keeps the newest five seconds at 1 kHz (8 MB at most) and answers for gaps. A receiver delivers in order; at most 64
+//! messages are unconsumed at a time. A sender without progress for 50 ms repeats its newest message, because a lost
+//! last message leaves no gap. A live gap is given up after a second, counted and reported: a painter does not wait.
+//! The stream of a played take is asked for until it is whole. Streams of `replay --topic` count as live, and nobody
+//! answers for their gaps.
+//!
+//! # Two senders under one name
+//!
+//! Of two epochs the later one is followed, once it has been heard for half a second or says that it is the first, so a
+//! stray message takes nothing over. A sender that was set aside is followed again after half a second of silence of
+//! the other. Within one epoch, numbers that leap by more than a ring belong to another sender. What is set aside is
+//! counted and reported once. A cached value that another process overwrites is sent again when that process is silent.
+//! Memory of senders is bounded: 64 streams, 256 names, ten minutes.
+//!
+//! # Links
+//!
+//! - Callbacks only push into bounded queues, since one slow callback stalls every topic of a peer.
+//! - Each node has a unix socket in a folder of mode 0700; all connect to the launcher's, the hub, and gossip makes the
+//!   mesh. Each socket has a second name from which a removed one is restored.
+//! - A program without a socket joins as a zenoh client and the hub passes everything on. A peer without a socket
+//!   cannot be dialled, and with one-sided dialling may never meet the node that it queries; so command-line programs
+//!   join as clients.
+//! - A link that breaks while both ends keep theirs to the hub is not made again. The lease is therefore 20 s, so a
+//!   process may stand still that long; one that dies closes its sockets at once.
+//!
+//! # Shared memory
+//!
+//! Frames are encoded into a pool of 16 MB (4 MB where no more may be locked) and read in place. Only the paint node
+//! and the window use it. What finds no pool, or no room in it, goes through the socket, and so does a second request
+//! for what has not arrived within 500 ms. Nothing is overwritten while it may be read: a pool clogged by a dead reader
+//! is given up for a new one, and a starting rig clears away what killed ones left.
+//!
+//! # Clock
+//!
+//! `CLOCK_MONOTONIC` plus an offset that the launcher fixes once for each rig.
 
 mod announce;
 pub mod bus;

@@ -7,6 +7,11 @@
 //! | [`open`] | databases that this process has open, by device and inode |
 //! | [`private`] | files that their user alone may read |
 //! | [`whole`] | files that are whole under their name, or not there at all |
+//!
+//! # Open databases
+//!
+//! No file that this process has open as a database may be opened a second time in it: closing any descriptor drops
+//! SQLite's POSIX locks on the inode. Readers ask `open` first, which knows open databases by device and inode.
 
 pub mod free;
 pub mod kind;

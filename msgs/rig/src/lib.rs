@@ -15,6 +15,24 @@
 //! | [`sketches`] | paintings that have no name yet, in the user's state folder |
 //! | [`table_file`] | tables in files that a user names |
 //! | [`stop`] | the stop flag: a signal, or the launcher's end |
+//!
+//! A crate of its own, so that daemons, window and launcher share settings and conduct without knowing each other.
+//!
+//! # Progress
+//!
+//! The loop of each node publishes its status twice a second: messages consumed, produced and waiting. The launcher
+//! ends a node that sends none or consumes nothing of what waits. A window may rest while nobody sees it, so a thread
+//! of its own sends its status.
+//!
+//! # Log
+//!
+//! Lines pass through a bounded queue to a thread, so a terminal that stands still holds up neither paint nor signals.
+//! The oldest lines are dropped and their number is logged once lines flow again; a process that ends waits .2 s for
+//! its last ones. Panics and the launcher's progress bar take the same way.
+//!
+//! # Processes
+//!
+//! Nodes are started by `/proc/self/exe`, so a rig is of one version even after an upgrade has replaced the program.
 
 pub mod asker;
 pub mod command_client;

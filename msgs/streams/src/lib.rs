@@ -13,6 +13,16 @@
 //! | [`recording_writer`], [`recording`] | recordings, written and read |
 //! | [`recovery`] | what is left of a damaged recording |
 //! | [`mcap_records`], `mcap_walk` | records of MCAP files, read within their bounds |
+//!
+//! # Recordings
+//!
+//! - A recording is MCAP with an index, flushed each half second. It is opened by the index; where a crash left none,
+//!   or messages lie outside of chunks, record by record. Messages come in order of time wherever they stand.
+//! - A message is read by the field table of its schema hash: this program's, or the one in the file. So appended
+//!   fields of later versions and missing fields of earlier ones do no harm.
+//! - No length is believed before it is compared with the bytes at hand. Attached files stay on the disk until they are
+//!   asked for. A damaged recording is copied, as far as it is intact, into a whole one.
+//! - For viewers the same topics are written as thinned JSON, which our own readers skip.
 
 pub mod catalogue;
 pub mod field_table;

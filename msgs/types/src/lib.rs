@@ -11,6 +11,65 @@
 //! | [`edits`] | edits of a painting, one in one file |
 //! | [`values`] | numbers and names that are in range |
 //! | [`pose`], [`region`], [`mixture`] | where something is, a part of a surface, a mixture of paints |
+//!
+//! # Versions
+//!
+//! The header holds magic, version, schema hash, source, epoch, flags, length, sequence number, event time and send
+//! time. Fields are only appended, and the version rises with them. Programs of one rig speak one version; recordings
+//! carry the field tables of their messages and are translated when read. Two statuses, `PaintStatus` and `TakeStatus`,
+//! are read by no program of another version and may be redefined.
+//!
+//! The messages of a device are a contract, `STYLUS_CONTRACT`. `tests/golden.txt` pins the bytes of every version, and
+//! `tests/contract.txt` never changes.
+//!
+//! # Topics
+//!
+//! Below `maulstick/<rig>/`. A cached topic sends its last value to late joiners; a query is answered by the receiver.
+//!
+//! | topic | message | from → to |
+//! | --- | --- | --- |
+//! | `stylus/<device>/sample` | `StylusSample` | device → brush, window |
+//! | `stylus/<device>/info`, `/status`, `/take` | `StylusInfo` (cached), `StylusStatus`, `TakeStatus` | device → all |
+//! | `control/<device>/sample` | `ControlSample` | 6-DOF mouse → all |
+//! | `haptics/<device>/model` | `ContactModel` | brush, by consent `replay --drive` → device |
+//! | `haptics/<device>/guide` | `GuideModel` | `replay --guide` → device |
+//! | `haptics/<device>/fluid` | `FluidForce` | brush, `replay --drive` → device |
+//! | `haptics/<device>/force` (query) | `ForceRequest` → `ForceReply` | window, command line, `replay` → device |
+//! | `brush/<brush>/def` | `BrushDef` (cached) | brush → paint, window |
+//! | `brush/<brush>/state` | `BrushState` | brush → paint, window |
+//! | `brush/<brush>/look` | `BrushLook` (cached) | paint → window |
+//! | `brush/<brush>/relief` | `BrushRelief` | paint → brush |
+//! | `brush/<brush>/consumed`, `paint/consumed` | `BrushConsumed`, `PaintConsumed` | receiver → sender: credit |
+//! | `scene` | `Scene` (cached) | paint → all |
+//! | `paint/journal`, `paint/status` | `JournalEntry`, `PaintStatus` | paint → all |
+//! | `paint/frame` (query) | `FrameRequest` → `FrameReply` | window → paint |
+//! | `paint/thumbnail` (query) | `ThumbnailRequest` → `ThumbnailReply` | window → paint |
+//! | `ui/presented` | `Presented` | window → all |
+//! | `ui/pending` | `PendingOrders` | window → brush |
+//! | `command/<node>` (query) | `CommandRequest` → `CommandReply` | window, command line, device, player → node |
+//! | `gap/<stream>` (query) | `GapRequest` → lost messages | receiver → sender |
+//! | `node/<name>` | liveliness token | node |
+//! | `node/<name>/status` | `NodeStatus` | node → launcher, all |
+//!
+//! # Frames
+//!
+//! - Desk: origin in the middle of the working area, x right, y up along the surface, z out of it toward the painter.
+//! - Surface: origin at the lower left corner, x right, y up, z out. Cell (i, j) begins at (i·h, j·h) and is h wide;
+//!   row 0 is the bottom one; pictures flip y. Zoom scales a surface, not the brush.
+//! - Brush: origin where head and ferrule meet, bristles along −z. Quaternions are x, y, z, w.
+//!
+//! # Edits and commands
+//!
+//! - An edit is one struct in one file, used by wire, journal, script, command line and panel. Edits live here and not
+//!   beside the painting because daemons and windows send them and know no simulation. Their command-line options are
+//!   the feature `cli`, which the launcher alone enables.
+//! - Numbers and names with a range are types of `values`, so what decodes is valid; a request that does not decode is
+//!   answered with the reason. What to do about a refusal travels as an `Advice`, for which window, command line and
+//!   script have their own words.
+//! - Commands are nested by who carries them out (edit, take, file, brush, rig, session), so each node matches its own
+//!   exhaustively. They carry a client id and a number, and a reply cache makes them safe to repeat; the sequencer's
+//!   cache is saved with the painting. Batches of a replayed session have numbers of their own. `after` places a
+//!   command right behind a brush state.
 
 pub mod brush;
 pub mod command;

@@ -38,6 +38,17 @@
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! # Notes
+//!
+//! - Wet paint lies on reflectances baked from the dry layers below it, kept until a layer is added, its opacity
+//!   changes or the light does. Under another light a view gets all tiles anew, and the frame thread bakes the rest
+//!   tile by tile when idle.
+//! - `ShowPaint` says what a model's counts and planes mean: films for the optics, height, colour and gloss.
+//! - A well is a squeezed heap, seen before a brush comes and counted when it does.
+//! - Exports go band by band, a band being a row of tiles: two threads draw ahead of the one that writes, with the
+//!   heights of the 24 rows beyond. A PNG of 16384² takes 100 MB besides the paint, and its bytes do not depend on who
+//!   drew what.
 
 mod appearance;
 pub mod bands;

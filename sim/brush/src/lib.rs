@@ -42,6 +42,46 @@
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! # Solving
+//!
+//! - The unknowns of a spine are segment directions, not joint angles: energy and constraints depend on directions
+//!   alone, joints are linear in them, and no pose is singular. Messages carry θ and φ.
+//! - A head is solved spine by spine, each by a Newton method with an active set of touching joints. Neighbours keep
+//!   their places of the last solve. Bonds hold each spine to the *core*, one spine for the mean of all that is solved
+//!   first, since each spine alone would give way to a side of its own. Friction is iterated until it agrees with the
+//!   normal forces.
+//! - A sticking contact keeps its anchor; a new anchor at each solve would creep by the rounding of friction.
+//! - Joints stay outside of every obstacle in reach; of a raised palette, the face that they are most outside of
+//!   counts.
+//! - The hand feels the solved head: k₁ of a contact model is the force of all spines over the depth of the press.
+//!
+//! # From samples to solves
+//!
+//! - A touching brush is solved every .175 mm of the handle's path, the parabola through the samples, counted on across
+//!   samples; and halfway where a joint in contact would move more than .25 mm. So the result does not depend on the
+//!   sample rate. The handle's path decides, not the motion of strips: the remainder of a strip's motion puts all later
+//!   steps out of phase after one slip. Chords in place of the parabola, or fewer solves, show between sample rates. A
+//!   sample between two solves gives a preview, which is shown and not painted.
+//! - Time that does not advance restarts the brush at its new pose, and paints nothing between.
+//! - A pause up to .3 s in contact (a stalled pen, late frames) is crossed along the path like any other way; after a
+//!   pause much longer than the interval before it, the parabola goes nowhere backward. A longer one begins another
+//!   stroke with the head as bent as it was: one that landed anew would be dragged round and leave a notch.
+//! - A stroke lasts from the first contact to the last. Contacts less than 150 ms apart are one stroke, and so are all
+//!   of one press of a pen or the mouse.
+//! - Above 20 m/s, measured over a frame, a brush in contact begins anew, live as offline; so the solves of a sample
+//!   are bounded.
+//! - A pen without pressure holds its brush so high that each joint of the unbent head clears what lies below by 5 mm.
+//! - A pen's first samples wait for 1 mm of way, at most .1 s, shown as previews; the head is then laid down as one
+//!   that came along the stroke, over a run-up that paints nothing. A head lowered straight down spreads or buckles,
+//!   and leaves an anvil or a hook once it is dragged.
+//!
+//! # Strips
+//!
+//! On coarse cells a head is thinned: it is halved while its strips stay no wider than two cells of the canvas at its
+//! zoom. Strips follow a sequence whose beginning is as even as the whole, so those left keep their places, lifts and
+//! capacities. Blades, whose strips are a line, are not thinned. Each load and each stroke disturbs tresses and tips,
+//! seeded by the number of the stroke since its take began, so a replay has the same streaks.
 
 pub mod energy;
 pub mod file;

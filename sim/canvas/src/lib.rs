@@ -40,6 +40,31 @@
 //! }
 //! assert_eq!(store.counts()[0], 0);
 //! ```
+//!
+//! # Counting
+//!
+//! One thickness unit is 25 mm; a quantum is 2⁻²⁴ of it (1.5 nm) on one cell. A cell stores one count for each paint,
+//! exact in f32 up to one unit, the most that it holds. What several cells ask of one donor is summed, scaled together
+//! if it is too much, truncated once, taken from one side and given to the other; so the ledger balances to zero in
+//! whatever order cells are visited.
+//!
+//! # Tiles, pages, layers
+//!
+//! - Tiles are 64×64 cells, immutable and reference-counted. A window leases whole tiles, copies them into contiguous
+//!   planes for kernels, and writes them back as new versions; undo swaps versions.
+//! - A page holds the counts of a tile, wet or dried, or what a brush carries, and never changes. It may leave memory
+//!   once the document has it, and comes back when it is read; the last owner to drop it lets the document delete it.
+//! - Dried paint is a list of layers shared with older versions of the tile: drying a whole tile moves its planes by
+//!   reference. Pages and links are numbered as they are made. A wet page older than the newest link is what that
+//!   link's drying left, so the link grows; a newer page gets a new link of the same layer, because two mixtures are
+//!   not one.
+//! - Models keep planes of their own beside the counts (kind, type, values a cell); store, history and document keep
+//!   them without knowing what they mean.
+//! - Bristles ride on the upper envelope of tooth and dry paint under parabolas of 28 mm radius, as stiff as a bristle
+//!   is along itself. Tooth is a seeded weave or grain, or comes from a picture.
+//!
+//! `EditError`, why an edit of a painting was refused, is data until a person reads it, and lives here so that every
+//! crate above can return it.
 
 pub mod assets;
 pub mod dry;

@@ -17,6 +17,14 @@
 //! | `program` | the quadratic programme of a step |
 //! | `masstones` | mixtures from which a fit begins that no neighbour helps |
 //! | [`Converter`] | the paint of a tile |
+//!
+//! # The fit
+//!
+//! Gauss-Newton steps on the simplex, from the shares of the cell before, under a small cost for leaving the layer's
+//! own mixture; masstones and a table of mixtures help where no neighbour does. A step is a quadratic programme with
+//! three residuals, so a set of free paints has four unknowns. Dry volumes also get how much they hide, as a film that
+//! would have stayed wet over them. The model of a surface belongs to its materials, so steps, versions and undo
+//! include a conversion. Models whose colourings are equal keep their counts as they are.
 
 mod cell;
 mod cell_fit;

@@ -23,6 +23,18 @@
 //! let dab = Dab::default();
 //! assert_eq!((dab.name(), dab.rest_halo()), ("dab", None));
 //! ```
+//!
+//! # Notes
+//!
+//! - A unit of volume is 512 quanta, 255 units at most in a layer. Rounding uses quasi-random thresholds over cells and
+//!   steps, so small volumes are not lost and no cell waits for another.
+//! - Stroking: Algorithms 1 and 2, and the parabola through three heads; the doublings of a step choose. The head is
+//!   drawn once for all blends in which the whole of it goes the same way within half a cell. The films of its texels
+//!   are parted among the cells that they cover, the raster is blended with the canvas at each place of its way, and
+//!   returns to the texels in integers.
+//! - Colours depend on what stayed wet over a layer when it dried, which the dry page notes (`wet_over` of
+//!   `maulstick-canvas`); so eq. 4.1 and its inverse (§ 4.7) hold for any number of layers. The optics neither shade
+//!   nor bake this paint (`has_own_colours`).
 
 pub mod dither;
 pub mod emboss;

@@ -27,6 +27,11 @@
 //! | [`underpaint`] | a picture as paint |
 //!
 //! Its errors are [`ImportError`].
+//!
+//! # Notes
+//!
+//! `read_image` is the only reader of pictures, also for the window's reference and tracing pictures. Thumbnails of the
+//! history are drawn tile by tile while nobody paints; states share most tiles, so a few colours of each tile are kept.
 
 pub mod embed;
 mod error;

@@ -9,6 +9,13 @@
 //! | [`geometry`] | the probe's outline on the grid: a staircase, or shares of nodes and links |
 //! | [`hand`] | a sweep a thousand times a second, raw and filtered |
 //! | [`sweep`] | the sweep along an arc of fig. 8.6-8.8, and the noise of the force along a straight one |
+//!
+//! # Choices
+//!
+//! The probe is covered cells, not cut ones: a node is solid by the share of its box that the probe covers, a link
+//! conducts by the inverse of its open share. The force then changes continuously with place, and its noise is a
+//! seventh of a staircase's. The projection starts from the pressure of the step before; Chorin's own has the drag in a
+//! channel wrong by half at steps that are long for viscosity.
 
 pub mod bartlett_hanning;
 mod five_point;

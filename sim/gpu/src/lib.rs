@@ -13,6 +13,43 @@
 //! | `batch` | tiles as the shaders take them |
 //! | `arena` | buffers that are used again |
 //! | `shade_films`, `bake_films` | the stages of films |
+//!
+//! # What a device computes
+//!
+//! Whole steps of `impasto` and `dab`; of `stokes` the flow around the brush; nothing of `marker`. It also computes the
+//! films of all models but `dab`, which has colours of its own. Surfaces with wells, the sampler and the vacuum cleaner
+//! stay with the processor. Exports use the processor alone, for the same bytes everywhere; a device promises the same
+//! bytes for one adapter and driver, and which backend paints is journalled.
+//!
+//! # Steps
+//!
+//! - A window and its brush's load stay on the device from a stroke's first step until they are *settled*, before
+//!   anything else reads them. Steps are submitted up to 64 at a time; a stroke sees how full its brush is at its
+//!   beginning and after every 256 steps, not when somebody looks, so the same adapter paints the same bytes.
+//! - Unsettled steps are kept. When the device is lost or its memory full, the processor repeats them and goes on, no
+//!   quantum is missing, and the switch is journalled at the stroke's end. A painting recovered in mid-stroke repeats
+//!   its last second on the processor.
+//! - What does not depend on the model is in `steps`; a model is a list of stages and a planner that turns a step into
+//!   dispatches, beside the processor's model. Tests hold every stage beside its twin, and whole strokes beside the
+//!   processor's.
+//! - `impasto`: an indirect dispatch skips the rest where nothing is touched; what is asked of one donor is summed in
+//!   integers before it is truncated, so the books balance to zero.
+//! - `dab`: the processor knows which blends a step has, and sends a record for each; the head is drawn once a drawing,
+//!   and a dispatch blends it at each place. Thresholds are the processor's in fixed point and quotients are rounded as
+//!   it rounds them, so on the same drawing both leave the same counts. Reservoirs are filled in f32.
+//!
+//! # Flow
+//!
+//! - The unified solver in f32: always the same dispatches over one buffer, sums reduced in a fixed order, quotients
+//!   kept on the device and guarded against division by zero, nothing read back within a step. The smoother is a
+//!   Chebyshev polynomial of damped Jacobi steps, symmetric and without order; one workgroup a component does all
+//!   levels of 2048 cells and fewer.
+//! - Fields have the processor's layout; whoever writes beside a periodic side writes the copy too. An image of a
+//!   search direction that cancels is made orthogonal again by dispatches that otherwise return at once. Distances and
+//!   velocities of solids come from the processor.
+//! - `auto` gives the device windows of 16,384 cells and more, below which its 300 dispatches take longer than a core
+//!   does; `gpu` gives it all. Windows that do not fit are `GpuError::Window`. `GpuFlow::restart` takes another window
+//!   into the same buffers, cleared, so no window sees one before it.
 
 mod arena;
 mod bake_films;

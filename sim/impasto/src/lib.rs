@@ -65,6 +65,30 @@
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! # Notes on the step
+//!
+//! - Order (Baxter 2004, fig. 6.3): footprint, velocity, advection, exchange both ways, flow within the head. Flow
+//!   within strips and between neighbours take turns, step by step, so that no step shows along a stroke. Every stage
+//!   has an f64 oracle in `tests/oracle`, and every comparison a seeded fault.
+//! - Velocities are found for faces between cells; paint goes through them one axis after the other with van Leer's
+//!   limiter, truncated to quanta. Nothing divides what meets, so paint piles up. A global pressure would add to the
+//!   velocities of the faces.
+//! - The squish −c·∇p is an explicit diffusion of coefficient c·h, bounded by .04. Central differences in cells grow
+//!   speckles above .2; differences across faces do not.
+//! - Between the ride of a bristle and the relief lies a gap, which its film fills beyond the gap's height, sixteen
+//!   times as fast as films even out; a bridging film splits in its middle. So a full brush fills most of the tooth, an
+//!   empty one catches on peaks, a light one on dry ridges. A brush with a limit (a glaze) leaves up to as much again
+//!   in hollows, and has no limit on a palette, where paints are mixed.
+//! - A badger lets ten times as much film change places, so it softens. A blade floats on its paint by its pressure,
+//!   takes up what stands above its edge and fills what lies below: it scrapes and lays slabs.
+//! - Which strip is the lowest of a cell depends on the size of cells. So that what a brush leaves does not, paint
+//!   flows in every strip and seeps between neighbours, up to what the yield stress holds, which keeps streaks. Between
+//!   thinned strips it seeps half as fast, as it diffuses.
+//! - Levelling belongs to the stroke and lasts a second. Under moving bristles, a hundredth of a second a cell, nothing
+//!   levels that could be measured. Heights go through sixteen rounds before all paints follow by their sum; blocks in
+//!   which nothing flows rest; cells under .125 mm flow on coarser grids first. Paint just worked yields at 12 Pa;
+//!   thinner takes that away, and thinned paint wets bare ground.
 
 pub mod stages;
 

@@ -33,6 +33,30 @@
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! # Steps
+//!
+//! - Paint steps are .25 mm of the brush's way, or one cell where that is more; what is left of a way waits for more,
+//!   or for the brush to lift. So neither sample rate nor steps show, and finer cells need no more steps. A blade and a
+//!   head with a skin step a cell at a time: what a blade pushes goes before its edge, and a skin draws hairlines. A
+//!   brush that the machine cannot follow takes steps two or four times as long; the solves carry that, so a replay
+//!   does the same.
+//! - A path begins with the last step of the brush's way down, on a palette with the last four, so a press that does
+//!   not move prints, loads and is cleaned.
+//! - Strips are drawn where they are in the middle of a step, and cover each cell by its area and by the share of the
+//!   way for which they are over it. What strips cover of a cell is the product of what each leaves open; each strip
+//!   gets the cells that it covers most. The lowest strip's share alone makes strokes 14 % thinner on cells twice as
+//!   large.
+//! - Transfer is a function of travel, and paint moves in as many parts as a step has cells, so how a way is cut does
+//!   not show.
+//!
+//! # What a model brings
+//!
+//! Its step, what paint does at rest, and how its paint is shown (`ShowPaint` in `maulstick-appearance`). Paint is in
+//! counts by slot, on which wells, fills, drying, rewetting and the ledger work, and in planes of its own. A step
+//! depends on the cells around the brush alone, never on what else its window holds. Ways of using a brush (`Handling`)
+//! are parameters of the step and travel in the scene; what a mode creates or destroys is an account of the ledger. A
+//! rag would be another exchange in `transfer`.
 
 pub mod brush;
 pub mod footprint;

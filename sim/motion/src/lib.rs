@@ -25,6 +25,11 @@
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! # Mirroring
+//!
+//! A rotation R of the handle becomes M·R·B, where M mirrors the desk and B the brush in its broad side, for which each
+//! head is symmetric.
 
 pub mod cut;
 mod error;

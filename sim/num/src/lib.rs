@@ -1,5 +1,5 @@
-//! Elementary functions with the same bytes on every machine, rigid motions, loops for wide registers
-//! and work for two cores.
+//! Elementary functions with the same bytes on every machine, rigid motions, loops for wide registers and work that cores
+//! share.
 //!
 //! std's transcendentals call the system's library, which uses fused multiply-add where the
 //! processor has it: two machines would paint two pictures. The functions of f64 are those of the
@@ -16,6 +16,14 @@
 //! assert_eq!(cosine, cos(0.5));
 //! assert!((sine * sine + cosine * cosine - 1.0).abs() < 1e-15);
 //! ```
+//!
+//! # Same bytes
+//!
+//! Kernels that gain from it are compiled for AVX-512, AVX2 and neither, and all add, multiply and round alike. No
+//! `mul_add`, no transcendentals of std (`clippy.toml` forbids both), no crate that dispatches to fused multiply-add on
+//! the replay path. Every random quantity has a seed. A step is shared by one core fewer than there are, 16 at most, in
+//! shares of about a thousand cells; cores write to different places and results are combined in a fixed order, so the
+//! bytes are those of one core. Where shares are cut follows from measured times; that changes no byte either.
 
 mod elementary;
 pub mod fork_join;

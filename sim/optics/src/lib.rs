@@ -42,6 +42,25 @@
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! # Choices
+//!
+//! - Colour is computed at a few wavelengths. Which, and their weights in XYZ, are fitted to the paints and the light
+//!   when a painting begins and when its light changes. The fit is to the whole paint file, since a new paint on the
+//!   palette must not change colours on the canvas. No weight is negative: weights of either sign gain a hundredth of
+//!   the mean error, without them XYZ of any reflectance lies between black and white.
+//! - Paint mixes linearly in K and S. A film costs one exponential and one division a wavelength; the surface
+//!   correction is applied once, on top.
+//! - Views compute films on two threads or on a graphics device (`FilmBackend`), exports on the processor alone, for
+//!   the same bytes everywhere. A device that fails is replaced by the processor.
+//! - Light is a pass over unlit colour, gloss and height, here for exports and in `ui/src/render/shaders` for the view;
+//!   a test compares the two. A level surface shows its film and the surface's own reflection k₁, times intensity and
+//!   exposure. A relief casts soft shadows up to 4 mm or 24 cells, hides the sky within 2 mm or 16 cells, and light
+//!   bounces between walls of the paint's own colour; so a changed tile relights the cells around it. A cell's
+//!   unresolved slopes add to its roughness, so coarse tiles keep the gloss of finer cells.
+//! - Gamut and encoding follow light: hues are kept in Oklab, or clamped as in the dissertation. sRGB and Display P3
+//!   are our own arithmetic with profiles of constant bytes; other ICC profiles go through `moxcms`, in the window
+//!   through a cube of 33³ colours.
 
 pub mod backend;
 pub mod colour;

@@ -32,6 +32,12 @@
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! # Why a reader of our own
+//!
+//! SQLite's recovery API and its `sqlite_dbpage` table are not in the SQLite that `rusqlite` bundles. It also takes
+//! frames of the WAL only up to the first damaged one, and does not separate current rows from deleted ones on free
+//! pages, by which copies of a tile are chosen.
 
 pub mod recovery;
 pub mod sqlite;

@@ -21,6 +21,24 @@
 //!
 //! assert_eq!(StokesPaint::default().name(), "stokes");
 //! ```
+//!
+//! # Notes
+//!
+//! - Counts by slot are all the paint of a cell, as with every model; planes of its own say how much lies in each layer
+//!   above the lowest. So wells, fills, drying, undo, ledger and document know nothing of layers, and films below a
+//!   voxel need none. Optics see it from above: as thick as it is, mixed as its upper 150 µm.
+//! - Every second step bristles are put into the voxels as a porous body, the flow around them is solved from rest on
+//!   cells of .5 mm, and carries the paint voxel by voxel: marks of bristles stay as fine as the cells, and a step
+//!   follows from the cells around it alone. Brush and canvas then exchange paint as in `impasto`, from as deep as the
+//!   bristles come, and at least 100 µm. After a stroke the thin film of `impasto` levels it.
+//! - Films below two fifths of a voxel are not pushed, column by column. A sliver of a voxel over the ground belongs to
+//!   the voxel above it, except for the flow.
+//! - Paint joined to the ground by no voxel half full falls, since the flow throws up specks and brushes cut stalks.
+//!   Columns have no voids but air under an overhang: voids are sinks of the flow and leave pimples. Columns with air
+//!   are shown as high as their highest piece.
+//! - A device behind `FlowBackend` may find the flow; all else of a step runs on the processor. A device without room
+//!   for a window solves on cells twice as wide until it fits, noted once in the journal; one that is lost, or has no
+//!   room for the coarsest window, leaves all steps to the processor.
 
 pub mod coarse;
 pub mod columns;
