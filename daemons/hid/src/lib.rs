@@ -3,6 +3,9 @@
 //! A report descriptor gives the layout of a device's reports; only a few devices need tables. Everything
 //! below the daemon is pure, and a recording plays like the device.
 //!
+//! A pen that touches without pressure has 1/8192; turning it over counts as leaving and returning. While it is in range
+//! the newest sample is repeated each 50 ms, so that a stroke at rest is not broken.
+//!
 //! | module | holds |
 //! | --- | --- |
 //! | [`device_source`] | interface to plugged-in devices |

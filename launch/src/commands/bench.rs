@@ -23,6 +23,9 @@ pub struct BenchOptions {
     /// Print JSON
     #[arg(long)]
     json: bool,
+    /// Append the figures to a table of measurements (docs/measurements)
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
 }
 
 /// Runs the benchmarks.
@@ -40,6 +43,9 @@ pub fn run(options: &BenchOptions) -> Result<i32, UserError> {
     }
     if options.json {
         command.arg("--json");
+    }
+    if let Some(file) = &options.csv {
+        command.arg("--csv").arg(file);
     }
     let status = command.status().map_err(|error| {
         UserError::failure(format!("the benchmarks cannot be started: {error}"))

@@ -4,6 +4,10 @@
 //! the quantum. [`Impasto`] is one [`PaintModel`](maulstick_model::interface::PaintModel); [`stages`] holds its stages, a
 //! file each, and levelling at rest.
 //!
+//! What a stroke leaves is decided where bristles lift off: a film that bridges a gap splits in its middle, and levels as
+//! far as the yield stress of worked paint lets it. Paint flows within the head each second step, strips in turn:
+//! all at once, or more seldom, each time shows along the stroke. `maulstick bench looks` measures ridges, streaks and films.
+//!
 //! A loaded round brush drawn 10 mm over a level ground:
 //!
 //! ```

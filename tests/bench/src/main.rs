@@ -11,6 +11,7 @@
 //! | [`idle`] | `idle`: what a rig takes while nobody paints |
 //! | [`latency`] | `latency`: from a stylus sample to the first frame that holds it, without a window, in one, and of a broad brush |
 //! | [`looks`] | `looks`: films, relief and streaks of strokes |
+//! | [`measurements`] | tables of measurements (`docs/measurements`) |
 //! | [`optics`] | `optics`: colours of few wavelengths beside all; films on both backends beside a copy |
 //! | [`advection`] | `paint`: the advection by itself, beside a copy |
 //! | [`paint`] | `paint`: steps of the paint model by themselves, beside a copy |
@@ -35,6 +36,7 @@ mod header;
 mod idle;
 mod latency;
 mod looks;
+mod measurements;
 mod optics;
 mod paint;
 mod peers;
@@ -50,12 +52,20 @@ mod thread_cpu;
 mod view;
 mod window;
 
+use std::path::PathBuf;
+
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use maulstick_painting::models::model_names;
 use maulstick_rig::UserError;
 
+use crate::measurements::Measurements;
 use crate::report::Report;
+
+/// Paint model that is measured where no other is asked for.
+const MODEL: &str = "impasto";
+/// Backend that computes where no other is asked for.
+const BACKEND: &str = "cpu";
 
 /// Run benchmarks against reference programs
 #[derive(Parser)]
@@ -65,14 +75,17 @@ struct Options {
     /// recording, render, view, window [default: everything]
     area: Option<String>,
     /// Paint model to measure
-    #[arg(long, default_value = "impasto", value_parser = PossibleValuesParser::new(model_names()))]
+    #[arg(long, default_value = MODEL, value_parser = PossibleValuesParser::new(model_names()))]
     model: String,
     /// Where its steps are computed
-    #[arg(long, default_value = "cpu", value_parser = ["cpu", "gpu"])]
+    #[arg(long, default_value = BACKEND, value_parser = ["cpu", "gpu"])]
     backend: String,
     /// Print JSON
     #[arg(long)]
     json: bool,
+    /// Append the figures to a table of measurements (docs/measurements)
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
     /// The far end of the bus benchmark
     #[arg(long, hide = true)]
     far_end: Option<String>,
@@ -131,13 +144,31 @@ fn measure(options: &Options) -> Result<(), UserError> {
         let what = format!("there is no benchmark called '{area}'");
         return Err(UserError::unknown(what, area, names));
     }
+    let table = options.csv.as_deref().map(Measurements::open).transpose()?;
     let mut report = Report::new();
-    for (_, run) in areas {
+    for (area, run) in areas {
+        report.begin(command(area, options));
         run(&mut report, options)?;
+    }
+    if let Some(mut table) = table {
+        let today = jiff::Zoned::now().date().to_string();
+        table.append(&report.records(&today))?;
     }
     if options.json {
         report.print_json()
     } else {
         report.print_table()
     }
+}
+
+/// The command that measures an area in the same way.
+fn command(area: &str, options: &Options) -> String {
+    let mut command = format!("maulstick bench {area}");
+    if options.model != MODEL {
+        command += &format!(" --model {}", options.model);
+    }
+    if options.backend != BACKEND {
+        command += &format!(" --backend {}", options.backend);
+    }
+    command
 }

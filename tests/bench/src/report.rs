@@ -5,6 +5,8 @@ use std::io::Write as _;
 use maulstick_rig::UserError;
 use serde::Serialize;
 
+use crate::measurements::Record;
+
 /// One measured number, with that of a peer measured in the same run.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Row {
@@ -20,6 +22,23 @@ pub(crate) struct Row {
     peer_value: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     ratio: Option<f64>,
+    #[serde(skip)]
+    run: Run,
+}
+
+/// How a row is measured.
+#[derive(Clone, Debug)]
+struct Run {
+    command: String,
+    adapter: String,
+}
+
+impl Run {
+    /// On the processor.
+    fn of(command: String) -> Self {
+        let adapter = "cpu".to_owned();
+        Self { command, adapter }
+    }
 }
 
 /// What was measured, and on what.
@@ -28,6 +47,9 @@ pub(crate) struct Report {
     machine: String,
     adapter: String,
     rows: Vec<Row>,
+    /// Of the rows that follow.
+    #[serde(skip)]
+    run: Run,
 }
 
 impl Report {
@@ -44,25 +66,42 @@ impl Report {
             machine: format!("{model}, {cores} cores, {}", std::env::consts::OS),
             adapter: "cpu".to_owned(),
             rows: Vec::new(),
+            run: Run::of("maulstick bench".to_owned()),
         }
+    }
+
+    /// The rows that follow are measured by `command`, on the processor until [`Report::on`] names another adapter.
+    pub(crate) fn begin(&mut self, command: String) {
+        self.run = Run::of(command);
     }
 
     /// What else it was measured on.
     pub(crate) fn on(&mut self, adapter: &str) {
         adapter.clone_into(&mut self.adapter);
+        adapter.clone_into(&mut self.run.adapter);
     }
 
     /// A number alone.
     pub(crate) fn row(&mut self, name: &str, value: f64, unit: &'static str) {
-        let name = name.to_owned();
+        self.push(name, (value, unit), None);
+    }
+
+    /// A number with its unit, and that of a peer with our ratio to it.
+    fn push(
+        &mut self,
+        name: &str,
+        (value, unit): (f64, &'static str),
+        beside: Option<(&'static str, f64, f64)>,
+    ) {
         self.rows.push(Row {
-            name,
+            name: name.to_owned(),
             value,
             unit,
             unmeasured: None,
-            peer: None,
-            peer_value: None,
-            ratio: None,
+            peer: beside.map(|(peer, _, _)| peer),
+            peer_value: beside.map(|(_, value, _)| value),
+            ratio: beside.map(|(_, _, ratio)| ratio),
+            run: self.run.clone(),
         });
     }
 
@@ -85,17 +124,9 @@ impl Report {
         name: &str,
         value: f64,
         unit: &'static str,
-        peer: (&'static str, f64),
+        (peer, theirs): (&'static str, f64),
     ) {
-        self.rows.push(Row {
-            name: name.to_owned(),
-            value,
-            unit,
-            unmeasured: None,
-            peer: Some(peer.0),
-            peer_value: Some(peer.1),
-            ratio: Some(value / peer.1),
-        });
+        self.push(name, (value, unit), Some((peer, theirs, value / theirs)));
     }
 
     /// Numbers of ours and of a peer, measured in turn: the median of each, and of their ratio.
@@ -108,15 +139,32 @@ impl Report {
     ) {
         let median =
             |of: fn(&(f64, f64)) -> f64| quantile(&sorted(pairs.iter().map(of).collect()), 0.5);
-        self.rows.push(Row {
-            name: name.to_owned(),
-            value: median(|pair| pair.0),
-            unit,
-            unmeasured: None,
-            peer: Some(peer),
-            peer_value: Some(median(|pair| pair.1)),
-            ratio: Some(median(|pair| pair.0 / pair.1)),
-        });
+        let beside = (peer, median(|pair| pair.1), median(|pair| pair.0 / pair.1));
+        self.push(name, (median(|pair| pair.0), unit), Some(beside));
+    }
+
+    /// The figures in the columns of [`measurements`](crate::measurements), a record each; a row without one has none.
+    pub(crate) fn records(&self, date: &str) -> Vec<Record> {
+        let measured = self.rows.iter().filter(|row| row.value.is_finite());
+        let record = |row: &Row| {
+            let note = match (row.peer, row.peer_value, row.ratio) {
+                (Some(peer), Some(value), Some(ratio)) => {
+                    format!("{peer} {}, ratio {}", rounded(value), rounded(ratio))
+                }
+                _ => String::new(),
+            };
+            [
+                date.to_owned(),
+                self.machine.clone(),
+                row.run.adapter.clone(),
+                row.run.command.clone(),
+                row.name.clone(),
+                rounded(row.value),
+                row.unit.to_owned(),
+                note,
+            ]
+        };
+        measured.map(record).collect()
     }
 
     /// Prints the report as JSON.
@@ -163,6 +211,12 @@ fn short(value: f64) -> String {
     }
 }
 
+/// A number in six digits.
+fn rounded(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    rounded.to_string()
+}
+
 /// The value at a share of sorted ones.
 pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
     let place = (share * (sorted.len().max(1) - 1) as f64).round() as usize;
@@ -173,4 +227,51 @@ pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
 pub(crate) fn sorted(mut values: Vec<f64>) -> Vec<f64> {
     values.sort_by(f64::total_cmp);
     values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_figure_is_a_record_with_its_own_command_and_adapter() {
+        let mut report = Report::new();
+        report.machine = "a machine, 2 cores".into();
+        report.begin("maulstick bench optics".into());
+        report.beside("km.tiles_per_s", 2750.0, "tiles/s", ("memcpy", 44000.0));
+        report.on("a GPU");
+        report.row("relight", 0.049_000_04, "s");
+        report.unmeasured("km.gpu", "no device".into());
+        report.begin("maulstick bench bus".into());
+        report.row("sample.p50", 1.0 / 3.0, "µs");
+
+        let machine = "a machine, 2 cores";
+        let expected = [
+            [
+                "cpu",
+                "optics",
+                "km.tiles_per_s",
+                "2750",
+                "tiles/s",
+                "memcpy 44000, ratio 0.0625",
+            ],
+            ["a GPU", "optics", "relight", "0.049", "s", ""],
+            ["cpu", "bus", "sample.p50", "0.333333", "µs", ""],
+        ]
+        .map(|[adapter, area, what, value, unit, note]| {
+            let command = format!("maulstick bench {area}");
+            [
+                "2026-11-27",
+                machine,
+                adapter,
+                &command,
+                what,
+                value,
+                unit,
+                note,
+            ]
+            .map(str::to_owned)
+        });
+        assert_eq!(report.records("2026-11-27"), expected);
+    }
 }

@@ -1,5 +1,5 @@
 //! Work beside the steps of the 30 s recording: packing its PNG, its light, the heights of its tooth; each as a share
-//! of the processor's time for all of it.
+//! of the processor's time for all of it, so a busy machine shows the same. Medians of five.
 
 use std::time::Duration;
 

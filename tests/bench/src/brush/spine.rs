@@ -1,4 +1,8 @@
 //! One spine on its stroke: our solver beside slsqp, pose by pose.
+//!
+//! Both minimise the same smoothed energy with analytic gradients, slsqp over θ and φ with the heights of the joints as
+//! constraints, and begin each pose from our solution of the one before. The excess of our energy over slsqp's is taken
+//! under the contacts of our last minimisation.
 
 use std::time::Instant;
 

@@ -1,4 +1,6 @@
-//! A live hand with a broad brush on fine cells, from its samples to the first frames that hold them.
+//! A live hand with a broad brush on fine cells, from its samples to the first frames that hold them. A take would wait
+//! for its paint instead. `steps_once`, `steps_twice`, `steps_four_times` are the shares of the solves whose steps were
+//! that long.
 
 use std::f64::consts::FRAC_PI_2;
 use std::path::Path;

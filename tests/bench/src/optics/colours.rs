@@ -1,4 +1,5 @@
-//! Rules of few wavelengths beside all 101 samples, over mixtures that they were not fitted to.
+//! Rules of few wavelengths beside all 101 samples, over mixtures that they were not fitted to: of one to four of the
+//! measured paints with Dirichlet shares, half masstones, half films of 5 to 200 µm over black and white.
 
 use std::time::Instant;
 

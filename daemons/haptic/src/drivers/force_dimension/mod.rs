@@ -1,6 +1,9 @@
 //! Force Dimension's omega, delta, sigma and lambda, and Novint's Falcon, through the vendor's libdhd (SDK 3.16), which is
 //! polled by our own clock.
 //!
+//! A call that fails, values that are not finite, or 200 readings without anything new end the force. The amplifiers are
+//! off while nothing is touched, after a fault, and once the daemon ends.
+//!
 //! | module | holds |
 //! | --- | --- |
 //! | [`library`] | the vendor's functions |

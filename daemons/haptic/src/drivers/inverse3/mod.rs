@@ -1,6 +1,10 @@
 //! Haply's Inverse3 with its VerseGrip, by Haply's Inverse service: JSON over a WebSocket
 //! (docs.haply.co, inverseSDK, version 3.5, and what differs before).
 //!
+//! A force goes out for each state that comes in, at most four per millisecond. A state older than 20 ms is ignored; a
+//! force that was not renewed, or not answered, for 20 ms drops to zero. A silent grip releases its switches, and after a
+//! second the brush is out of range.
+//!
 //! | module | holds |
 //! | --- | --- |
 //! | [`address`] | which device of which service |

@@ -3,6 +3,8 @@
 //!
 //! Facts of the interface are from the vendor's public headers and reference guide, practice from the
 //! drivers of CHAI3D, OpenSurgSim and ROS.
+//! Nine tenths of the driver's own limits of speed and of change of the force are kept where they are below ours (1.5 m/s,
+//! 400 N/s).
 //!
 //! | module | holds |
 //! | --- | --- |

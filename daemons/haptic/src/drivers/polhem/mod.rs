@@ -1,5 +1,9 @@
-//! WoodenHaptics and Polhem styluses at a serial port, which do their own kinematics: they get forces and
-//! tell poses (forsslund/haptikfabrikenapi, uAPI v0.2).
+//! WoodenHaptics and Polhem styluses at a serial port, which do their own kinematics: they receive forces and
+//! send poses (forsslund/haptikfabrikenapi, uAPI v0.2).
+//!
+//! A lost answer takes the force away for 20 ms; the device's watchdog ends it 100 ms after the last command, so none stays
+//! after a crash. Commands have 63 bytes, or 64 if the firmware does not answer 63 with a pose. Poses do not hold the
+//! button: it is asked for 20 times a second while there is no force. Velocity is a low pass of the positions at 60 Hz.
 //!
 //! | module | holds |
 //! | --- | --- |
