@@ -163,8 +163,7 @@ pub fn contact_model(
 
 #[cfg(test)]
 mod tests {
-    use glam::DQuat;
-    use maulstick_num::geometry::Rigid;
+    use maulstick_num::geometry::{Rigid, rotation};
     use maulstick_painting::PaintingSetup;
 
     use super::*;
@@ -192,7 +191,7 @@ mod tests {
     fn a_model_has_the_depth_of_the_unbent_tip_along_the_normal_and_the_length_of_the_head() {
         let file = BrushFile::library("round").expect("a brush");
         // A plane through (0, 0, 30 mm) that leans by 30° to +y.
-        let lean = DQuat::from_rotation_x(-std::f64::consts::FRAC_PI_6);
+        let lean = rotation(DVec3::X, -std::f64::consts::FRAC_PI_6);
         let plane = Plane {
             id: CANVAS,
             to_desk: Rigid {
