@@ -1,8 +1,7 @@
 //! Everything over the desk: rack, panels, dialogs, notifications, the line of help; and the keys for them.
 
 use eframe::egui::{self, Align, Align2, Context, Layout, Rect, Ui};
-use maulstick_types::Mixture;
-use maulstick_types::command::Command;
+use maulstick_types::command::{Command, Detail};
 use maulstick_types::edits::{Clean, Dry, Edit, Redo, Relight, Scrape, Undo};
 use maulstick_types::scene::{CANVAS, Light, PALETTE};
 use maulstick_types::values::BrushName;
@@ -18,7 +17,7 @@ use crate::input::keymap::Keymap;
 use crate::input::keys::{self, Action};
 use crate::input::presses;
 use crate::input::size_drag::SizeDrag;
-use crate::language::{step, translated};
+use crate::language::{layer_name, step, translated};
 use crate::matching::colour_window::ColourWindow;
 use crate::motions::Motions;
 use crate::panels;
@@ -184,11 +183,10 @@ impl Overlay {
             Err(fault) => work.notifications.of(fault),
             Ok(detail) => {
                 if let Some(done) = past_tense(&outcome.request) {
-                    let what = match detail.is_empty() {
-                        true => done.to_owned(),
-                        false => format!("{done}: {}", told(detail)),
-                    };
-                    work.notifications.note(what);
+                    work.notifications.note(match told(detail) {
+                        Some(told) => format!("{done}: {told}"),
+                        None => done.to_owned(),
+                    });
                 }
             }
         }
@@ -368,11 +366,14 @@ fn fill_screen(context: &Context, fills: bool) {
     context.send_viewport_cmd(egui::ViewportCommand::Fullscreen(fills));
 }
 
-/// What an edit was about, as a painter reads it: a step, or a mixture.
-fn told(detail: &str) -> String {
-    match detail.parse::<Mixture>() {
-        Ok(mixture) if detail.contains('=') => brush_load::words(&mixture),
-        _ => step(detail),
+/// What an edit was about, as a painter reads it.
+fn told(detail: &Detail) -> Option<String> {
+    match detail {
+        Detail::Nothing => None,
+        Detail::Step { name } => Some(step(name)),
+        Detail::Dried { layer } => Some(layer_name(layer)),
+        Detail::Loaded { mixture } => Some(brush_load::words(&mixture.without_traces())),
+        Detail::Words { words } => Some(words.clone()),
     }
 }
 
@@ -400,8 +401,10 @@ fn past_tense(request: &Request) -> Option<&'static str> {
 mod tests {
     use eframe::egui::{Key, Modifiers};
     use egui_kittest::Harness;
-    use maulstick_types::command::Command;
+    use maulstick_types::command::{Command, Detail};
     use maulstick_types::edits::{Edit, Relight};
+    use maulstick_types::paint::StepName;
+    use maulstick_types::scene::Layer;
 
     use crate::settings::preferences::Preferences;
     use crate::test_support::overlay_bench::{Bench, ctrl, press, window};
@@ -410,10 +413,17 @@ mod tests {
     #[test]
     fn what_a_key_has_done_is_told_once_it_is_done() {
         let mut harness = window(None);
+        let name = StepName::Fill;
+        let layer = Layer {
+            number: 1,
+            name: "layer 1".to_owned(),
+            opacity: 1.0,
+        };
+        let (undone, dried) = (Detail::Step { name }, Detail::Dried { layer });
         for (key, detail, told) in [
-            (Key::Z, "stroke", "Undone: stroke"),
-            (Key::D, "layer 1", "Dried: layer 1"),
-            (Key::Backspace, "", "Scraped"),
+            (Key::Z, undone, "Undone: fill"),
+            (Key::D, dried, "Dried: layer 1"),
+            (Key::Backspace, Detail::Nothing, "Scraped"),
         ] {
             match key {
                 Key::Z => ctrl(&mut harness, key, Modifiers::NONE),
@@ -465,11 +475,17 @@ mod tests {
 
     #[test]
     fn mixtures_are_told_in_per_cent_also_those_of_one_paint() {
-        let one = super::told("Burnt Sienna=1.000");
-        assert_eq!(one, "Burnt Sienna");
-        let two = super::told("Burnt Sienna=0.12,Thinner=0.88");
-        assert_eq!(two, "Burnt Sienna 12 %, Thinner 88 %");
-        assert_eq!(super::told("layer 1"), "layer 1");
+        for (parts, words) in [
+            ("Burnt Sienna=1", "Burnt Sienna"),
+            (
+                "Burnt Sienna=0.12,Thinner=0.88",
+                "Burnt Sienna 12 %, Thinner 88 %",
+            ),
+        ] {
+            let mixture = parts.parse().expect("a mixture");
+            let told = super::told(&Detail::Loaded { mixture });
+            assert_eq!(told.as_deref(), Some(words));
+        }
     }
 
     #[test]

@@ -335,11 +335,12 @@ impl Files {
             Ok(detail) => {
                 self.move_tracing(command, work);
                 // Some answers hold nothing but the path, which is shown already.
-                let is_told = done.contains(&paths::shown(Path::new(detail)));
+                let said = detail.to_string();
+                let is_told = done.contains(&paths::shown(Path::new(&said)));
                 let sentence = if is_told {
                     String::new()
                 } else {
-                    in_words(detail, "")
+                    in_words(&said, "")
                 };
                 work.notifications
                     .note(format!("{done} {sentence}").trim().to_owned());
