@@ -85,7 +85,6 @@ fn its_steps_have_names_and_it_is_painted_on() {
         },
     ];
     assert_eq!(steps(&easel), named);
-    easel.sequencer.go_on();
     let undone = easel.sequencer.edit(Undo { brush: None });
     undone.expect("the return is undone");
     easel.close();

@@ -1,8 +1,9 @@
 //! Everything over the desk: rack, panels, dialogs, notifications, the line of help; and the keys for them.
 
+mod outcome_words;
+
 use eframe::egui::{self, Align, Align2, Context, Layout, Rect, Ui};
-use maulstick_types::command::{Command, Detail};
-use maulstick_types::edits::{Clean, Dry, Edit, Redo, Relight, Scrape, Undo};
+use maulstick_types::edits::{Clean, Dry, Redo, Relight, Scrape, Undo};
 use maulstick_types::scene::{CANVAS, Light, PALETTE};
 use maulstick_types::values::BrushName;
 
@@ -17,18 +18,16 @@ use crate::input::keymap::Keymap;
 use crate::input::keys::{self, Action};
 use crate::input::presses;
 use crate::input::size_drag::SizeDrag;
-use crate::language::{layer_name, step, translated};
+use crate::language::translated;
 use crate::matching::colour_window::ColourWindow;
 use crate::motions::Motions;
 use crate::panels;
 use crate::panels::light::lamp_undo::LampUndo;
 use crate::reference::Reference;
 use crate::rig::dispatcher::Outcome;
-use crate::rig::requests::Request;
 use crate::rig::state::RigState;
 use crate::sessions::SessionOrder;
 use crate::sessions::transport_bar::TransportBar;
-use crate::settings::brush_load;
 use crate::settings::brush_memory::BrushMemory;
 use crate::settings::preferences::Preferences;
 use crate::settings_page::SettingsPage;
@@ -182,11 +181,8 @@ impl Overlay {
         match &outcome.result {
             Err(fault) => work.notifications.of(fault),
             Ok(detail) => {
-                if let Some(done) = past_tense(&outcome.request) {
-                    work.notifications.note(match told(detail) {
-                        Some(told) => format!("{done}: {told}"),
-                        None => done.to_owned(),
-                    });
+                if let Some(done) = outcome_words::done(&outcome.request, detail) {
+                    work.notifications.note(done);
                 }
             }
         }
@@ -366,37 +362,6 @@ fn fill_screen(context: &Context, fills: bool) {
     context.send_viewport_cmd(egui::ViewportCommand::Fullscreen(fills));
 }
 
-/// What an edit was about, as a painter reads it.
-fn told(detail: &Detail) -> Option<String> {
-    match detail {
-        Detail::Nothing => None,
-        Detail::Step { name } => Some(step(name)),
-        Detail::Dried { layer } => Some(layer_name(layer)),
-        Detail::Loaded { mixture } => Some(brush_load::words(&mixture.without_traces())),
-        Detail::Words { words } => Some(words.clone()),
-    }
-}
-
-/// The deed of an edit whose effect may be out of view.
-fn past_tense(request: &Request) -> Option<&'static str> {
-    let Request::Command {
-        command: Command::Edit(edit),
-        ..
-    } = request
-    else {
-        return None;
-    };
-    match edit {
-        Edit::Undo(_) => Some(tr!("Undone")),
-        Edit::Redo(_) => Some(tr!("Redone")),
-        Edit::GoTo(_) => Some(tr!("Now")),
-        Edit::Dry(_) => Some(tr!("Dried")),
-        Edit::LoadFrom(_) => Some(tr!("Loaded")),
-        Edit::Scrape(_) => Some(tr!("Scraped")),
-        _ => None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use eframe::egui::{Key, Modifiers};
@@ -471,21 +436,6 @@ mod tests {
             matches!(asked[0].1, Command::Edit(Edit::Undo(_))),
             "{asked:?}"
         );
-    }
-
-    #[test]
-    fn mixtures_are_told_in_per_cent_also_those_of_one_paint() {
-        for (parts, words) in [
-            ("Burnt Sienna=1", "Burnt Sienna"),
-            (
-                "Burnt Sienna=0.12,Thinner=0.88",
-                "Burnt Sienna 12 %, Thinner 88 %",
-            ),
-        ] {
-            let mixture = parts.parse().expect("a mixture");
-            let told = super::told(&Detail::Loaded { mixture });
-            assert_eq!(told.as_deref(), Some(words));
-        }
     }
 
     #[test]
