@@ -239,10 +239,9 @@ fn devices_that_are_not_there_are_told_once_and_the_rig_goes_on_with_the_others(
     ] {
         let topic = topics.stylus_status(name);
         let mut statuses = listen::<StylusStatus>(&bus, &topic, Qos::Background);
-        let told = hear(&mut statuses, |status| !status.trouble.is_empty());
-        let trouble = told
-            .unwrap_or_else(|| panic!("{name}: {}", launcher.said()))
-            .trouble;
+        let told = hear(&mut statuses, |status| status.trouble().is_some());
+        let told = told.unwrap_or_else(|| panic!("{name}: {}", launcher.said()));
+        let trouble = told.trouble().expect("trouble").to_string();
         assert!(
             trouble.to_lowercase().contains(&word.to_lowercase()),
             "{name}: {trouble}"

@@ -1,22 +1,17 @@
 //! Report of a device that is not there.
 
 use maulstick_rig::UserError;
-use maulstick_types::stylus::StylusStatus;
-
-/// A status has no room for more, bytes.
-const LONGEST: usize = 2048;
+use maulstick_types::stylus::{StylusStatus, Trouble};
 
 /// Reports why the device `name` is missing, once in the log and in the status while it lasts.
 pub fn report_missing(name: &str, fault: &UserError, told: &mut StylusStatus) {
     let place = fault.place.as_ref().map(|place| format!(" ({place})"));
-    let mut trouble = format!("{}{}", fault.what, place.unwrap_or_default());
-    if let Some(help) = &fault.help {
-        trouble = format!("{trouble}; {help}");
-    }
-    trouble.truncate(trouble.floor_char_boundary(LONGEST));
-    if trouble != told.trouble {
+    let trouble = Trouble {
+        what: &format!("{}{}", fault.what, place.unwrap_or_default()),
+        help: fault.help.as_deref().unwrap_or_default(),
+    };
+    if told.report(trouble) {
         tracing::warn!("{name}: {trouble} (tried again each second)");
-        told.trouble = trouble;
     }
 }
 
@@ -31,8 +26,13 @@ mod tests {
             .at("/dev/hidraw0")
             .help("plug it in");
         report_missing("tablet", &fault, &mut told);
-        assert_eq!(told.trouble, "no pen (/dev/hidraw0); plug it in");
-        report_missing("tablet", &UserError::failure("ä".repeat(5000)), &mut told);
-        assert_eq!(told.trouble.len(), LONGEST);
+        let trouble = Trouble {
+            what: "no pen (/dev/hidraw0)",
+            help: "plug it in",
+        };
+        assert_eq!(told.trouble(), Some(trouble));
+        let long = UserError::failure("ä".repeat(5000)).help("ü".repeat(5000));
+        report_missing("tablet", &long, &mut told);
+        assert!(maulstick_types::encoded_bytes(&told).is_ok());
     }
 }

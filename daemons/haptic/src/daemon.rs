@@ -372,7 +372,7 @@ impl Daemon {
         self.told.execution[bin(record.spent_ns)] += 1;
         self.told.force_n = record.force.length();
         // Only a reading ends the reported trouble: a device may be lost again before it gives one.
-        self.told.trouble.clear();
+        self.told.clear_trouble();
         if let Some(fault) = record.tick.fault
             && record.rearms == self.control.rearms
         {
@@ -448,9 +448,9 @@ impl Daemon {
 
     /// Reason why the device has no force, or an empty text.
     fn fault(&self) -> String {
-        match self.told.faults.is_empty() {
-            true => self.told.trouble.clone(),
-            false => self.told.faults.join("; "),
+        match self.told.trouble() {
+            Some(trouble) if self.told.faults.is_empty() => trouble.to_string(),
+            _ => self.told.faults.join("; "),
         }
     }
 }

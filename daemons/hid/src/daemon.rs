@@ -344,7 +344,7 @@ impl Daemon {
         let (identity, descriptor) = (opened.identity, opened.source.descriptor().to_vec());
         match (opened.means, &mut self.recorder) {
             (Ok(means), _) => {
-                self.told.trouble.clear();
+                self.told.clear_trouble();
                 self.begin(means, &identity, &descriptor, now_ns)?;
             }
             (Err(fault), None) => {

@@ -10,7 +10,8 @@ use maulstick_rig::UserError;
 use maulstick_rig::config::PEN_PRIORITY;
 use maulstick_types::Origin;
 use maulstick_types::stylus::{
-    DEFAULT_TILT_RAD, FARTHEST_M, StylusInfo, StylusPose, StylusSample, StylusStatus, axes, switch,
+    DEFAULT_TILT_RAD, FARTHEST_M, StylusInfo, StylusPose, StylusSample, StylusStatus, Trouble,
+    axes, switch,
 };
 use maulstick_types::wire::topics::Topics;
 
@@ -259,14 +260,16 @@ impl WindowStylus {
 
     /// Tells why no pen is read, and what to do.
     pub fn fail(&mut self, fault: &UserError) {
-        let help = fault.help.as_deref().unwrap_or_default();
-        let trouble = format!("{}; {help}", fault.what);
+        let trouble = Trouble {
+            what: &fault.what,
+            help: fault.help.as_deref().unwrap_or_default(),
+        };
         tracing::warn!("{trouble}");
-        let status = StylusStatus {
-            trouble,
+        let mut status = StylusStatus {
             samples: self.stream.sent(),
             ..StylusStatus::fresh(0)
         };
+        status.report(trouble);
         let now_ns = self.bus.now_ns();
         if let Err(error) = self.status.send(now_ns, now_ns, &status) {
             tracing::debug!("its status is not sent: {error}");

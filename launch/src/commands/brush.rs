@@ -14,6 +14,7 @@ use maulstick_rig::config::BrushSection;
 use maulstick_rig::config::toml_fault;
 use maulstick_rig::files::{Kind, check_writable, write_whole};
 use maulstick_rig::table_file::{MOST_BYTES, read_table};
+use maulstick_types::command::advice::Advice;
 use maulstick_types::values::{BrushName, BrushToml};
 use serde_json::json;
 
@@ -256,11 +257,9 @@ fn read_spine(path: &Path) -> Result<SpineFile, UserError> {
     const HELP: &str = "see what a spine file holds: `maulstick brush solve --help`";
     let (text, name) = read(path)?;
     let file: SpineFile = toml::from_str(&text).map_err(|error| {
-        let fault = toml_fault(&text, &name, &error);
-        match fault.what.starts_with("unknown key") {
-            true => fault,
-            false => fault.help(HELP),
-        }
+        // An unknown key has the keys that there are as its advice.
+        let own = |advice: &Advice| (*advice == Advice::DefaultSettings).then(|| HELP.to_owned());
+        toml_fault(&text, &name, &error).worded(own)
     })?;
     let refused = |error: BrushError| UserError::usage(error.to_string()).at(name).help(HELP);
     file.check().map_err(refused)?;

@@ -13,7 +13,7 @@ use std::ffi::CString;
 use std::path::PathBuf;
 
 use maulstick_bus::RigFolder;
-use maulstick_rig::config::{DeviceSection, RigConfig};
+use maulstick_rig::config::{BRUSH_NODE, DeviceSection, RigConfig};
 use maulstick_rig::log::log_to_stderr;
 use maulstick_rig::{NodeArgs, NodeHandle, UserError};
 use nix::sys::prctl::{set_name, set_pdeathsig};
@@ -129,7 +129,7 @@ impl Program {
 /// Name of a brush's node.
 #[must_use]
 pub fn brush_node_name(brush: &str) -> String {
-    format!("brush-{brush}")
+    format!("{BRUSH_NODE}{brush}")
 }
 
 /// Options of every node.

@@ -15,6 +15,7 @@ use maulstick_painting::models::AUTO;
 use maulstick_painting::{Painting, Sequencer};
 use maulstick_rig::config::RigConfig;
 use maulstick_rig::{NodeHandle, UserError};
+use maulstick_types::paint::Decision;
 use nix::sys::signal::Signal;
 
 use super::NodeOptions;
@@ -113,7 +114,7 @@ fn painting(config: &RigConfig) -> Result<(Option<Document>, Sequencer, u64), Us
     let library = library_from(config.paint.paints.as_deref())?;
     let setup = painting_setup(config, &library)?;
     let mut sequencer = Sequencer::new(Painting::new(&setup, library).map_err(refused)?);
-    sequencer.decide("backend cpu");
+    sequencer.decide(Decision::Backend { name: "cpu".into() });
     Ok((None, sequencer, 0))
 }
 

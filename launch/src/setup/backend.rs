@@ -3,6 +3,7 @@
 use maulstick_gpu::{Choice, Device, DeviceModel};
 use maulstick_painting::Sequencer;
 use maulstick_rig::UserError;
+use maulstick_types::paint::Decision;
 use maulstick_types::scene::CANVAS;
 
 /// Setting of the backend.
@@ -34,9 +35,9 @@ pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), Us
     match (made, choice) {
         (Ok(model), _) => {
             sequencer.painting_mut().set_model(model);
-            let chosen = sequencer.painting().backend();
-            tracing::info!("paint is computed by {chosen}");
-            sequencer.decide(&format!("backend {chosen}"));
+            let name = sequencer.painting().backend();
+            tracing::info!("paint is computed by {name}");
+            sequencer.decide(Decision::Backend { name });
             Ok(())
         }
         (Err(_), Choice::Auto) => Ok(()),

@@ -11,6 +11,7 @@ use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, RigConfig};
 use maulstick_rig::files::{Kind, check_writable};
 use maulstick_rig::user_error::EXIT_FAILURE;
+use maulstick_types::paint::Decision;
 use maulstick_types::scene::{CANVAS, Scene};
 
 use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
@@ -114,7 +115,7 @@ fn go_on_by(
             let pager = document.pager().clone();
             let painting = Painting::paged(&setup, library, pager).map_err(refused)?;
             let mut sequencer = Sequencer::new(painting);
-            sequencer.decide("backend cpu");
+            sequencer.decide(Decision::Backend { name: "cpu".into() });
             (sequencer, 0)
         }
     };

@@ -7,7 +7,7 @@ use crate::user_error::UserError;
 use maulstick_bus::typed::{ask, random_epoch, random_u64};
 use maulstick_bus::{Bus, BusError, Qos};
 use maulstick_types::command::{
-    After, Command, CommandReply, CommandRequest, Outcome, TakeCommand,
+    After, Command, CommandReply, CommandRequest, Detail, Outcome, TakeCommand,
 };
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
@@ -16,12 +16,12 @@ use maulstick_types::{Origin, name_hash};
 const ASK: Duration = Duration::from_secs(2);
 
 /// A command that is done.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Done {
     /// Its index in the painting's journal; 0 of one that is not in it.
     pub journal: u64,
-    /// What it wrote or found, in words; may be empty.
-    pub detail: String,
+    /// What it wrote or found.
+    pub detail: Detail,
 }
 
 /// Client that sends commands to a node.
@@ -75,7 +75,7 @@ impl CommandClient {
         after: Option<After>,
         patience: Duration,
         stop: &dyn Fn() -> bool,
-    ) -> Result<String, UserError> {
+    ) -> Result<Detail, UserError> {
         let done = self.carry_out(command, after, patience, stop)?;
         Ok(done.detail)
     }

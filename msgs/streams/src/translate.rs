@@ -1,7 +1,8 @@
 //! Messages of other versions: a value that one field table gave, as the body that another one has.
 //!
 //! Fields and alternatives are found by name. What the value lacks is 0, none or empty; what the table does not have is left
-//! out.
+//! out. A text where the table has an enum with an alternative [`WORDS`] is that alternative: an earlier version had in words
+//! what is typed now, and reads them itself ([`maulstick_types::wire::worded`]).
 
 use std::sync::Arc;
 
@@ -10,6 +11,9 @@ use maulstick_types::{DecodeError, Header, Message, decode};
 use crate::field_table::{Definition, FieldTable, TableError, Type, TypedField};
 use crate::recording::{RecordedMessage, Topic};
 use crate::value::{Fields, Value};
+
+/// Name of the alternative for words, and of its field.
+const WORDS: [&str; 2] = ["Words", "words"];
 
 /// Deepest nesting of what is filled in: a table may refer to itself.
 const DEEPEST: usize = 32;
@@ -165,8 +169,15 @@ impl Writer<'_> {
             (Definition::Enum(variants), Some(Value::Variant(name, values))) => {
                 self.variant(variants, name, values, depth)
             }
-            (Definition::Enum(variants), Some(Value::Text(name))) => {
-                self.variant(variants, name, &Vec::new(), depth)
+            (Definition::Enum(variants), Some(Value::Text(text))) => {
+                let [words, field] = WORDS;
+                let has = |wanted: &str| variants.iter().any(|(own, _)| **own == *wanted);
+                if has(text) || !has(words) {
+                    self.variant(variants, text, &Vec::new(), depth)
+                } else {
+                    let fields = vec![(field.into(), Value::Text(text.clone()))];
+                    self.variant(variants, words, &fields, depth)
+                }
             }
             (Definition::Enum(variants), None) => {
                 self.put(&[0; 4]);
@@ -215,7 +226,7 @@ impl Writer<'_> {
 mod tests {
     use maulstick_types::brush::BrushState;
     use maulstick_types::command::{Command, TakeCommand};
-    use maulstick_types::paint::{Entry, JournalEntry};
+    use maulstick_types::paint::{Decision, Entry, JournalEntry};
     use maulstick_types::wire::header::HEADER_BYTES;
     use maulstick_types::{Flags, Origin, encode};
 
@@ -289,6 +300,46 @@ mod tests {
         let hash = JournalEntry::schema().hash.to_string();
         let older = change(&json).replacen(&hash, "77", 1);
         Topic::of(FieldTable::parse(older.as_bytes()).expect("a table"))
+    }
+
+    /// Decisions were words in the field that is an enum now.
+    #[test]
+    fn decisions_in_words_are_typed() {
+        let json = |message: &str| {
+            let schema = JournalEntry::schema().whole();
+            let json = serde_json::to_string(&schema).expect("JSON");
+            let typed = r#"{"name":"what","type":"Decision"}"#;
+            assert!(json.contains(typed), "{json}");
+            json.replace(typed, &format!(r#"{{"name":"what","type":"{message}"}}"#))
+        };
+        let older = older(|_| json("String"));
+        for (words, typed) in [
+            ("the painting goes on", Decision::Resumed),
+            (
+                "model dab proposed",
+                Decision::LighterModel {
+                    model: "dab".into(),
+                },
+            ),
+            (
+                "none that is known",
+                Decision::Words {
+                    words: "none that is known".into(),
+                },
+            ),
+        ] {
+            let tagged = |tag: u32, text: &str| {
+                let length = (text.len() as u64).to_le_bytes();
+                [&tag.to_le_bytes()[..], &length, text.as_bytes()].concat()
+            };
+            let mut bytes = message(&entry());
+            bytes.truncate(HEADER_BYTES + 8);
+            bytes.extend(tagged(4, words));
+            let length = (bytes.len() - HEADER_BYTES) as u32;
+            bytes[20..24].copy_from_slice(&length.to_le_bytes());
+            let (_, read) = older.read::<JournalEntry>(&recorded(bytes)).expect("older");
+            assert_eq!(read.entry, Entry::Decision { what: typed });
+        }
     }
 
     fn recorded(mut bytes: Vec<u8>) -> RecordedMessage {

@@ -8,6 +8,8 @@ use crate::wire::define::wire_struct;
 
 /// Largest difference from 1 of the sum of shares that counts as rounding.
 const SUM_TOLERANCE: f64 = 1e-3;
+/// Share from which a part is worth saying.
+const LEAST_SAID: f64 = 5e-4;
 
 wire_struct! {
     /// One paint of a mixture.
@@ -81,6 +83,15 @@ pub enum MixtureError {
 }
 
 impl Mixture {
+    /// The mixture for a reader: without parts below half a thousandth.
+    #[must_use]
+    pub fn without_traces(&self) -> Self {
+        let parts = self.parts.iter().filter(|part| part.share >= LEAST_SAID);
+        Self {
+            parts: parts.cloned().collect(),
+        }
+    }
+
     /// One paint, pure.
     #[must_use]
     pub fn pure(paint: &str) -> Self {

@@ -1,5 +1,7 @@
 //! Messages of an input device: samples, properties, status, and the position of a played take.
 
+use std::fmt;
+
 use crate::command::After;
 use crate::pose::Pose;
 use crate::wire::define::{message, wire_enum, wire_struct};
@@ -41,6 +43,9 @@ pub const DEFAULT_TILT_RAD: [f64; 2] = [0.387_596_686_655_180_66, -0.387_596_686
 /// Limit on the distance of a sample from the desk's origin along each axis, m: a motion over all of it can still be
 /// followed cell by cell.
 pub const FARTHEST_M: f64 = 10.0;
+
+/// Longest text of a trouble, bytes: a status has no room for more.
+const LONGEST_TEXT: usize = 1024;
 
 wire_enum! {
     /// Pose of a stylus in the desk frame, as its device senses it.
@@ -106,6 +111,52 @@ impl StylusStatus {
             is_guided: false,
             guidance: 1.0,
             refused_senders: 0,
+            help: String::new(),
+        }
+    }
+
+    /// Why there is no device at present; `None` while there is one.
+    #[must_use]
+    pub fn trouble(&self) -> Option<Trouble<'_>> {
+        (!self.trouble.is_empty()).then_some(Trouble {
+            what: &self.trouble,
+            help: &self.help,
+        })
+    }
+
+    /// Reports why there is no device, and what to do about it, cut to the room that a status has; false if that was
+    /// reported already.
+    pub fn report(&mut self, trouble: Trouble<'_>) -> bool {
+        let cut = |text: &str| text[..text.floor_char_boundary(LONGEST_TEXT)].to_owned();
+        let (what, help) = (cut(trouble.what), cut(trouble.help));
+        let is_new = (&what, &help) != (&self.trouble, &self.help);
+        (self.trouble, self.help) = (what, help);
+        is_new
+    }
+
+    /// The device is there.
+    pub fn clear_trouble(&mut self) {
+        self.trouble.clear();
+        self.help.clear();
+    }
+}
+
+/// Reason why there is no device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Trouble<'a> {
+    /// What is wrong.
+    pub what: &'a str,
+    /// What to do about it; may be empty.
+    pub help: &'a str,
+}
+
+impl fmt::Display for Trouble<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.what)?;
+        if self.help.is_empty() {
+            Ok(())
+        } else {
+            write!(f, "; {}", self.help)
         }
     }
 }
@@ -202,7 +253,7 @@ message! {
 
 message! {
     /// Status of a device, ten times a second.
-    pub struct StylusStatus [contract of hash 0x06b9_def3, version 4, at most 4096 bytes] {
+    pub struct StylusStatus [contract of hash 0x06b9_def3, version 5, at most 4096 bytes] {
         /// Samples published since the start.
         pub samples: u64,
         /// Samples that did not fit into the ring to the publisher.
@@ -217,7 +268,7 @@ message! {
         pub force_n: f64,
         /// Messages dropped because they named another device, epoch or brush.
         pub foreign_models: u64,
-        /// Reason why there is no device at present, with advice; empty while there is one.
+        /// Reason why there is no device at present; empty while there is one.
         pub trouble: String,
         /// True if force is switched on.
         pub is_on: bool,
@@ -239,6 +290,8 @@ message! {
         pub guidance: f64,
         /// Messages that would move the hand, dropped because their sender is neither the device's brush nor has consent.
         pub refused_senders: u64,
+        /// What to do about the trouble; may be empty.
+        pub help: String,
     }
 }
 

@@ -6,15 +6,17 @@ use maulstick_types::brush::{
     BrushConsumed, BrushDef, BrushLook, BrushRelief, BrushState, Contact, Solve,
 };
 use maulstick_types::command::advice::Advice;
-use maulstick_types::command::{After, Command, CommandReply, CommandRequest, GapRequest, Outcome};
+use maulstick_types::command::{
+    After, Command, CommandReply, CommandRequest, Detail, GapRequest, Outcome,
+};
 use maulstick_types::edits::{Undo, examples};
 use maulstick_types::haptics::{
     ContactModel, FluidForce, ForceLaw, ForceOrder, ForceRequest, Grain, GuideModel, HeightPatch,
     HermiteKnot, height_bytes,
 };
 use maulstick_types::paint::{
-    BrushCredit, Entry, FrameHolds, FrameReply, FrameRequest, FrameTile, JournalEntry,
-    PaintConsumed, ThumbnailRequest,
+    BrushCredit, Decision, Entry, FrameHolds, FrameReply, FrameRequest, FrameTile, JournalEntry,
+    PaintConsumed, StepName, ThumbnailRequest,
 };
 use maulstick_types::scene::{
     Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, Well, WellKind,
@@ -55,6 +57,47 @@ fn line<M: Message + PartialEq + std::fmt::Debug>(message: &M) -> String {
         M::VERSION,
         M::schema().hash
     )
+}
+
+fn decisions() -> [Decision; 6] {
+    [
+        Decision::Backend { name: "cpu".into() },
+        Decision::Fallback {
+            name: "cpu".into(),
+            why: "lost".into(),
+        },
+        Decision::CoarserFlow { why: "room".into() },
+        Decision::Resumed,
+        Decision::LighterModel {
+            model: "dab".into(),
+        },
+        Decision::Words {
+            words: "other".into(),
+        },
+    ]
+}
+
+fn details() -> [Detail; 5] {
+    [
+        Detail::Nothing,
+        Detail::Step {
+            name: StepName::Stroke {
+                kind: "round".into(),
+                on_palette: true,
+            },
+        },
+        Detail::Dried {
+            layer: Layer {
+                number: 1,
+                name: "sky".into(),
+                opacity: 1.0,
+            },
+        },
+        Detail::Loaded {
+            mixture: Mixture::pure("Bone Black"),
+        },
+        Detail::say("done"),
+    ]
 }
 
 fn all() -> String {
@@ -333,9 +376,9 @@ fn all() -> String {
             to: 6,
             whole: true,
         })),
-        line(&entry(Entry::Decision {
-            what: "backend cpu".into(),
-        })),
+        decisions()
+            .map(|what| line(&entry(Entry::Decision { what })))
+            .concat(),
         line(&entry(Entry::Brush {
             brush: "main".into(),
             toml: "kind".into(),
@@ -390,10 +433,9 @@ fn all() -> String {
         line(&command(wide_light().into())),
         takes().map(|asked| line(&command(asked.into()))).concat(),
         files().map(|asked| line(&command(asked))).concat(),
-        line(&reply(Outcome::Done {
-            journal: 1,
-            detail: "done".into(),
-        })),
+        details()
+            .map(|detail| line(&reply(Outcome::Done { journal: 1, detail })))
+            .concat(),
         line(&reply(Outcome::Waiting)),
         line(&reply(Outcome::Refused {
             what: "no".into(),

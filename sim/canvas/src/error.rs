@@ -4,6 +4,7 @@
 use maulstick_types::brush::BRUSHES_MOST;
 use maulstick_types::command::advice::{Advice, choice};
 use maulstick_types::command::{CELLS_M, Outcome};
+use maulstick_types::paint::StepName;
 use maulstick_types::scene::LightError;
 use maulstick_types::values::ValueError;
 use maulstick_types::{MixtureError, Region};
@@ -127,9 +128,9 @@ pub enum EditError {
     #[error("'{what}' is covered by a later step{}", .over.as_ref().map_or(String::new(), |over| format!(", '{over}'")))]
     Covered {
         /// The step.
-        what: String,
+        what: StepName,
         /// The later one.
-        over: Option<String>,
+        over: Option<StepName>,
     },
     /// An unknown version.
     #[error("there is no version called '{name}'")]

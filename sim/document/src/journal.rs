@@ -177,16 +177,37 @@ fn accepted(message: &[u8]) -> Result<Accepted, DocumentError> {
         let (header, state) = decode::<BrushState>(message).map_err(damaged)?;
         return Ok(Accepted::State { header, state });
     }
-    let (_, entry) = decode::<JournalEntry>(message).map_err(damaged)?;
+    let (_, entry) = JournalEntry::decode_stored(message).map_err(damaged)?;
     Ok(Accepted::Entry(entry.entry))
 }
 
 #[cfg(test)]
 mod tests {
     use maulstick_types::edits::Undo;
-    use maulstick_types::paint::Entry;
+    use maulstick_types::paint::{Decision, Entry};
 
     use super::*;
+
+    /// The entries that `msgs/types/tests/stored.rs` tells.
+    #[test]
+    fn entries_of_the_version_before_are_read() {
+        let lines = include_str!("../../../msgs/types/tests/worded.txt").lines();
+        let mut bytes = Vec::new();
+        for line in lines {
+            let hex = line.split_whitespace().last().expect("bytes");
+            let byte = |at: usize| u8::from_str_radix(&hex[at..at + 2], 16).expect("hexadecimal");
+            let message: Vec<u8> = (0..hex.len()).step_by(2).map(byte).collect();
+            bytes.extend(3u64.to_le_bytes());
+            bytes.extend((message.len() as u32).to_le_bytes());
+            bytes.extend(message);
+        }
+        let records = decoded(5, &bytes).expect("read");
+        let name = "cpu".to_owned();
+        let what = Decision::Backend { name };
+        let decision = Accepted::Entry(Entry::Decision { what });
+        assert_eq!(records.len(), 6);
+        assert!(records.iter().any(|record| record.what == decision));
+    }
 
     #[test]
     fn entries_come_back_and_those_of_another_schema_are_rejected() {

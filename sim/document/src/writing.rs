@@ -299,13 +299,14 @@ impl<'a, 'b> Writer<'a, 'b> {
         for page in step.effects.loads.values().flatten() {
             self.write_load(page)?;
         }
+        let what = serde_json::to_string(&step.what)?;
         let effects = serde_json::to_string(&StoredStepEffects::from(&*step.effects))?;
         let tiles = packed_changes(&step.tiles);
         let brush = step.brush.as_deref().unwrap_or_default();
         let (id, operations) = (step.id as i64, step.operations as i64);
         let sum = Checksum::new(Table::Step)
             .int(id)
-            .bytes(step.what.as_bytes())
+            .bytes(what.as_bytes())
             .bytes(brush.as_bytes())
             .int(operations)
             .int(i64::from(step.done))
@@ -318,7 +319,7 @@ impl<'a, 'b> Writer<'a, 'b> {
                 "INSERT OR REPLACE INTO step VALUES(7, ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
             )?
             .execute(params![
-                id, step.what, brush, operations, step.done, effects, tiles, sum
+                id, what, brush, operations, step.done, effects, tiles, sum
             ])?;
         Ok(())
     }

@@ -17,7 +17,7 @@ use maulstick_painting::history::TilePlace;
 use maulstick_painting::sequencer::{Accepted, Record};
 use maulstick_painting::{LaidTile, Wetness};
 use maulstick_types::edits::{GoTo, Undo, Wells};
-use maulstick_types::paint::Entry;
+use maulstick_types::paint::{Decision, Entry};
 use maulstick_types::scene::{CANVAS, PALETTE};
 use proptest::prelude::*;
 use studio::{Act, Dice, Painter, tiles};
@@ -380,7 +380,7 @@ fn a_killed_program_leaves_its_record() {
         let Accepted::Entry(Entry::Decision { what }) = &record.what else {
             return false;
         };
-        what.contains("goes on")
+        *what == Decision::Resumed
     };
     let mut resumed = 0;
     let (_, again) = executed_again(&killed, |record| {

@@ -13,6 +13,7 @@ use maulstick_optics::colour::{apply, delta_e_2000, inverse, lab, srgb_decode, s
 use maulstick_painting::setup::PALETTE_PAINTS;
 use maulstick_painting::{Painting, PaintingSetup, Wetness};
 use maulstick_types::edits::{Ground, Tooth};
+use maulstick_types::paint::StepName;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::MaterialName;
 
@@ -179,7 +180,7 @@ fn the_books_balance_and_undo_and_redo_give_the_same_tiles() {
     );
     assert!((report.accounts_m3["canvas"] - volume).abs() < 1e-18);
     assert!(slots < painting.scene().paints.len());
-    assert_eq!(painting.undo(None).as_deref(), Ok("underpainting"));
+    assert_eq!(painting.undo(None), Ok(StepName::Underpainting));
     assert!(versions(&painting) == bare && painting.report().quanta_missing == 0);
     assert!(versions(&painting) != laid, "a fault would pass");
     painting.redo(None).expect("redone");

@@ -4,6 +4,7 @@ use maulstick_brush::head::{Head, HeadPose};
 use maulstick_canvas::own_plane::OwnPlane;
 use maulstick_canvas::quantum::{BySlot, CELL_MAX, Counts};
 use maulstick_canvas::window::{Area, Window};
+use maulstick_types::paint::Decision;
 
 use crate::brush::load::BrushLoad;
 use crate::brush::traits::BrushTraits;
@@ -172,8 +173,8 @@ pub trait PaintModel: Send {
     fn take_fall(&mut self) -> Option<String> {
         None
     }
-    /// A limit of the backend that its steps have met, in words that a journal keeps; returned once.
-    fn take_note(&mut self) -> Option<String> {
+    /// A limit of the backend that its steps have met, for the journal; returned once.
+    fn take_limit(&mut self) -> Option<Decision> {
         None
     }
 }

@@ -5,11 +5,14 @@ use std::fmt;
 use maulstick_canvas::EditError;
 use maulstick_convert::{Distance, FAR};
 use maulstick_types::Mixture;
+use maulstick_types::command::Detail;
 use maulstick_types::edits::{
     Branch, Clean, Convert, Dry, Edit, Fill, Forget, GoTo, Ground, Handle, Keep, Load, LoadFrom,
     NameLayer, Opacity, Piles, Place, Redo, Relight, ReturnTo, Scrape, Size, StopDrying, Tooth,
     Tune, Undo, Wells, Wet,
 };
+use maulstick_types::paint::StepName;
+use maulstick_types::scene::Layer;
 
 use crate::painting::Painting;
 
@@ -27,8 +30,8 @@ pub trait Apply {
 pub enum Applied {
     /// Nothing to report.
     Done,
-    /// Paint has dried into a layer of this name.
-    Dried(String),
+    /// Paint has dried into this layer.
+    Dried(Layer),
     /// Paint dries within so many seconds.
     Drying(f64),
     /// Dry layers are wet again.
@@ -39,7 +42,7 @@ pub enum Applied {
         full_cells: usize,
     },
     /// A step was undone or redone.
-    Step(String),
+    Step(StepName),
     /// A brush has taken up a mixture.
     Loaded(Mixture),
     /// A file is written.
@@ -53,11 +56,22 @@ pub enum Applied {
     },
 }
 
+impl From<Applied> for Detail {
+    fn from(applied: Applied) -> Self {
+        match applied {
+            Applied::Step(name) => Self::Step { name },
+            Applied::Dried(layer) => Self::Dried { layer },
+            Applied::Loaded(mixture) => Self::Loaded { mixture },
+            other => Self::say(other.to_string()),
+        }
+    }
+}
+
 impl fmt::Display for Applied {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Done => Ok(()),
-            Self::Dried(layer) => f.write_str(layer),
+            Self::Dried(_) | Self::Step(_) | Self::Loaded(_) => Detail::from(self.clone()).fmt(f),
             Self::Drying(seconds) => write!(f, "within {seconds:.1} s"),
             Self::Rewet { layers, full_cells } => {
                 f.write_str(&layers.join(", "))?;
@@ -66,16 +80,8 @@ impl fmt::Display for Applied {
                     cells => write!(f, "; {cells} cells could not hold all of it"),
                 }
             }
-            Self::Loaded(mixture) => {
-                let seen = mixture.parts.iter().filter(|part| part.share >= 5e-4);
-                for (place, part) in seen.enumerate() {
-                    let comma = if place == 0 { "" } else { "," };
-                    write!(f, "{comma}{}={:.3}", part.paint, part.share)?;
-                }
-                Ok(())
-            }
             Self::Converted { distance, cell_m } => converted(distance, *cell_m, f),
-            Self::Step(what) | Self::Written(what) => f.write_str(what),
+            Self::Written(path) => f.write_str(path),
         }
     }
 }

@@ -12,6 +12,7 @@ use maulstick_marker::{Marker, Matte};
 use maulstick_model::interface::PaintModel;
 use maulstick_stokes_paint::StokesPaint;
 use maulstick_stokes_paint::overhangs::Overhangs;
+use maulstick_types::paint::Decision;
 
 /// Entry of a paint model in [`MODELS`].
 pub struct ModelEntry {
@@ -111,8 +112,8 @@ impl Models {
     }
 
     /// Limit of its backend that a model has met; returned once.
-    pub(crate) fn take_note(&mut self) -> Option<String> {
-        self.0.values_mut().find_map(|model| model.take_note())
+    pub(crate) fn take_limit(&mut self) -> Option<Decision> {
+        self.0.values_mut().find_map(|model| model.take_limit())
     }
 }
 

@@ -12,7 +12,7 @@ use maulstick_canvas::EditError;
 use maulstick_types::brush::BrushState;
 use maulstick_types::command::reply_cache::ReplyCache;
 use maulstick_types::command::{Command, CommandRequest, Outcome, TakeCommand};
-use maulstick_types::paint::{Entry, JournalEntry};
+use maulstick_types::paint::{Decision, Entry, JournalEntry};
 use maulstick_types::{Flags, Header, Mixture, Origin};
 
 use crate::apply::{Applied, Apply as _};
@@ -269,10 +269,8 @@ impl Sequencer {
     }
 
     /// Enters a decision of the node itself.
-    pub fn decide(&mut self, what: &str) {
-        let entry = Entry::Decision {
-            what: what.to_owned(),
-        };
+    pub fn decide(&mut self, what: Decision) {
+        let entry = Entry::Decision { what };
         let index = self.enter(entry.clone());
         self.note(index, || Accepted::Entry(entry));
     }
@@ -377,7 +375,7 @@ impl Sequencer {
                 let journal = self.enter_command(client, number, command);
                 Outcome::Done {
                     journal,
-                    detail: applied.to_string(),
+                    detail: applied.into(),
                 }
             }
             Err(error) => error.into(),

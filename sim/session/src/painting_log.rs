@@ -6,7 +6,7 @@ use maulstick_document::{Document, DocumentError, Opened};
 use maulstick_painting::sequencer::{Accepted, Record};
 use maulstick_types::brush::BrushState;
 use maulstick_types::command::Command;
-use maulstick_types::paint::Entry;
+use maulstick_types::paint::{Decision, Entry};
 use maulstick_types::{Flags, Header, name_hash};
 
 use crate::reexecution::each_record;
@@ -42,7 +42,7 @@ pub enum LoggedWhat {
         brush: String,
     },
     /// A decision of the program: what computes the paint, that the painting was opened again.
-    Decision(String),
+    Decision(Decision),
     /// A brush was introduced, or changed.
     Brush(String),
 }

@@ -12,6 +12,7 @@ use maulstick_session::{
     Autosave, LoggedWhat, Offline, Reexecution, TilePrints, WorkClock, painting_log, tile_prints,
 };
 use maulstick_types::edits::{Dry, Load, Redo, Undo};
+use maulstick_types::paint::Decision;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 use maulstick_types::values::{BrushName, LayerName, Share, Ticks};
@@ -223,7 +224,7 @@ fn the_log_says_what_was_done() {
         matches!(command, maulstick_types::command::Command::Edit(_))
     });
     assert_eq!(edits.count(), 8);
-    let goes_on = LoggedWhat::Decision("the painting goes on".to_owned());
+    let goes_on = LoggedWhat::Decision(Decision::Resumed);
     assert_eq!(log.iter().filter(|line| line.what == goes_on).count(), 1);
     let times: Vec<u64> = log.iter().filter_map(|line| line.time_ms).collect();
     assert_eq!(times.len(), log.len(), "all are in the record");

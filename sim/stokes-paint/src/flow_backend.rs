@@ -5,14 +5,12 @@ use std::fmt;
 use maulstick_stokes::domain::Solids;
 use maulstick_stokes::flow::{Conditions, Flow};
 use maulstick_stokes::grid::Grid;
+use maulstick_types::paint::Decision;
 
 use crate::coarse::Coarse;
 
 /// Cells of an axis from which down a window is not made coarser.
 const FEWEST_CELLS: usize = 4;
-
-/// That flow is found on coarser cells, where a backend has no room for the window.
-pub const COARSER: &str = "flow on coarser cells";
 
 /// Paint at rest in a window, and what moves it.
 #[derive(Clone, Copy, Debug)]
@@ -65,8 +63,8 @@ pub struct BrushFlow {
     processor: Option<Flow>,
     device: Option<Box<dyn FlowBackend>>,
     fall: Option<String>,
-    note: Option<String>,
-    is_noted: bool,
+    limit: Option<Decision>,
+    is_limited: bool,
 }
 
 impl BrushFlow {
@@ -84,7 +82,7 @@ impl BrushFlow {
     pub fn backend(&self) -> String {
         match &self.device {
             None => "cpu".to_owned(),
-            Some(device) if self.is_noted => format!("{}, {COARSER}", device.name()),
+            Some(device) if self.is_limited => format!("{}, flow on coarser cells", device.name()),
             Some(device) => device.name(),
         }
     }
@@ -95,8 +93,8 @@ impl BrushFlow {
     }
 
     /// That flow is found on coarser cells, and why; returned once.
-    pub fn take_note(&mut self) -> Option<String> {
-        self.note.take()
+    pub fn take_limit(&mut self) -> Option<Decision> {
+        self.limit.take()
     }
 
     /// Velocities on the faces of voxels, found on cells of `side` voxels or, where the device has no room for so many, on
@@ -114,7 +112,7 @@ impl BrushFlow {
             match solve(device.as_mut(), fine, (&coarse, &conditions), &scene) {
                 Ok((velocity, refusal)) => {
                     if let Some(refusal) = refusal {
-                        self.note(&coarse, &conditions, &refusal);
+                        self.limit(&coarse, &conditions, &refusal);
                     }
                     return velocity;
                 }
@@ -133,15 +131,14 @@ impl BrushFlow {
         coarse.refine(&flow.velocity, fine)
     }
 
-    fn note(&mut self, coarse: &Coarse, conditions: &Conditions, refusal: &FlowError) {
-        if std::mem::replace(&mut self.is_noted, true) {
+    fn limit(&mut self, coarse: &Coarse, conditions: &Conditions, refusal: &FlowError) {
+        if std::mem::replace(&mut self.is_limited, true) {
             return;
         }
         let [width, height, depth] = coarse.grid.cells;
         let cell_mm = (1e5 * conditions.cell_m).round() / 100.0;
-        self.note = Some(format!(
-            "{COARSER}: {refusal} ({width}x{height}x{depth} cells of {cell_mm} mm)"
-        ));
+        let why = format!("{refusal} ({width}x{height}x{depth} cells of {cell_mm} mm)");
+        self.limit = Some(Decision::CoarserFlow { why });
     }
 }
 

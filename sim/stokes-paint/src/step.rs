@@ -11,6 +11,7 @@ use maulstick_impasto::stages::seep::seep;
 use maulstick_model::footprint::Footprint;
 use maulstick_model::interface::{PaintModel, Rest, Step, StepReport, Transfer};
 use maulstick_model::modes::{sample, vacuum};
+use maulstick_types::paint::Decision;
 
 use crate::drag::{STEPS, bottoms, drag, follow};
 use crate::flow_backend::{BrushFlow, FlowBackend};
@@ -72,8 +73,8 @@ impl PaintModel for StokesPaint {
         self.flow.take_fall()
     }
 
-    fn take_note(&mut self) -> Option<String> {
-        self.flow.take_note()
+    fn take_limit(&mut self) -> Option<Decision> {
+        self.flow.take_limit()
     }
 
     fn rest_halo(&self) -> Option<usize> {

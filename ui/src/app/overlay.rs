@@ -1,9 +1,9 @@
 //! Everything over the desk: rack, panels, dialogs, notifications, the line of help; and the keys for them.
 
+mod outcome_words;
+
 use eframe::egui::{self, Align, Align2, Context, Layout, Rect, Ui};
-use maulstick_types::Mixture;
-use maulstick_types::command::Command;
-use maulstick_types::edits::{Clean, Dry, Edit, Redo, Relight, Scrape, Undo};
+use maulstick_types::edits::{Clean, Dry, Redo, Relight, Scrape, Undo};
 use maulstick_types::scene::{CANVAS, Light, PALETTE};
 use maulstick_types::values::BrushName;
 
@@ -18,18 +18,16 @@ use crate::input::keymap::Keymap;
 use crate::input::keys::{self, Action};
 use crate::input::presses;
 use crate::input::size_drag::SizeDrag;
-use crate::language::{step, translated};
+use crate::language::translated;
 use crate::matching::colour_window::ColourWindow;
 use crate::motions::Motions;
 use crate::panels;
 use crate::panels::light::lamp_undo::LampUndo;
 use crate::reference::Reference;
 use crate::rig::dispatcher::Outcome;
-use crate::rig::requests::Request;
 use crate::rig::state::RigState;
 use crate::sessions::SessionOrder;
 use crate::sessions::transport_bar::TransportBar;
-use crate::settings::brush_load;
 use crate::settings::brush_memory::BrushMemory;
 use crate::settings::preferences::Preferences;
 use crate::settings_page::SettingsPage;
@@ -183,12 +181,8 @@ impl Overlay {
         match &outcome.result {
             Err(fault) => work.notifications.of(fault),
             Ok(detail) => {
-                if let Some(done) = past_tense(&outcome.request) {
-                    let what = match detail.is_empty() {
-                        true => done.to_owned(),
-                        false => format!("{done}: {}", told(detail)),
-                    };
-                    work.notifications.note(what);
+                if let Some(done) = outcome_words::done(&outcome.request, detail) {
+                    work.notifications.note(done);
                 }
             }
         }
@@ -368,40 +362,14 @@ fn fill_screen(context: &Context, fills: bool) {
     context.send_viewport_cmd(egui::ViewportCommand::Fullscreen(fills));
 }
 
-/// What an edit was about, as a painter reads it: a step, or a mixture.
-fn told(detail: &str) -> String {
-    match detail.parse::<Mixture>() {
-        Ok(mixture) if detail.contains('=') => brush_load::words(&mixture),
-        _ => step(detail),
-    }
-}
-
-/// The deed of an edit whose effect may be out of view.
-fn past_tense(request: &Request) -> Option<&'static str> {
-    let Request::Command {
-        command: Command::Edit(edit),
-        ..
-    } = request
-    else {
-        return None;
-    };
-    match edit {
-        Edit::Undo(_) => Some(tr!("Undone")),
-        Edit::Redo(_) => Some(tr!("Redone")),
-        Edit::GoTo(_) => Some(tr!("Now")),
-        Edit::Dry(_) => Some(tr!("Dried")),
-        Edit::LoadFrom(_) => Some(tr!("Loaded")),
-        Edit::Scrape(_) => Some(tr!("Scraped")),
-        _ => None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use eframe::egui::{Key, Modifiers};
     use egui_kittest::Harness;
-    use maulstick_types::command::Command;
+    use maulstick_types::command::{Command, Detail};
     use maulstick_types::edits::{Edit, Relight};
+    use maulstick_types::paint::StepName;
+    use maulstick_types::scene::Layer;
 
     use crate::settings::preferences::Preferences;
     use crate::test_support::overlay_bench::{Bench, ctrl, press, window};
@@ -410,10 +378,17 @@ mod tests {
     #[test]
     fn what_a_key_has_done_is_told_once_it_is_done() {
         let mut harness = window(None);
+        let name = StepName::Fill;
+        let layer = Layer {
+            number: 1,
+            name: "layer 1".to_owned(),
+            opacity: 1.0,
+        };
+        let (undone, dried) = (Detail::Step { name }, Detail::Dried { layer });
         for (key, detail, told) in [
-            (Key::Z, "stroke", "Undone: stroke"),
-            (Key::D, "layer 1", "Dried: layer 1"),
-            (Key::Backspace, "", "Scraped"),
+            (Key::Z, undone, "Undone: fill"),
+            (Key::D, dried, "Dried: layer 1"),
+            (Key::Backspace, Detail::Nothing, "Scraped"),
         ] {
             match key {
                 Key::Z => ctrl(&mut harness, key, Modifiers::NONE),
@@ -461,15 +436,6 @@ mod tests {
             matches!(asked[0].1, Command::Edit(Edit::Undo(_))),
             "{asked:?}"
         );
-    }
-
-    #[test]
-    fn mixtures_are_told_in_per_cent_also_those_of_one_paint() {
-        let one = super::told("Burnt Sienna=1.000");
-        assert_eq!(one, "Burnt Sienna");
-        let two = super::told("Burnt Sienna=0.12,Thinner=0.88");
-        assert_eq!(two, "Burnt Sienna 12 %, Thinner 88 %");
-        assert_eq!(super::told("layer 1"), "layer 1");
     }
 
     #[test]

@@ -335,12 +335,10 @@ impl Files {
             Ok(detail) => {
                 self.move_tracing(command, work);
                 // Some answers hold nothing but the path, which is shown already.
-                let is_told = done.contains(&paths::shown(Path::new(detail)));
-                let sentence = if is_told {
-                    String::new()
-                } else {
-                    in_words(detail, "")
-                };
+                let said = detail.to_string();
+                let is_told = done.contains(&paths::shown(Path::new(&said)));
+                let sentence = (!is_told).then(|| in_words(&said, ""));
+                let sentence = sentence.unwrap_or_default();
                 work.notifications
                     .note(format!("{done} {sentence}").trim().to_owned());
                 if is_waited_for {

@@ -3,7 +3,7 @@ use egui_kittest::kittest::Queryable as _;
 use maulstick_brush::BrushFile;
 use maulstick_rig::UserError;
 use maulstick_types::command::PAINT_NODE as PAINT;
-use maulstick_types::command::{ExportOrder, NewCanvas};
+use maulstick_types::command::{Detail, ExportOrder, NewCanvas};
 use maulstick_types::command::{FileCommand, RigCommand, SaveAs};
 use maulstick_types::edits::Undo;
 use maulstick_types::paint::ExportStatus;
@@ -60,7 +60,9 @@ fn a_new_painting_is_begun_by_keys_alone() {
     harness.run_steps(2);
     press(&mut harness, Key::Enter);
     let asked = harness.state_mut().asked();
-    harness.state_mut().answer(&asked[0], Ok("Painting.maul"));
+    harness
+        .state_mut()
+        .answer(&asked[0], Ok(Detail::say("Painting.maul")));
     harness.run_steps(3);
     assert!(harness.query_by_label("Width").is_none());
     assert!(harness.state().told().contains("A new painting, kept in"));
@@ -186,7 +188,7 @@ fn saving_is_confirmed_and_what_is_in_no_file_gets_one() {
     harness.state_mut().preferences.tracings = Tracings::of(sketch.clone());
     harness
         .state_mut()
-        .answer(&save(false), Ok("Painting.maul"));
+        .answer(&save(false), Ok(Detail::say("Painting.maul")));
     harness.run_steps(2);
     let node = harness.state_mut().rig.paint.as_mut().expect("a node");
     (node.status.path, node.status.blank) = (text(&path), false);
@@ -238,7 +240,9 @@ fn an_export_goes_on_by_itself_and_can_be_stopped() {
     harness.run_steps(2);
     let stop = (PAINT.to_owned(), Command::from(FileCommand::StopExport));
     assert_eq!(harness.state_mut().asked(), [stop]);
-    harness.state_mut().answer(&asked, Ok("Painting.png"));
+    harness
+        .state_mut()
+        .answer(&asked, Ok(Detail::say("Painting.png")));
     assert!(harness.state().told().contains("Exported to "));
 }
 

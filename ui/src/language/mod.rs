@@ -6,17 +6,18 @@
 //! | `tr!` | a sentence that is shown, with its places filled in |
 //! | `tr_noop!` | a sentence in a table, for [`translated`] where it is shown |
 //! | [`known`] | a word that another process or a file has, such as the name of a brush |
+//! | [`step`] | a step of the history |
 //! | [`key_name`] | a key |
 //!
 //! The choice belongs to a thread: the window's, and those of its background tasks.
 
-use std::borrow::Cow;
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::collections::HashMap;
 use std::fmt::{Display, Write as _};
 use std::sync::{LazyLock, OnceLock};
 
+use maulstick_types::scene::Layer;
 use serde::Deserialize;
 
 /// The sentence in the language of the window. Names fill its places: `tr!("Saved to {file}", file)`, or
@@ -42,6 +43,10 @@ macro_rules! tr_noop {
         $english
     };
 }
+
+mod steps;
+
+pub(crate) use steps::step;
 
 include!(concat!(env!("OUT_DIR"), "/languages.rs"));
 
@@ -202,43 +207,11 @@ pub(crate) fn filled(english: &'static str, parts: &[(&str, &dyn Display)]) -> S
 
 /// A layer as a painter reads its name: one without a name of its own has a number.
 #[must_use]
-pub(crate) fn layer_name(english: &str) -> Cow<'_, str> {
-    let number = english.strip_prefix("layer ");
-    let number = number.filter(|number| number.parse::<u32>().is_ok());
-    match number {
-        Some(number) if CHOSEN.get().is_some() => Cow::Owned(tr!("layer {number}", number)),
-        _ => Cow::Borrowed(english),
-    }
-}
-
-/// A step of the history, in the words of the paint engine, as a painter reads it.
-#[must_use]
-pub(crate) fn step(english: &str) -> String {
-    if CHOSEN.get().is_none() {
-        return english.to_owned();
-    }
-    if let Some(kind) = english.strip_suffix(" stroke on the palette") {
-        return tr!("{kind} stroke on the palette", kind = known(kind));
-    }
-    if let Some(kind) = english.strip_suffix(" wipe on the palette") {
-        return tr!("{kind} wipe on the palette", kind = known(kind));
-    }
-    if let Some(kind) = english.strip_suffix(" wipe") {
-        return tr!("{kind} wipe", kind = known(kind));
-    }
-    if let Some(kind) = english.strip_suffix(" stroke") {
-        return tr!("{kind} stroke", kind = known(kind));
-    }
-    if let Some(paint) = english.strip_prefix("load ") {
-        return tr!("load {paint}", paint);
-    }
-    let version = english.strip_prefix("return to '");
-    if let Some(version) = version.and_then(|rest| rest.strip_suffix('\'')) {
-        return tr!("return to '{version}'", version);
-    }
-    match english.strip_suffix(" steps") {
-        Some(count) => tr!("{count} steps", count),
-        None => known(english).to_owned(),
+pub(crate) fn layer_name(layer: &Layer) -> String {
+    if layer.is_unnamed() {
+        tr!("layer {number}", number = layer.number)
+    } else {
+        layer.name.clone()
     }
 }
 

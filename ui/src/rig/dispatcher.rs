@@ -12,14 +12,14 @@ use maulstick_bus::typed::{ask, random_epoch};
 use maulstick_bus::{Bus, Qos, Wake};
 use maulstick_rig::command_client::CommandClient;
 use maulstick_rig::{UserError, asker};
-use maulstick_types::command::{Command, FileCommand};
+use maulstick_types::command::{Command, Detail, FileCommand};
 use maulstick_types::edits::{Edit, Relight};
 use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
 use crate::advice;
-use crate::rig::requests::Request;
+use crate::rig::requests::{Peer, Request};
 use crate::rig::stroke_barrier::Ready;
 use outcomes::Outcomes;
 
@@ -34,10 +34,16 @@ const ANSWER: Duration = Duration::from_secs(3);
 /// Interval after which a command is sent again; the window waits at most so long when it ends.
 const ASK: Duration = Duration::from_millis(300);
 
-/// Name of the queues of requests that switch off a force.
-const OFF: &str = "off";
-/// Name of the queues of exports.
-const EXPORT: &str = "export";
+/// A queue of requests.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Lane {
+    /// Exports: each takes long, and other commands to the paint node do not wait for its end.
+    Exports,
+    /// What switches off the force of a device, which waits for no earlier answer.
+    ForceOff(String),
+    /// All else for a process.
+    Ordered(Peer),
+}
 
 /// Outcome of a request.
 #[derive(Clone, Debug)]
@@ -45,7 +51,7 @@ pub struct Outcome {
     /// The request.
     pub request: Request,
     /// Answer of the process.
-    pub result: Result<String, UserError>,
+    pub result: Result<Detail, UserError>,
 }
 
 /// Requests for one process.
@@ -73,7 +79,7 @@ pub(crate) struct CommandDispatcher {
     topics: Topics,
     wake: Wake,
     outcomes: Arc<Mutex<Outcomes>>,
-    queues: BTreeMap<String, (Arc<Queue>, Option<JoinHandle<()>>)>,
+    queues: BTreeMap<Lane, (Arc<Queue>, Option<JoinHandle<()>>)>,
 }
 
 impl CommandDispatcher {
@@ -93,26 +99,23 @@ impl CommandDispatcher {
     /// the same value, such as the placement of a surface.
     pub(crate) fn send(&mut self, ready: Ready) {
         let (bus, topics, wake, outcomes) = (&self.bus, &self.topics, &self.wake, &self.outcomes);
-        let (queue_of, _) = self
-            .queues
-            .entry(address(&ready.request))
-            .or_insert_with(|| {
-                let queue_of = Arc::new(Queue::default());
-                let mut carrier = Worker {
-                    bus: Arc::clone(bus),
-                    topics: topics.clone(),
-                    commander: None,
-                    queue_of: Arc::clone(&queue_of),
-                    outcomes: Arc::clone(outcomes),
-                    wake: wake.clone(),
-                };
-                let thread = std::thread::Builder::new().name("courier".into());
-                let thread = thread.spawn(move || carrier.run());
-                let thread = thread
-                    .inspect_err(|error| tracing::error!("no thread for commands: {error}"))
-                    .ok();
-                (queue_of, thread)
-            });
+        let (queue_of, _) = self.queues.entry(lane(&ready.request)).or_insert_with(|| {
+            let queue_of = Arc::new(Queue::default());
+            let mut carrier = Worker {
+                bus: Arc::clone(bus),
+                topics: topics.clone(),
+                commander: None,
+                queue_of: Arc::clone(&queue_of),
+                outcomes: Arc::clone(outcomes),
+                wake: wake.clone(),
+            };
+            let thread = std::thread::Builder::new().name("courier".into());
+            let thread = thread.spawn(move || carrier.run());
+            let thread = thread
+                .inspect_err(|error| tracing::error!("no thread for commands: {error}"))
+                .ok();
+            (queue_of, thread)
+        });
         let mut queue = queue_of
             .state
             .lock()
@@ -152,9 +155,9 @@ impl CommandDispatcher {
 const LONG: Duration = Duration::from_millis(500);
 
 impl CommandDispatcher {
-    /// Processes that have not answered for half a second: `node` or `force`, and the name.
+    /// Processes that have not answered for half a second; an export tells how far it is by itself.
     #[must_use]
-    pub(crate) fn waits(&self) -> Vec<String> {
+    pub(crate) fn waits(&self) -> Vec<Peer> {
         let waits = |queue_of: &Queue| {
             let queue = queue_of
                 .state
@@ -162,19 +165,22 @@ impl CommandDispatcher {
                 .unwrap_or_else(PoisonError::into_inner);
             queue.since.is_some_and(|since| since.elapsed() > LONG)
         };
-        // An export tells how far it is by itself.
-        let asked = |name: &str| !name.starts_with(EXPORT) && !name.starts_with(OFF);
-        let queues = self.queues.iter();
-        let queues = queues.filter(|(name, (queue_of, _))| asked(name) && waits(queue_of));
-        queues.map(|(name, _)| name.clone()).collect()
+        let late = self
+            .queues
+            .iter()
+            .filter_map(|(lane, (queue_of, _))| match lane {
+                Lane::Ordered(peer) if waits(queue_of) => Some(peer.clone()),
+                _ => None,
+            });
+        late.collect()
     }
 
     /// Gives up: the request in flight is not repeated, and the queue is not sent. Each request is reported as not
     /// done.
     pub(crate) fn give_up(&self) {
-        let late = self.waits();
+        let late = self.waits().into_iter().map(Lane::Ordered);
         let mut outcomes = self.outcomes.lock().unwrap_or_else(PoisonError::into_inner);
-        for (queue_of, _) in late.iter().filter_map(|name| self.queues.get(name)) {
+        for (queue_of, _) in late.filter_map(|lane| self.queues.get(&lane)) {
             let mut queue = queue_of
                 .state
                 .lock()
@@ -192,21 +198,18 @@ impl CommandDispatcher {
     }
 }
 
-/// Process that a request is for.
-fn address(request: &Request) -> String {
+/// Queue of a request.
+fn lane(request: &Request) -> Lane {
     match request {
-        // It takes long, and other commands to the node do not wait for its end.
         Request::Command {
-            node,
             command: Command::File(FileCommand::Export(_)),
-        } => format!("{EXPORT} {node}"),
-        Request::Command { node, .. } => format!("node {node}"),
-        // Switching off waits for no earlier answer.
+            ..
+        } => Lane::Exports,
         Request::Force {
             device,
             order: ForceOrder::Off,
-        } => format!("{OFF} {device}"),
-        Request::Force { device, .. } => format!("force {device}"),
+        } => Lane::ForceOff(device.clone()),
+        _ => Lane::Ordered(request.peer()),
     }
 }
 
@@ -300,7 +303,7 @@ impl Worker {
             .unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn deliver(&mut self, ready: &Ready) -> Result<String, UserError> {
+    fn deliver(&mut self, ready: &Ready) -> Result<Detail, UserError> {
         match &ready.request {
             Request::Command { node, command } => {
                 let queue_of = Arc::clone(&self.queue_of);
@@ -334,7 +337,7 @@ impl Worker {
                 let reply: ForceReply =
                     ask(&*self.bus, &topic, Qos::Control, me, &request, ANSWER)?;
                 match reply.fault.is_empty() {
-                    true => Ok(String::new()),
+                    true => Ok(Detail::Nothing),
                     false => Err(UserError::failure(reply.fault).at(device.clone())),
                 }
             }
@@ -396,8 +399,8 @@ mod tests {
             Command::from(Undo { brush: None }),
             Command::from(FileCommand::StopExport),
         );
-        assert_eq!(address(&request(undo)), address(&request(stop.clone())));
-        assert_ne!(address(&request(export)), address(&request(stop)));
+        assert_eq!(lane(&request(undo)), lane(&request(stop.clone())));
+        assert_ne!(lane(&request(export)), lane(&request(stop)));
     }
 
     #[test]

@@ -3,8 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use maulstick_bus::typed::{Reason, Refusal};
+use maulstick_rig::config::BRUSH_NODE;
 use maulstick_types::DecodeError;
-use maulstick_types::command::advice::parted;
+use maulstick_types::paint::Decision;
+use maulstick_types::stylus::StylusStatus;
 use maulstick_types::wire::topics::Topics;
 
 use crate::rig::state::RigState;
@@ -12,8 +14,6 @@ use crate::widgets::notifications::Notifications;
 
 /// The node of the painting.
 const PAINT: &str = "paint";
-/// Prefix of the names of brush nodes.
-const BRUSH: &str = "brush-";
 /// The device that ends with its take.
 const PLAYER: &str = "player";
 /// Message that a node has left.
@@ -21,22 +21,44 @@ fn stopped(who: &str) -> String {
     tr!("{who} stopped; it is being started again.", who)
 }
 
-/// Prefix of the decision that the processor takes over from the graphics card.
-const FALL: &str = "backend cpu: ";
-
-/// Prefix of the decision that flow is found on coarser cells.
-const COARSER: &str = "flow on coarser cells: ";
-
-/// Decision that proposes the light paint model.
-const LIGHTER: &str = "model dab proposed";
-
 /// An event that changes nothing in the state of the rig.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RigEvent {
     /// A message that this window does not understand.
     Refused(Refusal),
-    /// The paint node has decided something, in its words.
-    Decided(String),
+    /// The paint node has decided something.
+    Decided(Decision),
+}
+
+/// Fault of a device.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+enum DeviceFault {
+    /// It is in order.
+    #[default]
+    None,
+    /// There is no device.
+    Trouble {
+        /// What is wrong.
+        what: String,
+        /// What to do about it.
+        help: String,
+    },
+    /// It gives no force: the faults that it has latched.
+    NoForce(String),
+}
+
+impl DeviceFault {
+    fn of(status: &StylusStatus) -> Self {
+        if !status.faults.is_empty() {
+            return Self::NoForce(status.faults.join("; "));
+        }
+        status
+            .trouble()
+            .map_or(Self::None, |trouble| Self::Trouble {
+                what: trouble.what.to_owned(),
+                help: trouble.help.to_owned(),
+            })
+    }
 }
 
 /// Events notified so far.
@@ -48,7 +70,7 @@ pub(crate) struct HealthMonitor {
     /// Those that left for another painting.
     expected: BTreeSet<String>,
     /// Fault that each device reported.
-    troubles: BTreeMap<String, String>,
+    troubles: BTreeMap<String, DeviceFault>,
     /// Nodes of another version.
     strange: BTreeSet<String>,
     /// True while the painting cannot be saved.
@@ -66,7 +88,7 @@ impl HealthMonitor {
         for events in std::mem::take(&mut state.events) {
             match events {
                 RigEvent::Refused(refusal) => self.refused(topics, &refusal, notifications),
-                RigEvent::Decided(what) => decided(&what, notifications),
+                RigEvent::Decided(decision) => decided(&decision, notifications),
             }
         }
         self.nodes(state, notifications);
@@ -113,33 +135,28 @@ impl HealthMonitor {
             let Some(status) = &device.status else {
                 continue;
             };
-            let trouble = match status.faults.is_empty() {
-                true => status.trouble.clone(),
-                false => status.faults.join("; "),
-            };
+            let fault = DeviceFault::of(status);
             let told = self.troubles.entry(name.clone()).or_default();
-            if *told == trouble {
+            if *told == fault {
                 continue;
             }
-            if trouble.is_empty() {
-                notifications.note(tr!("The device '{name}' is in order again.", name));
-            } else if status.faults.is_empty() {
-                let (what, help) = parted(&trouble);
-                notifications.fault(
-                    tr!("The device '{name}': {what}", name, what),
-                    help.unwrap_or_default(),
-                );
-            } else {
-                notifications.fault(
+            match &fault {
+                DeviceFault::None => {
+                    notifications.note(tr!("The device '{name}' is in order again.", name));
+                }
+                DeviceFault::Trouble { what, help } => {
+                    notifications.fault(tr!("The device '{name}': {what}", name, what), help);
+                }
+                DeviceFault::NoForce(trouble) => notifications.fault(
                     tr!(
                         "The device '{name}' gives no force: {trouble}",
                         name,
                         trouble
                     ),
                     tr!("Lift the brush, then press Re-arm in the panel Device."),
-                );
+                ),
             }
-            *told = trouble;
+            *told = fault;
         }
     }
 
@@ -195,7 +212,7 @@ fn who(node: &str, state: &RigState) -> Option<(String, Option<&'static str>)> {
         let help = tr!("The canvas stays as it is shown, and goes on when it is back.");
         return Some((tr!("The painting engine").to_owned(), Some(help)));
     }
-    if let Some(brush) = node.strip_prefix(BRUSH) {
+    if let Some(brush) = node.strip_prefix(BRUSH_NODE) {
         let help = tr!("Lift the stylus; the brush follows again when it is back.");
         return Some((tr!("The node of the brush '{brush}'", brush), Some(help)));
     }
@@ -205,21 +222,18 @@ fn who(node: &str, state: &RigState) -> Option<(String, Option<&'static str>)> {
 }
 
 /// Tells of a decision that the painter ought to know.
-fn decided(what: &str, notifications: &mut Notifications) {
-    if what == LIGHTER {
-        notifications.note(tr!(
-            "Painting falls behind on this machine. The light paint model dAb is faster: Paint model in the panel Canvas \
-             converts this painting, and that can be undone."
-        ));
-    }
-    if let Some(why) = what.strip_prefix(COARSER) {
-        notifications.note(tr!(
+fn decided(decision: &Decision, notifications: &mut Notifications) {
+    match decision {
+        Decision::LighterModel { model } => notifications.note(tr!(
+            "Painting falls behind on this machine. The paint model {model} is faster: Paint model in the panel Canvas \
+             converts this painting, and that can be undone.",
+            model
+        )),
+        Decision::CoarserFlow { why } => notifications.note(tr!(
             "The graphics card has too little memory for so wide a brush: thick paint flows in less detail around it ({why})",
             why
-        ));
-    }
-    if let Some(why) = what.strip_prefix(FALL) {
-        notifications.fault(
+        )),
+        Decision::Fallback { why, .. } => notifications.fault(
             tr!(
                 "The paint is computed by the processor from now on: {why}",
                 why
@@ -228,7 +242,8 @@ fn decided(what: &str, notifications: &mut Notifications) {
                 "Nothing is missing, but large brushes may lag. Starting the rig again tries the \
              graphics card anew."
             ),
-        );
+        ),
+        Decision::Backend { .. } | Decision::Resumed | Decision::Words { .. } => {}
     }
 }
 
@@ -238,7 +253,7 @@ mod tests {
     use std::sync::Arc;
 
     use maulstick_optics::PaintLibrary;
-    use maulstick_types::stylus::StylusStatus;
+    use maulstick_types::stylus::Trouble;
 
     use super::*;
     use crate::rig::state::PaintNode;
@@ -391,9 +406,13 @@ mod tests {
     #[test]
     fn a_devices_trouble_and_its_end_are_told() {
         let mut rig = Rig::new();
-        rig.arm().trouble = "no arm (/dev/ttyACM0); plug it in".into();
+        let trouble = Trouble {
+            what: "no arm (/dev/ttyACM0)",
+            help: "plug it in",
+        };
+        assert!(rig.arm().report(trouble));
         assert_eq!(rig.look(), fault("The device 'arm': no arm (/dev/ttyACM0)"));
-        rig.arm().trouble = String::new();
+        rig.arm().clear_trouble();
         assert_eq!(rig.look(), note("The device 'arm' is in order again."));
         rig.arm().faults = vec!["it shakes".into()];
         let told = fault("The device 'arm' gives no force: it shakes");
@@ -443,11 +462,16 @@ mod tests {
     #[test]
     fn that_the_processor_has_taken_over_is_told_and_a_choice_at_the_start_is_not() {
         let mut rig = Rig::new();
-        rig.state.events = ["backend cpu", "backend gpu A: B", "goes on"]
-            .map(|what| RigEvent::Decided(what.to_owned()))
+        let chosen = |name: &str| Decision::Backend { name: name.into() };
+        rig.state.events = [chosen("cpu"), chosen("gpu A: B"), Decision::Resumed]
+            .map(RigEvent::Decided)
             .to_vec();
         assert_eq!(rig.look(), []);
-        rig.state.events = vec![RigEvent::Decided("backend cpu: the device is lost".into())];
+        let lost = Decision::Fallback {
+            name: "cpu".into(),
+            why: "the device is lost".into(),
+        };
+        rig.state.events = vec![RigEvent::Decided(lost)];
         let told = fault("The paint is computed by the processor from now on: the device is lost");
         assert_eq!(rig.look(), told);
     }
@@ -455,8 +479,8 @@ mod tests {
     #[test]
     fn that_flow_is_found_on_coarser_cells_is_told() {
         let mut rig = Rig::new();
-        let what = "flow on coarser cells: a window needs 300 MiB";
-        rig.state.events = vec![RigEvent::Decided(what.into())];
+        let why = "a window needs 300 MiB".to_owned();
+        rig.state.events = vec![RigEvent::Decided(Decision::CoarserFlow { why })];
         let told = note(
             "The graphics card has too little memory for so wide a brush: thick paint flows in less detail around it (a window \
              needs 300 MiB)",

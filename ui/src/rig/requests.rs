@@ -1,7 +1,7 @@
 //! Requests to the rig: collected while the window is drawn, sent by the
 //! [`dispatcher`](crate::rig::dispatcher).
 
-use maulstick_types::command::{BrushCommand, Command};
+use maulstick_types::command::{BrushCommand, Command, RIG_NODE};
 use maulstick_types::edits::Edit;
 use maulstick_types::haptics::ForceOrder;
 
@@ -30,7 +30,32 @@ pub enum Request {
     },
 }
 
+/// A process that carries out requests.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Peer {
+    /// The paint node.
+    Paint,
+    /// The launcher.
+    Rig,
+    /// The node of a brush.
+    Brush(String),
+    /// The daemon of a device.
+    Device(String),
+}
+
 impl Request {
+    /// The process that carries it out.
+    pub(crate) fn peer(&self) -> Peer {
+        match self {
+            Self::Command { node, .. } => match node.as_str() {
+                PAINT => Peer::Paint,
+                RIG_NODE => Peer::Rig,
+                brush => Peer::Brush(brush.to_owned()),
+            },
+            Self::Force { device, .. } => Peer::Device(device.clone()),
+        }
+    }
+
     /// A command to the node that carries it out.
     #[must_use]
     pub fn of(command: impl Into<Command>) -> Self {

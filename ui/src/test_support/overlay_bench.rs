@@ -8,7 +8,7 @@ use eframe::egui::{DroppedFile, Key, Modifiers, Theme, Ui};
 use egui_kittest::kittest::Queryable as _;
 use egui_kittest::{Harness, SnapshotOptions};
 use maulstick_rig::UserError;
-use maulstick_types::command::Command;
+use maulstick_types::command::{Command, Detail};
 
 use crate::app::overlay::Overlay;
 use crate::rig::dispatcher::Outcome;
@@ -55,13 +55,13 @@ impl Bench {
     }
 
     /// Answers a command.
-    pub(crate) fn answer(&mut self, asked: &(String, Command), result: Result<&str, UserError>) {
+    pub(crate) fn answer(&mut self, asked: &(String, Command), result: Result<Detail, UserError>) {
         let told = Outcome {
             request: Request::Command {
                 node: asked.0.clone(),
                 command: asked.1.clone(),
             },
-            result: result.map(str::to_owned),
+            result,
         };
         self.with(|overlay, work| overlay.hear(&told, work));
     }

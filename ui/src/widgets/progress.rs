@@ -9,7 +9,7 @@ use maulstick_types::edits::{Relight, StopDrying};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::{CANVAS, Light};
 
-use crate::language::layer_name;
+use crate::rig::requests::Peer;
 use crate::rig::state::RigState;
 use crate::widgets::context::PanelContext;
 
@@ -29,8 +29,8 @@ enum Kind {
     Drawing,
     /// Wet paint dries in time.
     Drying,
-    /// A process does not answer, by its name in the dispatcher.
-    Waiting(String),
+    /// A process does not answer.
+    Waiting(Peer),
 }
 
 /// The action that ends a job.
@@ -73,7 +73,7 @@ impl Progress {
         &mut self,
         context: &Context,
         work: &mut PanelContext<'_>,
-        waits: &[String],
+        waits: &[Peer],
     ) -> bool {
         let status = work.rig.paint.as_ref().map(|paint| &paint.status);
         let lines: Vec<String> = status.into_iter().flat_map(lines).collect();
@@ -107,8 +107,8 @@ impl Progress {
     }
 
     /// Jobs that have run for long enough to be shown, with their start, rig clock, ns.
-    fn jobs(&mut self, rig: &RigState, waits: &[String]) -> Vec<(Job, u64)> {
-        let mut jobs: Vec<Job> = waits.iter().map(|name| waiting(name)).collect();
+    fn jobs(&mut self, rig: &RigState, waits: &[Peer]) -> Vec<(Job, u64)> {
+        let mut jobs: Vec<Job> = waits.iter().map(waiting).collect();
         let waited = jobs.len();
         jobs.extend(self.relighting(rig));
         jobs.extend(drawing(rig));
@@ -205,7 +205,7 @@ fn drying(rig: &RigState) -> Option<Job> {
         kind: Kind::Drying,
         words: match drying.layer.is_empty() {
             true => tr!("Drying").to_owned(),
-            false => tr!("Drying “{layer}”", layer = layer_name(&drying.layer)),
+            false => tr!("Drying “{layer}”", layer = drying.layer),
         },
         share: Some(f64::from(drying.share)),
         cancel: Some(Cancel::Paint(Box::new(stop.into()))),
@@ -213,16 +213,15 @@ fn drying(rig: &RigState) -> Option<Job> {
     })
 }
 
-fn waiting(name: &str) -> Job {
-    let words = match name.split_once(' ') {
-        Some(("node", "paint")) => tr!("Waiting for the painting engine …").to_owned(),
-        Some(("node", "rig")) => tr!("Waiting for the rig, which opens the painting …").to_owned(),
-        Some(("node", brush)) => tr!("Waiting for the brush '{brush}' …", brush),
-        Some((_, device)) => tr!("Waiting for the device '{device}' …", device),
-        None => tr!("Waiting for {name} …", name),
+fn waiting(peer: &Peer) -> Job {
+    let words = match peer {
+        Peer::Paint => tr!("Waiting for the painting engine …").to_owned(),
+        Peer::Rig => tr!("Waiting for the rig, which opens the painting …").to_owned(),
+        Peer::Brush(brush) => tr!("Waiting for the brush '{brush}' …", brush),
+        Peer::Device(device) => tr!("Waiting for the device '{device}' …", device),
     };
     Job {
-        kind: Kind::Waiting(name.to_owned()),
+        kind: Kind::Waiting(peer.clone()),
         words,
         share: None,
         cancel: Some(Cancel::GiveUp),
@@ -291,7 +290,7 @@ mod tests {
         progress: Progress,
         rig: RigState,
         requests: Requests,
-        waits: Vec<String>,
+        waits: Vec<Peer>,
         given_up: bool,
     }
 
@@ -387,18 +386,19 @@ mod tests {
 
     #[test]
     fn who_is_waited_for_is_named_and_the_wait_can_be_given_up() {
-        for (name, words) in [
-            ("node paint", "Waiting for the painting engine …"),
-            ("node main", "Waiting for the brush 'main' …"),
-            ("force arm", "Waiting for the device 'arm' …"),
+        let (brush, arm) = (Peer::Brush("main".into()), Peer::Device("arm".into()));
+        for (peer, words) in [
+            (Peer::Paint, "Waiting for the painting engine …"),
+            (brush, "Waiting for the brush 'main' …"),
+            (arm, "Waiting for the device 'arm' …"),
         ] {
             let mut harness = harness();
-            harness.state_mut().waits = vec![name.to_owned()];
+            harness.state_mut().waits = vec![peer];
             harness.run_steps(2);
             harness.get_by_label(words);
             harness.get_by_label("Cancel").click();
             harness.run_steps(2);
-            assert!(harness.state().given_up, "{name}");
+            assert!(harness.state().given_up, "{words}");
         }
     }
 

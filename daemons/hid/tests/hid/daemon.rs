@@ -108,6 +108,13 @@ impl Rig {
         self.infos.newest().map(|received| received.message)
     }
 
+    /// Why there is no device, and what to do, of the newest status.
+    pub(crate) fn trouble(&mut self) -> String {
+        let status = self.status().expect("told");
+        let trouble = status.trouble();
+        trouble.map_or(String::new(), |trouble| trouble.to_string())
+    }
+
     pub(crate) fn status(&mut self) -> Option<StylusStatus> {
         self.statuses.newest().map(|received| received.message)
     }

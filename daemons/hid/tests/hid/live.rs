@@ -190,10 +190,10 @@ fn unplugged_in_a_stroke_the_pen_is_lifted_and_found_again() {
     };
     assert!(lifted.in_range && lifted.in_air() && !away.in_range);
     rig.run(200_000_000, 10_000_000);
-    let trouble = rig.status().expect("told").trouble;
+    let trouble = rig.trouble();
     assert!(trouble.contains("unplugged; plug it in again"), "{trouble}");
     rig.run(3_000_000_000, 50_000_000);
-    let trouble = rig.status().expect("told").trouble;
+    let trouble = rig.trouble();
     assert!(trouble.contains("no pen tablet is plugged in"), "{trouble}");
     plugs.with(|desk| desk.found = there);
     plugs.say(stroke_report(&tablet, 1, 1, 30_000, 4000));
@@ -202,7 +202,7 @@ fn unplugged_in_a_stroke_the_pen_is_lifted_and_found_again() {
         told.last().is_some_and(|last| !last.in_air())
     });
     rig.run(200_000_000, 10_000_000);
-    assert_eq!(rig.status().expect("told").trouble, "");
+    assert_eq!(rig.trouble(), "");
 }
 
 #[test]
@@ -230,7 +230,7 @@ fn a_device_that_is_not_there_is_looked_for_each_second() {
     let mut rig = Rig::new(&settings("pen"), Box::new(plugs.clone())).expect("a daemon");
     rig.run(5_500_000_000, 10_000_000);
     assert_eq!(attempts(&plugs), 6);
-    let trouble = rig.status().expect("told").trouble;
+    let trouble = rig.trouble();
     assert!(
         trouble.contains("may not read") && trouble.contains("device allow"),
         "{trouble}"
@@ -261,7 +261,7 @@ fn a_node_that_appears_is_opened_once_udev_is_done_with_it() {
     rig.run(30_000_000, 10_000_000);
     assert_eq!(attempts(&plugs), 1, "before a second is over");
     rig.run(100_000_000, 10_000_000);
-    assert_eq!(rig.status().expect("told").trouble, "");
+    assert_eq!(rig.trouble(), "");
 }
 
 #[test]
@@ -328,7 +328,7 @@ fn of_several_devices_the_first_that_suits_or_the_one_that_is_named_is_opened() 
             opened,
             "{driver} {address:?}"
         );
-        let told = rig.status().expect("told").trouble;
+        let told = rig.trouble();
         assert!(
             told.contains(trouble) && told.is_empty() == trouble.is_empty(),
             "{told}"
@@ -397,7 +397,7 @@ fn a_tablet_that_cannot_be_read_can_be_recorded_by_its_address() {
     settings.record = Some(path.clone());
     let mut rig = Rig::new(&settings, Box::new(plugs.clone())).expect("a daemon");
     rig.run(200_000_000, 10_000_000);
-    let trouble = rig.status().expect("told").trouble;
+    let trouble = rig.trouble();
     assert!(
         trouble.contains("a format of its maker's own") && trouble.contains("--record"),
         "{trouble}"

@@ -12,7 +12,7 @@ use maulstick_painting::PaintingSetup;
 use maulstick_types::command::{Command, CommandReply, CommandRequest, ExportOrder, Outcome};
 use maulstick_types::command::{FileCommand, SaveAs, TakeCommand};
 use maulstick_types::edits::{Fill, FillPaint, Forget, Keep};
-use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
+use maulstick_types::paint::{StepName, ThumbnailReply, ThumbnailRequest};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{FilmThickness, VersionName, WholePath};
 use maulstick_types::{Flags, Message, Mixture, decode, encode};
@@ -103,7 +103,7 @@ impl Rig {
 
     pub(super) fn done(&mut self, command: Command) -> String {
         match self.command(command) {
-            Outcome::Done { detail, .. } => detail,
+            Outcome::Done { detail, .. } => detail.to_string(),
             other => panic!("{other:?}"),
         }
     }
@@ -360,7 +360,7 @@ fn small_pictures_of_steps_show_the_painting_after_each() {
     for paint in ["Titanium White", "Yellow Ochre", "Bone Black"] {
         rig.fill(paint);
         let steps = rig.node.sequencer.painting().history().around(30);
-        assert!(steps[0].done && steps[0].what == "fill");
+        assert!(steps[0].done && steps[0].what == StepName::Fill);
         shown.push((steps[0].id, rig.thumbnail("", 48)));
     }
     let after = |rig: &mut Rig, step: u64| -> ThumbnailReply {

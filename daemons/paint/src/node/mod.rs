@@ -24,7 +24,7 @@ use maulstick_bus::{
 use maulstick_document::{Document, DocumentError, Relocation};
 use maulstick_painting::{Painting, Sequencer};
 use maulstick_types::brush::{BRUSHES_MOST, BrushDef, BrushState};
-use maulstick_types::paint::{BrushCredit, JournalEntry, PaintConsumed, PaintStatus};
+use maulstick_types::paint::{BrushCredit, Decision, JournalEntry, PaintConsumed, PaintStatus};
 use maulstick_types::scene::Scene;
 use maulstick_types::wire::topics::{Topics, check_name};
 use maulstick_types::{Origin, name_hash};
@@ -121,7 +121,7 @@ impl PaintNode {
         painting: Painting,
     ) -> Result<Self, BusError> {
         let mut sequencer = Sequencer::new(painting);
-        sequencer.decide("backend cpu");
+        sequencer.decide(Decision::Backend { name: "cpu".into() });
         Self::going_on(bus, topics, wake, me, sequencer)
     }
 

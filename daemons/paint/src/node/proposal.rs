@@ -1,6 +1,7 @@
 //! Proposal of a lighter paint model where painting falls behind: told once, never carried out.
 
 use maulstick_painting::models::AUTO_MODELS;
+use maulstick_types::paint::Decision;
 use maulstick_types::scene::CANVAS;
 
 use super::PaintNode;
@@ -51,7 +52,8 @@ impl PaintNode {
                 "painting with {own} falls behind on this machine; `maulstick convert {lighter}` converts this painting \
                  to a lighter model, which can be undone"
             );
-            self.sequencer.decide(&format!("model {lighter} proposed"));
+            let model = lighter.to_owned();
+            self.sequencer.decide(Decision::LighterModel { model });
         }
     }
 }

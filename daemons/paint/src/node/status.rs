@@ -14,7 +14,7 @@ use maulstick_session::Autosave;
 const AT_REST_NS: u64 = 5 * STATUS_PERIOD_NS;
 /// Steps that a status lists.
 const LISTED: usize = 30;
-/// Letters of the description of a step.
+/// Letters of a text in the name of a step.
 const LETTERS: usize = 80;
 
 /// The steps around the present one.
@@ -22,7 +22,7 @@ fn history(painting: &Painting) -> Vec<HistoryStep> {
     let steps = painting.history().around(LISTED);
     let listed = steps.into_iter().map(|step| HistoryStep {
         id: step.id,
-        what: step.what.chars().take(LETTERS).collect(),
+        what: step.what.shortened(LETTERS),
         done: step.done,
     });
     listed.collect()

@@ -9,7 +9,7 @@ use maulstick_bus::{Faults, MemoryNet};
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_optics::{PaintLibrary, Under};
 use maulstick_painting::PaintingSetup;
-use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
+use maulstick_types::command::{Command, CommandReply, CommandRequest, Detail, Outcome};
 use maulstick_types::edits::{Dry, Fill, FillPaint, Load};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
@@ -132,7 +132,7 @@ fn an_answer_that_does_not_fit_is_given_in_short() {
     let request = node.commands.try_recv().expect("a question");
     let outcome = Outcome::Done {
         journal: 1,
-        detail: "x".repeat(70_000),
+        detail: Detail::say("x".repeat(70_000)),
     };
     node.answer(request, 0, CommandReply { number: 5, outcome });
     net.advance(1);

@@ -180,9 +180,9 @@ fn used(target: &Target) -> Option<Vec<Used>> {
     while let Some(received) = statuses.received_before(Instant::now()) {
         let device = received.key.rsplit('/').nth(1).unwrap_or_default();
         let status = received.message;
-        let trouble = match status.faults.is_empty() {
-            true => status.trouble,
-            false => status.faults.join("; "),
+        let trouble = match status.trouble() {
+            Some(trouble) if status.faults.is_empty() => trouble.to_string(),
+            _ => status.faults.join("; "),
         };
         if let Some(used) = found.iter_mut().find(|used| used.section.name == device) {
             used.trouble = trouble;

@@ -89,7 +89,7 @@ fn row(line: &Logged, names: &mut Names) -> [String; 3] {
             let what = format!("undo a stroke of {brush} that was not painted yet");
             (names.sender(*id), what)
         }
-        LoggedWhat::Decision(what) => (names.sender(0), what.clone()),
+        LoggedWhat::Decision(decision) => (names.sender(0), decision.to_string()),
         LoggedWhat::Brush(name) => (names.sender(0), format!("brush {name}")),
     };
     let what = match what.char_indices().nth(LINE) {
@@ -117,7 +117,7 @@ fn as_json(line: &Logged, names: &mut Names) -> Value {
         LoggedWhat::Dropped { client, brush } => {
             json!({ "kind": "dropped", "client": client, "brush": brush })
         }
-        LoggedWhat::Decision(what) => json!({ "kind": "decision", "what": what }),
+        LoggedWhat::Decision(decision) => json!({ "kind": "decision", "decision": decision }),
         LoggedWhat::Brush(name) => json!({ "kind": "brush", "brush": name }),
     };
     if let Value::Object(fields) = &mut value {
@@ -128,13 +128,28 @@ fn as_json(line: &Logged, names: &mut Names) -> Value {
 
 #[cfg(test)]
 mod tests {
+    use maulstick_types::paint::Decision;
+
     use super::*;
+
+    #[test]
+    fn a_decision_has_its_fields_in_json_and_words_in_a_line() {
+        let model = "dab".to_owned();
+        let line = Logged {
+            time_ms: None,
+            what: LoggedWhat::Decision(Decision::LighterModel { model }),
+        };
+        let mut names = Names::default();
+        let json = as_json(&line, &mut names);
+        assert_eq!(json["decision"]["LighterModel"]["model"], "dab");
+        assert_eq!(row(&line, &mut names)[2], "model dab proposed");
+    }
 
     #[test]
     fn a_line_is_no_longer_than_a_line() {
         let line = Logged {
             time_ms: None,
-            what: LoggedWhat::Decision("x".repeat(500)),
+            what: LoggedWhat::Brush("x".repeat(500)),
         };
         let row = row(&line, &mut Names::default());
         assert_eq!(row[2].chars().count(), LINE + 1);

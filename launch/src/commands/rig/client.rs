@@ -115,7 +115,7 @@ impl Client {
         limit: Duration,
     ) -> Result<String, UserError> {
         let done = self.carry_out(command, limit)?;
-        Ok(done.detail)
+        Ok(done.detail.to_string())
     }
 
     /// The same, with the place that the command has in the painting's journal.

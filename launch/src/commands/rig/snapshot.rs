@@ -50,7 +50,7 @@ pub fn snapshot(options: &SnapshotOptions) -> Result<i32, UserError> {
     if let Some(ledger) = ledger {
         ledger.arrive("")?;
     }
-    let said = picture.arrive(&done.detail)?;
+    let said = picture.arrive(&done.detail.to_string())?;
     if options.json {
         print_json_line(&json!({ "picture": options.output, "place": done.journal }))?;
     } else {

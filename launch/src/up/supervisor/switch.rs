@@ -65,7 +65,7 @@ enum Stage {
     Saving(
         PathBuf,
         Arc<AtomicBool>,
-        mpsc::Receiver<Result<String, UserError>>,
+        mpsc::Receiver<Result<(), UserError>>,
     ),
 }
 
@@ -166,9 +166,11 @@ fn save(
     topics: &Topics,
     save_as: SaveAs,
     stops: &dyn Fn() -> bool,
-) -> Result<String, UserError> {
+) -> Result<(), UserError> {
     let command = FileCommand::SaveAs(save_as);
-    CommandClient::new(bus, topics).send(command, None, SAVE_TIME, stops)
+    CommandClient::new(bus, topics)
+        .send(command, None, SAVE_TIME, stops)
+        .map(drop)
 }
 
 /// Sees that a painting can go on, and what is painted on.
@@ -266,7 +268,7 @@ impl Supervisor {
                 false => Ok(Stage::Returning(why)),
             },
             Stage::Saving(to, gone, saved) => match saved.try_recv() {
-                Ok(Ok(_)) => {
+                Ok(Ok(())) => {
                     self.is_saved_as(&to);
                     let name = to.display().to_string();
                     tracing::info!("painting in {name}");

@@ -126,16 +126,6 @@ pub fn choice<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Strin
     }
 }
 
-/// What is wrong, and what to do about it, of a line that says both: `an opacity of 3; choose 0 to 1`. Where
-/// something is checked far from those who tell it, its error is such a line.
-#[must_use]
-pub fn parted(line: &str) -> (&str, Option<&str>) {
-    match line.rsplit_once("; ") {
-        Some((what, help)) => (what, Some(help)),
-        None => (line, None),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -162,14 +152,5 @@ mod tests {
         );
         assert_eq!(choice("whither", ["from", "to"]), "there are: from, to");
         assert_eq!(choice("whither", []), "there is none");
-    }
-
-    #[test]
-    fn a_line_is_parted_into_what_and_help() {
-        assert_eq!(
-            parted("'a; b' is no time; give 90s"),
-            ("'a; b' is no time", Some("give 90s"))
-        );
-        assert_eq!(parted("it is full"), ("it is full", None));
     }
 }

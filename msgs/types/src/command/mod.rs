@@ -1,6 +1,7 @@
 //! Commands to the nodes of a rig, by who carries them out, and their replies.
 
 pub mod advice;
+mod detail;
 pub mod reply_cache;
 pub mod session;
 pub mod slow_canvas;
@@ -8,6 +9,7 @@ pub mod slow_canvas;
 use serde::de::Error as _;
 
 use crate::command::advice::Advice;
+pub use crate::command::detail::Detail;
 pub use crate::command::session::SessionCommand;
 use crate::edits::Edit;
 use crate::mixture::Mixture;
@@ -401,8 +403,9 @@ wire_enum! {
         Done {
             /// Its index in the journal.
             journal: u64,
-            /// What it wrote or found, in words; may be empty.
-            detail: String,
+            /// What it wrote or found.
+            #[serde(deserialize_with = "crate::wire::worded::read")]
+            detail: Detail,
         },
         /// It is accepted and waits for its place; ask again with the same number.
         Waiting,
@@ -417,12 +420,12 @@ wire_enum! {
 }
 
 impl Outcome {
-    /// It is done, beside the journal.
+    /// It is done, beside the journal, and says so much about it.
     #[must_use]
-    pub fn done(detail: impl Into<String>) -> Self {
+    pub fn done(words: impl Into<String>) -> Self {
         Self::Done {
             journal: 0,
-            detail: detail.into(),
+            detail: Detail::say(words),
         }
     }
 
@@ -438,7 +441,7 @@ impl Outcome {
 
 message! {
     /// The reply to a command.
-    pub struct CommandReply [version 2, at most 65536 bytes] {
+    pub struct CommandReply [version 3, at most 65536 bytes] {
         /// The command's number.
         pub number: u64,
         /// What became of it.

@@ -1,11 +1,18 @@
 //! Messages of the paint node: credit, journal, frames, status.
 
+mod decision;
 pub(crate) mod frame_view;
+mod step_name;
+mod worded_entry;
 
 use serde_bytes::ByteBuf;
 
 use crate::command::Command;
+pub use crate::paint::decision::Decision;
+pub use crate::paint::step_name::StepName;
+use crate::wire::codec::{Message as _, decode};
 use crate::wire::define::{message, wire_enum, wire_struct};
+use crate::wire::header::{DecodeError, Header};
 
 /// Side of a tile in cells.
 pub const TILE: usize = 64;
@@ -87,8 +94,9 @@ wire_enum! {
         },
         /// A decision of the paint node itself.
         Decision {
-            /// In words: the backend, a degradation.
-            what: String,
+            /// The decision.
+            #[serde(deserialize_with = "crate::wire::worded::read")]
+            what: Decision,
         },
         /// A brush, or another file of a known one.
         Brush {
@@ -102,11 +110,32 @@ wire_enum! {
 
 message! {
     /// An entry of the journal, in order; it has room for the largest command with its index.
-    pub struct JournalEntry [version 11, at most 1049600 bytes] {
+    pub struct JournalEntry [version 12, at most 1049600 bytes] {
         /// From 0, without gaps.
         pub index: u64,
         /// The record.
         pub entry: Entry,
+    }
+}
+
+impl JournalEntry {
+    /// Hashes of the schemas that [`decode_stored`](Self::decode_stored) reads, its own first.
+    #[must_use]
+    pub fn stored_hashes() -> [u32; 2] {
+        [Self::schema(), worded_entry::JournalEntry::schema()].map(|schema| schema.hash)
+    }
+
+    /// Decodes an entry of a file, which may be of the version before.
+    ///
+    /// # Errors
+    /// As [`decode`].
+    pub fn decode_stored(bytes: &[u8]) -> Result<(Header, Self), DecodeError> {
+        let [_, worded] = Self::stored_hashes();
+        if Header::from_bytes(bytes)?.schema != worded {
+            return decode(bytes);
+        }
+        let (header, entry) = decode::<worded_entry::JournalEntry>(bytes)?;
+        Ok((header, entry.into()))
     }
 }
 
@@ -212,8 +241,9 @@ wire_struct! {
     pub struct HistoryStep {
         /// Its number.
         pub id: u64,
-        /// What it was, in words.
-        pub what: String,
+        /// What it was.
+        #[serde(deserialize_with = "crate::wire::worded::read")]
+        pub what: StepName,
         /// True if it is done, false if it was undone.
         pub done: bool,
     }
@@ -221,7 +251,7 @@ wire_struct! {
 
 message! {
     /// Status of the paint node, ten times a second.
-    pub struct PaintStatus [version 6, at most 32768 bytes] {
+    pub struct PaintStatus [version 7, at most 32768 bytes] {
         /// Entries of the journal so far.
         pub journal: u64,
         /// Steps of the paint model so far.

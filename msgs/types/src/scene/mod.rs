@@ -236,6 +236,20 @@ wire_struct! {
     }
 }
 
+impl Layer {
+    /// Name of a layer that was given none.
+    #[must_use]
+    pub fn default_name(number: u32) -> String {
+        format!("layer {number}")
+    }
+
+    /// True if it was given no name.
+    #[must_use]
+    pub fn is_unnamed(&self) -> bool {
+        self.name == Self::default_name(self.number)
+    }
+}
+
 wire_struct! {
     /// A version of the painting that was kept.
     pub struct NamedVersion {

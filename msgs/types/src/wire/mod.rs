@@ -5,6 +5,7 @@
 //! | [`header`] | the header, flags, and the errors of reading a message |
 //! | [`schema`] | field tables and their hash |
 //! | [`topics`] | the key expressions of a rig |
+//! | [`worded`] | values that earlier versions had in words |
 //! | `define` | the macro that makes struct, codec and field table of one definition |
 //! | `codec` | bincode, always with a limit |
 //! | `plain` | text of others made safe for a line |
@@ -17,3 +18,4 @@ pub mod header;
 pub(crate) mod plain;
 pub mod schema;
 pub mod topics;
+pub mod worded;

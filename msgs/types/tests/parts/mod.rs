@@ -9,7 +9,7 @@ use maulstick_types::edits::Relight;
 use maulstick_types::haptics::ForceReply;
 use maulstick_types::node::{NodeStatus, NodeWork};
 use maulstick_types::paint::{
-    DryingStatus, ExportStatus, FrameHolds, HistoryStep, PaintStatus, ThumbnailReply,
+    DryingStatus, ExportStatus, FrameHolds, HistoryStep, PaintStatus, StepName, ThumbnailReply,
 };
 use maulstick_types::scene::{BrushHandling, BrushMode, Light};
 use maulstick_types::stylus::StylusStatus;
@@ -65,6 +65,7 @@ pub(crate) fn status() -> StylusStatus {
         is_guided: true,
         guidance: 0.7,
         refused_senders: 8,
+        help: "plug it in".into(),
     }
 }
 
@@ -112,7 +113,7 @@ pub(crate) fn paint_status() -> PaintStatus {
         backend: "cpu".into(),
         history: vec![HistoryStep {
             id: 18,
-            what: "fill".into(),
+            what: StepName::Fill,
             done: true,
         }],
     }

@@ -26,7 +26,7 @@ use crate::file::database::{Access, Database, is_new};
 use crate::journal;
 use crate::record::beginning;
 use crate::tables::checksum::Checksum;
-use crate::tables::rows::{COPY, StoredNonTileState, StoredStepEffects, place_of};
+use crate::tables::rows::{COPY, StoredNonTileState, StoredStepEffects, place_of, step_name};
 use crate::tables::schema::Table;
 pub use shown::shown_tiles;
 use stored_pages::StoredPages;
@@ -371,7 +371,7 @@ fn steps(database: &Database, stored: &StoredPages) -> Result<Vec<Step>, Documen
         let [what, brush, _] = texts;
         steps.push(Step {
             id: id as u64,
-            what,
+            what: step_name(&what),
             brush: (!brush.is_empty()).then_some(brush),
             operations: operations as u64,
             done: done != 0,

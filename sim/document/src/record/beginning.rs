@@ -8,7 +8,7 @@ use maulstick_painting::snapshot::PaintingSnapshot;
 use maulstick_painting::{Beginning, Named};
 use maulstick_types::Message as _;
 use maulstick_types::brush::{BrushDef, BrushState};
-use maulstick_types::paint::JournalEntry;
+use maulstick_types::paint::{JournalEntry, StepName};
 use rusqlite::{OptionalExtension as _, params};
 use serde::{Deserialize, Serialize};
 
@@ -37,7 +37,8 @@ const STEP: &str = "step ";
 #[derive(Serialize, Deserialize)]
 struct StoredStep {
     id: u64,
-    what: String,
+    #[serde(deserialize_with = "maulstick_types::wire::worded::read")]
+    what: StepName,
     brush: Option<String>,
     operations: u64,
     effects: StoredStepEffects,
@@ -51,14 +52,12 @@ struct StoredVersion {
     state: StoredNonTileState,
 }
 
-/// Formats of the messages that this program records: others cannot be executed again by it.
-fn format() -> String {
-    let hashes = [
-        BrushState::schema().hash,
-        JournalEntry::schema().hash,
-        BrushDef::schema().hash,
-    ];
-    hashes.map(|hash| format!("{hash:08x}")).join(" ")
+/// Formats of messages that this program can execute again, that of those that it records first.
+fn formats() -> [String; 2] {
+    JournalEntry::stored_hashes().map(|entry| {
+        let hashes = [BrushState::schema().hash, entry, BrushDef::schema().hash];
+        hashes.map(|hash| format!("{hash:08x}")).join(" ")
+    })
 }
 
 fn checksum(part: &str, value: &str, tiles: &[u8]) -> i64 {
@@ -92,7 +91,8 @@ pub(super) fn write(
     loads.try_for_each(|page| writer.write_load(page))?;
     let painting = writer.with_files(&beginning.painting)?;
     put(TIME, &beginning.time_ms.to_string(), &[])?;
-    put(FORMAT, &format(), &[])?;
+    let [format, _] = formats();
+    put(FORMAT, &format, &[])?;
     put(PAINTING, &serde_json::to_string(&painting)?, &[])?;
     put(
         SEQUENCER,
@@ -138,7 +138,7 @@ pub(crate) fn read(
     let Some((found, _)) = parts.remove(FORMAT) else {
         return Ok(None);
     };
-    if found != format() {
+    if !formats().contains(&found) {
         tracing::info!("the record is of another version of this program: it begins anew");
         return Ok(None);
     }

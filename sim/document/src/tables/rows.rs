@@ -8,11 +8,18 @@ use maulstick_painting::history::{
     Booked, Change, NonTileState, StepEffects, SurfaceMaterial, TilePlace, TileRef,
 };
 use maulstick_painting::ledger::Ledger;
+use maulstick_types::paint::StepName;
 use maulstick_types::scene::Layer;
+use maulstick_types::wire::worded::Worded as _;
 use serde::{Deserialize, Serialize};
 
 /// Suffix of the keys of the second copy of the state: a single wrong bit in the only copy would cost the painting.
 pub const COPY: &str = " copy";
+
+/// Name of a step, JSON; rows of before schema 7 have it in words.
+pub(crate) fn step_name(text: &str) -> StepName {
+    serde_json::from_str(text).unwrap_or_else(|_| StepName::of_words(text))
+}
 
 /// A tile's place as one number: surface · 2⁴⁰ + row · 2²⁰ + column.
 #[must_use]

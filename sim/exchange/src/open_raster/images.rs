@@ -66,7 +66,7 @@ pub(super) fn images(banded: &Banded<'_>, layers: &[Layer]) -> Vec<Image> {
     };
     let name = |number: u32| {
         let found = layers.iter().find(|layer| layer.number == number);
-        found.map_or_else(|| format!("layer {number}"), |layer| layer.name.clone())
+        found.map_or_else(|| Layer::default_name(number), |layer| layer.name.clone())
     };
     let mut images = vec![layer("ground".into(), "ground".into(), Shows::Ground)];
     images.extend(dried.into_iter().map(|number| {

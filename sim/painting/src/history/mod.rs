@@ -18,6 +18,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use maulstick_canvas::page::Pager;
+use maulstick_types::paint::StepName;
 
 pub use crate::ledger::Booked;
 
@@ -87,7 +88,7 @@ impl History {
     }
 
     /// Begins a step; steps undone by this brush, or by none, are dropped.
-    pub fn begin(&mut self, what: &str, brush: Option<&str>, before: NonTileState) {
+    pub fn begin(&mut self, what: StepName, brush: Option<&str>, before: NonTileState) {
         let own = |step: &Step| match (&step.brush, brush) {
             (Some(one), Some(other)) => one == other,
             _ => true,
@@ -99,7 +100,7 @@ impl History {
         self.next += 1;
         self.open.push(OpenStep {
             id: self.next,
-            what: what.to_owned(),
+            what,
             brush: brush.map(str::to_owned),
             tiles: BTreeMap::new(),
             before,
@@ -317,7 +318,7 @@ impl History {
         self.touched.insert(gone);
         self.insert(Step {
             id,
-            what: format!("{operations} steps"),
+            what: StepName::Merged { count: operations },
             brush: first
                 .brush
                 .filter(|brush| second.brush.as_ref() == Some(brush)),

@@ -7,6 +7,7 @@ use maulstick_canvas::page::Page;
 use maulstick_canvas::store::TileRect;
 use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_model::brush::load::BrushLoad;
+use maulstick_types::paint::StepName;
 use maulstick_types::scene::{Layer, Well};
 use serde::{Deserialize, Serialize};
 
@@ -169,8 +170,8 @@ fn joined<T: Clone>(first: Option<[T; 2]>, second: Option<&[T; 2]>) -> Option<[T
 pub struct Step {
     /// Its number; steps that ended later have higher ones.
     pub id: u64,
-    /// Description in words.
-    pub what: String,
+    /// Its name.
+    pub what: StepName,
     /// Name of the brush that made it, if one did.
     pub brush: Option<String>,
     /// Number of operations.
@@ -231,7 +232,7 @@ pub(crate) struct OpenStep {
     /// As [`Step::id`].
     pub id: u64,
     /// As [`Step::what`].
-    pub what: String,
+    pub what: StepName,
     /// As [`Step::brush`].
     pub brush: Option<String>,
     /// The tiles before it.

@@ -1,5 +1,6 @@
 //! Ways through the history: which steps lead from the present one to another.
 
+use maulstick_types::paint::StepName;
 use maulstick_types::scene::PALETTE;
 
 use super::{History, OpenStep, Step, TilePlace};
@@ -34,19 +35,17 @@ impl Direction {
 pub struct ListedStep {
     /// Its number; one that is not finished gets another when it ends.
     pub id: u64,
-    /// Description in words.
-    pub what: String,
+    /// Its name.
+    pub what: StepName,
     /// True if it is done; false if it was undone.
     pub done: bool,
 }
 
-/// Description of what a brush did at these places: on the palette it changes no picture.
-pub(crate) fn placed<'a>(what: &str, places: impl Iterator<Item = &'a TilePlace>) -> String {
+/// Name of what a brush did at these places.
+pub(crate) fn placed<'a>(what: &StepName, places: impl Iterator<Item = &'a TilePlace>) -> StepName {
     let mut surfaces = places.map(|place| place.0).peekable();
-    match surfaces.peek().is_some() && surfaces.all(|surface| surface == PALETTE) {
-        true => format!("{what} on the palette"),
-        false => what.to_owned(),
-    }
+    let on_palette = surfaces.peek().is_some() && surfaces.all(|surface| surface == PALETTE);
+    what.clone().placed(on_palette)
 }
 
 impl History {
@@ -119,7 +118,7 @@ mod tests {
     fn history(steps: &[(u64, bool)], undone: &[u64]) -> History {
         let steps = steps.iter().map(|(id, done)| Step {
             id: *id,
-            what: id.to_string(),
+            what: StepName::Fill,
             brush: None,
             operations: 1,
             done: *done,

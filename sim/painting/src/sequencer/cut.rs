@@ -1,9 +1,9 @@
 //! Undo ahead of the paint: a stroke that still waits to be painted is dropped, for it would be undone.
 
 use maulstick_types::brush::{BrushState, solve_flags};
-use maulstick_types::command::{After, Command, CommandRequest, Outcome};
+use maulstick_types::command::{After, Command, CommandRequest, Detail, Outcome};
 use maulstick_types::edits::{Edit, Undo};
-use maulstick_types::paint::Entry;
+use maulstick_types::paint::{Entry, StepName};
 use maulstick_types::values::BrushName;
 use maulstick_types::{Flags, Header, Origin, name_hash};
 
@@ -13,7 +13,9 @@ use crate::snapshot::CutStates;
 /// Sampling time that the waiting states must span for an undo to drop a stroke, ns; below it the undo waits.
 const CUT_NS: u64 = 500_000_000;
 /// What an undo reports of a stroke of which nothing was painted.
-pub(super) const NOT_PAINTED: &str = "a stroke that was not painted yet";
+pub(super) const NOT_PAINTED: Detail = Detail::Step {
+    name: StepName::Unpainted,
+};
 
 /// The stroke that ends a queue of states.
 struct LastStroke {
@@ -113,7 +115,7 @@ impl Sequencer {
         }
         let outcome = Outcome::Done {
             journal,
-            detail: NOT_PAINTED.to_owned(),
+            detail: NOT_PAINTED,
         };
         self.remember(request.client, request.number, outcome.clone());
         Some(Cut::Whole(outcome))

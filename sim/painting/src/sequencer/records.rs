@@ -5,7 +5,7 @@ use maulstick_canvas::EditError;
 use maulstick_types::brush::{BRUSHES_MOST, BrushState};
 use maulstick_types::command::{Command, CommandRequest, Outcome, TakeCommand};
 use maulstick_types::edits::Edit;
-use maulstick_types::paint::Entry;
+use maulstick_types::paint::{Decision, Entry};
 use maulstick_types::values::BrushName;
 use maulstick_types::{Header, Mixture, Origin};
 
@@ -17,10 +17,6 @@ use crate::snapshot::SequencerSnapshot;
 
 /// The client that runs the sequencer.
 const OWN: u64 = 0;
-
-/// The decision that a painting goes on after its program ended: what its brushes did last is not
-/// joined to what they do next.
-pub(super) const GOES_ON: &str = "the painting goes on";
 
 /// Something that was accepted.
 #[derive(Clone, Debug, PartialEq)]
@@ -143,7 +139,7 @@ impl Sequencer {
     /// player is there again.
     pub fn go_on(&mut self) {
         self.let_go();
-        self.decide(GOES_ON);
+        self.decide(Decision::Resumed);
     }
 
     fn let_go(&mut self) {
@@ -200,10 +196,10 @@ impl Sequencer {
                 self.execute(&request);
             }
             Accepted::Entry(Entry::Decision { what }) => {
-                if what == GOES_ON {
+                if what == Decision::Resumed {
                     self.let_go();
                 }
-                self.decide(&what);
+                self.decide(what);
             }
             Accepted::Entry(Entry::Tick { .. }) => self.painting.tick(),
             Accepted::Entry(cut @ Entry::Cut { .. }) => {
@@ -216,7 +212,7 @@ impl Sequencer {
                 {
                     let outcome = Outcome::Done {
                         journal: self.next,
-                        detail: NOT_PAINTED.to_owned(),
+                        detail: NOT_PAINTED,
                     };
                     self.remember(*client, *number, outcome);
                 }
@@ -237,11 +233,12 @@ impl Sequencer {
 
     /// Enters that something else computes the paint than before, or has met a limit, if that is so.
     pub(super) fn tell_fall(&mut self) {
-        if let Some(note) = self.painting.take_note() {
-            self.decide(&note);
+        if let Some(limit) = self.painting.take_limit() {
+            self.decide(limit);
         }
         if let Some(why) = self.painting.take_fall() {
-            self.decide(&format!("backend {}: {why}", self.painting.backend()));
+            let name = self.painting.backend();
+            self.decide(Decision::Fallback { name, why });
         }
     }
 

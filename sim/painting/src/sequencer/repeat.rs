@@ -3,9 +3,8 @@
 use maulstick_canvas::EditError;
 use maulstick_types::Flags;
 use maulstick_types::command::{Command, TakeCommand};
-use maulstick_types::paint::Entry;
+use maulstick_types::paint::{Decision, Entry};
 
-use super::records::GOES_ON;
 use super::{Accepted, Record, Sequencer};
 use crate::apply::Apply as _;
 
@@ -77,7 +76,7 @@ impl Sequencer {
                 Ok(())
             }
             Accepted::Entry(Entry::Decision { what }) => {
-                if what == GOES_ON {
+                if what == Decision::Resumed {
                     self.go_on();
                 }
                 Ok(())

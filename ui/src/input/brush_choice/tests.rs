@@ -1,6 +1,7 @@
 //! Requests of rack, keys and presets.
 
 use maulstick_rig::UserError;
+use maulstick_types::command::Detail;
 use maulstick_types::edits::{Clean, Undo};
 use maulstick_types::values::BrushName;
 
@@ -162,7 +163,7 @@ fn a_brush_that_refuses_keeps_what_it_has_and_one_that_does_takes_up_its_paint()
     bench.work().step_width(true);
     bench.work().then(load());
     let request = bench.requests.take().remove(0);
-    let done = answer(&request, Ok(String::new()));
+    let done = answer(&request, Ok(Detail::Nothing));
     bench.work().brush_answered(&done);
     let then = Request::Command {
         node: PAINT.to_owned(),
@@ -203,7 +204,7 @@ fn the_field_of_the_paint_says_what_was_loaded_last_wherever_that_was_asked_for(
             beside: None,
             brush: BrushName::new(brush).expect("a name"),
         })),
-        result: Ok(String::new()),
+        result: Ok(Detail::Nothing),
     };
     bench.work().brush_answered(&load("Bone Black", "other"));
     assert_eq!(bench.preferences.loading.paint, "", "another brush");

@@ -11,6 +11,8 @@ mod sources;
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
+use maulstick_types::paint::StepName;
+
 use super::*;
 use crate::settings::preferences::Preferences;
 
@@ -37,25 +39,34 @@ fn places_are_filled_in_the_order_of_the_language() {
         "Blue {x} löschen?"
     );
     assert_eq!(tr!("theme|Light"), "Hell");
-    assert_eq!(step("round stroke"), "Strich: Rund");
-    assert_eq!(
-        step("round stroke on the palette"),
-        "Strich auf der Palette: Rund"
-    );
-    assert_eq!(step("the beginning"), "der Anfang");
+    let stroke = |on_palette| StepName::Stroke {
+        kind: "round".into(),
+        on_palette,
+    };
+    assert_eq!(step(&stroke(false)), "Strich: Rund");
+    assert_eq!(step(&stroke(true)), "Strich auf der Palette: Rund");
+    assert_eq!(step(&StepName::Beginning), "der Anfang");
     assert_eq!((key_name("Delete"), known("Delete")), ("Entf", "Löschen"));
     assert_eq!(key_name("F5"), "F5");
-    assert_eq!(
-        step("load Cobalt Blue + Ivory Black"),
-        "Laden: Cobalt Blue + Ivory Black"
-    );
-    assert_eq!(step("return to 'first'"), "Zurück zu „first“");
-    assert_eq!(step("12 steps"), "12 Schritte");
-    assert_eq!(layer_name("layer 3"), "Schicht 3");
-    assert_eq!(layer_name("layer of mine"), "layer of mine");
+    let load = StepName::Load {
+        paints: vec!["Cobalt Blue".into(), "Ivory Black".into()],
+    };
+    assert_eq!(step(&load), "Laden: Cobalt Blue + Ivory Black");
+    let version = "first".to_owned();
+    assert_eq!(step(&StepName::Return { version }), "Zurück zu „first“");
+    assert_eq!(step(&StepName::Merged { count: 12 }), "12 Schritte");
+    let layer = |number, name: &str| Layer {
+        number,
+        name: name.to_owned(),
+        opacity: 1.0,
+    };
+    assert_eq!(layer_name(&layer(3, "layer 3")), "Schicht 3");
+    assert_eq!(layer_name(&layer(4, "layer 3")), "layer 3");
     choose(Some("en"));
     assert_eq!(tr!("theme|Light"), "Light");
-    assert_eq!(step("round stroke"), "round stroke");
+    for name in [stroke(false), stroke(true), load, StepName::Unpainted] {
+        assert_eq!(step(&name), name.to_string());
+    }
 }
 
 #[test]

@@ -9,7 +9,7 @@ use eframe::egui::{Key, Modifiers, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use maulstick_optics::THINNER;
-use maulstick_types::paint::{HistoryStep, PaintStatus};
+use maulstick_types::paint::{HistoryStep, PaintStatus, StepName};
 
 use super::MISSED;
 use crate::language::{Language, all, choose, chosen, translated};
@@ -31,12 +31,19 @@ const TOUCH: f32 = 1.5;
 fn studio() -> RigState {
     let mut studio = context_bench::rig();
     let mut paint = rig().paint.expect("a paint node");
-    let step = |(id, what): (u64, &str)| HistoryStep {
+    let step = |(id, what): (u64, StepName)| HistoryStep {
         id,
-        what: what.to_owned(),
+        what,
         done: true,
     };
-    let named = [(3, "round stroke"), (2, "dry"), (1, "load Cobalt Blue")];
+    let stroke = StepName::Stroke {
+        kind: "round".into(),
+        on_palette: false,
+    };
+    let load = StepName::Load {
+        paints: vec!["Cobalt Blue".into()],
+    };
+    let named = [(3, stroke), (2, StepName::Dry), (1, load)];
     paint.status = PaintStatus {
         history: named.into_iter().map(step).collect(),
         ..steps(3, 1)

@@ -13,25 +13,6 @@ use crate::input::brush_choice::library;
 use crate::input::keys::{BINDINGS, HELD};
 use crate::language::{FILES, Language, all};
 
-/// Steps of the history as the paint engine names them.
-const STEPS: [&str; 15] = [
-    "dry",
-    "drying",
-    "layer opacity",
-    "layer name",
-    "wet",
-    "clean brush",
-    "scrape",
-    "paints on the palette",
-    "underpainting",
-    "fill",
-    "ground",
-    "tooth",
-    "paint model",
-    "the beginning",
-    "a stroke that was not painted yet",
-];
-
 /// Keys whose names are not the signs on them.
 const NAMED_KEYS: [&str; 18] = [
     "Ctrl",
@@ -202,7 +183,7 @@ fn needed() -> BTreeSet<String> {
         .chain(grounds)
         .chain(Tooth::names());
     let settings = FORCES.into_iter().chain(ACTIONS);
-    let tables = tables.chain(STEPS).chain(settings).map(str::to_owned);
+    let tables = tables.chain(settings).map(str::to_owned);
     tables
         .chain(NAMED_KEYS.map(|key| format!("key|{key}")))
         .chain(uses().into_iter().map(|used| used.english))
@@ -298,30 +279,6 @@ fn each_use_fills_the_places_of_its_sentence() {
         panic!("{fault:?}");
     };
     assert_ne!(used.names, places(&used.english), "a fault would pass");
-}
-
-#[test]
-fn the_paint_engine_names_its_steps_so() {
-    let mut found = BTreeMap::new();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    for folder in ["sim/painting/src", "daemons/paint/src"] {
-        sources(&root.join(folder), &mut found);
-    }
-    for step in STEPS {
-        let quoted = format!("\"{step}\"");
-        assert!(found.values().any(|code| code.contains(&quoted)), "{step}");
-    }
-    for part in [
-        "\"{} {deed}\"",
-        "\"stroke\"",
-        "\"wipe\"",
-        "on the palette\"",
-        "\"load {}\"",
-        "\"return to '{name}'\"",
-        "{operations} steps\"",
-    ] {
-        assert!(found.values().any(|code| code.contains(part)), "{part}");
-    }
 }
 
 #[test]

@@ -22,9 +22,8 @@ use eframe::egui::{
     Ui, WidgetInfo, pos2, vec2,
 };
 use egui_plot::{HLine, Line, LineStyle, Plot, PlotPoints};
-use maulstick_types::command::advice::parted;
 use maulstick_types::haptics::ForceOrder;
-use maulstick_types::stylus::{StylusInfo, StylusStatus, axes};
+use maulstick_types::stylus::{StylusInfo, StylusStatus, Trouble, axes};
 
 use crate::input::keys::Action;
 use crate::language::capitalized;
@@ -148,10 +147,9 @@ impl DevicePanel {
         let Some(status) = &device.status else {
             return;
         };
-        if !status.trouble.is_empty() {
-            let (trouble, help) = parted(&status.trouble);
-            ui.colored_label(ui.visuals().warn_fg_color, trouble);
-            if let Some(help) = help {
+        if let Some(Trouble { what, help }) = status.trouble() {
+            ui.colored_label(ui.visuals().warn_fg_color, what);
+            if !help.is_empty() {
                 ui.label(capitalized(help));
             }
         }

@@ -44,7 +44,8 @@ pub(crate) fn devices() -> RigState {
     }
     let tablet = rig.devices.get_mut("tablet").expect("a tablet");
     tablet.status = Some(StylusStatus {
-        trouble: "no pen (/dev/hidraw0); plug it in".into(),
+        trouble: "no pen (/dev/hidraw0)".into(),
+        help: "plug it in".into(),
         ..StylusStatus::fresh(0)
     });
     let phantom = rig.devices.get_mut("phantom").expect("a phantom");

@@ -3,7 +3,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use maulstick_types::command::Command;
 use maulstick_types::edits::{Branch, Forget, GoTo, Keep, Redo, ReturnTo, Undo};
-use maulstick_types::paint::HistoryStep;
+use maulstick_types::paint::{HistoryStep, StepName};
 use maulstick_types::values::VersionName;
 
 use super::*;
@@ -49,17 +49,23 @@ fn stepped() -> RigState {
     let mut rig = versioned();
     let status = &mut rig.paint.as_mut().expect("a node").status;
     (status.undo, status.redo) = (3, 1);
-    let words = [
-        "dry",
-        "flat stroke",
-        "round stroke on the palette",
-        "load Yellow Ochre",
+    let stroke = |kind: &str, on_palette| StepName::Stroke {
+        kind: kind.to_owned(),
+        on_palette,
+    };
+    let names = [
+        StepName::Dry,
+        stroke("flat", false),
+        stroke("round", true),
+        StepName::Load {
+            paints: vec!["Yellow Ochre".to_owned()],
+        },
     ];
-    let steps = (5..9).rev().zip(words);
+    let steps = (5..9).rev().zip(names);
     status.history = steps
         .map(|(id, what)| HistoryStep {
             id,
-            what: what.to_owned(),
+            what,
             done: id < 8,
         })
         .collect();

@@ -10,7 +10,6 @@ use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{LayerName, Share, Ticks, ValueError};
 
 use super::region;
-use crate::language::layer_name;
 use crate::widgets::context::PanelContext;
 use crate::widgets::rows::{Number, Sliders, ask, choice, row};
 
@@ -165,7 +164,7 @@ impl DryingForm {
             let time = clock(goes_on.left_s);
             let text = match goes_on.layer.as_str() {
                 "" => tr!("Dries: {time} left", time),
-                layer => tr!("{layer}: {time} left", layer = layer_name(layer), time),
+                layer => tr!("{layer}: {time} left", layer, time),
             };
             ui.add(ProgressBar::new(goes_on.share).text(text));
         }

@@ -144,7 +144,7 @@ impl LayersPanel {
                     WidgetInfo::slider(
                         true,
                         change.shown,
-                        tr!("Opacity of {layer}", layer = layer_name(&layer.name)),
+                        tr!("Opacity of {layer}", layer = layer_name(layer)),
                     )
                 });
                 // All layers above are computed anew, and an opacity is a step to undo: once is enough.
@@ -164,7 +164,7 @@ impl LayersPanel {
                 Role::CheckBox,
                 true,
                 is_shown,
-                tr!("Show {layer}", layer = layer_name(&layer.name)),
+                tr!("Show {layer}", layer = layer_name(layer)),
             )
         });
         let button = button.on_hover_text(match is_shown {
@@ -184,7 +184,7 @@ impl LayersPanel {
     /// The name of a layer; a click gives it another one.
     fn title(&mut self, ui: &mut Ui, layer: &Layer) {
         let name = cell(ui, NAME, |ui| {
-            let name = layer_name(&layer.name);
+            let name = layer_name(layer);
             let name = ui.add(Button::new(name).frame(false).truncate());
             name.on_hover_text(tr!("Click to give it another name"))
         });

@@ -117,7 +117,7 @@ impl LampUndo {
 
 #[cfg(test)]
 mod tests {
-    use maulstick_types::paint::HistoryStep;
+    use maulstick_types::paint::{HistoryStep, StepName};
 
     use super::*;
     use crate::test_support::panel_bench::rig;
@@ -151,7 +151,7 @@ mod tests {
             let status = &mut self.rig.paint.as_mut().expect("a node").status;
             let step = |id: &u64| HistoryStep {
                 id: *id,
-                what: "round stroke".into(),
+                what: StepName::Fill,
                 done: true,
             };
             status.history = done.iter().rev().map(step).collect();

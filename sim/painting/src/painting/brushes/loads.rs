@@ -7,6 +7,7 @@ use maulstick_canvas::quantum::Counts;
 use maulstick_model::brush::load::Half;
 use maulstick_optics::{THINNER, thinned};
 use maulstick_types::edits::{Clean, Load, LoadFrom};
+use maulstick_types::paint::StepName;
 use maulstick_types::scene::{Scene, Surface, WellKind};
 use maulstick_types::values::Distance;
 use maulstick_types::{Mixture, mixture::Part};
@@ -29,7 +30,12 @@ impl Apply for Load {
             .cloned()
             .collect();
         let slots = painting.optics.all_slots(&mut painting.scene, &mixtures)?;
-        painting.begin_step(&format!("load {}", named(&mixtures)), Some(brush));
+        painting.begin_step(
+            StepName::Load {
+                paints: named(&mixtures),
+            },
+            Some(brush),
+        );
         let parts: Vec<_> = match &slots[..] {
             [both] => vec![(&both[..], Half::Both)],
             halves => halves
@@ -69,7 +75,7 @@ impl Apply for LoadFrom {
 impl Apply for Clean {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         let brush = painting.brushes.at(&self.brush)?;
-        painting.begin_step("clean brush", Some(brush));
+        painting.begin_step(StepName::Clean, Some(brush));
         painting.brushes[brush].empty(&mut painting.accounts.ledger);
         painting.end_step_of(brush);
         Ok(Applied::Done)
@@ -114,14 +120,14 @@ impl PaintingBrush {
 }
 
 /// The paints of mixtures, each once, without their shares.
-fn named(mixtures: &[Mixture]) -> String {
-    let mut names: Vec<&str> = Vec::new();
+fn named(mixtures: &[Mixture]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
     for part in mixtures.iter().flat_map(|mixture| &mixture.parts) {
-        if !names.contains(&part.paint.as_str()) {
-            names.push(&part.paint);
+        if !names.contains(&part.paint) {
+            names.push(part.paint.clone());
         }
     }
-    names.join(" + ")
+    names
 }
 
 /// Mixture of the well at a place, m, which nobody has stirred there.

@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use maulstick_canvas::EditError;
 use maulstick_types::edits::{Dry, StopDrying};
+use maulstick_types::paint::StepName;
 use maulstick_types::values::Ticks;
 
 use super::next_layer;
@@ -19,8 +20,6 @@ use crate::painting::surfaces::{Changed, Part, SurfaceState};
 
 /// Most tiles that dry in a tick.
 const TILES_A_TICK: usize = 32;
-/// Name of its steps.
-const STEP: &str = "drying";
 
 impl Apply for StopDrying {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
@@ -115,7 +114,7 @@ impl Painting {
         let (dried, next) = self.surfaces[on].some_dried(&part, number, share, round.next);
         if !dried.is_empty() {
             if self.history.open_of(None).is_none() {
-                self.begin_step(STEP, None);
+                self.begin_step(StepName::Drying, None);
             }
             self.put_changed(on, dried);
             if layer.is_none() {

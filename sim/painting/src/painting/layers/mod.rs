@@ -5,6 +5,7 @@ mod wetting;
 
 use maulstick_canvas::EditError;
 use maulstick_types::edits::{Dry, Form as _, LayerRef, NameLayer, Opacity};
+use maulstick_types::paint::StepName;
 use maulstick_types::scene::{Layer, Scene};
 
 use super::Painting;
@@ -26,12 +27,12 @@ impl Apply for Dry {
             return Err(EditError::NothingWet(self.region.clone()));
         }
         painting.clock.stop(Some(self.surface));
-        painting.begin_step("dry", None);
+        painting.begin_step(StepName::Dry, None);
         painting.put_changed(on, dried);
         let name = self.layer.as_deref().unwrap_or_default();
-        let name = painting.add_layer(number, name);
+        let layer = painting.add_layer(number, name);
         painting.end_own_step();
-        Ok(Applied::Dried(name))
+        Ok(Applied::Dried(layer))
     }
 }
 
@@ -39,7 +40,7 @@ impl Apply for Opacity {
     /// Makes a dry layer more or less opaque: a factor on its optical thickness, never on its height.
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         let place = place_of(&painting.scene, &self.layer)?;
-        painting.begin_step("layer opacity", None);
+        painting.begin_step(StepName::LayerOpacity, None);
         painting.scene.layers[place].opacity = self.opacity.get();
         painting.layers_changed();
         painting.end_own_step();
@@ -51,7 +52,7 @@ impl Apply for NameLayer {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
         let number = self.layer;
         let place = place_of(&painting.scene, &LayerRef::Number { number })?;
-        painting.begin_step("layer name", None);
+        painting.begin_step(StepName::LayerName, None);
         self.name
             .trim()
             .clone_into(&mut painting.scene.layers[place].name);
@@ -73,7 +74,7 @@ impl Painting {
         }
         self.clock.stop(Some(surface.id));
         self.put_changed(on, dried);
-        Some(self.add_layer(number, name))
+        Some(self.add_layer(number, name).name)
     }
 
     /// Puts tiles of a surface in their places, within the step that is open.
@@ -85,21 +86,21 @@ impl Painting {
         }
     }
 
-    /// Tells of a new layer, and says how it is called.
-    fn add_layer(&mut self, number: u32, name: &str) -> String {
+    /// Adds a layer; without a name it is called by its number.
+    fn add_layer(&mut self, number: u32, name: &str) -> Layer {
         let name = if name.is_empty() {
-            format!("layer {number}")
+            Layer::default_name(number)
         } else {
             name.to_owned()
         };
         let layer = Layer {
             number,
-            name: name.clone(),
+            name,
             opacity: 1.0,
         };
-        self.scene.layers.push(layer);
+        self.scene.layers.push(layer.clone());
         self.layers_changed();
-        name
+        layer
     }
 
     /// Tells the look and all who follow the scene.

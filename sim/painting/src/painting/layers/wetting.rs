@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use maulstick_canvas::EditError;
 use maulstick_types::edits::Wet;
+use maulstick_types::paint::StepName;
 
 use crate::apply::{Applied, Apply};
 use crate::painting::Painting;
@@ -45,7 +46,7 @@ impl Apply for Wet {
             return Err(EditError::NoRoom(self.region.clone()));
         }
         painting.clock.stop(Some(self.surface));
-        painting.begin_step("wet", None);
+        painting.begin_step(StepName::Wet, None);
         painting.put_changed(on, tiles);
         painting.drop_empty_layers(&numbers);
         painting.end_own_step();

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use maulstick_model::brush::traits::BrushTraits;
 use maulstick_model::interface::{PaintModel, StepReport};
+use maulstick_types::paint::Decision;
 
 use crate::models::Models;
 use crate::painting::Painting;
@@ -34,20 +35,33 @@ impl Deferral {
 }
 
 /// A fact of a model's backend. It is reported where a stroke ends.
-#[derive(Debug, Default)]
-struct BackendFact {
-    found: Option<String>,
+#[derive(Debug)]
+struct BackendFact<T> {
+    found: Option<T>,
     due: bool,
 }
 
-impl BackendFact {
-    fn find(&mut self, what: Option<String>) {
+impl<T> Default for BackendFact<T> {
+    fn default() -> Self {
+        Self {
+            found: None,
+            due: false,
+        }
+    }
+}
+
+impl<T> BackendFact<T> {
+    fn find(&mut self, what: Option<T>) {
         if what.is_some() {
             self.found = what;
         }
     }
 
-    fn take(&mut self) -> Option<String> {
+    fn stroke_ends(&mut self) {
+        self.due |= self.found.is_some();
+    }
+
+    fn take(&mut self) -> Option<T> {
         if !std::mem::take(&mut self.due) {
             return None;
         }
@@ -58,16 +72,15 @@ impl BackendFact {
 /// The reason why a model changed its backend, and a limit that its backend has met.
 #[derive(Debug, Default)]
 pub(super) struct BackendFacts {
-    fall: BackendFact,
-    note: BackendFact,
+    fall: BackendFact<String>,
+    limit: BackendFact<Decision>,
 }
 
 impl BackendFacts {
     /// A stroke ends or begins.
     pub(super) fn stroke_ends(&mut self) {
-        for fact in [&mut self.fall, &mut self.note] {
-            fact.due |= fact.found.is_some();
-        }
+        self.fall.stroke_ends();
+        self.limit.stroke_ends();
     }
 }
 
@@ -107,8 +120,8 @@ impl Painting {
     }
 
     /// A limit that its backend has met, returned once, after the stroke in which it did.
-    pub fn take_note(&mut self) -> Option<String> {
-        self.backend.facts.note.take()
+    pub fn take_limit(&mut self) -> Option<Decision> {
+        self.backend.facts.limit.take()
     }
 
     /// Fullness of a brush, as far as its stroke on a surface may know.
@@ -156,7 +169,7 @@ impl Painting {
         }
         let Backend { models, facts, .. } = &mut self.backend;
         facts.fall.find(models.take_fall());
-        facts.note.find(models.take_note());
+        facts.limit.find(models.take_limit());
     }
 
     /// Notes what so many steps of a brush did on a surface; of deferred ones that is known when they are settled.

@@ -12,7 +12,7 @@ use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_convert::{Converted, Converter, Distance, TileGround};
 use maulstick_num::fork_join;
 use maulstick_types::edits::Convert;
-use maulstick_types::paint::TILE;
+use maulstick_types::paint::{StepName, TILE};
 use maulstick_types::scene::WellKind;
 
 use super::part::Changed;
@@ -40,7 +40,7 @@ impl Apply for Convert {
         if from.colouring != to.colouring && is_painted {
             painting.take_up_wells()?;
         }
-        painting.begin_step("paint model", None);
+        painting.begin_step(StepName::Model, None);
         let models = painting.model_names();
         painting.history.name_models(&models);
         painting.versions.name_models(&models);

@@ -11,6 +11,7 @@ use maulstick_canvas::quantum::{CELL_MAX, Counts, QUANTUM_M, SLOTS};
 use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_types::Mixture;
 use maulstick_types::edits::{Fill, FillPaint};
+use maulstick_types::paint::StepName;
 
 use super::SurfaceState;
 use crate::apply::{Applied, Apply};
@@ -84,7 +85,7 @@ impl Painting {
         for (slot, share) in slots {
             quanta[slot] += (share * thickness_m / QUANTUM_M).round() as f32;
         }
-        self.begin_step("fill", None);
+        self.begin_step(StepName::Fill, None);
         let [across, up] = self.surfaces[on].store.grid();
         let mut films = Films::default();
         for y in 0..up {

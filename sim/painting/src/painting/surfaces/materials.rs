@@ -6,6 +6,7 @@ use maulstick_appearance::ground::{add_spectrum, check_ground};
 use maulstick_canvas::EditError;
 use maulstick_canvas::assets::SPECTRUM;
 use maulstick_types::edits::{Ground, GroundSource, Piles, Place, Size, Tooth};
+use maulstick_types::paint::StepName;
 use maulstick_types::scene::Surface;
 
 use crate::apply::{Applied, Apply};
@@ -26,7 +27,7 @@ impl Apply for Ground {
             }
         };
         check_ground(&ground, assets)?;
-        painting.change_material("ground", on, |material| material.ground = ground);
+        painting.change_material(StepName::Ground, on, |material| material.ground = ground);
         Ok(Applied::Done)
     }
 }
@@ -36,7 +37,7 @@ impl Apply for Tooth {
         let on = painting.surfaces.at(self.surface)?;
         let cell_m = painting.surfaces[on].cell_m;
         relief_called(&self.tooth, self.seed, cell_m, &painting.optics.assets)?;
-        painting.change_material("tooth", on, |material| {
+        painting.change_material(StepName::Tooth, on, |material| {
             material.tooth = self.tooth.to_string();
             material.tooth_seed = self.seed;
         });
@@ -80,7 +81,7 @@ impl Painting {
 
     fn change_material(
         &mut self,
-        what: &str,
+        what: StepName,
         on: usize,
         change: impl FnOnce(&mut SurfaceMaterial),
     ) {

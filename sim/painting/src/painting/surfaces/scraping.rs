@@ -4,6 +4,7 @@ use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::{Counts, SLOTS, add};
 use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_types::edits::Scrape;
+use maulstick_types::paint::StepName;
 
 use super::part::Changed;
 use crate::apply::{Applied, Apply};
@@ -20,7 +21,7 @@ impl Apply for Scrape {
             return Err(EditError::NothingWet(self.region.clone()));
         }
         painting.clock.stop(Some(self.surface));
-        painting.begin_step("scrape", None);
+        painting.begin_step(StepName::Scrape, None);
         painting.put_scraped(on, scraped);
         painting.end_own_step();
         Ok(Applied::Done)

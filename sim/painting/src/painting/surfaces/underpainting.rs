@@ -5,6 +5,7 @@ use maulstick_canvas::quantum::SLOTS;
 use maulstick_canvas::tile::TileId;
 use maulstick_types::Mixture;
 use maulstick_types::mixture::Part;
+use maulstick_types::paint::StepName;
 use maulstick_types::scene::Scene;
 
 use crate::ledger::Ledger;
@@ -50,7 +51,7 @@ impl Painting {
         let on = self.surfaces.at(surface)?;
         let slots = self.optics.slots_of(&mut self.scene, paints)?;
         let [across, up] = self.surfaces[on].store.grid();
-        self.begin_step("underpainting", None);
+        self.begin_step(StepName::Underpainting, None);
         if matches!(wetness, Wetness::Dry { .. }) {
             // Wet paint dries first, as a step of its own: nothing dries on top of wet paint.
             self.dry_in_step(on, 1.0, "");

@@ -15,6 +15,7 @@ use maulstick_model::brush::traits::BrushTraits;
 use maulstick_optics::THINNER;
 use maulstick_types::Mixture;
 use maulstick_types::edits::Wells;
+use maulstick_types::paint::StepName;
 use maulstick_types::scene::{Surface, Well, WellKind};
 
 use crate::apply::{Applied, Apply};
@@ -118,7 +119,7 @@ impl Painting {
             self.clock.stop(Some(surface));
         }
         if is_step {
-            self.begin_step("paints on the palette", None);
+            self.begin_step(StepName::Wells, None);
         }
         self.scene.surfaces[on] = changed;
         self.surfaces[on].bare = bare;

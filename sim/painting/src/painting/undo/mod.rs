@@ -5,6 +5,7 @@ pub(crate) mod versions;
 
 use maulstick_canvas::EditError;
 use maulstick_types::edits::{GoTo, Redo, Undo};
+use maulstick_types::paint::StepName;
 use maulstick_types::scene::{Layer, Scene};
 
 use super::Painting;
@@ -45,11 +46,11 @@ impl Apply for GoTo {
 }
 
 impl Painting {
-    /// Undoes the newest step, of a brush or of all, and returns its description.
+    /// Undoes the newest step, of a brush or of all, and returns its name.
     ///
     /// # Errors
     /// [`EditError`] if there is no step, or something was painted over it since: then nothing has changed.
-    pub fn undo(&mut self, brush: Option<&str>) -> Result<String, EditError> {
+    pub fn undo(&mut self, brush: Option<&str>) -> Result<StepName, EditError> {
         if let Some(brush) = brush {
             self.brushes.at(brush)?;
         }
@@ -64,10 +65,10 @@ impl Painting {
             self.check(step, Direction::Undo)?;
         }
         self.end_step(|_| true);
-        match self.history.last_done(brush).cloned() {
-            Some(step) => Ok(self.walk(&step, Direction::Undo)),
-            None => Ok(String::new()),
-        }
+        Ok(match self.history.last_done(brush).cloned() {
+            Some(step) => self.walk(&step, Direction::Undo),
+            None => StepName::Beginning,
+        })
     }
 
     /// The newest step that is done; steps that end later have higher numbers.
@@ -98,7 +99,7 @@ impl Painting {
     ///
     /// # Errors
     /// As [`undo`](Self::undo).
-    pub fn redo(&mut self, brush: Option<&str>) -> Result<String, EditError> {
+    pub fn redo(&mut self, brush: Option<&str>) -> Result<StepName, EditError> {
         if let Some(brush) = brush {
             self.brushes.at(brush)?;
         }
@@ -111,11 +112,11 @@ impl Painting {
     }
 
     /// Undoes or redoes steps until the one of this number is the newest that is done, 0 for none, and returns its
-    /// description.
+    /// name.
     ///
     /// # Errors
     /// [`EditError`] for an unknown step, and where something was painted over one on the way: then nothing has changed.
-    pub fn go_to(&mut self, step: u64) -> Result<String, EditError> {
+    pub fn go_to(&mut self, step: u64) -> Result<StepName, EditError> {
         let open = self.history.open().find(|open| open.id == step);
         if let Some(what) = open.map(|open| open.what.clone()) {
             // Of steps that are not finished none counts as newer.
@@ -154,7 +155,7 @@ impl Painting {
             self.record.go_to(step);
         }
         let newest = self.history.last_done(None);
-        Ok(newest.map_or_else(|| "the beginning".to_owned(), |step| step.what.clone()))
+        Ok(newest.map_or(StepName::Beginning, |step| step.what.clone()))
     }
 
     /// Sees that all is as the step left it, or found it.
@@ -190,7 +191,7 @@ impl Painting {
     }
 
     /// Takes a step back, or forth; it was checked.
-    fn walk(&mut self, step: &Step, way: Direction) -> String {
+    fn walk(&mut self, step: &Step, way: Direction) -> StepName {
         let to = way.ends()[1];
         let effects = &step.effects;
         // Time would do again what is taken back.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use maulstick_model::interface::Transfer;
+use maulstick_types::paint::StepName;
 use maulstick_types::scene::CANVAS;
 
 use super::materials;
@@ -25,7 +26,7 @@ impl Painting {
     }
 
     /// Begins a step of a brush, or of none: one for all who paint, then.
-    pub(crate) fn begin_step(&mut self, what: &str, brush: Option<usize>) {
+    pub(crate) fn begin_step(&mut self, what: StepName, brush: Option<usize>) {
         self.book(brush);
         let own = self.brushes.name(brush).map(str::to_owned);
         // A step of nobody's that is open here is a drying's: it is parted by what comes between.
@@ -37,12 +38,12 @@ impl Painting {
     /// Begins a step that is a stroke of a brush.
     pub(crate) fn begin_stroke_step(&mut self, brush: usize) {
         let own = &self.brushes[brush];
-        let deed = match handling_of(&self.scene, &own.name, CANVAS).transfer {
-            Transfer::Vacuum => "wipe",
-            _ => "stroke",
+        let (kind, on_palette) = (own.file.kind.clone(), false);
+        let what = match handling_of(&self.scene, &own.name, CANVAS).transfer {
+            Transfer::Vacuum => StepName::Wipe { kind, on_palette },
+            _ => StepName::Stroke { kind, on_palette },
         };
-        let what = format!("{} {deed}", own.file.kind);
-        self.begin_step(&what, Some(brush));
+        self.begin_step(what, Some(brush));
     }
 
     /// Ends the open steps of which `which` says so.

@@ -7,6 +7,7 @@ use maulstick_canvas::EditError;
 use maulstick_canvas::tile::Tile;
 use maulstick_model::brush::load::BrushLoad;
 use maulstick_types::edits::{Branch, Forget, Keep, ReturnTo};
+use maulstick_types::paint::StepName;
 use maulstick_types::scene::NamedVersion;
 
 use crate::apply::{Applied, Apply};
@@ -208,7 +209,8 @@ impl Painting {
     pub fn return_to(&mut self, name: &str) -> Result<(), EditError> {
         let to = self.versions.find(name)?.clone();
         self.clock.stop(None);
-        self.begin_step(&format!("return to '{name}'"), None);
+        let version = name.to_owned();
+        self.begin_step(StepName::Return { version }, None);
         let before = self.non_tile_state();
         let now = self.surfaces.painted();
         let nowhere = now.keys().filter(|place| !to.tiles.contains_key(place));

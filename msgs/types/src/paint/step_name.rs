@@ -1,0 +1,254 @@
+//! Names of the steps of the history.
+
+use std::fmt;
+
+use crate::wire::define::wire_enum;
+use crate::wire::worded::Worded;
+
+wire_enum! {
+    /// Name of a step of the history. A window says it in its own words; logs and command lines as `Display` does.
+    #[derive(Eq)]
+    pub enum StepName {
+        /// A stroke of a brush.
+        Stroke {
+            /// Kind of the brush.
+            kind: String,
+            /// True where it reached nothing but the palette: it changes no picture.
+            on_palette: bool,
+        },
+        /// A stroke of a brush that takes paint away.
+        Wipe {
+            /// Kind of the brush.
+            kind: String,
+            /// True where it reached nothing but the palette.
+            on_palette: bool,
+        },
+        /// A brush was loaded.
+        Load {
+            /// Names of the paints.
+            paints: Vec<String>,
+        },
+        /// A brush was cleaned.
+        Clean,
+        /// Paint was scraped off.
+        Scrape,
+        /// A film of paint was laid.
+        Fill,
+        /// A picture was painted as underpainting.
+        Underpainting,
+        /// The wells of the palette.
+        Wells,
+        /// The ground of a surface.
+        Ground,
+        /// The tooth of a surface.
+        Tooth,
+        /// The paint model of a surface.
+        Model,
+        /// Paint was dried at once.
+        Dry,
+        /// Paint dried over time.
+        Drying,
+        /// Dry paint was made wet again.
+        Wet,
+        /// The opacity of a dry layer.
+        LayerOpacity,
+        /// The name of a dry layer.
+        LayerName,
+        /// The painting was returned to a version.
+        Return {
+            /// Name of the version.
+            version: String,
+        },
+        /// Several steps that were merged.
+        Merged {
+            /// How many.
+            count: u64,
+        },
+        /// What is before the first step.
+        Beginning,
+        /// A stroke that was dropped before it was painted.
+        Unpainted,
+        /// A step that only another version knows.
+        Words {
+            /// Its words.
+            words: String,
+        },
+    }
+}
+
+impl StepName {
+    /// The name of what a brush did on the palette alone, or also elsewhere.
+    #[must_use]
+    pub fn placed(mut self, is_on_palette: bool) -> Self {
+        if let Self::Stroke { on_palette, .. } | Self::Wipe { on_palette, .. } = &mut self {
+            *on_palette = is_on_palette;
+        }
+        self
+    }
+
+    /// The name with each of its texts cut to `letters`, and of the paints those that fit.
+    #[must_use]
+    pub fn shortened(&self, letters: usize) -> Self {
+        let cut = |text: &String| text.chars().take(letters).collect();
+        let mut name = self.clone();
+        match &mut name {
+            Self::Stroke { kind: text, .. }
+            | Self::Wipe { kind: text, .. }
+            | Self::Return { version: text }
+            | Self::Words { words: text } => *text = cut(text),
+            Self::Load { paints } => {
+                let mut left = letters;
+                paints.retain(|paint| {
+                    let rest = left.checked_sub(paint.chars().count());
+                    left = rest.unwrap_or(0);
+                    rest.is_some()
+                });
+            }
+            _ => {}
+        }
+        name
+    }
+
+    /// Words of a step that has no fields.
+    fn plain(&self) -> Option<&'static str> {
+        let named = PLAIN.iter().find(|(name, _)| name == self);
+        named.map(|(_, words)| *words)
+    }
+}
+
+/// Steps without fields, and their words.
+static PLAIN: [(StepName, &str); 15] = [
+    (StepName::Clean, "clean brush"),
+    (StepName::Scrape, "scrape"),
+    (StepName::Fill, "fill"),
+    (StepName::Underpainting, "underpainting"),
+    (StepName::Wells, "paints on the palette"),
+    (StepName::Ground, "ground"),
+    (StepName::Tooth, "tooth"),
+    (StepName::Model, "paint model"),
+    (StepName::Dry, "dry"),
+    (StepName::Drying, "drying"),
+    (StepName::Wet, "wet"),
+    (StepName::LayerOpacity, "layer opacity"),
+    (StepName::LayerName, "layer name"),
+    (StepName::Beginning, "the beginning"),
+    (StepName::Unpainted, "a stroke that was not painted yet"),
+];
+
+/// Words after those of what a brush did on the palette alone.
+const ON_PALETTE: &str = " on the palette";
+
+fn place(on_palette: bool) -> &'static str {
+    if on_palette { ON_PALETTE } else { "" }
+}
+
+impl fmt::Display for StepName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Stroke { kind, on_palette } => write!(f, "{kind} stroke{}", place(*on_palette)),
+            Self::Wipe { kind, on_palette } => write!(f, "{kind} wipe{}", place(*on_palette)),
+            Self::Load { paints } => write!(f, "load {}", paints.join(" + ")),
+            Self::Return { version } => write!(f, "return to '{version}'"),
+            Self::Merged { count } => write!(f, "{count} steps"),
+            Self::Words { words } => f.write_str(words),
+            plain => f.write_str(plain.plain().unwrap_or_default()),
+        }
+    }
+}
+
+impl Worded for StepName {
+    fn of_words(words: &str) -> Self {
+        if let Some((name, _)) = PLAIN.iter().find(|(_, own)| *own == words) {
+            return name.clone();
+        }
+        let unplaced = words.strip_suffix(ON_PALETTE);
+        let on_palette = unplaced.is_some();
+        // Earlier versions said it of loads and cleanings too.
+        let done = unplaced.unwrap_or(words);
+        if done == "clean brush" {
+            return Self::Clean;
+        }
+        if let Some(kind) = done.strip_suffix(" stroke") {
+            let kind = kind.to_owned();
+            return Self::Stroke { kind, on_palette };
+        }
+        if let Some(kind) = done.strip_suffix(" wipe") {
+            let kind = kind.to_owned();
+            return Self::Wipe { kind, on_palette };
+        }
+        if let Some(paints) = done.strip_prefix("load ") {
+            let paints = paints.split(" + ").map(str::to_owned).collect();
+            return Self::Load { paints };
+        }
+        let version = words.strip_prefix("return to '");
+        if let Some(version) = version.and_then(|rest| rest.strip_suffix('\'')) {
+            let version = version.to_owned();
+            return Self::Return { version };
+        }
+        let count = words.strip_suffix(" steps");
+        if let Some(count) = count.and_then(|count| count.parse().ok()) {
+            return Self::Merged { count };
+        }
+        let words = words.to_owned();
+        Self::Words { words }
+    }
+
+    fn words(&self) -> Option<&str> {
+        match self {
+            Self::Words { words } => Some(words),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_in_words_is_the_same_step() {
+        let text = str::to_owned;
+        let named = [
+            StepName::Load {
+                paints: vec![text("Cobalt Blue"), text("Ivory Black")],
+            },
+            StepName::Return {
+                version: text("first 'one'"),
+            },
+            StepName::Merged { count: 12 },
+            StepName::Words {
+                words: text("none of these"),
+            },
+        ];
+        let strokes = [false, true].into_iter().flat_map(|on_palette| {
+            let kind = || text("round");
+            [
+                StepName::Stroke {
+                    kind: kind(),
+                    on_palette,
+                },
+                StepName::Wipe {
+                    kind: kind(),
+                    on_palette,
+                },
+            ]
+        });
+        let plain = PLAIN.iter().map(|(name, _)| name.clone());
+        for name in plain.chain(named).chain(strokes) {
+            let words = name.to_string();
+            assert_eq!(StepName::of_words(&words), name, "{words}");
+        }
+    }
+
+    #[test]
+    fn a_long_name_is_cut() {
+        let paints = vec!["x".repeat(50), "y".repeat(50), "z".repeat(9)];
+        let load = StepName::Load { paints }.shortened(60);
+        let paints = vec!["x".repeat(50)];
+        assert_eq!(load, StepName::Load { paints });
+        let version = "ä".repeat(50);
+        let back = StepName::Return { version }.shortened(3);
+        let version = "äää".to_owned();
+        assert_eq!(back, StepName::Return { version });
+    }
+}

@@ -1,0 +1,75 @@
+//! Journal entries of a painting's file from before decisions were typed.
+
+use maulstick_types::edits::Undo;
+use maulstick_types::paint::{Decision, Entry, JournalEntry};
+use maulstick_types::{Header, encode};
+
+/// Bytes of an entry of each kind, version 11. No line is ever changed.
+const WORDED: &str = include_str!("worded.txt");
+
+/// What the lines say.
+fn entries() -> [Entry; 6] {
+    let brush = || "main".to_owned();
+    [
+        Entry::States {
+            brush: brush(),
+            epoch: 1,
+            from: 2,
+            to: 3,
+        },
+        Entry::Command {
+            client: 1,
+            number: 2,
+            command: Undo { brush: None }.into(),
+        },
+        Entry::Tick { count: 4 },
+        Entry::Cut {
+            client: 1,
+            number: 2,
+            brush: brush(),
+            epoch: 1,
+            from: 4,
+            to: 6,
+            whole: true,
+        },
+        Entry::Decision {
+            what: Decision::Backend { name: "cpu".into() },
+        },
+        Entry::Brush {
+            brush: brush(),
+            toml: "kind".into(),
+        },
+    ]
+}
+
+fn bytes(line: &str) -> Vec<u8> {
+    let hex = line.split_whitespace().last().expect("bytes");
+    let byte = |at: usize| u8::from_str_radix(&hex[at..at + 2], 16).expect("hexadecimal");
+    (0..hex.len()).step_by(2).map(byte).collect()
+}
+
+/// Where this fails because a command has other fields, entries of version 11 can no longer be decoded: `worded_entry.rs`
+/// goes, with this test.
+#[test]
+fn entries_with_decisions_in_words_are_read_from_files() {
+    let [own, worded] = JournalEntry::stored_hashes();
+    assert_eq!(WORDED.lines().count(), entries().len());
+    for (line, entry) in WORDED.lines().zip(entries()) {
+        let old = bytes(line);
+        assert_eq!(Header::from_bytes(&old).expect("whole").schema, worded);
+        let (header, read) = JournalEntry::decode_stored(&old).expect("read");
+        assert_eq!((read.index, &read.entry), (3, &entry));
+        let Header { flags, seq, .. } = header;
+        let new = encode(
+            &header.origin(),
+            flags,
+            seq,
+            header.event_ns,
+            header.sent_ns,
+            &read,
+        );
+        let new = new.expect("short");
+        let (header, again) = JournalEntry::decode_stored(&new).expect("its own bytes");
+        assert_eq!((header.schema, again), (own, read));
+    }
+}

@@ -1,0 +1,67 @@
+//! What an edit has done, for the notification of one whose effect may be out of view.
+
+use maulstick_types::command::{Command, Detail};
+use maulstick_types::edits::Edit;
+
+use crate::language::{layer_name, step};
+use crate::rig::requests::Request;
+use crate::settings::brush_load;
+
+/// A request that is done, and what it was about; `None` for one whose effect is seen.
+#[must_use]
+pub(super) fn done(request: &Request, detail: &Detail) -> Option<String> {
+    let done = past_tense(request)?;
+    Some(match told(detail) {
+        Some(told) => format!("{done}: {told}"),
+        None => done.to_owned(),
+    })
+}
+
+fn told(detail: &Detail) -> Option<String> {
+    match detail {
+        Detail::Nothing => None,
+        Detail::Step { name } => Some(step(name)),
+        Detail::Dried { layer } => Some(layer_name(layer)),
+        Detail::Loaded { mixture } => Some(brush_load::words(&mixture.without_traces())),
+        Detail::Words { words } => Some(words.clone()),
+    }
+}
+
+fn past_tense(request: &Request) -> Option<&'static str> {
+    let Request::Command {
+        command: Command::Edit(edit),
+        ..
+    } = request
+    else {
+        return None;
+    };
+    match edit {
+        Edit::Undo(_) => Some(tr!("Undone")),
+        Edit::Redo(_) => Some(tr!("Redone")),
+        Edit::GoTo(_) => Some(tr!("Now")),
+        Edit::Dry(_) => Some(tr!("Dried")),
+        Edit::LoadFrom(_) => Some(tr!("Loaded")),
+        Edit::Scrape(_) => Some(tr!("Scraped")),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mixtures_are_told_in_per_cent_also_those_of_one_paint() {
+        for (parts, words) in [
+            ("Burnt Sienna=1", "Burnt Sienna"),
+            (
+                "Burnt Sienna=0.12,Thinner=0.88",
+                "Burnt Sienna 12 %, Thinner 88 %",
+            ),
+        ] {
+            let mixture = parts.parse().expect("a mixture");
+            let told = told(&Detail::Loaded { mixture });
+            assert_eq!(told.as_deref(), Some(words));
+        }
+    }
+}
