@@ -3,7 +3,6 @@
 mod compare;
 mod convert;
 mod export;
-mod export_live;
 mod film_file;
 mod import;
 mod info;

@@ -7,7 +7,7 @@ use maulstick_rig::files::Kind;
 use maulstick_types::command::{ExportOrder, FileCommand};
 use maulstick_types::scene::{CANVAS, PALETTE};
 
-use super::export::ExportOptions;
+use super::ExportOptions;
 use crate::commands::client::Client;
 use crate::commands::open::LONGEST;
 use crate::commands::say;
