@@ -6,27 +6,27 @@ use maulstick_types::command::advice::Advice;
 #[must_use]
 pub fn words(advice: &Advice) -> Option<String> {
     let words = match advice {
-        Advice::StopDrying => "wait for its end, or stop it: `maulstick dry --stop`",
-        Advice::BeginDrying => "`maulstick dry --over 90s` begins one",
-        Advice::DryFirst => "`maulstick dry` dries wet paint into a layer",
+        Advice::StopDrying => "wait for its end, or stop it: `maulstick layer dry --stop`",
+        Advice::BeginDrying => "`maulstick layer dry --over 90s` begins one",
+        Advice::DryFirst => "`maulstick layer dry` dries wet paint into a layer",
         Advice::FullOpacity { layer } => {
             return Some(format!(
-                "`maulstick opacity {layer} 1` makes it as it was laid"
+                "`maulstick layer opacity {layer} 1` makes it as it was laid"
             ));
         }
-        Advice::ListPaints => "`maulstick paints` lists them all",
+        Advice::ListPaints => "`maulstick colour paints` lists them all",
         Advice::UndoNewest => {
             "undo that first: `maulstick undo` without a brush takes the newest step of all"
         }
         Advice::Recover => "`maulstick painting recover FILE -o NEW.maul` takes out what is whole",
-        Advice::StopExport => "wait for its end, or stop it: `maulstick export --stop`",
-        Advice::BeginExport => "`maulstick export FILE` begins an export",
+        Advice::StopExport => "wait for its end, or stop it: `maulstick painting export --stop`",
+        Advice::BeginExport => "`maulstick painting export -o FILE` begins an export",
         Advice::ListFormats => "`maulstick painting export --help` says what each format takes",
         Advice::Replace => {
             "give another name, or say that the one that is there may go: `--replace`"
         }
         Advice::SaveOrForget => {
-            "keep it first: `maulstick save-as FILE.maul`; or say that it may go: `--forget`"
+            "keep it first: `maulstick painting save-as FILE.maul`; or say that it may go: `--forget`"
         }
         Advice::NamePainting => {
             "give a file that `maulstick up FILE.maul` made, or a new name; of a painting whose beginning is \

@@ -5,15 +5,14 @@ use std::fmt::Write as _;
 use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use maulstick_rig::UserError;
 use maulstick_rig::files::{allow_overwriting, clear_on_signals};
-use maulstick_types::edits::commands;
 use nix::sys::prctl::set_name;
 
 use crate::advice;
-use crate::commands::measure::Measure;
+use crate::commands::completions::{self, CompletionsCommand, Headings};
+use crate::commands::edit::{self, DailyEdits, EditsOf, LayerEdits, PaletteEdits};
 use crate::commands::{
-    begin, bench, bridge, brush, demo, device, echo, edit, endpoint, export, fit, force, graph,
-    import, light, matching, measure, mix, motion, nodes, open, painting, paints, record,
-    recording, render, replay, save_as, schema, snapshot, take,
+    bench, brush, canvas, colour, demo, device, endpoint, nodes, painting, recording, render,
+    schema, snapshot, take, topic,
 };
 use crate::doctor;
 use crate::processes::{self, NodeCommand};
@@ -36,141 +35,128 @@ enum Command {
     Up(up::UpOptions),
     /// Check this machine, and say what mends what is wrong
     Doctor(doctor::DoctorOptions),
-    /// Paint a take without a rig
-    Render(render::RenderOptions),
-    /// Make a take from a table of strokes
-    Import(import::ImportOptions),
-    /// Make a demo: a take, a painting or a sheet of marks
-    Demo(demo::DemoOptions),
-    /// Show takes, make them of what was painted, complete or recover them
+    /// List the processes of a rig, or run one by hand
     #[command(subcommand)]
-    Take(take::TakeCommand),
-    /// Cut, join, place, mirror, retime takes; fill an outline by example
-    #[command(subcommand)]
-    Motion(motion::MotionCommand),
-    /// An edit of the painting
-    #[command(flatten)]
-    Edit(edit::EditCommand),
-    /// Show or change the light
-    Light(light::LightOptions),
-    /// Write the picture as a file
-    Snapshot(snapshot::SnapshotOptions),
-    /// Open another painting in the running rig
-    Open(open::OpenOptions),
-    /// Begin a new painting in the running rig
-    New(begin::NewOptions),
-    /// Save the painting under another name and go on there
-    SaveAs(save_as::SaveAsOptions),
-    /// Export the painting for other programs
-    Export(export::ExportOptions),
-    /// List, add, choose, fit and remove devices, also while painting
-    #[command(subcommand)]
-    Device(device::DeviceCommand),
-    /// Run one process of a rig by hand
-    #[command(subcommand)]
-    Node(NodeCommand),
+    Node(NodesCommand),
     /// Print how a program in any language joins the rig
     Endpoint(endpoint::EndpointOptions),
     /// Print the message formats
     Schema(schema::SchemaOptions),
-    /// Show brushes, take one in hand, set its mode, import one
-    #[command(subcommand)]
-    Brush(brush::BrushCommand),
-    /// Show, export, import, film, repair, pack painting files; keep versions
+    /// An edit of the painting
+    #[command(flatten)]
+    Daily(EditsOf<DailyEdits>),
+    /// As `take render`
+    Render(render::RenderOptions),
+    /// As `painting snapshot`
+    Snapshot(snapshot::SnapshotOptions),
+    /// Begin, open, save, export, undo; show, film, repair, pack painting files; keep versions
     #[command(subcommand)]
     Painting(painting::PaintingCommand),
-    /// List the paints
-    Paints(paints::PaintsOptions),
-    /// Mix paints and show their colour
-    Mix(mix::MixOptions),
-    /// Propose mixtures for a colour
-    Match(matching::MatchOptions),
-    /// Fit paints to measured reflectances
-    Fit(fit::FitCommand),
-    /// Run benchmarks against reference programs
-    Bench(bench::BenchOptions),
-    /// Show the force of a brush on the hand, by depth and angle
-    Force(force::ForceOptions),
-    /// List the processes of a rig
-    Nodes(nodes::NodesOptions),
-    /// List what a rig sends
-    Topics(measure::MeasureOptions),
-    /// Draw the processes of a rig and what they send each other
-    Graph(graph::GraphOptions),
-    /// Print the messages of a topic as they come
-    Echo(echo::EchoOptions),
-    /// Measure how often messages come, and how many are missing
-    Hz(measure::MeasureOptions),
-    /// Measure how long messages are on the way
-    Latency(measure::MeasureOptions),
-    /// Record what a rig sends
-    Record(record::RecordOptions),
-    /// Show a running rig in Foxglove
-    Bridge(bridge::BridgeOptions),
-    /// Show a recording, or export its messages
+    /// Change ground, tooth, size, light and paint model; lay an even film
+    #[command(subcommand)]
+    Canvas(canvas::CanvasCommand),
+    /// Scrape the palette, let its paint deplete or last
+    #[command(subcommand)]
+    Palette(EditsOf<PaletteEdits>),
+    /// Dry paint into a layer, make layers wet again, set their opacity
+    #[command(subcommand)]
+    Layer(EditsOf<LayerEdits>),
+    /// Load, clean, tune, take in hand, set the mode; show brushes, import one
+    #[command(subcommand)]
+    Brush(brush::BrushCommand),
+    /// List paints, mix them, match a colour, fit paints to measurements
+    #[command(subcommand)]
+    Colour(colour::ColourCommand),
+    /// Make, paint, show, cut, join, place, retime, recover takes; fill an outline by example
+    #[command(subcommand)]
+    Take(take::TakeCommand),
+    /// Record a rig, replay into it; show a recording, export its messages
     #[command(subcommand)]
     Recording(recording::RecordingCommand),
-    /// Play a recording into a running rig
-    Replay(replay::ReplayOptions),
+    /// List, print, measure, draw what a rig sends; show it in Foxglove
+    #[command(subcommand)]
+    Topic(topic::TopicCommand),
+    /// List, add, choose, fit and remove devices, also while painting; force
+    #[command(subcommand)]
+    Device(device::DeviceCommand),
+    /// Make a demo: a take, a painting, a sheet of effects, the force of a fluid
+    #[command(subcommand)]
+    Demo(demo::DemoCommand),
+    /// Run benchmarks against reference programs
+    Bench(bench::BenchOptions),
+    /// Print completions for a shell, write manual pages
+    #[command(subcommand)]
+    Completions(CompletionsCommand),
 }
 
-/// The commands as `maulstick --help` lists them; those of edits stand before them, as each edit says.
-const GROUPS: &[(&str, &[&str])] = &[
+/// Commands of `maulstick node`.
+#[derive(Subcommand, Debug)]
+enum NodesCommand {
+    /// List the processes of a rig
+    List(nodes::NodesOptions),
+    /// One of them
+    #[command(flatten)]
+    Run(NodeCommand),
+}
+
+/// The commands as `maulstick --help` lists them.
+const HEADINGS: &Headings = &[
     ("Rig", &["up", "doctor", "node", "endpoint", "schema"]),
+    ("Daily", &["load", "undo", "snapshot", "render"]),
     (
-        "Painting",
-        &["new", "open", "save-as", "snapshot", "export", "painting"],
+        "Paint",
+        &["painting", "canvas", "palette", "layer", "brush", "colour"],
     ),
-    ("Paint", &[]),
-    ("Canvas", &["light"]),
-    ("Layers", &[]),
-    ("Brush", &["brush"]),
-    ("Colour", &["paints", "mix", "match", "fit"]),
-    ("Takes", &["demo", "import", "render", "take", "motion"]),
-    (
-        "Streams",
-        &[
-            "nodes",
-            "topics",
-            "graph",
-            "echo",
-            "hz",
-            "latency",
-            "record",
-            "recording",
-            "replay",
-            "bridge",
-        ],
-    ),
-    ("Devices", &["device", "force"]),
-    ("Measure", &["bench"]),
+    ("Motions and streams", &["take", "recording", "topic"]),
+    ("Devices", &["device"]),
+    ("Program", &["demo", "bench", "completions"]),
 ];
 
-/// Names of the commands of a group.
-fn in_group<'a>(group: &str, names: &'a [&'a str]) -> Vec<&'a str> {
-    let edits = commands().into_iter().filter(|form| form.group == group);
-    edits
-        .map(|form| form.name)
-        .chain(names.iter().copied())
-        .collect()
+/// Commands that stand beside the groups as well, each with its group.
+const SHORT: [(&str, &str); 4] = [
+    ("load", "brush"),
+    ("undo", "painting"),
+    ("snapshot", "painting"),
+    ("render", "take"),
+];
+
+/// Help of a command, and its long form.
+fn help(command: &clap::Command) -> [String; 2] {
+    let about = command.get_about().map(ToString::to_string);
+    let about = about.unwrap_or_default();
+    let long = command.get_long_about().map(ToString::to_string);
+    let long = long.unwrap_or_else(|| about.clone());
+    [about, long]
 }
 
-/// A command whose help lists its subcommands in [`GROUPS`].
-fn grouped(command: clap::Command) -> clap::Command {
+/// The program: its short commands have the help of those that they are short for.
+fn program() -> clap::Command {
+    SHORT.iter().fold(Cli::command(), |program, (name, group)| {
+        let group_of = program.find_subcommand(group);
+        let long_form = group_of.and_then(|group| group.find_subcommand(name));
+        let [about, long] = long_form.map(help).unwrap_or_default();
+        program.mut_subcommand(name, |short| {
+            short
+                .about(format!("{about} (short for {group} {name})"))
+                .long_about(format!("{long}\n\nShort for `maulstick {group} {name}`."))
+        })
+    })
+}
+
+/// A program whose help lists its commands under [`HEADINGS`].
+fn grouped(program: clap::Command) -> clap::Command {
     let mut list = String::new();
-    for (group, names) in GROUPS {
-        writeln!(list, "{group}:").ok();
-        for name in in_group(group, names) {
-            let found = command.find_subcommand(name);
-            let about = found.and_then(clap::Command::get_about);
-            let about = about.map(ToString::to_string).unwrap_or_default();
-            writeln!(list, "  {name:<10} {about}").ok();
+    for (heading, names) in HEADINGS {
+        writeln!(list, "{heading}:").ok();
+        for name in *names {
+            let [about, _] = program.find_subcommand(name).map(help).unwrap_or_default();
+            writeln!(list, "  {name:<11} {about}").ok();
         }
         list.push('\n');
     }
-    command.help_template(format!(
+    program.help_template(format!(
         "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{list}Options:\n{{options}}\n\n\
-         'maulstick COMMAND --help' shows the options of a command."
+         'maulstick COMMAND --help' shows the commands or the options of a command."
     ))
 }
 
@@ -179,7 +165,7 @@ fn grouped(command: clap::Command) -> clap::Command {
 /// # Errors
 /// A [`UserError`] as the user sees it.
 pub fn run() -> Result<i32, UserError> {
-    let matches = grouped(Cli::command()).get_matches();
+    let matches = grouped(program()).get_matches();
     let Cli { command, overwrite } =
         Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     if overwrite {
@@ -189,17 +175,9 @@ pub fn run() -> Result<i32, UserError> {
     set_name(c"maulstick").ok();
     // A rig ends its processes first, a node its work, a fitting its device.
     let handles_signals = match &command {
-        Command::Up(_) | Command::Node(_) => true,
+        Command::Up(_) | Command::Node(_) | Command::Topic(_) => true,
         Command::Device(command) => command.handles_signals(),
-        Command::Nodes(_)
-        | Command::Topics(_)
-        | Command::Graph(_)
-        | Command::Echo(_)
-        | Command::Hz(_)
-        | Command::Latency(_)
-        | Command::Record(_)
-        | Command::Replay(_)
-        | Command::Bridge(_) => true,
+        Command::Recording(command) => command.handles_signals(),
         _ => false,
     };
     if !handles_signals {
@@ -213,40 +191,26 @@ fn carry_out(command: Command) -> Result<i32, UserError> {
     match command {
         Command::Up(options) => up::run(&options),
         Command::Doctor(options) => doctor::run(&options),
-        Command::Node(command) => processes::run(&command),
-        Command::Render(options) => render::run(&options),
-        Command::Replay(options) => replay::run(&options),
-        Command::Import(options) => import::run(&options),
-        Command::Demo(options) => demo::run(&options),
-        Command::Take(command) => take::run(&command),
-        Command::Motion(command) => motion::run(&command),
-        Command::Edit(command) => edit::run(&command),
-        Command::Light(options) => light::run(&options),
-        Command::Snapshot(options) => snapshot::snapshot(&options),
-        Command::Open(options) => open::run(&options),
-        Command::New(options) => begin::run(&options),
-        Command::SaveAs(options) => save_as::run(&options),
-        Command::Export(options) => export::run(&options),
-        Command::Device(command) => device::run(&command),
+        Command::Node(NodesCommand::List(options)) => nodes::run(&options),
+        Command::Node(NodesCommand::Run(command)) => processes::run(&command),
         Command::Endpoint(options) => endpoint::run(&options),
         Command::Schema(options) => schema::run(&options),
-        Command::Brush(command) => brush::run(&command),
+        Command::Daily(edit) => edit::run(&edit),
+        Command::Render(options) => render::run(&options),
+        Command::Snapshot(options) => snapshot::snapshot(&options),
         Command::Painting(command) => painting::run(&command),
-        Command::Paints(options) => paints::run(&options),
-        Command::Mix(options) => mix::run(&options),
-        Command::Match(options) => matching::run(&options),
-        Command::Fit(options) => fit::run(&options),
-        Command::Bench(options) => bench::run(&options),
-        Command::Force(options) => force::run(&options),
-        Command::Nodes(options) => nodes::run(&options),
-        Command::Topics(options) => measure::run(&options, Measure::Topics),
-        Command::Graph(options) => graph::run(&options),
-        Command::Echo(options) => echo::run(&options),
-        Command::Hz(options) => measure::run(&options, Measure::Rates),
-        Command::Latency(options) => measure::run(&options, Measure::Delays),
-        Command::Record(options) => record::run(&options),
-        Command::Bridge(options) => bridge::run(&options),
+        Command::Canvas(command) => canvas::run(&command),
+        Command::Palette(edit) => edit::run(&edit),
+        Command::Layer(edit) => edit::run(&edit),
+        Command::Brush(command) => brush::run(&command),
+        Command::Colour(command) => colour::run(&command),
+        Command::Take(command) => take::run(&command),
         Command::Recording(command) => recording::run(&command),
+        Command::Topic(command) => topic::run(&command),
+        Command::Device(command) => device::run(&command),
+        Command::Demo(command) => demo::run(&command),
+        Command::Bench(options) => bench::run(&options),
+        Command::Completions(command) => completions::run(&command, program(), HEADINGS),
     }
 }
 
@@ -260,19 +224,23 @@ mod tests {
 
     #[test]
     fn the_command_line_is_consistent() {
-        grouped(Cli::command()).debug_assert();
+        grouped(program()).debug_assert();
     }
 
     /// The edit that a command line means.
     fn edit_of(arguments: &str) -> Option<Edit> {
         let words = std::iter::once("maulstick").chain(arguments.split('|'));
-        let matches = grouped(Cli::command()).try_get_matches_from(words);
+        let matches = grouped(program()).try_get_matches_from(words);
         let matches = matches.unwrap_or_else(|error| panic!("{arguments}: {error}"));
         match Cli::from_arg_matches(&matches).expect("read").command {
-            Command::Edit(command) => Some(command.edit),
-            Command::Brush(brush::BrushCommand::Mode(options)) => Some(options.edit().into()),
+            Command::Daily(command) => Some(command.edit),
+            Command::Layer(command) => Some(command.edit),
+            Command::Palette(command) => Some(command.edit),
+            Command::Brush(brush::BrushCommand::Edit(command)) => Some(command.edit),
+            Command::Painting(painting::PaintingCommand::Edit(command)) => Some(command.edit),
             Command::Painting(painting::PaintingCommand::Versions(options)) => options.edit(),
-            Command::Light(options) => {
+            Command::Canvas(canvas::CanvasCommand::Edit(command)) => Some(command.edit),
+            Command::Canvas(canvas::CanvasCommand::Light(options)) => {
                 let light = changed(options.change(), &Light::default()).expect("a light");
                 let expose = false;
                 Some(Relight { light, expose }.into())
@@ -309,23 +277,23 @@ mod tests {
     #[test]
     fn what_is_out_of_range_is_rejected_on_the_command_line() {
         for (arguments, word) in [
-            ("dry|--share|3", "above 0, at most 1"),
-            ("dry|--over|soon", "90s"),
-            ("dry|--share|0.5|--over|90s", "cannot be used with"),
-            ("dry|--region|1,2", "X,Y,WxH"),
-            ("opacity|sky|-1", "0 to 1"),
-            ("fill|Bone Black|--um|9000", "1 to 5000 µm"),
-            ("fill", "MIXTURE"),
-            ("wet|--layers|0", "1.."),
-            ("size|-2", "0 to 1000 µm"),
-            ("tune|--stiffness|99", "0.05 to 20"),
+            ("layer|dry|--share|3", "above 0, at most 1"),
+            ("layer|dry|--over|soon", "90s"),
+            ("layer|dry|--share|0.5|--over|90s", "cannot be used with"),
+            ("layer|dry|--region|1,2", "X,Y,WxH"),
+            ("layer|opacity|sky|-1", "0 to 1"),
+            ("canvas|fill|Bone Black|--um|9000", "1 to 5000 µm"),
+            ("canvas|fill", "MIXTURE"),
+            ("layer|wet|--layers|0", "1.."),
+            ("canvas|size|-2", "0 to 1000 µm"),
+            ("brush|tune|--stiffness|99", "0.05 to 20"),
             ("load|Bone Black=0", "not a number above 0"),
-            ("load|Bone Black|--brush|a/b", "letters, digits"),
-            ("piles|stay", "deplete"),
+            ("brush|load|Bone Black|--brush|a/b", "letters, digits"),
+            ("palette|piles|stay", "deplete"),
             ("brush|mode|spunge", "'sponge'"),
         ] {
             let words = std::iter::once("maulstick").chain(arguments.split('|'));
-            let rejected = grouped(Cli::command()).try_get_matches_from(words);
+            let rejected = grouped(program()).try_get_matches_from(words);
             let said = rejected.expect_err(arguments).to_string();
             assert!(said.contains(word), "{arguments}: {said}");
         }
@@ -371,7 +339,7 @@ mod tests {
     #[test]
     fn all_help_is_for_people() {
         let mut found = Vec::new();
-        faults(&Cli::command(), "maulstick", &mut found);
+        faults(&program(), "maulstick", &mut found);
         assert!(found.is_empty(), "{found:#?}");
         let code = clap::Command::new("x").about("`x`, with which a y is stopped");
         let nothing = clap::Arg::new("y").long("y");
@@ -381,19 +349,50 @@ mod tests {
 
     #[test]
     fn help_lists_each_command_once() {
-        let command = Cli::command();
-        let mut commands: Vec<_> = command.get_subcommands().map(|c| c.get_name()).collect();
-        let mut listed: Vec<_> = GROUPS
+        let program = program();
+        let mut commands: Vec<_> = program.get_subcommands().map(|c| c.get_name()).collect();
+        let mut listed: Vec<_> = HEADINGS
             .iter()
-            .flat_map(|(group, names)| in_group(group, names))
+            .flat_map(|(_, names)| *names)
+            .copied()
             .collect();
         commands.sort_unstable();
         listed.sort_unstable();
         assert_eq!(commands, listed);
-        let help = grouped(command).render_help().to_string();
+        assert!(commands.len() <= 24, "fewer doors: {commands:?}");
+        let help = grouped(program).render_help().to_string();
         assert!(
-            help.contains("Rig:\n  up         Start a rig and keep it running\n"),
+            help.contains("Rig:\n  up          Start a rig and keep it running\n"),
             "{help}"
+        );
+    }
+
+    #[test]
+    fn a_short_command_is_the_one_of_its_group() {
+        let options = |command: &clap::Command| -> Vec<String> {
+            let ids = command.get_arguments().map(|one| one.get_id().to_string());
+            ids.collect()
+        };
+        let program = program();
+        for (name, group) in SHORT {
+            let short = program.find_subcommand(name).expect(name);
+            let group_of = program.find_subcommand(group).expect(group);
+            let long = group_of.find_subcommand(name).expect(name);
+            assert_eq!(options(short), options(long));
+            let [about, _] = help(short);
+            assert!(
+                about.ends_with(&format!("(short for {group} {name})")),
+                "{about}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_page_of_commands_is_generated() {
+        let page = completions::page(&program(), HEADINGS);
+        assert!(
+            page == include_str!("../../docs/commands.md"),
+            "write it anew: cargo run --release -p maulstick -- completions markdown > docs/commands.md"
         );
     }
 }

@@ -54,9 +54,9 @@
 //!   begins.
 //! - `take from` makes a take of a session, or of a painting's own record: a copy of the painting taken back to its
 //!   beginning.
-//! - `replay --rate max` sends as the brushes have credit. `replay --at` puts a motion down live under the name
+//! - `recording replay --rate max` sends as the brushes have credit; with `--at` it puts a motion down live under the name
 //!   `motion`, so it is undone like any stroke.
-//! - `bridge` serves JSON of what is watched only. `graph` reads zenoh's administration space.
+//! - `topic bridge` serves JSON of what is watched only. `topic graph` reads zenoh's administration space.
 
 pub mod advice;
 pub mod attached;

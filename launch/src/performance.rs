@@ -36,7 +36,7 @@ pub struct KitOptions {
     /// them in turn. Without a take, what the brush carries at the start
     #[arg(long, value_name = "MIX")]
     pub load: Vec<String>,
-    /// Paint file of your own, as `maulstick fit` makes it
+    /// Paint file of your own, as `maulstick colour fit` makes it
     #[arg(long, value_name = "FILE")]
     pub paints: Option<PathBuf>,
     /// Light: A, D50, D65, FL2, FL8, FL11, or a CSV file of nm,power

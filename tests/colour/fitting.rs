@@ -1,4 +1,4 @@
-//! `maulstick fit`, from a table of measurements to a paint file.
+//! `maulstick colour fit`, from a table of measurements to a paint file.
 
 #[path = "../support/mod.rs"]
 mod support;
@@ -10,7 +10,7 @@ fn fit_makes_paints_of_the_example_of_its_guide() {
     let place = Place::new();
     let table = include_str!("../../docs/examples/measurements.csv");
     std::fs::write(place.path("m.csv"), table).expect("written");
-    let said = place.done(&["fit", "m.csv", "-o", "paints.csv"]);
+    let said = place.done(&["colour", "fit", "m.csv", "-o", "paints.csv"]);
     let said = String::from_utf8_lossy(&said.stdout).into_owned();
     has(
         &said,
@@ -31,7 +31,7 @@ fn fit_makes_paints_of_the_example_of_its_guide() {
     );
 
     let json = place
-        .done(&["fit", "m.csv", "-o", "paints.csv", "--json"])
+        .done(&["colour", "fit", "m.csv", "-o", "paints.csv", "--json"])
         .stdout;
     let json: serde_json::Value = serde_json::from_slice(&json).expect("JSON");
     let rows = json["rows"].as_array().expect("rows");
@@ -42,7 +42,7 @@ fn fit_makes_paints_of_the_example_of_its_guide() {
     );
     assert_eq!(json["warnings"], serde_json::json!([]));
     // Another surface, another fit; a masstone alone gets a warning.
-    let other = ["fit", "m.csv", "-o", "other.csv", "--no-surface"];
+    let other = ["colour", "fit", "m.csv", "-o", "other.csv", "--no-surface"];
     place.done(&other);
     assert!(place.bytes("other.csv") != place.bytes("paints.csv"));
     let without: Vec<&str> = table
@@ -50,7 +50,9 @@ fn fit_makes_paints_of_the_example_of_its_guide() {
         .filter(|line| !line.starts_with("red and"))
         .collect();
     std::fs::write(place.path("m.csv"), without.join("\n")).expect("written");
-    let said = place.done(&["fit", "m.csv", "-o", "paints.csv"]).stderr;
+    let said = place
+        .done(&["colour", "fit", "m.csv", "-o", "paints.csv"])
+        .stderr;
     has(
         &String::from_utf8_lossy(&said),
         &["warning: 'Pyrrole Red' is ill-determined", "1:10"],
@@ -62,7 +64,7 @@ fn fit_refuses_bad_measurements_with_row_and_column() {
     let place = Place::new();
     let fit = |table: &str, more: &[&str]| {
         std::fs::write(place.path("m.csv"), table).expect("written");
-        let mut args = vec!["fit", "m.csv", "-o", "p.csv"];
+        let mut args = vec!["colour", "fit", "m.csv", "-o", "p.csv"];
         args.extend(more);
         let said = fault(&place, &args, 2);
         assert!(!place.path("p.csv").exists(), "half-written: {said}");
@@ -93,12 +95,12 @@ fn fit_refuses_bad_measurements_with_row_and_column() {
         &["'Colbat Blue'", "did you mean 'Cobalt Blue'?"],
     );
     has(
-        &fault(&place, &["fit", "none.csv", "-o", "p.csv"], 2),
+        &fault(&place, &["colour", "fit", "none.csv", "-o", "p.csv"], 2),
         &["none.csv", "check the path"],
     );
     std::fs::write(place.path("m.csv"), head).expect("written");
     has(
-        &fault(&place, &["fit", "m.csv", "-o", "no/p.csv"], 1),
+        &fault(&place, &["colour", "fit", "m.csv", "-o", "no/p.csv"], 1),
         &["no/p.csv", "folder"],
     );
 }
@@ -111,7 +113,7 @@ fn measurements_are_not_written_over() {
         include_str!("../../docs/examples/measurements.csv"),
     )
     .expect("written");
-    let said = fault(&place, &["fit", "m.csv", "-o", "m.csv"], 2);
+    let said = fault(&place, &["colour", "fit", "m.csv", "-o", "m.csv"], 2);
     has(&said, &["take the place of the measurements", "m.csv"]);
     assert!(place.bytes("m.csv").starts_with(b"#"));
 }

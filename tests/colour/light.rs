@@ -70,7 +70,10 @@ fn a_painting_dries_and_is_seen_under_another_light() {
     let (bus, topics) = support::join(&place);
     let mut scenes = listen::<Scene>(&bus, &topics.scene(), Qos::Cached);
     let mut statuses = listen::<PaintStatus>(&bus, &topics.paint_status(), Qos::Background);
-    assert_eq!(says(&place, &["dry", "--layer", "sky"]), "dried: sky\n");
+    assert_eq!(
+        says(&place, &["layer", "dry", "--layer", "sky"]),
+        "dried: sky\n"
+    );
     let dried = hear(&mut scenes, |scene| !scene.layers.is_empty()).expect("a layer");
     assert_eq!(
         (dried.layers[0].name.as_str(), dried.layers[0].number),
@@ -83,7 +86,15 @@ fn a_painting_dries_and_is_seen_under_another_light() {
 
     let told = says(
         &place,
-        &["light", "--illuminant", "A", "--adapt", "false", "--json"],
+        &[
+            "canvas",
+            "light",
+            "--illuminant",
+            "A",
+            "--adapt",
+            "false",
+            "--json",
+        ],
     );
     let told: serde_json::Value = serde_json::from_str(&told).expect("JSON");
     assert_eq!(
@@ -98,10 +109,10 @@ fn a_painting_dries_and_is_seen_under_another_light() {
     assert!(place.bytes("day.png") != place.bytes("lamp.png"));
     // Under another spectrum the exposure is chosen anew, as for a painting that begins under it.
     assert!(told["exposure"].as_f64() < Some(0.8), "{told}");
-    let by_hand = ["light", "--exposure", "0.5", "--json"];
+    let by_hand = ["canvas", "light", "--exposure", "0.5", "--json"];
     let told: serde_json::Value = serde_json::from_str(&says(&place, &by_hand)).expect("JSON");
     assert_eq!(told["exposure"].as_f64(), Some(0.5));
-    place.done(&["light", "--illuminant", "D65", "--adapt", "true"]);
+    place.done(&["canvas", "light", "--illuminant", "D65", "--adapt", "true"]);
     place.done(&["snapshot", "-o", "again.png"]);
     assert_same(
         &place.bytes("day.png"),
@@ -109,7 +120,7 @@ fn a_painting_dries_and_is_seen_under_another_light() {
         "back under daylight",
     );
 
-    place.done(&["opacity", "1", "0.2"]);
+    place.done(&["layer", "opacity", "1", "0.2"]);
     place.done(&["snapshot", "-o", "glaze.png"]);
     assert!(place.bytes("day.png") != place.bytes("glaze.png"));
     assert_eq!(says(&place, &["undo"]), "undone: layer opacity\n");
@@ -132,36 +143,48 @@ fn what_a_rig_cannot_do_with_light_it_refuses_with_words() {
     };
     std::fs::write(place.path("bad.csv"), "nm,power\n380,1\n400,-3\n").expect("written");
     refused(
-        &["light", "--illuminant", "D56"],
+        &["canvas", "light", "--illuminant", "D56"],
         &["'D56'", "did you mean 'D5"],
     );
     refused(
-        &["light", "--illuminant", "bad.csv"],
+        &["canvas", "light", "--illuminant", "bad.csv"],
         &["bad.csv:3", "column 2", "-3"],
     );
     refused(
-        &["light", "--illuminant", "none.csv"],
+        &["canvas", "light", "--illuminant", "none.csv"],
         &["none.csv", "check the path"],
     );
-    refused(&["light", "--samples", "3"], &["3 samples", "4 to 16"]);
     refused(
-        &["light", "--rule", "simpson"],
+        &["canvas", "light", "--samples", "3"],
+        &["3 samples", "4 to 16"],
+    );
+    refused(
+        &["canvas", "light", "--rule", "simpson"],
         &["gauss, fitted, reference"],
     );
-    refused(&["light", "--exposure", "bright"], &["a number, or auto"]);
-    refused(&["light", "--intensity", "-1"], &["intensity", "-1"]);
-    refused(&["light", "--direction", "0,0,-1"], &["z > 0"]);
-    refused(&["light", "--direction", "1,2"], &["three numbers"]);
-    refused(&["dry"], &["nothing is wet"]);
-    refused(&["dry", "--share", "0"], &["share"]);
     refused(
-        &["opacity", "3", "0.5"],
-        &["no dry layer 3", "maulstick dry"],
+        &["canvas", "light", "--exposure", "bright"],
+        &["a number, or auto"],
     );
-    refused(&["opacity", "3", "1.5"], &["1.5", "0 to 1"]);
+    refused(
+        &["canvas", "light", "--intensity", "-1"],
+        &["intensity", "-1"],
+    );
+    refused(&["canvas", "light", "--direction", "0,0,-1"], &["z > 0"]);
+    refused(
+        &["canvas", "light", "--direction", "1,2"],
+        &["three numbers"],
+    );
+    refused(&["layer", "dry"], &["nothing is wet"]);
+    refused(&["layer", "dry", "--share", "0"], &["share"]);
+    refused(
+        &["layer", "opacity", "3", "0.5"],
+        &["no dry layer 3", "maulstick layer dry"],
+    );
+    refused(&["layer", "opacity", "3", "1.5"], &["1.5", "0 to 1"]);
     refused(&["load", "Colbat Blue"], &["did you mean 'Cobalt Blue'"]);
     std::fs::write(place.path("mine.csv"), "nm,power\n380,1\n780,2\n").expect("written");
-    let told = says(&place, &["light", "--illuminant", "mine.csv"]);
+    let told = says(&place, &["canvas", "light", "--illuminant", "mine.csv"]);
     assert!(told.starts_with("mine from"), "{told}");
     drop(launcher);
 }

@@ -51,7 +51,7 @@ fn own_paints() -> String {
 fn a_mix_is_printed_as_spectrum_and_colour() {
     let place = Place::new();
     let green = "Cobalt Blue=0.5,Hansa Yellow Opaque=0.5";
-    let mixed = json(&place, &["mix", green]);
+    let mixed = json(&place, &["colour", "mix", green]);
     let lists = ["reflectance", "xyz", "lab", "srgb"].map(|key| numbers(&mixed[key]));
     assert_eq!(lists.each_ref().map(Vec::len), [101, 3, 3, 3]);
     let [reflectance, xyz, lab, srgb] = lists;
@@ -60,15 +60,15 @@ fn a_mix_is_printed_as_spectrum_and_colour() {
     assert!(xyz[1] > 1.0 && lab[1] < -20.0, "a green: {xyz:?} {lab:?}");
     assert_eq!(mixed["in_gamut"], true);
     // The surface darkens what is inside and adds its gloss.
-    let seen = json(&place, &["mix", green, "--saunderson"]);
+    let seen = json(&place, &["colour", "mix", green, "--saunderson"]);
     let outside = numbers(&seen["reflectance"]);
     for (r, outside) in reflectance.iter().zip(outside) {
         let expected = 0.03 + 0.97 * 0.35 * r / (1.0 - 0.65 * r);
         assert!((outside - expected).abs() < 1e-12);
     }
-    let orange = json(&place, &["mix", "Cadmium Orange"]);
+    let orange = json(&place, &["colour", "mix", "Cadmium Orange"]);
     assert_eq!(orange["in_gamut"], false);
-    let text = place.done(&["mix", green]).stdout;
+    let text = place.done(&["colour", "mix", green]).stdout;
     has(
         &String::from_utf8_lossy(&text),
         &[green, "#", "L*", "in gamut", "▁"],
@@ -80,7 +80,7 @@ fn a_mix_is_printed_as_spectrum_and_colour() {
 fn a_mix_in_a_film_lies_between_its_ground_and_its_masstone() {
     let place = Place::new();
     let white = |args: &[&str]| {
-        let mut all = vec!["mix", "Titanium White"];
+        let mut all = vec!["colour", "mix", "Titanium White"];
         all.extend(args);
         numbers(&json(&place, &all)["reflectance"])[60]
     };
@@ -107,7 +107,7 @@ fn a_mix_is_seen_under_any_light_by_either_observer() {
     std::fs::write(place.path("mine.csv"), "nm,power\n380,1\n780,1\n").expect("written");
     std::fs::write(place.path("paints.csv"), own_paints()).expect("written");
     let xyz = |args: &[&str]| {
-        let mut all = vec!["mix", "Chalk", "--paints", "paints.csv"];
+        let mut all = vec!["colour", "mix", "Chalk", "--paints", "paints.csv"];
         all.extend(args);
         json(&place, &all)
     };
@@ -161,7 +161,7 @@ fn a_mix_is_seen_under_any_light_by_either_observer() {
 fn bad_mixes_are_refused() {
     let place = Place::new();
     let refused = |args: &[&str], words: &[&str]| {
-        let mut all = vec!["mix"];
+        let mut all = vec!["colour", "mix"];
         all.extend(args);
         has(&fault(&place, &all, 2), words);
     };
@@ -172,7 +172,7 @@ fn bad_mixes_are_refused() {
     );
     refused(
         &["Colbat Blue"],
-        &["'Colbat Blue'", "'Cobalt Blue'", "maulstick paints"],
+        &["'Colbat Blue'", "'Cobalt Blue'", "maulstick colour paints"],
     );
     refused(&["Cobalt Blue=a,Bone Black=1"], &["'a'", "Cobalt Blue"]);
     refused(&["Cobalt Blue", "Bone Black"], &["more than one", "comma"]);
@@ -210,7 +210,11 @@ fn bad_mixes_are_refused() {
         &["paints.csv:4", "'bad'", "column 5"],
     );
     has(
-        &fault(&place, &["mix", "--chart", "-o", "no/chart.png"], 1),
+        &fault(
+            &place,
+            &["colour", "mix", "--chart", "-o", "no/chart.png"],
+            1,
+        ),
         &["no/chart.png", "folder"],
     );
 }
@@ -219,9 +223,25 @@ fn bad_mixes_are_refused() {
 fn the_mixing_chart_has_every_pair() {
     let place = Place::new();
     std::fs::write(place.path("paints.csv"), own_paints()).expect("written");
-    place.done(&["mix", "--chart", "-o", "all.png"]);
-    place.done(&["mix", "--chart", "-o", "own.png", "--paints", "paints.csv"]);
-    place.done(&["mix", "--chart", "-o", "bulb.png", "--illuminant", "A"]);
+    place.done(&["colour", "mix", "--chart", "-o", "all.png"]);
+    place.done(&[
+        "colour",
+        "mix",
+        "--chart",
+        "-o",
+        "own.png",
+        "--paints",
+        "paints.csv",
+    ]);
+    place.done(&[
+        "colour",
+        "mix",
+        "--chart",
+        "-o",
+        "bulb.png",
+        "--illuminant",
+        "A",
+    ]);
     let (all, pixels) = picture(&place, "all.png");
     let (own, _) = picture(&place, "own.png");
     assert!(all[0] > own[0] && all[1] > own[1] + 25 * 30);
@@ -235,7 +255,7 @@ fn the_mixing_chart_has_every_pair() {
 #[test]
 fn four_ways_to_mix_are_compared() {
     let place = Place::new();
-    let compared = json(&place, &["mix", "--compare", "-o", "four.png"]);
+    let compared = json(&place, &["colour", "mix", "--compare", "-o", "four.png"]);
     assert_eq!(compared["from"], "Yellow Ochre");
     let shares = numbers(&compared["shares"]);
     let rows = compared["rows"].as_array().expect("rows");
@@ -250,14 +270,19 @@ fn four_ways_to_mix_are_compared() {
     assert!(picture(&place, "four.png").0[0] > 800);
     let ends = json(
         &place,
-        &["mix", "--compare", "Pyrrole Red=0.5,Titanium White=0.5"],
+        &[
+            "colour",
+            "mix",
+            "--compare",
+            "Pyrrole Red=0.5,Titanium White=0.5",
+        ],
     );
     assert_eq!(
         (&ends["from"], &ends["to"]),
         (&"Pyrrole Red".into(), &"Titanium White".into())
     );
     let text = place
-        .done(&["mix", "--compare", "Green Gold", "Bone Black"])
+        .done(&["colour", "mix", "--compare", "Green Gold", "Bone Black"])
         .stdout;
     has(
         &String::from_utf8_lossy(&text),
@@ -268,7 +293,7 @@ fn four_ways_to_mix_are_compared() {
 #[test]
 fn a_match_is_a_mixture_that_can_be_loaded() {
     let place = Place::new();
-    let matched = json(&place, &["match", "#8a5a3c"]);
+    let matched = json(&place, &["colour", "match", "#8a5a3c"]);
     let rows = matched["rows"].as_array().expect("rows");
     assert_eq!(rows.len(), 10);
     let parts = |row: &Value| row["mixture"].as_str().expect("text").split(',').count();
@@ -277,7 +302,7 @@ fn a_match_is_a_mixture_that_can_be_loaded() {
     for row in [&rows[0], &rows[5]] {
         assert!(row["delta_e"].as_f64() < Some(2.0), "{row}");
         let mixture = row["mixture"].as_str().expect("text");
-        let mixed = json(&place, &["mix", mixture, "--saunderson"]);
+        let mixed = json(&place, &["colour", "mix", mixture, "--saunderson"]);
         assert_eq!(mixed["srgb"], row["srgb"]);
         let asked = [0x8a, 0x5a, 0x3c].map(|byte| f64::from(byte) / 255.0);
         for (got, asked) in numbers(&row["srgb"]).iter().zip(asked) {
@@ -286,18 +311,21 @@ fn a_match_is_a_mixture_that_can_be_loaded() {
     }
     // A mixture's own colour finds it.
     let known = "Yellow Ochre=0.6,Ultramarine Blue=0.4";
-    let lab = numbers(&json(&place, &["mix", known, "--saunderson"])["lab"]);
+    let lab = numbers(&json(&place, &["colour", "mix", known, "--saunderson"])["lab"]);
     let lab = format!("{},{},{}", lab[0], lab[1], lab[2]);
     let only = ["--paint", "yellow ochre", "--paint", "Ultramarine Blue"];
-    let found = json(&place, &[&["match", "--lab", &lab][..], &only].concat());
+    let found = json(
+        &place,
+        &[&["colour", "match", "--lab", &lab][..], &only].concat(),
+    );
     assert_eq!(found["rows"][0]["mixture"], known);
     assert!(found["rows"][0]["delta_e"].as_f64() < Some(0.1));
-    let text = place.done(&["match", "8a5a3c"]).stdout;
+    let text = place.done(&["colour", "match", "8a5a3c"]).stdout;
     has(
         &String::from_utf8_lossy(&text),
         &["two paints", "three paints", "ΔE₀₀", "\""],
     );
-    let far = place.done(&["match", "#00ff00"]).stderr;
+    let far = place.done(&["colour", "match", "#00ff00"]).stderr;
     has(&String::from_utf8_lossy(&far), &["do not reach"]);
 }
 
@@ -305,7 +333,7 @@ fn a_match_is_a_mixture_that_can_be_loaded() {
 fn bad_matches_are_refused() {
     let place = Place::new();
     let refused = |args: &[&str], words: &[&str]| {
-        let mut all = vec!["match"];
+        let mut all = vec!["colour", "match"];
         all.extend(args);
         has(&fault(&place, &all, 2), words);
     };
@@ -327,7 +355,7 @@ fn bad_matches_are_refused() {
 #[test]
 fn paints_to_mix_are_listed_with_masstone_and_tint() {
     let place = Place::new();
-    let listed = json(&place, &["paints"]);
+    let listed = json(&place, &["colour", "paints"]);
     let paints = listed["paints"].as_array().expect("paints");
     assert_eq!(paints.len(), 28);
     let lightness = |colour: &Value| numbers(colour).iter().sum::<f64>();
@@ -337,7 +365,9 @@ fn paints_to_mix_are_listed_with_masstone_and_tint() {
         assert!(lightness(tint) > lightness(masstone) || white, "{paint}");
     }
     std::fs::write(place.path("paints.csv"), own_paints()).expect("written");
-    let text = place.done(&["paints", "--paints", "paints.csv"]).stdout;
+    let text = place
+        .done(&["colour", "paints", "--paints", "paints.csv"])
+        .stdout;
     has(
         &String::from_utf8_lossy(&text),
         &["Chalk", "Slate", "Soot", "PX"],

@@ -100,7 +100,7 @@ fn every_row_of_a_table_of_strokes_is_a_sample_of_the_take() {
         ("14b-quoted-header.csv", 1, 8),
         ("19-cr-only.csv", 1, 1592),
     ] {
-        place.done(&["import", &case(name), "-o", "x.mcap", "--overwrite"]);
+        place.done(&["take", "import", &case(name), "-o", "x.mcap", "--overwrite"]);
         let take = Take::read(&place.path("x.mcap")).expect("a take");
         let length_ms = take.length_ns() / 1_000_000;
         assert_eq!(length_ms, milliseconds, "{name}");
@@ -138,7 +138,7 @@ fn every_row_of_a_table_of_strokes_is_a_sample_of_the_take() {
 fn a_fifth_column_without_a_heading_is_refused_with_its_line() {
     let place = Place::new();
     let table = case("14c-stroke-column-no-header.csv");
-    let said = fault(&place, &["import", &table, "-o", "x.mcap"], 2);
+    let said = fault(&place, &["take", "import", &table, "-o", "x.mcap"], 2);
     has(&said, &["14c-stroke-column-no-header.csv:1\n"]);
     assert!(!place.path("x.mcap").exists());
 }
@@ -146,7 +146,7 @@ fn a_fifth_column_without_a_heading_is_refused_with_its_line() {
 #[test]
 fn a_leap_of_fifty_millimetres_is_painted_all_the_way() {
     let place = Place::new();
-    place.done(&["import", &case("01-jump-50mm.csv"), "-o", "x.mcap"]);
+    place.done(&["take", "import", &case("01-jump-50mm.csv"), "-o", "x.mcap"]);
     let render = ["render", "x.mcap", "-o", "p.png", "--document", "d.maul"];
     place.done(&[&render[..], &STROKE].concat());
     let said = info(&place, "d.maul");
@@ -197,7 +197,7 @@ fn a_recording_without_chunks_in_any_order_or_packed_densely_is_whole() {
 #[test]
 fn a_picture_has_the_colours_that_its_file_says() {
     let place = Place::new();
-    place.done(&["import", &case("01-jump-50mm.csv"), "-o", "x.mcap"]);
+    place.done(&["take", "import", &case("01-jump-50mm.csv"), "-o", "x.mcap"]);
     let render = ["render", "x.mcap", "-o", "p.png", "--document", "d.maul"];
     place.done(&[&render[..], &STROKE].concat());
     // Near the corners, away from the stroke. What a ground shines at least is some 50 of 255.
@@ -237,7 +237,7 @@ fn a_picture_has_the_colours_that_its_file_says() {
 #[test]
 fn a_picture_with_what_is_no_number_is_refused_and_the_painting_stays() {
     let place = Place::new();
-    place.done(&["import", &case("01-jump-50mm.csv"), "-o", "x.mcap"]);
+    place.done(&["take", "import", &case("01-jump-50mm.csv"), "-o", "x.mcap"]);
     let render = ["render", "x.mcap", "-o", "p.png", "--document", "d.maul"];
     place.done(&[&render[..], &STROKE].concat());
     let before = place.bytes("d.maul");
@@ -253,7 +253,14 @@ fn a_picture_with_what_is_no_number_is_refused_and_the_painting_stays() {
 fn a_lamp_shines_the_same_however_its_table_is_written() {
     let place = Place::new();
     let mixed = |lamp: &str| {
-        let mix = ["mix", "--json", "Bone Black", "--illuminant", lamp];
+        let mix = [
+            "colour",
+            "mix",
+            "--json",
+            "Bone Black",
+            "--illuminant",
+            lamp,
+        ];
         json(&place, &mix)["lab"].clone()
     };
     let read = |name: &str, plain: String| {
@@ -279,7 +286,7 @@ fn a_ground_that_reads_a_little_above_its_standard_is_white() {
     let white = |reading: &f64| (reading - 1.0).abs() < 1e-12;
     assert!(ground.reading.0.iter().all(white), "{ground:?}");
     let place = Place::new();
-    place.done(&["import", &case("01-jump-50mm.csv"), "-o", "x.mcap"]);
+    place.done(&["take", "import", &case("01-jump-50mm.csv"), "-o", "x.mcap"]);
     let render = ["render", "x.mcap", "-o", "p.png", "--ground", &case(name)];
     place.done(&[&render[..], &STROKE].concat());
     seen(&place, "p.png", [20, 20], [255; 3]);
@@ -298,7 +305,7 @@ fn a_model_whose_name_ends_in_capitals_is_a_brush() {
     for chain in chains {
         assert_eq!(chain["segments_mm"].as_array().map(Vec::len), Some(3));
     }
-    place.done(&["import", &case("01-jump-50mm.csv"), "-o", "x.mcap"]);
+    place.done(&["take", "import", &case("01-jump-50mm.csv"), "-o", "x.mcap"]);
     let render = ["render", "x.mcap", "-o"];
     for (picture, brush) in [("one.png", &*model), ("two.png", "own.toml")] {
         let args = [picture, "--brush", brush];

@@ -10,7 +10,7 @@ use support::{COARSE, Place, fault, has};
 #[test]
 fn a_demo_becomes_a_picture_the_same_every_time() {
     let place = Place::new();
-    place.done(&["demo", "-o", "demo.mcap"]);
+    place.done(&["demo", "take", "-o", "demo.mcap"]);
     let loads = [
         "--load",
         "Ultramarine Blue",
@@ -167,7 +167,7 @@ fn cells_that_cannot_be_are_refused_and_a_painting_keeps_its_own() {
         &["render", "d.mcap", "-o", "p.png"],
         &["up", "--headless"],
         &["take", "embed", "d.mcap", "-o", "p.png"],
-        &["demo", "--sheet", "p.png"],
+        &["demo", "effects", "-o", "p.png"],
         &["brush", "sheet", "-o", "p.png"],
     ];
     for command in commands {
@@ -189,11 +189,6 @@ fn cells_that_cannot_be_are_refused_and_a_painting_keeps_its_own() {
         let said = fault(&place, &[command, &["--cell-mm", "0.02"][..]].concat(), 2);
         has(&said, &["pixels", "--cell-mm", "larger cells"]);
     }
-    let idle = ["demo", "-o", "d2.mcap", "--cell-mm", "0.5"];
-    has(
-        &fault(&place, &idle, 2),
-        &["--cell-mm does nothing", "--sheet"],
-    );
     let render = ["render", "d.mcap", "-o", "p.png", "--document", "x.maul"];
     place.done(&[&render[..], &["--cell-mm", "0.5"]].concat());
     place.done(&render);
@@ -233,7 +228,7 @@ fn bad_tables_are_refused_with_their_line() {
     let place = Place::new();
     let import = |rows: &str| {
         std::fs::write(place.path("t.dat"), rows).expect("written");
-        let said = fault(&place, &["import", "t.dat", "-o", "t.mcap"], 2);
+        let said = fault(&place, &["take", "import", "t.dat", "-o", "t.mcap"], 2);
         assert!(!place.path("t.mcap").exists(), "half-written: {said}");
         said
     };
@@ -256,12 +251,12 @@ fn bad_tables_are_refused_with_their_line() {
     has(&import("0 1 2 1.01\n"), &["t.dat:1", "1.01", "0 and 1"]);
     has(&import(""), &["no samples"]);
     has(
-        &fault(&place, &["import", "none.dat", "-o", "t.mcap"], 2),
+        &fault(&place, &["take", "import", "none.dat", "-o", "t.mcap"], 2),
         &["none.dat", "check the path"],
     );
     std::fs::write(place.path("t.dat"), "0 1 2 0\n").expect("written");
     has(
-        &fault(&place, &["import", "t.dat", "-o", "no/t.mcap"], 1),
+        &fault(&place, &["take", "import", "t.dat", "-o", "no/t.mcap"], 1),
         &["no/t.mcap", "folder"],
     );
 }
@@ -269,7 +264,7 @@ fn bad_tables_are_refused_with_their_line() {
 #[test]
 fn bad_takes_are_refused_and_damaged_ones_recovered() {
     let place = Place::new();
-    place.done(&["demo", "-o", "demo.mcap"]);
+    place.done(&["demo", "take", "-o", "demo.mcap"]);
     let whole = place.bytes("demo.mcap");
     std::fs::write(place.path("cut.mcap"), &whole[..whole.len() * 2 / 3]).expect("written");
     let said = fault(&place, &["render", "cut.mcap", "-o", "p.png"], 2);
@@ -381,7 +376,7 @@ fn schemas_and_paints_are_listed() {
         &fault(&place, &["schema", "StylusSampel"], 2),
         &["'StylusSample'"],
     );
-    let paints = place.done(&["paints", "--json"]);
+    let paints = place.done(&["colour", "paints", "--json"]);
     let paints: serde_json::Value = serde_json::from_slice(&paints.stdout).expect("JSON");
     assert_eq!(paints["paints"].as_array().map(Vec::len), Some(28));
 }
@@ -429,9 +424,9 @@ fn a_faulty_command_is_told_before_a_rig_is_asked() {
     let place = Place::new();
     let name = "b".repeat(65);
     for args in [
-        &["tune", "--brush", &name, "--stiffness", "2"][..],
+        &["brush", "tune", "--brush", &name, "--stiffness", "2"][..],
         &["load", "--brush", &name, "Bone Black"],
-        &["clean", "--brush", &name],
+        &["brush", "clean", "--brush", &name],
     ] {
         let said = fault(&place, args, 2);
         assert!(!said.contains("no rig"), "{said}");

@@ -1,4 +1,4 @@
-//! `maulstick motion`: takes changed, and an outline filled by example.
+//! `maulstick take`: takes changed, and an outline filled by example.
 
 use maulstick_device::Take;
 use serde_json::Value;
@@ -11,7 +11,7 @@ const LEAF: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="100mm" heig
 
 /// Strokes of a take as `motion info` lists them.
 fn listed(place: &Place, take: &str) -> Vec<Value> {
-    let told = place.done(&["motion", "info", take, "--json"]).stdout;
+    let told = place.done(&["take", "strokes", take, "--json"]).stdout;
     let told: Value = serde_json::from_slice(&told).expect("JSON");
     told["strokes"].as_array().expect("strokes").clone()
 }
@@ -30,7 +30,7 @@ fn a_take_is_cut_joined_placed_mirrored_and_retimed() {
     place.short_demo("hand.mcap", 10.0);
     let all = listed(&place, "hand.mcap");
     assert!(all.len() >= 4, "{all:?}");
-    let motion = |words: &[&str]| place.done(&[&["motion"], words].concat());
+    let motion = |words: &[&str]| place.done(&[&["take"], words].concat());
     motion(&["cut", "hand.mcap", "--strokes", "1-2", "-o", "one.mcap"]);
     let rest = format!("3-{}", all.len());
     motion(&["cut", "hand.mcap", "--strokes", &rest, "-o", "two.mcap"]);
@@ -110,7 +110,7 @@ fn what_a_take_is_painted_with_stays_and_its_strokes_keep_their_loads() {
         take.setup.expect("a setup").loads
     };
     place.done(&[
-        "motion",
+        "take",
         "cut",
         "hand.mcap",
         "--strokes",
@@ -121,7 +121,7 @@ fn what_a_take_is_painted_with_stays_and_its_strokes_keep_their_loads() {
     let [bone, cobalt]: [String; 2] = loads("hand.mcap").try_into().expect("two loads");
     assert_eq!(loads("later.mcap"), [cobalt.clone(), bone.clone()]);
     place.done(&[
-        "motion",
+        "take",
         "cut",
         "hand.mcap",
         "--strokes",
@@ -129,14 +129,7 @@ fn what_a_take_is_painted_with_stays_and_its_strokes_keep_their_loads() {
         "-o",
         "first.mcap",
     ]);
-    place.done(&[
-        "motion",
-        "join",
-        "later.mcap",
-        "first.mcap",
-        "-o",
-        "all.mcap",
-    ]);
+    place.done(&["take", "join", "later.mcap", "first.mcap", "-o", "all.mcap"]);
     assert_eq!(loads("all.mcap"), [cobalt, bone.clone(), bone]);
     let other = [
         "take",
@@ -150,14 +143,7 @@ fn what_a_take_is_painted_with_stays_and_its_strokes_keep_their_loads() {
     place.done(&other);
     let said = fault(
         &place,
-        &[
-            "motion",
-            "join",
-            "later.mcap",
-            "other.mcap",
-            "-o",
-            "no.mcap",
-        ],
+        &["take", "join", "later.mcap", "other.mcap", "-o", "no.mcap"],
         2,
     );
     has(&said, &["different", "maulstick take embed"]);
@@ -171,7 +157,7 @@ fn an_outline_is_filled_by_example_always_alike_by_its_seed() {
     std::fs::write(place.path("leaf.svg"), LEAF).expect("written");
     // Three broad sweeps beside each other, drawn together to hatching.
     place.done(&[
-        "motion",
+        "take",
         "cut",
         "hand.mcap",
         "--strokes",
@@ -180,7 +166,7 @@ fn an_outline_is_filled_by_example_always_alike_by_its_seed() {
         "sweeps.mcap",
     ]);
     place.done(&[
-        "motion",
+        "take",
         "scale",
         "sweeps.mcap",
         "--by",
@@ -189,7 +175,7 @@ fn an_outline_is_filled_by_example_always_alike_by_its_seed() {
         "hatching.mcap",
     ]);
     let fill = [
-        "motion",
+        "take",
         "fill",
         "--example",
         "hatching.mcap",
@@ -265,7 +251,7 @@ fn what_motions_cannot_do_is_said() {
             "save it as plain SVG",
         ),
     ] {
-        has(&fault(&place, &[&["motion"], words].concat(), 2), &[told]);
+        has(&fault(&place, &[&["take"], words].concat(), 2), &[told]);
         assert!(!place.path("a.mcap").exists());
     }
 }

@@ -121,7 +121,7 @@ fn what_is_refused_is_advised_as_steps() {
         script(&place, "day.toml", &steps);
         let said = fault(&place, &render, 2);
         has(&said, &["day.toml:", "help: ", advice]);
-        assert!(!said.contains("`maulstick dry"), "{said}");
+        assert!(!said.contains("`maulstick layer dry"), "{said}");
     }
 }
 
@@ -426,7 +426,7 @@ fn a_ground_may_have_any_reflectance_and_goes_with_the_painting() {
             &[&format!("bad.csv:{line}"), words],
         );
         has(
-            &fault(&place, &["ground", "bad.csv"], 2),
+            &fault(&place, &["canvas", "ground", "bad.csv"], 2),
             &[&format!("bad.csv:{line}"), words],
         );
     }

@@ -131,7 +131,10 @@ fn devices_come_change_and_go_while_the_rig_runs() {
     );
     row(&place, "puck", |row| row["priority"] == 1);
     // By another name, as it is, and with its force as off as it was.
-    has(&said(&["force", "off", "--device", "puck"]), &["force off"]);
+    has(
+        &said(&["device", "force", "off", "--device", "puck"]),
+        &["force off"],
+    );
     has(
         &said(&["device", "rename", "puck", "cup"]),
         &["'puck' is called 'cup' now"],
@@ -142,7 +145,7 @@ fn devices_come_change_and_go_while_the_rig_runs() {
     let listed = devices(&place)["rig"].to_string();
     assert!(!listed.contains("puck"), "{listed}");
     has(
-        &said(&["force", "strength", "100%", "--device", "cup"]),
+        &said(&["device", "force", "strength", "100%", "--device", "cup"]),
         &["cup: force off"],
     );
     // Nothing of what is refused changes anything.

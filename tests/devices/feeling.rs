@@ -131,6 +131,7 @@ fn recorded_models_drive_a_device_by_the_rules_of_its_servo() {
     assert!(hear(&mut samples, felt).is_some(), "{}", launcher.said());
     let (live, _) = strongest(&mut samples, || {});
     place.done(&[
+        "recording",
         "record",
         "-o",
         "s.mcap",
@@ -144,9 +145,20 @@ fn recorded_models_drive_a_device_by_the_rules_of_its_servo() {
     let mut models = listen::<ContactModel>(&bus, &topic, Qos::RealTime);
     let is_free = |model: &ContactModel| matches!(model.law, ForceLaw::None);
     assert!(hear(&mut models, is_free).is_some(), "a law without force");
-    let refused = support::fault(&place, &["replay", "s.mcap", "-t", "haptics/*/model"], 2);
+    let refused = support::fault(
+        &place,
+        &["recording", "replay", "s.mcap", "-t", "haptics/*/model"],
+        2,
+    );
     support::has(&refused, &["--drive"]);
-    let replay = ["replay", "s.mcap", "--drive", "phantom", "--loop"];
+    let replay = [
+        "recording",
+        "replay",
+        "s.mcap",
+        "--drive",
+        "phantom",
+        "--loop",
+    ];
     let mut player = Launcher::start(place.maulstick(&replay));
     let pushes = |model: &ContactModel| !matches!(model.law, ForceLaw::None);
     assert!(hear(&mut models, pushes).is_some(), "{}", player.said());
@@ -322,7 +334,7 @@ fn the_documents_program_plots_force_against_depth() {
     let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Qos::RealTime);
     let felt = hear(&mut samples, |sample| size(sample) > 0.1);
     assert!(felt.is_some(), "nothing is felt: {}", launcher.said());
-    place.done(&["record", "-o", "s.mcap", "--seconds", "2"]);
+    place.done(&["recording", "record", "-o", "s.mcap", "--seconds", "2"]);
     bus.close();
     let [recording, plot] = ["s.mcap", "force.png"].map(|name| place.path(name));
     let words = [&recording, &plot].map(|path| path.to_str().expect("text"));

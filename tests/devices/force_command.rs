@@ -1,4 +1,4 @@
-//! `maulstick force` as its users call it.
+//! `maulstick device force` as its users call it.
 
 #[path = "../support/mod.rs"]
 mod support;
@@ -9,7 +9,7 @@ use support::{Place, fault, has};
 /// Rows of the command: depth, angle, force, stiffness.
 fn rows(place: &Place, arguments: &[&str]) -> Vec<[f64; 4]> {
     let said = place
-        .done(&[&["force", "--json"], arguments].concat())
+        .done(&[&["device", "force", "--json"], arguments].concat())
         .stdout;
     let text = String::from_utf8(said).expect("UTF-8");
     let names = ["depth_m", "angle_rad", "force_n", "stiffness_n_per_m"];
@@ -103,7 +103,8 @@ fn the_other_laws_are_what_they_are_called() {
 #[test]
 fn bad_options_are_refused_in_one_line() {
     let place = Place::new();
-    let refused = |arguments: &[&str]| fault(&place, &[&["force"], arguments].concat(), 2);
+    let refused =
+        |arguments: &[&str]| fault(&place, &[&["device", "force"], arguments].concat(), 2);
     has(&refused(&["--depth-mm", "9..1"]), &["'9..1'", "0..40"]);
     has(&refused(&["--angle-deg", "200"]), &["'200'", "0 to 90"]);
     has(&refused(&["--brush", "rond"]), &["'rond'", "'round'"]);

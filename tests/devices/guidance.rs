@@ -95,10 +95,15 @@ fn a_guided_hand_paints_nearer_to_the_recorded_path_until_force_is_off() {
     let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Qos::RealTime);
     let mut statuses =
         listen::<StylusStatus>(&bus, &topics.stylus_status("phantom"), Qos::Background);
-    let refused = fault(&place, &["replay", "path.mcap", "--guide", "nobody"], 2);
+    let refused = fault(
+        &place,
+        &["recording", "replay", "path.mcap", "--guide", "nobody"],
+        2,
+    );
     has(&refused, &["nobody", "device list"]);
 
     let guide = [
+        "recording",
         "replay",
         "path.mcap",
         "--guide",
@@ -135,10 +140,10 @@ fn a_guided_hand_paints_nearer_to_the_recorded_path_until_force_is_off() {
     assert!(guided_m < 0.85 * free_m, "{guided_m} m, free {free_m} m");
     until(&|line| line["traced"] == 1);
 
-    place.done(&["force", "guidance", "20%", "--device", "phantom"]);
+    place.done(&["device", "force", "guidance", "20%", "--device", "phantom"]);
     let is_weak = |status: &StylusStatus| status.is_guided && status.guidance == 0.2;
     assert!(hear(&mut statuses, is_weak).is_some());
-    place.done(&["force", "off", "--device", "phantom"]);
+    place.done(&["device", "force", "off", "--device", "phantom"]);
     assert!(hear(&mut statuses, |status| !status.is_on).is_some());
     drain(&mut samples);
     let is_free = |sample: &StylusSample| sample.force_n == [0.0; 3];

@@ -58,11 +58,17 @@ fn what_was_done_is_there_after_a_kill_and_can_be_undone() {
     let mut launcher = Launcher::up(&place, &["x.maul"]);
     launcher.wait_says("painting in");
     place.done(&["load", "Pyrrole Red"]);
-    place.done(&["fill", "Yellow Ochre", "--um", "40"]);
-    place.done(&["dry", "--layer", "ground colour"]);
-    place.done(&["fill", "Titanium White=0.5,Bone Black=0.5", "--um", "20"]);
+    place.done(&["canvas", "fill", "Yellow Ochre", "--um", "40"]);
+    place.done(&["layer", "dry", "--layer", "ground colour"]);
+    place.done(&[
+        "canvas",
+        "fill",
+        "Titanium White=0.5,Bone Black=0.5",
+        "--um",
+        "20",
+    ]);
     place.done(&["painting", "versions", "--keep", "first"]);
-    place.done(&["ground", "grey"]);
+    place.done(&["canvas", "ground", "grey"]);
     let books =
         |names: &[&str]| -> Vec<f64> { names.iter().map(|name| account(&place, name)).collect() };
     const ACCOUNTS: [&str; 4] = ["brush", "canvas", "dry", "cleaner"];
@@ -110,18 +116,18 @@ fn a_drying_goes_on_after_a_crash_and_layers_become_wet_again() {
     let mut launcher = Launcher::up(&place, &["x.maul", "--size", "512x512"]);
     launcher.wait_says("painting in");
     let refused = |args: &[&str], words: &[&str]| has(&fault(&place, args, 2), words);
-    refused(&["dry", "--over", "2s"], &["nothing is wet"]);
-    place.done(&["fill", "Yellow Ochre", "--um", "40"]);
+    refused(&["layer", "dry", "--over", "2s"], &["nothing is wet"]);
+    place.done(&["canvas", "fill", "Yellow Ochre", "--um", "40"]);
     let all = account(&place, "canvas");
-    place.done(&["dry", "--region", "0,0,64x128", "--layer", "left"]);
+    place.done(&["layer", "dry", "--region", "0,0,64x128", "--layer", "left"]);
     let half = account(&place, "dry");
     assert!((half / all - 0.5).abs() < 1e-3, "{}", half / all);
     refused(
-        &["dry", "--region", "200,0,9x9"],
+        &["layer", "dry", "--region", "200,0,9x9"],
         &["holds no cell", "128.0x128.0 mm"],
     );
-    place.done(&["dry", "--over", "4s", "--layer", "slow"]);
-    refused(&["dry", "--over", "4s"], &["--stop"]);
+    place.done(&["layer", "dry", "--over", "4s", "--layer", "slow"]);
+    refused(&["layer", "dry", "--over", "4s"], &["--stop"]);
     let (bus, topics) = join(&place);
     let mut status = listen::<PaintStatus>(&bus, &topics.paint_status(), Qos::Background);
     // Thirty ticks a round: some paint has dried by then, and is in the file.
@@ -136,11 +142,14 @@ fn a_drying_goes_on_after_a_crash_and_layers_become_wet_again() {
     let is_dry = || (account(&place, "canvas") == 0.0).then_some(());
     wait_for(PATIENCE, is_dry).expect("it goes on to its end");
     assert_eq!(account(&place, "dry"), all);
-    place.done(&["opacity", "slow", "0.5"]);
-    refused(&["wet"], &["layer 2 (slow) has an opacity", "opacity 2 1"]);
-    refused(&["opacity", "sky", "0.5"], &["'sky'", "2 (slow)"]);
+    place.done(&["layer", "opacity", "slow", "0.5"]);
+    refused(
+        &["layer", "wet"],
+        &["layer 2 (slow) has an opacity", "opacity 2 1"],
+    );
+    refused(&["layer", "opacity", "sky", "0.5"], &["'sky'", "2 (slow)"]);
     place.done(&["undo"]);
-    place.done(&["wet", "--all"]);
+    place.done(&["layer", "wet", "--all"]);
     assert_eq!(
         (account(&place, "canvas"), account(&place, "dry")),
         (all, 0.0)
@@ -148,7 +157,7 @@ fn a_drying_goes_on_after_a_crash_and_layers_become_wet_again() {
     place.done(&["undo"]);
     assert_eq!(account(&place, "dry"), all);
     std::fs::write(place.path("size.csv"), "400,0.2\n700,0.6\n").expect("written");
-    place.done(&["ground", "size.csv"]);
+    place.done(&["canvas", "ground", "size.csv"]);
     bus.close();
     launcher.close(&place);
     let there = info(&place, "x.maul");
@@ -394,7 +403,7 @@ fn a_full_disk_is_told_and_what_was_written_is_safe() {
 fn a_frozen_paint_node_is_replaced() {
     let place = Place::new();
     let mut launcher = Launcher::up(&place, &["x.maul"]);
-    place.done(&["fill", "Yellow Ochre", "--um", "40"]);
+    place.done(&["canvas", "fill", "Yellow Ochre", "--um", "40"]);
     let before = account(&place, "canvas");
     let pid = place.pid("maulstick-paint").expect("a paint node");
     signal(pid, Signal::SIGSTOP);

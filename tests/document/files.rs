@@ -14,8 +14,8 @@ fn no_command_writes_over_a_file_of_another_kind_unless_it_is_told_to() {
     std::fs::write(place.path("strokes.txt"), "0 1 2 .5\n0.1 2 2 .5\n").expect("written");
     let load = "Ultramarine Blue";
     let commands: [&[&str]; 8] = [
-        &["demo", "-o", "list.txt"],
-        &["import", "strokes.txt", "-o", "list.txt"],
+        &["demo", "take", "-o", "list.txt"],
+        &["take", "import", "strokes.txt", "-o", "list.txt"],
         &["take", "recover", "take.mcap", "-o", "list.txt"],
         &[
             "take",
@@ -28,7 +28,7 @@ fn no_command_writes_over_a_file_of_another_kind_unless_it_is_told_to() {
         ],
         &["render", "take.mcap", "-o", "list.txt"],
         &["render", "take.mcap", "-o", "p.png", "--ledger", "list.txt"],
-        &["mix", "--chart", "-o", "list.txt"],
+        &["colour", "mix", "--chart", "-o", "list.txt"],
         &[
             "painting", "export", "x.maul", "-o", "list.txt", "--format", "png",
         ],
@@ -54,7 +54,10 @@ fn a_rig_writes_over_no_file_of_another_kind_unless_its_command_is_told_to() {
     let place = Place::new();
     let mut launcher = Launcher::up(&place, &["x.maul"]);
     launcher.wait_says("painting in");
-    for command in [&["snapshot", "-o"][..], &["export", "--format", "png"]] {
+    for command in [
+        &["snapshot", "-o"][..],
+        &["painting", "export", "--format", "png", "-o"],
+    ] {
         std::fs::write(place.path("list.txt"), "a shopping list").expect("written");
         let command = [command, &["list.txt"]].concat();
         has(&fault(&place, &command, 1), &["list.txt", "--overwrite"]);
@@ -86,14 +89,14 @@ fn a_rig_whose_painting_is_removed_goes_on_beside_and_after_a_crash() {
     let place = Place::new();
     let mut launcher = Launcher::up(&place, &["x.maul"]);
     launcher.wait_says("painting in");
-    place.done(&["fill", "Yellow Ochre", "--um", "40"]);
+    place.done(&["canvas", "fill", "Yellow Ochre", "--um", "40"]);
     for name in ["x.maul", "x.maul-wal"] {
         std::fs::remove_file(place.path(name)).expect("removed");
     }
     launcher.wait_says("goes on in");
     let kept = place.path("x-kept.maul").display().to_string();
     launcher.wait_says(&format!("painting in {kept}"));
-    place.done(&["fill", "Yellow Ochre", "--um", "40"]);
+    place.done(&["canvas", "fill", "Yellow Ochre", "--um", "40"]);
     let before = account(&place, "canvas");
     let pid = place.pid("maulstick-paint").expect("a paint node");
     signal(pid, Signal::SIGKILL);

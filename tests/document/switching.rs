@@ -37,28 +37,30 @@ fn a_rig_goes_from_painting_to_painting_and_nothing_is_lost() {
     let launcher = Launcher::up(&place, &["a.maul", "--size", "256x256"]);
     let pids = || ["maulstick-paint", "maulstick-brush"].map(|name| place.pid(name));
     let begun = pids();
-    place.done(&["fill", "Yellow Ochre", "--um", "40"]);
+    place.done(&["canvas", "fill", "Yellow Ochre", "--um", "40"]);
     let yellow = account(&place, "canvas");
     // What is filled just now is not committed yet.
-    place.done(&["fill", "Bone Black", "--um", "20"]);
-    place.done(&["new", "b.maul", "--cm", "4x3", "--tooth", "cotton"]);
+    place.done(&["canvas", "fill", "Bone Black", "--um", "20"]);
+    place.done(&[
+        "painting", "new", "b.maul", "--cm", "4x3", "--tooth", "cotton",
+    ]);
     assert_eq!(cells(&place), [160, 120]);
     let there = pids();
     assert!(there[0] != begun[0], "another paint node");
     assert_eq!(there[1], begun[1], "the same brush");
     assert_eq!(account(&place, "canvas"), 0.0);
     assert!(wait_for(PATIENCE, || (account(&place, "brush") > 0.0).then_some(())).is_some());
-    place.done(&["fill", "Pyrrole Red", "--um", "40"]);
+    place.done(&["canvas", "fill", "Pyrrole Red", "--um", "40"]);
     let told = status(&place, |told| told.all_committed);
     assert!(told.path.ends_with("/b.maul") && !told.blank, "{told:?}");
     assert!(
         !told.backend.is_empty() && told.committed_ns > 0,
         "{told:?}"
     );
-    place.done(&["open", "a.maul"]);
+    place.done(&["painting", "open", "a.maul"]);
     assert_eq!(cells(&place), [256, 256]);
     assert!(account(&place, "canvas") > yellow, "the black is there too");
-    let said = place.done(&["open", "./a.maul"]).stdout;
+    let said = place.done(&["painting", "open", "./a.maul"]).stdout;
     assert!(String::from_utf8_lossy(&said).contains("open already"));
     place.done(&["undo"]);
     assert_eq!(account(&place, "canvas"), yellow, "its history is there");
@@ -77,26 +79,44 @@ fn a_rig_goes_from_painting_to_painting_and_nothing_is_lost() {
     let paint = pids()[0];
     for (args, words) in [
         (
-            &["open", "none.maul"][..],
+            &["painting", "open", "none.maul"][..],
             &["no such file", "none.maul"][..],
         ),
-        (&["open", "list.maul"], &["no painting", "list.maul"]),
-        (&["open", "newer.maul"], &["format 99", "newer"]),
-        (&["open", "torn.maul"], &["damaged", "recover"]),
-        (&["open", "."], &["no painting"]),
-        (&["new", "b.maul"], &["already", "b.maul"]),
-        (&["new", "list.maul"], &["already", "another name"]),
-        (&["new", "no/c.maul"], &["no/c.maul"]),
-        (&["new", "c.maul", "--cm", "0x10"], &["0×10 cm", "choose"]),
         (
-            &["new", "c.maul", "--cm", "1000000x10"],
+            &["painting", "open", "list.maul"],
+            &["no painting", "list.maul"],
+        ),
+        (&["painting", "open", "newer.maul"], &["format 99", "newer"]),
+        (&["painting", "open", "torn.maul"], &["damaged", "recover"]),
+        (&["painting", "open", "."], &["no painting"]),
+        (&["painting", "new", "b.maul"], &["already", "b.maul"]),
+        (
+            &["painting", "new", "list.maul"],
+            &["already", "another name"],
+        ),
+        (&["painting", "new", "no/c.maul"], &["no/c.maul"]),
+        (
+            &["painting", "new", "c.maul", "--cm", "0x10"],
+            &["0×10 cm", "choose"],
+        ),
+        (
+            &["painting", "new", "c.maul", "--cm", "1000000x10"],
             &["choose", "1638 cm"],
         ),
-        (&["new", "c.maul", "--tooth", "silk"], &["silk"]),
-        (&["new", "c.maul", "--ground", "none.csv"], &["none.csv"]),
-        (&["save-as", "b.maul"], &["already", "--replace"]),
-        (&["save-as", "list.maul", "--replace"], &["no painting"]),
-        (&["save-as", "no/c.maul"], &["folder"]),
+        (&["painting", "new", "c.maul", "--tooth", "silk"], &["silk"]),
+        (
+            &["painting", "new", "c.maul", "--ground", "none.csv"],
+            &["none.csv"],
+        ),
+        (
+            &["painting", "save-as", "b.maul"],
+            &["already", "--replace"],
+        ),
+        (
+            &["painting", "save-as", "list.maul", "--replace"],
+            &["no painting"],
+        ),
+        (&["painting", "save-as", "no/c.maul"], &["folder"]),
     ] {
         has(&fault(&place, args, 2), words);
     }
@@ -107,7 +127,7 @@ fn a_rig_goes_from_painting_to_painting_and_nothing_is_lost() {
     assert_same(&place.bytes("b.maul"), &closed, "the other painting");
     let other = Launcher::up(&place, &["--name", "other", "b.maul"]);
     has(
-        &fault(&place, &["open", "b.maul"], 2),
+        &fault(&place, &["painting", "open", "b.maul"], 2),
         &["open in another program", "b.maul"],
     );
     drop(other);
@@ -128,11 +148,11 @@ fn what_is_in_memory_alone_is_not_forgotten_unasked_and_becomes_a_file() {
     let place = Place::new();
     let launcher = Launcher::up(&place, &["--size", "256x256"]);
     status(&place, |told| told.path.is_empty());
-    place.done(&["fill", "Yellow Ochre", "--um", "40"]);
+    place.done(&["canvas", "fill", "Yellow Ochre", "--um", "40"]);
     place.done(&["painting", "versions", "--keep", "first"]);
-    place.done(&["fill", "Bone Black", "--um", "20"]);
+    place.done(&["canvas", "fill", "Bone Black", "--um", "20"]);
     status(&place, |told| !told.blank);
-    for args in [&["new", "b.maul"][..], &["new"]] {
+    for args in [&["painting", "new", "b.maul"][..], &["painting", "new"]] {
         has(
             &fault(&place, args, 2),
             &["in memory alone", "save-as", "--forget"],
@@ -141,7 +161,7 @@ fn what_is_in_memory_alone_is_not_forgotten_unasked_and_becomes_a_file() {
     assert!(!place.path("b.maul").exists());
     let held = account(&place, "canvas");
     let pid = place.pid("maulstick-paint");
-    place.done(&["save-as", "a.maul"]);
+    place.done(&["painting", "save-as", "a.maul"]);
     assert_eq!(
         place.pid("maulstick-paint"),
         pid,
@@ -157,10 +177,10 @@ fn what_is_in_memory_alone_is_not_forgotten_unasked_and_becomes_a_file() {
     assert!(again.is_some(), "{}", launcher.said());
     assert_eq!(account(&place, "canvas"), held);
     place.done(&["undo"]);
-    place.done(&["new"]);
+    place.done(&["painting", "new"]);
     assert_eq!(account(&place, "canvas"), 0.0);
-    place.done(&["fill", "Pyrrole Red", "--um", "40"]);
-    place.done(&["new", "--cm", "5x5", "--forget"]);
+    place.done(&["canvas", "fill", "Pyrrole Red", "--um", "40"]);
+    place.done(&["painting", "new", "--cm", "5x5", "--forget"]);
     assert_eq!(cells(&place), [200, 200]);
     launcher.close(&place);
     let there = info(&place, "a.maul");
@@ -191,11 +211,14 @@ fn a_take_that_is_played_meanwhile_paints_the_same_in_the_other_file() {
     launcher.wait_says("is up");
     let begun = status(&place, |told| told.steps > 100);
     assert!(begun.take, "{begun:?}");
-    for args in [&["open", "b.maul"][..], &["new", "b.maul"]] {
+    for args in [
+        &["painting", "open", "b.maul"][..],
+        &["painting", "new", "b.maul"],
+    ] {
         has(&fault(&place, args, 2), &["take is being played"]);
     }
-    place.done(&["export", "half.png"]);
-    place.done(&["save-as", "b.maul"]);
+    place.done(&["painting", "export", "-o", "half.png"]);
+    place.done(&["painting", "save-as", "b.maul"]);
     let then = status(&place, |_| true);
     assert!(then.take && then.path.ends_with("/b.maul"), "{then:?}");
     assert!(launcher.wait(PATIENCE).success(), "{}", launcher.said());
@@ -225,9 +248,9 @@ fn a_take_that_is_played_meanwhile_paints_the_same_in_the_other_file() {
 fn exports_of_a_running_rig_are_those_of_its_file() {
     let place = Place::new();
     let launcher = Launcher::up(&place, &["a.maul", "--size", "320x256"]);
-    place.done(&["fill", "Yellow Ochre", "--um", "40"]);
-    place.done(&["dry", "--layer", "first"]);
-    place.done(&["fill", "Bone Black", "--um", "5"]);
+    place.done(&["canvas", "fill", "Yellow Ochre", "--um", "40"]);
+    place.done(&["layer", "dry", "--layer", "first"]);
+    place.done(&["canvas", "fill", "Bone Black", "--um", "5"]);
     let formats: [(&str, &[&str]); 6] = [
         ("x.png", &[]),
         ("deep.png", &["--bits", "16"]),
@@ -237,18 +260,22 @@ fn exports_of_a_running_rig_are_those_of_its_file() {
         ("x.stl", &["--step", "2", "--base-mm", "3"]),
     ];
     for (name, more) in formats {
-        place.done(&[&["export", name], more].concat());
+        place.done(&[&["painting", "export", "-o", name], more].concat());
     }
     has(
-        &fault(&place, &["export", "x.jpg"], 2),
+        &fault(&place, &["painting", "export", "-o", "x.jpg"], 2),
         &["'jpg'", ".png, .exr, .ora, .stl or .glb"],
     );
     has(
-        &fault(&place, &["export", "a.maul", "--format", "png"], 2),
+        &fault(
+            &place,
+            &["painting", "export", "-o", "a.maul", "--format", "png"],
+            2,
+        ),
         &["the painting"],
     );
     has(
-        &fault(&place, &["export", "--stop"], 2),
+        &fault(&place, &["painting", "export", "--stop"], 2),
         &["nothing is being exported"],
     );
     launcher.close(&place);
@@ -265,7 +292,7 @@ fn a_paint_node_that_is_killed_as_it_opens_gives_the_painting_before_back() {
     let launcher = Launcher::up(&place, &["b.maul", "--size", "128x128"]);
     launcher.close(&place);
     let launcher = Launcher::up(&place, &["a.maul", "--size", "256x256"]);
-    place.done(&["fill", "Yellow Ochre", "--um", "40"]);
+    place.done(&["canvas", "fill", "Yellow Ochre", "--um", "40"]);
     let held = account(&place, "canvas");
     let other = place.bytes("b.maul");
     let pid = place.pid("maulstick-paint");
@@ -273,7 +300,7 @@ fn a_paint_node_that_is_killed_as_it_opens_gives_the_painting_before_back() {
     let brush = place.pid("maulstick-brush").expect("a brush node");
     signal(brush, Signal::SIGSTOP);
     let opening = place
-        .maulstick(&["open", "b.maul"])
+        .maulstick(&["painting", "open", "b.maul"])
         .stdout(Stdio::null())
         .stderr(Stdio::piped())
         .spawn()
@@ -293,7 +320,7 @@ fn a_paint_node_that_is_killed_as_it_opens_gives_the_painting_before_back() {
     assert!(status(&place, |_| true).path.ends_with("/a.maul"));
     assert_eq!(other.len(), place.bytes("b.maul").len());
     assert!(!launcher.said().contains("failed"), "{}", launcher.said());
-    place.done(&["open", "b.maul"]);
+    place.done(&["painting", "open", "b.maul"]);
     assert_eq!(cells(&place), [128, 128]);
     launcher.close(&place);
     assert_eq!(info(&place, "a.maul")["ledger"]["quanta_missing"], 0);
@@ -303,15 +330,15 @@ fn a_paint_node_that_is_killed_as_it_opens_gives_the_painting_before_back() {
 fn a_paint_node_that_ends_as_it_saves_has_no_blank_painting_saved() {
     let place = Place::new();
     let launcher = Launcher::up(&place, &["a.maul", "--size", "128x128"]);
-    place.done(&["fill", "Yellow Ochre", "--um", "40"]);
+    place.done(&["canvas", "fill", "Yellow Ochre", "--um", "40"]);
     launcher.close(&place);
     let kept = place.bytes("a.maul");
     let mut launcher = Launcher::up(&place, &["--size", "256x256"]);
-    place.done(&["fill", "Bone Black", "--um", "40"]);
+    place.done(&["canvas", "fill", "Bone Black", "--um", "40"]);
     let pid = place.pid("maulstick-paint").expect("a paint node");
     signal(pid, Signal::SIGSTOP);
     let saving = place
-        .maulstick(&["save-as", "a.maul", "--replace"])
+        .maulstick(&["painting", "save-as", "a.maul", "--replace"])
         .stdout(Stdio::null())
         .stderr(Stdio::piped())
         .spawn()
@@ -324,7 +351,7 @@ fn a_paint_node_that_ends_as_it_saves_has_no_blank_painting_saved() {
     has(&said, &["paint node ended", "a.maul"]);
     assert_eq!(account(&place, "canvas"), 0.0, "another one is begun");
     assert_same(&place.bytes("a.maul"), &kept, "the painting that is there");
-    place.done(&["save-as", "b.maul"]);
+    place.done(&["painting", "save-as", "b.maul"]);
     launcher.close(&place);
     assert_same(&place.bytes("a.maul"), &kept, "the painting that is there");
 }

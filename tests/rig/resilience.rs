@@ -89,7 +89,7 @@ fn a_recording_whose_words_nobody_reads_goes_on_and_ends() {
     let place = Place::new();
     let launcher = Launcher::up(&place, &[]);
     let (unread, write) = full_pipe();
-    let mut command = place.maulstick(&["record", "-o", "s.mcap"]);
+    let mut command = place.maulstick(&["recording", "record", "-o", "s.mcap"]);
     command.stdout(write).stderr(Stdio::null());
     let mut recorder = Ended(command.spawn().expect("started"));
     drop(command);

@@ -324,8 +324,8 @@ fn commands_reach_a_running_rig() {
     let unknown = place.run(&["load", "Cobalt Bleu"]);
     assert_eq!(unknown.status.code(), Some(2));
     place.done(&["undo"]);
-    place.done(&["redo"]);
-    place.done(&["clean"]);
+    place.done(&["painting", "redo"]);
+    place.done(&["brush", "clean"]);
     place.done(&["snapshot", "-o", "p.png", "--ledger", "l.json"]);
     let ledger: serde_json::Value = serde_json::from_slice(&place.bytes("l.json")).expect("JSON");
     assert_eq!(ledger["quanta_missing"], 0);
@@ -456,7 +456,7 @@ fn a_simulated_hand_paints_and_feels_the_canvas() {
         (&["strength", "60%"], true, "force on, 60 %"),
         (&["rearm", "--device", "phantom"], true, "force on, 60 %"),
     ] {
-        let said = place.done(&[&["force"], order].concat()).stdout;
+        let said = place.done(&[&["device", "force"], order].concat()).stdout;
         assert_eq!(String::from_utf8_lossy(&said), format!("phantom: {told}\n"));
         let done = |sample: &StylusSample| match gives {
             true => presses_back(sample),

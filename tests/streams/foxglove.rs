@@ -36,8 +36,9 @@ fn compared(place: &Place, recording: &str, lines: &str) -> BTreeMap<String, usi
 fn a_recording_and_its_export_have_json_channels_of_what_was_sent() {
     let place = Place::new();
     let launcher = playing(&place);
-    place.done(&["record", "-o", "s.mcap", "--seconds", "2"]);
+    place.done(&["recording", "record", "-o", "s.mcap", "--seconds", "2"]);
     place.done(&[
+        "recording",
         "record",
         "-o",
         "none.mcap",
@@ -199,7 +200,7 @@ fn a_viewer_watches_a_rig_by_the_bridge() {
     let port = free.local_addr().expect("an address").port();
     drop(free);
     let number = port.to_string();
-    let bridge = ["bridge", "--port", &number, "--hz", "20"];
+    let bridge = ["topic", "bridge", "--port", &number, "--hz", "20"];
     let mut first = Launcher::start(place.maulstick(&bridge));
     let mut viewer = Viewer::connect(&place, port);
     // Neither other programs of the machine nor pages that the user looks at.
@@ -211,7 +212,9 @@ fn a_viewer_watches_a_rig_by_the_bridge() {
     // The scene is sent rarely: a viewer has the one that is kept.
     viewer.subscribe("scene", 1);
     let (_, mut scene) = viewer.hear(1);
-    let echo = place.done(&["echo", "scene", "--once", "--json"]).stdout;
+    let echo = place
+        .done(&["topic", "echo", "scene", "--once", "--json"])
+        .stdout;
     let echo: Value = serde_json::from_slice(&echo).expect("JSON");
     let fields = scene.as_object_mut().expect("fields");
     let header = fields.remove("header").expect("a header");
@@ -232,7 +235,7 @@ fn a_viewer_watches_a_rig_by_the_bridge() {
         "{times:?}"
     );
     has(&fault(&place, &bridge, 1), &["is taken", "--port"]);
-    let elsewhere = ["bridge", "--port", "0", "--address", "192.0.2.1"];
+    let elsewhere = ["topic", "bridge", "--port", "0", "--address", "192.0.2.1"];
     has(&fault(&place, &elsewhere, 2), &["192.0.2.1", "--address"]);
     first.signal(Signal::SIGINT);
     assert!(first.wait(PATIENCE).success(), "{}", first.said());

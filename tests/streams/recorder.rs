@@ -45,6 +45,7 @@ fn wait_for_painting(place: &Place, file: &str) {
 fn stroke(place: &Place) {
     let topic = "stylus/*/sample";
     place.done(&[
+        "recording",
         "replay",
         "hand.mcap",
         "-t",
@@ -94,7 +95,7 @@ fn each_run_has_a_recording_whose_process_may_die_and_the_rig_paints_on() {
     let second = wait_for(PATIENCE, || recordings(&place).get(1).cloned()).expect("another file");
     wait_for_painting(&place, text(&second));
     stroke(&place);
-    place.done(&["dry"]);
+    place.done(&["layer", "dry"]);
     let painted = snapshot(&place, "painted.png");
     assert!(launcher.is_running());
     launcher.close(&place);
@@ -181,7 +182,7 @@ fn a_take_of_what_a_painting_was_painted_with_is_painted_to_the_same_bytes() {
     stroke(&place);
     place.done(&["undo"]);
     stroke(&place);
-    place.done(&["dry"]);
+    place.done(&["layer", "dry"]);
     let painted = snapshot(&place, "painted.png");
     has(
         &fault(&place, &["take", "from", "sea.maul", "-o", "t.mcap"], 1),
@@ -243,7 +244,7 @@ fn no_byte_of_a_recording_makes_a_command_panic_or_ask_for_the_memory_that_it_st
     let place = Place::new();
     place.short_demo("hand.mcap", 6.0);
     let launcher = Launcher::up(&place, &[&["sea.maul"], CANVAS.as_slice()].concat());
-    let mut recorder = Launcher::start(place.maulstick(&["record", "-o", "s.mcap"]));
+    let mut recorder = Launcher::start(place.maulstick(&["recording", "record", "-o", "s.mcap"]));
     wait_for_painting(&place, "s.mcap");
     place.done(&["load", "Bone Black"]);
     stroke(&place);

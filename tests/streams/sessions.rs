@@ -15,7 +15,7 @@ const CANVAS: [&str; 4] = ["--size", "320x256", "--cell-mm", "0.5"];
 
 /// A recorder that has the painting already.
 fn recorder(place: &Place, file: &str) -> Launcher {
-    let recorder = Launcher::start(place.maulstick(&["record", "-o", file]));
+    let recorder = Launcher::start(place.maulstick(&["recording", "record", "-o", file]));
     wait_for_painting(place, file, &recorder);
     recorder
 }
@@ -38,7 +38,7 @@ fn stroke(place: &Place, device: &str, start: &str) {
     let device = ["--as", device, "--start", start];
     place.done(
         &[
-            &["replay", "hand.mcap", "-t", "stylus/*/sample"],
+            &["recording", "replay", "hand.mcap", "-t", "stylus/*/sample"],
             device.as_slice(),
         ]
         .concat(),
@@ -53,12 +53,12 @@ fn paint(place: &Place) {
     place.done(&["load", "Cadmium Red Light"]);
     stroke("right");
     place.done(&["undo"]);
-    place.done(&["clean"]);
+    place.done(&["brush", "clean"]);
     place.done(&["brush", "take", "flat"]);
     place.done(&["load", "Hansa Yellow Opaque"]);
     stroke("left");
-    place.done(&["light", "--direction=-0.4,0.5,0.8"]);
-    place.done(&["dry"]);
+    place.done(&["canvas", "light", "--direction=-0.4,0.5,0.8"]);
+    place.done(&["layer", "dry"]);
 }
 
 /// The picture of the rig.
@@ -82,7 +82,8 @@ struct Orders {
 fn ordered(place: &Place, name: &str, orders: &Orders) {
     let (rate, pause_s) = (orders.rate, orders.pause_s);
     let options = ["--rate", rate, "--json", "--document", name];
-    let mut command = place.maulstick(&[&["replay", "t.mcap"], options.as_slice()].concat());
+    let mut command =
+        place.maulstick(&[&["recording", "replay", "t.mcap"], options.as_slice()].concat());
     command.stdin(Stdio::piped()).stdout(Stdio::piped());
     let mut child = command.spawn().expect("started");
     let mut input = child.stdin.take().expect("piped");
@@ -124,7 +125,11 @@ fn a_session_is_painted_again_to_the_same_picture() {
     launcher.wait_says("is up");
     let blank = snapshot(&place, "blank.png");
     let mut recorder = recorder(&place, "s.mcap");
-    let taken = fault(&place, &["record", "-o", "s.mcap", "--seconds", "1"], 1);
+    let taken = fault(
+        &place,
+        &["recording", "record", "-o", "s.mcap", "--seconds", "1"],
+        1,
+    );
     has(&taken, &["another program records into it"]);
     paint(&place);
     let painted = snapshot(&place, "painted.png");
@@ -179,7 +184,7 @@ fn a_session_is_painted_again_to_the_same_picture() {
 
     // Another brush is in hand by now.
     place.done(&["brush", "take", "filbert"]);
-    place.done(&["replay", "t.mcap", "--rate", "max"]);
+    place.done(&["recording", "replay", "t.mcap", "--rate", "max"]);
     assert_same(&snapshot(&place, "max.png"), &painted, "as fast as can be");
     let orders = Orders {
         rate: "1",
@@ -190,16 +195,23 @@ fn a_session_is_painted_again_to_the_same_picture() {
     assert_same(&snapshot(&place, "ordered.png"), &painted, "with orders");
 
     let refused = |args: &[&str], words: &[&str]| has(&fault(&place, args, 2), words);
-    let taken = fault(&place, &["replay", "t.mcap", "--document", "r.maul"], 1);
+    let taken = fault(
+        &place,
+        &["recording", "replay", "t.mcap", "--document", "r.maul"],
+        1,
+    );
     has(&taken, &["nothing is written over one"]);
-    refused(&["replay", "t.mcap", "--rate", "0"], &["rate"]);
-    refused(&["replay", "t.mcap", "--start", "1e6"], &["s long"]);
+    refused(&["recording", "replay", "t.mcap", "--rate", "0"], &["rate"]);
     refused(
-        &["replay", "t.mcap", "-t", "none/*"],
+        &["recording", "replay", "t.mcap", "--start", "1e6"],
+        &["s long"],
+    );
+    refused(
+        &["recording", "replay", "t.mcap", "-t", "none/*"],
         &["no topic none/*", "paint/journal"],
     );
     refused(
-        &["replay", "s.mcap", "-t", "haptics/*/model"],
+        &["recording", "replay", "s.mcap", "-t", "haptics/*/model"],
         &["no topic"],
     );
     refused(
@@ -238,7 +250,7 @@ fn a_paint_node_that_dies_begins_another_file_and_each_is_painted_again() {
     wait_for_painting(&place, "s-2.mcap", &recorder);
     place.done(&["load", "Cadmium Red Light"]);
     stroke(&place, "right", "3");
-    place.done(&["dry"]);
+    place.done(&["layer", "dry"]);
     let painted = snapshot(&place, "painted.png");
     recorder.signal(Signal::SIGINT);
     recorder.wait(PATIENCE);
@@ -268,7 +280,7 @@ fn a_painting_in_memory_only_is_recorded_without_it() {
     let place = Place::new();
     let mut launcher = Launcher::up(&place, &CANVAS);
     launcher.wait_says("is up");
-    let mut command = place.maulstick(&["record", "-o", "s.mcap"]);
+    let mut command = place.maulstick(&["recording", "record", "-o", "s.mcap"]);
     let mut recorder = command.stdout(Stdio::piped()).spawn().expect("started");
     let has_journal = || {
         place.done(&["load", "Bone Black"]);
@@ -298,12 +310,16 @@ fn paint_long(place: &Place) {
         stroke(place, ["left", "right"][round % 2], "0");
         if round % 3 == 2 {
             place.done(&["undo"]);
-            place.done(&["redo"]);
+            place.done(&["painting", "redo"]);
         } else {
-            place.done(&["light", &format!("--direction=-0.4,0.{},0.8", round % 9)]);
-            place.done(&["clean"]);
+            place.done(&[
+                "canvas",
+                "light",
+                &format!("--direction=-0.4,0.{},0.8", round % 9),
+            ]);
+            place.done(&["brush", "clean"]);
         }
-        place.done(&["dry"]);
+        place.done(&["layer", "dry"]);
     }
 }
 
@@ -326,7 +342,7 @@ fn five_minutes_with_forty_commands_are_painted_again_ten_times_out_of_ten() {
     place.done(&["render", "t.mcap", "-o", "rendered.png"]);
     assert_same(&place.bytes("rendered.png"), &painted, "rendered");
     for rate in ["0.5", "1", "4", "max"] {
-        place.done(&["replay", "t.mcap", "--rate", rate]);
+        place.done(&["recording", "replay", "t.mcap", "--rate", rate]);
         assert_same(&snapshot(&place, &format!("{rate}.png")), &painted, rate);
     }
     for round in 0..6_u8 {

@@ -101,8 +101,8 @@ fn check_losses(stream: &Value) -> (u64, u64) {
 /// Without files for its sockets a command says so, and panics nowhere.
 fn check_few_files(place: &Place) {
     for command in [
-        &["hz", "--once"][..],
-        &["record", "-o", "few.mcap"],
+        &["topic", "hz", "--once"][..],
+        &["recording", "record", "-o", "few.mcap"],
         &["snapshot", "-o", "few.png"],
     ] {
         let in_place = place.maulstick(&[]);
@@ -129,16 +129,17 @@ fn what_a_sender_leaves_out_is_counted_exactly_and_its_contents_are_shown() {
     beside_a_sender(|place| {
         check_few_files(place);
         let hz = place
-            .done(&["hz", "control/**", "--seconds", "1", "--json"])
+            .done(&["topic", "hz", "control/**", "--seconds", "1", "--json"])
             .stdout;
         check_losses(&stream(&hz));
         let echo = place
-            .done(&["echo", "control/*/sample", "--once", "--json"])
+            .done(&["topic", "echo", "control/*/sample", "--once", "--json"])
             .stdout;
         let echo: Value = serde_json::from_slice(&echo).expect("JSON");
         let number = echo["seq"].as_f64().expect("a number");
         assert!((echo["value"]["push"][0].as_f64().expect("a push") - number * 1e-6).abs() < 1e-12);
         let csv = place.done(&[
+            "topic",
             "echo",
             "control/*/sample",
             "--once",
@@ -153,41 +154,51 @@ fn what_a_sender_leaves_out_is_counted_exactly_and_its_contents_are_shown() {
         assert_eq!(rows[0], "topic,arrived_ns,seq,event_ns,push.0,switches");
         assert!(rows[1].starts_with("control/puck/sample,") && rows[1].ends_with(",0"));
         let latency = place
-            .done(&["latency", "--once", "--seconds", "1.5"])
+            .done(&["topic", "latency", "--once", "--seconds", "1.5"])
             .stdout;
         has(
             &String::from_utf8_lossy(&latency),
             &["on the way p50", "control/puck/sample", "paint/status"],
         );
-        let nodes = String::from_utf8(place.done(&["nodes"]).stdout).expect("text");
+        let nodes = String::from_utf8(place.done(&["node", "list"]).stdout).expect("text");
         has(&nodes, &["brush-main", "paint"]);
         // What was said before one came is heard too.
         has(
             &String::from_utf8_lossy(
                 &place
-                    .done(&["topics", "scene", "--once", "--seconds", "0.5"])
+                    .done(&["topic", "list", "scene", "--once", "--seconds", "0.5"])
                     .stdout,
             ),
             &["Scene"],
         );
         let wrong = fault(
             place,
-            &["echo", "control/*/sample", "--once", "--field", "pusch.0"],
+            &[
+                "topic",
+                "echo",
+                "control/*/sample",
+                "--once",
+                "--field",
+                "pusch.0",
+            ],
             2,
         );
         has(&wrong, &["pusch.0", "push.0"]);
         has(
-            &fault(place, &["hz", "a//b", "--once"], 2),
+            &fault(place, &["topic", "hz", "a//b", "--once"], 2),
             &["malformed", "**"],
         );
-        has(&fault(place, &["hz", "--seconds", "0"], 2), &[".1 to 3600"]);
+        has(
+            &fault(place, &["topic", "hz", "--seconds", "0"], 2),
+            &[".1 to 3600"],
+        );
     });
 }
 
 #[test]
 fn a_graph_shows_who_sends_what_to_whom() {
     beside_a_sender(|place| {
-        let said = place.done(&["graph", "--json"]).stdout;
+        let said = place.done(&["topic", "graph", "--json"]).stdout;
         let said: Value = serde_json::from_slice(&said).expect("JSON");
         let processes = said["processes"].as_array().expect("processes");
         let names: Vec<&str> = processes
@@ -213,17 +224,17 @@ fn a_graph_shows_who_sends_what_to_whom() {
             assert!(is_there(from, topic, to), "{from} {topic} {to}: {said}");
         }
         assert!(!is_there("paint", "paint/consumed", "launcher"));
-        let mermaid = String::from_utf8(place.done(&["graph"]).stdout).expect("text");
+        let mermaid = String::from_utf8(place.done(&["topic", "graph"]).stdout).expect("text");
         has(
             &mermaid,
             &["flowchart LR", "[\"test\"]", "brush/main/state", "scene"],
         );
-        place.done(&["graph", "-o", "rig.svg"]);
+        place.done(&["topic", "graph", "-o", "rig.svg"]);
         assert!(place.bytes("rig.svg").starts_with(b"<svg"));
-        place.done(&["graph", "-o", "rig.mmd"]);
+        place.done(&["topic", "graph", "-o", "rig.mmd"]);
         assert!(place.bytes("rig.mmd").starts_with(b"flowchart LR"));
         std::fs::write(place.path("rig.svg"), "my diary").expect("written");
-        fault(place, &["graph", "-o", "rig.svg"], 1);
+        fault(place, &["topic", "graph", "-o", "rig.svg"], 1);
     });
 }
 
@@ -233,7 +244,7 @@ fn a_recording_holds_what_was_sent_and_is_exported() {
     let sent = beside_a_sender(|place| {
         let path = place.path("s.mcap");
         let path = path.to_str().expect("text");
-        place.done(&["record", "-o", path, "--seconds", "1.5"]);
+        place.done(&["recording", "record", "-o", path, "--seconds", "1.5"]);
         let info = place.done(&["recording", "info", path, "--json"]).stdout;
         let (messages, _) = check_losses(&stream(&info));
         recorded = messages;
@@ -314,7 +325,11 @@ fn a_recording_holds_what_was_sent_and_is_exported() {
             &["control/puck/sample"],
         );
         has(&fault(place, &["recording", "info", csv], 2), &["no MCAP"]);
-        fault(place, &["record", "-o", csv, "--seconds", "1"], 2);
+        fault(
+            place,
+            &["recording", "record", "-o", csv, "--seconds", "1"],
+            2,
+        );
     });
     assert!(recorded <= sent);
 }
@@ -326,6 +341,7 @@ fn further_files_stand_over_none_and_each_has_what_is_sent_rarely() {
         std::fs::write(place.path("s-2.mcap"), "my diary").expect("written");
         let path = path.to_str().expect("text");
         place.done(&[
+            "recording",
             "record",
             "-o",
             path,
@@ -354,7 +370,7 @@ fn a_killed_recorder_leaves_what_it_had_written_and_a_rig_that_ends_ends_it() {
     beside_a_sender(|place| {
         let path = place.path("s.mcap");
         let path = path.to_str().expect("text");
-        let mut recorder = Launcher::start(place.maulstick(&["record", "-o", path]));
+        let mut recorder = Launcher::start(place.maulstick(&["recording", "record", "-o", path]));
         let grown = wait_for(PATIENCE, || {
             let info = place.run(&["recording", "info", path, "--json"]).stdout;
             let said: Value = serde_json::from_slice(&info).ok()?;
@@ -380,8 +396,12 @@ fn a_killed_recorder_leaves_what_it_had_written_and_a_rig_that_ends_ends_it() {
     let mut launcher = Launcher::up(&place, &[]);
     launcher.wait_says("is up");
     let path = place.path("s.mcap");
-    let mut recorder =
-        Launcher::start(place.maulstick(&["record", "-o", path.to_str().expect("text")]));
+    let mut recorder = Launcher::start(place.maulstick(&[
+        "recording",
+        "record",
+        "-o",
+        path.to_str().expect("text"),
+    ]));
     let begun = wait_for(PATIENCE, || {
         path.metadata()
             .is_ok_and(|file| file.len() > 0)
@@ -394,7 +414,7 @@ fn a_killed_recorder_leaves_what_it_had_written_and_a_rig_that_ends_ends_it() {
     let whole: Value = serde_json::from_slice(&whole.stdout).expect("JSON");
     assert_eq!(whole["damage"], Value::Null);
     has(
-        &fault(&place, &["record", "-o", "x.mcap"], 1),
+        &fault(&place, &["recording", "record", "-o", "x.mcap"], 1),
         &["is running"],
     );
 }
@@ -424,8 +444,14 @@ fn python_sends_into_a_rig_hears_it_and_reads_a_recording() {
     launcher.wait_says("is up");
     let path = place.path("s.mcap");
     let path = path.to_str().expect("text");
-    let mut recorder =
-        Launcher::start(place.maulstick(&["record", "-o", path, "--topic", "control/**"]));
+    let mut recorder = Launcher::start(place.maulstick(&[
+        "recording",
+        "record",
+        "-o",
+        path,
+        "--topic",
+        "control/**",
+    ]));
     let begun = wait_for(PATIENCE, || {
         std::fs::metadata(path)
             .is_ok_and(|file| file.len() > 0)

@@ -412,9 +412,9 @@ impl Daemon {
         if self.told.faults.is_empty() {
             let commands = match fault {
                 maulstick_haptics::Fault::UnknownState => {
-                    "`maulstick force on` and `maulstick force rearm`"
+                    "`maulstick device force on` and `maulstick device force rearm`"
                 }
-                _ => "`maulstick force rearm`",
+                _ => "`maulstick device force rearm`",
             };
             let what = format!("{fault}: no force until {commands}");
             tracing::warn!("{}: {what}", self.settings.device.name);

@@ -101,7 +101,7 @@ impl<M: Message, T> Inlet<M, T> {
         if self.refused.say(&source.to_string()) {
             tracing::warn!(
                 "{}: another program (source {source:08x}) would move the hand, and is refused: one sender a device; \
-                 `maulstick replay --drive` asks before it does, and `driven_by` in rig.toml names others",
+                 `maulstick recording replay --drive` asks before it does, and `driven_by` in rig.toml names others",
                 received.key
             );
         }

@@ -20,7 +20,7 @@ use serde_json::json;
 
 use crate::cells::SheetCells;
 use crate::commands::client::{Client, Target};
-use crate::commands::mode::{self, ModeOptions};
+use crate::commands::edit::{self, BrushEdits, EditsOf};
 use crate::commands::say;
 use crate::commands::{print_json, print_text, write_picture};
 use crate::outputs::{UsedFile, check_outputs};
@@ -38,8 +38,9 @@ pub enum BrushCommand {
     Import(ImportOptions),
     /// Take another brush in hand
     Take(TakeOptions),
-    /// Set the mode of a brush: sponge, marker, sampler, vacuum, …
-    Mode(ModeOptions),
+    /// An edit
+    #[command(flatten)]
+    Edit(EditsOf<BrushEdits>),
     /// Bend one spine through a list of poses above the plane z = 0
     ///
     /// SPINE.toml has `lengths_m` and `stiffness_nm_per_rad` (lists from ferrule to tip, 1 to 64
@@ -123,7 +124,7 @@ pub fn run(command: &BrushCommand) -> Result<i32, UserError> {
         BrushCommand::Sheet(options) => draw_sheet(options),
         BrushCommand::Import(options) => import(options),
         BrushCommand::Take(options) => take_up(options),
-        BrushCommand::Mode(options) => mode::mode(options),
+        BrushCommand::Edit(edit) => edit::run(edit),
         BrushCommand::Solve(options) => solve(options),
     }
 }

@@ -1,4 +1,7 @@
-//! Edits as commands of their own: `maulstick load`, `dry`, `undo` …, each parsed into the edit itself.
+//! Edits as commands: `maulstick brush load`, `layer dry`, `painting undo` …, each parsed into the edit itself.
+
+use std::fmt::Debug;
+use std::marker::PhantomData;
 
 use clap::error::ErrorKind;
 use clap::{Args as _, FromArgMatches, Subcommand};
@@ -9,12 +12,56 @@ use crate::commands::client::{Client, Target};
 use crate::commands::say;
 use crate::ground::GroundFile;
 
+/// Edits of the daily commands, which stand beside the groups as well.
+pub const DAILY: [&str; 2] = ["load", "undo"];
+
+/// A list of commands that has edits among them.
+pub trait EditGroup: Clone + Debug {
+    /// True for an edit of the list.
+    fn has(form: &CommandForm) -> bool;
+}
+
+macro_rules! groups {
+    ($($(#[doc = $doc:literal])+ $group:ident, |$form:ident| $has:expr;)*) => { $(
+        $(#[doc = $doc])+
+        #[derive(Clone, Debug)]
+        pub struct $group;
+
+        impl EditGroup for $group {
+            fn has($form: &CommandForm) -> bool {
+                $has
+            }
+        }
+    )* };
+}
+
+groups! {
+    /// `maulstick brush`.
+    BrushEdits, |form| form.group == "brush";
+    /// `maulstick canvas`.
+    CanvasEdits, |form| form.group == "canvas";
+    /// `maulstick layer`.
+    LayerEdits, |form| form.group == "layer";
+    /// `maulstick painting`.
+    PaintingEdits, |form| form.group == "painting";
+    /// `maulstick palette`.
+    PaletteEdits, |form| form.group == "palette";
+    /// Beside the groups.
+    DailyEdits, |form| DAILY.contains(&form.name);
+}
+
+/// The edits of a list.
+fn forms<G: EditGroup>() -> impl Iterator<Item = CommandForm> {
+    commands().into_iter().filter(G::has)
+}
+
 /// An edit of the painting of a running rig.
 #[derive(Clone, Debug)]
-pub struct EditCommand {
+pub struct EditsOf<G> {
     /// The edit.
     pub edit: Edit,
     target: Target,
+    group: PhantomData<G>,
 }
 
 /// Its command, with the help of the edit and the options that say which rig.
@@ -26,9 +73,9 @@ fn command(form: &CommandForm) -> clap::Command {
     both.long_about(long.or(about).unwrap_or_default())
 }
 
-impl Subcommand for EditCommand {
+impl<G: EditGroup> Subcommand for EditsOf<G> {
     fn augment_subcommands(cli: clap::Command) -> clap::Command {
-        cli.subcommands(commands().iter().map(command))
+        cli.subcommands(forms::<G>().map(|form| command(&form)))
     }
 
     fn augment_subcommands_for_update(cli: clap::Command) -> clap::Command {
@@ -36,20 +83,19 @@ impl Subcommand for EditCommand {
     }
 
     fn has_subcommand(name: &str) -> bool {
-        commands().iter().any(|form| form.name == name)
+        forms::<G>().any(|form| form.name == name)
     }
 }
 
-impl FromArgMatches for EditCommand {
+impl<G: EditGroup> FromArgMatches for EditsOf<G> {
     fn from_arg_matches(matches: &clap::ArgMatches) -> Result<Self, clap::Error> {
         let missing = || clap::Error::new(ErrorKind::MissingSubcommand);
         let (name, options) = matches.subcommand().ok_or_else(missing)?;
-        let forms = commands();
-        let form = forms.iter().find(|form| form.name == name);
-        let form = form.ok_or_else(missing)?;
+        let form = forms::<G>().find(|form| form.name == name);
         Ok(Self {
-            edit: (form.read)(options)?,
+            edit: (form.ok_or_else(missing)?.read)(options)?,
             target: Target::from_arg_matches(options)?,
+            group: PhantomData,
         })
     }
 
@@ -63,7 +109,7 @@ impl FromArgMatches for EditCommand {
 ///
 /// # Errors
 /// A [`UserError`] with the refusal of the painting, or where no rig runs.
-pub fn run(command: &EditCommand) -> Result<i32, UserError> {
+pub fn run<G>(command: &EditsOf<G>) -> Result<i32, UserError> {
     send(&command.target, command.edit.clone())
 }
 
@@ -71,7 +117,7 @@ pub fn run(command: &EditCommand) -> Result<i32, UserError> {
 ///
 /// # Errors
 /// As [`run`], and for a file that cannot be read.
-pub(super) fn send(target: &Target, mut edit: Edit) -> Result<i32, UserError> {
+fn send(target: &Target, mut edit: Edit) -> Result<i32, UserError> {
     edit.check_idle()?;
     if let Edit::Ground(ground) = &mut edit {
         read_ground(ground)?;

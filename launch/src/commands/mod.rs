@@ -2,11 +2,11 @@
 
 pub mod bench;
 pub mod brush;
-mod colour;
+pub mod canvas;
+pub mod colour;
+pub mod completions;
 pub mod device;
 pub mod edit;
-pub mod export;
-pub mod mode;
 pub mod motion;
 pub mod painting;
 pub mod replay;
@@ -15,15 +15,15 @@ mod streams;
 mod table;
 mod takes;
 
-pub use colour::{fit, light, matching, mix, paints};
-pub use device::{force, force_order};
+pub use colour::light;
+pub use device::force_order;
 pub use rig::{begin, client, endpoint, open, save_as, schema, snapshot};
 pub(crate) use streams::listener::Listener;
 pub(crate) use streams::recorder::{
     Division, RecorderSettings, Ring, Voice, record as record_files,
 };
-pub use streams::{bridge, echo, graph, measure, nodes, record, recording};
-pub use takes::{demo, import, render, take};
+pub use streams::{nodes, recording, topic};
+pub use takes::{demo, render, take};
 
 use std::io::ErrorKind;
 use std::path::Path;

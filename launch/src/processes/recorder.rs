@@ -28,8 +28,9 @@ pub(super) fn run(options: &RecorderOptions) -> Result<i32, UserError> {
     // A recording gets its index at the end, so the process is asked to stop, not killed.
     let member = options.node.join(RECORDER, Signal::SIGTERM)?;
     let Some(section) = member.config.record.clone() else {
-        return Err(UserError::usage("rig.toml has no section [record]")
-            .help("give it one with a folder, or record with `maulstick record -o FILE`"));
+        return Err(UserError::usage("rig.toml has no section [record]").help(
+            "give it one with a folder, or record with `maulstick recording record -o FILE`",
+        ));
     };
     let folder = &section.folder;
     std::fs::create_dir_all(folder).map_err(|error| UserError::writing(folder, &error))?;

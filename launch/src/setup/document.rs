@@ -155,7 +155,7 @@ pub fn presence(path: &Path, options: &PaintingOptions) -> Result<Presence, User
             Some(option) => Err(UserError::usage(format!("{option} is for a new painting"))
                 .at(path.display().to_string())
                 .help(
-                    "this one has its paint model, size, cells, paints, ground and light; `maulstick light` and `ground` change these",
+                    "this one has its paint model, size, cells, paints, ground and light; `maulstick canvas light` and `canvas ground` change these",
                 )),
             None => Ok(Presence::There),
         },

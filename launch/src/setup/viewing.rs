@@ -8,6 +8,7 @@ use maulstick_optics::{Illuminant, Observer, PaintLibrary, RuleKind, StudioSetti
 use maulstick_rig::UserError;
 use maulstick_rig::config::is_path;
 use maulstick_rig::table_file::{MOST_BYTES, read_table};
+use maulstick_types::scene::SAMPLES;
 
 use crate::performance::refused;
 
@@ -24,11 +25,15 @@ pub struct ViewingOptions {
     #[arg(long, value_name = "RULE", default_value = "fitted")]
     pub rule: RuleName,
     /// Number of wavelengths, 4 to 16
-    #[arg(long, value_name = "N", default_value = "16", value_parser = clap::value_parser!(u8).range(4..=16))]
+    #[arg(long, value_name = "N", default_value = "16", value_parser = samples())]
     pub samples: u8,
     /// Show the cast of the light: no white balance (CAT16)
     #[arg(long)]
     pub no_adapt: bool,
+}
+
+fn samples() -> clap::builder::RangedI64ValueParser<u8> {
+    clap::value_parser!(u8).range(i64::from(*SAMPLES.start())..=i64::from(*SAMPLES.end()))
 }
 
 /// A standard observer by its year.

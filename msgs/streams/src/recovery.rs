@@ -98,7 +98,7 @@ impl DamagedRecording {
             true => Ok(recording),
             false => Err(UserError::usage("this is no MCAP file")
                 .at(path.display().to_string())
-                .help("`maulstick record` writes recordings")),
+                .help("`maulstick recording record` writes recordings")),
         }
     }
 

@@ -104,7 +104,7 @@ impl MotionError {
             Self::Times { .. } => "choose a lower rate, or a longer duration",
             Self::Torn { .. } => "choose a higher rate, or a shorter duration",
             Self::NothingLeft { .. } | Self::NoStroke { .. } => {
-                "`maulstick motion info` lists its strokes and their times"
+                "`maulstick take strokes` lists its strokes and their times"
             }
             Self::NoTouch => {
                 "choose one that paints; of a 6-DOF stylus the length of the head counts: --head-mm"

@@ -305,7 +305,7 @@ impl Sequencer {
         if self.repeats {
             return reply(Outcome::refused(
                 "a recorded session is being painted",
-                "wait for its end, or end `maulstick replay`",
+                "wait for its end, or end `maulstick recording replay`",
             ));
         }
         if self

@@ -2,8 +2,8 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`recorder`] | `maulstick record` |
-//! | [`player`] | `maulstick replay` |
+//! | [`recorder`] | `maulstick recording record` |
+//! | [`player`] | `maulstick recording replay` |
 //! | [`recording_mark`] | the red dot while a recording is written |
 //! | [`transport_bar`] | the bar and the keys while one is played |
 
@@ -92,12 +92,12 @@ impl SessionProcesses {
         for order in orders {
             let begun = match order {
                 SessionOrder::Record if self.recorder.is_none() => {
-                    let command = self.command("record", rig);
+                    let command = self.command(["recording", "record"], rig);
                     Recorder::start(context, command, rig)
                         .map(|recorder| self.recorder = Some(recorder))
                 }
                 SessionOrder::Play { recording, forget } if self.player.is_none() => {
-                    let command = self.command("replay", rig);
+                    let command = self.command(["recording", "replay"], rig);
                     Player::start(context, command, (recording, forget), rig)
                         .map(|player| self.player = Some(player))
                 }
@@ -107,7 +107,7 @@ impl SessionProcesses {
                     scale,
                     turn_deg,
                 } if self.player.is_none() => {
-                    let mut command = self.command("replay", rig);
+                    let mut command = self.command(["recording", "replay"], rig);
                     // Under a name of its own: the stylus that it was recorded of may be in the rig.
                     command.args(["--as", MOTION, "--at", &format!("{x:.4},{y:.4}")]);
                     command.args(["--scale", &format!("{scale:.6}")]);
@@ -148,9 +148,9 @@ impl SessionProcesses {
         }
     }
 
-    fn command(&self, name: &str, rig: &RigState) -> Command {
+    fn command(&self, words: [&str; 2], rig: &RigState) -> Command {
         let mut command = command(&self.program);
-        command.args([name, "--name", &rig.rig]);
+        command.args(words).args(["--name", &rig.rig]);
         command.stdin(Stdio::null());
         command
     }

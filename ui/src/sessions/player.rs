@@ -1,4 +1,4 @@
-//! The player: `maulstick replay`, a process beside the window.
+//! The player: `maulstick recording replay`, a process beside the window.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -42,7 +42,7 @@ pub struct Position {
     pub paused: bool,
 }
 
-/// A line of `maulstick replay --json`.
+/// A line of `maulstick recording replay --json`.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
 enum PlayerLine {

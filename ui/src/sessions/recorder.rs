@@ -1,4 +1,4 @@
-//! The recorder: `maulstick record`, a process beside the window.
+//! The recorder: `maulstick recording record`, a process beside the window.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -94,7 +94,7 @@ impl Recorder {
     }
 }
 
-/// A line of `maulstick record --json` that concerns the painter.
+/// A line of `maulstick recording record --json` that concerns the painter.
 #[derive(Debug, Deserialize)]
 struct RecorderLine {
     /// Why the painting cannot be copied at present.

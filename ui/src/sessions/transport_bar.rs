@@ -1,4 +1,4 @@
-//! The transport bar while a recording is played, and its keys: those of `maulstick replay` in a terminal.
+//! The transport bar while a recording is played, and its keys: those of `maulstick recording replay` in a terminal.
 
 use eframe::egui::{
     Align2, Area, Button, ComboBox, Context, Event, Frame, Id, Key, KeyboardShortcut, Modifiers,

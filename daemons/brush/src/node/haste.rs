@@ -42,13 +42,13 @@ impl BrushNode {
         if self.too_fast() > 0 && !std::mem::replace(&mut self.told_haste.too_fast, true) {
             tracing::warn!(
                 "brush '{name}': its stylus moves faster than {FASTEST_M_S} m/s: the brush begins anew at each such \
-                 sample, and nothing is painted on the way to it; `maulstick nodes` counts them"
+                 sample, and nothing is painted on the way to it; `maulstick node list` counts them"
             );
         }
         if self.backlog.dropped() > 0 && !std::mem::replace(&mut self.told_haste.dropped, true) {
             tracing::warn!(
                 "brush '{name}': samples come faster than they can be painted, and some are dropped; `maulstick \
-                 nodes` counts them"
+                 node list` counts them"
             );
         }
     }

@@ -41,7 +41,7 @@ pub fn salvage(path: &Path) -> Result<Salvage, UserError> {
         let (what, help) = match refusal {
             Refusal::Foreign => (
                 "this is no MCAP file".into(),
-                "`maulstick import` makes takes from tables of strokes",
+                "`maulstick take import` makes takes from tables of strokes",
             ),
             Refusal::Damaged(damage) => (
                 format!("the take is damaged and no sample of it is left: {damage}"),

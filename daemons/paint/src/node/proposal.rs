@@ -49,7 +49,7 @@ impl PaintNode {
         if self.proposal.as_mut().is_some_and(|it| it.note(longer)) {
             self.proposal = None;
             tracing::info!(
-                "painting with {own} falls behind on this machine; `maulstick convert {lighter}` converts this painting \
+                "painting with {own} falls behind on this machine; `maulstick canvas convert {lighter}` converts this painting \
                  to a lighter model, which can be undone"
             );
             let model = lighter.to_owned();

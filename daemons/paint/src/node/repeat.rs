@@ -48,7 +48,7 @@ impl PaintNode {
             }
             SessionCommand::Begin { .. } => Outcome::refused(
                 "another recorded session is being painted",
-                "end that `maulstick replay` first",
+                "end that `maulstick recording replay` first",
             ),
             SessionCommand::Repeat { session, .. } if own != Some(*session) => Outcome::refused(
                 "the painting is not that of this session any more",

@@ -1,4 +1,4 @@
-//! `maulstick fit`: the painter's own paints from measured reflectances.
+//! `maulstick colour fit`: the painter's own paints from measured reflectances.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -16,7 +16,7 @@ use crate::commands::table::table;
 use crate::commands::{print_json, print_text};
 use crate::outputs::{UsedFile, check_outputs};
 
-/// Options of `maulstick fit`.
+/// Options of `maulstick colour fit`.
 #[derive(Args, Clone, Debug)]
 pub struct FitCommand {
     /// Table of samples: a column of shares for each paint, a column of reflectances for each

@@ -1,4 +1,4 @@
-//! `maulstick light`: the lamp over a running rig.
+//! `maulstick canvas light`: the lamp over a running rig.
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -15,7 +15,7 @@ use crate::commands::print_json;
 use crate::commands::say;
 use crate::lamp::changed;
 
-/// Options of `maulstick light`; what is not given stays as it is.
+/// Options of `maulstick canvas light`; what is not given stays as it is.
 #[derive(Args, Clone, Debug)]
 pub struct LightOptions {
     #[command(flatten)]

@@ -1,4 +1,4 @@
-//! `maulstick match`: the mixtures that come nearest to a colour.
+//! `maulstick colour match`: the mixtures that come nearest to a colour.
 
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ use crate::performance::{library_from, refused};
 use crate::swatch::{Terminal, hex};
 use crate::viewing::ViewingOptions;
 
-/// Options of `maulstick match`.
+/// Options of `maulstick colour match`.
 #[derive(Args, Clone, Debug)]
 pub struct MatchOptions {
     /// Colour, sRGB: "#8a5a3c"

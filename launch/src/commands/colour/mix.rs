@@ -1,4 +1,4 @@
-//! `maulstick mix`: the colour of a mixture.
+//! `maulstick colour mix`: the colour of a mixture.
 
 use std::path::{Path, PathBuf};
 
@@ -18,7 +18,7 @@ use crate::performance::{library_from, mixture_of};
 use crate::swatch::{Terminal, hex, in_words, sparkline};
 use crate::viewing::ViewingOptions;
 
-/// Options of `maulstick mix`.
+/// Options of `maulstick colour mix`.
 #[derive(Args, Clone, Debug)]
 pub struct MixOptions {
     /// Mixture, shares by volume, such as "2 Cobalt Blue, 1 Titanium White"; with --compare the two
@@ -54,7 +54,7 @@ pub struct FilmOptions {
     #[arg(long, value_name = "UM", value_parser = thickness, allow_negative_numbers = true)]
     film_um: Option<f64>,
     /// Ground under the film: white, black, or its reading by an instrument, gloss included, 0 to 1, as in
-    /// the column `over` of `maulstick fit`
+    /// the column `over` of `maulstick colour fit`
     #[arg(long, value_name = "R", requires = "film_um", default_value = "white", value_parser = ground, allow_negative_numbers = true)]
     over: f64,
     /// Share of clear medium in the film, by volume; does not change an opaque layer

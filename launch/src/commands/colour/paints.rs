@@ -1,4 +1,4 @@
-//! `maulstick paints`: the paints to choose from.
+//! `maulstick colour paints`: the paints to choose from.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use crate::commands::{print_json, print_text};
 use crate::performance::library_from;
 use crate::swatch::{Terminal, hex};
 
-/// Options of `maulstick paints`.
+/// Options of `maulstick colour paints`.
 #[derive(Args, Clone, Debug)]
 pub struct PaintsOptions {
     /// Paint file instead of the measured paints

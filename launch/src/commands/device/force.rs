@@ -1,4 +1,4 @@
-//! `maulstick force`: the force that a brush gives to the hand, by depth and angle.
+//! `maulstick device force`: the force that a brush gives to the hand, by depth and angle.
 
 use std::path::PathBuf;
 
@@ -49,7 +49,7 @@ impl Model {
     }
 }
 
-/// Options of `maulstick force`.
+/// Options of `maulstick device force`.
 #[derive(Args, Clone, Debug)]
 #[command(args_conflicts_with_subcommands = true)]
 pub struct ForceOptions {

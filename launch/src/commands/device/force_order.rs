@@ -1,4 +1,4 @@
-//! `maulstick force off`, `on`, `strength` and `rearm`: requests to the devices of a running rig.
+//! `maulstick device force off`, `on`, `strength` and `rearm`: requests to the devices of a running rig.
 
 use std::time::{Duration, Instant};
 
@@ -96,7 +96,7 @@ pub fn give(order: &Order) -> Result<i32, UserError> {
         Some(device) => vec![chosen(&known, device, &client)?],
         None => meant(all(&known, &client)?, whose, &order)?,
     };
-    let request = ForceRequest::by(&asker("`maulstick force`"), order);
+    let request = ForceRequest::by(&asker("`maulstick device force`"), order);
     let (mut text, mut silent) = (String::new(), Vec::new());
     for device in devices {
         let topic = client.topics().force(&device);

@@ -33,6 +33,8 @@ pub enum DeviceCommand {
     Use(choose::UseOptions),
     /// Fit a device to the canvas by touching three corners
     Fit(fit::FitOptions),
+    /// Show the force of a brush on the hand, by depth and angle; switch the force of a device
+    Force(force::ForceOptions),
 }
 
 impl DeviceCommand {
@@ -56,5 +58,6 @@ pub fn run(command: &DeviceCommand) -> Result<i32, UserError> {
         DeviceCommand::Rename(options) => rename::run(options),
         DeviceCommand::Use(options) => choose::run(options),
         DeviceCommand::Fit(options) => fit::run(options),
+        DeviceCommand::Force(options) => force::run(options),
     }
 }

@@ -17,7 +17,7 @@ use super::{HeadOptions, TakeFiles, parse_place, refused};
 use crate::commands::write_take;
 use crate::outputs::{UsedFile, check_outputs};
 
-/// Options of `maulstick motion cut`.
+/// Options of `maulstick take cut`.
 #[derive(Args, Clone, Debug)]
 pub struct CutOptions {
     #[command(flatten)]
@@ -36,7 +36,7 @@ pub struct CutOptions {
     strokes: Option<[usize; 2]>,
 }
 
-/// Options of `maulstick motion join`.
+/// Options of `maulstick take join`.
 #[derive(Args, Clone, Debug)]
 pub struct JoinOptions {
     /// Takes, in order, which are not changed
@@ -60,7 +60,7 @@ struct AboutOptions {
     about: Option<[f64; 2]>,
 }
 
-/// Options of `maulstick motion scale`.
+/// Options of `maulstick take scale`.
 #[derive(Args, Clone, Debug)]
 pub struct ScaleOptions {
     #[command(flatten)]
@@ -72,7 +72,7 @@ pub struct ScaleOptions {
     about: AboutOptions,
 }
 
-/// Options of `maulstick motion rotate`.
+/// Options of `maulstick take rotate`.
 #[derive(Args, Clone, Debug)]
 pub struct RotateOptions {
     #[command(flatten)]
@@ -84,7 +84,7 @@ pub struct RotateOptions {
     about: AboutOptions,
 }
 
-/// Options of `maulstick motion move`.
+/// Options of `maulstick take move`.
 #[derive(Args, Clone, Debug)]
 pub struct MoveOptions {
     #[command(flatten)]
@@ -94,7 +94,7 @@ pub struct MoveOptions {
     by: [f64; 2],
 }
 
-/// Options of `maulstick motion retime`.
+/// Options of `maulstick take retime`.
 #[derive(Args, Clone, Debug)]
 pub struct RetimeOptions {
     #[command(flatten)]
@@ -126,7 +126,7 @@ enum MirrorAxis {
     Y,
 }
 
-/// Options of `maulstick motion mirror`.
+/// Options of `maulstick take mirror`.
 #[derive(Args, Clone, Debug)]
 pub struct MirrorOptions {
     #[command(flatten)]

@@ -13,7 +13,7 @@ use super::{HeadOptions, refused};
 use crate::commands::{say, write_take};
 use crate::outputs::{UsedFile, check_outputs};
 
-/// Options of `maulstick motion fill`.
+/// Options of `maulstick take fill`.
 #[derive(Args, Clone, Debug)]
 pub struct FillOptions {
     /// Take that shows how: some strokes beside each other, or dabs

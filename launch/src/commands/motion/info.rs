@@ -14,7 +14,7 @@ use super::recorded::read_motion;
 use crate::commands::table::table;
 use crate::commands::{print_json, print_text, say};
 
-/// Options of `maulstick motion info`.
+/// Options of `maulstick take strokes`.
 #[derive(Args, Clone, Debug)]
 pub struct InfoOptions {
     /// Take, or recording

@@ -1,4 +1,4 @@
-//! `maulstick motion`: takes cut, joined, placed, mirrored, retimed, and laid into outlines by example.
+//! `maulstick take cut`, `join`, …: takes cut, joined, placed, mirrored, retimed, and laid into outlines by example.
 //!
 //! | module | holds |
 //! | --- | --- |
@@ -23,11 +23,11 @@ use maulstick_types::stylus::StylusPose;
 use crate::kit::use_kit;
 use crate::performance::brush_file;
 
-/// Subcommands of `maulstick motion`.
+/// Commands of `maulstick take` that change motions.
 #[derive(Subcommand, Clone, Debug)]
 pub enum MotionCommand {
     /// List the strokes of a take
-    Info(info::InfoOptions),
+    Strokes(info::InfoOptions),
     /// Cut a part out of a take, by times or by strokes
     Cut(edits::CutOptions),
     /// Join takes; the brush is lifted between them
@@ -119,7 +119,7 @@ pub(crate) fn parse_place(text: &str) -> Result<[f64; 2], String> {
 /// A [`UserError`] where a take cannot be read or written, or the motion refuses what is asked.
 pub fn run(command: &MotionCommand) -> Result<i32, UserError> {
     match command {
-        MotionCommand::Info(options) => info::run(options),
+        MotionCommand::Strokes(options) => info::run(options),
         MotionCommand::Cut(options) => edits::cut(options),
         MotionCommand::Join(options) => edits::join(options),
         MotionCommand::Scale(options) => edits::scale(options),

@@ -159,7 +159,7 @@ impl ImportOptions {
 fn advice(likeness: &Likeness) -> &'static str {
     match likeness.mean > FAR {
         true => {
-            "; these paints do not make its colours: --paint NAME takes others, and `maulstick paints` lists them"
+            "; these paints do not make its colours: --paint NAME takes others, and `maulstick colour paints` lists them"
         }
         false => "",
     }

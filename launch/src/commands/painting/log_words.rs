@@ -11,7 +11,7 @@ use maulstick_types::{Mixture, Region, name_hash};
 
 use crate::processes::{MOUSE, PEN, PLAYER};
 
-/// The device that puts motions down (`maulstick replay --as`).
+/// The device that puts motions down (`maulstick recording replay --as`).
 const MOTION: &str = "motion";
 
 /// Names of devices, of which a painting has the hashes alone, and of senders of commands.

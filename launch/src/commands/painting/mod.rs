@@ -1,4 +1,4 @@
-//! `maulstick painting`: paintings in files.
+//! `maulstick painting`: paintings in files and in a running rig.
 
 mod compare;
 mod convert;
@@ -14,16 +14,29 @@ mod timelapse;
 mod versions;
 mod wall_time;
 
-pub(super) use export::formats;
 pub(super) use timelapse::no_record;
 
 use clap::Subcommand;
 use indicatif::{ProgressBar, ProgressStyle};
 use maulstick_rig::UserError;
 
+use crate::commands::edit::{self, EditsOf, PaintingEdits};
+use crate::commands::{begin, open, save_as, snapshot};
+
 /// Subcommands of `maulstick painting`.
 #[derive(Subcommand, Clone, Debug)]
 pub enum PaintingCommand {
+    /// Begin a new painting in the running rig
+    New(begin::NewOptions),
+    /// Open another painting in the running rig
+    Open(open::OpenOptions),
+    /// Save the painting under another name and go on there
+    SaveAs(save_as::SaveAsOptions),
+    /// Write the picture as a file
+    Snapshot(snapshot::SnapshotOptions),
+    /// An edit
+    #[command(flatten)]
+    Edit(EditsOf<PaintingEdits>),
     /// Show what a painting holds
     Info(info::InfoOptions),
     /// Export a painting: PNG, OpenEXR, OpenRaster, height map, STL, glTF
@@ -50,6 +63,11 @@ pub enum PaintingCommand {
 /// A [`UserError`] where the painting cannot be read, or something cannot be written.
 pub fn run(command: &PaintingCommand) -> Result<i32, UserError> {
     match command {
+        PaintingCommand::New(options) => begin::run(options),
+        PaintingCommand::Open(options) => open::run(options),
+        PaintingCommand::SaveAs(options) => save_as::run(options),
+        PaintingCommand::Snapshot(options) => snapshot::snapshot(options),
+        PaintingCommand::Edit(edit) => edit::run(edit),
         PaintingCommand::Info(options) => info::run(options),
         PaintingCommand::Export(options) => export::run(options),
         PaintingCommand::Import(options) => import::run(options),

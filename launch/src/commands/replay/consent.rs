@@ -36,7 +36,7 @@ impl Consent {
         let topic = member.topics.force(device);
         let Origin { source, epoch } = sender;
         let order = ForceOrder::Drive { source, epoch };
-        let request = ForceRequest::by(&asker("`maulstick replay`"), order);
+        let request = ForceRequest::by(&asker("`maulstick recording replay`"), order);
         let (bus, class) = (&*member.bus, Qos::Control);
         let given = ask::<_, ForceReply>(bus, &topic, class, sender, &request, ANSWER);
         given.map_err(|error| {

@@ -157,7 +157,7 @@ fn hand(options: &ReplayOptions, recording: &Recording) -> Result<u16, UserError
     match hands.as_slice() {
         [(channel, _)] => Ok(*channel),
         [] => Err(wrong("it has no samples of a hand")
-            .help("record a hand that paints: `maulstick record -o hand.mcap`")),
+            .help("record a hand that paints: `maulstick recording record -o hand.mcap`")),
         [(_, one), ..] => Err(wrong("it has the samples of several hands, and one guides")
             .help(format!("choose one: --topic {one}"))),
     }

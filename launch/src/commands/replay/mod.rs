@@ -1,4 +1,4 @@
-//! `maulstick replay`: a recording into a running rig.
+//! `maulstick recording replay`: a recording into a running rig.
 //!
 //! | module | holds |
 //! | --- | --- |
@@ -42,7 +42,7 @@ use crate::commands::client::Target;
 use crate::commands::print_json_line;
 use crate::commands::takes::session_file::{PAINTING, SessionFile};
 
-/// Options of `maulstick replay`.
+/// Options of `maulstick recording replay`.
 #[derive(Args, Clone, Debug)]
 pub struct ReplayOptions {
     /// Recording, or take

@@ -1,4 +1,4 @@
-//! `maulstick new`: a new painting in a running rig.
+//! `maulstick painting new`: a new painting in a running rig.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,7 @@ use crate::commands::client::{Client, Target};
 use crate::commands::open::{LONGEST, whole};
 use crate::commands::say;
 
-/// Options of `maulstick new`.
+/// Options of `maulstick painting new`.
 #[derive(Args, Clone, Debug)]
 pub struct NewOptions {
     /// New file for the painting [default: a sketch; in memory only in a rig without a window]

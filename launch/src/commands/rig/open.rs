@@ -1,4 +1,4 @@
-//! `maulstick open`: another painting in a running rig.
+//! `maulstick painting open`: another painting in a running rig.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -14,7 +14,7 @@ use crate::commands::say;
 /// Longest wait for a painting to be open: its last journal records may have to be done again.
 pub(crate) const LONGEST: Duration = Duration::from_secs(3600);
 
-/// Options of `maulstick open`.
+/// Options of `maulstick painting open`.
 #[derive(Args, Clone, Debug)]
 pub struct OpenOptions {
     /// Painting

@@ -1,4 +1,4 @@
-//! `maulstick save-as`: the painting of a running rig in another file.
+//! `maulstick painting save-as`: the painting of a running rig in another file.
 
 use std::path::PathBuf;
 
@@ -10,7 +10,7 @@ use crate::commands::client::{Client, Target};
 use crate::commands::open::{LONGEST, whole};
 use crate::commands::say;
 
-/// Options of `maulstick save-as`.
+/// Options of `maulstick painting save-as`.
 #[derive(Args, Clone, Debug)]
 pub struct SaveAsOptions {
     /// New file of the painting, with its history and versions

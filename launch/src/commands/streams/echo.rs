@@ -1,4 +1,4 @@
-//! `maulstick echo`: the messages of a topic, as they come.
+//! `maulstick topic echo`: the messages of a topic, as they come.
 
 use std::time::{Duration, Instant};
 
@@ -13,7 +13,7 @@ use super::message_lines::{MessageLine, head};
 use crate::commands::client::Target;
 use crate::commands::print_text;
 
-/// Options of `maulstick echo`.
+/// Options of `maulstick topic echo`.
 #[derive(Args, Clone, Debug)]
 pub struct EchoOptions {
     /// Topic, such as stylus/*/sample: * stands for one part, ** for any number
@@ -41,7 +41,7 @@ const PATIENCE: Duration = Duration::from_secs(10);
 ///
 /// # Errors
 /// A [`UserError`] for a rig that does not run, or a field that a message does not have.
-pub fn run(options: &EchoOptions) -> Result<i32, UserError> {
+pub(super) fn run(options: &EchoOptions) -> Result<i32, UserError> {
     let mut listener = Listener::open(&options.target, &options.topic)?;
     let mut printer = Printer::new(options);
     let give_up = options.once.then(|| Instant::now() + PATIENCE);
@@ -51,7 +51,7 @@ pub fn run(options: &EchoOptions) -> Result<i32, UserError> {
             if give_up.is_some_and(|at| Instant::now() >= at) {
                 let what = format!("nothing came on {} within 10 s", options.topic);
                 return Err(UserError::failure(what)
-                    .help("`maulstick topics` lists what the rig sends now"));
+                    .help("`maulstick topic list` lists what the rig sends now"));
             }
             if !listener.has_rig() {
                 break;

@@ -1,4 +1,4 @@
-//! `maulstick topics`, `hz` and `latency`: what streams carry, measured for some seconds.
+//! `maulstick topic list`, `hz` and `latency`: what streams carry, measured for some seconds.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ use crate::commands::client::Target;
 use crate::commands::table::table;
 use crate::commands::{print_json, print_text, say};
 
-/// Options of `maulstick topics`, `hz` and `latency`.
+/// Options of `maulstick topic list`, `hz` and `latency`.
 #[derive(Args, Clone, Debug)]
 pub struct MeasureOptions {
     /// Topic, such as stylus/*/sample: * stands for one part, ** for any number
@@ -36,7 +36,7 @@ pub struct MeasureOptions {
 
 /// What is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Measure {
+pub(super) enum Measure {
     /// Which topics there are.
     Topics,
     /// How often messages come, and how many are missing.
@@ -49,7 +49,7 @@ pub enum Measure {
 ///
 /// # Errors
 /// A [`UserError`] for a rig that does not run, or a time that is none.
-pub fn run(options: &MeasureOptions, measure: Measure) -> Result<i32, UserError> {
+pub(super) fn run(options: &MeasureOptions, measure: Measure) -> Result<i32, UserError> {
     let time = duration(options.seconds)?;
     let mut listener = Listener::open(&options.target, &options.topic)?;
     loop {
@@ -148,7 +148,7 @@ fn ms<const N: usize>(times: &Distribution, shares: [f64; N]) -> [String; N] {
 fn shown(traffic: &Traffic, measure: Measure) -> String {
     let streams: Vec<Row<'_>> = traffic.streams().collect();
     if streams.is_empty() {
-        return "nothing came: `maulstick nodes` lists who is there\n".into();
+        return "nothing came: `maulstick node list` lists who is there\n".into();
     }
     match measure {
         Measure::Topics => {

@@ -7,20 +7,22 @@
 //! | [`graph`] | the processes of a rig, and what they send each other, as a picture |
 //! | [`recorder`], [`record`] | recordings, made and kept within bounds |
 //! | [`recording`], [`foxglove_export`] | recordings, looked at and written for Foxglove |
+//! | [`topic`] | the commands of live streams as a group |
 //! | [`bridge`] | live streams for Foxglove |
 //! | [`message_lines`] | messages as rows of a table and as lines of JSON |
 
-pub mod bridge;
-pub mod echo;
+mod bridge;
+mod echo;
 mod foxglove_export;
-pub mod graph;
+mod graph;
 pub(crate) mod listener;
-pub mod measure;
+mod measure;
 mod message_lines;
 pub mod nodes;
-pub mod record;
+mod record;
 pub(crate) mod recorder;
 pub mod recording;
+pub mod topic;
 
 use std::path::Path;
 

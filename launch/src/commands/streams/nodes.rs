@@ -1,4 +1,4 @@
-//! `maulstick nodes`: the processes of a running rig, and what they have done.
+//! `maulstick node list`: the processes of a running rig, and what they have done.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
@@ -15,7 +15,7 @@ use crate::commands::client::Target;
 use crate::commands::table::table;
 use crate::commands::{print_json, print_text};
 
-/// Options of `maulstick nodes`.
+/// Options of `maulstick node list`.
 #[derive(Args, Clone, Debug)]
 pub struct NodesOptions {
     /// Print JSON

@@ -1,4 +1,4 @@
-//! `maulstick record`: the streams of a running rig into a file, by a process of its own that no node waits for.
+//! `maulstick recording record`: the streams of a running rig into a file, by a process of its own that no node waits for.
 
 use std::fs::{File, TryLockError};
 use std::io::{Error, ErrorKind};
@@ -16,7 +16,7 @@ use crate::commands::client::Target;
 use crate::commands::open::LONGEST;
 use crate::outputs::{UsedFile, check_outputs};
 
-/// Options of `maulstick record`.
+/// Options of `maulstick recording record`.
 #[derive(Args, Clone, Debug)]
 pub struct RecordOptions {
     /// Recording to write
@@ -54,7 +54,7 @@ pub struct RecordOptions {
 ///
 /// # Errors
 /// A [`UserError`] where no rig runs, or the file cannot be written: what was written until then can be read.
-pub fn run(options: &RecordOptions) -> Result<i32, UserError> {
+pub(super) fn run(options: &RecordOptions) -> Result<i32, UserError> {
     print_beside();
     let bounded = |name: &str, seconds: Option<f64>| match seconds {
         Some(s) if !(0.1..=1e7).contains(&s) => {

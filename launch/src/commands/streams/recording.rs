@@ -1,4 +1,4 @@
-//! `maulstick recording`: what a recording holds, and its messages for other programs.
+//! `maulstick recording`: recordings made and replayed; what one holds, and its messages for other programs.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write as _;
@@ -17,6 +17,8 @@ use serde_json::json;
 
 use super::foxglove_export;
 use super::message_lines::{MessageLine, head};
+use super::record::{self, RecordOptions};
+use crate::commands::replay::{self, ReplayOptions};
 use crate::commands::table::table;
 use crate::commands::{print_json, print_text, say};
 use crate::outputs::{UsedFile, check_outputs};
@@ -24,6 +26,10 @@ use crate::outputs::{UsedFile, check_outputs};
 /// Subcommands of `maulstick recording`.
 #[derive(Subcommand, Clone, Debug)]
 pub enum RecordingCommand {
+    /// Record what a rig sends
+    Record(RecordOptions),
+    /// Play a recording into a running rig
+    Replay(ReplayOptions),
     /// Show what a recording holds
     Info {
         /// Recording
@@ -34,6 +40,14 @@ pub enum RecordingCommand {
     },
     /// Write messages as a table, as JSON, or for Foxglove
     Export(ExportOptions),
+}
+
+impl RecordingCommand {
+    /// True for one that ends its own work at a signal.
+    #[must_use]
+    pub fn handles_signals(&self) -> bool {
+        matches!(self, Self::Record(_) | Self::Replay(_))
+    }
 }
 
 /// Options of `maulstick recording export`.
@@ -78,6 +92,8 @@ enum Form {
 /// A [`UserError`] for a file that cannot be read or written, a topic that it does not hold.
 pub fn run(command: &RecordingCommand) -> Result<i32, UserError> {
     match command {
+        RecordingCommand::Record(options) => record::run(options),
+        RecordingCommand::Replay(options) => replay::run(options),
         RecordingCommand::Info { recording, json } => info(recording, *json),
         RecordingCommand::Export(options) => export(options),
     }

@@ -1,9 +1,9 @@
-//! `maulstick demo`: a performance from a seed, a sheet of what paint can do, and paintings.
+//! `maulstick demo`: a performance from a seed, a sheet of what paint can do, paintings, the force of a fluid.
 
 use std::path::PathBuf;
 
-use clap::Args;
 use clap::builder::PossibleValuesParser;
+use clap::{Args, Subcommand};
 use indicatif::ProgressBar;
 use maulstick_device::demo::{Subject, performance};
 use maulstick_painting::models::{model_called, model_names};
@@ -20,94 +20,50 @@ use crate::performance::{library, refused};
 use crate::sheet::Board;
 use crate::sheet::effects::effects;
 
-use super::fluid_force;
+use super::fluid_force::{self, FluidForceOptions};
 
-/// Options of `maulstick demo`.
+/// Commands of `maulstick demo`.
+#[derive(Clone, Debug, Subcommand)]
+pub enum DemoCommand {
+    /// Make a take: a flower, or the strokes of a sheet of marks
+    Take(TakeOptions),
+    /// Paint one of the bundled paintings: still-life, flower, landscape
+    Painting(PaintingOptions),
+    /// Paint a sheet of the effects of the paint model, with captions
+    ///
+    /// Transfer both ways, loading, drying, blending, glazing, impasto, scumbling.
+    Effects(EffectsOptions),
+    /// Sweep a square through a fluid along an arc and write the force on it
+    ///
+    /// Raw and filtered for the hand, at several resolutions (Baxter 2004, fig. 8.8).
+    FluidForce(FluidForceOptions),
+}
+
+/// Options of `maulstick demo take`.
 #[derive(Args, Clone, Debug)]
-pub struct DemoOptions {
-    /// Take to write; with --painting the picture, a PNG [default: NAME.png]; with --fluid-force its table, CSV
-    #[arg(short, long, value_name = "FILE", required_unless_present_any = ["sheet", "painting"])]
-    output: Option<PathBuf>,
+pub struct TakeOptions {
+    /// Take to write
+    #[arg(short, long, value_name = "TAKE")]
+    output: PathBuf,
     /// Make strokes of a sheet of marks instead of the flower
     #[arg(long)]
     marks: bool,
-    /// Paint a sheet of the effects of the paint model, with captions: transfer both ways, loading,
-    /// drying, blending, glazing, impasto, scumbling
-    #[arg(long, value_name = "PNG")]
-    sheet: Option<PathBuf>,
-    /// Paint one of the bundled paintings: still-life, flower, landscape
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["sheet", "marks", "seed"])]
-    painting: Option<String>,
-    /// Sweep a square through a fluid along an arc and write the force on it, raw and filtered for the hand, at
-    /// several resolutions (Baxter 2004, fig. 8.8)
-    #[arg(long, requires = "output", conflicts_with_all = ["sheet", "marks", "seed", "painting"])]
-    fluid_force: bool,
-    /// Cells a side of the fluid's grids [default: 32,64,128]
-    #[arg(
-        long,
-        value_name = "CELLS",
-        value_delimiter = ',',
-        requires = "fluid_force",
-        value_parser = clap::value_parser!(u16).range(16..=512)
-    )]
-    grid: Vec<u16>,
-    /// Filter of the force before the hand
-    #[arg(long, value_enum, default_value_t, requires = "fluid_force")]
-    filter: fluid_force::Filter,
-    /// Draw the force on the square
-    #[arg(long, value_name = "PNG", requires = "fluid_force")]
-    plot: Option<PathBuf>,
-    #[command(flatten)]
-    cells: SheetCells,
-    /// Paint model of a sheet or a painting [default: impasto]
-    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(model_names()))]
-    model: Option<String>,
-    /// Seed of the performance [default: 1]
-    #[arg(long)]
-    seed: Option<u64>,
+    /// Seed of the performance
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
 }
 
-impl DemoOptions {
-    /// Refuses options that would do nothing.
-    fn check_idle(&self) -> Result<(), UserError> {
-        for (option, given, help) in [
-            (
-                "--marks",
-                self.marks,
-                "these marks are a take: -o TAKE writes it",
-            ),
-            (
-                "--seed",
-                self.seed.is_some(),
-                "it is for a performance: -o TAKE writes one; the sheet is always the same",
-            ),
-        ] {
-            if given && self.output.is_none() {
-                let what = format!("{option} does nothing beside --sheet alone");
-                return Err(UserError::usage(what).help(help));
-            }
-        }
-        for (option, given, help) in [
-            (
-                "--cell-mm",
-                self.cells.cell_mm.is_some(),
-                "a take has no cells; `maulstick render --cell-mm` has",
-            ),
-            (
-                "--model",
-                self.model.is_some(),
-                "a take has no paint; `maulstick render --model` has",
-            ),
-        ] {
-            if given && self.sheet.is_none() {
-                let what = format!("{option} does nothing without --sheet PNG or --painting NAME");
-                return Err(UserError::usage(what).help(help));
-            }
-        }
-        Ok(())
-    }
+/// What is painted on, and with what.
+#[derive(Args, Clone, Debug)]
+struct BoardOptions {
+    #[command(flatten)]
+    cells: SheetCells,
+    /// Paint model [default: impasto]
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(model_names()))]
+    model: Option<String>,
+}
 
-    /// What is painted on.
+impl BoardOptions {
     fn board(&self) -> Result<Board, UserError> {
         let board = Board::impasto(self.cells.side_mm());
         let Some(model) = &self.model else {
@@ -118,56 +74,76 @@ impl DemoOptions {
     }
 }
 
-/// Writes the performance and the sheet.
+/// Options of `maulstick demo painting`.
+#[derive(Args, Clone, Debug)]
+pub struct PaintingOptions {
+    /// Name of the painting
+    #[arg(value_name = "NAME")]
+    painting: String,
+    /// Picture to write, a PNG [default: NAME.png]
+    #[arg(short, long, value_name = "PNG")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    board: BoardOptions,
+}
+
+/// Options of `maulstick demo effects`.
+#[derive(Args, Clone, Debug)]
+pub struct EffectsOptions {
+    /// Picture to write, a PNG
+    #[arg(short, long, value_name = "PNG")]
+    output: PathBuf,
+    #[command(flatten)]
+    board: BoardOptions,
+}
+
+/// Writes the demo.
 ///
 /// # Errors
-/// A [`UserError`] where either cannot be written.
-pub fn run(options: &DemoOptions) -> Result<i32, UserError> {
-    if let Some(name) = &options.painting {
-        return run_painting(name, options);
+/// A [`UserError`] where it cannot be written.
+pub fn run(command: &DemoCommand) -> Result<i32, UserError> {
+    match command {
+        DemoCommand::Take(options) => make_take(options),
+        DemoCommand::Painting(options) => paint_painting(options),
+        DemoCommand::Effects(options) => paint_effects(options),
+        DemoCommand::FluidForce(options) => fluid_force::run(options),
     }
-    options.check_idle()?;
-    if let (true, Some(output)) = (options.fluid_force, &options.output) {
-        return fluid_force::run(
-            &options.grid,
-            options.filter,
-            output,
-            options.plot.as_deref(),
-        );
-    }
-    let take = UsedFile::written("the take", options.output.as_ref(), Kind::Take);
-    let sheet = UsedFile::written("the sheet", options.sheet.as_ref(), Kind::Png);
-    let outputs: Vec<_> = take.into_iter().chain(sheet).collect();
-    check_outputs(&outputs, &[])?;
-    if let Some(output) = &options.output {
-        let subject = match options.marks {
-            true => Subject::Marks,
-            false => Subject::Flower,
-        };
-        write_take(&performance(subject, options.seed.unwrap_or(1)), output)?;
-    }
-    if let Some(path) = &options.sheet {
-        let bar = ProgressBar::new(1);
-        let picture = effects(&library()?, options.board()?, |done, of| {
-            bar.set_length(of as u64);
-            bar.set_position(done as u64);
-        })?;
-        bar.finish_and_clear();
-        write_picture(&picture, path)?;
-        say!("{}", path.display());
-    }
+}
+
+fn make_take(options: &TakeOptions) -> Result<i32, UserError> {
+    let path = &options.output;
+    check_outputs(&[UsedFile::new("the take", path).of(Kind::Take)], &[])?;
+    let subject = if options.marks {
+        Subject::Marks
+    } else {
+        Subject::Flower
+    };
+    write_take(&performance(subject, options.seed), path)?;
     Ok(0)
 }
 
-/// Writes one of the paintings.
-fn run_painting(name: &str, options: &DemoOptions) -> Result<i32, UserError> {
-    let library = library()?;
+fn paint_effects(options: &EffectsOptions) -> Result<i32, UserError> {
+    let path = &options.output;
+    check_outputs(&[UsedFile::new("the sheet", path).of(Kind::Png)], &[])?;
+    let bar = ProgressBar::new(1);
+    let picture = effects(&library()?, options.board.board()?, |done, of| {
+        bar.set_length(of as u64);
+        bar.set_position(done as u64);
+    })?;
+    bar.finish_and_clear();
+    write_picture(&picture, path)?;
+    say!("{}", path.display());
+    Ok(0)
+}
+
+fn paint_painting(options: &PaintingOptions) -> Result<i32, UserError> {
+    let (library, name) = (library()?, &*options.painting);
     script(name, &library)?;
     let named = PathBuf::from(format!("{name}.png"));
     let path = options.output.as_ref().unwrap_or(&named);
     check_outputs(&[UsedFile::new("the picture", path).of(Kind::Png)], &[])?;
     let bar = progress_bar(0).with_message("painting");
-    let mut offline = paint(name, options.board()?, library, bar)?;
+    let mut offline = paint(name, options.board.board()?, library, bar)?;
     write_picture(&picture(offline.painting_mut(), CANVAS), path)?;
     say!("{}", path.display());
     Ok(0)

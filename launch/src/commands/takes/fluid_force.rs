@@ -1,8 +1,8 @@
-//! `maulstick demo --fluid-force`: the force on a square that is swept through a fluid (Baxter 2004, § 8.9.2).
+//! `maulstick demo fluid-force`: the force on a square that is swept through a fluid (Baxter 2004, § 8.9.2).
 
 use std::fmt::Write as _;
 use std::io::Write as _;
-use std::path::Path;
+use std::path::PathBuf;
 
 use indicatif::ProgressBar;
 use maulstick_fluid_force::Boundary;
@@ -25,12 +25,35 @@ const HEAD: &str = "grid,boundary,t_s,x_m,y_m,angle_rad,f_drag_n_m,f_perp_n_m,to
 
 /// Filter of the force before the hand.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Filter {
+enum Filter {
     /// Bartlett-Hanning over one period of the solver
     #[default]
     Period,
     /// The dissertation's eleven taps, a millisecond apart
     Dissertation,
+}
+
+/// Options of `maulstick demo fluid-force`.
+#[derive(clap::Args, Clone, Debug)]
+pub struct FluidForceOptions {
+    /// Table to write
+    #[arg(short, long, value_name = "CSV")]
+    output: PathBuf,
+    /// Cells a side of the fluid's grids
+    #[arg(
+        long,
+        value_name = "CELLS",
+        value_delimiter = ',',
+        default_values_t = GRIDS,
+        value_parser = clap::value_parser!(u16).range(16..=512)
+    )]
+    grid: Vec<u16>,
+    /// Filter of the force before the hand
+    #[arg(long, value_enum, default_value_t)]
+    filter: Filter,
+    /// Draw the force on the square
+    #[arg(long, value_name = "PNG")]
+    plot: Option<PathBuf>,
 }
 
 /// A sweep on one grid.
@@ -44,16 +67,14 @@ struct Sweep {
 ///
 /// # Errors
 /// A [`UserError`] where a file cannot be written.
-pub(super) fn run(
-    grids: &[u16],
-    filter: Filter,
-    output: &Path,
-    picture: Option<&Path>,
-) -> Result<i32, UserError> {
-    let grids = match grids {
-        [] => &GRIDS[..],
-        some => some,
-    };
+pub(super) fn run(options: &FluidForceOptions) -> Result<i32, UserError> {
+    let FluidForceOptions {
+        output,
+        grid: grids,
+        filter,
+        plot: picture,
+    } = options;
+    let (filter, picture) = (*filter, picture.as_ref());
     let forces = UsedFile::new("the table", output).of(Kind::Forces);
     let drawn = UsedFile::written("the plot", picture, Kind::Png);
     let outputs: Vec<_> = std::iter::once(forces).chain(drawn).collect();

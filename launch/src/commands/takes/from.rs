@@ -25,7 +25,7 @@ use crate::performance::refused;
 /// Options of `maulstick take from`.
 #[derive(Args, Clone, Debug)]
 pub struct FromOptions {
-    /// Recording of a session, as `maulstick record` writes it, or a painting
+    /// Recording of a session, as `maulstick recording record` writes it, or a painting
     #[arg(value_name = "RECORDING|PAINTING")]
     recording: PathBuf,
     /// Take to write
@@ -164,7 +164,7 @@ impl Source {
         session.map(Self::Session).ok_or_else(|| {
             UserError::usage("the recording has no journal of a painting")
                 .at(path.display().to_string())
-                .help("record all topics: `maulstick record -o session.mcap`")
+                .help("record all topics: `maulstick recording record -o session.mcap`")
         })
     }
 

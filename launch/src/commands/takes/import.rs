@@ -1,4 +1,4 @@
-//! `maulstick import`: a table of strokes as a take.
+//! `maulstick take import`: a table of strokes as a take.
 
 use std::path::PathBuf;
 
@@ -10,7 +10,7 @@ use maulstick_rig::files::Kind;
 use crate::commands::write_take;
 use crate::outputs::{UsedFile, check_outputs};
 
-/// Options of `maulstick import`.
+/// Options of `maulstick take import`.
 #[derive(Args, Clone, Debug)]
 pub struct ImportOptions {
     /// Table: t (s), x, y, pressure (0 to 1) and optionally tilt_x, tilt_y, twist (degrees), stroke
@@ -34,7 +34,7 @@ pub struct ImportOptions {
 ///
 /// # Errors
 /// A [`UserError`] with the table's line, or where the take cannot be written.
-pub fn run(options: &ImportOptions) -> Result<i32, UserError> {
+pub(super) fn run(options: &ImportOptions) -> Result<i32, UserError> {
     if !(options.unit_mm > 0.0 && options.unit_mm.is_finite()) {
         return Err(
             UserError::usage(format!("--unit-mm {}", options.unit_mm)).help("choose above 0")

@@ -3,7 +3,7 @@
 pub mod demo;
 mod fluid_force;
 pub(crate) mod from;
-pub mod import;
+mod import;
 mod painting_record;
 pub mod render;
 mod render_session;

@@ -103,7 +103,7 @@ impl RenderOptions {
         let painting = &self.painting;
         if self.until.is_some() {
             return Err(UserError::usage("--until is for a recorded session")
-                .help("cut a take with `maulstick motion cut`"));
+                .help("cut a take with `maulstick take cut`"));
         }
         if let (Some(_), Some(load)) = (&self.script, painting.kit.load.first()) {
             return Err(UserError::usage("--load does nothing beside --script")
@@ -130,7 +130,7 @@ fn tell_haste(too_fast: u64) {
     if too_fast > 0 {
         eprintln!(
             "samples faster than {FASTEST_M_S} m/s: {too_fast}; the brush began anew at each, and nothing is painted on \
-             the way to it; `maulstick motion retime` makes a take slower"
+             the way to it; `maulstick take retime` makes a take slower"
         );
     }
 }

@@ -1,4 +1,4 @@
-//! `maulstick take`: contents of a take, its setup, and the intact part of a damaged one.
+//! `maulstick take`: takes made, painted, looked at, changed, and the intact part of a damaged one.
 
 use std::collections::BTreeMap;
 use std::io::Error;
@@ -17,8 +17,11 @@ use mcap::McapError;
 use serde_json::json;
 
 use super::from::{self, FromOptions};
+use super::import::{self, ImportOptions};
+use super::render::{self, RenderOptions};
 use super::session_file::{Event, PAINTING, SessionFile};
 use crate::cells::picture_settings;
+use crate::commands::motion::{self, MotionCommand};
 use crate::commands::{print_json, say, write_take};
 use crate::document::wrong;
 use crate::kit::{kit_of, use_kit};
@@ -33,6 +36,10 @@ const WHOLE: &str = "nothing was damaged";
 /// Subcommands of `maulstick take`.
 #[derive(Subcommand, Clone, Debug)]
 pub enum TakeCommand {
+    /// Paint a take without a rig
+    Render(RenderOptions),
+    /// Make a take from a table of strokes
+    Import(ImportOptions),
     /// Show what a take holds
     Info {
         /// Take
@@ -57,6 +64,9 @@ pub enum TakeCommand {
         #[arg(short, long, value_name = "TAKE")]
         output: PathBuf,
     },
+    /// A change of its motions
+    #[command(flatten)]
+    Motion(MotionCommand),
 }
 
 /// Options of `maulstick take embed`.
@@ -160,6 +170,9 @@ fn session_info(mut session: SessionFile, as_json: bool) -> Result<i32, UserErro
 /// A [`UserError`] where the take cannot be read or written.
 pub fn run(command: &TakeCommand) -> Result<i32, UserError> {
     match command {
+        TakeCommand::Render(options) => render::run(options),
+        TakeCommand::Import(options) => import::run(options),
+        TakeCommand::Motion(command) => motion::run(command),
         TakeCommand::Embed(options) => embed(options),
         TakeCommand::From(options) => from::run(options),
         TakeCommand::Info { take, json } => {

@@ -124,7 +124,7 @@ impl Recording {
         if read_at(&file, length, 0, MAGIC.len() as u64).map_err(reading)? != MAGIC {
             return Err(UserError::usage("this is no MCAP file")
                 .at(path.display().to_string())
-                .help("`maulstick record` writes recordings"));
+                .help("`maulstick recording record` writes recordings"));
         }
         Ok(Self {
             path: path.to_owned(),

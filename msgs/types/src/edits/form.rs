@@ -49,13 +49,13 @@ impl StepForm {
     }
 }
 
-/// Form of an edit as a command of its own.
+/// Form of an edit as a command of a group.
 #[cfg(feature = "cli")]
 #[derive(Clone, Copy, Debug)]
 pub struct CommandForm {
     /// Name of the command.
     pub name: &'static str,
-    /// Heading under which the list of commands has it.
+    /// Name of the group of commands that it belongs to.
     pub group: &'static str,
     /// Adds its options.
     pub augment: fn(clap::Command) -> clap::Command,

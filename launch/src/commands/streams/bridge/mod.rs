@@ -1,4 +1,4 @@
-//! `maulstick bridge`: the streams of a running rig for Foxglove, by a process of its own that no node waits for.
+//! `maulstick topic bridge`: the streams of a running rig for Foxglove, by a process of its own that no node waits for.
 //!
 //! | module | holds |
 //! | --- | --- |
@@ -25,7 +25,7 @@ use super::listener::Listener;
 use crate::commands::client::Target;
 use crate::commands::say;
 
-/// Options of `maulstick bridge`.
+/// Options of `maulstick topic bridge`.
 #[derive(Args, Clone, Debug)]
 pub struct BridgeOptions {
     /// Topics to show, such as stylus/**: * stands for one part, ** for any number
@@ -60,7 +60,7 @@ const LOOK: Duration = Duration::from_secs(1);
 ///
 /// # Errors
 /// A [`UserError`] where no rig runs, or the port is taken.
-pub fn run(options: &BridgeOptions) -> Result<i32, UserError> {
+pub(super) fn run(options: &BridgeOptions) -> Result<i32, UserError> {
     let BridgeOptions { address, port, .. } = *options;
     print_beside();
     let mut listener = Listener::open(&options.target, &options.topic)?;

@@ -1,4 +1,4 @@
-//! `maulstick graph`: the processes of a running rig and what they send each other, as a picture.
+//! `maulstick topic graph`: the processes of a running rig and what they send each other, as a picture.
 //!
 //! | module | holds |
 //! | --- | --- |
@@ -24,7 +24,7 @@ use crate::commands::client::Target;
 use crate::commands::{print_json, print_text};
 use crate::outputs::{UsedFile, check_outputs};
 
-/// Options of `maulstick graph`.
+/// Options of `maulstick topic graph`.
 #[derive(Args, Clone, Debug)]
 pub struct GraphOptions {
     /// Form of the picture [default: as the FILE ends, .svg or .mmd; mermaid without one]
@@ -88,7 +88,7 @@ impl GraphOptions {
 ///
 /// # Errors
 /// A [`UserError`] for a rig that does not run, a time that is out of range, or a file that cannot be written.
-pub fn run(options: &GraphOptions) -> Result<i32, UserError> {
+pub(super) fn run(options: &GraphOptions) -> Result<i32, UserError> {
     let time = duration(options.seconds)?;
     let form = options.form()?;
     let mut listener = Listener::open(&options.target, "**")?;

@@ -17,10 +17,10 @@ wire_struct! {
 
 impl Form for Clean {
     const STEPS: &'static [StepForm] = &[StepForm::switch("clean", &[], "{ clean = true }")];
-    const ARGUMENTS: Option<&'static str> = Some("clean");
+    const ARGUMENTS: Option<&'static str> = Some("brush|clean");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("clean", "Brush"));
+        Some(crate::edits::CommandForm::of::<Self>("clean", "brush"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

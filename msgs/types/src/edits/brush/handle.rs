@@ -59,6 +59,9 @@ impl Form for Handle {
         "{ mode = \"marker\", flow = 4, most_um = 60 }",
     )];
     const ARGUMENTS: Option<&'static str> = Some("brush|mode|marker|--flow|4|--most-um|60");
+    #[cfg(feature = "cli")]
+    const COMMAND: Option<crate::edits::CommandForm> =
+        Some(crate::edits::CommandForm::of::<Self>("mode", "brush"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

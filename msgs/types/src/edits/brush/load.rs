@@ -32,10 +32,10 @@ impl Form for Load {
         "{ load = \"Ultramarine Blue=0.6,Titanium White=0.4\", beside = \"Bone Black\" }",
     )];
     const ARGUMENTS: Option<&'static str> =
-        Some("load|Ultramarine Blue=0.6,Titanium White=0.4|--beside|Bone Black");
+        Some("brush|load|Ultramarine Blue=0.6,Titanium White=0.4|--beside|Bone Black");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("load", "Brush"));
+        Some(crate::edits::CommandForm::of::<Self>("load", "brush"));
 
     fn example() -> Result<Self, ValueError> {
         let part = |paint: &str, share: f64| crate::mixture::Part {

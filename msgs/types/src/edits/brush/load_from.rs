@@ -48,10 +48,10 @@ impl Form for LoadFrom {
         &["surface", "thinner"],
         "{ load_from = [120, 45], thinner = 0.5 }",
     )];
-    const ARGUMENTS: Option<&'static str> = Some("load-from|120|45|--thinner|0.5");
+    const ARGUMENTS: Option<&'static str> = Some("brush|load-from|120|45|--thinner|0.5");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("load-from", "Brush"));
+        Some(crate::edits::CommandForm::of::<Self>("load-from", "brush"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

@@ -45,10 +45,10 @@ impl TryFrom<&Tuning> for Tune {
 
 impl Form for Tune {
     const STEPS: &'static [StepForm] = &[];
-    const ARGUMENTS: Option<&'static str> = Some("tune|--stiffness|1.5|--wetness|0.5");
+    const ARGUMENTS: Option<&'static str> = Some("brush|tune|--stiffness|1.5|--wetness|0.5");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("tune", "Brush"));
+        Some(crate::edits::CommandForm::of::<Self>("tune", "brush"));
 
     fn example() -> Result<Self, ValueError> {
         let tuning = Tuning {

@@ -18,10 +18,10 @@ wire_struct! {
 
 impl Form for Redo {
     const STEPS: &'static [StepForm] = &[];
-    const ARGUMENTS: Option<&'static str> = Some("redo|--brush|main");
+    const ARGUMENTS: Option<&'static str> = Some("painting|redo|--brush|main");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("redo", "Paint"));
+        Some(crate::edits::CommandForm::of::<Self>("redo", "painting"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

@@ -18,10 +18,10 @@ wire_struct! {
 
 impl Form for Undo {
     const STEPS: &'static [StepForm] = &[StepForm::new("undo", &[], "{ undo = 1 }")];
-    const ARGUMENTS: Option<&'static str> = Some("undo");
+    const ARGUMENTS: Option<&'static str> = Some("painting|undo");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("undo", "Paint"));
+        Some(crate::edits::CommandForm::of::<Self>("undo", "painting"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self { brush: None })

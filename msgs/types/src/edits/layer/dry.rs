@@ -54,7 +54,7 @@ impl Form for Dry {
         "{ dry = 0.5, layer = \"sky\", region = \"10,20,60x40\" }, { dry = 1.0, over = \"90s\" }",
     )];
     const ARGUMENTS: Option<&'static str> =
-        Some("dry|--share|0.5|--layer|sky|--region|10,20,60x40");
+        Some("layer|dry|--share|0.5|--layer|sky|--region|10,20,60x40");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> = Some(cli::COMMAND);
 
@@ -97,7 +97,7 @@ mod cli {
 
     pub(super) const COMMAND: CommandForm = CommandForm {
         name: "dry",
-        group: "Layers",
+        group: "layer",
         augment: <DryOrStop as clap::Args>::augment_args,
         read: |matches| {
             let DryOrStop { dry, stop } = clap::FromArgMatches::from_arg_matches(matches)?;

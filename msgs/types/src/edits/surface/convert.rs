@@ -27,10 +27,10 @@ impl Form for Convert {
         &["surface"],
         "{ model = \"dab\" }, { model = \"impasto\", surface = 1 }",
     )];
-    const ARGUMENTS: Option<&'static str> = Some("convert|dab");
+    const ARGUMENTS: Option<&'static str> = Some("canvas|convert|dab");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("convert", "Canvas"));
+        Some(crate::edits::CommandForm::of::<Self>("convert", "canvas"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

@@ -59,11 +59,11 @@ impl Form for Fill {
         ),
     ];
     const ARGUMENTS: Option<&'static str> =
-        Some("fill|Yellow Ochre=0.3,Titanium White=0.7|--um|40");
+        Some("canvas|fill|Yellow Ochre=0.3,Titanium White=0.7|--um|40");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> = Some(crate::edits::CommandForm::of::<
         cli::FillOptions,
-    >("fill", "Paint"));
+    >("fill", "canvas"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

@@ -73,10 +73,10 @@ impl Ground {
 
 impl Form for Ground {
     const STEPS: &'static [StepForm] = &[StepForm::new("ground", &[], "{ ground = \"grey\" }")];
-    const ARGUMENTS: Option<&'static str> = Some("ground|grey");
+    const ARGUMENTS: Option<&'static str> = Some("canvas|ground|grey");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("ground", "Canvas"));
+        Some(crate::edits::CommandForm::of::<Self>("ground", "canvas"));
 
     fn example() -> Result<Self, ValueError> {
         Self::named(CANVAS, "grey")

@@ -51,10 +51,10 @@ fn palette() -> u32 {
 
 impl Form for Piles {
     const STEPS: &'static [StepForm] = &[StepForm::new("piles", &[], "{ piles = \"last\" }")];
-    const ARGUMENTS: Option<&'static str> = Some("piles|last");
+    const ARGUMENTS: Option<&'static str> = Some("palette|piles|last");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("piles", "Brush"));
+        Some(crate::edits::CommandForm::of::<Self>("piles", "palette"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

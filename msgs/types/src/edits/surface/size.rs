@@ -22,10 +22,10 @@ wire_struct! {
 
 impl Form for Size {
     const STEPS: &'static [StepForm] = &[StepForm::new("stain_um", &[], "{ stain_um = 3 }")];
-    const ARGUMENTS: Option<&'static str> = Some("size|3");
+    const ARGUMENTS: Option<&'static str> = Some("canvas|size|3");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("size", "Canvas"));
+        Some(crate::edits::CommandForm::of::<Self>("size", "canvas"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

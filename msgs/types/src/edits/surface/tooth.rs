@@ -32,10 +32,10 @@ impl Form for Tooth {
         &["seed", "width_mm", "depth_um"],
         "{ tooth = \"linen\", seed = 2 }, { tooth = \"weave.png\", width_mm = 60, depth_um = 80 }",
     )];
-    const ARGUMENTS: Option<&'static str> = Some("tooth|linen|--seed|2");
+    const ARGUMENTS: Option<&'static str> = Some("canvas|tooth|linen|--seed|2");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("tooth", "Canvas"));
+        Some(crate::edits::CommandForm::of::<Self>("tooth", "canvas"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {
