@@ -20,7 +20,7 @@ use overlay_bench::{Bench, ctrl, press, until, window};
 /// A program that records until it is interrupted, and notes the orders that it gets while it plays.
 const PROGRAM: &str = r#"#!/bin/sh
 for file; do :; done
-case "$1 $file" in
+case "$2 $file" in
 *full*) printf 'error: no room\n  --> /x\n help: free some space\n' >&2; exit 1;;
 *bare*) echo '{"recording": "/x"}'; echo '{"lacks_painting": "it is in no file"}'
  echo '{"recording": "/x-2", "broke_off": true}';;

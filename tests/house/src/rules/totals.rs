@@ -17,6 +17,9 @@ const WORDS: [(&str, &str, usize); 4] = [
     ("all documents", ".md", 30_000),
 ];
 
+/// The document that the program writes.
+const GENERATED: &str = "docs/commands.md";
+
 /// Sizes above their goals. A size is given in hundredths of its goal, so that a few lines more are no breach.
 pub(super) fn totals(tree: &Tree, found: &mut Breaches) {
     let mut add = |name: &str, size: usize, goal: usize, unit: &str| {
@@ -43,7 +46,8 @@ fn lines(tree: &Tree, folder: &str) -> usize {
 }
 
 fn words(tree: &Tree, end: &str) -> usize {
-    let is_document = |path: &str| path.ends_with(end) && !below(path, "tests");
+    let is_document =
+        |path: &str| path.ends_with(end) && !below(path, "tests") && path != GENERATED;
     let documents = tree.texts.iter().filter(|(path, _)| is_document(path));
     documents
         .map(|(_, text)| text.split_whitespace().count())
