@@ -37,7 +37,7 @@ const WHOLE: &str = "nothing was damaged";
 #[derive(Subcommand, Clone, Debug)]
 pub enum TakeCommand {
     /// Paint a take without a rig
-    Render(RenderOptions),
+    Render(Box<RenderOptions>),
     /// Make a take from a table of strokes
     Import(ImportOptions),
     /// Show what a take holds
