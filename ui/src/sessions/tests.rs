@@ -239,7 +239,7 @@ fn orders_are_lines_to_the_player_whose_lines_say_where_it_is() {
     let orders = read("mcap.orders");
     assert_eq!(orders, "seek 12.500\nskip -5\nstep\nrate max\npause\nend\n");
     let args = format!(
-        "replay --name default --json --forget {}\n",
+        "recording replay --name default --json --forget {}\n",
         recording.display()
     );
     assert_eq!(read("mcap.args"), args);
