@@ -9,7 +9,7 @@ use super::support::{COARSE, Place, assert_same, fault, has};
 const LEAF: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 100 100">
 <path d="M20 50 C 35 25 65 25 80 50 C 65 75 35 75 20 50 Z"/></svg>"#;
 
-/// Strokes of a take as `motion info` lists them.
+/// Strokes of a take as `take strokes` lists them.
 fn listed(place: &Place, take: &str) -> Vec<Value> {
     let told = place.done(&["take", "strokes", take, "--json"]).stdout;
     let told: Value = serde_json::from_slice(&told).expect("JSON");

@@ -177,7 +177,7 @@ fn order(dice: &mut Pcg64Mcg) -> Vec<Fault> {
 }
 
 #[test]
-#[ignore = "takes ten minutes"]
+#[ignore = "takes four minutes: `./test --long`"]
 fn sixty_faults_lose_nothing_and_the_rig_paints_again() {
     let place = Place::new();
     let launcher = Launcher::up(&place, &["p.maul", "--cell-mm", "0.5"]);

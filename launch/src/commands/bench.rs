@@ -14,7 +14,7 @@ pub struct BenchOptions {
     /// What to measure: brush, bus, document, frames, haptics, idle, latency, looks, optics, paint, pen,
     /// recording, render, view, window [default: everything]
     area: Option<String>,
-    /// Paint model to measure in `paint` [default: impasto]
+    /// Paint model to measure in `paint` and `render` [default: impasto]
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(model_names()))]
     model: Option<String>,
     /// Where `paint` computes its steps [default: cpu]

@@ -1,4 +1,13 @@
-//! The subcommands, one file each.
+//! The commands, in folders by what they work on; [`crate::cli`] groups them.
+//!
+//! | module | commands |
+//! | --- | --- |
+//! | [`edit`] | edits, wherever they are grouped: `brush load`, `layer dry`, `painting undo` |
+//! | [`brush`], `canvas`, `colour`, [`device`], [`bench`], `completions` | those of these names, besides edits; `canvas light` lies in `colour` |
+//! | [`painting`], `rig` | paintings in files; `new`, `open`, `save-as`, `snapshot` of a running rig, `endpoint`, `schema` |
+//! | `takes`, [`motion`] | takes that are made, imported, painted, and `demo`; takes that are cut, joined, placed, filled |
+//! | `streams`, [`replay`] | `topic`, `node list`, `recording` |
+//! | `table` | tables as text, for all of them |
 
 pub mod bench;
 pub mod brush;

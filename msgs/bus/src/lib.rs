@@ -24,7 +24,7 @@
 //! keeps the newest five seconds at 1 kHz (8 MB at most) and answers for gaps. A receiver delivers in order; at most 64
 //! messages are unconsumed at a time. A sender without progress for 50 ms repeats its newest message, because a lost
 //! last message leaves no gap. A live gap is given up after a second, counted and reported: a painter does not wait.
-//! The stream of a played take is asked for until it is whole. Streams of `replay --topic` count as live, and nobody
+//! The stream of a played take is asked for until it is whole. Streams of `recording replay --topic` count as live, and nobody
 //! answers for their gaps.
 //!
 //! # Two senders under one name

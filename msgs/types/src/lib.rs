@@ -31,10 +31,10 @@
 //! | `stylus/<device>/sample` | `StylusSample` | device → brush, window |
 //! | `stylus/<device>/info`, `/status`, `/take` | `StylusInfo` (cached), `StylusStatus`, `TakeStatus` | device → all |
 //! | `control/<device>/sample` | `ControlSample` | 6-DOF mouse → all |
-//! | `haptics/<device>/model` | `ContactModel` | brush, by consent `replay --drive` → device |
-//! | `haptics/<device>/guide` | `GuideModel` | `replay --guide` → device |
-//! | `haptics/<device>/fluid` | `FluidForce` | brush, `replay --drive` → device |
-//! | `haptics/<device>/force` (query) | `ForceRequest` → `ForceReply` | window, command line, `replay` → device |
+//! | `haptics/<device>/model` | `ContactModel` | brush, by consent `recording replay --drive` → device |
+//! | `haptics/<device>/guide` | `GuideModel` | `recording replay --guide` → device |
+//! | `haptics/<device>/fluid` | `FluidForce` | brush, `recording replay --drive` → device |
+//! | `haptics/<device>/force` (query) | `ForceRequest` → `ForceReply` | window, command line, `recording replay` → device |
 //! | `brush/<brush>/def` | `BrushDef` (cached) | brush → paint, window |
 //! | `brush/<brush>/state` | `BrushState` | brush → paint, window |
 //! | `brush/<brush>/look` | `BrushLook` (cached) | paint → window |

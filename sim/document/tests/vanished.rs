@@ -207,7 +207,12 @@ fn a_painting_that_was_cut_short_and_gets_no_file_beside_it_goes_on_where_it_is_
         "{said}"
     );
     assert!(!easel.document.is_saved());
+    // Over another painting only if that was asked for.
+    Easel::begin(&settings(&to)).close();
     let moving = easel.document.relocate(&to, Relocate::Copy, false);
+    let refused = easel.document.wait_for_relocation(&moving);
+    assert!(matches!(refused, Err(DocumentError::Taken)), "{refused:?}");
+    let moving = easel.document.relocate(&to, Relocate::Copy, true);
     let refused = easel.document.wait_for_relocation(&moving);
     assert!(
         matches!(refused, Err(DocumentError::Incomplete(_))),

@@ -46,7 +46,7 @@
 //! # Notes
 //!
 //! - A session is a recording with the painting as it was, so journal and brush states give the accepted records, which
-//!   any sequencer accepts again to the same bytes: `render` in a copy, `replay` in a rig.
+//!   any sequencer accepts again to the same bytes: `render` in a copy, `recording replay` in a rig.
 //! - Offline the brush runs on a thread ahead of the paint, and gives the bytes of a rig.
 
 pub mod autosave;

@@ -180,18 +180,12 @@ impl Offline {
     pub fn end_take(&mut self) -> Result<(), EditError> {
         let (player, samples) = (self.player, self.samples);
         let (model, mut painter) = self.halves();
-        let solves = model.finish();
-        let Some(event_ns) = solves.last().map(|last| last.event_ns) else {
-            return Ok(());
-        };
-        let state = BrushState {
-            device: player.source,
-            device_epoch: player.epoch,
-            device_seq: samples.saturating_sub(1),
-            solves,
-        };
-        let mut messages = messages(state).into_iter();
-        messages.try_for_each(|(flags, state)| painter.paint(event_ns, flags, &state))
+        let state = model.finish_take(player, samples.saturating_sub(1));
+        let mut messages = state.map_or_else(Vec::new, messages).into_iter();
+        messages.try_for_each(|(flags, state)| {
+            let event_ns = state.solves.last().map_or(0, |last| last.event_ns);
+            painter.paint(event_ns, flags, &state)
+        })
     }
 
     /// Follows the samples of a take to its end, each with its time, ns. The brush is bent on a thread of its own, ahead of

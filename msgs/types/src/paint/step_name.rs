@@ -111,28 +111,49 @@ impl StepName {
 
     /// Words of a step that has no fields.
     fn plain(&self) -> Option<&'static str> {
-        let named = PLAIN.iter().find(|(name, _)| name == self);
-        named.map(|(_, words)| *words)
+        Some(match self {
+            Self::Clean => "clean brush",
+            Self::Scrape => "scrape",
+            Self::Fill => "fill",
+            Self::Underpainting => "underpainting",
+            Self::Wells => "paints on the palette",
+            Self::Ground => "ground",
+            Self::Tooth => "tooth",
+            Self::Model => "paint model",
+            Self::Dry => "dry",
+            Self::Drying => "drying",
+            Self::Wet => "wet",
+            Self::LayerOpacity => "layer opacity",
+            Self::LayerName => "layer name",
+            Self::Beginning => "the beginning",
+            Self::Unpainted => "a stroke that was not painted yet",
+            Self::Stroke { .. }
+            | Self::Wipe { .. }
+            | Self::Load { .. }
+            | Self::Return { .. }
+            | Self::Merged { .. }
+            | Self::Words { .. } => return None,
+        })
     }
 }
 
-/// Steps without fields, and their words.
-static PLAIN: [(StepName, &str); 15] = [
-    (StepName::Clean, "clean brush"),
-    (StepName::Scrape, "scrape"),
-    (StepName::Fill, "fill"),
-    (StepName::Underpainting, "underpainting"),
-    (StepName::Wells, "paints on the palette"),
-    (StepName::Ground, "ground"),
-    (StepName::Tooth, "tooth"),
-    (StepName::Model, "paint model"),
-    (StepName::Dry, "dry"),
-    (StepName::Drying, "drying"),
-    (StepName::Wet, "wet"),
-    (StepName::LayerOpacity, "layer opacity"),
-    (StepName::LayerName, "layer name"),
-    (StepName::Beginning, "the beginning"),
-    (StepName::Unpainted, "a stroke that was not painted yet"),
+/// The steps without fields that earlier versions had in words.
+static PLAIN: [StepName; 15] = [
+    StepName::Clean,
+    StepName::Scrape,
+    StepName::Fill,
+    StepName::Underpainting,
+    StepName::Wells,
+    StepName::Ground,
+    StepName::Tooth,
+    StepName::Model,
+    StepName::Dry,
+    StepName::Drying,
+    StepName::Wet,
+    StepName::LayerOpacity,
+    StepName::LayerName,
+    StepName::Beginning,
+    StepName::Unpainted,
 ];
 
 /// Words after those of what a brush did on the palette alone.
@@ -158,7 +179,7 @@ impl fmt::Display for StepName {
 
 impl Worded for StepName {
     fn of_words(words: &str) -> Self {
-        if let Some((name, _)) = PLAIN.iter().find(|(_, own)| *own == words) {
+        if let Some(name) = PLAIN.iter().find(|name| name.plain() == Some(words)) {
             return name.clone();
         }
         let unplaced = words.strip_suffix(ON_PALETTE);
@@ -233,7 +254,7 @@ mod tests {
                 },
             ]
         });
-        let plain = PLAIN.iter().map(|(name, _)| name.clone());
+        let plain = PLAIN.iter().cloned();
         for name in plain.chain(named).chain(strokes) {
             let words = name.to_string();
             assert_eq!(StepName::of_words(&words), name, "{words}");

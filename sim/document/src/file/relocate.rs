@@ -129,8 +129,12 @@ pub(crate) fn rescue(database: &Database, to: &Path, replace: bool) -> Result<()
 ///
 /// # Errors
 /// As [`make_room`], or the error of the file system.
-pub(crate) fn copied_without_journal(from: &Path, to: &Path) -> Result<bool, DocumentError> {
-    make_room(to, false)?;
+pub(crate) fn copied_without_journal(
+    from: &Path,
+    to: &Path,
+    replace: bool,
+) -> Result<bool, DocumentError> {
+    make_room(to, replace)?;
     let part = unfinished(to);
     // Left by a rescue that was interrupted.
     std::fs::remove_file(&part).ok();
@@ -143,8 +147,14 @@ pub(crate) fn copied_without_journal(from: &Path, to: &Path) -> Result<bool, Doc
     });
     let is_whole = checked.unwrap_or(false);
     match is_whole {
-        true => rename(&part, to, false)?,
-        false => std::fs::remove_file(&part)?,
+        true => rename(&part, to, replace)?,
+        false => {
+            std::fs::remove_file(&part)?;
+            // Begun anew there, it must not be mixed with what it replaces.
+            if replace && to.exists() {
+                std::fs::remove_file(to)?;
+            }
+        }
     }
     sync_folder(to)?;
     Ok(is_whole)

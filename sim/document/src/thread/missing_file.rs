@@ -32,7 +32,7 @@ impl DocumentThread {
         }
         let to = relocate::free_name_beside(&self.path);
         let continued = match &state {
-            FileState::Cut(_) => self.continue_whole_in(&to),
+            FileState::Cut(_) => self.continue_whole_in(&to, false),
             _ => {
                 // The file may have another name now, or only the journal be gone.
                 self.database.merge_journal();
@@ -88,8 +88,12 @@ impl DocumentThread {
 
     /// Continues in a file that begins as the previous one was when its journal was last merged, or as a new one, and wants
     /// all of the painting: what was in the journal since is in memory alone.
-    pub(super) fn continue_whole_in(&mut self, path: &Path) -> Result<(), DocumentError> {
-        if !relocate::copied_without_journal(&self.path, path)? {
+    pub(super) fn continue_whole_in(
+        &mut self,
+        path: &Path,
+        replace: bool,
+    ) -> Result<(), DocumentError> {
+        if !relocate::copied_without_journal(&self.path, path, replace)? {
             tracing::warn!("{} is not whole any more", self.path.display());
         }
         self.continue_in(path)?;

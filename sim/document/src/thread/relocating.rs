@@ -16,8 +16,8 @@ impl DocumentThread {
     pub(super) fn relocate(mut self, request: RelocateRequest) -> Result<Self, DocumentError> {
         self.committed_for_relocation = false;
         let state = self.watch.check();
-        if let Some(refusal) = self.refusal_of_a_part(&state, &request) {
-            request.answer.send(Err(refusal)).ok();
+        if let Some(answer) = self.answer_of_a_part(&state, &request) {
+            request.answer.send(Err(answer)).ok();
             return Ok(self);
         }
         if request.how == Relocate::Leave {
@@ -77,16 +77,16 @@ impl DocumentThread {
         Ok(self)
     }
 
-    /// Why a painting is not relocated whose file lacks a part of it; `None` if the file has all of it. One that was cut short,
-    /// and got no other file beside it, goes on at the new path all the same, as soon as it is handed over as a whole.
-    fn refusal_of_a_part(
+    /// The answer where the file lacks a part of the painting; `None` if it has all of it. Such a painting is not relocated. But
+    /// one that was cut short, and got no other file beside it, goes on at the new path, and wants all of the painting there.
+    fn answer_of_a_part(
         &mut self,
         state: &FileState,
         request: &RelocateRequest,
     ) -> Option<DocumentError> {
         let is_cut = matches!(state, FileState::Cut(_));
         if is_cut && request.how != Relocate::Leave {
-            if let Err(error) = self.continue_whole_in(&request.to) {
+            if let Err(error) = self.continue_whole_in(&request.to, request.replace) {
                 return Some(error);
             }
             self.shared.lock().moved_to = Some(request.to.clone());

@@ -1,6 +1,5 @@
 //! `maulstick painting export` without a file: the painting of a running rig for other programs, while it is painted on.
 
-use maulstick_exchange::Format;
 use maulstick_paint_node::exporter::kind_of;
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
@@ -30,11 +29,7 @@ pub(super) fn run(options: &ExportOptions) -> Result<i32, UserError> {
         .chain(document.map(|path| UsedFile::painting(path)))
         .collect();
     // A name without a known format is refused by the node.
-    let format = match &options.format {
-        Some(name) => Format::named(name),
-        None => Format::of(file),
-    };
-    let kind = format.map_or(Kind::Own, kind_of);
+    let kind = options.known_format(file).map_or(Kind::Own, kind_of);
     check_outputs(&[UsedFile::new("the export", file).of(kind)], &inputs)?;
     let file = Relayed::new(file, kind)?;
     let command = FileCommand::Export(ExportOrder {

@@ -24,6 +24,7 @@ fn formats() -> PossibleValuesParser {
 #[derive(Args, Clone, Debug)]
 pub struct ExportOptions {
     /// Painting [default: that of the running rig, as it is now]
+    #[arg(conflicts_with = "name")]
     file: Option<PathBuf>,
     /// File to write: .png, .exr, .ora, .stl or .glb
     #[arg(short, long, value_name = "OUT", required_unless_present = "stop")]
@@ -69,15 +70,19 @@ impl ExportOptions {
     /// # Errors
     /// A [`UserError`] where neither the name nor an option says it.
     fn format(&self, out: &Path) -> Result<Format, UserError> {
-        let format = match &self.format {
-            Some(name) => Format::named(name),
-            None => Format::of(out),
-        };
-        format.ok_or_else(|| {
+        self.known_format(out).ok_or_else(|| {
             UserError::usage("the name does not say which format to write")
                 .at(out.display().to_string())
                 .help("end it in .png, .exr, .ora, .stl or .glb, or give --format")
         })
+    }
+
+    /// That format; `None` where nothing says it.
+    fn known_format(&self, out: &Path) -> Option<Format> {
+        match &self.format {
+            Some(name) => Format::named(name),
+            None => Format::of(out),
+        }
     }
 
     /// Bits per channel of a PNG.

@@ -38,6 +38,12 @@ impl BrushModel {
         }
         message(origin, device_seq, solves)
     }
+
+    /// As [`finish`](Self::finish), as a whole message of the take's last sample.
+    pub fn finish_take(&mut self, origin: Origin, device_seq: u64) -> Option<BrushState> {
+        let solves = self.finish();
+        message(origin, device_seq, solves)
+    }
 }
 
 /// The message of solves; absent where there are none.
