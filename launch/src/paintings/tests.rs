@@ -9,7 +9,6 @@ use maulstick_types::paint::TILE;
 use maulstick_types::scene::CANVAS;
 
 use super::*;
-use crate::sheet::Board;
 
 /// Side of a cell, mm.
 const CELL_MM: f64 = 0.5;

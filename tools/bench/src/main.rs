@@ -1,0 +1,181 @@
+//! Benchmarks of Maulstick beside their peers.
+//!
+//! | module | area |
+//! | --- | --- |
+//! | [`brush`] | `brush`: the solver of the spines beside slsqp, a head, its strips |
+//! | [`bus`] | `bus`: a sample from a device to the brush node, beside a bare zenoh put |
+//! | [`document`] | `document`: vast canvases, long histories, opening and packing a painting's file |
+//! | [`frames`] | `frames`: a reply to a view through shared memory, beside the socket |
+//! | [`haptics`] | `haptics`: how late the servo wakes beside cyclictest, what a tick takes, how stable it is |
+//! | [`header`] | headers of a brush's states |
+//! | [`idle`] | `idle`: what a rig takes while nobody paints |
+//! | [`latency`] | `latency`: from a stylus sample to the first frame that holds it, without a window, in one, and of a broad brush |
+//! | [`looks`] | `looks`: films, relief and streaks of strokes |
+//! | [`measurements`] | tables of measurements (`docs/measurements`) |
+//! | [`optics`] | `optics`: colours of few wavelengths beside all; films on both backends beside a copy |
+//! | [`advection`] | `paint`: the advection by itself, beside a copy |
+//! | [`paint`] | `paint`: steps of the paint model by themselves, beside a copy |
+//! | [`pen`] | `pen`: a pen's sample to the brush node, through the window and through the HID daemon |
+//! | [`recording`] | `recording`: a recording of ten minutes, opened and sought in, beside the `mcap` crate's reader |
+//! | [`render`] | `render`: the 30 s recording, offline |
+//! | [`report`] | rows and their table |
+//! | [`stokes`] | `paint`: the solver of Stokes Paint by itself |
+//! | [`tails`] | `render`: work beside the steps, as shares of it |
+//! | [`texels`] | `paint`: dAb's stroking algorithms by themselves |
+//! | [`thread_cpu`] | time of the processor |
+//! | [`view`] | `view`: frames of the whole desk without a window |
+//! | [`window`] | `window`: memory of the window |
+
+mod advection;
+mod brush;
+mod bus;
+mod document;
+mod frames;
+mod haptics;
+mod header;
+mod idle;
+mod latency;
+mod looks;
+mod measurements;
+mod optics;
+mod paint;
+mod peers;
+mod pen;
+mod recording;
+mod render;
+mod report;
+mod running;
+mod stokes;
+mod tails;
+mod texels;
+mod thread_cpu;
+mod view;
+mod window;
+
+use std::path::PathBuf;
+
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Parser};
+use maulstick_painting::models::model_names;
+use maulstick_rig::UserError;
+
+use crate::measurements::Measurements;
+use crate::report::Report;
+
+/// Paint model that is measured where no other is asked for.
+const MODEL: &str = "impasto";
+/// Backend that computes where no other is asked for.
+const BACKEND: &str = "cpu";
+
+/// The command that this program carries out.
+#[derive(Parser)]
+#[command(name = "maulstick", version)]
+enum Line {
+    /// Run benchmarks against reference programs
+    Bench(Options),
+}
+
+/// Options of `maulstick bench`.
+#[derive(Args)]
+struct Options {
+    /// What to measure: brush, bus, document, frames, haptics, idle, latency, looks, optics, paint, pen,
+    /// recording, render, view, window [default: everything]
+    area: Option<String>,
+    /// Paint model to measure
+    #[arg(long, default_value = MODEL, value_parser = PossibleValuesParser::new(model_names()))]
+    model: String,
+    /// Where its steps are computed
+    #[arg(long, default_value = BACKEND, value_parser = ["cpu", "gpu"])]
+    backend: String,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    /// Append the figures to a table of measurements (docs/measurements)
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// The far end of the bus benchmark
+    #[arg(long, hide = true)]
+    far_end: Option<String>,
+    /// A process of the pen benchmark
+    #[arg(long, hide = true)]
+    pen: Option<String>,
+}
+
+/// An area's name and what measures it.
+type Area = (
+    &'static str,
+    fn(&mut Report, &Options) -> Result<(), UserError>,
+);
+
+const AREAS: [Area; 15] = [
+    ("brush", |report, _| brush::run(report)),
+    ("bus", |report, _| bus::run(report)),
+    ("document", |report, _| document::run(report)),
+    ("frames", |report, _| frames::run(report)),
+    ("haptics", |report, _| haptics::run(report)),
+    ("idle", |report, _| idle::run(report)),
+    ("latency", |report, _| latency::run(report)),
+    ("looks", |report, _| looks::run(report)),
+    ("optics", |report, _| optics::run(report)),
+    ("paint", |report, options| {
+        paint::run(report, &options.backend, &options.model)
+    }),
+    ("pen", |report, _| pen::run(report)),
+    ("recording", |report, _| recording::run(report)),
+    ("render", |report, options| {
+        render::run(report, &options.model)
+    }),
+    ("view", |report, _| view::run(report)),
+    ("window", |report, _| window::run(report)),
+];
+
+fn main() {
+    let Line::Bench(options) = Line::parse();
+    if let Err(fault) = measure(&options) {
+        eprintln!("{fault}");
+        std::process::exit(fault.code);
+    }
+}
+
+fn measure(options: &Options) -> Result<(), UserError> {
+    if let Some(locator) = &options.far_end {
+        return bus::far_end(locator);
+    }
+    if let Some(pen) = &options.pen {
+        return pen::send(pen);
+    }
+    let wanted = |name: &str| options.area.as_deref().is_none_or(|area| area == name);
+    let areas: Vec<&Area> = AREAS.iter().filter(|(name, _)| wanted(name)).collect();
+    if let (true, Some(area)) = (areas.is_empty(), &options.area) {
+        let names = AREAS.map(|(name, _)| name);
+        let what = format!("there is no benchmark called '{area}'");
+        return Err(UserError::unknown(what, area, names));
+    }
+    let table = options.csv.as_deref().map(Measurements::open).transpose()?;
+    let mut report = Report::new();
+    for (area, run) in areas {
+        report.begin(command(area, options));
+        run(&mut report, options)?;
+    }
+    if let Some(mut table) = table {
+        let today = jiff::Zoned::now().date().to_string();
+        table.append(&report.records(&today))?;
+    }
+    if options.json {
+        report.print_json()
+    } else {
+        report.print_table()
+    }
+}
+
+/// The command that measures an area in the same way.
+fn command(area: &str, options: &Options) -> String {
+    let mut command = format!("maulstick bench {area}");
+    if options.model != MODEL {
+        command += &format!(" --model {}", options.model);
+    }
+    if options.backend != BACKEND {
+        command += &format!(" --backend {}", options.backend);
+    }
+    command
+}
