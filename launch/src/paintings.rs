@@ -7,7 +7,7 @@ use clap::builder::PossibleValuesParser;
 use indicatif::ProgressBar;
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
-use maulstick_painting::models::{model_called, model_names};
+use maulstick_painting::models::{MODELS, model_called, model_names};
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_rig::UserError;
 use maulstick_session::Offline;
@@ -39,12 +39,12 @@ pub struct Board {
 }
 
 impl Board {
-    /// Impasto on cells of this side, mm.
+    /// The first paint model on cells of this side, mm.
     #[must_use]
-    pub fn impasto(cell_mm: f64) -> Self {
+    pub fn new(cell_mm: f64) -> Self {
         Self {
             cell_mm,
-            model: "impasto",
+            model: MODELS[0].name,
         }
     }
 }
@@ -65,7 +65,7 @@ impl BoardOptions {
     /// # Errors
     /// A [`UserError`] for a model that there is not.
     pub fn board(&self) -> Result<Board, UserError> {
-        let board = Board::impasto(self.cells.side_mm());
+        let board = Board::new(self.cells.side_mm());
         let Some(model) = &self.model else {
             return Ok(board);
         };

@@ -169,7 +169,7 @@ pub(crate) fn brush_panel(
     cell_mm: f64,
 ) -> Result<Picture, UserError> {
     let mut panel = Panel::new(
-        (marks::PANEL_MM, Board::impasto(cell_mm)),
+        (marks::PANEL_MM, Board::new(cell_mm)),
         "gesso",
         file.clone(),
         library,
@@ -193,7 +193,7 @@ pub(crate) fn one_stroke_panel(
     cell_mm: f64,
 ) -> Result<Picture, UserError> {
     let mut panel = Panel::new(
-        (one_stroke::PANEL_MM, Board::impasto(cell_mm)),
+        (one_stroke::PANEL_MM, Board::new(cell_mm)),
         "grey",
         file.clone(),
         library,
@@ -221,7 +221,7 @@ pub(crate) fn softening_panel(
 ) -> Result<Picture, UserError> {
     let flat = library_brush("flat")?;
     let mut panel = Panel::new(
-        (softening::PANEL_MM, Board::impasto(cell_mm)),
+        (softening::PANEL_MM, Board::new(cell_mm)),
         "gesso",
         flat,
         library,
