@@ -3,6 +3,7 @@
 mod beside;
 mod inputs;
 mod motions;
+mod rigs;
 #[path = "../support/mod.rs"]
 mod support;
 
