@@ -1,6 +1,4 @@
-//! Commands of colour: paints, mixtures, measurements, light.
-
-pub mod light;
+//! Commands of colour: paints, mixtures, matches.
 pub mod matching;
 pub mod mix;
 pub mod paints;
