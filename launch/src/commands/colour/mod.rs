@@ -1,4 +1,5 @@
 //! Commands of colour: paints, mixtures, matches.
+
 pub mod matching;
 pub mod mix;
 pub mod paints;
