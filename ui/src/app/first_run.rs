@@ -4,10 +4,10 @@
 use std::time::Duration;
 
 use eframe::egui::{Area, Color32, Context, Frame, Id, Margin, Order, Rect, RichText, Stroke};
+use maulstick_ui_kit::language::translated;
 
 use crate::app::sides;
 use crate::input::keys::Action;
-use crate::language::translated;
 use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 use crate::settings::window_side::WindowSide;

@@ -27,6 +27,9 @@ use maulstick_rig::{NodeHandle, Sketches, Stop, UserError};
 use maulstick_types::scene::{PALETTE, Surface};
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
+use maulstick_ui_kit::display_transform::DisplayTransform;
+use maulstick_ui_kit::language;
+use maulstick_ui_kit::notifications::Notifications;
 
 use crate::app::held_places::HeldPlaces;
 use crate::app::overlay::Overlay;
@@ -38,9 +41,7 @@ use crate::input::palette_gesture::PaletteGesture;
 use crate::input::pen::WindowPen;
 use crate::input::pointer_path::PointerPath;
 use crate::input::presses;
-use crate::language;
 use crate::render::device_loss::DeviceLoss;
-use crate::render::display_transform::DisplayTransform;
 use crate::render::frame_reports::Presenter;
 use crate::render::scene::{SceneRenderer, Seen, Source};
 use crate::rig::brushes::{BrushTracker, SILENCE_NS};
@@ -61,7 +62,6 @@ use crate::view::camera::{DESK_COLOUR, View};
 use crate::view::held_view::{self, HeldView};
 use crate::view::palette_slide::PaletteSlide;
 use crate::widgets::context::PanelContext;
-use crate::widgets::notifications::Notifications;
 use crate::widgets::progress::Progress;
 
 mod actions;

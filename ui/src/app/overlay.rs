@@ -6,6 +6,7 @@ use eframe::egui::{self, Align, Align2, Context, Layout, Rect, Ui};
 use maulstick_types::edits::{Clean, Dry, Redo, Relight, Scrape, Undo};
 use maulstick_types::scene::{CANVAS, Light, PALETTE};
 use maulstick_types::values::BrushName;
+use maulstick_ui_kit::language::translated;
 
 use crate::app::bar;
 use crate::app::column::Column;
@@ -18,7 +19,6 @@ use crate::input::keymap::Keymap;
 use crate::input::keys::{self, Action};
 use crate::input::presses;
 use crate::input::size_drag::SizeDrag;
-use crate::language::translated;
 use crate::matching::colour_window::ColourWindow;
 use crate::motions::Motions;
 use crate::panels;
@@ -31,9 +31,8 @@ use crate::sessions::transport_bar::TransportBar;
 use crate::settings::brush_memory::BrushMemory;
 use crate::settings::preferences::Preferences;
 use crate::settings_page::SettingsPage;
-use crate::widgets::context::PanelContext;
+use crate::widgets::context::{PanelContext, ask};
 use crate::widgets::key_picture;
-use crate::widgets::rows::ask;
 
 /// Turn of the mouse's brush by one press of a key, degrees.
 const TURN_DEG: f64 = 15.0;

@@ -33,10 +33,10 @@ use std::task::Poll;
 use eframe::egui::Context;
 use maulstick_rig::Sketches;
 use maulstick_types::command::{Command, FileCommand, RigCommand};
+use maulstick_ui_kit::background_task::BackgroundTask;
+use maulstick_ui_kit::language::translated;
 
-use crate::background_task::BackgroundTask;
 use crate::input::keys::Action;
-use crate::language::translated;
 use crate::reference::Reference;
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;

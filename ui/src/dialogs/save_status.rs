@@ -7,12 +7,12 @@ use eframe::egui::containers::menu::MenuButton;
 use eframe::egui::{
     Area, Button, Context, Frame, Id, Margin, Order, Rect, RichText, TextWrapMode, Ui,
 };
+use maulstick_ui_kit::language::translated;
 
 use crate::app::{bar, sides};
 use crate::dialogs::paths;
 use crate::input::keymap::Keymap;
 use crate::input::keys::{Action, BINDINGS};
-use crate::language::translated;
 use crate::sessions::recording_mark;
 use crate::widgets::context::PanelContext;
 

@@ -8,8 +8,8 @@ use std::time::SystemTime;
 use eframe::egui::{Align2, Button, Context, RichText, Sense, Ui, Window};
 use maulstick_rig::Sketches;
 use maulstick_rig::sketches::{Sketch, leaving};
+use maulstick_ui_kit::background_task::BackgroundTask;
 
-use crate::background_task::BackgroundTask;
 use crate::dialogs::browser::PICTURE;
 use crate::dialogs::browser::pictures::Pictures;
 use crate::dialogs::paths;

@@ -12,8 +12,8 @@ use maulstick_types::command::{BrushCommand, Command};
 use maulstick_types::edits::{Edit, Handle, Load, Tune};
 use maulstick_types::scene::{BrushHandling, Tuning};
 use maulstick_types::values::{BrushName, BrushToml};
+use maulstick_ui_kit::language::{capitalized, known};
 
-use crate::language::{capitalized, known};
 use crate::rig::dispatcher::Outcome;
 use crate::rig::requests::Request;
 use crate::rig::state::{BrushContact, RigBrush};

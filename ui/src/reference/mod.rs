@@ -17,6 +17,7 @@ use eframe::egui::{
     pos2, vec2,
 };
 use maulstick_optics::colour::srgb_encode;
+use maulstick_ui_kit::arrow_keys::arrow_steps;
 use serde::{Deserialize, Serialize};
 
 use crate::dialogs::paths;
@@ -24,7 +25,6 @@ use crate::input::keys::Action;
 use crate::matching::picker::{Ask, Picker, of_palette};
 use crate::matching::proposals::{hex, matches, swatch};
 use crate::settings::preferences::Preferences;
-use crate::widgets::arrow_keys::arrow_steps;
 use crate::widgets::context::PanelContext;
 use frame::PictureFrame;
 use picture::{Picture, Pinned};

@@ -7,13 +7,13 @@ use egui_kittest::kittest::Queryable as _;
 use maulstick_types::Mixture;
 use maulstick_types::edits::{Edit, Load, Wells};
 use maulstick_types::scene::{Well, WellKind};
+use maulstick_ui_kit::notifications::Notifications;
 
 use super::*;
 use crate::rig::requests::{PAINT, Requests};
 use crate::rig::state::RigState;
 use crate::test_support::overlay_bench::{Bench, ctrl, let_go, picture, press, until, window};
 use crate::test_support::panel_bench::rig;
-use crate::widgets::notifications::Notifications;
 
 const PICTURE: &str = "Reference picture. Arrow keys move the cross, Enter picks, + and - zoom";
 

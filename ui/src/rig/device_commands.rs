@@ -9,13 +9,13 @@ use std::time::SystemTime;
 use eframe::egui::Context;
 use maulstick_device::node_watch::NodeWatch;
 use maulstick_rig::program::{command, own_program};
+use maulstick_ui_kit::background_task::BackgroundTask;
+use maulstick_ui_kit::notifications::Notifications;
 use serde::Deserialize;
 
-use crate::background_task::BackgroundTask;
 use crate::rig::child_process::{ChildProcess, Ended, Refused, complaint};
 use crate::rig::device_listing::DeviceListing;
 use crate::rig::state::RigState;
-use crate::widgets::notifications::Notifications;
 
 /// Folders that change where a device is plugged in or out.
 const NODES: [&str; 2] = ["/dev", "/dev/input"];

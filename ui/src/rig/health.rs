@@ -8,9 +8,9 @@ use maulstick_types::DecodeError;
 use maulstick_types::paint::Decision;
 use maulstick_types::stylus::StylusStatus;
 use maulstick_types::wire::topics::Topics;
+use maulstick_ui_kit::notifications::Notifications;
 
 use crate::rig::state::RigState;
-use crate::widgets::notifications::Notifications;
 
 /// The node of the painting.
 const PAINT: &str = "paint";
@@ -259,7 +259,7 @@ mod tests {
     use crate::rig::state::PaintNode;
     use crate::sessions::player::ReplayProgress;
     use crate::test_support::panel_bench::status;
-    use crate::widgets::notifications::Weight;
+    use maulstick_ui_kit::notifications::Weight;
 
     struct Rig {
         watch: HealthMonitor,

@@ -13,8 +13,9 @@ use maulstick_types::command::Command;
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::{BrushHandling, CANVAS, PALETTE, Scene, Surface, Tuning};
 use maulstick_types::stylus::{StylusInfo, StylusStatus};
+use maulstick_ui_kit::display_transform::DisplayTransform;
+use maulstick_ui_kit::swatches::Showing;
 
-use crate::render::display_transform::DisplayTransform;
 use crate::rig::carried_paint::CarriedPaint;
 use crate::rig::device_commands::FitProgress;
 use crate::rig::device_listing::DeviceListing;
@@ -171,6 +172,16 @@ impl RigState {
     pub fn lay(&mut self, scene: Scene) {
         self.desk = Some(Desk::of(&scene));
         self.scene = Some(scene);
+    }
+
+    /// What swatches are shown with.
+    #[must_use]
+    pub fn showing(&self) -> Showing<'_> {
+        Showing {
+            library: &self.library,
+            light: self.scene.as_ref().map(|scene| &scene.light),
+            tint: &self.tint,
+        }
     }
 
     /// True if the painting has no name yet: it is in the file of a sketch.

@@ -5,13 +5,13 @@ use std::process::Command;
 use std::time::Duration;
 
 use eframe::egui::Context;
+use maulstick_ui_kit::notifications::Notifications;
 use serde::Deserialize;
 
 use crate::dialogs::paths;
 use crate::rig::child_process::{ChildProcess, Ended, Refused};
 use crate::rig::state::RigState;
 use crate::sessions::RECORDING;
-use crate::widgets::notifications::Notifications;
 
 /// Interval at which the elapsed time is shown.
 const TICK: Duration = Duration::from_millis(500);

@@ -8,13 +8,13 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use maulstick_ui_kit::notifications::Weight;
 
 use super::*;
 use crate::sessions::player::{Position, ReplayProgress};
 use crate::sessions::recorder::{RecordingProgress, place};
 use crate::sessions::transport_bar::TransportBar;
 use crate::test_support::{context_bench, overlay_bench, panel_bench};
-use crate::widgets::notifications::Weight;
 use overlay_bench::{Bench, ctrl, press, until, window};
 
 /// A program that records until it is interrupted, and notes the orders that it gets while it plays.

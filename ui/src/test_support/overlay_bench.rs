@@ -9,6 +9,7 @@ use egui_kittest::kittest::Queryable as _;
 use egui_kittest::{Harness, SnapshotOptions};
 use maulstick_rig::UserError;
 use maulstick_types::command::{Command, Detail};
+use maulstick_ui_kit::notifications::Notifications;
 
 use crate::app::overlay::Overlay;
 use crate::rig::dispatcher::Outcome;
@@ -17,7 +18,6 @@ use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 use crate::test_support::panel_bench::rig;
 use crate::widgets::context::PanelContext;
-use crate::widgets::notifications::Notifications;
 
 /// Longest wait for background work before a test fails.
 const PATIENCE: Duration = Duration::from_secs(60);

@@ -9,13 +9,13 @@ use maulstick_optics::PaintLibrary;
 use maulstick_painting::PaintingSetup;
 use maulstick_types::command::Command;
 use maulstick_types::paint::PaintStatus;
+use maulstick_ui_kit::notifications::Notifications;
 
 use crate::panels::Panel;
 use crate::rig::requests::{Request, Requests};
 use crate::rig::state::{PaintNode, RigState};
 use crate::settings::preferences::Preferences;
 use crate::widgets::context::PanelContext;
-use crate::widgets::notifications::Notifications;
 
 /// Width of the column of panels, points.
 const COLUMN: f32 = 300.0;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use eframe::egui_wgpu::wgpu;
+use maulstick_ui_kit::notifications::Notifications;
 
 use super::projection::Projector;
 use super::*;
@@ -13,7 +14,6 @@ use crate::rig::requests::Requests;
 use crate::rig::state::{PaintNode, RigState};
 use crate::settings::preferences::Preferences;
 use crate::test_support::panel_bench::{rig, status};
-use crate::widgets::notifications::Notifications;
 
 /// Left half black, right half white, twice as high as wide.
 fn halves() -> Arc<Slide> {

@@ -284,7 +284,7 @@ mod tests {
     use crate::rig::state::PaintNode;
     use crate::settings::preferences::Preferences;
     use crate::test_support::panel_bench::{rig, status};
-    use crate::widgets::notifications::Notifications;
+    use maulstick_ui_kit::notifications::Notifications;
 
     struct Desk {
         progress: Progress,

@@ -2,8 +2,8 @@
 
 use maulstick_types::command::{Command, Detail};
 use maulstick_types::edits::Edit;
+use maulstick_ui_kit::language::{layer_name, step};
 
-use crate::language::{layer_name, step};
 use crate::rig::requests::Request;
 use crate::settings::brush_load;
 

@@ -16,13 +16,13 @@ use maulstick_painting::models::model_names;
 use maulstick_types::edits::{Convert, Ground, Piles, Place, Size, Tooth};
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 use maulstick_types::values::{MaterialName, ModelName, StainThickness, ValueError};
+use maulstick_ui_kit::pending::Pending;
+use maulstick_ui_kit::rows::{Number, Sliders, below, choice, note, row, wrong};
 
 use crate::input::keys::Action;
 use crate::panels::Panel;
 use crate::spectrum_file;
-use crate::widgets::context::PanelContext;
-use crate::widgets::pending::Pending;
-use crate::widgets::rows::{Number, Sliders, ask, below, choice, note, row, wrong};
+use crate::widgets::context::{PanelContext, ask};
 
 mod film;
 mod placement;

@@ -2,10 +2,10 @@
 
 use eframe::egui::{Frame, RichText, Ui};
 use maulstick_rig::user_devices::ALLOW_BY_HAND;
+use maulstick_ui_kit::rows::note;
 
 use crate::rig::device_listing::AttachedDevice;
 use crate::widgets::context::PanelContext;
-use crate::widgets::rows::note;
 
 /// Shows it.
 pub(super) fn show(ui: &mut Ui, work: &mut PanelContext<'_>) {

@@ -26,11 +26,11 @@ use maulstick_types::haptics::ForceOrder;
 use maulstick_types::stylus::{StylusInfo, StylusStatus, Trouble, axes};
 
 use crate::input::keys::Action;
-use crate::language::capitalized;
 use crate::panels::Panel;
 use crate::rig::force_history::{self, KEPT_S, size};
 use crate::rig::state::{Device, RigState};
 use crate::widgets::context::PanelContext;
+use maulstick_ui_kit::language::capitalized;
 use settings::Edits;
 
 /// Of the button that switches force off, and of a trouble.

@@ -3,14 +3,14 @@
 use eframe::egui::{CollapsingHeader, Frame, Key, RichText, TextEdit, Ui};
 use maulstick_device::pressure_curve::sensed;
 use maulstick_rig::config::{ACTIONS, DeviceSection, FORCES, PEN_DRIVERS};
+use maulstick_ui_kit::language::capitalized;
+use maulstick_ui_kit::rows::{choice, note, row};
 
 use super::pressure_curve::CurveEditor;
-use crate::language::capitalized;
 use crate::rig::device_commands::DeviceOrder;
 use crate::rig::device_listing::RigDevice;
 use crate::rig::state::Device;
 use crate::widgets::context::PanelContext;
-use crate::widgets::rows::{choice, note, row};
 
 /// Settings that are being changed.
 #[derive(Debug, Default)]

@@ -98,7 +98,7 @@ fn page(ui: &mut Ui, device: &Device, now_ns: u64) {
             // It senses nothing of the kind.
             continue;
         }
-        ui.small(crate::language::translated(title));
+        ui.small(maulstick_ui_kit::language::translated(title));
         still(ui, Plot::new(title))
             .height(HEIGHT)
             .include_x(-SHOWN_S)

@@ -16,11 +16,11 @@ use eframe::egui::{
 use maulstick_types::edits::{Branch, Forget, Keep, ReturnTo};
 use maulstick_types::scene::NamedVersion;
 use maulstick_types::values::VersionName;
+use maulstick_ui_kit::rows::note;
 
 use crate::panels::Panel;
 use crate::rig::thumbnails::{Picture, Pictured};
-use crate::widgets::context::PanelContext;
-use crate::widgets::rows::{ask, note};
+use crate::widgets::context::{PanelContext, ask};
 
 mod steps;
 mod tree;

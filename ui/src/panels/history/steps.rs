@@ -6,13 +6,12 @@ use eframe::egui::{
 };
 use maulstick_types::edits::{GoTo, Redo, Undo};
 use maulstick_types::paint::HistoryStep;
+use maulstick_ui_kit::language;
 
 use super::{Textures, paint_picture};
 use crate::input::keys::Action;
-use crate::language;
 use crate::rig::thumbnails::Pictured;
-use crate::widgets::context::PanelContext;
-use crate::widgets::rows::ask;
+use crate::widgets::context::{PanelContext, ask};
 
 /// Width and height of the picture of a step, points.
 const PICTURE: [f32; 2] = [40.0, 32.0];

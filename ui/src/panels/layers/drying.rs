@@ -8,10 +8,10 @@ use maulstick_types::edits::{Dry, StopDrying, Wet};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{LayerName, Share, Ticks, ValueError};
+use maulstick_ui_kit::rows::{Number, Sliders, choice, row};
 
 use super::region;
-use crate::widgets::context::PanelContext;
-use crate::widgets::rows::{Number, Sliders, ask, choice, row};
+use crate::widgets::context::{PanelContext, ask};
 
 /// Choice of region.
 const PLACES: [&str; 2] = [tr_noop!("Whole canvas"), tr_noop!("A part")];

@@ -13,12 +13,12 @@ use eframe::egui::{Align, Button, Key, Layout, TextEdit, Ui, WidgetInfo};
 use maulstick_types::edits::{LayerRef, NameLayer, Opacity};
 use maulstick_types::scene::Layer;
 use maulstick_types::values::{LayerName, OpacityFactor, ValueError};
+use maulstick_ui_kit::language::layer_name;
+use maulstick_ui_kit::pending::Pending;
+use maulstick_ui_kit::rows::{Number, Sliders, cell, note};
 
-use crate::language::layer_name;
 use crate::panels::Panel;
-use crate::widgets::context::PanelContext;
-use crate::widgets::pending::Pending;
-use crate::widgets::rows::{Number, Sliders, ask, cell, note};
+use crate::widgets::context::{PanelContext, ask};
 
 mod drying;
 mod eye;

@@ -7,13 +7,13 @@ use eframe::egui::{
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_rig::UserError;
 use maulstick_types::Mixture;
+use maulstick_ui_kit::labelled;
+use maulstick_ui_kit::swatches::{Swatches, draw};
 
 use super::{Carried, SWATCH};
 use crate::input::palette_wells::MOST;
 use crate::settings::brush_load::{self, completed, completions, words};
 use crate::widgets::context::PanelContext;
-use crate::widgets::labelled;
-use crate::widgets::swatches::{Swatches, draw};
 
 /// Names that are proposed at most.
 const PROPOSED: usize = 4;
@@ -100,7 +100,7 @@ impl WellRows {
         ui.scope(|ui| {
             ui.spacing_mut().item_spacing.y = 1.0;
             for (place, mixture) in wells.iter().enumerate() {
-                let colour = swatches.mixture(work.rig, mixture);
+                let colour = swatches.mixture(work.rig.showing(), mixture);
                 let colour = colour.unwrap_or(Color32::TRANSPARENT);
                 let end = place + 1 == wells.len();
                 let chosen = self.chosen == Some(place);

@@ -3,9 +3,10 @@
 use std::os::unix::fs::PermissionsExt as _;
 use std::time::{Duration, Instant};
 
+use maulstick_ui_kit::notifications::Weight;
+
 use super::*;
 use crate::test_support::panel_bench::rig;
-use crate::widgets::notifications::Weight;
 
 const PROGRAM: &str = r#"#!/bin/sh
 case "$2" in
