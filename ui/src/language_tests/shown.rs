@@ -29,7 +29,7 @@ const TOUCH: f32 = 1.5;
 /// A rig with a brush in the hand and steps in its history.
 fn studio() -> RigState {
     let mut studio = context_bench::rig();
-    let mut paint = rig().paint.expect("a paint node");
+    let mut paint = rig().live.paint.expect("a paint node");
     let step = |(id, what): (u64, StepName)| HistoryStep {
         id,
         what,
@@ -47,11 +47,11 @@ fn studio() -> RigState {
         history: named.into_iter().map(step).collect(),
         ..steps(3, 1)
     };
-    studio.paint = Some(paint);
+    studio.live.paint = Some(paint);
     let mut named = devices();
     // Its daemon words its driver and its trouble.
-    named.devices.remove("tablet");
-    (studio.devices, studio.now_ns) = (named.devices, named.now_ns);
+    named.live.devices.remove("tablet");
+    (studio.live.devices, studio.live.now_ns) = (named.live.devices, named.live.now_ns);
     studio.brushes.truncate(1);
     studio
 }

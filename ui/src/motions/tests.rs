@@ -182,7 +182,7 @@ impl Desk {
 
 fn desk() -> Harness<'static, Desk> {
     let rig = rig();
-    let surfaces = rig.scene.as_ref().map(|scene| scene.surfaces.clone());
+    let surfaces = rig.live.scene.as_ref().map(|scene| scene.surfaces.clone());
     let desk = Desk {
         motions: Motions {
             dialog: None,

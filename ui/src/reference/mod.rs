@@ -329,7 +329,7 @@ impl Reference {
 
     /// Asks for mixtures of the colour under the cross.
     fn pick(&mut self, picture: &Picture, work: &PanelContext<'_>) {
-        let (Some(cross), Some(scene)) = (self.look.cross, &work.rig.scene) else {
+        let (Some(cross), Some(scene)) = (self.look.cross, &work.rig.live.scene) else {
             return;
         };
         let pixel = |at: f32, side: usize| ((at * side as f32) as usize).min(side - 1);
@@ -340,7 +340,7 @@ impl Reference {
         self.picked = Some(linear);
         let paints = match work.preferences.reference.all_paints {
             true => None,
-            false => of_palette(work.rig.palette()),
+            false => of_palette(work.rig.live.palette()),
         };
         self.picker.ask(Ask {
             linear,

@@ -81,7 +81,7 @@ fn a_click_on_a_colour_proposes_mixtures_that_are_loaded_put_on_the_palette_and_
         panic!("{asked:?}");
     };
     assert_eq!((node.as_str(), brush.as_str()), (PAINT, "main"));
-    let names = of_palette(harness.state().rig.palette()).expect("paints");
+    let names = of_palette(harness.state().rig.live.palette()).expect("paints");
     assert!(mixture.parts.iter().all(|part| names.contains(&part.paint)));
     let copy = harness.query_all_by_label_contains("Copy ").next();
     copy.expect("a mixture").click();

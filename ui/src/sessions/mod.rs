@@ -150,7 +150,7 @@ impl SessionProcesses {
 
     fn command(&self, words: [&str; 2], rig: &RigState) -> Command {
         let mut command = command(&self.program);
-        command.args(words).args(["--name", &rig.rig]);
+        command.args(words).args(["--name", &rig.live.name]);
         command.stdin(Stdio::null());
         command
     }

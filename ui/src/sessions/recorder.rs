@@ -49,7 +49,7 @@ impl Recorder {
         })?;
         rig.recording = Some(RecordingProgress {
             file,
-            begun_ns: rig.now_ns,
+            begun_ns: rig.live.now_ns,
         });
         Ok(Self { child })
     }
@@ -133,7 +133,7 @@ fn tell(line: &str, notifications: &mut Notifications) {
 
 /// The file of the painting; empty for one in memory.
 fn painting(rig: &RigState) -> PathBuf {
-    let node = rig.paint.as_ref();
+    let node = rig.live.paint.as_ref();
     node.map_or_else(PathBuf::new, |node| PathBuf::from(&node.status.path))
 }
 

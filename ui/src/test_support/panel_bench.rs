@@ -12,10 +12,12 @@ use maulstick_types::paint::PaintStatus;
 use maulstick_ui_kit::notifications::Notifications;
 
 use crate::panels::Panel;
-use crate::rig::requests::{Request, Requests};
-use crate::rig::state::{PaintNode, RigState};
+use crate::rig::requests::Requests;
+use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 use crate::widgets::context::PanelContext;
+use maulstick_client::request::Request;
+use maulstick_client::state::PaintNode;
 
 /// Width of the column of panels, points.
 const COLUMN: f32 = 300.0;
@@ -27,7 +29,7 @@ pub(crate) fn rig() -> RigState {
     let library = PaintLibrary::measured().expect("the paints that come with it");
     let mut rig = RigState::new("default", &["main".to_owned()], Arc::new(library));
     rig.lay(PaintingSetup::default().scene());
-    rig.paint = Some(PaintNode {
+    rig.live.paint = Some(PaintNode {
         status: status(),
         heard_ns: 0,
     });

@@ -51,7 +51,10 @@ pub(super) fn parsed(tree: &Tree, found: &mut Breaches) {
 pub(super) fn asserted(tree: &Tree, found: &mut Breaches) {
     for (file, facts) in &tree.facts {
         for (text, line) in &facts.asserted {
-            if text.contains(' ') && words(text).count() > 1 && !CATALOGUE.iter().any(|folder| below(file, folder)) {
+            if text.contains(' ')
+                && words(text).count() > 1
+                && !CATALOGUE.iter().any(|folder| below(file, folder))
+            {
                 let what = format!("asserts the words {text:?}: compare data");
                 found.one(file, *line, &what);
             }

@@ -15,7 +15,7 @@ use maulstick_types::paint::TILE;
 use maulstick_types::scene::Surface;
 use maulstick_ui_kit::background_task::BackgroundTask;
 
-use crate::rig::thumbnails::Picture;
+use maulstick_client::thumbnails::Picture;
 
 /// Pixels of the longer side.
 const SIDE: u32 = 96;

@@ -85,7 +85,7 @@ impl Panel for CanvasPanel {
     }
 
     fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
-        let Some(canvas) = work.rig.canvas().cloned() else {
+        let Some(canvas) = work.rig.live.canvas().cloned() else {
             return;
         };
         size(ui, work, &canvas);
@@ -164,7 +164,7 @@ fn preferences(ui: &mut Ui, work: &mut PanelContext<'_>) {
         .on_hover_text(tr!(
             "The palette lies at the right, brushes and panels at the left"
         ));
-    let Some(mut last) = work.rig.palette().map(|palette| palette.piles_last) else {
+    let Some(mut last) = work.rig.live.palette().map(|palette| palette.piles_last) else {
         return;
     };
     let lasts = ui

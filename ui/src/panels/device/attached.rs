@@ -11,11 +11,16 @@ use crate::widgets::context::PanelContext;
 pub(super) fn show(ui: &mut Ui, work: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         ui.label(RichText::new(tr!("Attached")).strong());
-        if work.rig.listing.is_none() || work.rig.changes_devices {
+        if work.rig.setup.listing.is_none() || work.rig.setup.is_changing {
             ui.weak(tr!("looking…"));
         }
     });
-    let unused = work.rig.listing.as_ref().map(|listing| listing.unused());
+    let unused = work
+        .rig
+        .setup
+        .listing
+        .as_ref()
+        .map(|listing| listing.unused());
     let Some(unused) = unused else {
         return;
     };

@@ -56,7 +56,7 @@ impl Panel for LayersPanel {
     }
 
     fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
-        let Some(scene) = &work.rig.scene else {
+        let Some(scene) = &work.rig.live.scene else {
             return;
         };
         let layers = scene.layers.clone();
@@ -105,7 +105,7 @@ impl LayersPanel {
             Some(asked.shown(now_s, &layer.opacity) != layer.opacity)
         });
         let is_asked = asked.any(|differs| differs);
-        let status = work.rig.paint.as_ref().map(|node| &node.status);
+        let status = work.rig.live.paint.as_ref().map(|node| &node.status);
         is_asked || status.is_some_and(|status| status.baked < status.baking)
     }
 

@@ -95,7 +95,13 @@ impl Panel for LightPanel {
     }
 
     fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
-        let Some(actual) = work.rig.scene.as_ref().map(|scene| scene.light.clone()) else {
+        let Some(actual) = work
+            .rig
+            .live
+            .scene
+            .as_ref()
+            .map(|scene| scene.light.clone())
+        else {
             return;
         };
         let now_s = ui.input(|input| input.time);

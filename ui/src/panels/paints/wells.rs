@@ -92,7 +92,7 @@ impl WellRows {
         let mut wells = work.wells();
         ui.horizontal(|ui| {
             ui.strong(tr!("On the palette"));
-            let paints = work.rig.scene.as_ref().map_or(0, |scene| scene.paints.len());
+            let paints = work.rig.live.scene.as_ref().map_or(0, |scene| scene.paints.len());
             ui.weak(tr!("{paints} of {slots} paints in this painting", paints, slots = SLOTS)).on_hover_text(tr!("Tubes that this painting has used. It has room for {slots}, its palette for {most} mixtures.", slots = SLOTS, most = MOST));
         });
         self.chosen.take_if(|place| *place >= wells.len());
