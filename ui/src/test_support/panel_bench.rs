@@ -113,7 +113,9 @@ impl<P> Bench<P> {
     pub(crate) fn asked(&mut self) -> Vec<Command> {
         let requests = self.requests.take_all().into_iter();
         let paint = |order| match order {
-            Request::Command { node, command } if node == crate::rig::requests::PAINT => command,
+            Request::Command { node, command } if node == maulstick_types::command::PAINT_NODE => {
+                command
+            }
             other => panic!("not to the paint node: {other:?}"),
         };
         requests.map(paint).collect()

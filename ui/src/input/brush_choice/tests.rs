@@ -6,9 +6,9 @@ use maulstick_types::edits::{Clean, Undo};
 use maulstick_types::values::BrushName;
 
 use super::*;
-use crate::rig::requests::PAINT;
 use crate::settings::presets::BeforePreset;
 use crate::test_support::context_bench::Bench;
+use maulstick_types::command::PAINT_NODE;
 
 fn defined(bench: &mut Bench) -> Vec<(String, BrushFile)> {
     let commands = bench.commands().into_iter();
@@ -166,7 +166,7 @@ fn a_brush_that_refuses_keeps_what_it_has_and_one_that_does_takes_up_its_paint()
     let done = answer(&request, Ok(Detail::Nothing));
     bench.work().brush_answered(&done);
     let then = Request::Command {
-        node: PAINT.to_owned(),
+        node: PAINT_NODE.to_owned(),
         command: load(),
     };
     assert_eq!(bench.requests.take_all(), [then]);
