@@ -12,7 +12,7 @@ const MOST: usize = 256 + 4 * 1024 + 1;
 
 fn turn(live: &mut Live) {
     live.net.advance(1_000_000);
-    live.brush.turn().expect("turned");
+    live.brush.poll().expect("turned");
     live.net.advance(1_000_000);
     live.paint.turn().expect("turned");
 }
@@ -46,7 +46,7 @@ fn after_a_flood_of_samples_the_next_device_paints() {
             sent += 1;
         }
         let before = live.brush.sent();
-        live.brush.turn().expect("turned");
+        live.brush.poll().expect("turned");
         live.net.advance(1_000);
         let (many, _) = solves(&mut states, 41);
         assert!(

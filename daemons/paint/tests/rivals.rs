@@ -49,7 +49,7 @@ impl Rig {
 
     fn turn(&mut self) {
         self.live.net.advance(1_000_000);
-        self.live.brush.turn().expect("turned");
+        self.live.brush.poll().expect("turned");
         self.live.net.advance(1_000_000);
         self.live.paint.turn().expect("turned");
     }

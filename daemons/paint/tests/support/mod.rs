@@ -223,7 +223,7 @@ impl Live {
                 self.net.advance(1_000_000);
                 match node {
                     "paint" => self.paint.turn().expect("turned"),
-                    _ => self.brush.turn().expect("turned"),
+                    _ => self.brush.poll().expect("turned"),
                 };
                 if let Some(maulstick_bus::bus::Answer::Bytes(bytes)) = pending.try_recv() {
                     let reply: CommandReply = decode(&bytes).expect("a reply").1;
@@ -307,7 +307,7 @@ impl Live {
         for _ in 0..limit {
             match order() % 3 {
                 0 => self.player_turn(samples),
-                1 => drop(self.brush.turn().expect("turned")),
+                1 => drop(self.brush.poll().expect("turned")),
                 _ => drop(self.paint.turn().expect("turned")),
             }
             self.net.advance(700_000);

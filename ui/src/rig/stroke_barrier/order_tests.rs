@@ -150,7 +150,7 @@ impl Studio {
         self.net.advance(MS);
         self.mouse.reset_credit();
         self.mouse.serve(self.now_ns()).expect("served");
-        self.brush.turn().expect("turned");
+        self.brush.poll().expect("turned");
         if self.now_ns() >= self.busy_ns {
             let before = self.paint.consumed(Origin {
                 source: name_hash(BRUSH),
