@@ -29,7 +29,7 @@ fn turn(live: &mut Live) {
         live.net.advance(1_000_000);
         live.brush.poll().expect("turned");
         live.net.advance(1_000_000);
-        live.paint.turn().expect("turned");
+        live.paint.poll().expect("turned");
     }
 }
 

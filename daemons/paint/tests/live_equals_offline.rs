@@ -124,7 +124,7 @@ fn turns_of_all(
         match order() % 4 {
             0 => live.player_turn(&samples[..until]),
             1 => drop(live.brush.poll().expect("turned")),
-            2 => drop(live.paint.turn().expect("turned")),
+            2 => drop(live.paint.poll().expect("turned")),
             _ => intruder.turn(),
         }
         live.net.advance(700_000);
@@ -236,14 +236,14 @@ fn a_live_brush_merges_while_paint_is_busy_and_keeps_the_path() {
         live.brush.poll().expect("turned");
         // Paint has its turn only now and then.
         if number % 12 == 0 {
-            live.paint.turn().expect("turned");
+            live.paint.poll().expect("turned");
         }
         states = live.brush.sent();
     }
     for _ in 0..200 {
         live.net.advance(5_000_000);
         live.brush.poll().expect("turned");
-        live.paint.turn().expect("turned");
+        live.paint.poll().expect("turned");
     }
     assert!(
         states < samples.len() as u64 * 3 / 4,
@@ -288,7 +288,7 @@ fn painted_late(every: usize) -> (u64, u64, u32) {
         live.net.advance(4_000_000);
         live.brush.poll().expect("turned");
         if (number as usize).is_multiple_of(every) {
-            live.paint.turn().expect("turned");
+            live.paint.poll().expect("turned");
             longest = longest.max(live.paint.painting_mut().longer());
         }
     }
@@ -296,7 +296,7 @@ fn painted_late(every: usize) -> (u64, u64, u32) {
     for _ in 0..200 {
         live.net.advance(5_000_000);
         live.brush.poll().expect("turned");
-        live.paint.turn().expect("turned");
+        live.paint.poll().expect("turned");
     }
     let painting = live.paint.painting_mut();
     assert_eq!(painting.longer(), 1, "the brush has lifted");
@@ -336,7 +336,7 @@ fn what_has_waited_long_is_sent_in_messages_that_fit() {
     let before = live.brush.sent();
     for _ in 0..200 {
         live.net.advance(5_000_000);
-        live.paint.turn().expect("turned");
+        live.paint.poll().expect("turned");
         live.brush.poll().expect("turned");
     }
     let brush = Origin {

@@ -31,7 +31,7 @@ fn lifted(live: &mut Live, mouse: &mut Device) {
     mouse.send(&pen(REACH_M, 0.0, 0.0));
     for _ in 0..200 {
         live.net.advance(5 * MILLISECOND);
-        live.paint.turn().expect("turned");
+        live.paint.poll().expect("turned");
         live.brush.poll().expect("turned");
     }
 }
@@ -94,7 +94,7 @@ fn a_device_is_told_of_its_samples_once_they_are_solved() {
     // No further sample comes.
     for _ in 0..200 {
         live.net.advance(5 * MILLISECOND);
-        live.paint.turn().expect("turned");
+        live.paint.poll().expect("turned");
         live.brush.poll().expect("turned");
     }
     assert_eq!(mouse.consumed(), 400);

@@ -51,7 +51,7 @@ impl Rig {
         self.live.net.advance(1_000_000);
         self.live.brush.poll().expect("turned");
         self.live.net.advance(1_000_000);
-        self.live.paint.turn().expect("turned");
+        self.live.paint.poll().expect("turned");
     }
 
     /// Whether a short stroke becomes paint.

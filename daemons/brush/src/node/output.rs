@@ -1,5 +1,7 @@
 //! States on their way to the painting, and reports to the devices of the samples that went into them.
 
+mod progress;
+
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{Bus, BusError, CreditSender, Qos, Wake};
@@ -8,10 +10,10 @@ use maulstick_types::paint::BrushCredit;
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin};
 
-use super::progress::Progress;
 use super::solver::Solved;
 use crate::outbox::Outbox;
 use crate::path_simplifier::PathSimplifier;
+use progress::Progress;
 
 /// Age of the oldest unpainted state from which a live brush merges its samples, ns.
 const OLDEST_NS: u64 = 50_000_000;

@@ -1,5 +1,8 @@
 //! Samples that wait, solved into states of the brush.
 
+mod haste;
+mod pace;
+
 use std::collections::BTreeSet;
 
 use glam::DVec3;
@@ -11,10 +14,10 @@ use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::scene::Scene;
 use maulstick_types::stylus::{StylusPose, StylusSample};
 
-use super::haste::Haste;
-use super::pace::Pace;
 use super::settings::BrushSettings;
 use crate::path_simplifier::{PathSimplifier, Place, Start, Waiting};
+use haste::Haste;
+use pace::Pace;
 
 /// Solves of a turn at most, but for those of its last sample: the node reads what arrives meanwhile.
 const SOLVES_A_TURN: usize = 256;

@@ -187,7 +187,7 @@ impl Live {
         let mut node =
             PaintNode::new(Arc::clone(bus), topics, &Wake::new(), me, painting).expect("paint");
         while !node.knows_brush("main") {
-            node.turn().expect("turned");
+            node.poll().expect("turned");
         }
         node
     }
@@ -222,7 +222,7 @@ impl Live {
             for _ in 0..100 {
                 self.net.advance(1_000_000);
                 match node {
-                    "paint" => self.paint.turn().expect("turned"),
+                    "paint" => self.paint.poll().expect("turned"),
                     _ => self.brush.poll().expect("turned"),
                 };
                 if let Some(maulstick_bus::bus::Answer::Bytes(bytes)) = pending.try_recv() {
@@ -308,7 +308,7 @@ impl Live {
             match order() % 3 {
                 0 => self.player_turn(samples),
                 1 => drop(self.brush.poll().expect("turned")),
-                _ => drop(self.paint.turn().expect("turned")),
+                _ => drop(self.paint.poll().expect("turned")),
             }
             self.net.advance(700_000);
             let brush = Origin {

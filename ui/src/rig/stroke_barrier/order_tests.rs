@@ -156,7 +156,7 @@ impl Studio {
                 source: name_hash(BRUSH),
                 epoch: 77,
             });
-            self.paint.turn().expect("turned");
+            self.paint.poll().expect("turned");
             let after = self.paint.consumed(Origin {
                 source: name_hash(BRUSH),
                 epoch: 77,
