@@ -216,7 +216,8 @@ fn carry_out(command: Command) -> Result<i32, UserError> {
 
 #[cfg(test)]
 mod tests {
-    use maulstick_types::edits::{self, Edit, Form as _, Relight};
+    use maulstick_painting::edits::{self, Form as _, Relight};
+    use maulstick_types::Edit;
     use maulstick_types::scene::Light;
 
     use super::*;
@@ -272,7 +273,7 @@ mod tests {
         };
     }
 
-    maulstick_types::for_each_edit!(walk);
+    maulstick_painting::for_each_edit!(walk);
 
     #[test]
     fn what_is_out_of_range_is_rejected_on_the_command_line() {

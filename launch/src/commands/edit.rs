@@ -5,8 +5,9 @@ use std::marker::PhantomData;
 
 use clap::error::ErrorKind;
 use clap::{Args as _, FromArgMatches, Subcommand};
+use maulstick_painting::edits::{CommandForm, Ground, GroundSource, commands};
 use maulstick_rig::UserError;
-use maulstick_types::edits::{CommandForm, Edit, Ground, GroundSource, commands};
+use maulstick_types::Edit;
 
 use crate::commands::client::{Client, Target};
 use crate::commands::say;

@@ -35,10 +35,11 @@ use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_device::Take;
 use maulstick_optics::PaintLibrary;
+use maulstick_painting::edits::LightChange;
 use maulstick_rig::UserError;
 use maulstick_rig::files::ending;
+use maulstick_types::Edit;
 use maulstick_types::Mixture;
-use maulstick_types::edits::{Edit, LightChange};
 use toml::de::DeTable;
 
 use self::entries::Source;

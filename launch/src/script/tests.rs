@@ -1,4 +1,4 @@
-use maulstick_types::edits::{self, Form as _};
+use maulstick_painting::edits::{self, Form as _};
 use maulstick_types::scene::Light;
 
 use super::steps::KINDS;
@@ -461,4 +461,4 @@ macro_rules! walk {
     };
 }
 
-maulstick_types::for_each_edit!(walk);
+maulstick_painting::for_each_edit!(walk);

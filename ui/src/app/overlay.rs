@@ -3,7 +3,7 @@
 mod outcome_words;
 
 use eframe::egui::{self, Align, Align2, Context, Layout, Rect, Ui};
-use maulstick_types::edits::{Clean, Dry, Redo, Relight, Scrape, Undo};
+use maulstick_painting::edits::{Clean, Dry, Redo, Relight, Scrape, Undo};
 use maulstick_types::scene::{CANVAS, Light, PALETTE};
 use maulstick_types::values::BrushName;
 
@@ -366,8 +366,9 @@ fn fill_screen(context: &Context, fills: bool) {
 mod tests {
     use eframe::egui::{Key, Modifiers};
     use egui_kittest::Harness;
+    use maulstick_painting::edits::Relight;
+    use maulstick_types::Edit;
     use maulstick_types::command::{Command, Detail};
-    use maulstick_types::edits::{Edit, Relight};
     use maulstick_types::paint::StepName;
     use maulstick_types::scene::Layer;
 

@@ -1,6 +1,6 @@
 //! The cleaning key: a tap cleans the brush; while it is held the brush lifts paint.
 
-use maulstick_types::edits::{Clean, Handle};
+use maulstick_painting::edits::{Clean, Handle};
 use maulstick_types::scene::{BrushHandling, BrushMode};
 use maulstick_types::values::BrushName;
 
@@ -89,8 +89,8 @@ fn handle(requests: &mut Requests, handling: &BrushHandling) {
 
 #[cfg(test)]
 mod tests {
+    use maulstick_types::Edit;
     use maulstick_types::command::Command;
-    use maulstick_types::edits::Edit;
 
     use super::*;
 

@@ -282,8 +282,8 @@ mod tests {
     use maulstick_brush::palette_place::Side;
     use maulstick_num::geometry::Rigid;
     use maulstick_painting::PaintingSetup;
+    use maulstick_types::Edit;
     use maulstick_types::command::Command;
-    use maulstick_types::edits::Edit;
 
     use super::*;
 

@@ -177,8 +177,9 @@ mod tests {
     use eframe::egui::Modifiers;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable as _;
+    use maulstick_painting::edits::Load;
+    use maulstick_types::Edit;
     use maulstick_types::command::Command;
-    use maulstick_types::edits::{Edit, Load};
 
     use super::*;
     use crate::test_support::overlay_bench::{Bench, ctrl, picture, until, window, write};

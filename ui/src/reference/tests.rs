@@ -4,8 +4,9 @@ use std::path::PathBuf;
 use eframe::egui::{Key, Modifiers, MouseWheelUnit, OutputCommand};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use maulstick_painting::edits::{Load, Wells};
+use maulstick_types::Edit;
 use maulstick_types::Mixture;
-use maulstick_types::edits::{Edit, Load, Wells};
 use maulstick_types::scene::{Well, WellKind};
 
 use super::*;

@@ -10,10 +10,10 @@ use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::{ask, random_epoch};
 use maulstick_bus::{Bus, Qos, Wake};
+use maulstick_painting::edits::Relight;
 use maulstick_rig::command_client::CommandClient;
 use maulstick_rig::{UserError, asker};
 use maulstick_types::command::{Command, Detail, FileCommand};
-use maulstick_types::edits::{Edit, Relight};
 use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
@@ -229,13 +229,13 @@ fn patience(command: &Command) -> Duration {
 /// True if the first of two successive requests need not be carried out.
 fn replaces(newer: &Request, older: &Request) -> bool {
     // An exposure that was to be chosen anew is chosen by the light that it was requested with.
-    let chooses = matches!(
-        older,
+    let chooses = match older {
         Request::Command {
-            command: Command::Edit(Edit::Relight(Relight { expose: true, .. })),
+            command: Command::Edit(edit),
             ..
-        }
-    );
+        } => edit.get().is_some_and(|light: Relight| light.expose),
+        _ => false,
+    };
     let set = newer.sets();
     set.is_some() && set == older.sets() && !chooses
 }
@@ -365,9 +365,9 @@ impl Drop for CommandDispatcher {
 
 #[cfg(test)]
 mod tests {
+    use maulstick_painting::edits::{Place, Tune, Undo};
     use maulstick_types::Pose;
     use maulstick_types::command::TakeCommand;
-    use maulstick_types::edits::{Place, Tune, Undo};
     use maulstick_types::scene::{Light, Tuning};
 
     use super::*;

@@ -146,8 +146,8 @@ fn restore(held: &Preset, work: &mut PanelContext<'_>) -> Result<(), UserError> 
 mod tests {
     use eframe::egui::{Event, pos2};
     use egui_kittest::Harness;
+    use maulstick_types::Edit;
     use maulstick_types::command::{BrushCommand, Command};
-    use maulstick_types::edits::Edit;
     use maulstick_types::scene::BrushMode;
 
     use crate::input::brush_choice::of_library;

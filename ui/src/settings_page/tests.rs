@@ -1,8 +1,8 @@
 use eframe::egui::{Key, Modifiers, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use maulstick_types::Edit;
 use maulstick_types::command::Command;
-use maulstick_types::edits::Edit;
 
 use crate::input::keymap::Keymap;
 use crate::settings::preferences::Preferences;

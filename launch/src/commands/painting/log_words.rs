@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use maulstick_painting::edits::{FillPaint, GroundSource};
 use maulstick_rig::config::DeviceSection;
+use maulstick_types::Edit;
 use maulstick_types::command::{Command, TakeCommand};
-use maulstick_types::edits::{Edit, FillPaint, GroundSource};
 use maulstick_types::scene::{CANVAS, PALETTE};
 use maulstick_types::values::{BrushName, Share, TICKS_A_SECOND, Ticks};
 use maulstick_types::{Mixture, Region, name_hash};
@@ -270,7 +271,7 @@ fn number(value: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use maulstick_types::edits::{GoTo, Undo, examples};
+    use maulstick_painting::edits::{GoTo, Undo, examples};
 
     use super::*;
 

@@ -1,8 +1,8 @@
 //! Requests of rack, keys and presets.
 
+use maulstick_painting::edits::{Clean, Undo};
 use maulstick_rig::UserError;
 use maulstick_types::command::Detail;
-use maulstick_types::edits::{Clean, Undo};
 use maulstick_types::values::BrushName;
 
 use super::*;

@@ -3,10 +3,11 @@
 use eframe::egui::{Key, Modifiers, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use maulstick_painting::edits::{Clean, Handle, Load, Tune};
+use maulstick_types::Edit;
 use maulstick_types::Mixture;
 use maulstick_types::command::BrushCommand;
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Clean, Edit, Handle, Load, Tune};
 use maulstick_types::scene::{BrushMode, MARKER_FLOW};
 use maulstick_types::values::BrushName;
 

@@ -2,9 +2,10 @@ use eframe::egui::accesskit::{Role, Toggled};
 use eframe::egui::{Key, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use maulstick_painting::edits::{Dry, LayerRef, NameLayer, Opacity, StopDrying, Wet};
+use maulstick_types::Edit;
 use maulstick_types::Region;
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Dry, Edit, LayerRef, NameLayer, Opacity, StopDrying, Wet};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{LayerName, OpacityFactor, Share, Ticks};
 

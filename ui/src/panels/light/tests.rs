@@ -1,8 +1,9 @@
 use eframe::egui::{Key, accesskit::Role, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use maulstick_painting::edits::Relight;
+use maulstick_types::Edit;
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Edit, Relight};
 
 use super::*;
 use crate::test_support::panel_bench::{Bench, harness, picture, rig};

@@ -3,9 +3,10 @@
 use eframe::egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use maulstick_painting::edits::{Load, Wells};
+use maulstick_types::Edit;
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Edit, Load, Wells};
 use maulstick_types::scene::{PALETTE, WellKind};
 use maulstick_types::values::BrushName;
 

@@ -1,7 +1,7 @@
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{Faults, MemoryNet};
-use maulstick_types::edits::Edit;
-use maulstick_types::edits::{Place, Undo};
+use maulstick_painting::edits::{Place, Undo};
+use maulstick_types::Edit;
 use maulstick_types::{Origin, Pose};
 
 use super::*;

@@ -14,11 +14,9 @@ use maulstick_canvas::window::Window;
 use maulstick_model::brush::traits::BrushTraits;
 use maulstick_optics::THINNER;
 use maulstick_types::Mixture;
-use maulstick_types::edits::Wells;
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::{Surface, Well, WellKind};
 
-use crate::apply::{Applied, Apply};
 use crate::error::paint_error;
 use crate::ledger::Ledger;
 use crate::painting::Painting;
@@ -74,17 +72,8 @@ fn is_in((pose, traits): (&HeadPose, &BrushTraits), well: &Well, cell_m: f64) ->
     })
 }
 
-impl Apply for Wells {
-    /// Gives a surface other wells. Those that move take the wet paint on them along; what lies on those that go, and
-    /// where others come, is scraped off.
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.set_wells(self.surface, &self.wells)?;
-        Ok(Applied::Done)
-    }
-}
-
 impl Painting {
-    fn set_wells(&mut self, surface: u32, wells: &[Well]) -> Result<(), EditError> {
+    pub(crate) fn set_wells(&mut self, surface: u32, wells: &[Well]) -> Result<(), EditError> {
         let on = self.surfaces.at(surface)?;
         let mut changed = self.scene.surfaces[on].clone();
         let size = changed.cells.map(|cells| f64::from(cells) * changed.cell_m);
