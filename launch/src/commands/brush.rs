@@ -20,7 +20,7 @@ use serde_json::json;
 
 use crate::cells::SheetCells;
 use crate::commands::client::{Client, Target};
-use crate::commands::edit::{self, BrushEdits, EditsOf};
+use crate::commands::edit::{self, EditCommand};
 use crate::commands::say;
 use crate::commands::{print_json, print_text, write_picture};
 use crate::outputs::{UsedFile, check_outputs};
@@ -40,7 +40,7 @@ pub enum BrushCommand {
     Take(TakeOptions),
     /// An edit
     #[command(flatten)]
-    Edit(EditsOf<BrushEdits>),
+    Edit(EditCommand),
     /// Bend one spine through a list of poses above the plane z = 0
     ///
     /// SPINE.toml has `lengths_m` and `stiffness_nm_per_rad` (lists from ferrule to tip, 1 to 64

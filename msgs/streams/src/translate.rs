@@ -117,6 +117,37 @@ mod tests {
         assert!(count > 50, "{count}");
     }
 
+    /// Edits were an enum.
+    #[test]
+    fn edits_have_names_and_fields() {
+        let table = include_str!("../../types/src/paint/journal_12.json");
+        let table = FieldTable::parse(table.as_bytes()).expect("a table");
+        let older = Topic::of(table);
+        let lines = include_str!("../../types/tests/journal_12.txt").lines();
+        let mut names = Vec::new();
+        for line in lines {
+            let hex = line.split_whitespace().last().expect("bytes");
+            let byte = |at: usize| u8::from_str_radix(&hex[at..at + 2], 16).expect("hexadecimal");
+            let bytes: Vec<u8> = (0..hex.len()).step_by(2).map(byte).collect();
+            let message = RecordedMessage {
+                channel: 0,
+                arrived_ns: 0,
+                header: Header::from_bytes(&bytes).expect("whole"),
+                bytes,
+            };
+            let (_, read) = older.read::<JournalEntry>(&message).expect(line);
+            match read.entry {
+                Entry::Command {
+                    command: Command::Edit(edit),
+                    ..
+                } => names.push(edit.name),
+                other => panic!("{other:?}"),
+            }
+        }
+        assert_eq!(names.len(), 27);
+        assert_eq!(names[..2], ["load", "load_from"]);
+    }
+
     /// A topic whose messages lacked some fields and alternatives, and had others.
     fn older(change: impl Fn(&str) -> String) -> Topic {
         let json = serde_json::to_string(&JournalEntry::schema().whole()).expect("JSON");

@@ -366,8 +366,7 @@ fn fill_screen(context: &Context, fills: bool) {
 mod tests {
     use eframe::egui::{Key, Modifiers};
     use egui_kittest::Harness;
-    use maulstick_painting::edits::Relight;
-    use maulstick_types::Edit;
+    use maulstick_painting::edits::{Relight, Undo};
     use maulstick_types::command::{Command, Detail};
     use maulstick_types::paint::StepName;
     use maulstick_types::scene::Layer;
@@ -433,10 +432,7 @@ mod tests {
         harness.run_steps(2);
         ctrl(&mut harness, Key::Z, Modifiers::NONE);
         let asked = harness.state_mut().asked();
-        assert!(
-            matches!(asked[0].1, Command::Edit(Edit::Undo(_))),
-            "{asked:?}"
-        );
+        assert!(asked[0].1.edit::<Undo>().is_some(), "{asked:?}");
     }
 
     #[test]

@@ -221,12 +221,9 @@ impl PanelContext<'_> {
     /// Takes in the outcome of a request: a brush that refused keeps its file; one that has the requested file runs the
     /// command that waited for it.
     pub fn brush_answered(&mut self, outcome: &Outcome) {
-        if let Request::Command {
-            command: Command::Edit(edit),
-            ..
-        } = &outcome.request
+        if let Request::Command { command, .. } = &outcome.request
             && outcome.result.is_ok()
-            && let Some(load) = edit.get()
+            && let Some(load) = command.edit()
         {
             return self.loaded(&load);
         }

@@ -89,7 +89,6 @@ fn handle(requests: &mut Requests, handling: &BrushHandling) {
 
 #[cfg(test)]
 mod tests {
-    use maulstick_types::Edit;
     use maulstick_types::command::Command;
 
     use super::*;
@@ -111,10 +110,7 @@ mod tests {
     }
 
     fn modes(commands: &[Command]) -> Vec<BrushMode> {
-        let mode = |command: &Command| match command {
-            Command::Edit(Edit::Handle(handle)) => handle.mode.clone(),
-            other => panic!("{other:?}"),
-        };
+        let mode = |command: &Command| command.edit::<Handle>().expect("a mode").mode;
         commands.iter().map(mode).collect()
     }
 

@@ -178,7 +178,6 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable as _;
     use maulstick_painting::edits::Load;
-    use maulstick_types::Edit;
     use maulstick_types::command::Command;
 
     use super::*;
@@ -235,9 +234,10 @@ mod tests {
         nearest.expect("a mixture").click();
         harness.run_steps(3);
         let asked = harness.state_mut().asked();
-        let [(_, Command::Edit(Edit::Load(Load { mixture, .. })))] = &asked[..] else {
+        let [(_, command)] = &asked[..] else {
             panic!("{asked:?}");
         };
+        let Load { mixture, .. } = command.edit().expect("a load");
         let names = of_palette(harness.state().rig.palette()).expect("paints");
         assert!(mixture.parts.iter().all(|part| names.contains(&part.paint)));
         ctrl(&mut harness, Key::M, Modifiers::NONE);

@@ -230,11 +230,10 @@ fn patience(command: &Command) -> Duration {
 fn replaces(newer: &Request, older: &Request) -> bool {
     // An exposure that was to be chosen anew is chosen by the light that it was requested with.
     let chooses = match older {
-        Request::Command {
-            command: Command::Edit(edit),
-            ..
-        } => edit.get().is_some_and(|light: Relight| light.expose),
-        _ => false,
+        Request::Command { command, .. } => {
+            command.edit().is_some_and(|light: Relight| light.expose)
+        }
+        Request::Force { .. } => false,
     };
     let set = newer.sets();
     set.is_some() && set == older.sets() && !chooses

@@ -148,6 +148,17 @@ impl<T: EditFields> From<T> for Command {
     }
 }
 
+impl Command {
+    /// The fields of its edit, if it is one of this kind and they are in range.
+    #[must_use]
+    pub fn edit<T: EditFields>(&self) -> Option<T> {
+        match self {
+            Self::Edit(edit) => edit.get(),
+            _ => None,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use serde_json::json;

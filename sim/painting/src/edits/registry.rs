@@ -81,6 +81,8 @@ pub fn read(edit: &Edit) -> Result<Box<dyn PaintingEdit>, EditFault> {
 
 #[cfg(test)]
 mod tests {
+    use maulstick_types::command::Command;
+    use maulstick_types::paint::{Entry, JournalEntry};
     use serde_json::{Value, json};
 
     use super::*;
@@ -110,6 +112,49 @@ mod tests {
             read(&other).err(),
             Some(EditFault::Unknown("varnish".to_owned()))
         );
+    }
+
+    /// Entries of version 12, in which edits were an enum, each with the name of its edit. No line is ever changed.
+    const EARLIER: &str = include_str!("../../../../msgs/types/tests/journal_12.txt");
+
+    /// The edit of a stored entry.
+    fn stored(line: &str) -> Edit {
+        let hex = line.split_whitespace().last().expect("bytes");
+        let byte = |at: usize| u8::from_str_radix(&hex[at..at + 2], 16).expect("hexadecimal");
+        let bytes: Vec<u8> = (0..hex.len()).step_by(2).map(byte).collect();
+        let (_, entry) = JournalEntry::decode_stored(&bytes).expect("read");
+        match entry.entry {
+            Entry::Command {
+                command: Command::Edit(edit),
+                ..
+            } => edit,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn edits_of_earlier_journals_are_the_same_by_name_and_field() {
+        let mut count = 0;
+        for line in EARLIER.lines() {
+            let edit = stored(line);
+            let entry = EditEntry::find(&edit).expect(line);
+            let example = (entry.example)().expect("in range");
+            let fields = |edit: &Edit| serde_json::from_str::<Value>(&edit.fields).expect("JSON");
+            assert_eq!(fields(&edit), fields(&example), "{line}");
+            (entry.read)(&edit).expect(line);
+            count += 1;
+        }
+        assert_eq!(count, 27);
+        // A byte of a number is seen.
+        let dry = EARLIER
+            .lines()
+            .find(|line| line.starts_with("Dry "))
+            .expect("dry");
+        let [half, third] = [0.5f32, 0.3].map(|share| {
+            let bytes = share.to_le_bytes().into_iter();
+            bytes.map(|byte| format!("{byte:02x}")).collect::<String>()
+        });
+        assert_ne!(stored(&dry.replacen(&half, &third, 1)), stored(dry));
     }
 
     /// The places of the numbers in a value.

@@ -66,10 +66,7 @@ impl Sequencer {
         request: &CommandRequest,
         queued: impl Iterator<Item = (&'a Header, &'a BrushState)>,
     ) -> Option<Cut> {
-        let Command::Edit(edit) = &request.command else {
-            return None;
-        };
-        let Undo { brush: of } = edit.get()?;
+        let Undo { brush: of } = request.command.edit()?;
         let after = request.after.as_ref()?;
         let origin = Origin {
             source: after.brush,
