@@ -178,7 +178,6 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable as _;
     use maulstick_painting::edits::Load;
-    use maulstick_types::command::Command;
 
     use super::*;
     use crate::test_support::overlay_bench::{Bench, ctrl, picture, until, window, write};

@@ -1,4 +1,3 @@
-use maulstick_types::command::Command;
 use std::path::PathBuf;
 
 use eframe::egui::{Key, Modifiers, MouseWheelUnit, OutputCommand};
