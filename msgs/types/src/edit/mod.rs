@@ -110,12 +110,13 @@ impl Edit {
         }
     }
 
-    /// A field that is a text or a whole number, in words; empty where there is none.
+    /// A field that is a text, a number or a flag, in words; empty where there is none.
     #[must_use]
     pub fn word(&self, field: &str) -> String {
         match self.object().unwrap_or_default().get(field) {
             Some(Value::String(text)) => text.clone(),
             Some(Value::Number(number)) => number.to_string(),
+            Some(Value::Bool(flag)) => flag.to_string(),
             _ => String::new(),
         }
     }

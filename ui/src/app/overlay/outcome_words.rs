@@ -1,10 +1,10 @@
 //! What an edit has done, for the notification of one whose effect may be out of view.
 
 use maulstick_types::command::{Command, Detail};
+use maulstick_ui_kit::language::{layer_name, step, translated};
 
-use crate::language::{layer_name, step, translated};
-use crate::rig::requests::Request;
 use crate::settings::brush_load;
+use maulstick_client::request::Request;
 
 /// Edits whose effect may be out of view, by their names.
 const PAST_TENSES: [(&str, &str); 6] = [

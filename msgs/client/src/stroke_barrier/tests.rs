@@ -1,7 +1,8 @@
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{Faults, MemoryNet};
-use maulstick_painting::edits::{Place, Undo};
+use maulstick_types::Edit;
 use maulstick_types::{Origin, Pose};
+use serde_json::json;
 
 use super::*;
 
@@ -30,7 +31,7 @@ impl Desk {
         let topic = topics.brush_consumed(BRUSH);
         let brush = Sender::new(&bus, &topic, Qos::Control, me(BRUSH)).expect("sends");
         let topic = topics.paint_consumed();
-        let paint = Sender::new(&bus, &topic, Qos::Control, me(PAINT)).expect("sends");
+        let paint = Sender::new(&bus, &topic, Qos::Control, me(PAINT_NODE)).expect("sends");
         let mut desk = Self {
             barrier,
             brush,
@@ -43,7 +44,7 @@ impl Desk {
 
     fn pass(&mut self) {
         self.net.advance(10 * MILLISECOND);
-        self.barrier.take_in(self.net.bus().now_ns());
+        self.barrier.drain(self.net.bus().now_ns());
     }
 
     /// The brush has consumed the mouse's samples below `next`, the newest of them in `state`.
@@ -80,7 +81,7 @@ impl Desk {
 
     fn push(&mut self, command: Command, seq: u64) {
         let request = Request::Command {
-            node: PAINT.into(),
+            node: PAINT_NODE.into(),
             command,
         };
         let sample = SampleNumber {
@@ -108,11 +109,12 @@ impl Desk {
 }
 
 fn undo() -> Command {
-    Undo { brush: None }.into()
+    Edit::named("undo", &json!({})).into()
 }
 
 fn place() -> Command {
-    Command::from(Place::new(0, Pose::IDENTITY, 1.0).expect("in reach"))
+    let fields = json!({ "surface": 0, "pose": Pose::IDENTITY, "zoom": 1.0 });
+    Edit::named("place", &fields).into()
 }
 
 #[test]
@@ -177,7 +179,7 @@ fn a_stroke_that_is_not_painted_is_not_overtaken_however_long_the_hand_rests() {
     desk.net.advance(5000 * MILLISECOND);
     let push = |desk: &mut Desk| {
         let request = Request::Command {
-            node: PAINT.into(),
+            node: PAINT_NODE.into(),
             command: undo(),
         };
         let now_ns = desk.net.bus().now_ns();
@@ -219,7 +221,7 @@ fn nobody_waits_for_a_brush_that_ended_nor_for_a_stylus_that_moves_none() {
         seq: 9,
     };
     let request = Request::Command {
-        node: PAINT.into(),
+        node: PAINT_NODE.into(),
         command: undo(),
     };
     desk.barrier
