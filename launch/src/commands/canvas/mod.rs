@@ -5,14 +5,14 @@ mod light;
 use clap::Subcommand;
 use maulstick_rig::UserError;
 
-use crate::commands::edit::{self, CanvasEdits, EditsOf};
+use crate::commands::edit::{self, EditCommand};
 
 /// Commands of `maulstick canvas`.
 #[derive(Clone, Debug, Subcommand)]
 pub enum CanvasCommand {
     /// An edit
     #[command(flatten)]
-    Edit(EditsOf<CanvasEdits>),
+    Edit(EditCommand),
     /// Show or change the light
     Light(light::LightOptions),
 }
