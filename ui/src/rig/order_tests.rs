@@ -19,7 +19,9 @@ use maulstick_paint_node::PaintNode;
 use maulstick_painting::edits::{Clean, Handle, Load, Tune};
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::BrushState;
-use maulstick_types::command::{BrushCommand, CommandReply, CommandRequest, Outcome, PAINT_NODE};
+use maulstick_types::command::{
+    BrushCommand, Command, CommandReply, CommandRequest, Outcome, PAINT_NODE,
+};
 use maulstick_types::paint::{Entry, JournalEntry};
 use maulstick_types::scene::{BrushHandling, BrushMode, Tuning};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};

@@ -12,6 +12,7 @@ use crate::painting::surfaces::well_moves::WellMoves;
 
 /// Wells may reach beyond the edge of their surface by what rounding makes of it, m.
 const EDGE_M: f64 = 1e-6;
+
 impl Painting {
     pub(crate) fn set_wells(&mut self, surface: u32, wells: &[Well]) -> Result<(), EditError> {
         let on = self.surfaces.at(surface)?;
