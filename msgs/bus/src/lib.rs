@@ -18,6 +18,43 @@
 //! | [`rig`] | the rig's folder, and the file by which a foreign program finds it |
 //! | [`sockets`] | the sockets in it, put back where they were removed |
 //!
+//! A program publishes a stylus over a network that loses a fifth of the messages and lets others overtake; the receiver
+//! has each sample once, in order. In a rig a [`ZenohBus`] takes the place of the [`MemoryBus`].
+//!
+//! ```
+//! use maulstick_bus::credit::Stamp;
+//! use maulstick_bus::{Bus, CreditReceiver, CreditSender, Faults, MemoryNet, Wake};
+//! use maulstick_types::stylus::StylusSample;
+//! use maulstick_types::wire::topics::Topics;
+//! use maulstick_types::{Flags, Origin, name_hash};
+//!
+//! # fn main() -> Result<(), maulstick_bus::BusError> {
+//! let net = MemoryNet::new(1, 0, Faults { loss: 0.2, delay_ns: 3_000_000 });
+//! let (bus, topics, wake) = (net.bus(), Topics::new("studio"), Wake::new());
+//! let (topic, me) = (topics.sample("my-pen"), Origin { source: name_hash("my-pen"), epoch: 1 });
+//! let mut pen = CreditSender::<StylusSample>::new(&bus, &topics, &topic, me, &wake)?;
+//! let mut brush = CreditReceiver::<StylusSample>::new(&bus, &topics, &topic, me, &wake)?;
+//!
+//! let mut received = Vec::new();
+//! while received.len() < 50 {
+//!     let now_ns = bus.now_ns();
+//!     if pen.next_seq() < 50 {
+//!         let stamp = Stamp { now_ns, event_ns: now_ns };
+//!         pen.send(Flags::NONE, stamp, &StylusSample::away())?;
+//!     }
+//!     brush.poll(&bus)?;
+//!     while let Some(sample) = brush.pop() {
+//!         received.push(sample.header.seq);
+//!     }
+//!     pen.consumed(me.epoch, received.len() as u64, now_ns);
+//!     pen.serve(now_ns)?;
+//!     net.advance(1_000_000);
+//! }
+//! assert_eq!(received, Vec::from_iter(0..50));
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # Streams without loss
 //!
 //! The transport may drop anything. A sender numbers its messages, rejects and reports one that exceeds its size limit,

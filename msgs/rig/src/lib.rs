@@ -18,6 +18,35 @@
 //!
 //! A crate of its own, so that daemons, window and launcher share settings and conduct without knowing each other.
 //!
+//! A studio with one force-feedback stylus; a mistake is reported with its line and what to do.
+//!
+//! ```
+//! use maulstick_rig::RigConfig;
+//!
+//! # fn main() -> Result<(), maulstick_rig::UserError> {
+//! let text = r#"
+//! [canvas]
+//! width_mm = 400
+//! height_mm = 300
+//!
+//! [[device]]
+//! name = "left"
+//! driver = "openhaptics"
+//! brush = "main"
+//! max_force_n = 2.0
+//! "#;
+//! let rig = RigConfig::parse(text, "rig.toml")?;
+//! assert_eq!(rig.canvas.cells(), [1600, 1200]);
+//! assert_eq!(rig.device[0].max_force_n, 2.0);
+//!
+//! let wrong = text.replace("openhaptics", "openhaptic");
+//! let error = RigConfig::parse(&wrong, "rig.toml").expect_err("no such driver");
+//! assert_eq!(error.place.as_deref(), Some("rig.toml:8"));
+//! println!("{error}");
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # Progress
 //!
 //! The loop of each node publishes its status twice a second: messages consumed, produced and waiting. The launcher

@@ -12,6 +12,35 @@
 //! | [`values`] | numbers and names that are in range |
 //! | [`pose`], [`region`], [`mixture`] | where something is, a part of a surface, a mixture of paints |
 //!
+//! A pen that touches 20 mm right of the canvas's middle, as bytes of the wire and back:
+//!
+//! ```
+//! use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
+//! use maulstick_types::{Flags, HEADER_BYTES, Origin, decode, encode, name_hash};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let sample = StylusSample {
+//!     pose: StylusPose::Contact {
+//!         point_m: [0.02, 0.0, 0.0],
+//!         tilt_rad: DEFAULT_TILT_RAD,
+//!         twist_rad: 0.0,
+//!         pressure: 0.5,
+//!     },
+//!     in_range: true,
+//!     ..StylusSample::away()
+//! };
+//! let pen = Origin { source: name_hash("my-pen"), epoch: 1 };
+//! let (sampled_ns, sent_ns) = (1_500_000_000, 1_500_400_000);
+//! let bytes = encode(&pen, Flags::FIRST, 0, sampled_ns, sent_ns, &sample)?;
+//!
+//! let (header, read) = decode::<StylusSample>(&bytes)?;
+//! assert_eq!(read, sample);
+//! assert_eq!((header.origin(), header.event_ns), (pen, sampled_ns));
+//! assert!(decode::<StylusSample>(&bytes[..HEADER_BYTES]).is_err(), "the body is missing");
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # Versions
 //!
 //! The header holds magic, version, schema hash, source, epoch, flags, length, sequence number, event time and send

@@ -19,6 +19,24 @@
 //! | [`residuals`] | how well they reproduce the samples |
 //! | [`fit`](mod@fit) | the whole |
 //! | [`paint_file`](mod@paint_file) | the result as a file |
+//!
+//! The example of `docs/measuring.md`: 24 readings of five paints give K and S at each wavelength.
+//!
+//! ```
+//! use maulstick_measure::{FitOptions, fit, paint_file};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let table = include_str!("../../../docs/examples/measurements.csv");
+//! let fitted = fit(table, &FitOptions::default())?;
+//! for paint in &fitted.paints {
+//!     println!("{}: K/S at 560 nm {:.3}", paint.name, paint.k.at(560.0) / paint.s.at(560.0));
+//! }
+//! println!("noise of the readings {:.4}, worst sample ΔE₀₀ {:.2}", fitted.noise, fitted.worst());
+//! assert!(fitted.noise < 2e-3 && fitted.worst() < 0.5);
+//! assert_eq!(maulstick_optics::PaintLibrary::parse(&paint_file(&fitted))?.paints().len(), 5);
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod error;
 pub mod fit;
