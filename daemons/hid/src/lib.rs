@@ -35,7 +35,7 @@
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let text = include_str!("../../../docs/examples/pen.hid");
-//! let tablet = recording::parse(text).expect("whole").remove(0);
+//! let tablet = recording::parse(text)?.remove(0);
 //! let layout = Layout::of(&descriptor::read(&tablet.descriptor)?).ok_or("it has no pen")?;
 //! let readings: Vec<_> = tablet.events.iter().filter_map(|event| layout.decode(&event.report)).collect();
 //! let touching: Vec<_> = readings.iter().filter(|pen| pen.presence == Presence::Touching).collect();

@@ -94,8 +94,8 @@ fn go_on_by(
     path: &Path,
     restore: fn(Opened) -> Result<Sequencer, EditError>,
 ) -> Result<(Document, Sequencer, u64), UserError> {
-    let room = config.paint.room().map_err(|what| {
-        UserError::usage(what)
+    let room = config.paint.room().map_err(|error| {
+        UserError::usage(error.to_string())
             .at("[paint]")
             .help("write sizes as 512M or 2G")
     })?;

@@ -53,6 +53,6 @@ pub use error::{MeasureError, Place};
 pub use fit::{Fit, FitOptions, fit};
 pub(crate) use input::reading;
 pub use input::{headings, instrument, measurements, notes, table};
-pub use notes::parse_surface;
+pub use notes::{SurfaceError, parse_surface};
 pub use paint_file::paint_file;
 pub use residuals::Residual;

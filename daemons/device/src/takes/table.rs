@@ -80,12 +80,17 @@ impl TimeUnit {
     }
 }
 
-impl std::str::FromStr for TimeUnit {
-    type Err = String;
+/// A text that is not a unit of time.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("'{0}' is not a unit of time: s, ms, us or ns")]
+pub struct TimeUnitError(pub String);
 
-    fn from_str(text: &str) -> Result<Self, String> {
+impl std::str::FromStr for TimeUnit {
+    type Err = TimeUnitError;
+
+    fn from_str(text: &str) -> Result<Self, TimeUnitError> {
         let known = Self::ALL.into_iter().find(|unit| unit.name() == text);
-        known.ok_or_else(|| format!("'{text}' is no unit of time: s, ms, us or ns"))
+        known.ok_or_else(|| TimeUnitError(text.to_owned()))
     }
 }
 

@@ -349,7 +349,7 @@ impl PaintNode {
             }
             (Ok(()), Ok(_)) => "it names another brush".to_owned(),
             (Ok(()), Err(error)) => error.to_string(),
-            (Err(error), _) => error,
+            (Err(error), _) => error.to_string(),
         };
         self.refused += 1;
         tracing::warn!("{key}: the brush file is refused: {refusal}");

@@ -75,7 +75,7 @@ impl RigConfig {
             .map_err(|(what, help)| fault(what, "[paint]", "").help(help))?;
         self.paint
             .room()
-            .map_err(|what| fault(what, "[paint]", "").help("write sizes as 512M or 2G"))?;
+            .map_err(|error| fault(error.to_string(), "[paint]", "").help("write sizes as 512M or 2G"))?;
         let record = self.record.as_ref();
         record
             .map_or(Ok(()), crate::config::RecordSection::check)

@@ -359,7 +359,8 @@ impl Database {
             0 => None,
             base => Some(self.planes_at(base as u64, left - 1)?),
         };
-        planes::decode(slots as u64, &data, base.as_ref()).map_err(|what| damaged(&what))
+        planes::decode(slots as u64, &data, base.as_ref())
+            .map_err(|defect| damaged(&defect.to_string()))
     }
 
     /// Load of a brush.
@@ -378,7 +379,7 @@ impl Database {
         if load_checksum(id, &data) != sum {
             return Err(damaged("does not match its checksum"));
         }
-        loads::decode(&data).map_err(|what| damaged(&what))
+        loads::decode(&data).map_err(|defect| damaged(&defect.to_string()))
     }
 
     /// Checks that it has the tables of this version: what was not locked is not migrated.

@@ -54,8 +54,8 @@ impl DocumentThread {
     }
 }
 
-/// Makes a painting unreliable in memory: a page of it is not intact, or is not given by the disk for too long.
-fn broken(shared: &Shared, error: &DocumentError) -> String {
+/// Notes that the painting in memory is unreliable: a page of it is not intact, or the disk did not give it in time.
+fn note_broken(shared: &Shared, error: &DocumentError) {
     let what = match error {
         DocumentError::Damaged(what) => what.clone(),
         error => error.to_string(),
@@ -63,8 +63,7 @@ fn broken(shared: &Shared, error: &DocumentError) -> String {
     shared.fails.store(true, SeqCst);
     let mut queues = shared.lock();
     queues.fault = Some((error.to_string(), error.advice()));
-    queues.broken = Some(what.clone());
-    what
+    queues.broken = Some(what);
 }
 
 /// Content of a page, or an answer that says why there is none; `None` where it is to be tried again.
@@ -72,7 +71,7 @@ fn answered<T>(
     shared: &Shared,
     read: Result<T, DocumentError>,
     until: Instant,
-    answer: &Sender<Result<T, String>>,
+    answer: &Sender<Result<T, DocumentError>>,
     failure: &mut Option<DocumentError>,
 ) -> Option<()> {
     let waits = Instant::now() < until && shared.lock().life == Life::Open;
@@ -81,7 +80,7 @@ fn answered<T>(
             *failure = Some(error);
             return None;
         }
-        read => read.map_err(|error| broken(shared, &error)),
+        read => read.inspect_err(|error| note_broken(shared, error)),
     };
     // Who asked may have given up.
     answer.send(read).ok();

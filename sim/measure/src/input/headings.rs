@@ -57,8 +57,9 @@ impl Headings {
             let number = table.number(lower.trim_end_matches("nm").trim_end());
             let Ok(nm) = number else {
                 let named = check_paint_name(heading);
-                if let Err(what) = named {
-                    return Err(fault(what, "choose another name for the paint"));
+                if let Err(error) = named {
+                    let help = "choose another name for the paint";
+                    return Err(fault(error.to_string(), help));
                 }
                 if heading.starts_with('#') || lower == "paint" {
                     let help = "choose another name, without a leading #";

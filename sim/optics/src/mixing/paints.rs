@@ -80,31 +80,39 @@ const MOST: f64 = 1e6;
 /// The name of a paint has at most this many bytes.
 const NAME_MAX: usize = maulstick_types::command::PAINT_NAME_MAX;
 
-/// Whether a paint may have this name: mixtures are written with it.
+/// A name that no paint may have.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PaintNameError {
+    /// Nothing but blanks.
+    #[error("a paint has no name")]
+    Blank,
+    /// Too many bytes.
+    #[error("a paint's name has {0} bytes, more than {NAME_MAX}")]
+    Long(usize),
+    /// A character with which mixtures are written, or a control character.
+    #[error("the name '{0}' has one of = , \" in it, with which mixtures are written")]
+    Character(String),
+    /// The thinner's.
+    #[error("'{THINNER}' is the medium that every palette has; choose another name for the paint")]
+    Thinner,
+}
+
+/// Checks that a paint may have this name: mixtures are written with it.
 ///
 /// # Errors
-/// What is wrong, in words.
-pub fn check_paint_name(name: &str) -> Result<(), String> {
+/// [`PaintNameError`].
+pub fn check_paint_name(name: &str) -> Result<(), PaintNameError> {
     if name.trim().is_empty() {
-        return Err("a paint has no name".into());
+        Err(PaintNameError::Blank)
+    } else if name.len() > NAME_MAX {
+        Err(PaintNameError::Long(name.len()))
+    } else if name.contains(['=', ',', '"']) || name.contains(char::is_control) {
+        Err(PaintNameError::Character(name.to_owned()))
+    } else if name.eq_ignore_ascii_case(THINNER) {
+        Err(PaintNameError::Thinner)
+    } else {
+        Ok(())
     }
-    if name.len() > NAME_MAX {
-        return Err(format!(
-            "a paint's name of {} bytes is over {NAME_MAX}",
-            name.len()
-        ));
-    }
-    if name.contains(['=', ',', '"']) || name.contains(char::is_control) {
-        return Err(format!(
-            "the name '{name}' has one of = , \" in it, as mixtures are written with"
-        ));
-    }
-    if name.eq_ignore_ascii_case(THINNER) {
-        return Err(format!(
-            "'{THINNER}' is the medium that every palette has; call the paint otherwise"
-        ));
-    }
-    Ok(())
 }
 
 impl From<maulstick_tables::TableError> for PaintError {
@@ -198,7 +206,7 @@ impl PaintLibrary {
                 }
             };
             if !found.contains_key(name) {
-                check_paint_name(name).map_err(fault)?;
+                check_paint_name(name).map_err(|error| fault(error.to_string()))?;
                 order.push((name.into(), colour_index.into(), source.into()));
             }
             let rows = found.entry(name.to_owned()).or_default();
