@@ -9,9 +9,9 @@ use maulstick_device::pen_stream::{DeskFit, GONE_NS, PenStream};
 use maulstick_rig::UserError;
 use maulstick_rig::config::PEN_PRIORITY;
 use maulstick_types::Origin;
+use maulstick_types::limits::FARTHEST_M;
 use maulstick_types::stylus::{
-    DEFAULT_TILT_RAD, FARTHEST_M, StylusInfo, StylusPose, StylusSample, StylusStatus, Trouble,
-    axes, switch,
+    DEFAULT_TILT_RAD, StylusInfo, StylusPose, StylusSample, StylusStatus, Trouble, axes, switch,
 };
 use maulstick_types::wire::topics::Topics;
 

@@ -127,7 +127,7 @@ impl UserError {
         name: &str,
         names: impl IntoIterator<Item = &'a str>,
     ) -> Self {
-        Self::usage(what).help(maulstick_types::command::advice::choice(name, names))
+        Self::usage(what).help(maulstick_types::nearest::choice(name, names))
     }
 }
 

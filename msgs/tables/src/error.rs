@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+/// Most characters of a cell: what is longer is not a number, and hardly a name.
+pub const MOST_CHARACTERS: usize = 1000;
 /// Characters of a cell that an error shows.
 const SHOWN: usize = 40;
 
@@ -59,10 +61,7 @@ pub enum Fault {
     #[error("a quote is opened and not closed on the line")]
     OpenQuote,
     /// A cell that is longer than any number or name.
-    #[error(
-        "a cell has {characters} characters, more than {}",
-        crate::table::MOST_CHARACTERS
-    )]
+    #[error("a cell has {characters} characters, more than {}", MOST_CHARACTERS)]
     LongCell {
         /// Its length.
         characters: usize,

@@ -46,6 +46,6 @@ pub mod table;
 pub mod text;
 
 pub use dialect::Separator;
-pub use error::{Fault, TableError, shown};
+pub use error::{Fault, MOST_CHARACTERS, TableError, shown};
 pub use table::{HeadingLine, Note, Row, Table};
 pub use text::decode;

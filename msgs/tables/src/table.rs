@@ -1,12 +1,9 @@
 //! Tables, their rows and headings.
 
 use crate::dialect::{Cutter, Separator};
-use crate::error::{Fault, TableError};
+use crate::error::{Fault, MOST_CHARACTERS, TableError};
 use crate::number::{Marks, is_number};
 use crate::text::lines;
-
-/// Most characters of a cell.
-pub const MOST_CHARACTERS: usize = 1000;
 
 /// Whether the first line of a table names its columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,7 +9,8 @@
 //! | [`wire`] | header, codec, field tables and their hash, the key expressions of a rig |
 //! | [`stylus`], [`control`], [`haptics`], [`brush`], [`scene`], [`paint`], [`command`], [`window`], [`node`] | the messages |
 //! | [`edits`] | edits of a painting, one in one file |
-//! | [`values`] | numbers and names that are in range |
+//! | [`values`], [`limits`] | numbers and names that are in range, and the ranges |
+//! | [`nearest`] | the known name that was probably meant |
 //! | [`pose`], [`region`], [`mixture`] | where something is, a part of a surface, a mixture of paints |
 //!
 //! A pen that touches 20 mm right of the canvas's middle, as bytes of the wire and back:
@@ -105,7 +106,9 @@ pub mod command;
 pub mod control;
 pub mod edits;
 pub mod haptics;
+pub mod limits;
 pub mod mixture;
+pub mod nearest;
 pub mod node;
 pub mod paint;
 pub mod pose;
@@ -116,8 +119,8 @@ pub mod values;
 pub mod window;
 pub mod wire;
 
-pub use command::advice::nearest;
 pub use mixture::{Mixture, MixtureError};
+pub use nearest::nearest;
 pub use paint::frame_view::{FrameTileView, FrameView};
 pub use pose::Pose;
 pub use region::Region;

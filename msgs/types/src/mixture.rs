@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::command::{PAINT_NAME_MAX, PARTS_MAX};
+use crate::limits::{PAINT_NAME_MAX, PARTS_MAX};
 use crate::wire::define::wire_struct;
 
 /// Largest difference from 1 of the sum of shares that counts as rounding.

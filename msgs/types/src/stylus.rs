@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::command::After;
+use crate::limits::FARTHEST_M;
 use crate::pose::Pose;
 use crate::wire::define::{message, wire_enum, wire_struct};
 
@@ -39,10 +40,6 @@ pub mod switch {
 /// Tilt of a pen that does not sense it: 30° toward the lower right, radians about y and x as in
 /// [`StylusPose::Contact`]: atan(tan 30° · cos 45°) and its negative.
 pub const DEFAULT_TILT_RAD: [f64; 2] = [0.387_596_686_655_180_66, -0.387_596_686_655_180_66];
-
-/// Limit on the distance of a sample from the desk's origin along each axis, m: a motion over all of it can still be
-/// followed cell by cell.
-pub const FARTHEST_M: f64 = 10.0;
 
 /// Longest text of a trouble, bytes: a status has no room for more.
 const LONGEST_TEXT: usize = 1024;

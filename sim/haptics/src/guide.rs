@@ -14,7 +14,7 @@
 
 use glam::DVec3;
 use maulstick_types::haptics::GuideModel;
-use maulstick_types::stylus::FARTHEST_M;
+use maulstick_types::limits::FARTHEST_M;
 
 use crate::contact::HandleState;
 

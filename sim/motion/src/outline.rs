@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use maulstick_num::sin_cos;
-use maulstick_types::stylus::FARTHEST_M;
+use maulstick_types::limits::FARTHEST_M;
 
 use crate::MotionError;
 

@@ -12,7 +12,8 @@ use std::path::Path;
 use maulstick_brush::model::BRIDGED_NS;
 use maulstick_rig::UserError;
 use maulstick_rig::table_file::{MOST_BYTES, read_table};
-use maulstick_types::stylus::{DEFAULT_TILT_RAD, FARTHEST_M, StylusPose, StylusSample, axes};
+use maulstick_types::limits::FARTHEST_M;
+use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
 
 use crate::take::{Take, TakeSample};
 use columns::Row;

@@ -101,9 +101,7 @@ impl TakeSetup {
         };
         let settings = stated.metadata.get(SETTINGS);
         let settings = settings.filter(|name| setup.files.contains_key(*name));
-        setup.settings = settings
-            .ok_or(SetupError::Settings)?
-            .clone();
+        setup.settings = settings.ok_or(SetupError::Settings)?.clone();
         let loads = stated.metadata.iter();
         let loads = loads.filter(|(key, _)| key.starts_with(LOAD));
         setup.loads = loads.map(|(_, load)| load.clone()).collect();

@@ -1,9 +1,10 @@
 //! Allowed values of the settings of a rig.
 
-use maulstick_types::command::advice::choice;
+use maulstick_types::nearest::choice;
 use maulstick_types::wire::topics::check_name;
 
 use super::check_driver::check_driver;
+use super::wrong::{Wrong, line_of};
 use super::{
     ACTIONS, BACKENDS, BRUSH_NODE, BrushSection, DRIVERS, DeviceSection, FORCES, GAMUTS,
     MOST_PAINT_DRAG, RESERVED, RigConfig,
@@ -73,9 +74,9 @@ impl RigConfig {
             .map_err(|(what, help, node)| fault(what, "[node.", &node).help(help))?;
         choose("backend", &self.paint.backend, &BACKENDS)
             .map_err(|(what, help)| fault(what, "[paint]", "").help(help))?;
-        self.paint
-            .room()
-            .map_err(|error| fault(error.to_string(), "[paint]", "").help("write sizes as 512M or 2G"))?;
+        self.paint.room().map_err(|error| {
+            fault(error.to_string(), "[paint]", "").help("write sizes as 512M or 2G")
+        })?;
         let record = self.record.as_ref();
         record
             .map_or(Ok(()), crate::config::RecordSection::check)
@@ -214,32 +215,6 @@ fn is_curve(points: &[[f64; 2]]) -> bool {
         && points.windows(2).all(rises)
 }
 
-/// A wrong value: what is wrong, the key and value by which its line is found, what to do.
-pub(super) struct Wrong {
-    pub(super) what: String,
-    pub(super) key: &'static str,
-    pub(super) value: String,
-    pub(super) help: String,
-}
-
-impl Wrong {
-    fn fault(self, text: &str, name: &str) -> UserError {
-        UserError::usage(self.what)
-            .at(format!("{name}:{}", line_of(text, self.key, &self.value)))
-            .help(self.help)
-    }
-
-    /// The value of `key` in the section called `owner`.
-    fn value(owner: &str, key: &'static str, value: impl std::fmt::Debug, help: &str) -> Self {
-        Self {
-            what: format!("{key} = {value:?} of '{owner}'"),
-            key,
-            value: String::new(),
-            help: help.into(),
-        }
-    }
-}
-
 fn unique<'a>(
     kind: &str,
     name: &str,
@@ -295,22 +270,6 @@ pub(super) fn choose(
     } else {
         Err(unknown(kind, name, names.iter().copied()))
     }
-}
-
-/// The line, from 1, on which `key` and `value` first stand together: one that begins with the key, or else any.
-fn line_of(text: &str, key: &str, value: &str) -> usize {
-    let is_key = |line: &str| {
-        let rest = line.trim_start().strip_prefix(key);
-        rest.is_some_and(|rest| {
-            !rest.starts_with(|next: char| next.is_alphanumeric() || next == '_')
-        })
-    };
-    let begins = text
-        .lines()
-        .position(|line| is_key(line) && line.contains(value));
-    let holds = |line: &str| line.contains(key) && line.contains(value);
-    let place = begins.or_else(|| text.lines().position(holds));
-    place.map_or(1, |place| place + 1)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Keys of a `[[device]]` that its driver would ignore.
 
-use super::check::Wrong;
 use super::device::{DeviceSection, LIBRARY_DRIVERS, PEN_DRIVERS};
+use super::wrong::Wrong;
 
 /// Refuses what the driver of a device would ignore.
 pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {

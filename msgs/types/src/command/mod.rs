@@ -12,8 +12,9 @@ use crate::command::advice::Advice;
 pub use crate::command::detail::Detail;
 pub use crate::command::session::SessionCommand;
 use crate::edits::Edit;
+use crate::limits::STAINS_M;
 use crate::mixture::Mixture;
-use crate::scene::{CANVAS, STAINS_M};
+use crate::scene::CANVAS;
 use crate::values::{
     BrushName, BrushToml, DeviceName, DeviceToml, MaterialName, ValueError, WholePath,
 };
@@ -23,39 +24,6 @@ use crate::wire::define::{message, wire_enum, wire_struct};
 pub const PAINT_NODE: &str = "paint";
 /// Name of the launcher, which carries out commands to the rig as a whole.
 pub const RIG_NODE: &str = "rig";
-
-/// A path of a command has at most this many bytes; Linux takes no longer ones.
-pub const PATH_MAX: usize = 4096;
-/// A mixture of a command has at most this many parts.
-pub const PARTS_MAX: usize = 64;
-/// The name of a paint has at most this many bytes.
-pub const PAINT_NAME_MAX: usize = 128;
-/// The name of a layer has at most this many bytes.
-pub const LAYER_NAME_MAX: usize = 128;
-/// The name of a version has at most this many bytes.
-pub const VERSION_NAME_MAX: usize = 128;
-/// How thick a film of paint can be laid, m.
-pub const FILM_M: std::ops::RangeInclusive<f64> = 1e-6..=5e-3;
-/// A brush file has at most this many bytes.
-pub const BRUSH_FILE_MAX: usize = 1_000_000;
-/// The name of a device has at most this many bytes.
-pub const DEVICE_NAME_MAX: usize = 128;
-/// The settings of a device have at most this many bytes.
-pub const DEVICE_MAX: usize = 1 << 16;
-/// A spectrum of a command has at most this many bytes.
-pub const SPECTRUM_MAX: usize = 1 << 18;
-/// How long a drying may take, in sixtieths of a second: up to a year.
-pub const DRYING_TICKS: std::ops::RangeInclusive<u32> = 1..=60 * 60 * 60 * 24 * 365;
-/// Sides of a cell, m.
-pub const CELLS_M: std::ops::RangeInclusive<f64> = 1e-5..=1e-2;
-/// Cells of a canvas either way: half of one is rounded up.
-pub const CELLS: std::ops::RangeInclusive<f64> = 0.5..=65_536.0;
-/// Cells of a new canvas in all, at most: twice what can be shown in comfort on a large machine.
-pub const CELLS_IN_ALL: f64 = 1_073_741_824.0;
-/// A surface has at most this many wells.
-pub const WELLS_MAX: usize = 64;
-/// Factors on the stiffness of a brush.
-pub const STIFFNESS: std::ops::RangeInclusive<f64> = 0.05..=20.0;
 
 wire_struct! {
     /// A place in a brush's stream: a command with it enters the journal right after that state.

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::wire::define::wire_enum;
-use crate::wire::worded::Worded;
+use crate::wire::worded::{Worded, words_alternative};
 
 wire_enum! {
     /// A decision of the paint node itself. A window says it in its own words; the log of a painting as `Display` does.
@@ -78,12 +78,7 @@ impl Worded for Decision {
         }
     }
 
-    fn words(&self) -> Option<&str> {
-        match self {
-            Self::Words { words } => Some(words),
-            _ => None,
-        }
-    }
+    words_alternative!();
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::wire::define::wire_enum;
-use crate::wire::worded::Worded;
+use crate::wire::worded::{Worded, words_alternative};
 
 wire_enum! {
     /// Name of a step of the history. A window says it in its own words; logs and command lines as `Display` does.
@@ -214,12 +214,7 @@ impl Worded for StepName {
         Self::Words { words }
     }
 
-    fn words(&self) -> Option<&str> {
-        match self {
-            Self::Words { words } => Some(words),
-            _ => None,
-        }
-    }
+    words_alternative!();
 }
 
 #[cfg(test)]

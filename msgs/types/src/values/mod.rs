@@ -20,7 +20,7 @@ pub use texts::{
 };
 pub use ticks::{TICKS_A_SECOND, Ticks, ticks_in};
 
-use crate::stylus::FARTHEST_M;
+use crate::limits::FARTHEST_M;
 
 /// A value that a command cannot have.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -7,8 +7,7 @@ use serde::de::{Deserialize, Deserializer, Error, Visitor};
 
 use super::ValueError;
 use crate::brush::ZOOMS;
-use crate::command::{FILM_M, STIFFNESS};
-use crate::scene::{FLOWS, STAINS_M};
+use crate::limits::{FILM_M, FLOWS, STAINS_M, STIFFNESS};
 use crate::wire::schema::{TypeTable, Wire};
 
 /// Reads a number, whole or not.

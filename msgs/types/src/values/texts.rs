@@ -7,7 +7,7 @@ use std::str::FromStr;
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
 
 use super::ValueError;
-use crate::command::{
+use crate::limits::{
     BRUSH_FILE_MAX, DEVICE_MAX, DEVICE_NAME_MAX, LAYER_NAME_MAX, PAINT_NAME_MAX, PATH_MAX,
     SPECTRUM_MAX, VERSION_NAME_MAX,
 };

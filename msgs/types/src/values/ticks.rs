@@ -6,7 +6,7 @@ use std::str::FromStr;
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
 
 use super::ValueError;
-use crate::command::DRYING_TICKS;
+use crate::limits::DRYING_TICKS;
 use crate::wire::schema::{TypeTable, Wire};
 
 /// Ticks of the painting's clock in a second.

@@ -36,7 +36,7 @@ pub mod check;
 pub mod library;
 pub mod sections;
 
-use maulstick_types::command::BRUSH_FILE_MAX;
+use maulstick_types::limits::BRUSH_FILE_MAX;
 use serde::{Deserialize, Serialize};
 
 use self::check::within;

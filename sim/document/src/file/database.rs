@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use maulstick_canvas::planes::Planes;
-pub use maulstick_files::companion;
-use maulstick_files::{FileId, OpenDatabase, is_companion, read_head};
+use maulstick_files::{FileId, OpenDatabase, companion, is_companion, read_head};
 use maulstick_model::brush::load::BrushLoad;
 use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags, OptionalExtension as _, params};
 
 use crate::error::DocumentError;
 use crate::file::connect::connect;
+use crate::file::path::{length, resolved};
 use crate::file::probe::Probe;
 use crate::tables::checksum::{load_checksum, page_checksum, shown_checksum};
 use crate::tables::{loads, planes, schema};
@@ -45,11 +45,6 @@ pub struct Database {
     was_unclosed: bool,
 }
 
-/// Real path of a file: the target of a link, beside which SQLite puts its journal.
-pub(crate) fn resolved(path: &Path) -> PathBuf {
-    std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
-}
-
 /// Checks that the journal of a closed painting is merged into its file, as it must be before the file is renamed.
 ///
 /// # Errors
@@ -59,11 +54,6 @@ pub(crate) fn merged(path: &Path) -> Result<(), DocumentError> {
         Some(1..) => Err(DocumentError::Unmerged(path.to_owned())),
         _ => Ok(()),
     }
-}
-
-/// Bytes of a file; `None` if there is none.
-pub(crate) fn length(path: &Path) -> Option<u64> {
-    std::fs::metadata(path).ok().map(|about| about.len())
 }
 
 /// True if a painting is to be created there.

@@ -7,8 +7,10 @@ use std::fs::File;
 use std::os::unix::fs::FileExt as _;
 use std::path::{Path, PathBuf};
 
+use maulstick_files::companion;
+
 use crate::error::DocumentError;
-use crate::file::database::{companion, resolved};
+use crate::file::path::resolved;
 
 /// Bytes that are read at once.
 const PIECE: usize = 1 << 20;

@@ -5,10 +5,11 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 
-use maulstick_files::{FileId, first_free};
+use maulstick_files::{FileId, companion, first_free};
 
 use crate::error::DocumentError;
-use crate::file::database::{Access, Database, companion, is_new, merged, resolved};
+use crate::file::database::{Access, Database, is_new, merged};
+use crate::file::path::resolved;
 use crate::opening;
 
 /// Way to relocate a painting.

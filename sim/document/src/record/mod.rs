@@ -10,13 +10,12 @@ mod rewind;
 mod transposed;
 
 use std::path::Path;
-use std::time::{SystemTime, UNIX_EPOCH};
 
 use maulstick_painting::RecordChange;
 use maulstick_painting::sequencer::Record;
 use rusqlite::{OptionalExtension as _, Row, params};
 
-use crate::checkpoint::Checkpoint;
+use crate::checkpoint::{Checkpoint, wall_ms};
 use crate::error::DocumentError;
 use crate::file::database::{Access, Database};
 use crate::journal;
@@ -49,12 +48,6 @@ pub struct RecordStats {
     pub begun_ms: u64,
     /// Time of its newest row, ms since 1970.
     pub newest_ms: u64,
-}
-
-/// Time of the wall clock, ms since 1970.
-pub(crate) fn wall_ms() -> u64 {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH);
-    since.map_or(0, |since| since.as_millis() as u64)
 }
 
 /// Brings the record up to a checkpoint: `records` are the messages before it that are not in the journal. What the

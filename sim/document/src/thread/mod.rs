@@ -63,16 +63,8 @@ pub(crate) struct DocumentThread {
     /// Pages of the painting as it is that were not read yet: they are, while there is nothing else to do, so that a disk that
     /// fails later is painted on.
     to_read_ahead: Vec<Page<Planes>>,
-    merged: Merged,
-}
-
-/// Whether a file can be read without its journal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Merged {
-    /// Its first checkpoint is still to be merged into it.
-    Not,
-    /// Its first checkpoint is merged.
-    First,
+    /// True once the first checkpoint of the file is merged into it, so that it can be read without its journal.
+    is_merged: bool,
 }
 
 /// Next work of the thread.
@@ -112,7 +104,7 @@ impl DocumentThread {
             file: Retry::default(),
             reading: Retry::default(),
             to_read_ahead: Vec::new(),
-            merged: Merged::Not,
+            is_merged: false,
         }
     }
 
@@ -333,8 +325,12 @@ impl DocumentThread {
             let until = Instant::now() + longest;
             let written = self.transaction(|database| {
                 let mut yield_hook = |database: &Database| yield_to_readers(&shared, database);
-                let writer = Writer::new(database, &mut yield_hook).trusting(trust);
-                writer.checkpoint(&checkpoint, &overtaken, until)
+                let mut writer = Writer::new(database, &mut yield_hook).trusting(trust);
+                let is_whole = writer.checkpoint(&checkpoint, until)?;
+                if is_whole {
+                    record::advance(&mut writer, &checkpoint, &overtaken)?;
+                }
+                Ok((writer.stored(), is_whole))
             });
             match written {
                 // Records accepted meanwhile do not wait for the remaining pages.
@@ -365,7 +361,7 @@ impl DocumentThread {
                     .committed
                     .fetch_max(checkpoint.sequencer.next, SeqCst);
                 drop((queues, checkpoint));
-                if std::mem::replace(&mut self.merged, Merged::First) == Merged::Not {
+                if !std::mem::replace(&mut self.is_merged, true) {
                     self.database.merge_journal();
                     self.watch.note_merged();
                 }

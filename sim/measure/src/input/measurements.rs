@@ -1,7 +1,7 @@
 //! Samples of a table of measurements: what they are made of, and what the instrument read of them.
 
 use maulstick_tables::{Fault, Row, shown};
-use maulstick_types::command::advice::{choice, nearest};
+use maulstick_types::nearest::{choice, nearest};
 
 use crate::error::MeasureError;
 use crate::headings::Headings;

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use maulstick_optics::surface::SurfaceCorrection;
+use maulstick_tables::MOST_CHARACTERS;
 use maulstick_tables::Note;
-use maulstick_tables::table::MOST_CHARACTERS;
-use maulstick_types::command::advice::choice;
+use maulstick_types::nearest::choice;
 
 use crate::error::MeasureError;
 use crate::headings::Headings;

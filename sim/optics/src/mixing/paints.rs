@@ -78,7 +78,7 @@ fn meant(nearest: Option<&str>) -> String {
 /// Largest K or S relative to titanium white's S: a black of which 0.02 µm hide.
 const MOST: f64 = 1e6;
 /// The name of a paint has at most this many bytes.
-const NAME_MAX: usize = maulstick_types::command::PAINT_NAME_MAX;
+const NAME_MAX: usize = maulstick_types::limits::PAINT_NAME_MAX;
 
 /// A name that no paint may have.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -18,8 +18,8 @@ use std::ops::RangeInclusive;
 
 use eframe::egui::{Button, ComboBox, Rect, RichText, Sense, Ui, vec2};
 use maulstick_brush::BrushFile;
-use maulstick_types::command::STIFFNESS;
 use maulstick_types::edits::Tune;
+use maulstick_types::limits::STIFFNESS;
 use maulstick_types::scene::{BrushHandling, Tuning};
 
 use crate::input::brush_choice::{called, library, resized, widths_mm};

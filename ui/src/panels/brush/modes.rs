@@ -2,7 +2,8 @@
 
 use eframe::egui::{ComboBox, Ui};
 use maulstick_types::edits::Handle;
-use maulstick_types::scene::{BrushHandling, BrushMode, FLOWS};
+use maulstick_types::limits::FLOWS;
+use maulstick_types::scene::{BrushHandling, BrushMode};
 
 use crate::language::translated;
 use crate::widgets::context::PanelContext;

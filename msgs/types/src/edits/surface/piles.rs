@@ -2,8 +2,8 @@
 
 use serde::de::{Deserialize, Deserializer};
 
-use crate::command::advice::choice;
 use crate::edits::{Form, StepForm};
+use crate::nearest::choice;
 use crate::scene::PALETTE;
 use crate::values::ValueError;
 use crate::wire::define::wire_struct;

@@ -4,8 +4,8 @@ use serde::de::{Deserialize, Deserializer, Error};
 
 use crate::Pose;
 use crate::edits::{Form, StepForm};
+use crate::limits::FARTHEST_M;
 use crate::scene::CANVAS;
-use crate::stylus::FARTHEST_M;
 use crate::values::{ValueError, Zoom};
 use crate::wire::define::wire_struct;
 

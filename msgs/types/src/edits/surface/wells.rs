@@ -2,10 +2,9 @@
 
 use serde::de::{Deserialize, Deserializer, Error};
 
-use crate::command::WELLS_MAX;
 use crate::edits::{Form, StepForm};
+use crate::limits::{FARTHEST_M, WELLS_MAX};
 use crate::scene::{PALETTE, Well, WellKind};
-use crate::stylus::FARTHEST_M;
 use crate::values::ValueError;
 use crate::wire::define::wire_struct;
 
