@@ -20,7 +20,7 @@ pub const SPACING_NS: u64 = 500_000;
 /// A silence of more than this, ns, is not filled: the machine slept.
 const LONGEST_NS: u64 = 60_000_000_000;
 
-/// What becomes of a reading of a pen on the desk.
+/// Outcome of a pen's reading on the desk.
 pub trait DeskFit {
     /// Its sample.
     fn sample(&mut self, reading: &Reading) -> StylusSample;
@@ -57,7 +57,7 @@ impl PenStream {
         }
     }
 
-    /// Whether the tablet reports that its pen is away.
+    /// True if the tablet reports that its pen is away.
     pub fn set_reports_range(&mut self, reports: bool) {
         self.tells_range = reports;
     }

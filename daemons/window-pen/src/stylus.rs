@@ -24,7 +24,7 @@ const SERVE_NS: u64 = 50_000_000;
 /// Samples a second of most pens, which do not say.
 const RATE_HZ: f64 = 200.0;
 
-/// What a touching pen touches.
+/// Target of a touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum TouchTarget {
     Desk,

@@ -108,7 +108,7 @@ impl KnownTool {
     }
 }
 
-/// What the events of the connection are told to.
+/// Listener to the events of the connection.
 #[derive(Debug, Default)]
 struct Listener {
     /// The window's surface; others' are not its own.

@@ -33,7 +33,7 @@ pub struct SocketKeeper {
     known: BTreeSet<OsString>,
 }
 
-/// What a look at the sockets found.
+/// Changes that a look at the sockets found.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SocketNews {
     /// Nodes whose removed socket is back.

@@ -214,7 +214,7 @@ pub struct Receiver<M> {
     subscription: Subscription,
     reader: Reader,
     qos: Qos,
-    /// Who chooses among the senders of a real-time stream.
+    /// Arbiters between the senders of each real-time stream.
     choice: Choice,
     /// By topic and source.
     streams: BTreeMap<(String, u32), Rivals>,

@@ -145,7 +145,7 @@ impl Kind {
     /// Sees that a name does not end as that of another kind.
     ///
     /// # Errors
-    /// What is wrong with it, and how it may end.
+    /// A name that ends in the ending of another kind, with the endings that it may have.
     pub fn check_name(self, path: &Path) -> Result<(), Error> {
         let ending = ending(path);
         let known = ENDINGS.iter().find(|(known, _)| *known == ending);
@@ -231,7 +231,7 @@ pub(crate) fn destination(path: &Path, kind: Kind) -> Result<PathBuf, Error> {
         ));
     }
     let mut head = [0; HEAD];
-    // What may not be read is not written over either.
+    // A file that may not be read is not written over either.
     let read = read_head(&to, &mut head)?;
     let head = &head[..read];
     if head.starts_with(DATABASE) {

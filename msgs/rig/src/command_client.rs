@@ -20,7 +20,7 @@ const ASK: Duration = Duration::from_secs(2);
 pub struct Done {
     /// Its index in the painting's journal; 0 of one that is not in it.
     pub journal: u64,
-    /// What it wrote or found.
+    /// File that it wrote, or value that it found.
     pub detail: Detail,
 }
 

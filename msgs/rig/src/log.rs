@@ -1,4 +1,4 @@
-//! What a process says: its log, one line an event, whatever the texts in it hold, and what it prints. Nobody waits until
+//! Output of a process: its log, one line an event, whatever the texts in it hold, and its prints. Nobody waits until
 //! the log is read, nor for what is printed where that was asked for.
 
 mod lossy_writer;

@@ -55,7 +55,7 @@ pub struct NodeHandle {
     pub wake: Wake,
     /// Stop flag.
     pub stop: Stop,
-    /// What it has done, for its status.
+    /// Work done so far, for its status.
     pub work: WorkCount,
     session: Arc<ZenohBus>,
     token: Option<Token>,

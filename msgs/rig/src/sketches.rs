@@ -17,7 +17,7 @@ use crate::user_error::UserError;
 
 /// Sketches that stay.
 pub const MOST: usize = 32;
-/// What they take together at most, bytes.
+/// Most bytes of all sketches together.
 pub const MOST_BYTES: u64 = 4 << 30;
 
 /// File ending of a painting.
@@ -32,7 +32,7 @@ pub struct Sketch {
     pub path: PathBuf,
     /// When it was last changed.
     pub changed: SystemTime,
-    /// What it takes with its journal, bytes.
+    /// Bytes of the file and its journal.
     pub bytes: u64,
 }
 

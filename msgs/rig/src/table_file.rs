@@ -43,7 +43,7 @@ pub fn table_text(path: &Path, bytes: &[u8]) -> Result<String, UserError> {
     }
 }
 
-/// What is wrong with a table of this name, as the user sees it.
+/// Error of a table of this name, as the user sees it.
 #[must_use]
 pub fn table_fault(name: &str, error: &TableError) -> UserError {
     UserError::usage(error.what())

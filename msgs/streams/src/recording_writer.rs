@@ -23,7 +23,7 @@ pub const PROFILE: &str = "maulstick";
 /// Records that are compressed together, bytes: so many are read for one message.
 const CHUNK_BYTES: u64 = 256 << 10;
 
-/// How its files are written.
+/// Options of the MCAP writer.
 pub(crate) fn options() -> WriteOptions {
     WriteOptions::new()
         .profile(PROFILE)

@@ -1,4 +1,4 @@
-//! What is left of a damaged recording, as a whole one.
+//! Recovery: the intact part of a damaged recording, as a whole one.
 //!
 //! Messages, files and notes are copied as they are, with the schemas that they have, whichever version wrote them. In a
 //! chunk whose checksum is wrong a message counts if it is valid by itself.
@@ -36,7 +36,7 @@ pub struct DamagedRecording {
     damage: Damage,
 }
 
-/// What could be copied.
+/// Counts of a recovery.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Recovered {
     /// Messages.

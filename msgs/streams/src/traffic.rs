@@ -78,7 +78,7 @@ impl Distribution {
     }
 }
 
-/// What was heard of a stream.
+/// Counts and times of a stream.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Stream {
     /// Hash of its messages' field table.
@@ -148,7 +148,7 @@ impl Stream {
         }
         let mut next_seq = self.next_seq.unwrap_or(header.seq);
         if is_since && !self.has_begun && header.seq > next_seq {
-            // What was heard so far was kept for late joiners: what was sent between was not sent to this one.
+            // Messages so far were cached for late joiners; those between them were not sent to this listener.
             next_seq = header.seq;
             self.sent = Sendings::default();
         }

@@ -1,4 +1,4 @@
-//! What is wrong with a table, where, and what to do.
+//! Errors of a table: the fault, its place, advice.
 
 use std::fmt;
 
@@ -7,16 +7,16 @@ pub const MOST_CHARACTERS: usize = 1000;
 /// Characters of a cell that an error shows.
 const SHOWN: usize = 40;
 
-/// What is wrong with a table, and where.
+/// A fault of a table and its place.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct TableError {
     /// The line, from 1.
     pub line: usize,
     /// The column, from 1.
     pub column: Option<usize>,
-    /// What stands above that column; empty if nothing does.
+    /// Heading of that column; empty if there is none.
     pub heading: String,
-    /// What is wrong.
+    /// The fault.
     pub fault: Fault,
 }
 
@@ -51,7 +51,7 @@ impl fmt::Display for TableError {
     }
 }
 
-/// What is wrong with a table.
+/// Fault of a table.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Fault {
     /// Bytes that are no text.
@@ -124,7 +124,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// What to do about it.
+    /// Advice.
     #[must_use]
     pub const fn help(&self) -> &'static str {
         match self {

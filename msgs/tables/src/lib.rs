@@ -11,7 +11,7 @@
 //! | comments | lines that begin with `#`; `# key: value` is a note |
 //! | blank lines | part blocks, such as strokes |
 //!
-//! What has two readings, as 1,234 where nothing says which mark is the decimal one, is refused.
+//! A number with two readings, as 1,234 where nothing says which mark is the decimal one, is rejected.
 //!
 //! | module | holds |
 //! | --- | --- |

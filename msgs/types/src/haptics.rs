@@ -219,7 +219,7 @@ message! {
     pub struct ForceRequest [contract of hash 0xf795_6c2b, version 3, at most 256 bytes] {
         /// The change.
         pub order: ForceOrder,
-        /// Who asks, for the log: program, user, terminal; at most [`ForceRequest::ASKER_BYTES`] bytes.
+        /// Asker, for the log: program, user, terminal; at most [`ForceRequest::ASKER_BYTES`] bytes.
         pub asker: String,
     }
 }

@@ -141,9 +141,9 @@ impl StylusStatus {
 /// Reason why there is no device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Trouble<'a> {
-    /// What is wrong.
+    /// The trouble.
     pub what: &'a str,
-    /// What to do about it; may be empty.
+    /// Advice; may be empty.
     pub help: &'a str,
 }
 
@@ -287,7 +287,7 @@ message! {
         pub guidance: f64,
         /// Messages that would move the hand, dropped because their sender is neither the device's brush nor has consent.
         pub refused_senders: u64,
-        /// What to do about the trouble; may be empty.
+        /// Advice about the trouble; may be empty.
         pub help: String,
     }
 }

@@ -26,7 +26,7 @@ pub struct Checkpoint {
     pub record: RecordChange,
     /// True if it holds all of the painting, and not only what changed.
     pub is_whole: bool,
-    /// What was accepted before it and is not handed over yet.
+    /// Records that were accepted before it and are not handed over yet.
     pub records: Vec<Record>,
 }
 

@@ -266,7 +266,7 @@ impl Document {
         self.shared.record_bytes.load(SeqCst)
     }
 
-    /// What was accepted from a serial number on, as much as is in a row of the file; `None` at the end. It reads what is
+    /// Records from a serial number on, as many as are in a row of the file; `None` at the end. It reads what is
     /// written, not what was handed over since.
     ///
     /// # Errors

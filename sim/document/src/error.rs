@@ -73,7 +73,7 @@ pub enum DocumentError {
 }
 
 impl DocumentError {
-    /// What to do about it.
+    /// Advice.
     #[must_use]
     pub fn advice(&self) -> Advice {
         let words = match self {

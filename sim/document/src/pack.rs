@@ -12,7 +12,7 @@ use crate::file::database::{Access, Database};
 use crate::tables::checksum::page_checksum;
 use crate::tables::planes;
 
-/// What a packed painting forgets.
+/// Parts that a packed painting leaves out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Forget {
     /// Nothing.

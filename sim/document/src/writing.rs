@@ -68,13 +68,13 @@ impl Stored {
     }
 }
 
-/// What a writer believes to be in the file.
+/// Rows that a writer takes to be in the file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Trust {
-    /// What is marked as stored.
+    /// Those that are marked as stored.
     #[default]
     Stored,
-    /// Only what it finds there: the file is another one than that in which it was stored.
+    /// Only those that it finds there: the file is another one than that in which it was stored.
     Nothing,
 }
 

@@ -18,7 +18,7 @@ pub struct Raster {
     pub rgb: Vec<[u8; 3]>,
 }
 
-/// What of a picture is taken along one of its sides.
+/// Range of a picture that is taken along one of its sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cut {
     /// Pixels of the picture.

@@ -20,7 +20,7 @@ pub enum ImportError {
     /// A pixel is no number: across and down from the upper left one, which is 0, 0.
     #[error("pixel {0}, {1} from the upper left corner is no number (NaN)")]
     NotANumber(usize, usize),
-    /// What a file has beside its pixels takes too much memory: so many MB are allowed.
+    /// Metadata that take too much memory, with the limit, MB.
     #[error("what the file has beside its pixels takes more than {0} MB")]
     Beside(usize),
     /// It is larger than pictures may be.

@@ -44,7 +44,7 @@ pub struct HistoryPictures {
     drawn: u64,
 }
 
-/// What the colours of a tile follow from: its place, its wet and its dried paint, the look of the painting, and how
+/// Key of a tile's colours: its place, its wet and its dried paint, the look of the painting, and how
 /// many cells a block has across.
 type TileKey = (TileId, Option<u64>, Option<u64>, i64, usize);
 

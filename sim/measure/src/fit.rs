@@ -37,14 +37,14 @@ const NARROWEST: [f64; 2] = [420.0, 680.0];
 /// Passes after the first.
 const PASSES: usize = 6;
 
-/// What a caller may choose; it goes before the notes of the table.
+/// Choices of a caller, before the notes of the table.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FitOptions {
     /// The reference white, whose S is 1.
     pub white: Option<String>,
     /// k₁ and k₂ of the samples' surface; both 0 where readings are internal reflectances.
     pub surface: Option<SurfaceCorrection>,
-    /// Whether readings leave the gloss k₁ out.
+    /// True if readings leave out the gloss k₁.
     pub specular_excluded: Option<bool>,
 }
 
@@ -58,11 +58,11 @@ pub struct Fit {
     /// Mean of its S per metre, where drawdowns say it. Without them it is taken to be
     /// [`WHITE_S_PER_M`] at each wavelength.
     pub white_s_per_m: Option<f64>,
-    /// How well each sample is reproduced, in the order of the rows.
+    /// Residual of each sample, in the order of the rows.
     pub residuals: Vec<Residual>,
     /// Standard deviation of the readings, as estimated from what the fit leaves.
     pub noise: f64,
-    /// What to know before using the paints.
+    /// Warnings about the paints.
     pub warnings: Vec<String>,
 }
 

@@ -28,7 +28,7 @@ const KEPT: [f64; 5] = [1.0, 0.75, 0.5, 0.25, 0.0];
 /// Tolerance of what lies within, m.
 const TOLERANCE_M: f64 = 1e-9;
 
-/// How an outline is filled.
+/// Options of a fill.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fill {
     /// Seed of the variation.

@@ -34,7 +34,7 @@ pub enum ProfileError {
     OneWay(String),
 }
 
-/// How linear light of the gamut becomes the bytes of a picture.
+/// Encoding of the gamut's linear light as the bytes of a picture.
 enum Encoder {
     /// By the transfer function of sRGB.
     Curve(SrgbTable),

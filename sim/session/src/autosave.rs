@@ -12,7 +12,7 @@ pub struct Autosave {
     document: Document,
     /// Number of the newest tile version that it was told of.
     since: u64,
-    /// How many accepted things are in its newest checkpoint.
+    /// Accepted records in its newest checkpoint.
     serial: u64,
     saved_ns: u64,
 }

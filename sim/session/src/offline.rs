@@ -286,7 +286,7 @@ fn messages(state: BrushState) -> Vec<(Flags, BrushState)> {
     state.messages(Flags::REPLAY, Flags::NONE, Flags::NONE)
 }
 
-/// What paints the states of the brush in hand.
+/// Painter of the states of the brush in hand.
 struct Painter<'a> {
     sequencer: &'a mut Sequencer,
     brush: &'a str,

@@ -18,11 +18,11 @@ pub struct Logged {
     /// Time of the wall clock, ms since 1970: of a stroke that was not replayed its beginning, of all else when it was
     /// written, a second later at most; `None` if it is not known.
     pub time_ms: Option<u64>,
-    /// What it was.
+    /// The event.
     pub what: LoggedWhat,
 }
 
-/// What was done.
+/// Event of a painting.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LoggedWhat {
     /// A stroke of a brush.
@@ -31,7 +31,7 @@ pub enum LoggedWhat {
     Command {
         /// Its sender; 0 is the program that has the painting.
         client: u64,
-        /// What it did.
+        /// The command.
         command: Command,
     },
     /// A stroke that an undo dropped before all of it was painted.

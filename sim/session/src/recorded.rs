@@ -13,7 +13,7 @@ use thiserror::Error;
 /// A brush state by the source and the epoch of its brush, and its number.
 type StateKey = (u32, u32, u64);
 
-/// What keeps a session from being painted again.
+/// Reason why a session cannot be painted again.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum SessionFault {
     /// Entries of the journal are missing.

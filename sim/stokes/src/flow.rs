@@ -12,7 +12,7 @@ use crate::split;
 use crate::stencil::Span;
 use crate::unified::{Unified, weights};
 
-/// How velocity and pressure are found.
+/// Scheme for velocity and pressure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scheme {
     /// Both at once, with the free surface's natural condition.
@@ -40,7 +40,7 @@ impl Default for Effort {
     }
 }
 
-/// What paint flows as and what pulls at it.
+/// Rheology of the paint, time step and pull.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
     /// Side of a cell, m.
@@ -62,7 +62,7 @@ pub struct Flow {
     pub velocity: [Vec<f32>; 3],
     /// Pressure by density in each cell, m²/s².
     pub pressure: Vec<f32>,
-    /// How they are found.
+    /// The scheme.
     pub scheme: Scheme,
     /// Iterations of a step.
     pub effort: Effort,
@@ -73,7 +73,7 @@ pub struct Flow {
     room: Option<Room>,
 }
 
-/// What is kept from one step to the next so that a step allocates nothing.
+/// Fields that are kept from one step to the next, so that a step allocates nothing.
 #[derive(Clone, Debug)]
 struct Room {
     domain: Arc<Domain>,

@@ -16,7 +16,7 @@ pub struct Stokes {
     pub volume: Volume,
     /// Its flow.
     pub flow: Flow,
-    /// What does not move: canvas and walls.
+    /// Solids at rest: canvas and walls.
     pub base: Solids,
     /// Base and brush, the open share of each cell, how full it is, and room.
     solids: Solids,

@@ -27,7 +27,7 @@ pub struct Unified {
     operator: Operator,
     /// Of the three components of the velocity and of the pressure.
     hierarchies: [Multigrid; 4],
-    /// What viscosity answers to volume, by cell.
+    /// Viscous response to a change of volume, by cell.
     bulk: Vec<f32>,
     alpha: f32,
     /// Drag of walls, by α: what a gradient of pressure has to overcome beside mass.

@@ -1,6 +1,6 @@
 //! Paint in the cells of a window, counted in quanta, and its transport.
 //!
-//! What goes through a face is a number of quanta that one side loses and the other gains, so none is ever lost. A cell's
+//! The flux through a face is a number of quanta that one side loses and the other gains, so none is ever lost. A cell's
 //! surface is a plane across one axis in part and none in part, weighted by the normal (Noh and Woodward 1976; Yokoi 2007),
 //! which keeps it within a cell or two. Axes follow one another, in an order that turns; a cell's room changes with what
 //! flows through its faces along an axis, so that full cells stay full. What is asked of a cell beyond what it has is

@@ -180,7 +180,7 @@ impl<'a> Player<'a> {
         self.sent == self.settings.take.samples.len() && self.samples.outstanding() == 0
     }
 
-    /// What it has done.
+    /// Work done so far.
     fn work(&self) -> NodeWork {
         NodeWork {
             consumed: self.sent as u64 - self.samples.outstanding(),

@@ -137,7 +137,7 @@ impl XinputDevice {
         })
     }
 
-    /// What it senses.
+    /// Axes that it senses.
     #[must_use]
     pub fn axes(&self) -> Axes {
         Axes {

@@ -16,7 +16,7 @@ impl Losses {
         self.untold = self.untold.saturating_add(messages);
     }
 
-    /// How many are to be told now.
+    /// Losses to report now; `None` while the last report is too recent.
     pub(super) fn due(&mut self, now_ns: u64) -> Option<u64> {
         let is_early = self
             .told_ns

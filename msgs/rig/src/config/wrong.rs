@@ -4,13 +4,13 @@ use crate::user_error::UserError;
 
 /// A wrong value.
 pub(super) struct Wrong {
-    /// What is wrong.
+    /// The defect.
     pub(super) what: String,
     /// Key by which its line is found.
     pub(super) key: &'static str,
     /// Value by which its line is found; empty if the key is enough.
     pub(super) value: String,
-    /// What to do.
+    /// Advice.
     pub(super) help: String,
 }
 

@@ -46,7 +46,7 @@ pub struct Topic {
     pub name: String,
     /// Name and version of its messages, where they are known.
     pub message: Option<String>,
-    /// How its messages are decoded, or why they cannot be.
+    /// Field table of its messages, or the reason why they cannot be decoded.
     pub table: Result<FieldTable, TableError>,
 }
 
@@ -102,7 +102,7 @@ impl Topic {
         self.table.as_ref().is_ok_and(|table| table.has(path))
     }
 
-    /// What a message holds.
+    /// Decodes a message.
     ///
     /// # Errors
     /// [`TableError`].
@@ -140,7 +140,7 @@ impl Recording {
         &self.path
     }
 
-    /// What it says of itself, by name.
+    /// Notes about the recording, by name.
     #[must_use]
     pub fn notes(&self) -> &BTreeMap<String, BTreeMap<String, String>> {
         &self.layout.notes
@@ -177,7 +177,7 @@ impl Recording {
         }
     }
 
-    /// What is wrong with it, if anything is known.
+    /// Damage, if any is known.
     #[must_use]
     pub fn damage(&self) -> Option<&str> {
         self.layout.damage.as_deref()

@@ -1,4 +1,4 @@
-//! What a command wrote or found.
+//! Results of commands.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use crate::wire::define::wire_enum;
 use crate::wire::worded::{Worded, words_alternative};
 
 wire_enum! {
-    /// What a command wrote or found. A window says it in its own words; logs and command lines as `Display` does.
+    /// Result of a command. A window has its own words for it; logs and command lines use `Display`.
     pub enum Detail {
         /// Nothing to report.
         Nothing,

@@ -12,7 +12,7 @@ use crate::command::advice::Advice;
 pub use crate::command::detail::Detail;
 pub use crate::command::session::SessionCommand;
 use crate::edits::Edit;
-use crate::limits::STAINS_M;
+use crate::limits::{CELLS, CELLS_IN_ALL, CELLS_M, STAINS_M};
 use crate::mixture::Mixture;
 use crate::scene::CANVAS;
 use crate::values::{
@@ -38,7 +38,7 @@ wire_struct! {
 }
 
 wire_struct! {
-    /// What a new painting is painted on.
+    /// Canvas of a new painting.
     #[serde(try_from = "CanvasFields")]
     pub struct NewCanvas {
         /// Width, m.
@@ -143,7 +143,7 @@ wire_struct! {
         pub step: u32,
         /// Profile of a PNG: `srgb`, `display-p3`; that of the rig if empty.
         pub profile: String,
-        /// How colours of a PNG come into its gamut: `soft`, `clamp`; as in the rig if empty.
+        /// Mapping of a PNG's colours into its gamut: `soft`, `clamp`; as in the rig if empty.
         pub gamut: String,
     }
 }
@@ -187,7 +187,7 @@ wire_struct! {
     pub struct SaveAs {
         /// The whole path of the file.
         pub path: WholePath,
-        /// Whether a painting that is there already may go.
+        /// True if a painting at that path may be replaced.
         pub replace: bool,
     }
 }
@@ -212,7 +212,7 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// What takes its place in the journal besides edits.
+    /// Commands that have a place in the journal besides edits.
     pub enum TakeCommand {
         /// Announces a take: only announced takes paint. Each new stroke takes the next load in
         /// turn; without loads the brush keeps what it has.
@@ -225,7 +225,7 @@ wire_enum! {
             device_epoch: u32,
             /// The loads.
             loads: Vec<Mixture>,
-            /// Whether it begins again, after a crash: what was painted of it is undone first.
+            /// True if it begins again after a crash: its strokes so far are undone first.
             again: bool,
         },
         /// Ends nothing and changes nothing: its reply says that the place it names is reached.
@@ -241,7 +241,7 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// What the paint node does with files while it is painted on.
+    /// Commands about files, which the paint node carries out beside the painting.
     pub enum FileCommand {
         /// Writes the painting for other programs.
         Export(ExportOrder),
@@ -258,7 +258,7 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// What a brush's own node does.
+    /// Commands to a brush node.
     pub enum BrushCommand {
         /// Gives a brush another file.
         Define {
@@ -271,22 +271,22 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// What the launcher does.
+    /// Commands to the launcher.
     pub enum RigCommand {
         /// Goes on in another painting.
         Open {
             /// The whole path of a painting that there is.
             path: WholePath,
-            /// Whether what was painted in memory alone may go.
+            /// True if a painting that is in memory alone may be discarded.
             forget: bool,
         },
         /// Begins another painting and goes on in it.
         New {
             /// The whole path of its file, which is not there yet; in memory alone if absent.
             path: Option<WholePath>,
-            /// What it is painted on.
+            /// Its canvas.
             canvas: NewCanvas,
-            /// Whether what was painted in memory alone may go.
+            /// True if a painting that is in memory alone may be discarded.
             forget: bool,
         },
         /// As [`FileCommand::SaveAs`], so that the rig starts with that file again.
@@ -349,7 +349,7 @@ message! {
         pub number: u64,
         /// Where it takes its place in the journal; at once if absent.
         pub after: Option<After>,
-        /// What it does.
+        /// The command.
         pub command: Command,
     }
 }
@@ -365,13 +365,13 @@ impl CommandRequest {
 }
 
 wire_enum! {
-    /// What became of a command.
+    /// Outcome of a command.
     pub enum Outcome {
         /// It is done.
         Done {
             /// Its index in the journal.
             journal: u64,
-            /// What it wrote or found.
+            /// Its result.
             #[serde(deserialize_with = "crate::wire::worded::read")]
             detail: Detail,
         },
@@ -379,9 +379,9 @@ wire_enum! {
         Waiting,
         /// It was not done.
         Refused {
-            /// What is wrong.
+            /// The reason.
             what: String,
-            /// What to do about it; each front end has its own words for it.
+            /// Advice; each front end has its own words for it.
             advice: Advice,
         },
     }
@@ -412,7 +412,7 @@ message! {
     pub struct CommandReply [version 3, at most 65536 bytes] {
         /// The command's number.
         pub number: u64,
-        /// What became of it.
+        /// Its outcome.
         pub outcome: Outcome,
     }
 }

@@ -6,15 +6,15 @@ use crate::wire::define::wire_enum;
 use crate::wire::worded::{Worded, words_alternative};
 
 wire_enum! {
-    /// A decision of the paint node itself. A window says it in its own words; the log of a painting as `Display` does.
+    /// A decision of the paint node itself. A window has its own words for it; the log of a painting uses `Display`.
     #[derive(Eq)]
     pub enum Decision {
-        /// What computes the paint.
+        /// Backend that computes the paint.
         Backend {
             /// `cpu`, or `gpu` and the adapter's name.
             name: String,
         },
-        /// What computes the paint from now on, for the backend before has failed.
+        /// Backend that computes the paint from now on, because the one before has failed.
         Fallback {
             /// As that of `Backend`.
             name: String,

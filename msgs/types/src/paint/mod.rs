@@ -67,7 +67,7 @@ wire_enum! {
             client: u64,
             /// Its number.
             number: u64,
-            /// What it does.
+            /// The command.
             command: Command,
         },
         /// A sixtieth of a second of flowing or drying.
@@ -241,7 +241,7 @@ wire_struct! {
     pub struct HistoryStep {
         /// Its number.
         pub id: u64,
-        /// What it was.
+        /// Its name.
         #[serde(deserialize_with = "crate::wire::worded::read")]
         pub what: StepName,
         /// True if it is done, false if it was undone.

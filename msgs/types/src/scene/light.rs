@@ -35,7 +35,7 @@ wire_struct! {
         pub rule: String,
         /// Wavelengths of the rule, 4 to 16; `reference` has 101.
         pub samples: u32,
-        /// Whether the eye is adapted to the light's white; if not, its cast stays.
+        /// True if the eye is adapted to the light's white; otherwise its cast stays.
         pub adapted: bool,
     }
 }

@@ -1,4 +1,4 @@
-//! What lies on the desk: surfaces, paints, light. The paint node owns it.
+//! The desk: surfaces, paints, light. The paint node owns it.
 
 mod fault;
 mod light;
@@ -19,11 +19,11 @@ pub const PALETTE: u32 = 1;
 pub const MARKER_FLOW: f64 = 4e-3;
 
 wire_enum! {
-    /// What a round region of the palette does.
+    /// Function of a round region of the palette.
     pub enum WellKind {
         /// Holds a mixture that never runs out.
         Paint {
-            /// What it holds.
+            /// Its mixture.
             mixture: Mixture,
         },
         /// Takes all paint off the brush.
@@ -40,7 +40,7 @@ wire_struct! {
         pub center_m: [f64; 2],
         /// Radius, m.
         pub radius_m: f64,
-        /// What it does.
+        /// Its function.
         pub kind: WellKind,
     }
 }
@@ -70,7 +70,7 @@ wire_struct! {
         /// Thickness of paint that stays however hard it is brushed, m: little on a canvas that is
         /// heavily sized (Baxter 2004, § 6.4.1).
         pub stain_m: f64,
-        /// Whether paint that brushes take up from it stays there all the same (Baxter 2004, § 6.7).
+        /// True if paint that brushes take up from it is not used up (Baxter 2004, § 6.7).
         pub piles_last: bool,
         /// Name of the model of its paint.
         #[serde(default = "default_model")]
@@ -91,7 +91,7 @@ pub fn default_stain_m() -> f64 {
 }
 
 wire_enum! {
-    /// What a brush does (Baxter 2004, § 6.8).
+    /// Mode of a brush (Baxter 2004, § 6.8).
     pub enum BrushMode {
         /// It pushes paint, leaves some and takes some up.
         Normal,
@@ -111,11 +111,11 @@ wire_enum! {
 }
 
 wire_struct! {
-    /// How a brush is used.
+    /// Use of a brush.
     pub struct BrushHandling {
         /// Name of the brush.
         pub brush: String,
-        /// What it does.
+        /// Its mode.
         pub mode: BrushMode,
         /// Flow of the marker: thickness that it leaves along a metre of its way, m/m.
         pub flow: f64,
@@ -220,13 +220,13 @@ wire_struct! {
         pub name: String,
         /// The version that it was painted from; empty where that was none.
         pub parent: String,
-        /// Whether the painter goes on from here.
+        /// True if the painter continues from here.
         pub here: bool,
     }
 }
 
 wire_struct! {
-    /// How a brush was changed while painting.
+    /// Changes of a brush while painting.
     pub struct Tuning {
         /// Name of the brush.
         pub brush: String,
@@ -258,7 +258,7 @@ message! {
         pub light: Light,
         /// Brushes that are not as in their files.
         pub tunings: Vec<Tuning>,
-        /// What has dried, the oldest first.
+        /// Dry layers, the oldest first.
         pub layers: Vec<Layer>,
         /// The versions that were kept, by name.
         pub versions: Vec<NamedVersion>,
@@ -277,7 +277,7 @@ impl Scene {
             .map_or(1.0, Tuning::factor)
     }
 
-    /// How soaked the brush called `brush` is, 0 to 1.
+    /// Wetness of the brush called `brush`, 0 to 1.
     #[must_use]
     pub fn wetness(&self, brush: &str) -> f64 {
         let mut tunings = self.tunings.iter();

@@ -64,7 +64,7 @@ pub enum ValueError {
     /// A brush's name that no topic can carry.
     #[error("the brush's name {fault}")]
     Brush {
-        /// What is wrong with it.
+        /// The defect.
         fault: String,
     },
     /// A relative path, or one with a NUL.
@@ -122,7 +122,7 @@ pub enum ValueError {
     Idle {
         /// The option.
         option: &'static str,
-        /// What it stands beside.
+        /// Option beside which it has no effect.
         with: String,
     },
     /// A light out of range.

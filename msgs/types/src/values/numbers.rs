@@ -144,7 +144,7 @@ number! {
     Stiffness(f64) "stiffness", 1.0 "", "0.05 to 20" if |factor| STIFFNESS.contains(factor)
 }
 number! {
-    /// How soaked a brush is, from 0, as in its file, to 1.
+    /// Wetness of a brush, from 0, as in its file, to 1, soaked.
     Wetness(f64) "wetness", 1.0 "", "0 to 1" if |wetness| (0.0..=1.0).contains(wetness)
 }
 number! {

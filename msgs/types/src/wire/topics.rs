@@ -82,7 +82,7 @@ topics! {
     paint_status() = "paint/status";
     /// Frames that the window has completed: [`Presented`](crate::window::Presented).
     presented() = "ui/presented";
-    /// What a window has asked for and is not done: [`PendingOrders`](crate::window::PendingOrders).
+    /// Orders of a window that are not done yet: [`PendingOrders`](crate::window::PendingOrders).
     pending_orders() = "ui/pending";
     /// Commands, a query: [`CommandRequest`](crate::command::CommandRequest).
     command(node) = "command/{node}";

@@ -1,4 +1,4 @@
-//! Whether a disk still gives the bytes of a painting.
+//! Probe of the disk: does it still give the bytes of a painting?
 //!
 //! Where the system reports an error on reading, SQLite says that the database is malformed
 //! (`SQLITE_IOERR_CORRUPTFS` in `vdbe.c`), as of a file with wrong bytes. A painting on a disk that fails is not damaged.

@@ -45,7 +45,7 @@ struct Columns {
 /// Bytes of a value of each column.
 const WIDTHS: [usize; 6] = [1, 1, 8 * OF_STATE, 8 * OF_SOLVE, 4, 8];
 
-/// What the next state and solve are differences to.
+/// Values to which the next state and solve are differences.
 #[derive(Default)]
 struct Before {
     state: [u64; OF_STATE],

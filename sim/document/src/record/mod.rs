@@ -1,6 +1,6 @@
 //! The record of a painting: all that was accepted since its beginning, so that it can be executed again.
 //!
-//! What a checkpoint includes goes from the journal to the record in the transaction that writes the checkpoint. Opening
+//! The entries that a checkpoint includes move from the journal to the record in the transaction that writes it. Opening
 //! reads the journal and the beginning, and none of the record's messages, so a long record costs no time; it is read row by row
 //! by who executes it again.
 

@@ -1,6 +1,6 @@
 //! Defects of stored bytes.
 
-/// What is wrong with the bytes of a page or a load: a predicate, whose subject is the page.
+/// Defect of the bytes of a page or a load. Its words are a predicate, whose subject is the page.
 #[derive(Debug, thiserror::Error)]
 pub enum Defect {
     /// No bytes of zstd.
@@ -19,7 +19,7 @@ pub enum Defect {
         /// The most.
         most: usize,
     },
-    /// What the compressor refuses.
+    /// Error of the compressor.
     #[error("cannot be decompressed: {0}")]
     Compression(#[from] std::io::Error),
     /// Other planes than its row says.

@@ -169,7 +169,7 @@ impl DocumentThread {
         self.database.close()?;
         match left && !fault.is_empty() {
             true => Err(DocumentError::Unwritten(fault)),
-            // What the file lacks was in memory alone.
+            // The parts that the file lacks were in memory alone.
             false if wants_all => Err(DocumentError::Incomplete(self.path)),
             false => Ok(()),
         }

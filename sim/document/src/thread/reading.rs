@@ -82,7 +82,7 @@ fn answered<T>(
         }
         read => read.inspect_err(|error| note_broken(shared, error)),
     };
-    // Who asked may have given up.
+    // The reader may have given up.
     answer.send(read).ok();
     Some(())
 }

@@ -36,7 +36,7 @@ impl DocumentThread {
             request.answer.send(rescued).ok();
             return Ok(self);
         }
-        // What fails now would fail when it is closed, and then it could not be opened again.
+        // An error now would come when it is closed, and then it could not be opened again.
         match self.database.try_merge_journal() {
             // It is closed with its journal then, and refused.
             Ok(()) | Err(DocumentError::Full) => {}

@@ -13,7 +13,7 @@ pub struct GifFilm<W: Write> {
     size: [usize; 2],
     /// The newest frame, sRGB.
     shown: Vec<[u8; 3]>,
-    /// What of it is new, until its time is known.
+    /// Changed part of the newest frame, until its time is known.
     waiting: Option<Frame<'static>>,
 }
 

@@ -19,7 +19,7 @@ use maulstick_types::scene::CANVAS;
 
 use reduction::Reduction;
 
-/// What all cells of a canvas look like by: the print of its look, its lamp, names of ground and tooth, and its seed.
+/// Values on which the look of all cells depends: print of the look, lamp, names of ground and tooth, seed.
 type Look = (i64, Lamp, [String; 2], u64);
 
 /// A canvas that is drawn small again and again; only rows of tiles that have changed are drawn anew.

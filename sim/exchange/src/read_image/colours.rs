@@ -13,7 +13,7 @@ pub(super) const MOST_PROFILE: usize = 32 << 20;
 pub struct UnusedMark {
     /// The mark, as its format calls it.
     pub mark: &'static str,
-    /// What is wrong with it.
+    /// The defect.
     pub reason: String,
 }
 
@@ -42,7 +42,7 @@ impl Range {
     };
 }
 
-/// How the colours of a picture become those of sRGB in linear light.
+/// Conversion of a picture's colours to linear sRGB.
 pub(super) struct Colours {
     profile: Option<Incoming>,
     /// Light of each number, 0 to 65,535; of what a profile makes of it where there is one.

@@ -19,7 +19,7 @@ use crate::import_error::ImportError;
 /// Bytes of a number.
 const NUMBER: usize = size_of::<f32>();
 
-/// What is seen of a layer.
+/// Visible part of a layer.
 #[derive(Clone, Copy)]
 struct Frame {
     /// Pixels across and down.

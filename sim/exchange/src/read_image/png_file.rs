@@ -196,7 +196,7 @@ fn gamma(info: &Info<'_>, marks: &[[u8; 4]]) -> Option<Result<Colours, UnusedMar
 
 fn wrong(error: DecodingError) -> ImportError {
     match error {
-        // What stands wrongly in a chunk is an error of its reader, too.
+        // Wrong content of a chunk is an error of its reader, too.
         DecodingError::IoError(error)
             if !matches!(
                 error.kind(),

@@ -29,12 +29,12 @@ use crate::fit_to::{Raster, colours};
 use crate::import_error::ImportError;
 use crate::read_image::Image;
 
-/// What of a channel of the ground counts.
+/// Significant part of a ground's channel.
 const GROUND_BITS: u8 = 0xf8;
-/// How thick films may be, m.
+/// Thickness of films, m.
 const FILM_M: std::ops::RangeInclusive<f64> = 1e-6..=5e-3;
 
-/// What is painted on, and with what: all that the search needs, so that painting can go on meanwhile.
+/// Ground and paints of an underpainting: all that the search needs, so that painting can continue meanwhile.
 #[derive(Clone, Debug)]
 pub struct Support {
     look: Arc<Appearance>,
@@ -72,7 +72,7 @@ impl Support {
     }
 }
 
-/// How near a picture's colours were come, ΔE₀₀ over the cells.
+/// Colour error of an underpainting, ΔE₀₀ over the cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Likeness {
     /// Cells.
@@ -81,7 +81,7 @@ pub struct Likeness {
     pub colours: u64,
     /// Mean.
     pub mean: f64,
-    /// What 95 % of the cells are within.
+    /// 95th percentile.
     pub p95: f64,
     /// The farthest.
     pub max: f64,
@@ -241,7 +241,7 @@ pub fn underpaint(
     })
 }
 
-/// How many cells there are of each key.
+/// Number of cells of each key.
 fn distinct(ground: &Grounds, raster: &Raster) -> BTreeMap<u64, u64> {
     let mut counts = BTreeMap::new();
     for id in ground.tiles() {
@@ -284,7 +284,7 @@ impl Underpainting {
         &self.paints
     }
 
-    /// How near the picture's colours were come.
+    /// Colour error.
     #[must_use]
     pub fn likeness(&self) -> &Likeness {
         &self.likeness

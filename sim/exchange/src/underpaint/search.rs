@@ -309,7 +309,7 @@ impl<'a> Search<'a> {
         refine(self.films, start, under, &Target::new(between)).shares
     }
 
-    /// How far a mixture over a ground is from a colour, ΔE₀₀.
+    /// Distance of a mixture over a ground from a colour, ΔE₀₀.
     pub(crate) fn off(&self, sought: &Sought, under: &[f64], shares: &Shares) -> f64 {
         let target = self.target(self.linear(sought.rgb));
         delta_e_2000(self.films.lab(shares, under), target.lab())

@@ -1,4 +1,4 @@
-//! What the columns of a table of measurements hold.
+//! Columns of a table of measurements.
 
 use crate::error::MeasureError;
 use crate::table::Table;
@@ -105,7 +105,7 @@ impl Headings {
         self.reserved[place]
     }
 
-    /// What to know about the grid: it ends early, or it skips a wavelength.
+    /// Warnings about the grid: it ends early, or it skips a wavelength.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();

@@ -14,7 +14,7 @@ use crate::table::Table;
 pub const GREATEST: f64 = 1.2;
 /// Shares of a sample sum to 1 within this.
 pub const SHARE_TOLERANCE: f64 = 2e-3;
-/// What a reading of the ground called `white` is taken to be where it was not measured: opacity
+/// Reading of the ground called `white` where it was not measured: opacity
 /// charts are made to it (ISO 6504-3).
 pub const CHART_WHITE: f64 = 0.8;
 
@@ -31,7 +31,7 @@ pub struct Measurements {
     pub heading_line: usize,
     /// The samples, in the order of their rows.
     pub samples: Vec<Sample>,
-    /// What the notes say.
+    /// Its notes.
     pub notes: Notes,
     /// Guesses that were made.
     pub warnings: Vec<String>,
@@ -46,13 +46,13 @@ pub struct Sample {
     pub line: usize,
     /// Share of each paint; they sum to 1.
     pub shares: Vec<f64>,
-    /// How thick it is, and over what.
+    /// Its thickness and ground.
     pub layer: Layer,
     /// Reflectance at each wavelength, as the instrument reads it.
     pub readings: Vec<f64>,
 }
 
-/// How thick a sample is, and over what.
+/// Thickness and ground of a sample.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Layer {
     /// Hides what is below.
@@ -61,12 +61,12 @@ pub enum Layer {
     Film {
         /// Thickness, m.
         thickness_m: f64,
-        /// What it lies on.
+        /// Its ground.
         ground: Ground,
     },
 }
 
-/// What a drawdown lies on.
+/// Ground of a drawdown.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ground {
     /// Something that reflects nothing.

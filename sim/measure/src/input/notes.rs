@@ -1,4 +1,4 @@
-//! What the notes of a table say: the white, the surface, colour indices, who measured.
+//! Notes of a table: the white, the surface, colour indices, the source.
 
 use std::collections::BTreeMap;
 

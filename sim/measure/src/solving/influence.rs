@@ -36,7 +36,7 @@ const FARTHEST: f64 = 2.0;
 pub struct Suspect {
     /// Its place among the samples.
     pub sample: usize,
-    /// How many times less the others are off, root mean square, when it is left out.
+    /// Ratio of the other samples' residuals, root mean square, with it and without it.
     pub gain: f64,
 }
 

@@ -8,7 +8,7 @@ use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver as _, SolverStat
 
 use crate::normal::NormalEquations;
 
-/// What an unknown may be.
+/// Bound of an unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
     /// This.

@@ -1,4 +1,4 @@
-//! What a paint is thought to be before it is measured: like the measured ones.
+//! Prior of a paint before it is measured: the mean of the measured ones.
 
 use maulstick_num::{exp, ln};
 use maulstick_optics::paints::WHITE_S_PER_M;

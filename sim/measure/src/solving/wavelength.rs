@@ -8,7 +8,7 @@
 //! reading itself as the model: this is exact where Q is not linear in the noise of R, and takes
 //! drawdowns in, whose reflectance is no ratio of K and S.
 //!
-//! What readings do not determine is drawn to a paint like the measured ones: ln K and ln S have the
+//! Unknowns that readings do not determine are drawn to a paint like the measured ones: ln K and ln S have the
 //! standard deviation [`PRIOR_SD`] about them. Where readings speak, that has no weight.
 //!
 //! Drawdowns have a length. κ = u·ΣK·c·d, with d in units of 1/S of the paint files' white, so that
@@ -21,7 +21,7 @@ use crate::normal::NormalEquations;
 use crate::programme::{Bound, minimise};
 use crate::surface::Surface;
 
-/// How far ln K and ln S of an unknown paint are thought to lie from those of a usual one.
+/// Standard deviation of ln K and ln S of an unknown paint about the prior.
 pub const PRIOR_SD: f64 = 1.5;
 /// The same for the S per metre of an unknown white.
 pub const UNIT_SD: f64 = 0.5;
@@ -51,9 +51,9 @@ pub struct Observation<'a> {
     /// d·[`maulstick_optics::paints::WHITE_S_PER_M`] and the ground's internal reflectance; `None` for
     /// what hides its ground.
     pub film: Option<(f64, f64)>,
-    /// What the instrument reads.
+    /// Reading of the instrument.
     pub reading: f64,
-    /// How many times less than others its sample is thought to be off, squared: 1, or less for a
+    /// Squared ratio of the other samples' deviation to this one's: 1, or less for a
     /// sample that stands out.
     pub trust: f64,
 }
@@ -63,7 +63,7 @@ pub struct Observation<'a> {
 pub struct Wavelength<'a> {
     /// The readings.
     pub observations: Vec<Observation<'a>>,
-    /// What K, S and unit are thought to be before.
+    /// Prior of K, S and unit.
     pub prior: Unknowns,
     /// Place of the reference white.
     pub white: usize,
@@ -173,7 +173,7 @@ impl Wavelength<'_> {
             let Some(x) = minimise(&equations, &bounds) else {
                 break;
             };
-            // What vanishes could not come back in logarithms.
+            // A value of 0 could not come back in logarithms.
             for j in 0..n {
                 found.k[j] = self.prior.k[j] * x[j].max(1e-4);
                 found.s[j] = self.prior.s[j] * x[n + j].max(1e-3);

@@ -1,4 +1,4 @@
-//! How the numbers of a picture stand for light where no ICC profile says so: a transfer function, and
+//! Meaning of a picture's numbers where no ICC profile gives it: a transfer function, and
 //! the chromaticities of primaries and white.
 //!
 //! Codes and formulas are those of ITU-T H.273 (07/2024), tables 2 and 3, which PNG's chunk cICP gives;

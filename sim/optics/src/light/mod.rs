@@ -51,14 +51,14 @@ pub const SURFACE: f32 = SurfaceCorrection::STANDARD.k1 as f32;
 /// The lowest lamp, as the z of its direction: below it a flat surface would hardly be lit, and
 /// everything relative to it would have no bound.
 pub const LOWEST: f64 = 0.1;
-/// How much of the height of a low lamp its own radius may be, so that it never sets for a flat surface.
+/// Largest radius of a low lamp by its height, so that it never sets for a flat surface.
 const SET: f64 = 0.95;
 /// Least albedo of the light itself by which colours are divided.
 const DARKEST: f64 = 1e-3;
 /// The brightest that [`starting_exposure`] lets a ground be.
 pub const BARE: f64 = 0.98;
 
-/// What a lamp is made of.
+/// Parameters of a lamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LampSetup {
     /// Toward it, of any length, in the frame of the surface. A lamp lower than [`LOWEST`] is raised
@@ -111,7 +111,7 @@ pub struct Lamp {
     pub softness: f32,
     /// w, its colour.
     pub colour: [f32; 3],
-    /// What makes an albedo of an unlit colour.
+    /// Factor from an unlit colour to an albedo.
     pub albedo: [f32; 3],
 }
 
@@ -183,7 +183,7 @@ pub struct Spot {
     pub unlit: [f32; 3],
     /// g, 0 to 1.
     pub gloss: f32,
-    /// How it lies, and what it sees.
+    /// Its facet.
     pub facet: Facet,
 }
 
@@ -194,7 +194,7 @@ pub fn normal(slope: [f32; 2]) -> [f32; 3] {
     [-slope[0] / length, -slope[1] / length, 1.0 / length]
 }
 
-/// What `lamp` makes of a point.
+/// Colour of a point under `lamp`.
 #[must_use]
 pub fn lit(spot: &Spot, lamp: &Lamp) -> [f32; 3] {
     let Facet {

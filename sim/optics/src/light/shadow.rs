@@ -45,7 +45,7 @@ pub struct Tap {
     pub run: [f32; 2],
 }
 
-/// How a lamp's shadows fall.
+/// Direction and length of a lamp's shadows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shadows {
     /// The way to it, from the nearest place.
@@ -80,7 +80,7 @@ impl Shadows {
             let first = if double { single + 2 * (k - single) } else { k } + 1;
             let far = first as f64 + if double { 0.5 } else { 0.0 };
             let faded = (far / lines as f64 - (1.0 - FADING)).max(0.0) / FADING;
-            // What rounding adds to a whole number would reach for one cell more.
+            // Rounding above a whole number would reach one cell farther.
             let exactly = |v: f64| (v * 1e6).round() * 1e-6;
             let crossed = |line: usize| [x, y].map(|v| exactly(v / major * line as f64));
             let [low, high, weight] = if double {
@@ -108,7 +108,7 @@ impl Shadows {
         }
     }
 
-    /// How many cells beyond a changed one its shadow may change: columns and rows to the lower and to
+    /// Reach of a changed cell's shadow, cells: columns and rows to the lower and to
     /// the higher side.
     #[must_use]
     pub fn reach(&self) -> [[u32; 2]; 2] {

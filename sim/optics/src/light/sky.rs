@@ -25,7 +25,7 @@ pub const DIRECTIONS: usize = 8;
 pub const RINGS: usize = 5;
 /// All of them.
 pub const TAPS: usize = DIRECTIONS * RINGS;
-/// How far occlusion reaches, m: twice the height of thick impasto.
+/// Reach of occlusion, m: twice the height of thick impasto.
 pub const REACH_M: f64 = 2e-3;
 /// The same in cells, at most.
 pub const REACH: u32 = 16;
@@ -88,7 +88,7 @@ impl Sky {
         }
     }
 
-    /// How many cells beyond a changed one it may change the light, to every side.
+    /// Reach of a changed cell, cells to every side.
     #[must_use]
     pub fn reach(&self) -> u32 {
         let cells = self.taps.iter().flatten().flat_map(|tap| tap.cell);
@@ -145,7 +145,7 @@ impl Sky {
     }
 }
 
-/// What comes to a facet from one direction over a horizon of the elevation with tangent `tangent`:
+/// Light on a facet from one direction over a horizon of the elevation with tangent `tangent`:
 /// n_φ·(π/4 − η/2 − sin η·cos η/2) + n_z·cos²η/2. The arc cosine is Abramowitz and Stegun's 4.4.45,
 /// to 7e-5.
 #[inline]
@@ -159,7 +159,7 @@ pub fn above(tangent: f32, along: f32, up: f32) -> f32 {
     0.5 * (along * (from_zenith - sine * cosine) + up * square)
 }
 
-/// What a place that sees the share `open` of the light receives with what its surroundings of this
+/// Light on a place that sees the share `open` of it, with what its surroundings of this
 /// albedo throw back, 0 to 1 each:
 ///
 /// ```text

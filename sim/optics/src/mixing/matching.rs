@@ -24,7 +24,7 @@ const FARTHEST: f64 = 7.0;
 const PAIR_GRID: i32 = 28;
 /// Places each way on which three paints are tried first.
 const TRIPLE_GRID: i32 = 8;
-/// What rounding of the shares may cost, ΔE₀₀: a quarter of what an eye just tells apart.
+/// Largest cost of rounding the shares, ΔE₀₀: a quarter of the least difference that an eye sees.
 const ROUNDING: f64 = 0.25;
 /// Most digits of a share.
 const DIGITS: u32 = 4;

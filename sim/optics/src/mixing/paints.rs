@@ -17,7 +17,7 @@ pub struct Paint {
     pub name: String,
     /// Colour index of its pigments.
     pub colour_index: String,
-    /// Who measured it.
+    /// Source of the measurement.
     pub source: String,
     /// Absorption, per metre.
     pub k: Spectrum,
@@ -40,20 +40,20 @@ impl Paint {
         }
     }
 
-    /// Whether it is the thinner.
+    /// True if it is the thinner.
     #[must_use]
     pub fn is_thinner(&self) -> bool {
         self.name == THINNER
     }
 }
 
-/// Why paints cannot be had.
+/// Error of a paint library or a mixture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PaintError {
     /// No such paint; the nearest name is proposed.
     #[error("there is no paint called '{name}'{}", meant(.nearest.as_deref()))]
     Unknown {
-        /// What was asked for.
+        /// The name.
         name: String,
         /// The nearest name, if one is near.
         nearest: Option<String>,
@@ -66,7 +66,7 @@ pub enum PaintError {
     File {
         /// The line, from 1.
         line: usize,
-        /// What is wrong.
+        /// The defect.
         what: String,
     },
 }

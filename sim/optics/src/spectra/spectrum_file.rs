@@ -12,13 +12,13 @@ use maulstick_tables::{HeadingLine, Table, shown};
 use crate::spectrum::{Spectrum, bin, resample};
 use crate::surface::SurfaceCorrection;
 
-/// What is wrong with a table, and where.
+/// A defect of a table and its place.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {what}")]
 pub struct TableError {
     /// The line, from 1.
     pub line: usize,
-    /// What is wrong, with the column.
+    /// The defect, with the column.
     pub what: String,
 }
 
@@ -56,12 +56,12 @@ impl Spectrum {
     }
 }
 
-/// What a surface reflects, as an instrument reads it.
+/// Reflectance of a surface, as an instrument reads it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reflectance {
     /// The readings, 0 to 1.
     pub reading: Spectrum,
-    /// Whether the gloss of the surface went past the instrument.
+    /// True if the instrument leaves out the gloss of the surface.
     pub specular_excluded: bool,
     /// Number of readings that were beyond 0 to 1, by no more than instruments err, and were taken as 0 or 1.
     pub limited: usize,

@@ -1,7 +1,7 @@
 //! Reflectances that have a given colour (Jakob and Hanika 2019, "A Low-Dimensional Function Space for
 //! Efficient Spectral Upsampling").
 //!
-//! What leaves a printed surface is modelled as (1 − k₁)·S(c₀·u² + c₁·u + c₂), S the sigmoid
+//! Light that leaves a printed surface is modelled as (1 − k₁)·S(c₀·u² + c₁·u + c₂), S the sigmoid
 //! ½ + x/(2√(1 + x²)), u the wavelength from −1 at 380 nm to 1 at 780 nm. With the surface's own
 //! reflection k₁ that is what the eye sees, and XYZ is linear in S; the internal reflectance under the
 //! surface is S/((1 − k₂) + k₂·S). The three coefficients are found by damped Gauss-Newton steps in
@@ -113,7 +113,7 @@ impl Upsampler {
         Smooth(at.map(|c| c as f32))
     }
 
-    /// How far the colour of coefficients is from the target in CIELAB, and its slopes.
+    /// Difference of the coefficients' colour from the target in CIELAB, and its slopes.
     fn off(&self, c: [f64; 3], target: [f64; 3]) -> ([f64; 3], Matrix) {
         let mut xyz = [0.0; 3];
         let mut slopes = [[0.0; 3]; 3];

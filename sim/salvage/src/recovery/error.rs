@@ -15,7 +15,7 @@ pub enum SalvageError {
 }
 
 impl SalvageError {
-    /// What to do about it.
+    /// Advice.
     #[must_use]
     pub fn advice(&self) -> Advice {
         match self {

@@ -34,7 +34,7 @@ struct Level {
     spare: Vec<f32>,
     /// Layers with unknowns.
     layers: Layers,
-    /// What brings this level to the next; none on the coarsest.
+    /// Transfer of this level to the next; `None` on the coarsest.
     down: Option<Down>,
 }
 

@@ -192,7 +192,7 @@ pub(crate) fn gather(
     if rows.is_empty() {
         return;
     }
-    // What the rows need of the fine ones.
+    // The fine rows that these need.
     let fine_rows = if is_halved(1) {
         2 * rows.start - 2..(2 * rows.end).min(fine.cells[1] + 3)
     } else {

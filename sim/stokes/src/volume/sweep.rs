@@ -10,7 +10,7 @@ use crate::stencil::Span;
 
 /// Gradient of fill below which a cell has no surface.
 const LEAST_GRADIENT: f32 = 1e-3;
-/// What shares of a cell that two faces take add up to at most, so that rounding never makes them more than the cell.
+/// Largest sum of the shares of a cell that two faces take, so that rounding never makes them more than the cell.
 const BELOW_ONE: f32 = 1.0 - 4.0 * f32::EPSILON;
 
 /// Room for sweeps.
@@ -85,7 +85,7 @@ impl Sweep {
         let capacity = self.capacity as f32;
         let (free, area) = (&domain.free[axis], &domain.area[axis]);
         let len = grid.len();
-        // What came too fast for the other axes to take away leaves no less room than a solid does.
+        // Paint that came too fast for the other axes leaves no less room than a solid does.
         fill_flat(&mut self.fill[..len], &*total, room, LEAST_ROOM * capacity);
         take(&mut self.taken[..len], &self.fill, open);
         let (fill, taken) = (&self.fill, &self.taken);

@@ -21,7 +21,7 @@ const STEEPEST: f64 = 85.0;
 const FLAT: f64 = 90.0;
 /// Rounding of a number in a table.
 const ROUNDING: f64 = 1e-3;
-/// What each line of a table without headings is.
+/// Columns of a table without headings.
 const LINE: &str = "each line is: t x y pressure [tilt_x tilt_y [twist]]";
 
 /// A sample as it stands in the table.

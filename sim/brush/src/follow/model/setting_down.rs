@@ -42,7 +42,7 @@ pub(super) struct Waiting {
     begins: Begins,
 }
 
-/// How a brush comes to a contact.
+/// Approach of a brush to a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Begins {
     /// From the air.
