@@ -31,11 +31,11 @@ const ZOOM_S: f64 = 1.0;
 const TURN_S: f64 = 1.5;
 /// Time between two commands while the hand pushes.
 const PERIOD: Duration = Duration::from_millis(33);
-/// A push counts for so long at most, however late it is followed.
+/// Longest time for which a push counts, however late it is followed.
 const LONGEST: Duration = Duration::from_millis(100);
 /// Longest wait of a command for its answer.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// A command is asked again after this; so long at most a daemon's end waits for it.
+/// Time after which a command is sent again, and for which a daemon's end waits for it at most.
 const ASK: Duration = Duration::from_millis(300);
 
 /// Placement of a surface after a push of `dt` s.

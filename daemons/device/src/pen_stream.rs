@@ -13,7 +13,7 @@ use crate::pen::{Pen, Presence, Reading};
 
 /// Interval at which the sample of a silent pen is repeated, ns.
 pub const REPEAT_NS: u64 = 50_000_000;
-/// A pen that hovers in silence for so long is away, where nothing would say so, ns.
+/// Silence after which a hovering pen counts as away, on tablets that do not report it, ns.
 pub const GONE_NS: u64 = 1_000_000_000;
 /// Samples are at least this far apart, ns: reports that were read together did not come together.
 pub const SPACING_NS: u64 = 500_000;

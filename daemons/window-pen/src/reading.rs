@@ -3,7 +3,7 @@
 use maulstick_device::pen::Reading;
 use maulstick_types::stylus::axes;
 
-/// A tool, told apart from all others of a window system.
+/// Identity of a tool among all those of a window system.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Tool(pub u64);
 

@@ -139,7 +139,7 @@ impl PenThread {
     }
 }
 
-/// Reads and sends until `stop` is told.
+/// Reads and sends until `stop` is set.
 fn follow(
     source: &mut dyn Source,
     stop: &EventFd,

@@ -50,7 +50,7 @@ pub(crate) unsafe fn foreign_connection(display: WaylandDisplayHandle) -> Connec
     Connection::from_backend(backend)
 }
 
-/// A tool as its events have told so far.
+/// State of a tool by its events so far.
 #[derive(Debug, Default)]
 #[expect(
     clippy::struct_excessive_bools,
@@ -119,7 +119,7 @@ struct Listener {
     readings: Vec<PenReading>,
 }
 
-/// True if the compositor that `WAYLAND_DISPLAY` names tells of pens.
+/// True if the compositor that `WAYLAND_DISPLAY` names reports pens.
 ///
 /// # Errors
 /// A [`UserError`] where there is none.
@@ -208,7 +208,7 @@ impl Source for WaylandPens {
         readings: &mut Vec<PenReading>,
     ) -> Result<(), UserError> {
         flush(&self.connection)?;
-        // Where events wait already they are told first.
+        // Events that wait already come first.
         if let Some(guard) = self.queue.prepare_read() {
             match readable(guard.connection_fd(), stop, timeout)? {
                 true => match guard.read() {
@@ -281,7 +281,7 @@ impl Dispatch<ZwpTabletToolV2, ()> for Listener {
                 hardware_serial_lo,
             } => {
                 let serial = u64::from(hardware_serial_hi) << 32 | u64::from(hardware_serial_lo);
-                // Pens without one are told apart by the connection.
+                // Pens without one are distinguished by the connection.
                 if serial != 0 {
                     tool.tool = Tool(serial << 1 | u64::from(tool.eraser));
                 }

@@ -2,7 +2,7 @@
 //!
 //! [`Bus`] is the interface of a node: publishers, bounded subscriptions, queries, liveliness tokens and
 //! the rig's clock. [`ZenohBus`] carries it between processes; [`MemoryNet`] carries it inside one
-//! process under a virtual clock, and loses, delays and reorders what a test tells it to. No other
+//! process under a virtual clock, and loses, delays and reorders as a test demands. No other
 //! crate of the rig names zenoh; the benchmarks do, to put a bare zenoh beside this bus.
 //!
 //! | module | holds |

@@ -59,7 +59,7 @@ impl<M: Message> Sender<M> {
     }
 
     /// Sends a message; `event_ns` is the time at which its content was true. One that exceeds its limit is dropped and
-    /// told: no content may end the node that sends it.
+    /// reported: no content may end the node that sends it.
     ///
     /// # Errors
     /// [`BusError::Topic`].
@@ -78,7 +78,7 @@ impl<M: Message> Sender<M> {
     }
 }
 
-/// Bytes of a message of a topic; none for one that exceeds its limit, which is told once.
+/// Bytes of a message of a topic; `None` for one that exceeds its limit, which is reported once.
 pub(crate) fn sendable(
     topic: &str,
     encoded: Result<Vec<u8>, DecodeError>,

@@ -41,7 +41,7 @@ pub struct Dial {
 /// The largest message that a receiver accepts, bytes: a full-screen frame and some.
 const MAX_MESSAGE_BYTES: usize = 96 << 20;
 /// A peer that says nothing for this long is gone, ms. A process that died closes its sockets and is gone at once; one
-/// that stood still goes on, and must be believed for so long: zenoh makes a link between two peers that both stay known
+/// that stood still continues, and must count as alive for that time: zenoh makes a link between two peers that both stay known
 /// to a third only once.
 const LEASE_MS: u32 = 20_000;
 
@@ -123,7 +123,7 @@ impl ZenohBus {
         Ok(own)
     }
 
-    /// With a pool of so many bytes, for benchmarks; without one if it shares no memory.
+    /// The same bus with a pool of `bytes`, for benchmarks; without one if it shares no memory.
     #[must_use]
     pub fn lending(mut self, bytes: usize) -> Self {
         self.pool = self.pool.map(|_| Arc::new(Pool::of(bytes)));

@@ -15,7 +15,7 @@ use crate::private::create;
 /// Files that are being written and have not their name yet.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Files that are being written: they go where this process is told to stop meanwhile, see
+/// Files that are being written: they are removed if this process has to stop meanwhile, see
 /// [`clear_on_signals`].
 #[derive(Debug)]
 pub struct Unfinished(Vec<PathBuf>);

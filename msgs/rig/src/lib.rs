@@ -11,7 +11,7 @@
 //! | [`log`] | log lines |
 //! | [`node_handle`] | joining a rig, living in it, leaving it |
 //! | [`program`] | the program of this process, for those that it starts |
-//! | [`pulse`] | the status of a node, by which the launcher sees that it goes on |
+//! | [`pulse`] | the status of a node, by which the launcher sees that it makes progress |
 //! | [`sketches`] | paintings that have no name yet, in the user's state folder |
 //! | [`table_file`] | tables in files that a user names |
 //! | [`stop`] | the stop flag: a signal, or the launcher's end |

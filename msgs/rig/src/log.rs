@@ -61,7 +61,7 @@ pub fn say(text: &str) {
     }
 }
 
-/// Has the standard output written by a thread of its own: for a command whose work goes on while its terminal stands still.
+/// Has the standard output written by a thread of its own, for a command that must not wait for its terminal.
 pub fn print_beside() {
     if let Ok(output) = LossyWriter::start(io::stdout()) {
         OUTPUT.set(output).ok();

@@ -147,8 +147,8 @@ impl NodeHandle {
         Ok(Pulse::new(&*self.bus, &self.topics, &self.node, work)?)
     }
 
-    /// Has a thread send the status of a node whose loop may rest, as that of a window does while nobody sees it: it tells
-    /// that the process goes on, until it leaves the rig.
+    /// Has a thread send the status of a node whose loop may rest, as that of a window does while nobody sees it: it shows
+    /// that the process is alive, until it leaves the rig.
     ///
     /// # Errors
     /// A [`UserError`] where the bus is closed, or there is no thread.

@@ -1,4 +1,4 @@
-//! Pulse of a node: its status, sent by the loop that does its work, by which the launcher sees that it goes on.
+//! Pulse of a node: its status, sent by the loop that does its work, by which the launcher sees that it makes progress.
 
 use std::sync::{Arc, Mutex, PoisonError};
 

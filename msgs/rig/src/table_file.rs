@@ -18,7 +18,7 @@ pub fn read_table(path: &Path, most: u64) -> Result<String, UserError> {
     let failed = |error: std::io::Error| UserError::reading(path, &error);
     let file = std::fs::File::open(path).map_err(failed)?;
     let mut bytes = Vec::new();
-    // A device or a pipe may go on without end.
+    // A device or a pipe may have no end.
     file.take(most + 1)
         .read_to_end(&mut bytes)
         .map_err(failed)?;

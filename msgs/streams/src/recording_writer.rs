@@ -20,7 +20,7 @@ pub const MESSAGE_ENCODING: &str = "x-maulstick";
 pub const SCHEMA_ENCODING: &str = "x-maulstick-fields+json";
 /// Profile of the files.
 pub const PROFILE: &str = "maulstick";
-/// Records that are compressed together, bytes: so many are read for one message.
+/// Bytes of records that are compressed together, and read together for one message.
 const CHUNK_BYTES: u64 = 256 << 10;
 
 /// Options of the MCAP writer.

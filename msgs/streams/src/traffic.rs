@@ -29,7 +29,7 @@ pub struct Arrived {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Distribution {
     samples: Vec<u64>,
-    /// Each so many times.
+    /// Interval of the samples that are kept: each `every`th.
     every: u64,
     skipped: u64,
     most: u64,
@@ -321,7 +321,7 @@ mod tests {
             "{}",
             stream.rate_hz()
         );
-        // Half of them are lost: so many come.
+        // Half of them are lost.
         let half = (0..490).step_by(2).map(|seq| message(seq, [at(seq); 3]));
         let stream = heard(half);
         assert!(

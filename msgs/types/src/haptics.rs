@@ -63,7 +63,7 @@ wire_enum! {
 
 wire_struct! {
     /// Relief around the brush: heights over the plane on [`SIDE`](Self::SIDE)² cells, desk frame. Beyond its edge the
-    /// outermost heights go on.
+    /// outermost heights continue.
     pub struct HeightPatch {
         /// Corner of the first cell, m.
         pub corner_m: [f64; 3],

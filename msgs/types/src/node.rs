@@ -1,4 +1,4 @@
-//! Status of a node: whether it goes on, and what it has done.
+//! Status of a node: its progress and its work.
 
 use crate::wire::define::{message, wire_struct};
 

@@ -137,7 +137,7 @@ impl Document {
             .back(Arc::new(DocumentBacking(Arc::clone(&self.shared))), memory);
     }
 
-    /// Relocates the painting, with everything handed over until then, while painting goes on.
+    /// Relocates the painting, with everything handed over until then, while painting continues.
     /// [`poll_relocation`](Self::poll_relocation) returns the result: [`DocumentError::Incomplete`] while its file
     /// [lacks parts](Self::wants_all) of it.
     pub fn relocate(&self, to: &Path, how: Relocate, replace: bool) -> Relocation {

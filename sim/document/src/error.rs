@@ -58,7 +58,7 @@ pub enum DocumentError {
     /// The latest strokes could not be written.
     #[error("what was painted last is not in the file: {0}")]
     Unwritten(String),
-    /// File that lost a part of the painting, or in which it goes on after that, and that did not get that part again.
+    /// File that lost a part of the painting, or in which it continues after that, and that did not get that part again.
     #[error("{} lacks a part of the painting", .0.display())]
     Incomplete(PathBuf),
     /// The file of an open painting is gone, and no other could be made.

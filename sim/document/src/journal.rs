@@ -16,7 +16,7 @@ use crate::tables::checksum::journal_checksum;
 
 /// Largest number of records in a row: many wait where the disk was full.
 pub(crate) const ROW_RECORDS: usize = 64;
-/// Largest size of a row's data, bytes: that of so many of the longest records behind a row of the record, and of the 1024
+/// Largest size of a row's data, bytes: that of [`ROW_RECORDS`] of the longest records behind a row of the record, and of the 1024
 /// longest states that earlier versions wrote in one.
 const ROW_MAX: usize = 5 << 24;
 const _: () = assert!(ROW_MAX > (ROW_RECORDS + 5) * (JournalEntry::MAX_BYTES + 64));

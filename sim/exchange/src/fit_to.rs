@@ -172,7 +172,7 @@ pub fn colours(image: &Image, cells: [usize; 2]) -> Result<Raster, ImportError> 
     })
 }
 
-/// All of a picture as heights of so many pixels, 0 to 65535, row after row from the top.
+/// All of a picture as heights at `size` pixels, 0 to 65535, row after row from the top.
 ///
 /// # Errors
 /// As [`colours`].

@@ -1,7 +1,7 @@
 //! Paintings to and from other programs.
 //!
-//! An export takes a painting and a surface of it, writes to a file from its start, and tells how far
-//! it is. Each needs memory for a few rows of tiles, however large the surface is, but for
+//! An export takes a painting and a surface of it, writes to a file from its start, and reports its
+//! progress. Each needs memory for a few rows of tiles, however large the surface is, but for
 //! [`write_open_raster`], which also holds packed layers, and [`write_glb`], which holds its walls. The same painting gives the same bytes: no
 //! file has a date in it.
 //!

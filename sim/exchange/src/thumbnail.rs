@@ -147,7 +147,7 @@ pub(crate) struct Thumbnail {
 }
 
 impl Thumbnail {
-    /// Of a picture of so many pixels across and down, with at most `most` either way.
+    /// Of a picture of this size, across and down, with at most `most` pixels along each side.
     pub(crate) fn new(from: [usize; 2], most: usize) -> Self {
         let longest = from[0].max(from[1]);
         let size = from.map(|side| match longest > most {

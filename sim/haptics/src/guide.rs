@@ -56,7 +56,7 @@ pub struct Guide {
 pub struct Foot {
     /// Number of its piece.
     piece: usize,
-    /// Share of the piece; the first and the last go on beyond their ends.
+    /// Share of the piece; the first and the last continue beyond their ends.
     along: f64,
 }
 

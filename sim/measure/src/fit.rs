@@ -1,7 +1,7 @@
 //! The whole fit: wavelength by wavelength, some times over.
 //!
 //! The first pass takes an instrument's usual noise; its residuals say what the noise is, and where
-//! there are drawdowns the mean of the white's S over the spectrum. The next ones go on with both.
+//! there are drawdowns the mean of the white's S over the spectrum. The next passes use both.
 //!
 //! A mistake in a sample's shares or thickness shows at all wavelengths, and least squares would bend
 //! every paint in it. So samples are trusted after Huber (1964, *Robust estimation of a location
@@ -30,7 +30,7 @@ const USUAL_NOISE: f64 = 2e-3;
 
 /// No instrument reads as well as this.
 const LEAST_NOISE: f64 = 5e-5;
-/// A residual so many times what is usual is not only noise.
+/// Ratio of a residual to the usual one beyond which it is not noise alone.
 const STANDS_OUT: f64 = 4.0;
 /// Readings have to reach from here to here, nm.
 const NARROWEST: [f64; 2] = [420.0, 680.0];
@@ -272,7 +272,7 @@ fn observation<'a>(
     }
 }
 
-/// Trusts each sample by how far it is off at all wavelengths; tells whether that changed.
+/// Trusts each sample by how far it is off at all wavelengths; returns whether that changed.
 fn trust(spectrum: &mut [(f64, Wavelength<'_>)], found: &[Unknowns], noise: f64) -> bool {
     let samples = spectrum
         .first()

@@ -29,7 +29,7 @@ pub enum MotionError {
         /// Time since the beginning, s.
         at_s: f64,
     },
-    /// A stroke that would be torn: nothing is painted across so long a pause.
+    /// A stroke that would be torn: nothing is painted across a pause of that length.
     #[error(
         "at {at_s:.3} s two samples of a stroke would lie {apart_s:.2} s apart, and nothing is painted over more than \
          {most_s:.1} s"

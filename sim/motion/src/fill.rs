@@ -1,4 +1,4 @@
-//! An outline filled by example: the strokes of a motion, laid where they would lie if their hand went on (Baxter 2004,
+//! An outline filled by example: the strokes of a motion, laid as their hand would have continued (Baxter 2004,
 //! § 9.2).
 
 use glam::DVec2;
@@ -10,7 +10,7 @@ use crate::outline::Outline;
 use crate::random::Random;
 use crate::take_sample::{TakeSample, checked, point, shifted};
 
-/// A stroke is laid up to so many times as long as the longest of the example; what is longer becomes several.
+/// Largest length of a stroke, by the longest one of the example; a longer one becomes several.
 const STRETCH: f64 = 1.5;
 /// A shortened stroke takes at least this share of its time.
 const QUICKEST: f64 = 0.25;

@@ -59,7 +59,7 @@ pub struct Profile {
 const DATE: std::ops::Range<usize> = 24..36;
 const NEW_CENTURY: [u8; 12] = [7, 208, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0];
 
-/// Steps of linear light that are told apart before a foreign profile.
+/// Steps of linear light that are distinguished before a foreign profile.
 const STEPS: u32 = 65_535;
 
 impl Profile {

@@ -49,7 +49,7 @@ impl Offline {
         Self::going_on(Sequencer::new(painting), brush, file, depth_share, loads)
     }
 
-    /// As [`new`](Self::new), over a painting that goes on where its sequencer is.
+    /// As [`new`](Self::new), over a painting that continues where its sequencer is.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -152,7 +152,7 @@ impl Offline {
         self.model.soak(scene.wetness(&self.brush));
     }
 
-    /// Lets so many sixtieths of a second go by, in which nobody paints. `each` is told after each second of it where
+    /// Lets `ticks` sixtieths of a second pass without painting. `each` is called after each second of them where
     /// something dries; else nothing happens.
     pub fn wait(&mut self, ticks: u32, mut each: impl FnMut(&mut Sequencer)) {
         let mut left = ticks;
@@ -165,7 +165,7 @@ impl Offline {
         }
     }
 
-    /// Follows one sample of a take that goes on.
+    /// Follows one sample of a take.
     ///
     /// # Errors
     /// [`EditError`] where the painting refuses its state.
@@ -189,7 +189,7 @@ impl Offline {
     }
 
     /// Follows the samples of a take to its end, each with its time, ns. The brush is bent on a thread of its own, ahead of
-    /// the paint. `each` is told after which sample the painting is.
+    /// the paint. `each` gets the number of the sample after which the painting is.
     ///
     /// # Errors
     /// [`EditError`] where the painting refuses a state.

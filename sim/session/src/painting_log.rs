@@ -67,7 +67,7 @@ pub struct LoggedStroke {
 /// Times of the rig clock, which is the wall clock where the machine's is set, are later than this, ns: 2001-09-09.
 const WALL_NS: u64 = 1_000_000_000_000_000_000;
 
-/// A stroke that may go on.
+/// A stroke that may continue.
 struct OpenStroke {
     /// Epoch of the brush and number of the stroke.
     stroke: (u32, u64),

@@ -32,7 +32,7 @@ pub enum SessionFault {
         /// Its number.
         number: u64,
     },
-    /// The journal went on at an earlier place, or was another painting's.
+    /// The journal jumped to an earlier place, or was another painting's.
     #[error(
         "the rig went on in another painting, or at an earlier place of it (journal {found} after {known})"
     )]
@@ -79,7 +79,7 @@ pub struct RecordedSession {
 }
 
 impl RecordedSession {
-    /// A session that goes on where a sequencer is.
+    /// A session that continues from a sequencer's place.
     #[must_use]
     pub fn after(sequencer: &Sequencer) -> Self {
         Self {

@@ -26,7 +26,7 @@ pub struct Stokes {
 }
 
 impl Stokes {
-    /// An empty window over a flat canvas, for so many paints; a cell holds so many quanta.
+    /// An empty window over a flat canvas, for `paints` paints; a cell holds `capacity` quanta.
     #[must_use]
     pub fn new(grid: &Grid, capacity: u32, paints: usize) -> Self {
         Self {

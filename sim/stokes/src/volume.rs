@@ -99,7 +99,7 @@ wide! {
 }
 
 impl Volume {
-    /// An empty window for so many paints.
+    /// An empty window for `paints` paints.
     #[must_use]
     pub fn new(grid: &Grid, capacity: u32, paints: usize) -> Self {
         Self {
@@ -152,7 +152,7 @@ impl Volume {
         self.grid.wrap(&mut self.total);
     }
 
-    /// Moves the paint for so many seconds with velocities in m/s on cells of `cell_m`; returns the number of parts.
+    /// Moves the paint for `seconds` with velocities in m/s on cells of `cell_m`; returns the number of parts.
     pub fn advect(
         &mut self,
         domain: &Domain,

@@ -291,7 +291,7 @@ impl Worker {
             EXIT_USAGE => Told::Refused,
             _ => Told::Unknown,
         };
-        // Silence is told once: what is to be restored is asked for again and again.
+        // Silence is reported once: a value to restore is asked for again and again.
         let unheard = told == Told::Unknown;
         if !(std::mem::replace(&mut self.unheard, unheard) && unheard) {
             let help = fault.help.map(|help| format!("; {help}"));

@@ -242,7 +242,7 @@ impl XinputDevice {
         })
     }
 
-    /// Takes the values of those valuators that an event tells of.
+    /// Stores the values of the valuators that an event has.
     fn take_values(&mut self, mask: &[u32], values: &[Fp3232]) {
         let told = (0..32 * mask.len()).filter(|place| mask[place / 32] >> (place % 32) & 1 == 1);
         for (place, value) in told.zip(values) {

@@ -1,9 +1,9 @@
-//! Losses of a stream as the log tells them: one line a second with their number, however many there are.
+//! Losses of a stream in the log: one line a second with their number, however many there are.
 
 /// Shortest time between two lines, ns.
 const EVERY_NS: u64 = 1_000_000_000;
 
-/// Messages that were lost and not told yet.
+/// Lost messages that are not reported yet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Losses {
     untold: u64,

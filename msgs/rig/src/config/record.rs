@@ -17,7 +17,7 @@ pub struct RecordSection {
     /// Most of all recordings of the rig in that folder, MB; without it all are kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quota_mb: Option<u64>,
-    /// Of a run only the newest so long: `30s`, `5m`, `2h`; without it all of it.
+    /// Newest part of a run that is kept: `30s`, `5m`, `2h`; without it all of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last: Option<String>,
 }

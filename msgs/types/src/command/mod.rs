@@ -183,7 +183,7 @@ impl ExportOrder {
 }
 
 wire_struct! {
-    /// The painting, with its history, in another file, in which it goes on.
+    /// The painting, with its history, in another file, in which it continues.
     pub struct SaveAs {
         /// The whole path of the file.
         pub path: WholePath,
@@ -204,7 +204,7 @@ wire_enum! {
         File(FileCommand),
         /// The node of a brush.
         Brush(BrushCommand),
-        /// The launcher: the rig goes on in another painting.
+        /// The launcher: the rig continues in another painting.
         Rig(RigCommand),
         /// The paint node: a recorded session is painted again.
         Session(SessionCommand),
@@ -245,11 +245,11 @@ wire_enum! {
     pub enum FileCommand {
         /// Writes the painting for other programs.
         Export(ExportOrder),
-        /// Ends the export that goes on: its file is not written.
+        /// Cancels the running export: its file is not written.
         StopExport,
         /// Puts the painting into another file.
         SaveAs(SaveAs),
-        /// Writes a copy of the painting, with its history; painting goes on where it was.
+        /// Writes a copy of the painting, with its history; painting continues where it was.
         Copy {
             /// The whole path of the copy, which is not there yet.
             path: WholePath,
@@ -280,7 +280,7 @@ wire_enum! {
             /// True if a painting that is in memory alone may be discarded.
             forget: bool,
         },
-        /// Begins another painting and goes on in it.
+        /// Begins another painting and continues in it.
         New {
             /// The whole path of its file, which is not there yet; in memory alone if absent.
             path: Option<WholePath>,

@@ -26,7 +26,7 @@ wire_enum! {
             /// Error of the backend.
             why: String,
         },
-        /// The painting goes on after its program ended: what its brushes did last is not joined to what they do next.
+        /// The painting continues after its program ended: its brushes' last contacts are not joined to their next ones.
         Resumed,
         /// Painting falls behind, and a lighter paint model is proposed.
         LighterModel {

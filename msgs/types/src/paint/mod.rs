@@ -213,7 +213,7 @@ message! {
 }
 
 wire_struct! {
-    /// A drying that goes on.
+    /// A running drying.
     pub struct DryingStatus {
         /// Share of its time that went by, 0 to 1.
         pub share: f32,
@@ -225,7 +225,7 @@ wire_struct! {
 }
 
 wire_struct! {
-    /// An export that goes on.
+    /// A running export.
     pub struct ExportStatus {
         /// Its file.
         pub path: String,
@@ -296,7 +296,7 @@ message! {
         pub take: bool,
         /// Layer that dries on the canvas.
         pub drying: Option<DryingStatus>,
-        /// The export that goes on.
+        /// The running export.
         pub export: Option<ExportStatus>,
         /// Backend of the paint: `cpu`, or `gpu` and the adapter's name.
         pub backend: String,

@@ -15,7 +15,7 @@ pub use light::{ILLUMINANT_NAME_MAX, INTENSITY, Light, LightError, RULES, SAMPLE
 pub const CANVAS: u32 = 0;
 /// The palette.
 pub const PALETTE: u32 = 1;
-/// Flow of a marker for which nothing is said: 4 µm along a millimetre.
+/// Default flow of a marker: 4 µm along a millimetre.
 pub const MARKER_FLOW: f64 = 4e-3;
 
 wire_enum! {

@@ -183,7 +183,7 @@ impl Default for Share {
 }
 
 impl FilmThickness {
-    /// The thickness of a film for which nothing is said, 50 µm.
+    /// Default thickness of a film, 50 µm.
     pub const USUAL: Self = Self(50.0 * 1e-6);
 }
 

@@ -206,7 +206,7 @@ text! {
 }
 
 impl BrushName {
-    /// The name of a rig's first brush for which nothing is said.
+    /// Default name of a rig's first brush.
     #[must_use]
     pub fn main() -> Self {
         Self("main".to_owned())

@@ -42,9 +42,9 @@ use serde::{Deserialize, Serialize};
 use self::check::within;
 use self::sections::{Contact, Force, Head, Load, Spines, Strips, Surface};
 
-/// A ferrule thinner than so many strips is a line.
+/// Thickness of a ferrule, in widths of a strip, below which it is a line.
 const THIN: f64 = 1.5;
-/// Strips narrower than so many cells cannot be told apart.
+/// Width of a strip, cells, below which strips merge on the canvas.
 const MOST_CELLS_WIDE: f64 = 2.0;
 /// The fewest strips of a thinned head.
 const FEWEST: usize = 24;
@@ -194,7 +194,7 @@ impl BrushFile {
         Ok(brush)
     }
 
-    /// True if its strips stand in a line: its ferrule is thinner than so many strips are wide.
+    /// True if its strips stand in a line: its ferrule is hardly thicker than a strip is wide.
     #[must_use]
     pub fn is_line(&self) -> bool {
         2e3 * self.half_thickness_m(0.0) < THIN * self.strips.width_mm
@@ -220,7 +220,7 @@ impl BrushFile {
         self.halved_while(|brush| brush.strips.width_mm * 1e-3 <= most)
     }
 
-    /// The brush halved to no fewer than so many strips.
+    /// The brush with its strips halved as often as `strips` of them are left.
     #[must_use]
     pub fn thinned_to(&self, strips: usize) -> Self {
         self.halved_while(|brush| brush.strips.count >= strips)
@@ -289,7 +289,7 @@ impl BrushFile {
     }
 }
 
-/// The share at a place of a curve, which goes on level beyond its ends.
+/// The share at a place of a curve, which continues level beyond its ends.
 fn share_at(curve: &[[f64; 2]], place: f64) -> f64 {
     let after = curve
         .iter()

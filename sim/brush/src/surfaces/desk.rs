@@ -76,7 +76,7 @@ pub struct Obstacle {
 }
 
 impl Obstacle {
-    /// The surface z = 0, which goes on beside its edge.
+    /// The surface z = 0, which continues beside its edge.
     #[must_use]
     pub fn ground() -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! Relocation of a painting: its file is copied or renamed, and painting goes on at the new path.
+//! Relocation of a painting: its file is copied or renamed, and painting continues at the new path.
 
 use std::fs::File;
 use std::io::ErrorKind;
@@ -15,11 +15,11 @@ use crate::opening;
 /// Way to relocate a painting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relocate {
-    /// The old file stays as it is at that moment; painting goes on in the copy.
+    /// The old file stays as it is at that moment; painting continues in the copy.
     Copy,
     /// The file gets the new name.
     Rename,
-    /// A copy is written; painting goes on where it was.
+    /// A copy is written; painting continues where it was.
     Leave,
 }
 

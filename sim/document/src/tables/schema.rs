@@ -191,7 +191,7 @@ pub fn version(connection: &Connection) -> Result<i32, DocumentError> {
 /// An object of a schema: its type, name, table and statement.
 type Object = [String; 4];
 
-/// Objects of a schema, at most so many.
+/// Most objects of a schema.
 fn objects(connection: &Connection, most: usize) -> Result<BTreeSet<Object>, DocumentError> {
     // SQLite's own statistics are no statement of anybody.
     let query = "SELECT type, name, tbl_name, coalesce(sql, '') FROM sqlite_schema \

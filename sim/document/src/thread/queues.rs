@@ -76,7 +76,7 @@ pub(crate) struct Queues {
 /// Subject of a notice about the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NoticeKind {
-    /// The painting goes on in another file.
+    /// The painting continues in another file.
     Moved,
     /// The file has a second name, a hard link.
     Linked,

@@ -25,7 +25,7 @@ fn thread_cpu() -> Duration {
 }
 
 impl DocumentThread {
-    /// Reads the pages that readers wait for, and tells a fault of the disk.
+    /// Reads the pages that readers wait for, and reports a fault of the disk.
     pub(super) fn read_pages(&mut self) {
         let served = serve_fetches(&self.shared, &self.database);
         // Those that failed before may still wait while others are read.
@@ -39,7 +39,7 @@ impl DocumentThread {
 }
 
 impl DocumentThread {
-    /// Reads a page that nobody waits for, as long as half of the memory is free. What is wrong with it is told to who needs it.
+    /// Reads a page that nobody waits for, as long as half of the memory is free. An error is left to the reader that needs the page.
     pub(super) fn read_ahead(&mut self, page: &Page<Planes>) {
         let counts = page.pager().counts();
         if counts.resident >= counts.bound / 2 {

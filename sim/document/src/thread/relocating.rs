@@ -78,7 +78,7 @@ impl DocumentThread {
     }
 
     /// The answer where the file lacks a part of the painting; `None` if it has all of it. Such a painting is not relocated. But
-    /// one that was cut short, and got no other file beside it, goes on at the new path, and wants all of the painting there.
+    /// one that was cut short, and got no other file beside it, continues at the new path, and wants all of the painting there.
     fn answer_of_a_part(
         &mut self,
         state: &FileState,

@@ -41,7 +41,7 @@ struct DrawnBand {
     light: Vec<[f32; 3]>,
 }
 
-/// Size of a canvas of so many cells in the frames of a film, pixels: `width` across, with the proportions of the
+/// Size of a canvas in the frames of a film, pixels: `width` across, with the proportions of the
 /// canvas, and never larger than it. Encoders of video take even sizes alone.
 #[must_use]
 pub fn frame_size(cells: [usize; 2], width: usize, is_even: bool) -> [usize; 2] {
@@ -56,7 +56,7 @@ pub fn frame_size(cells: [usize; 2], width: usize, is_even: bool) -> [usize; 2] 
 }
 
 impl Film {
-    /// A film of a canvas of so many cells, in frames of so many pixels across and down.
+    /// A film of a canvas of `cells`, in frames of `size` pixels, across and down.
     #[must_use]
     pub fn new(cells: [usize; 2], size: [usize; 2]) -> Self {
         Self {

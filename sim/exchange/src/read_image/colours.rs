@@ -61,7 +61,7 @@ impl Colours {
         }
     }
 
-    /// By a profile, for a picture of so many colour channels: 1 or 3.
+    /// Colours by a profile, for a picture of 1 or 3 colour channels.
     pub(super) fn of_profile(icc: &[u8], channels: usize) -> Result<Self, UnusedMark> {
         let unused = |reason: String| UnusedMark {
             mark: "colour profile",

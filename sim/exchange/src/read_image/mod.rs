@@ -74,7 +74,7 @@ impl Image {
         Self::decode(BufReader::new(File::open(path).map_err(ImportError::File)?))
     }
 
-    /// The same for which a decoder takes at most so many bytes.
+    /// The same with a limit on the bytes that a decoder takes.
     ///
     /// # Errors
     /// As [`open`](Self::open), and where it would take more.

@@ -14,7 +14,7 @@ use crate::import_error::ImportError;
 
 /// Bytes of the signature.
 const SIGNATURE: u64 = 8;
-/// gAMA and cHRM count so many for 1.
+/// Value of gAMA and cHRM that stands for 1.
 const SCALE: f64 = 100_000.0;
 
 pub(super) fn read(

@@ -265,7 +265,7 @@ fn of_luma(
     })
 }
 
-/// The colours of a picture of so many colour channels, and the mark that should have said them if that
+/// The colours of a picture with this number of colour channels, and the mark that should have given them if that
 /// cannot be used.
 fn marked<R: BufRead + Seek>(
     decoder: &mut Decoder<R>,

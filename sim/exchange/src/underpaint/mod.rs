@@ -99,7 +99,7 @@ pub struct Underpainting {
     quanta: Vec<Vec<u32>>,
 }
 
-/// The colours of a ground as far as they are told apart.
+/// The colours of a ground, as far as they are distinguished.
 #[derive(Clone, Debug)]
 struct Grounds {
     bare: Arc<BlankSurface>,

@@ -238,7 +238,7 @@ impl<'a> Search<'a> {
     }
 
     /// 1 for colours at least as light as the darkest grey, 0 for those darker by [`DUSK`]: toward grey
-    /// these would lose the little that tells them apart.
+    /// these would lose the little by which they differ.
     fn lightness_left(&self, linear: [f64; 3]) -> f64 {
         let [lightness, ..] = self.gamut.lab(linear.map(|channel| channel as f32));
         let darkest = self.greys.map_or(0.0, |[darkest, _]| darkest);

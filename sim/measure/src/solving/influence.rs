@@ -1,7 +1,7 @@
 //! Influence of each sample: the fit with one left out.
 //!
 //! Least squares bend to a wrong row, most where few others speak, so that its own residual is small and
-//! those of its neighbours are large. What tells is how much the sum of squares falls when a row is left
+//! those of its neighbours are large. The criterion is how much the sum of squares falls when a row is left
 //! out (Cook 1977, *Detection of influential observation in linear regression*; the likelihood-ratio test
 //! of a row whose mean is shifted). A row is suspect where that fall, per reading, is many times the variance
 //! that the fit without it leaves. The worst is taken out, and the rest are tried again.

@@ -4,7 +4,7 @@
 //! white being 1 and no K or S below 0, is a quadratic programme. Two things are done to it. Its rows
 //! are weighted so that an error of the reading counts the same in a dark and in a light sample: a row
 //! is worth |d reading/dQ| / ΣS·c, and since that holds S, the programme is solved some times over.
-//! From there Gauss and Newton's method goes on in ln K and ln S, a bounded programme a step, with the
+//! From there Gauss and Newton's method continues in ln K and ln S, a bounded programme a step, with the
 //! reading itself as the model: this is exact where Q is not linear in the noise of R, and takes
 //! drawdowns in, whose reflectance is no ratio of K and S.
 //!

@@ -32,7 +32,7 @@ pub enum Transfer {
     Bt709,
     /// SMPTE ST 240.
     Smpte240,
-    /// A logarithm over so many decades, with nothing below.
+    /// A logarithm over a number of decades, 0 below.
     Logarithm(f64),
     /// SMPTE ST 428-1, of digital cinema.
     Smpte428,

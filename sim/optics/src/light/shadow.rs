@@ -123,7 +123,7 @@ impl Shadows {
     }
 
     /// V of the cells of row `y` from column `x` on, as many as `seen` takes. Beyond the border the
-    /// relief goes on at the border's height.
+    /// relief continues at the border's height.
     pub fn row(&self, field: &HeightField<'_>, [x, y]: [usize; 2], seen: &mut [f32]) {
         let width = field.cells[0];
         let row = |dy: i32| field.row(y as i64 + i64::from(dy));

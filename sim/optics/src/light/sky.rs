@@ -96,7 +96,7 @@ impl Sky {
     }
 
     /// v of the cells of row `y` from column `x` on, as many as `open` takes, whose unit normals are
-    /// `normals`. Beyond the border the relief goes on at the border's height.
+    /// `normals`. Beyond the border the relief continues at the border's height.
     pub fn row(
         &self,
         field: &HeightField<'_>,

@@ -336,7 +336,7 @@ impl Multigrid {
         descend(&mut self.levels, &self.omegas, b, x);
     }
 
-    /// Solves A·x = b by so many preconditioned conjugate gradients from x, which is 0 where there are no unknowns;
+    /// Solves A·x = b by `iterations` of preconditioned conjugate gradients from x, which is 0 where there are no unknowns;
     /// returns the norm of each residual, with that of the first guess.
     pub fn solve(&mut self, b: &[f32], x: &mut [f32], iterations: usize) -> Vec<f64> {
         let grid = self.levels[0].grid;
@@ -380,7 +380,7 @@ impl Multigrid {
     }
 
     /// Solves A·x = b in f64 down to a part of the norm of b: rounds of conjugate gradients in f32 on what is left, at
-    /// most so many. Returns the part that is left.
+    /// most this number. Returns the part that is left.
     pub fn refine(&mut self, b: &[f64], x: &mut [f64], part: f64, rounds: usize) -> f64 {
         let grid = self.levels[0].grid;
         let squares = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>().sqrt();

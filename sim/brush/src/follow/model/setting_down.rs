@@ -18,7 +18,7 @@ use crate::mark::point_of;
 
 /// Way of the point after which the direction of a stroke is known, m.
 const KNOWN_M: f64 = 1e-3;
-/// Way that tells a direction after [`TELLS_NS`], m.
+/// Way that gives a direction after [`TELLS_NS`], m.
 const TELLING_M: f64 = 0.2e-3;
 /// See [`TELLING_M`], ns.
 const TELLS_NS: u64 = 50_000_000;
@@ -99,7 +99,7 @@ impl Waiting {
 }
 
 impl BrushModel {
-    /// Sets down a pen that still waits, where no sample will tell its direction any more; the brush goes on from there.
+    /// Sets down a pen that still waits, when no sample will give its direction any more; the brush continues from there.
     /// Empty where none waits.
     #[must_use]
     pub fn finish(&mut self) -> Vec<Solve> {
@@ -173,7 +173,7 @@ impl BrushModel {
         Some(solve)
     }
 
-    /// Sets down a brush that has waited, toward `here` if it goes on pressed, and goes the way of the samples that
+    /// Sets down a brush that has waited, toward `here` if it continues pressed, and goes the way of the samples that
     /// waited, with a preview at the last of them.
     pub(super) fn set_down(
         &mut self,
