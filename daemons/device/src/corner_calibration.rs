@@ -266,9 +266,10 @@ impl CornerCalibration {
         if stay.moved {
             return Progress::Rejected(TouchRejection::Moved);
         }
-        match self.is_apart(stay.mean()) {
-            true => self.find(corner, stay),
-            false => Progress::Rejected(TouchRejection::SamePlace),
+        if self.is_apart(stay.mean()) {
+            self.find(corner, stay)
+        } else {
+            Progress::Rejected(TouchRejection::SamePlace)
         }
     }
 

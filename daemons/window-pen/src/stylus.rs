@@ -59,9 +59,12 @@ struct Desk {
 impl DeskFit for Desk {
     fn sample(&mut self, reading: &Reading) -> StylusSample {
         let side = if self.mirrored { -1.0 } else { 1.0 };
-        let steep = |tilt: f64| match tilt.is_finite() {
-            true => tilt.clamp(-STEEPEST_RAD, STEEPEST_RAD),
-            false => 0.0,
+        let steep = |tilt: f64| {
+            if tilt.is_finite() {
+                tilt.clamp(-STEEPEST_RAD, STEEPEST_RAD)
+            } else {
+                0.0
+            }
         };
         let tilt_rad = reading.tilt_rad.filter(|_| self.axes.tilt);
         let twist_rad = reading
@@ -209,15 +212,16 @@ impl WindowStylus {
             Some(touched) => touched == TouchTarget::Desk,
             None => is_desk || before == Some(TouchTarget::Desk),
         };
-        match on_desk && seen.is_some() {
-            true => Reading {
+        if on_desk && seen.is_some() {
+            Reading {
                 pressure: self.link.given(reading.pressure),
                 ..reading
-            },
-            false => Reading {
+            }
+        } else {
+            Reading {
                 presence: Presence::Away,
                 ..reading
-            },
+            }
         }
     }
 

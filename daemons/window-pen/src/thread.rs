@@ -149,9 +149,10 @@ fn follow(
     while stop.read().is_err() {
         let timeout = stylus.due_in_ns().map(Duration::from_nanos);
         source.wait(stop.as_fd(), timeout, &mut readings)?;
-        let sent = match readings.is_empty() {
-            true => stylus.rest(),
-            false => readings.drain(..).try_for_each(|read| stylus.read(&read)),
+        let sent = if readings.is_empty() {
+            stylus.rest()
+        } else {
+            readings.drain(..).try_for_each(|read| stylus.read(&read))
         };
         sent.and_then(|()| stylus.serve())
             .map_err(|error| gone(&error))?;

@@ -91,15 +91,13 @@ impl KnownTool {
                 (true, false) => Presence::Hovering,
                 (true, true) => Presence::Touching,
             },
-            end: match self.eraser {
-                true => End::Eraser,
-                false => End::Tip,
-            },
+            end: if self.eraser { End::Eraser } else { End::Tip },
             point_m: [0.0; 2],
             height_m: 0.0,
-            pressure: match self.axes.pressure {
-                true => self.pressure,
-                false => 0.5,
+            pressure: if self.axes.pressure {
+                self.pressure
+            } else {
+                0.5
             },
             tilt_rad: self.axes.tilt.then_some(self.tilt_rad),
             twist_rad: self.axes.twist.then_some(self.twist_rad),
@@ -210,14 +208,15 @@ impl Source for WaylandPens {
         flush(&self.connection)?;
         // Events that wait already come first.
         if let Some(guard) = self.queue.prepare_read() {
-            match readable(guard.connection_fd(), stop, timeout)? {
-                true => match guard.read() {
+            if readable(guard.connection_fd(), stop, timeout)? {
+                match guard.read() {
                     Ok(_) => {}
                     // The window's own thread has read them.
                     Err(WaylandError::Io(error)) if error.kind() == ErrorKind::WouldBlock => {}
                     Err(error) => return Err(gone(&error)),
-                },
-                false => drop(guard),
+                }
+            } else {
+                drop(guard)
             }
         }
         self.queue

@@ -63,12 +63,13 @@ fn check_files() -> Result<(), BusError> {
     }
     let wanted = LEAST_FILES.min(most);
     let raised = setrlimit(Resource::RLIMIT_NOFILE, wanted, most).map_or(now, |()| wanted);
-    match raised >= LEAST_FILES {
-        true => Ok(()),
-        false => Err(BusError::Files {
+    if raised >= LEAST_FILES {
+        Ok(())
+    } else {
+        Err(BusError::Files {
             limit: raised,
             least: LEAST_FILES,
-        }),
+        })
     }
 }
 
@@ -147,12 +148,13 @@ impl ZenohBus {
         let begun = Instant::now();
         let session = zenoh::open(config).wait().map_err(|error| {
             // It has tried again and again until then.
-            match dial.connect.is_empty() || begun.elapsed() < CONNECT {
-                true => open_error(reason(error)),
-                false => BusError::Silent {
+            if dial.connect.is_empty() || begun.elapsed() < CONNECT {
+                open_error(reason(error))
+            } else {
+                BusError::Silent {
                     at: at.clone(),
                     limit_s: CONNECT.as_secs(),
-                },
+                }
             }
         })?;
         if let Some(listen) = &dial.listen {

@@ -39,9 +39,10 @@ impl Drop for Unfinished {
 
 /// Removes a file, or a folder with all that is in it; it may not be there.
 fn remove(path: &Path) {
-    match path.is_dir() && !path.is_symlink() {
-        true => std::fs::remove_dir_all(path).ok(),
-        false => std::fs::remove_file(path).ok(),
+    if path.is_dir() && !path.is_symlink() {
+        std::fs::remove_dir_all(path).ok()
+    } else {
+        std::fs::remove_file(path).ok()
     };
 }
 
@@ -131,12 +132,13 @@ pub fn check_folder(path: &Path) -> Result<(), Error> {
         Ok(mut files) => files.next().is_some(),
         Err(_) => path.symlink_metadata().is_ok(),
     };
-    match there {
-        true => Err(Error::new(
+    if there {
+        Err(Error::new(
             ErrorKind::AlreadyExists,
             "it exists already: name a new folder",
-        )),
-        false => Ok(()),
+        ))
+    } else {
+        Ok(())
     }
 }
 

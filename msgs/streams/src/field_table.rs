@@ -385,10 +385,13 @@ impl<'a> Reader<'a> {
                 self.several(of, length)?
             }
             Type::Array(of, count) => self.several(of, *count)?,
-            Type::Optional(of) => match self.flag()? {
-                true => self.value(of)?,
-                false => Value::Absent,
-            },
+            Type::Optional(of) => {
+                if self.flag()? {
+                    self.value(of)?
+                } else {
+                    Value::Absent
+                }
+            }
             Type::Defined(place) => match &self.definitions[*place] {
                 Definition::Struct(fields) => Value::Fields(self.fields(fields)?),
                 Definition::Enum(variants) => {
@@ -398,9 +401,10 @@ impl<'a> Reader<'a> {
                         field: self.field(),
                         what: format!("alternative {tag} of {}", variants.len()),
                     })?;
-                    match is_plain(variants) {
-                        true => Value::Text(name.to_string()),
-                        false => Value::Variant(Arc::clone(name), self.fields(fields)?),
+                    if is_plain(variants) {
+                        Value::Text(name.to_string())
+                    } else {
+                        Value::Variant(Arc::clone(name), self.fields(fields)?)
                     }
                 }
             },

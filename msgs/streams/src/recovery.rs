@@ -94,11 +94,12 @@ impl DamagedRecording {
                 .add(0, "the file does not begin as an MCAP file does");
         }
         let is_mcap = recording.look().map_err(reading)? || begins;
-        match is_mcap {
-            true => Ok(recording),
-            false => Err(UserError::usage("this is no MCAP file")
+        if is_mcap {
+            Ok(recording)
+        } else {
+            Err(UserError::usage("this is no MCAP file")
                 .at(path.display().to_string())
-                .help("`maulstick recording record` writes recordings")),
+                .help("`maulstick recording record` writes recordings"))
         }
     }
 

@@ -198,9 +198,10 @@ impl Stream {
             last_ns,
         } = self.sent;
         let passed_s = last_ns.saturating_sub(first_ns) as f64 * 1e-9;
-        match messages >= 2 && passed_s > 0.0 {
-            true => (messages - 1) as f64 / passed_s,
-            false => 0.0,
+        if messages >= 2 && passed_s > 0.0 {
+            (messages - 1) as f64 / passed_s
+        } else {
+            0.0
         }
     }
 }

@@ -144,10 +144,7 @@ proptest! {
         let mut bytes = std::fs::read(&path).expect("read");
         for (place, value) in changes {
             // Lengths stand in the head and at the end of a file.
-            let at = match large {
-                true => bytes.len() - 1 - place.index(2000.min(bytes.len())),
-                false => place.index(bytes.len()),
-            };
+            let at = if large { bytes.len() - 1 - place.index(2000.min(bytes.len())) } else { place.index(bytes.len()) };
             bytes[at] = value;
         }
         std::fs::write(&path, &bytes).expect("written");

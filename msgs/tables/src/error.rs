@@ -38,9 +38,10 @@ impl TableError {
         let Some(column) = self.column else {
             return self.fault.to_string();
         };
-        match self.heading.is_empty() {
-            true => format!("column {column}: {}", self.fault),
-            false => format!("column {column} ({}): {}", shown(&self.heading), self.fault),
+        if self.heading.is_empty() {
+            format!("column {column}: {}", self.fault)
+        } else {
+            format!("column {column} ({}): {}", shown(&self.heading), self.fault)
         }
     }
 }

@@ -338,9 +338,10 @@ impl<'a> Row<'a> {
     pub fn numbers<const N: usize>(&self) -> Result<[f64; N], TableError> {
         let (cells, columns) = (self.len(), N);
         if cells != columns {
-            let fault = match cells > columns {
-                true => Fault::Wide { cells, columns },
-                false => Fault::Narrow { cells, columns },
+            let fault = if cells > columns {
+                Fault::Wide { cells, columns }
+            } else {
+                Fault::Narrow { cells, columns }
             };
             return Err(TableError::new(self.line(), fault));
         }

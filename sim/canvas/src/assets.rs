@@ -80,9 +80,10 @@ pub fn hash_of(bytes: &[u8]) -> String {
 /// Kind of a file of these bytes, as documents name it.
 #[must_use]
 pub fn kind_of(bytes: &[u8]) -> &'static str {
-    match bytes.starts_with(PNG) {
-        true => "picture",
-        false => "spectrum",
+    if bytes.starts_with(PNG) {
+        "picture"
+    } else {
+        "spectrum"
     }
 }
 
@@ -129,9 +130,10 @@ impl Assets {
     fn entry(&self, hash: &str) -> Result<&Entry, EditError> {
         self.0.get(hash).ok_or_else(|| {
             let digits = hash.bytes().all(|c| matches!(c, b'0'..=b'9' | b'a'..=b'f'));
-            match digits && hash.len() == HASH_DIGITS {
-                true => EditError::NoPicture(hash.to_owned()),
-                false => EditError::NoHash(hash.to_owned()),
+            if digits && hash.len() == HASH_DIGITS {
+                EditError::NoPicture(hash.to_owned())
+            } else {
+                EditError::NoHash(hash.to_owned())
             }
         })
     }

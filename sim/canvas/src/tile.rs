@@ -142,9 +142,10 @@ impl Tile {
             return by_reference();
         }
         let part = |plane: &Arc<[f32]>| -> Arc<[f32]> {
-            let mut lower: Vec<f32> = match share >= 1.0 {
-                true => plane.to_vec(),
-                false => plane.iter().map(|count| (count * share).floor()).collect(),
+            let mut lower: Vec<f32> = if share >= 1.0 {
+                plane.to_vec()
+            } else {
+                plane.iter().map(|count| (count * share).floor()).collect()
             };
             stays.iter().for_each(|cell| lower[*cell] = 0.0);
             lower.into()

@@ -71,9 +71,10 @@ impl Cut {
             let at = at.clamp(0.0, last as f64);
             let first = (at as usize).min(last.saturating_sub(1));
             let share = at - first as f64;
-            let shares = match share > 0.0 {
-                true => vec![1.0 - share, share],
-                false => vec![1.0],
+            let shares = if share > 0.0 {
+                vec![1.0 - share, share]
+            } else {
+                vec![1.0]
             };
             return Taps { first, shares };
         }

@@ -150,9 +150,12 @@ impl Thumbnail {
     /// Of a picture of this size, across and down, with at most `most` pixels along each side.
     pub(crate) fn new(from: [usize; 2], most: usize) -> Self {
         let longest = from[0].max(from[1]);
-        let size = from.map(|side| match longest > most {
-            true => ((side * most + longest / 2) / longest).max(1),
-            false => side,
+        let size = from.map(|side| {
+            if longest > most {
+                ((side * most + longest / 2) / longest).max(1)
+            } else {
+                side
+            }
         });
         Self {
             from,

@@ -88,9 +88,10 @@ impl Solids<'_> {
     }
 
     fn share(&self, place: [f64; 2]) -> Share {
-        let probe = match self.is_near(place) {
-            true => self.probe.share(place, self.cell_m),
-            false => 0.0,
+        let probe = if self.is_near(place) {
+            self.probe.share(place, self.cell_m)
+        } else {
+            0.0
         };
         let hole = self
             .hole

@@ -126,13 +126,14 @@ pub(crate) fn within(
     value: f64,
     range: std::ops::RangeInclusive<f64>,
 ) -> Result<(), MotionError> {
-    match range.contains(&value) {
-        true => Ok(()),
-        false => Err(MotionError::OutOfRange {
+    if range.contains(&value) {
+        Ok(())
+    } else {
+        Err(MotionError::OutOfRange {
             what,
             value,
             least: *range.start(),
             most: *range.end(),
-        }),
+        })
     }
 }

@@ -75,9 +75,10 @@ impl StudioSettings {
     /// From XYZ under this light to linear sRGB.
     #[must_use]
     pub fn to_rgb(&self) -> Matrix {
-        match self.adapted {
-            true => xyz_to_linear_srgb(self.white()),
-            false => linear_srgb_as_it_is(),
+        if self.adapted {
+            xyz_to_linear_srgb(self.white())
+        } else {
+            linear_srgb_as_it_is()
         }
     }
 

@@ -212,9 +212,10 @@ impl Offline {
         self.samples += count as u64;
         let (model, mut painter) = self.halves();
         let mut bend = move |(number, &(event_ns, sample)): (usize, &(u64, &StylusSample))| {
-            let flags = match number + 1 == count {
-                true => last,
-                false => Flags::NONE,
+            let flags = if number + 1 == count {
+                last
+            } else {
+                Flags::NONE
             };
             let serial = first + number as u64;
             let state = model.state_in_take(player, serial, event_ns, sample, flags);

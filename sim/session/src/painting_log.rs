@@ -161,9 +161,10 @@ impl LogWriter {
             let is_wall = !is_replayed && solve.event_ns > WALL_NS;
             let brush = self.brushes.get(&header.source).cloned();
             self.log.push(Logged {
-                time_ms: match is_wall {
-                    true => Some(solve.event_ns / 1_000_000),
-                    false => time_ms,
+                time_ms: if is_wall {
+                    Some(solve.event_ns / 1_000_000)
+                } else {
+                    time_ms
                 },
                 what: LoggedWhat::Stroke(LoggedStroke {
                     brush: brush.unwrap_or_else(|| format!("{:08x}", header.source)),

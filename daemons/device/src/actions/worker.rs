@@ -115,9 +115,10 @@ impl Worker {
     /// Handles the edges one after the other, until no further switch can be pressed.
     pub(super) fn run(&mut self, edges: &Edges<SwitchEvent>) {
         loop {
-            let next = match self.owes() {
-                true => edges.recv_timeout(AGAIN),
-                false => edges.recv().map_err(RecvTimeoutError::from),
+            let next = if self.owes() {
+                edges.recv_timeout(AGAIN)
+            } else {
+                edges.recv().map_err(RecvTimeoutError::from)
             };
             // A press of long ago that is still pending at the end is dropped.
             if self.stop.load(Ordering::SeqCst) {

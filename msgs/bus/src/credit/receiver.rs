@@ -199,9 +199,10 @@ impl<M: Message> CreditReceiver<M> {
         match stream.take(received, &mut self.ordered) {
             Taken::Again => self.again.push(topic.to_owned()),
             Taken::SetAside if stream.rivals.is_rival(&header, arrived_ns) => {
-                let reason = match epoch == header.epoch {
-                    true => Reason::Leap,
-                    false => Reason::Rival,
+                let reason = if epoch == header.epoch {
+                    Reason::Leap
+                } else {
+                    Reason::Rival
                 };
                 self.reader.refuse(topic, reason);
             }

@@ -140,9 +140,10 @@ impl<M> Stream<M> {
     /// Follows another sender. The rest of the previous stream is dropped; a take that was followed before continues
     /// where it was.
     fn hand_over(&mut self, header: &Header, before: Option<u64>) {
-        let from = match header.epoch == self.epoch {
-            true => before.or(self.next),
-            false => before,
+        let from = if header.epoch == self.epoch {
+            before.or(self.next)
+        } else {
+            before
         };
         let (lost, losses) = (self.lost, self.losses);
         *self = Self::follow(header, self.rivals.clone());

@@ -83,9 +83,10 @@ impl RigConfig {
             .map_err(|(key, what, help)| fault(what, key, "").help(help))?;
         let view = &self.view;
         view.check().map_err(|(what, help)| {
-            let (key, value) = match GAMUTS.contains(&view.gamut.as_str()) {
-                true => ("profile", &view.profile),
-                false => ("gamut", &view.gamut),
+            let (key, value) = if GAMUTS.contains(&view.gamut.as_str()) {
+                ("profile", &view.profile)
+            } else {
+                ("gamut", &view.gamut)
             };
             fault(what, key, value).help(help)
         })

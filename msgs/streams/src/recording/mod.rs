@@ -235,9 +235,10 @@ impl Recording {
     pub fn foreign(&mut self) -> Result<Vec<ForeignTopic>, UserError> {
         let mut counts = BTreeMap::<u16, (u64, u64, [u64; 2])>::new();
         let channels = self.layout.foreign.clone();
-        let stretches = match channels.is_empty() {
-            true => Vec::new(),
-            false => self.layout.stretches.clone(),
+        let stretches = if channels.is_empty() {
+            Vec::new()
+        } else {
+            self.layout.stretches.clone()
         };
         for stretch in &stretches {
             self.records_of(stretch, &mut |record| {
@@ -260,9 +261,10 @@ impl Recording {
                 encoding: channel.encoding,
                 messages,
                 bytes,
-                rate_hz: match messages >= 2 && passed_s > 0.0 {
-                    true => (messages - 1) as f64 / passed_s,
-                    false => 0.0,
+                rate_hz: if messages >= 2 && passed_s > 0.0 {
+                    (messages - 1) as f64 / passed_s
+                } else {
+                    0.0
                 },
             }
         };

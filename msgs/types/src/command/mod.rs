@@ -111,14 +111,15 @@ impl NewCanvas {
         if width * height > CELLS_IN_ALL {
             return Err(ValueError::Cells(width * height));
         }
-        match STAINS_M.contains(&self.stain_m) {
-            true => Ok(()),
-            false => Err(ValueError::Range {
+        if STAINS_M.contains(&self.stain_m) {
+            Ok(())
+        } else {
+            Err(ValueError::Range {
                 what: "stain",
                 value: self.stain_m * 1e6,
                 unit: " µm",
                 range: "0 to 1000",
-            }),
+            })
         }
     }
 }
@@ -153,9 +154,10 @@ wire_struct! {
 /// # Errors
 /// [`ValueError::Bits`].
 pub fn png_bits(bits: u32) -> Result<u32, ValueError> {
-    match [8, 16].contains(&bits) {
-        true => Ok(bits),
-        false => Err(ValueError::Bits(bits)),
+    if [8, 16].contains(&bits) {
+        Ok(bits)
+    } else {
+        Err(ValueError::Bits(bits))
     }
 }
 

@@ -52,16 +52,13 @@ macro_rules! number {
             /// [`ValueError::Range`].
             pub fn new(value: $inner) -> Result<Self, ValueError> {
                 let good: fn(&$inner) -> bool = $good;
-                match good(&value) {
-                    true => Ok(Self(value)),
-                    false => Err(ValueError::Range {
+                if good(&value) { Ok(Self(value)) } else { Err(ValueError::Range {
                         what: $what,
                         // Without the noise of the last digits.
                         value: (f64::from(value) / $scale * 1e6).round() * 1e-6,
                         unit: $unit,
                         range: $range,
-                    }),
-                }
+                    }) }
             }
 
             /// A number in a painter's unit.
@@ -93,10 +90,7 @@ macro_rules! number {
 
         impl<'de> Deserialize<'de> for $name {
             fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-                let value = match from.is_human_readable() {
-                    true => Self::in_unit(from.deserialize_any(Number)?),
-                    false => Self::new(<$inner>::deserialize(from)?),
-                };
+                let value = if from.is_human_readable() { Self::in_unit(from.deserialize_any(Number)?) } else { Self::new(<$inner>::deserialize(from)?) };
                 value.map_err(D::Error::custom)
             }
         }

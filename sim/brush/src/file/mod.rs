@@ -258,9 +258,10 @@ impl BrushFile {
     #[must_use]
     pub fn half_thickness_m(&self, s: f64) -> f64 {
         let head = &self.head;
-        let profile = match head.thickness_profile.is_empty() {
-            true => &head.profile,
-            false => &head.thickness_profile,
+        let profile = if head.thickness_profile.is_empty() {
+            &head.profile
+        } else {
+            &head.thickness_profile
         };
         0.5e-3 * head.thickness_mm.unwrap_or(head.width_mm) * share_at(profile, s)
     }
@@ -273,18 +274,20 @@ impl BrushFile {
             sections::Outline::Flat => place[0],
             sections::Outline::Round => (place[0] * place[0] + place[1] * place[1]).sqrt(),
         };
-        match self.head.tip.is_empty() {
-            true => 1.0,
-            false => share_at(&self.head.tip, across),
+        if self.head.tip.is_empty() {
+            1.0
+        } else {
+            share_at(&self.head.tip, across)
         }
     }
 
     /// Stiffness at a place along the head, by that at the ferrule.
     #[must_use]
     pub fn stiffness_share(&self, s: f64) -> f64 {
-        match self.spines.stiffness_profile.is_empty() {
-            true => 1.0,
-            false => share_at(&self.spines.stiffness_profile, s),
+        if self.spines.stiffness_profile.is_empty() {
+            1.0
+        } else {
+            share_at(&self.spines.stiffness_profile, s)
         }
     }
 }

@@ -63,12 +63,13 @@ impl HandlePath {
                 let turn = (end.rotation - from.pose.rotation) * second
                     - (from.pose.rotation - start) * first;
                 let gone = end.translation - from.pose.translation;
-                match h2 > PAUSE * h1 {
-                    true => (
+                if h2 > PAUSE * h1 {
+                    (
                         limited(place, gone),
                         limited_turn(turn, end.rotation - from.pose.rotation),
-                    ),
-                    false => (without_a_leap(place, gone), turn),
+                    )
+                } else {
+                    (without_a_leap(place, gone), turn)
                 }
             },
         );

@@ -1,6 +1,6 @@
 //! The file, opened for one program alone, and its pages, loads and shown tiles read one by one.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use maulstick_canvas::planes::Planes;
 use maulstick_files::{FileId, OpenDatabase, companion, is_companion, read_head};
@@ -86,9 +86,10 @@ pub(crate) fn is_new(path: &Path) -> Result<bool, DocumentError> {
     let whole = read_head(path, &mut head)? == head.len();
     match whole {
         true if head.starts_with(MAGIC) && head[WRITE_VERSION] == ROLLBACK => {
-            match schema::is_foreign(path)? {
-                true => Err(DocumentError::NoPainting),
-                false => Ok(false),
+            if schema::is_foreign(path)? {
+                Err(DocumentError::NoPainting)
+            } else {
+                Ok(false)
             }
         }
         true if head.starts_with(MAGIC) => Ok(false),
@@ -137,9 +138,10 @@ impl Database {
     ) -> Result<(Self, bool), DocumentError> {
         let new = is_new(path)?;
         if new && access == Access::Read {
-            return Err(match path.exists() {
-                true => DocumentError::NoPainting,
-                false => DocumentError::Missing,
+            return Err(if path.exists() {
+                DocumentError::NoPainting
+            } else {
+                DocumentError::Missing
             });
         }
         let flags = OpenFlags::SQLITE_OPEN_READ_WRITE
@@ -253,9 +255,10 @@ impl Database {
     /// # Errors
     /// The error of SQLite.
     pub fn close_unchanged(self) -> Result<(), DocumentError> {
-        match self.was_unclosed {
-            true => self.connection.close().map_err(|(_, error)| error.into()),
-            false => self.close(),
+        if self.was_unclosed {
+            self.connection.close().map_err(|(_, error)| error.into())
+        } else {
+            self.close()
         }
     }
 
@@ -378,9 +381,10 @@ impl Database {
     /// [`DocumentError::NoPainting`] if not, [`DocumentError::Altered`], or the error of SQLite.
     pub(crate) fn is_of_this_version(&self) -> Result<(), DocumentError> {
         schema::check(&self.connection)?;
-        match schema::has_record(&self.connection)? {
-            true => Ok(()),
-            false => Err(DocumentError::NoPainting),
+        if schema::has_record(&self.connection)? {
+            Ok(())
+        } else {
+            Err(DocumentError::NoPainting)
         }
     }
 

@@ -147,14 +147,13 @@ pub(crate) fn copied_without_journal(
         Ok(is_whole)
     });
     let is_whole = checked.unwrap_or(false);
-    match is_whole {
-        true => rename(&part, to, replace)?,
-        false => {
-            std::fs::remove_file(&part)?;
-            // Begun anew there, it must not be mixed with what it replaces.
-            if replace && to.exists() {
-                std::fs::remove_file(to)?;
-            }
+    if is_whole {
+        rename(&part, to, replace)?
+    } else {
+        std::fs::remove_file(&part)?;
+        // Begun anew there, it must not be mixed with what it replaces.
+        if replace && to.exists() {
+            std::fs::remove_file(to)?;
         }
     }
     sync_folder(to)?;

@@ -128,9 +128,10 @@ pub(super) fn in_order(row: &[u8]) -> Result<Option<Vec<u8>>, DocumentError> {
             _ => return Err(torn()),
         }
     }
-    match reading.is_at_its_end() && rest.is_empty() {
-        true => Ok(Some(messages)),
-        false => Err(torn()),
+    if reading.is_at_its_end() && rest.is_empty() {
+        Ok(Some(messages))
+    } else {
+        Err(torn())
     }
 }
 

@@ -239,9 +239,10 @@ pub(crate) fn check(database: &Database) -> Result<(), DocumentError> {
 }
 
 fn checked(expected: i64, sum: i64) -> Result<(), DocumentError> {
-    match expected == sum {
-        true => Ok(()),
-        false => Err(damaged("does not match its checksum")),
+    if expected == sum {
+        Ok(())
+    } else {
+        Err(damaged("does not match its checksum"))
     }
 }
 

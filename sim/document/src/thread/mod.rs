@@ -161,17 +161,20 @@ impl DocumentThread {
         if broken.is_some() || !self.writes {
             // A reader changes nothing, and the journal of a damaged file may hold rows to recover.
             self.database.close_unchanged()?;
-            return match left {
-                true => Err(DocumentError::Damaged(broken.unwrap_or(fault))),
-                false => Ok(()),
+            return if left {
+                Err(DocumentError::Damaged(broken.unwrap_or(fault)))
+            } else {
+                Ok(())
             };
         }
         self.database.close()?;
-        match left && !fault.is_empty() {
-            true => Err(DocumentError::Unwritten(fault)),
+        if left && !fault.is_empty() {
+            Err(DocumentError::Unwritten(fault))
+        } else if wants_all {
             // The parts that the file lacks were in memory alone.
-            false if wants_all => Err(DocumentError::Incomplete(self.path)),
-            false => Ok(()),
+            Err(DocumentError::Incomplete(self.path))
+        } else {
+            Ok(())
         }
     }
 
@@ -247,10 +250,12 @@ impl DocumentThread {
             }
             let waits =
                 may_write && is_whole && self.journal.is_due(false) && !queues.records.is_empty();
-            let wait = match waits {
-                true => COMMIT_PERIOD.saturating_sub(self.last_commit.elapsed()),
-                false if !queues.failed_fetches.is_empty() => REREAD_DELAY,
-                false => RETRY_DELAY,
+            let wait = if waits {
+                COMMIT_PERIOD.saturating_sub(self.last_commit.elapsed())
+            } else if queues.failed_fetches.is_empty() {
+                RETRY_DELAY
+            } else {
+                REREAD_DELAY
             };
             let waited = self
                 .shared
@@ -298,14 +303,14 @@ impl DocumentThread {
         let shared = Arc::clone(&self.shared);
         let trust = {
             let mut queues = shared.lock();
-            match queues.wants_all {
-                false => Trust::Stored,
-                true if checkpoint.is_whole => Trust::Nothing,
-                true => {
-                    // It was handed over before; what it holds is in the whole one, which comes next.
-                    queues.writing = false;
-                    return;
-                }
+            if !queues.wants_all {
+                Trust::Stored
+            } else if checkpoint.is_whole {
+                Trust::Nothing
+            } else {
+                // It was handed over before; what it holds is in the whole one, which comes next.
+                queues.writing = false;
+                return;
             }
         };
         let serial = checkpoint.sequencer.serial;

@@ -91,9 +91,10 @@ fn answered<T>(
 /// depends on it any more, and the file, which may be long, is not read through again.
 fn judged(shared: &Shared, database: &Database, error: DocumentError) -> DocumentError {
     let is_broken = shared.lock().broken.is_some();
-    match is_broken {
-        true => error,
-        false => database.judged(error),
+    if is_broken {
+        error
+    } else {
+        database.judged(error)
     }
 }
 

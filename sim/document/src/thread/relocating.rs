@@ -25,10 +25,13 @@ impl DocumentThread {
             request.answer.send(copied).ok();
             return Ok(self);
         }
-        let open = |path: &Path| match is_new(path)? {
-            // SQLite would create a blank one.
-            true => Err(DocumentError::Missing),
-            false => Database::open(path, Access::Paint, None).map(|(database, _)| database),
+        let open = |path: &Path| {
+            if is_new(path)? {
+                // SQLite would create a blank one.
+                Err(DocumentError::Missing)
+            } else {
+                Database::open(path, Access::Paint, None).map(|(database, _)| database)
+            }
         };
         if let FileState::Gone(_) = state {
             let rescued = relocate::rescue(&self.database, &request.to, request.replace)

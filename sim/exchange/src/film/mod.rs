@@ -49,9 +49,10 @@ pub fn frame_size(cells: [usize; 2], width: usize, is_even: bool) -> [usize; 2] 
     let width = width.clamp(1, across);
     let height = (cells[1] * width + across / 2) / across;
     let size = [width, height.max(1)];
-    match is_even {
-        true => size.map(|side| (side & !1).max(2)),
-        false => size,
+    if is_even {
+        size.map(|side| (side & !1).max(2))
+    } else {
+        size
     }
 }
 

@@ -87,42 +87,39 @@ pub(super) fn read(source: impl BufRead + Seek, most_bytes: u64) -> Result<Pictu
     let stored = [layer.layer_size.0, layer.layer_size.1].map(whole);
     check_size(stored, frame.channels * NUMBER, most_bytes)?;
     let (colours, unused) = marked(layer);
-    let values = match is_grey {
-        false => {
-            let channels = layers().no_deep_data().largest_resolution_level();
-            let image = channels
-                .rgba_channels(
-                    move |_, _| frame.blank(),
-                    move |into: &mut Vec<f32>, at, (r, g, b, a): (f32, f32, f32, f32)| {
-                        frame.put(into, at, &[r, g, b, a]);
-                    },
-                )
-                .first_valid_layer()
-                .all_attributes()
-                .non_parallel()
-                .from_chunks(file)
-                .map_err(wrong)?;
-            image.layer_data.channel_data.pixels
-        }
-        true => {
-            let channels = layers().no_deep_data().largest_resolution_level();
-            let image = channels
-                .specific_channels()
-                .required("Y")
-                .optional("A", 1.0f32)
-                .collect_pixels(
-                    move |_, _| frame.blank(),
-                    move |into: &mut Vec<f32>, at, (grey, a): (f32, f32)| {
-                        frame.put(into, at, &[grey, grey, grey, a]);
-                    },
-                )
-                .first_valid_layer()
-                .all_attributes()
-                .non_parallel()
-                .from_chunks(file)
-                .map_err(wrong)?;
-            image.layer_data.channel_data.pixels
-        }
+    let values = if is_grey {
+        let channels = layers().no_deep_data().largest_resolution_level();
+        let image = channels
+            .specific_channels()
+            .required("Y")
+            .optional("A", 1.0f32)
+            .collect_pixels(
+                move |_, _| frame.blank(),
+                move |into: &mut Vec<f32>, at, (grey, a): (f32, f32)| {
+                    frame.put(into, at, &[grey, grey, grey, a]);
+                },
+            )
+            .first_valid_layer()
+            .all_attributes()
+            .non_parallel()
+            .from_chunks(file)
+            .map_err(wrong)?;
+        image.layer_data.channel_data.pixels
+    } else {
+        let channels = layers().no_deep_data().largest_resolution_level();
+        let image = channels
+            .rgba_channels(
+                move |_, _| frame.blank(),
+                move |into: &mut Vec<f32>, at, (r, g, b, a): (f32, f32, f32, f32)| {
+                    frame.put(into, at, &[r, g, b, a]);
+                },
+            )
+            .first_valid_layer()
+            .all_attributes()
+            .non_parallel()
+            .from_chunks(file)
+            .map_err(wrong)?;
+        image.layer_data.channel_data.pixels
     };
     Ok(Picture {
         pixels: Numbers::Floats(values).into_image(size, frame.channels)?,

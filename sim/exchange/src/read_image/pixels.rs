@@ -92,9 +92,10 @@ pub(super) fn check_size(
         return Err(ImportError::NotAPicture("it has no pixels".to_owned()));
     }
     let bytes = u64::from(width) * u64::from(height) * bytes_per_pixel as u64;
-    match bytes > most_bytes {
-        true => Err(ImportError::Memory(width, height)),
-        false => Ok(()),
+    if bytes > most_bytes {
+        Err(ImportError::Memory(width, height))
+    } else {
+        Ok(())
     }
 }
 

@@ -72,10 +72,7 @@ pub(super) fn read(
 }
 
 fn colour_channels(pixels: &DynamicImage) -> usize {
-    match pixels.color().has_color() {
-        true => 3,
-        false => 1,
-    }
+    if pixels.color().has_color() { 3 } else { 1 }
 }
 
 /// Chunks that say something of colours.

@@ -116,9 +116,10 @@ impl Place {
                 }
                 let slope = self.slopes[i];
                 let scale = dot(slope, slope) + 1e-12;
-                next[i] = match free[i] {
-                    true => self.shares[i] - dot(slope, pull) / scale,
-                    false => 0.0,
+                next[i] = if free[i] {
+                    self.shares[i] - dot(slope, pull) / scale
+                } else {
+                    0.0
                 };
                 if next[i] < 0.0 {
                     (free[i], fixed) = (false, true);

@@ -226,9 +226,10 @@ impl<'a> Search<'a> {
         {
             let [near, far] = [shares, grey].map(|shares| self.films.lab(&shares, &self.mean));
             let between = [0, 1, 2].map(|i| near[i] + light * (far[i] - near[i]));
-            shares = match light < 1.0 {
-                true => refine(self.films, grey, &self.mean, &Target::new(between)).shares,
-                false => grey,
+            shares = if light < 1.0 {
+                refine(self.films, grey, &self.mean, &Target::new(between)).shares
+            } else {
+                grey
             };
         }
         Corner {

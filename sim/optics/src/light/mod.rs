@@ -119,9 +119,12 @@ impl Lamp {
     /// A lamp; numbers of `setup` that are not finite are those of the default.
     #[must_use]
     pub fn new(setup: &LampSetup) -> Self {
-        let or = |value: f64, default: f64| match value.is_finite() {
-            true => value.max(0.0),
-            false => default,
+        let or = |value: f64, default: f64| {
+            if value.is_finite() {
+                value.max(0.0)
+            } else {
+                default
+            }
         };
         let default = LampSetup::default();
         let l = raised(setup.toward);

@@ -76,9 +76,10 @@ pub(super) fn rows(text: &str, name: &str, notes: &mut Vec<String>) -> Result<Ve
     for row in table.rows() {
         if table.headings().is_empty() && row.len() != columns {
             let cells = row.len();
-            let what = match cells < columns {
-                true => Fault::Narrow { cells, columns },
-                false => Fault::Wide { cells, columns },
+            let what = if cells < columns {
+                Fault::Narrow { cells, columns }
+            } else {
+                Fault::Wide { cells, columns }
             };
             return Err(fault(TableError::new(row.line(), what)));
         }

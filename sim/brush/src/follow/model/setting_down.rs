@@ -68,17 +68,19 @@ impl Waiting {
         }
         let tells = way.length() >= TELLING_M && waited_ns >= TELLS_NS;
         let rests = waited_ns >= RESTS_NS || self.samples.len() >= MOST_WAITING;
-        match tells || rests {
-            true => Some(self.told(way)),
-            false => None,
+        if tells || rests {
+            Some(self.told(way))
+        } else {
+            None
         }
     }
 
     /// Direction of a way that ends before it is known.
     fn told(&self, way: DVec2) -> DVec2 {
-        match way.length() >= TELLING_M {
-            true => way.normalize_or_zero(),
-            false => DVec2::ZERO,
+        if way.length() >= TELLING_M {
+            way.normalize_or_zero()
+        } else {
+            DVec2::ZERO
         }
     }
 
@@ -193,9 +195,10 @@ impl BrushModel {
                 waits.told(point_of(&last.pose) - point_of(&first.pose))
             }
         };
-        let mut landing = match toward == DVec2::ZERO {
-            true => self.land(tracked, first, false, plane),
-            false => self.land_along(tracked, first, toward, plane),
+        let mut landing = if toward == DVec2::ZERO {
+            self.land(tracked, first, false, plane)
+        } else {
+            self.land_along(tracked, first, toward, plane)
         };
         if waits.begins == Begins::Anew {
             landing.flags |= solve_flags::RESTARTED;
