@@ -32,7 +32,7 @@ const TURN_S: f64 = 1.5;
 /// Time between two commands while the hand pushes.
 const PERIOD: Duration = Duration::from_millis(33);
 /// Longest time for which a push counts, however late it is followed.
-const LONGEST: Duration = Duration::from_millis(100);
+const LONGEST_PUSH: Duration = Duration::from_millis(100);
 /// Longest wait of a command for its answer.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// Time after which a command is sent again, and for which a daemon's end waits for it at most.
@@ -138,7 +138,11 @@ fn follow(
             let Some(from) = lie.filter(|_| pushes(&control)) else {
                 break;
             };
-            let to = pushed(&from, &control, moved.elapsed().min(LONGEST).as_secs_f64());
+            let to = pushed(
+                &from,
+                &control,
+                moved.elapsed().min(LONGEST_PUSH).as_secs_f64(),
+            );
             moved = Instant::now();
             match to.edit(CANVAS).map_err(UserError::from).and_then(&mut send) {
                 Ok(()) => lie = Some(to),

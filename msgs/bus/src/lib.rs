@@ -11,7 +11,7 @@
 //! | [`inbox`] | bounded queues and the wake-up that they share |
 //! | [`typed`] | messages instead of bytes |
 //! | [`credit`] | streams that lose nothing: credit, a ring, re-asking for gaps |
-//! | [`rivals`] | the choice between two senders under one name |
+//! | [`sender_arbiter`] | the choice between two senders under one name |
 //! | [`participants`] | the programs of a rig, and what each sends, receives and answers |
 //! | [`clock`] | the rig's clock |
 //! | [`reason`](mod@reason) | what a library says, without paths of the machine that built it |
@@ -101,12 +101,11 @@ pub mod credit;
 pub mod inbox;
 mod memory;
 pub mod participants;
-mod payload;
-mod pool;
 pub mod reason;
 mod recent;
 pub mod rig;
-pub mod rivals;
+pub mod sender_arbiter;
+mod shared_memory;
 pub mod sockets;
 pub mod typed;
 mod zenoh_bus;
@@ -118,8 +117,8 @@ pub use credit::{CreditReceiver, CreditSender};
 pub use inbox::{Counts, Inbox, Queue, Wake};
 pub use memory::{Faults, MemoryBus, MemoryNet};
 pub use participants::Participant;
-pub use payload::{Lent, Payload};
-pub use pool::clear_shared_memory;
 pub use recent::Recent;
 pub use rig::{RigFolder, RigInfo};
+pub use shared_memory::payload::{Payload, SharedPayload};
+pub use shared_memory::pool::clear_shared_memory;
 pub use zenoh_bus::{Dial, ZenohBus};

@@ -9,7 +9,7 @@ use maulstick_types::{DecodeError, Flags, Header, Message, Origin, decode, encod
 
 use crate::bus::{Bus, BusError, Publish, Qos, Subscription};
 use crate::inbox::{Queue, Wake};
-use crate::rivals::{Once, Rivals, Verdict};
+use crate::sender_arbiter::{Once, SenderArbiter, Verdict};
 
 /// Draws an epoch: a number that differs at each start of a process.
 #[must_use]
@@ -217,7 +217,7 @@ pub struct Receiver<M> {
     /// Arbiters between the senders of each real-time stream.
     choice: Choice,
     /// By topic and source.
-    streams: BTreeMap<(String, u32), Rivals>,
+    streams: BTreeMap<(String, u32), SenderArbiter>,
     /// Error of a message that decodes, if any.
     fault: fn(&M) -> Option<&'static str>,
 }
@@ -266,14 +266,14 @@ impl<M: Message> Receiver<M> {
             let oldest = self
                 .streams
                 .iter()
-                .min_by_key(|(_, rivals)| rivals.heard_ns());
+                .min_by_key(|(_, arbiter)| arbiter.heard_ns());
             let oldest = oldest.map(|(stream, _)| stream.clone());
             oldest.map(|stream| self.streams.remove(&stream));
         }
-        let begun = || Rivals::new(header, arrived_ns);
-        let rivals = self.streams.entry(stream).or_insert_with(begun);
-        let verdict = rivals.judge(header, arrived_ns, true, None);
-        if verdict == Verdict::SetAside && rivals.is_rival(header, arrived_ns) {
+        let begun = || SenderArbiter::new(header, arrived_ns);
+        let arbiter = self.streams.entry(stream).or_insert_with(begun);
+        let verdict = arbiter.judge(header, arrived_ns, true, None);
+        if verdict == Verdict::SetAside && arbiter.is_rival(header, arrived_ns) {
             self.reader.refuse(key, Reason::Rival);
         }
         verdict != Verdict::SetAside

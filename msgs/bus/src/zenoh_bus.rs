@@ -22,9 +22,9 @@ use crate::bus::{
 };
 use crate::clock::RigClock;
 use crate::inbox::{Inbox, Queue, Wake};
-use crate::payload::Payload;
-use crate::pool::Pool;
 use crate::reason::reason;
+use crate::shared_memory::payload::Payload;
+use crate::shared_memory::pool::Pool;
 
 /// Settings with which a process joins the rig's sockets.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! Sketches: paintings that have no name yet. Each has a file of its own in the user's state folder until the painter
 //! gives it one elsewhere.
 //!
-//! The newest [`MOST`] stay, and of these as many as take [`MOST_BYTES`] together; the newest stays in any case. Those
+//! The newest [`MOST_SKETCHES`] stay, and of these as many as take [`MOST_BYTES`] together; the newest stays in any case. Those
 //! beyond *leave*: they are removed when a rig starts, but only once the painter has been [notified](Sketches::notify). One
 //! that is opened and painted on is the newest again, and one that is saved under a name is no sketch any more.
 
@@ -16,7 +16,7 @@ use maulstick_files::{COMPANIONS, Kind, companion, first_free, write_whole};
 use crate::user_error::UserError;
 
 /// Sketches that stay.
-pub const MOST: usize = 32;
+pub const MOST_SKETCHES: usize = 32;
 /// Most bytes of all sketches together.
 pub const MOST_BYTES: u64 = 4 << 30;
 
@@ -170,7 +170,7 @@ pub fn leaving(all: &[Sketch]) -> &[Sketch] {
     let mut bytes = 0;
     let stay = all
         .iter()
-        .take(MOST)
+        .take(MOST_SKETCHES)
         .enumerate()
         .take_while(|(place, one)| {
             bytes += one.bytes;
@@ -227,7 +227,7 @@ mod tests {
 
     #[test]
     fn the_oldest_beyond_the_bound_leave_once_the_painter_was_told() {
-        let (_folder, sketches, paths) = folder(MOST + 2);
+        let (_folder, sketches, paths) = folder(MOST_SKETCHES + 2);
         let all = sketches.all();
         let oldest: Vec<_> = leaving(&all).iter().map(|one| one.path.clone()).collect();
         assert_eq!(oldest, [paths[1].clone(), paths[0].clone()]);
@@ -240,7 +240,7 @@ mod tests {
             .collect();
         assert_eq!(told, oldest);
         // One is painted on, so another is the oldest, of which nobody was notified.
-        touch(&paths[0], MOST + 3);
+        touch(&paths[0], MOST_SKETCHES + 3);
         let told: Vec<_> = sketches
             .notified()
             .into_iter()

@@ -14,7 +14,7 @@ use crate::value::{Fields, Value};
 mod json_schema;
 
 /// Deepest nesting of a value: a table may refer to itself.
-const DEEPEST: usize = 32;
+const DEEPEST_NESTING: usize = 32;
 
 /// Why a table or a body cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -233,7 +233,7 @@ impl FieldTable {
 /// The type that a text names.
 fn type_of(text: &str, places: &BTreeMap<&str, usize>, depth: usize) -> Result<Type, TableError> {
     let unknown = || TableError::Type(text.chars().take(80).collect());
-    if depth > DEEPEST {
+    if depth > DEEPEST_NESTING {
         return Err(unknown());
     }
     let inner = |text: &str| Ok(Box::new(type_of(text, places, depth + 1)?));
@@ -335,7 +335,7 @@ impl<'a> Reader<'a> {
     }
 
     fn fields(&mut self, fields: &[TypedField]) -> Result<Fields, TableError> {
-        if self.path.len() > DEEPEST {
+        if self.path.len() > DEEPEST_NESTING {
             return Err(TableError::Invalid {
                 field: self.field(),
                 what: "nested too deeply".into(),

@@ -16,7 +16,7 @@ use crate::value::{Fields, Value};
 const WORDS: [&str; 2] = ["Words", "words"];
 
 /// Deepest nesting of what is filled in: a table may refer to itself.
-const DEEPEST: usize = 32;
+const DEEPEST_NESTING: usize = 32;
 
 /// Why a recorded message cannot be read as one of this program.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -88,7 +88,7 @@ impl Writer<'_> {
     }
 
     fn value(&mut self, of: &Type, value: Option<&Value>, depth: usize) -> Result<(), TableError> {
-        if depth > DEEPEST {
+        if depth > DEEPEST_NESTING {
             return Err(TableError::Json("it refers to itself".into()));
         }
         let mismatch = |value: &Value| TableError::Invalid {

@@ -103,4 +103,4 @@ pub use solid::{SOLID_TRIANGLES, SolidSetup, SolidSize, solid_step};
 pub use stl::write_stl;
 pub use surface::Progress;
 pub use thumbnail::{HistoryPictures, small_picture};
-pub use underpaint::{Likeness, Support, Underpainting};
+pub use underpaint::{ColourError, Support, Underpainting};

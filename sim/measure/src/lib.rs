@@ -11,8 +11,8 @@
 //! | [`surface`] | what the instrument reads of an internal reflectance |
 //! | [`layer`] | reflectance of a layer with its derivatives |
 //! | [`links`] | whether samples tie each paint to the reference white |
-//! | [`usual`] | what a paint is thought to be before it is measured |
-//! | [`normal`], [`programme`] | normal equations; quadratic programmes |
+//! | [`prior`] | what a paint is thought to be before it is measured |
+//! | [`normal`], [`program`] | normal equations; quadratic programmes |
 //! | [`wavelength`] | K and S of all paints at one wavelength |
 //! | [`determined`] | how well readings determine them |
 //! | [`influence`] | which sample does not go with the others |
@@ -46,7 +46,7 @@ mod solving;
 pub mod surface;
 
 pub use solving::{
-    determined, influence, layer, links, normal, programme, residuals, usual, wavelength,
+    determined, influence, layer, links, normal, prior, program, residuals, wavelength,
 };
 
 pub use error::{MeasureError, Place};

@@ -46,14 +46,14 @@ impl Offline {
         depth_share: f64,
         loads: Vec<Mixture>,
     ) -> Result<Self, EditError> {
-        Self::going_on(Sequencer::new(painting), brush, file, depth_share, loads)
+        Self::resume(Sequencer::new(painting), brush, file, depth_share, loads)
     }
 
     /// As [`new`](Self::new), over a painting that continues where its sequencer is.
     ///
     /// # Errors
     /// As [`new`](Self::new).
-    pub fn going_on(
+    pub fn resume(
         mut sequencer: Sequencer,
         brush: &str,
         file: BrushFile,

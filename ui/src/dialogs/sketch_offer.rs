@@ -16,7 +16,7 @@ use crate::dialogs::paths;
 use crate::rig::state::RigState;
 
 /// So many are offered.
-const MOST: usize = 4;
+const MOST_SKETCHES: usize = 4;
 /// Width of the offer, points.
 const WIDTH: f32 = 300.0;
 
@@ -65,7 +65,7 @@ fn found(sketches: &Sketches, open: &std::path::Path) -> Found {
     let all = sketches.all();
     let others = all.iter().filter(|sketch| sketch.path != open);
     Found {
-        newest: others.clone().take(MOST).cloned().collect(),
+        newest: others.clone().take(MOST_SKETCHES).cloned().collect(),
         count: others.count(),
         leaving: leaving(&all).to_vec(),
     }
@@ -185,7 +185,7 @@ mod tests {
 
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable as _;
-    use maulstick_rig::sketches::MOST as STAY;
+    use maulstick_rig::sketches::MOST_SKETCHES as STAY;
     use maulstick_types::command::{Command, RigCommand};
 
     use super::*;

@@ -16,7 +16,7 @@ use std::time::Duration;
 use glam::DVec3;
 use maulstick_brush::BrushModel;
 use maulstick_brush::desk::aim;
-use maulstick_bus::rivals::Once;
+use maulstick_bus::sender_arbiter::Once;
 use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
 use maulstick_bus::{
     Announcer, Bus, BusError, CreditReceiver, CreditSender, Qos, Queue, Recent, Server,

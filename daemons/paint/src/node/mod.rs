@@ -16,7 +16,7 @@ use std::time::Duration;
 
 use maulstick_appearance::picture::Export;
 use maulstick_brush::BrushFile;
-use maulstick_bus::rivals::Once;
+use maulstick_bus::sender_arbiter::Once;
 use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
 use maulstick_bus::{
     Announcer, Arrival, Bus, BusError, CreditReceiver, Qos, Queue, Server, Subscription, Wake,

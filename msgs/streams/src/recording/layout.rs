@@ -140,7 +140,7 @@ impl Layout {
             match record.opcode {
                 op::CHUNK => {
                     let unpacked = unpack(record.body);
-                    let mut times_ns = NEVER;
+                    let mut times_ns = NO_TIMES;
                     for own in records(&unpacked.bytes, 0).filter(|own| own.whole) {
                         channels.add(&own);
                         times_ns = with(times_ns, &own);
@@ -176,7 +176,7 @@ impl Layout {
             _ => self.stretches.push(Stretch {
                 at,
                 bytes,
-                times_ns: with(NEVER, record),
+                times_ns: with(NO_TIMES, record),
                 is_chunk: false,
             }),
         }
@@ -279,7 +279,7 @@ impl Channels {
 }
 
 /// Times of no message.
-const NEVER: [u64; 2] = [u64::MAX, 0];
+const NO_TIMES: [u64; 2] = [u64::MAX, 0];
 
 /// Times with that of a record, if it is a message.
 fn with([first, last]: [u64; 2], record: &Found<'_>) -> [u64; 2] {

@@ -47,7 +47,7 @@ const THIN: f64 = 1.5;
 /// Width of a strip, cells, below which strips merge on the canvas.
 const MOST_CELLS_WIDE: f64 = 2.0;
 /// The fewest strips of a thinned head.
-const FEWEST: usize = 24;
+const FEWEST_STRIPS: usize = 24;
 /// A width beyond by less than this share is not beyond.
 const ROUNDING: f64 = 1e-6;
 
@@ -209,7 +209,7 @@ impl BrushFile {
         let times = self.strips.count as f64 / strips.count.max(1) as f64;
         strips.width_mm *= times;
         strips.stands_for *= times;
-        (strips.count >= FEWEST && !brush.is_line()).then_some(brush)
+        (strips.count >= FEWEST_STRIPS && !brush.is_line()).then_some(brush)
     }
 
     /// The brush with as many strips as cells of `cell_m` can tell apart: halved as long as they are narrower than

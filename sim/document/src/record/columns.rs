@@ -4,7 +4,7 @@
 //! joints another, each as the difference to the solve before, and the bytes of a table are sorted by significance: so a row is
 //! a third smaller after compression. What is no state, or would not come back byte for byte, is kept as it is.
 //!
-//! Rows of before have groups of messages ([`super::transposed`]) in their place. A row of columns begins with 4 bytes that no
+//! Rows of before have groups of messages ([`super::byte_transpose`]) in their place. A row of columns begins with 4 bytes that no
 //! group begins with; then come the columns, each its length in 4 bytes and its bytes.
 
 use maulstick_types::brush::{BrushState, Contact, Solve};

@@ -5,9 +5,9 @@
 //! by who executes it again.
 
 pub(crate) mod beginning;
+mod byte_transpose;
 mod columns;
 mod rewind;
-mod transposed;
 
 use std::path::Path;
 
@@ -277,7 +277,7 @@ pub(crate) fn row_from(
             let row = journal::unpacked(&data)?;
             let messages = match columns::in_order(&row)? {
                 Some(messages) => messages,
-                None => transposed::in_order(&row)?,
+                None => byte_transpose::in_order(&row)?,
             };
             found = Some((ints[0] as u64, Some(ints[2] as u64), messages));
         }

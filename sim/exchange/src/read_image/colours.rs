@@ -137,8 +137,8 @@ impl Colours {
 
 /// Infinity, as brightest highlights have it, as a number that a matrix can take.
 fn bounded(light: f32) -> f32 {
-    const MOST: f32 = 65_504.0;
-    light.clamp(-MOST, MOST)
+    const LARGEST_HALF: f32 = 65_504.0;
+    light.clamp(-LARGEST_HALF, LARGEST_HALF)
 }
 
 fn table(transfer: Transfer, range: Range) -> Vec<f32> {

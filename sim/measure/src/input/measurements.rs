@@ -11,7 +11,7 @@ use crate::reading::{Kind, Reading};
 use crate::table::Table;
 
 /// Reflectances above this are taken for a mistake.
-pub const GREATEST: f64 = 1.2;
+pub const GREATEST_READING: f64 = 1.2;
 /// Shares of a sample sum to 1 within this.
 pub const SHARE_TOLERANCE: f64 = 2e-3;
 /// Reading of the ground called `white` where it was not measured: opacity
@@ -218,8 +218,9 @@ fn check_range(table: &Table, headings: &Headings, reading: &Reading) -> Result<
         return Ok(());
     }
     for ((column, nm), value) in headings.wavelengths.iter().zip(&reading.values) {
-        if *value > GREATEST {
-            let what = format!("a reflectance of {value:.4} at {nm} nm is above {GREATEST}");
+        if *value > GREATEST_READING {
+            let what =
+                format!("a reflectance of {value:.4} at {nm} nm is above {GREATEST_READING}");
             let help = if *value > 2.0 {
                 "are these per cent? divide by 100; are they raw spectra? add the rows of the standard"
             } else {
@@ -357,7 +358,7 @@ fn ground(
         return Ok(Ground::Read(vec![CHART_WHITE; wavelengths]));
     }
     match table.number(text).ok() {
-        Some(r) if (0.0..=GREATEST).contains(&r) => Ok(Ground::Read(vec![r; wavelengths])),
+        Some(r) if (0.0..=GREATEST_READING).contains(&r) => Ok(Ground::Read(vec![r; wavelengths])),
         Some(r) => {
             let help = "a ground reflects 0 to 1; are these per cent? divide by 100";
             Err(table.fault(line, column, format!("no ground reflects {r}"), help))

@@ -24,12 +24,12 @@ const WAVELENGTHS: usize = 16;
 /// Rows that are tried by a fit without them.
 const TRIED: usize = 40;
 /// Most rows that are accused, and most as a share of all.
-const MOST: usize = 5;
+const MOST_SUSPECTS: usize = 5;
 const MOST_SHARE: f64 = 0.1;
 /// Steps of Gauss and Newton at most.
 const STEPS: usize = 20;
 /// A step multiplies K and S by at most this.
-const FARTHEST: f64 = 2.0;
+const LARGEST_FACTOR: f64 = 2.0;
 
 /// A row that does not go with the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +52,7 @@ pub fn suspects(spectrum: &[(f64, Wavelength<'_>)], found: &[Unknowns]) -> Vec<S
         .map(|((_, one), at)| LeaveOneOut::of(one, at))
         .collect();
     let samples = fits.first().map_or(0, |fit| fit.one.observations.len());
-    let most = MOST.min((MOST_SHARE * samples as f64).ceil() as usize);
+    let most = MOST_SUSPECTS.min((MOST_SHARE * samples as f64).ceil() as usize);
     let mut suspects = Vec::new();
     while suspects.len() < most {
         let Some(worst) = worst(&fits, samples) else {
@@ -165,7 +165,7 @@ impl<'a> LeaveOneOut<'a> {
 fn least_squares(one: &Wavelength<'_>, mut at: Unknowns) -> (Unknowns, f64) {
     let free = one.free();
     let mut cost = one.cost(&at);
-    let mut reach = ln(FARTHEST);
+    let mut reach = ln(LARGEST_FACTOR);
     for _ in 0..STEPS {
         let equations = one.linearised(&at);
         let Some(covariance) = equations.inverse(&free) else {

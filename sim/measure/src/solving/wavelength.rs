@@ -1,10 +1,10 @@
 //! K and S of all paints at one wavelength.
 //!
 //! Baxter 2004, § 7.6: for each opaque sample ΣK·c − Q·ΣS·c = 0 with Q = (1−R)²/2R, the S of one
-//! white being 1 and no K or S below 0, is a quadratic programme. Two things are done to it. Its rows
+//! white being 1 and no K or S below 0, is a quadratic program. Two things are done to it. Its rows
 //! are weighted so that an error of the reading counts the same in a dark and in a light sample: a row
-//! is worth |d reading/dQ| / ΣS·c, and since that holds S, the programme is solved some times over.
-//! From there Gauss and Newton's method continues in ln K and ln S, a bounded programme a step, with the
+//! is worth |d reading/dQ| / ΣS·c, and since that holds S, the program is solved some times over.
+//! From there Gauss and Newton's method continues in ln K and ln S, a bounded program a step, with the
 //! reading itself as the model: this is exact where Q is not linear in the noise of R, and takes
 //! drawdowns in, whose reflectance is no ratio of K and S.
 //!
@@ -18,7 +18,7 @@ use maulstick_num::{exp, ln};
 
 use crate::layer::{Slopes, film_over, opaque};
 use crate::normal::NormalEquations;
-use crate::programme::{Bound, minimise};
+use crate::program::{Bound, minimise};
 use crate::surface::Surface;
 
 /// Standard deviation of ln K and ln S of an unknown paint about the prior.
@@ -30,7 +30,7 @@ const REWEIGHTINGS: usize = 4;
 /// Steps of Gauss and Newton at most.
 const STEPS: usize = 60;
 /// A step multiplies K and S by at most this.
-const FARTHEST: f64 = 4.0;
+const LARGEST_FACTOR: f64 = 4.0;
 
 /// K and S of each paint, relative to the white's S, and that S.
 #[derive(Clone, Debug, PartialEq)]
@@ -142,7 +142,7 @@ impl Wavelength<'_> {
         free
     }
 
-    /// The programme of eq. 7.7, solved and weighted anew some times.
+    /// The program of eq. 7.7, solved and weighted anew some times.
     ///
     /// Unknowns are K and S as multiples of what they are thought to be before.
     #[must_use]
@@ -188,7 +188,7 @@ impl Wavelength<'_> {
     pub fn refine(&self, mut found: Unknowns) -> Unknowns {
         let free = self.free();
         let mut cost = self.cost(&found);
-        let mut reach = ln(FARTHEST);
+        let mut reach = ln(LARGEST_FACTOR);
         for _ in 0..STEPS {
             let bounds: Vec<Bound> = free
                 .iter()
@@ -208,7 +208,7 @@ impl Wavelength<'_> {
             let far = step.iter().fold(0.0f64, |far, by| far.max(by.abs()));
             if cost_there <= cost {
                 (found, cost) = (there, cost_there);
-                reach = (2.0 * reach).min(ln(FARTHEST));
+                reach = (2.0 * reach).min(ln(LARGEST_FACTOR));
             } else {
                 reach = 0.25 * far;
             }

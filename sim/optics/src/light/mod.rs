@@ -50,18 +50,18 @@ pub const DIMMING: f32 = 0.5;
 pub const SURFACE: f32 = SurfaceCorrection::STANDARD.k1 as f32;
 /// The lowest lamp, as the z of its direction: below it a flat surface would hardly be lit, and
 /// everything relative to it would have no bound.
-pub const LOWEST: f64 = 0.1;
+pub const LOWEST_LAMP: f64 = 0.1;
 /// Largest radius of a low lamp by its height, so that it never sets for a flat surface.
 const SET: f64 = 0.95;
 /// Least albedo of the light itself by which colours are divided.
-const DARKEST: f64 = 1e-3;
+const LEAST_ALBEDO: f64 = 1e-3;
 /// The brightest that [`starting_exposure`] lets a ground be.
 pub const BARE: f64 = 0.98;
 
 /// Parameters of a lamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LampSetup {
-    /// Toward it, of any length, in the frame of the surface. A lamp lower than [`LOWEST`] is raised
+    /// Toward it, of any length, in the frame of the surface. A lamp lower than [`LOWEST_LAMP`] is raised
     /// to it; a direction that is none means straight above.
     pub toward: [f64; 3],
     /// Factor on the light's strength, 0 or more.
@@ -153,7 +153,7 @@ impl Lamp {
             graze: ((1.0 - l[2] * l[2]) / (l[2] * l[2])) as f32,
             softness: softness as f32,
             colour: setup.colour.map(|v| v as f32),
-            albedo: setup.colour.map(|v| (1.0 / v.max(DARKEST)) as f32),
+            albedo: setup.colour.map(|v| (1.0 / v.max(LEAST_ALBEDO)) as f32),
         }
     }
 }
@@ -169,14 +169,14 @@ fn raised(toward: [f64; 3]) -> [f64; 3] {
         return [0.0, 0.0, 1.0];
     }
     let across = (l[0] * l[0] + l[1] * l[1]).sqrt();
-    if l[2] >= LOWEST {
+    if l[2] >= LOWEST_LAMP {
         return l;
     }
     if across < 1e-9 {
         return [0.0, 0.0, 1.0];
     }
-    let scale = (1.0 - LOWEST * LOWEST).sqrt() / across;
-    [l[0] * scale, l[1] * scale, LOWEST]
+    let scale = (1.0 - LOWEST_LAMP * LOWEST_LAMP).sqrt() / across;
+    [l[0] * scale, l[1] * scale, LOWEST_LAMP]
 }
 
 /// A point of a surface.

@@ -30,9 +30,9 @@ pub const REACH: u32 = 24;
 /// Share of the way that fades.
 const FADING: f64 = 0.375;
 /// The sharpest lamp.
-const SHARPEST: f64 = 1e-3;
+const LEAST_SOFTNESS: f64 = 1e-3;
 /// Least denominator of tan α: what stands at a right angle to the lamp or lower hides nothing.
-pub const LEAST: f32 = 1e-6;
+pub const LEAST_DENOMINATOR: f32 = 1e-6;
 
 /// A place on the way to the lamp, relative to a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -104,7 +104,7 @@ impl Shadows {
             taps: std::array::from_fn(tap),
             toward: [across as f32, z as f32],
             rise: lamp.relief / cell_m,
-            sharpness: (1.0 / f64::from(lamp.softness).max(SHARPEST)) as f32,
+            sharpness: (1.0 / f64::from(lamp.softness).max(LEAST_SOFTNESS)) as f32,
         }
     }
 
@@ -161,7 +161,7 @@ impl Shadows {
         let rise = (low - own + (high - low) * tap.weight) * self.rise;
         let above = rise * self.toward[0] - tap.run[1];
         let ahead = rise * self.toward[1] + tap.run[0];
-        above / ahead.max(LEAST) * self.sharpness
+        above / ahead.max(LEAST_DENOMINATOR) * self.sharpness
     }
 }
 

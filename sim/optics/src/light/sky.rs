@@ -30,7 +30,7 @@ pub const REACH_M: f64 = 2e-3;
 /// The same in cells, at most.
 pub const REACH: u32 = 16;
 /// Share of its elevation by which the farthest place counts.
-const FARTHEST: f64 = 0.3;
+const FARTHEST_SHARE: f64 = 0.3;
 
 /// A place around a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -76,7 +76,7 @@ impl Sky {
             let cell = [x, y].map(|v| (v * (far * longer).min(farthest.max(longer))).round());
             let run = (cell[0] * cell[0] + cell[1] * cell[1]).sqrt();
             let share = ring as f64 / (RINGS - 1) as f64;
-            let near = 1.0 - (1.0 - FARTHEST) * share * share * share * share;
+            let near = 1.0 - (1.0 - FARTHEST_SHARE) * share * share * share * share;
             Tap {
                 cell: cell.map(|v| v as i32),
                 steepness: (f64::from(relief) * near / (run * cell_m)) as f32,

@@ -34,7 +34,7 @@ impl From<maulstick_tables::TableError> for TableError {
 /// Instruments read nothing as a little less than nothing, by this share of the greatest reading at most.
 const DARK: f64 = 0.01;
 /// They read a white that is as white as their standard as more than 1, by this at most.
-const WHITER: f64 = 0.05;
+const MOST_ABOVE_WHITE: f64 = 0.05;
 
 /// A spectrum covers this at least, nm: beyond its ends it is held.
 const COVERED: [f64; 2] = [420.0, 680.0];
@@ -91,8 +91,11 @@ impl Reflectance {
         let mut rows = rows(&table)?;
         let mut limited = 0;
         for row in &mut rows {
-            let is_limited =
-                row.within([-DARK, 1.0 + WHITER], [0.0, 1.0], "a reflectance of 0 to 1")?;
+            let is_limited = row.within(
+                [-DARK, 1.0 + MOST_ABOVE_WHITE],
+                [0.0, 1.0],
+                "a reflectance of 0 to 1",
+            )?;
             limited += usize::from(is_limited);
         }
         Ok(Self {

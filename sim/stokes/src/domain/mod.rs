@@ -24,7 +24,7 @@ const LEAST_MASS: f32 = 0.05;
 /// Smallest distance of a velocity from a wall, in cells.
 const LEAST_DISTANCE: f32 = 0.1;
 /// Distance where no solid is near, cells.
-const FAR: f32 = 64.0;
+const FAR_CELLS: f32 = 64.0;
 /// Distance at which a face belongs to a solid.
 const TOUCHES: f32 = 1e-4;
 
@@ -45,7 +45,7 @@ impl Solids {
     #[must_use]
     pub fn walls(grid: &Grid) -> Self {
         Self {
-            distance: vec![FAR; grid.len()],
+            distance: vec![FAR_CELLS; grid.len()],
             velocity: std::array::from_fn(|_| grid.field()),
             resistance: None,
         }

@@ -8,7 +8,7 @@
 mod transfer;
 
 use maulstick_num::wide;
-use transfer::{Along, Layers, Room, all_layers, can_halve, gather, halved, spread};
+use transfer::{Along, Layers, Workspace, all_layers, can_halve, gather, halved, spread};
 
 use crate::grid::Grid;
 use crate::stencil::Stencil;
@@ -30,7 +30,7 @@ struct Level {
     /// Solution and right-hand side, on all but the first level.
     x: Vec<f32>,
     b: Vec<f32>,
-    /// Room, 0 where there are no unknowns.
+    /// Workspace, 0 where there are no unknowns.
     spare: Vec<f32>,
     /// Layers with unknowns.
     layers: Layers,
@@ -85,9 +85,9 @@ impl Down {
         &self.grids[2]
     }
 
-    fn room(&mut self) -> Room<'_> {
+    fn workspace(&mut self) -> Workspace<'_> {
         let [by_z, by_y] = &mut self.fields;
-        Room {
+        Workspace {
             grids: &self.grids,
             by_z,
             by_y,
@@ -111,7 +111,7 @@ impl Down {
                 links,
                 &mut into.links[axis],
                 &layers,
-                &mut self.room(),
+                &mut self.workspace(),
             );
         }
         let mut lost = std::mem::take(&mut self.scale);
@@ -121,14 +121,14 @@ impl Down {
             (grid, &lost),
             &mut into.mass,
             &layers,
-            &mut self.room(),
+            &mut self.workspace(),
         );
         self.scale = lost;
         for (from, into) in [
             (&fine.active, &mut into.active),
             (&fine.known, &mut into.known),
         ] {
-            gather(children, (grid, from), into, &layers, &mut self.room());
+            gather(children, (grid, from), into, &layers, &mut self.workspace());
             into.iter_mut()
                 .for_each(|value| *value = if *value > 0.0 { 1.0 } else { 0.0 });
         }
@@ -137,7 +137,7 @@ impl Down {
         scale.fill(0.0);
         let layers = all_layers(grid);
         let known = (grid, scale.as_mut_slice(), fine.active.as_slice());
-        spread(along, &into.known, known, &layers, &mut self.room());
+        spread(along, &into.known, known, &layers, &mut self.workspace());
         for scale in &mut scale {
             *scale = if *scale > 0.0 { 1.0 / *scale } else { 0.0 };
         }
@@ -482,14 +482,20 @@ fn descend(levels: &mut [Level], omegas: &[f32], b: &[f32], x: &mut [f32]) {
         (&grid, spare),
         &mut coarse_b,
         &next.layers,
-        &mut down.room(),
+        &mut down.workspace(),
     );
     descend(coarser, omegas, &coarse_b, &mut coarse_x);
     let coarse = *down.coarse();
     coarse.wrap(&mut coarse_x);
     let scale = std::mem::take(&mut down.scale);
     let into = (&grid, &mut *x, scale.as_slice());
-    spread(down.along, &coarse_x, into, &level.layers, &mut down.room());
+    spread(
+        down.along,
+        &coarse_x,
+        into,
+        &level.layers,
+        &mut down.workspace(),
+    );
     down.scale = scale;
     if let Some(next) = coarser.first_mut() {
         (next.x, next.b) = (coarse_x, coarse_b);

@@ -277,14 +277,18 @@ wide! {
 }
 
 /// Most quanta that go through a face at once.
-const MOST: f32 = 4_194_304.0;
+const MOST_FLUX: f32 = 4_194_304.0;
 
-/// The whole part of a number that is not negative, at most [`MOST`]: a cast would be done number by number.
+/// The whole part of a number that is not negative, at most [`MOST_FLUX`]: a cast would be done number by number.
 #[inline(always)]
 fn whole(number: f32) -> i32 {
     /// From here on to twice that, each number is one more than the one before it.
     const WHOLE: f32 = 8_388_608.0;
-    let number = if number < MOST { number } else { MOST };
+    let number = if number < MOST_FLUX {
+        number
+    } else {
+        MOST_FLUX
+    };
     let nearest = number + WHOLE;
     let over = if nearest - WHOLE > number { 1 } else { 0 };
     nearest.to_bits().wrapping_sub(WHOLE.to_bits()) as i32 - over
@@ -321,6 +325,6 @@ mod tests {
         ] {
             assert_eq!(whole(number), number as i32, "{number}");
         }
-        assert_eq!([whole(1e20), whole(f32::NAN)], [MOST as i32; 2]);
+        assert_eq!([whole(1e20), whole(f32::NAN)], [MOST_FLUX as i32; 2]);
     }
 }

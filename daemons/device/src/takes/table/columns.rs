@@ -16,7 +16,7 @@ const PRESSURE: usize = 3;
 const TILTS: [usize; 2] = [4, 5];
 const STROKE: usize = 7;
 /// Steepest tilt that a brush is held at, degrees.
-const STEEPEST: f64 = 85.0;
+const STEEPEST_TILT_DEG: f64 = 85.0;
 /// Steepest tilt of a pen, degrees.
 const FLAT: f64 = 90.0;
 /// Rounding of a number in a table.
@@ -157,7 +157,11 @@ impl Limits {
     fn within(&mut self, column: usize, number: f64) -> Result<f64, (f64, f64)> {
         let (used, given, count) = match column {
             PRESSURE => ((0.0, 1.0), (0.0, 1.0), &mut self.pressures),
-            _ if TILTS.contains(&column) => ((-STEEPEST, STEEPEST), (-FLAT, FLAT), &mut self.tilts),
+            _ if TILTS.contains(&column) => (
+                (-STEEPEST_TILT_DEG, STEEPEST_TILT_DEG),
+                (-FLAT, FLAT),
+                &mut self.tilts,
+            ),
             _ => return Ok(number),
         };
         if !(given.0 - ROUNDING..=given.1 + ROUNDING).contains(&number) {
@@ -177,7 +181,9 @@ impl Limits {
         });
         let tilts = (self.tilts > 0).then(|| {
             let count = self.tilts;
-            format!("{count} tilts are steeper than {STEEPEST}°: taken as {STEEPEST}°")
+            format!(
+                "{count} tilts are steeper than {STEEPEST_TILT_DEG}°: taken as {STEEPEST_TILT_DEG}°"
+            )
         });
         pressures.into_iter().chain(tilts).collect()
     }

@@ -10,11 +10,11 @@ const WHITE: &str = "Titanium White";
 
 /// Medians of the measured paints, whites' own for the white.
 #[derive(Clone, Debug)]
-pub struct Usual {
+pub struct Prior {
     library: PaintLibrary,
 }
 
-impl Usual {
+impl Prior {
     /// Those of the paints that come with the optics.
     ///
     /// # Errors
