@@ -85,7 +85,7 @@ fn a_first_message_is_followed_at_once_and_a_late_one_never() {
             .is_rival(&header(1, Flags::NONE, 990), 5000 * MS)
     );
     assert!(
-        two.rivals
+        two.arbiter
             .is_rival(&header(1, Flags::NONE, 4990), 5000 * MS)
     );
 }
