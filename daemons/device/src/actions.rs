@@ -120,7 +120,9 @@ impl Actor {
         let thread = std::thread::Builder::new()
             .name("switches".into())
             .spawn(move || worker.run(&edges))
-            .map_err(|error| UserError::failure(format!("no thread for the switches: {error}")))?;
+            .map_err(|error| {
+                UserError::failure(format!("cannot start the thread for the switches: {error}"))
+            })?;
         Ok(Self {
             actions,
             told: 0,

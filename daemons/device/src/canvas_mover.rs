@@ -87,7 +87,11 @@ impl CanvasMover {
         let thread = std::thread::Builder::new()
             .name("mover".into())
             .spawn(run)
-            .map_err(|error| UserError::failure(format!("no thread for the free hand: {error}")))?;
+            .map_err(|error| {
+                UserError::failure(format!(
+                    "cannot start the thread for the free hand: {error}"
+                ))
+            })?;
         Ok(Self {
             controls: Some(controls),
             stop,

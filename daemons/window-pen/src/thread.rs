@@ -87,7 +87,7 @@ pub unsafe fn pens_of(
             Box::new(XinputPens::new(u32::try_from(window.window).unwrap_or(0))?)
         }
         _ => {
-            let what = "this window system's pens are not known";
+            let what = "pens of this window system are not supported";
             return Err(UserError::failure(what).help("run it on Wayland or X11"));
         }
     })

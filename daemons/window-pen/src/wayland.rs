@@ -154,8 +154,8 @@ impl WaylandPens {
         let handle = queue.handle();
         let manager = globals.bind::<ZwpTabletManagerV2, _, _>(&handle, 1..=1, ());
         let manager = manager.map_err(|_| {
-            UserError::failure("this compositor tells nothing of pens (zwp_tablet_manager_v2)").help(
-                "the pen paints as a mouse: for its pressure give its tablet to the rig, `maulstick device list` says how",
+            UserError::failure("this compositor does not report pens (zwp_tablet_manager_v2)").help(
+                "the pen paints as a mouse does; to use its pressure, add its tablet to the rig (`maulstick device list` says how)",
             )
         })?;
         let seats = globals.contents().with_list(|list| {

@@ -142,7 +142,7 @@ impl CommandClient {
             if Instant::now() >= give_up || stop() {
                 return Err(UserError::failure("the node does not answer")
                     .at(self.topic.clone())
-                    .help("see whether it runs"));
+                    .help("check that it is running"));
             }
             // A node that is not there yet answers at once with nothing.
             std::thread::sleep(Duration::from_millis(20).saturating_sub(asked.elapsed()));

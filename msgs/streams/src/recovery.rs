@@ -97,7 +97,7 @@ impl DamagedRecording {
         if is_mcap {
             Ok(recording)
         } else {
-            Err(UserError::usage("this is no MCAP file")
+            Err(UserError::usage("this is not an MCAP file")
                 .at(path.display().to_string())
                 .help("`maulstick recording record` writes recordings"))
         }

@@ -127,7 +127,7 @@ fn a_file_without_its_beginning_is_mended_and_another_file_is_refused() {
     assert_eq!(recovered(&path).1.messages, MESSAGES);
     std::fs::write(&path, "a table\n".repeat(100)).expect("written");
     let fault = DamagedRecording::open(&path).expect_err("refused");
-    assert_eq!(fault.what, "this is no MCAP file");
+    assert_eq!(fault.what, "this is not an MCAP file");
 }
 
 proptest! {

@@ -90,7 +90,7 @@ pub enum Fault {
         name: String,
     },
     /// A heading above two columns.
-    #[error("'{}' stands above two columns", shown(.name))]
+    #[error("two columns have the heading '{}'", shown(.name))]
     TwiceNamed {
         /// The heading.
         name: String,

@@ -72,7 +72,7 @@ fn check_reach<T>(spectrum: &[(f64, T)]) -> Result<(), MeasureError> {
         [(first, _), .., (last, _)]
             if *first > NARROWEST_RANGE_NM[0] || *last < NARROWEST_RANGE_NM[1] =>
         {
-            let what = format!("readings from {first} to {last} nm say too little of colour");
+            let what = format!("readings from {first} to {last} nm are too few for a colour");
             let help = "measure from 420 nm or less to 680 nm or more";
             Err(MeasureError::new(what, help))
         }

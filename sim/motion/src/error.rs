@@ -90,7 +90,7 @@ pub enum MotionError {
         most: usize,
     },
     /// An example that says nothing of its spacing.
-    #[error("the example is one stroke, which has no spacing")]
+    #[error("the example is a single stroke, which has no spacing")]
     NoSpacing,
 }
 

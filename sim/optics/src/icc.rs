@@ -30,7 +30,7 @@ pub enum ProfileError {
     #[error("this profile is for {0} colours, but pictures are RGB")]
     NotRgb(String),
     /// It leads only from the device.
-    #[error("no way leads to the colours of this profile: {0}")]
+    #[error("colours cannot be converted to this profile: {0}")]
     OneWay(String),
 }
 

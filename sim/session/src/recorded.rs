@@ -43,7 +43,7 @@ pub enum SessionFault {
         found: u64,
     },
     /// The session begins behind a place of the journal.
-    #[error("it begins behind place {place} of the painting's journal, at {first}")]
+    #[error("it begins after place {place} of the painting's journal, at {first}")]
     Before {
         /// The place.
         place: u64,

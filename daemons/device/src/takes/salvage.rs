@@ -40,7 +40,7 @@ pub fn salvage(path: &Path) -> Result<Salvage, UserError> {
     from_bytes(&bytes).map_err(|refusal| {
         let (what, help) = match refusal {
             Refusal::Foreign => (
-                "this is no MCAP file".into(),
+                "this is not an MCAP file".into(),
                 "`maulstick take import` makes takes from tables of strokes",
             ),
             Refusal::Damaged(damage) => (

@@ -299,7 +299,7 @@ mod tests {
             Take::read(&path)
                 .expect_err("a table")
                 .what
-                .contains("no MCAP")
+                .contains("not an MCAP")
         );
         std::fs::write(&path, "").expect("written");
         assert!(Take::read(&path).is_err());

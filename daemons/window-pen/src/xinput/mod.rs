@@ -66,8 +66,8 @@ impl XinputPens {
         let (connection, screen) = x11rb::connect(None).map_err(|error| gone(&error))?;
         if !has_pens(&connection).map_err(|error| gone(&error))? {
             return Err(
-                UserError::failure("this X server tells nothing of pens (XInput 2.2)").help(
-                    "the pen paints as a mouse: for its pressure give its tablet to the rig, `maulstick device list` says how",
+                UserError::failure("this X server does not report pens (XInput 2.2)").help(
+                    "the pen paints as a mouse does; to use its pressure, add its tablet to the rig (`maulstick device list` says how)",
                 ),
             );
         }

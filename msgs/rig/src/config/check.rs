@@ -122,7 +122,7 @@ impl RigConfig {
                 key: "name",
                 value: name.clone(),
                 help: format!(
-                    "a device is not called {} or {BRUSH_NODE}…",
+                    "a device cannot be called {} or {BRUSH_NODE}…",
                     RESERVED.join(", ")
                 ),
             });

@@ -90,7 +90,7 @@ pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
     }
     let mut actions = device.switches.iter().flatten();
     if device.is_hid() && actions.any(|action| action == "clutch") {
-        let help = "choose another action: who lifts a pen, or lets go of a 6-DOF mouse, has let go of the desk";
+        let help = "choose another action: lifting a pen, or letting go of a 6-DOF mouse, is a clutch already";
         return Err(Wrong {
             what: format!(
                 "the switch 'clutch' of '{}' does nothing: its driver is {driver}",

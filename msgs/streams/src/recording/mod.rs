@@ -122,7 +122,7 @@ impl Recording {
         let file = File::open(path).map_err(reading)?;
         let length = file.metadata().map_err(reading)?.len();
         if read_at(&file, length, 0, MAGIC.len() as u64).map_err(reading)? != MAGIC {
-            return Err(UserError::usage("this is no MCAP file")
+            return Err(UserError::usage("this is not an MCAP file")
                 .at(path.display().to_string())
                 .help("`maulstick recording record` writes recordings"));
         }

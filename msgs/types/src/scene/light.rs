@@ -78,19 +78,19 @@ pub enum LightError {
     #[error("the light must come from above the canvas: give x, y, z with z > 0")]
     Below,
     /// The name of a spectrum that is too long.
-    #[error("an illuminant's name of {0} bytes: it has at most {ILLUMINANT_NAME_MAX}")]
+    #[error("an illuminant's name has at most {ILLUMINANT_NAME_MAX} bytes, not {0}")]
     Name(usize),
     /// Powers that are no spectrum.
-    #[error("this is no spectrum: give 101 powers of 0 or more, not all of them 0")]
+    #[error("this is not a spectrum: give 101 powers of 0 or more, not all of them 0")]
     Spectrum,
     /// An observer that the CIE does not have.
-    #[error("there is no CIE observer of {0}: take 1931 or 1964")]
+    #[error("there is no CIE observer of {0}: choose 1931 or 1964")]
     Observer(u32),
     /// An unknown sampling rule.
     #[error("there is no such sampling rule: choose one of {}", RULES.join(", "))]
     Rule,
     /// Too few or too many wavelengths.
-    #[error("a rule of {0} samples: take 4 to 16")]
+    #[error("a sampling rule has 4 to 16 wavelengths, not {0}")]
     Samples(u32),
 }
 

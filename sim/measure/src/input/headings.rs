@@ -48,7 +48,10 @@ impl Headings {
                 .any(|other| other.to_lowercase() == lower)
             {
                 let help = "keep one of the two columns";
-                return Err(fault(format!("'{heading}' stands above two columns"), help));
+                return Err(fault(
+                    format!("two columns have the heading '{heading}'"),
+                    help,
+                ));
             }
             if let Some(place) = RESERVED.iter().position(|name| *name == lower) {
                 found.reserved[place] = Some(column);
@@ -164,7 +167,7 @@ mod tests {
         );
         assert_eq!(
             error("White,white,500"),
-            "line 1, column 2 (white): 'white' stands above two columns"
+            "line 1, column 2 (white): two columns have the heading 'white'"
         );
         assert_eq!(
             error("White,,500"),

@@ -182,7 +182,7 @@ fn reading(table: &Table, headings: &Headings, row: Row<'_>) -> Result<Reading, 
         let known = KINDS.iter().find(|(name, _)| *name == given);
         let Some((_, found)) = known else {
             let help = choice(&given, KINDS.map(|(name, _)| name));
-            let what = format!("'{}' is no kind of row", shown(row.cell(column)));
+            let what = format!("'{}' is not a kind of row", shown(row.cell(column)));
             return Err(table.fault(row.line(), column, what, &help));
         };
         kind = *found;
@@ -314,7 +314,7 @@ fn layer(
         .ok()
         .filter(|um| (0.1..=1e5).contains(um))
         .ok_or_else(|| {
-            let what = format!("'{text}' is no thickness");
+            let what = format!("'{text}' is not a thickness");
             table.fault(row.line(), column, what, "give it in µm, 0.1 to 100000")
         })?;
     let ground = ground(table, headings, (row.line(), over), grounds, warnings)?;

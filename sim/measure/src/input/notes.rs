@@ -69,7 +69,7 @@ impl Notes {
                 "standard reflectance" => {
                     let value = note.value.parse().ok();
                     found.standard = value.filter(|r| *r > 0.0 && *r <= 1.2).ok_or_else(|| {
-                        let what = format!("'{}' is no reflectance of a standard", note.value);
+                        let what = format!("'{}' is not a reflectance of a standard", note.value);
                         fault(what, "write `# standard reflectance: 0.99`")
                     })?;
                 }

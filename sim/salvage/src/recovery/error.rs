@@ -19,7 +19,7 @@ impl SalvageError {
     #[must_use]
     pub fn advice(&self) -> Advice {
         match self {
-            Self::Lost(_) => Advice::say("take the newest copy of it that is whole"),
+            Self::Lost(_) => Advice::say("use the newest intact copy of it"),
             Self::Document(error) => error.advice(),
         }
     }

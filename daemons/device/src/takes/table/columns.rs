@@ -124,7 +124,8 @@ fn places(
     let places = table.columns(COLUMNS).map_err(&fault)?;
     let count = table.rows().next().map_or(0, |row| row.len());
     if table.headings().is_empty() && count > NEEDED && ![NEEDED + 2, NUMBERS].contains(&count) {
-        let what = format!("{count} columns without headings: what the last is, is not told");
+        let what =
+            format!("{count} columns without headings: the meaning of the last one is not known");
         return Err(UserError::usage(what)
             .at(format!("{name}:{}", table.first_line()))
             .help("name the columns in a first line, as in: t,x,y,pressure,stroke"));
