@@ -222,7 +222,7 @@ fn strange_readings(measured: &Measurements, surface: &Surface) -> Vec<String> {
     warnings
 }
 
-/// The programmes within the visible spectrum, and one beyond each of its ends.
+/// The programs within the visible spectrum, and one beyond each of its ends.
 fn wavelengths(
     measured: &Measurements,
     white: usize,

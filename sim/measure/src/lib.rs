@@ -12,7 +12,7 @@
 //! | [`layer`] | reflectance of a layer with its derivatives |
 //! | [`links`] | whether samples tie each paint to the reference white |
 //! | [`prior`] | what a paint is thought to be before it is measured |
-//! | [`normal`], [`program`] | normal equations; quadratic programmes |
+//! | [`normal`], [`program`] | normal equations; quadratic programs |
 //! | [`wavelength`] | K and S of all paints at one wavelength |
 //! | [`determined`] | how well readings determine them |
 //! | [`influence`] | which sample does not go with the others |
