@@ -196,9 +196,21 @@ enum Memory {
 }
 
 fn config(dial: &Dial, memory: Memory) -> zenoh::Result<zenoh::Config> {
-    let json = |value: &serde_json::Value| value.to_string();
     let mut config = zenoh::Config::default();
-    let settings = [
+    for (key, value) in meeting(dial).into_iter().chain(transport(dial, memory)) {
+        config
+            .insert_json5(key, &value.to_string())
+            .map_err(|error| format!("{key}: {error}"))?;
+    }
+    Ok(config)
+}
+
+/// A setting of zenoh and its value.
+type Setting = (&'static str, serde_json::Value);
+
+/// Settings by which processes of a rig meet.
+fn meeting(dial: &Dial) -> [Setting; 10] {
+    [
         (
             "mode",
             serde_json::json!(if dial.listen.is_some() {
@@ -233,6 +245,12 @@ fn config(dial: &Dial, memory: Memory) -> zenoh::Result<zenoh::Config> {
             "scouting/gossip/autoconnect_strategy",
             serde_json::json!({ "peer": { "to_router": "always", "to_peer": "greater-zid" } }),
         ),
+    ]
+}
+
+/// Settings of the links between them.
+fn transport(dial: &Dial, memory: Memory) -> [Setting; 9] {
+    [
         // By gossip a process hears of what others listen at, over TCP too.
         (
             "transport/link/protocols",
@@ -260,13 +278,7 @@ fn config(dial: &Dial, memory: Memory) -> zenoh::Result<zenoh::Config> {
             "transport/shared_memory/transport_optimization/enabled",
             serde_json::json!(false),
         ),
-    ];
-    for (key, value) in settings {
-        config
-            .insert_json5(key, &json(&value))
-            .map_err(|error| format!("{key}: {error}"))?;
-    }
-    Ok(config)
+    ]
 }
 
 /// The protocols of the requested locators: those of a rig are unix sockets.

@@ -8,6 +8,14 @@ use crate::file::database::{Access, Database, is_new};
 use crate::file::relocate::{self, Relocate, RelocateRequest};
 use crate::file::watch::{FileState, FileWatch};
 
+/// The file at a path; SQLite would create a blank one where there is none.
+fn open(path: &Path) -> Result<Database, DocumentError> {
+    if is_new(path)? {
+        return Err(DocumentError::Missing);
+    }
+    Database::open(path, Access::Paint, None).map(|(database, _)| database)
+}
+
 impl DocumentThread {
     /// Relocates the painting and continues there, or at its old path if that fails.
     ///
@@ -25,14 +33,6 @@ impl DocumentThread {
             request.answer.send(copied).ok();
             return Ok(self);
         }
-        let open = |path: &Path| {
-            if is_new(path)? {
-                // SQLite would create a blank one.
-                Err(DocumentError::Missing)
-            } else {
-                Database::open(path, Access::Paint, None).map(|(database, _)| database)
-            }
-        };
         if let FileState::Gone(_) = state {
             let rescued = relocate::rescue(&self.database, &request.to, request.replace)
                 .and_then(|()| self.continue_in(&request.to));
