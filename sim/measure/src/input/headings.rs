@@ -21,6 +21,17 @@ pub struct Headings {
     pub wavelengths: Vec<(usize, f64)>,
 }
 
+/// Checks that a heading can name a paint; otherwise what is wrong, and advice.
+fn check_paint(heading: &str) -> Result<(), (String, &'static str)> {
+    let help = "choose another name for the paint";
+    check_paint_name(heading).map_err(|error| (error.to_string(), help))?;
+    if heading.starts_with('#') || heading.eq_ignore_ascii_case("paint") {
+        let help = "choose another name, without a leading #";
+        return Err((format!("'{heading}' cannot name a paint"), help));
+    }
+    Ok(())
+}
+
 impl Headings {
     /// Reads the headings of `table`.
     ///
@@ -59,15 +70,7 @@ impl Headings {
             }
             let number = table.number(lower.trim_end_matches("nm").trim_end());
             let Ok(nm) = number else {
-                let named = check_paint_name(heading);
-                if let Err(error) = named {
-                    let help = "choose another name for the paint";
-                    return Err(fault(error.to_string(), help));
-                }
-                if heading.starts_with('#') || lower == "paint" {
-                    let help = "choose another name, without a leading #";
-                    return Err(fault(format!("'{heading}' cannot name a paint"), help));
-                }
+                check_paint(heading).map_err(|(what, help)| fault(what, help))?;
                 found.paints.push((column, heading.clone()));
                 continue;
             };

@@ -142,6 +142,23 @@ fn check_header(row: Row<'_>) -> Result<(), PaintError> {
     Ok(())
 }
 
+/// K or S of a row, per metre.
+fn spectrum(row: Row<'_>) -> Result<Spectrum, PaintError> {
+    let mut values = [0.0; SAMPLES];
+    for (column, value) in (NAMED..).zip(&mut values) {
+        let number = row.number(column)?;
+        if !(0.0..=MOST).contains(&number) {
+            let cell = shown(row.cell(column));
+            return Err(PaintError::File {
+                line: row.line(),
+                what: format!("column {}: {cell} is not 0 to {MOST:.0}", column + 1),
+            });
+        }
+        *value = number * WHITE_S_PER_M;
+    }
+    Ok(Spectrum(values))
+}
+
 /// The paints to choose from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PaintLibrary {
@@ -185,16 +202,7 @@ impl PaintLibrary {
             if cells != columns {
                 return Err(fault(format!("{cells} columns instead of {columns}")));
             }
-            let mut values = [0.0; SAMPLES];
-            for (column, value) in (NAMED..).zip(&mut values) {
-                let number = row.number(column)?;
-                if !(0.0..=MOST).contains(&number) {
-                    let cell = shown(row.cell(column));
-                    let what = format!("column {}: {cell} is not 0 to {MOST:.0}", column + 1);
-                    return Err(fault(what));
-                }
-                *value = number * WHITE_S_PER_M;
-            }
+            let values = spectrum(row)?;
             let [name, colour_index, source, quantity] =
                 [0, 1, 2, 3].map(|column| row.cell(column));
             let place = match quantity {
@@ -210,7 +218,7 @@ impl PaintLibrary {
                 order.push((name.into(), colour_index.into(), source.into()));
             }
             let rows = found.entry(name.to_owned()).or_default();
-            if rows[place].replace(Spectrum(values)).is_some() {
+            if rows[place].replace(values).is_some() {
                 return Err(fault(format!("a second row of {quantity} of '{name}'")));
             }
         }
