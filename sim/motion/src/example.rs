@@ -297,6 +297,17 @@ fn dabs(strokes: &[Stroke], paths: &[Vec<DVec2>], pitch_m: f64) -> Pass {
     }
 }
 
+/// Mean spacing of rows; of a single row that of a brush of this width.
+fn spacing_m(rows: &[f64], width_m: f64) -> Result<f64, MotionError> {
+    if !rows.is_empty() {
+        Ok(rows.iter().sum::<f64>() / rows.len() as f64)
+    } else if width_m > 0.0 {
+        Ok(0.75 * width_m)
+    } else {
+        Err(MotionError::NoSpacing)
+    }
+}
+
 fn hatches(strokes: &[Stroke], paths: &[Vec<DVec2>], width_m: f64) -> Result<Pass, MotionError> {
     let frame = Frame::turned(direction(paths));
     let marks: Vec<Mark> = strokes
@@ -317,13 +328,7 @@ fn hatches(strokes: &[Stroke], paths: &[Vec<DVec2>], width_m: f64) -> Result<Pas
             .min_by(f64::total_cmp);
         rows.extend(next);
     }
-    let spacing_m = if !rows.is_empty() {
-        rows.iter().sum::<f64>() / rows.len() as f64
-    } else if width_m > 0.0 {
-        0.75 * width_m
-    } else {
-        return Err(MotionError::NoSpacing);
-    };
+    let spacing_m = spacing_m(&rows, width_m)?;
     let is_row = |a: &Mark, b: &Mark| (a.across - b.across).abs() < 0.5 * spacing_m;
     let mut gaps: Vec<f64> = Vec::new();
     for own in &marks {

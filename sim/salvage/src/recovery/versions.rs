@@ -63,11 +63,8 @@ pub(super) fn write(
         String::new()
     };
     if let Some(line) = snapshot.line.take() {
-        let line = if names.contains(line.as_str()) {
-            line
-        } else {
-            parent_of(&line)
-        };
+        let is_there = names.contains(line.as_str());
+        let line = if is_there { line } else { parent_of(&line) };
         snapshot.line = (!line.is_empty()).then_some(line);
     }
     for (name, (row, state)) in intact {

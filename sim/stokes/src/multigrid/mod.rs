@@ -489,13 +489,8 @@ fn descend(levels: &mut [Level], omegas: &[f32], b: &[f32], x: &mut [f32]) {
     coarse.wrap(&mut coarse_x);
     let scale = std::mem::take(&mut down.scale);
     let into = (&grid, &mut *x, scale.as_slice());
-    spread(
-        down.along,
-        &coarse_x,
-        into,
-        &level.layers,
-        &mut down.workspace(),
-    );
+    let (along, mut workspace) = (down.along, down.workspace());
+    spread(along, &coarse_x, into, &level.layers, &mut workspace);
     down.scale = scale;
     if let Some(next) = coarser.first_mut() {
         (next.x, next.b) = (coarse_x, coarse_b);
