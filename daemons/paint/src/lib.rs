@@ -18,8 +18,8 @@
 //! use maulstick_appearance::picture::Export;
 //! use maulstick_optics::PaintLibrary;
 //! use maulstick_paint_node::snapshots::write_snapshot;
+//! use maulstick_painting::edits::{Fill, FillPaint};
 //! use maulstick_painting::{Painting, PaintingSetup};
-//! use maulstick_types::edits::{Fill, FillPaint};
 //! use maulstick_types::scene::CANVAS;
 //! use maulstick_types::values::FilmThickness;
 //!

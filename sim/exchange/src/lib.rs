@@ -36,8 +36,8 @@
 //! use maulstick_appearance::picture::{Depth, Export};
 //! use maulstick_exchange::{SolidSetup, write_lit_png, write_stl};
 //! use maulstick_optics::PaintLibrary;
+//! use maulstick_painting::edits::{Fill, FillPaint};
 //! use maulstick_painting::{Painting, PaintingSetup};
-//! use maulstick_types::edits::{Fill, FillPaint};
 //! use maulstick_types::scene::CANVAS;
 //! use maulstick_types::values::FilmThickness;
 //!
