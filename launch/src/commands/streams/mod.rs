@@ -6,7 +6,7 @@
 //! | [`echo`], [`measure`] | contents and rates of live streams |
 //! | [`graph`] | the processes of a rig, and what they send each other, as a picture |
 //! | [`recorder`], [`record`] | recordings, made and kept within bounds |
-//! | [`recording`], [`foxglove_export`] | recordings, looked at and written for Foxglove |
+//! | [`recording`], [`recording_info`], [`foxglove_export`] | recordings, looked at and written for Foxglove |
 //! | [`topic`] | the commands of live streams as a group |
 //! | [`bridge`] | live streams for Foxglove |
 //! | [`message_lines`] | messages as rows of a table and as lines of JSON |
@@ -21,6 +21,7 @@ mod message_lines;
 mod record;
 pub(crate) mod recorder;
 pub mod recording;
+mod recording_info;
 pub mod topic;
 
 use std::path::Path;
