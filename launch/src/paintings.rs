@@ -56,7 +56,7 @@ pub fn paint(
     let setup = PaintingSetup {
         cells: size_mm.map(|mm| (mm / board.cell_mm).round() as u32),
         cell_m: 1e-3 * board.cell_mm,
-        model: board.model.to_owned(),
+        model: board.model.name.to_owned(),
         // Strokes that go over the canvas's edge come to a clean board.
         wells: Vec::new(),
         ..PaintingSetup::default()

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use maulstick_painting::models::model_names;
+use maulstick_models::model_names;
 use maulstick_rig::UserError;
 
 /// Options of `maulstick bench`.

@@ -30,7 +30,7 @@ impl Measured {
         let library = PaintLibrary::measured().expect("whole");
         let mut offline = paint(
             name,
-            Board::impasto(CELL_MM),
+            Board::of_cells(CELL_MM),
             library,
             ProgressBar::hidden(),
         )

@@ -7,20 +7,19 @@
 //! | [`marks`] | the marks of a brush |
 //! | [`one_stroke`] | the six marks of a double-loaded one |
 //! | [`softening`] | what a blender does between two wet colours |
-//! | `stroking` | dAb's stroking algorithms |
 
 pub mod effects;
 pub mod gesture;
 pub mod marks;
 pub mod one_stroke;
 pub mod softening;
-mod stroking;
 #[cfg(test)]
 mod tests;
 
 use maulstick_appearance::picture::Picture;
 use maulstick_brush::BrushFile;
 use maulstick_brush::file::library::LIBRARY;
+use maulstick_models::{MODELS, ModelEntry};
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::paint_error;
 use maulstick_painting::picture::picture;
@@ -110,17 +109,17 @@ fn pixels(mm: f64, cell_mm: f64) -> usize {
 pub struct Board {
     /// Side of a cell, mm.
     pub cell_mm: f64,
-    /// Name of the paint model.
-    pub model: &'static str,
+    /// The paint model.
+    pub model: &'static ModelEntry,
 }
 
 impl Board {
-    /// Impasto on cells of this side, mm.
+    /// The first of the models on cells of this side, mm.
     #[must_use]
-    pub fn impasto(cell_mm: f64) -> Self {
+    pub fn of_cells(cell_mm: f64) -> Self {
         Self {
             cell_mm,
-            model: "impasto",
+            model: &MODELS[0],
         }
     }
 }
@@ -142,7 +141,7 @@ impl Panel {
             ground: ground.to_owned(),
             cells: size_mm.map(|mm| pixels(mm, board.cell_mm) as u32),
             cell_m: 1e-3 * board.cell_mm,
-            model: board.model.to_owned(),
+            model: board.model.name.to_owned(),
             ..PaintingSetup::default()
         };
         let painting = Painting::new(&setup, library).map_err(refused)?;
@@ -188,7 +187,7 @@ pub fn brush_panel(
     cell_mm: f64,
 ) -> Result<Picture, UserError> {
     let mut panel = Panel::new(
-        (marks::PANEL_MM, Board::impasto(cell_mm)),
+        (marks::PANEL_MM, Board::of_cells(cell_mm)),
         "gesso",
         file.clone(),
         library,
@@ -212,7 +211,7 @@ pub fn one_stroke_panel(
     cell_mm: f64,
 ) -> Result<Picture, UserError> {
     let mut panel = Panel::new(
-        (one_stroke::PANEL_MM, Board::impasto(cell_mm)),
+        (one_stroke::PANEL_MM, Board::of_cells(cell_mm)),
         "grey",
         file.clone(),
         library,
@@ -240,7 +239,7 @@ pub fn softening_panel(
 ) -> Result<Picture, UserError> {
     let flat = library_brush("flat")?;
     let mut panel = Panel::new(
-        (softening::PANEL_MM, Board::impasto(cell_mm)),
+        (softening::PANEL_MM, Board::of_cells(cell_mm)),
         "gesso",
         flat,
         library,

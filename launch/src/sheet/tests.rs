@@ -18,7 +18,7 @@ fn paints() -> PaintLibrary {
 fn one(kind: &str, pressure: impl Fn(f64) -> f64 + 'static) -> Picture {
     let file = library_brush(kind).expect(kind);
     let mut panel =
-        Panel::new((SIZE_MM, Board::impasto(CELL_MM)), "gesso", file, paints()).expect("a panel");
+        Panel::new((SIZE_MM, Board::of_cells(CELL_MM)), "gesso", file, paints()).expect("a panel");
     panel.load(BRUSH, "Ultramarine Blue").expect("loaded");
     let way = vec![[12.0, 25.0], [76.0, 25.0]];
     panel
@@ -138,7 +138,7 @@ fn a_badger_softens_the_edge_between_two_wet_colours() {
 fn a_double_loaded_brush_paints_two_colours_side_by_side() {
     let file = library_brush("flat").expect("flat");
     let mut panel =
-        Panel::new((SIZE_MM, Board::impasto(CELL_MM)), "grey", file, paints()).expect("a panel");
+        Panel::new((SIZE_MM, Board::of_cells(CELL_MM)), "grey", file, paints()).expect("a panel");
     let load = Load {
         mixture: mixture_of("Pyrrole Red").expect("a mixture"),
         beside: Some(mixture_of("Titanium White").expect("a mixture")),

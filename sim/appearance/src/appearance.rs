@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use maulstick_canvas::dry::{DryLayer, DryStack};
-use maulstick_canvas::layered::seen_from_above;
-use maulstick_canvas::planes::{Planes, TILE_CELLS};
-use maulstick_canvas::quantum::QUANTUM_M;
+use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::tile::TileId;
 use maulstick_optics::backend::FilmBackend;
 use maulstick_optics::{FilmPlanes, Studio, Under};
 use maulstick_types::scene::Layer;
+
+use crate::show_paint::ShowPaint;
 
 /// Baked tiles take this much at most, bytes; one with sixteen wavelengths takes 256 KiB.
 const KEPT_BYTES: usize = 128 << 20;
@@ -110,7 +110,12 @@ impl Appearance {
 
     /// Internal reflectances of stacks, a layer of all of them together: so all cores have work. If the backend fails,
     /// which is a fault of the program, the layer is left out.
-    fn bake(&self, tiles: &[Unbaked<'_>], backend: &mut dyn FilmBackend) -> Vec<Vec<f32>> {
+    fn bake(
+        &self,
+        shown: &dyn ShowPaint,
+        tiles: &[Unbaked<'_>],
+        backend: &mut dyn FilmBackend,
+    ) -> Vec<Vec<f32>> {
         let (links, mut baked): (Vec<Vec<&DryStack>>, Vec<Option<Vec<f32>>>) =
             tiles.iter().map(Unbaked::bottom_up).unzip();
         let deepest = links.iter().map(Vec::len).max().unwrap_or(0);
@@ -122,7 +127,7 @@ impl Appearance {
                 .collect();
             let films: Vec<Vec<(usize, Vec<f32>)>> = at
                 .iter()
-                .map(|(_, layer)| thickness(&layer.planes.get()))
+                .map(|(_, layer)| shown.films(&layer.planes.get()))
                 .collect();
             let paints: Vec<Vec<(usize, &[f32])>> = films
                 .iter()
@@ -189,19 +194,6 @@ impl Unbaked<'_> {
     }
 }
 
-/// Thickness of each paint of planes of counts, m, by slot; of paint in layers as it is seen from above.
-#[must_use]
-pub(crate) fn thickness(planes: &Planes) -> Vec<(usize, Vec<f32>)> {
-    if let Some(seen) = seen_from_above(planes) {
-        return seen;
-    }
-    let film = |plane: &[f32]| plane.iter().map(|count| count * QUANTUM_M as f32).collect();
-    planes
-        .iter()
-        .map(|(slot, plane)| (*slot, film(plane)))
-        .collect()
-}
-
 /// A baked tile: of which stack, and when it was last looked at.
 #[derive(Debug)]
 struct Baked {
@@ -234,16 +226,17 @@ impl Bakery {
             && kept.is_some_and(|kept| Arc::ptr_eq(&kept.stack, stack))
     }
 
-    /// Internal reflectances of what has dried on a tile, a plane a wavelength, over `ground`. Of a
-    /// stack that only grew since, just the new layers are computed.
+    /// Internal reflectances of what has dried on a tile, a plane a wavelength, over `ground`; its films are as `shown`. Of
+    /// a stack that only grew since, just the new layers are computed.
     pub fn planes(
         &mut self,
         sight: (&Appearance, &mut dyn FilmBackend),
+        shown: &dyn ShowPaint,
         surface: u32,
         id: TileId,
         (stack, ground): (&Arc<DryStack>, Under<'_>),
     ) -> Arc<[f32]> {
-        let mut planes = self.planes_of(sight, surface, &[(id, stack, ground)]);
+        let mut planes = self.planes_of(sight, shown, surface, &[(id, stack, ground)]);
         planes.pop().unwrap_or_default()
     }
 
@@ -251,6 +244,7 @@ impl Bakery {
     pub fn planes_of(
         &mut self,
         (look, backend): (&Appearance, &mut dyn FilmBackend),
+        shown: &dyn ShowPaint,
         surface: u32,
         tiles: &[(TileId, &Arc<DryStack>, Under<'_>)],
     ) -> Vec<Arc<[f32]>> {
@@ -283,7 +277,7 @@ impl Bakery {
                 known: kept.as_ref().map(|kept| (&*kept.stack, &*kept.planes)),
             })
             .collect();
-        let baked = look.bake(&unbaked, backend);
+        let baked = look.bake(shown, &unbaked, backend);
         for ((tile, _), planes) in before.iter().zip(baked) {
             let planes: Arc<[f32]> = planes.into();
             all[*tile] = Some(Arc::clone(&planes));
@@ -322,6 +316,8 @@ mod tests {
     use maulstick_optics::backend::CpuFilms;
 
     use super::*;
+    use crate::show_paint::Counted;
+    use maulstick_canvas::planes::Planes;
 
     fn look() -> Appearance {
         let library = PaintLibrary::measured().expect("whole");
@@ -348,16 +344,41 @@ mod tests {
         let first = DryStack::over(None, layer(1, 0, 9000));
         let second = DryStack::over(Some(Arc::clone(&first)), layer(2, 1, 4000));
         let mut grown = Bakery::default();
-        grown.planes((&look, &mut CpuFilms::new()), 0, id, (&first, ground));
+        grown.planes(
+            (&look, &mut CpuFilms::new()),
+            &Counted,
+            0,
+            id,
+            (&first, ground),
+        );
         assert!(!grown.holds(&look, 0, id, &second));
-        let one = grown.planes((&look, &mut CpuFilms::new()), 0, id, (&second, ground));
-        let two = Bakery::default().planes((&look, &mut CpuFilms::new()), 0, id, (&second, ground));
+        let one = grown.planes(
+            (&look, &mut CpuFilms::new()),
+            &Counted,
+            0,
+            id,
+            (&second, ground),
+        );
+        let two = Bakery::default().planes(
+            (&look, &mut CpuFilms::new()),
+            &Counted,
+            0,
+            id,
+            (&second, ground),
+        );
         assert!(one == two && grown.holds(&look, 0, id, &second));
         // Back to the older stack, as an undo goes.
-        let back = grown.planes((&look, &mut CpuFilms::new()), 0, id, (&first, ground));
+        let back = grown.planes(
+            (&look, &mut CpuFilms::new()),
+            &Counted,
+            0,
+            id,
+            (&first, ground),
+        );
         assert!(
             back == Bakery::default().planes(
                 (&look, &mut CpuFilms::new()),
+                &Counted,
                 0,
                 id,
                 (&first, ground)
@@ -374,7 +395,13 @@ mod tests {
         let id = TileId { x: 0, y: 0 };
         let stack = DryStack::over(None, layer(7, 0, 8000));
         let mut bakery = Bakery::default();
-        let full = bakery.planes((&look, &mut CpuFilms::new()), 0, id, (&stack, ground));
+        let full = bakery.planes(
+            (&look, &mut CpuFilms::new()),
+            &Counted,
+            0,
+            id,
+            (&stack, ground),
+        );
         let set = |look: &mut Appearance, opacity: f32| {
             look.set_layers(&[Layer {
                 number: 7,
@@ -384,11 +411,22 @@ mod tests {
         };
         set(&mut look, 0.5);
         assert!(!bakery.holds(&look, 0, id, &stack));
-        let half = bakery.planes((&look, &mut CpuFilms::new()), 0, id, (&stack, ground));
+        let half = bakery.planes(
+            (&look, &mut CpuFilms::new()),
+            &Counted,
+            0,
+            id,
+            (&stack, ground),
+        );
         let thinner = DryStack::over(None, layer(7, 0, 4000));
         set(&mut look, 1.0);
-        let same =
-            Bakery::default().planes((&look, &mut CpuFilms::new()), 0, id, (&thinner, ground));
+        let same = Bakery::default().planes(
+            (&look, &mut CpuFilms::new()),
+            &Counted,
+            0,
+            id,
+            (&thinner, ground),
+        );
         assert!(
             half.iter()
                 .zip(same.iter())
@@ -400,7 +438,13 @@ mod tests {
                 .any(|(a, b)| (a - b).abs() > 1e-2)
         );
         set(&mut look, 0.0);
-        let none = bakery.planes((&look, &mut CpuFilms::new()), 0, id, (&stack, ground));
+        let none = bakery.planes(
+            (&look, &mut CpuFilms::new()),
+            &Counted,
+            0,
+            id,
+            (&stack, ground),
+        );
         assert!(
             none.iter().all(|r| (r - 0.9).abs() < 1e-6),
             "the ground shows"

@@ -242,7 +242,14 @@ impl<'a> Banded<'a> {
         let ground = self.bare.ground.tile(id);
         let baked = self.bare.baked(tile).map(|stack| {
             let mut alone = CpuFilms::with_threads(NonZero::<usize>::MIN);
-            bakery.planes((self.look, &mut alone), 0, id, (stack, ground.under()))
+            let under = ground.under();
+            bakery.planes(
+                (self.look, &mut alone),
+                self.bare.shown,
+                0,
+                id,
+                (stack, under),
+            )
         });
         let under = baked
             .as_deref()

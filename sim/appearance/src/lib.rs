@@ -8,7 +8,7 @@
 //! | [`light`], [`lamp`] | the scene's light as input of the optics, and its lamp over a surface |
 //! | [`ground`], [`blank_surface`] | what lies under the paint, and a surface without any |
 //! | [`heap`] | the shape of paint in a well |
-//! | [`show_paint`] | what the planes of a paint model mean to the optics |
+//! | [`show_paint`], [`colouring`] | what the planes of a paint model mean to the optics, and how counts become colours |
 //! | [`display`] | a tile as it is shown before light: colour, gloss, height |
 //! | [`bands`] | a surface row of tiles by row of tiles |
 //! | [`picture`] | surfaces under light as pixels |
@@ -53,6 +53,7 @@
 mod appearance;
 pub mod bands;
 pub mod blank_surface;
+pub mod colouring;
 pub mod display;
 pub mod ground;
 pub mod heap;

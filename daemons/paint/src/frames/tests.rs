@@ -227,7 +227,7 @@ fn exported(rig: &Rig, tile: &Tile) -> [Vec<f32>; 3] {
     let ground = fed.surfaces[&0].bare.ground.tile(id);
     let stack = tile.dry().expect("dried");
     let sight = (&**look, &mut CpuFilms::new() as &mut dyn FilmBackend);
-    let baked = Bakery::default().planes(sight, 0, id, (stack, ground.under()));
+    let baked = Bakery::default().planes(sight, &Counted, 0, id, (stack, ground.under()));
     WetFilms::of(Some(tile)).shade(&look.studio, Under::Planes(&baked))
 }
 

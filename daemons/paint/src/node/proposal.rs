@@ -1,6 +1,6 @@
 //! Proposal of a lighter paint model where painting falls behind: told once, never carried out.
 
-use maulstick_painting::models::AUTO_MODELS;
+use maulstick_models::{AutoRole, auto_model};
 use maulstick_types::paint::Decision;
 use maulstick_types::scene::CANVAS;
 
@@ -40,7 +40,7 @@ impl PaintNode {
 
     /// Makes the proposal where it is due.
     pub(super) fn propose_model(&mut self) {
-        let [own, lighter] = AUTO_MODELS;
+        let [own, lighter] = [AutoRole::First, AutoRole::Lighter].map(|role| auto_model(role).name);
         let painting = self.sequencer.painting();
         if self.session.is_some() || painting.model(CANVAS) != Some(own) {
             return;

@@ -6,7 +6,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Subcommand};
 use indicatif::ProgressBar;
 use maulstick_device::demo::{Subject, performance};
-use maulstick_painting::models::{model_called, model_names};
+use maulstick_models::{model_called, model_names};
 use maulstick_painting::picture::picture;
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
@@ -65,11 +65,11 @@ struct BoardOptions {
 
 impl BoardOptions {
     fn board(&self) -> Result<Board, UserError> {
-        let board = Board::impasto(self.cells.side_mm());
+        let board = Board::of_cells(self.cells.side_mm());
         let Some(model) = &self.model else {
             return Ok(board);
         };
-        let model = model_called(model).map_err(refused)?.name;
+        let model = model_called(model).map_err(refused)?;
         Ok(Board { model, ..board })
     }
 }

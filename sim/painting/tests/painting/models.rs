@@ -4,7 +4,7 @@ use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_marker::{FILM_M, Marker};
 use maulstick_model::interface::{PaintModel, Step, StepReport};
-use maulstick_painting::models::model_names;
+use maulstick_models::model_names;
 use maulstick_painting::picture::picture;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::Solve;

@@ -12,7 +12,7 @@ use eframe::egui::{CollapsingHeader, DragValue, Key, TextEdit, Ui};
 use maulstick_appearance::ground::GROUNDS;
 use maulstick_canvas::assets::{IMAGE, SPECTRUM};
 use maulstick_canvas::relief::tooth;
-use maulstick_painting::models::model_names;
+use maulstick_models::model_names;
 use maulstick_types::edits::{Convert, Ground, Piles, Place, Size, Tooth};
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 use maulstick_types::values::{MaterialName, ModelName, StainThickness, ValueError};

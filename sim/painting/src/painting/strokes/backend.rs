@@ -7,7 +7,7 @@ use maulstick_model::brush::traits::BrushTraits;
 use maulstick_model::interface::{PaintModel, StepReport};
 use maulstick_types::paint::Decision;
 
-use crate::models::Models;
+use super::models::Models;
 use crate::painting::Painting;
 use crate::painting::brushes::handling::UnderBrush;
 use crate::painting::surfaces::SurfaceState;
@@ -177,7 +177,8 @@ impl Painting {
         self.accounts.note(report);
         let defers = self.backend.defers(&self.surfaces[on], false);
         if !defers || report.footprint_cells > 0 {
-            let under = UnderBrush::mean(report, steps, self.surfaces.cell_m());
+            let rheology = &self.surfaces[on].model.rheology;
+            let under = UnderBrush::mean(report, steps, self.surfaces.cell_m(), rheology);
             self.brushes[brush].under = under;
         }
     }

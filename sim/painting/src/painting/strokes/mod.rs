@@ -1,6 +1,7 @@
 //! Strokes: states of a brush become steps of the paint model on windows of tiles.
 
 pub(crate) mod backend;
+mod models;
 mod relaxing;
 mod step;
 mod windows;

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
+use maulstick_appearance::colouring::Colouring;
 use maulstick_canvas::EditError;
 use maulstick_canvas::dry::{DryLayer, DryStack};
 use maulstick_canvas::page::{Page, Pager};
@@ -17,9 +18,9 @@ use maulstick_types::scene::WellKind;
 
 use super::part::Changed;
 use crate::apply::{Applied, Apply};
-use crate::models::model_called;
 use crate::painting::Painting;
 use crate::painting::undo::materials;
+use maulstick_models::model_called;
 
 /// Tiles that are converted at a time, shared by the cores.
 const AT_A_TIME: usize = 64;
@@ -37,14 +38,15 @@ impl Apply for Convert {
         painting.close_windows();
         painting.clock.stop(Some(self.surface));
         let is_painted = painting.surfaces[on].tiles().next().is_some();
-        if from.colouring != to.colouring && is_painted {
+        let colouring = to.shown.colouring();
+        if from.shown.colouring() != colouring && is_painted {
             painting.take_up_wells()?;
         }
         painting.begin_step(StepName::Model, None);
         let models = painting.model_names();
         painting.history.name_models(&models);
         painting.versions.name_models(&models);
-        let (tiles, distance) = painting.converted(on, to.colouring);
+        let (tiles, distance) = painting.converted(on, colouring);
         painting.put_converted(on, tiles);
         let mut materials = materials(&painting.scene);
         to.name.clone_into(&mut materials[on].model);
@@ -97,9 +99,9 @@ impl Painting {
     }
 
     /// The tiles of a surface in another colouring, as far as they change, and how near they come to what was seen.
-    fn converted(&self, on: usize, to: maulstick_convert::Colouring) -> (Changed, Distance) {
+    fn converted(&self, on: usize, to: Colouring) -> (Changed, Distance) {
         let surface = &self.surfaces[on];
-        let converter = Converter::new(&self.optics.look, surface.model.colouring, to);
+        let converter = Converter::new(&self.optics.look, surface.model.shown.colouring(), to);
         let is_even = matches!(
             surface.bare.ground,
             maulstick_appearance::ground::Ground::Even(_)

@@ -11,10 +11,10 @@ use maulstick_types::scene::Surface;
 
 use crate::apply::{Applied, Apply};
 use crate::history::SurfaceMaterial;
-use crate::models::model_called;
 use crate::painting::Painting;
 use crate::painting::undo::materials;
 use crate::setup::relief_called;
+use maulstick_models::model_called;
 
 impl Apply for Ground {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
