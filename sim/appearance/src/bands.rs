@@ -17,7 +17,8 @@ use maulstick_optics::light::HeightField;
 use maulstick_optics::light::shadow::REACH;
 use maulstick_types::paint::TILE;
 
-use crate::appearance::{Appearance, Bakery};
+use crate::appearance::Appearance;
+use crate::bakery::Bakery;
 use crate::blank_surface::BlankSurface;
 use crate::display::DisplayTile;
 

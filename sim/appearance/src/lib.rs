@@ -51,6 +51,7 @@
 //!   drew what.
 
 mod appearance;
+mod bakery;
 pub mod bands;
 pub mod blank_surface;
 pub mod colouring;
@@ -62,4 +63,5 @@ pub mod light;
 pub mod picture;
 pub mod show_paint;
 
-pub use appearance::{Appearance, Bakery};
+pub use appearance::Appearance;
+pub use bakery::Bakery;

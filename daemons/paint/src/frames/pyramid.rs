@@ -126,7 +126,8 @@ impl Pyramid {
                 let ground = surface.bare.ground.tile(id);
                 let over = (&stack, ground.under());
                 let sight = (&**look, &mut self.films as &mut dyn FilmBackend);
-                self.bakery.planes(sight, number, id, over);
+                self.bakery
+                    .planes(sight, surface.bare.shown, number, id, over);
             }
         }
         Progress {

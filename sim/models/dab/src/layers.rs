@@ -4,6 +4,8 @@
 //! paint of volume V hides α = min(V·O_t, 1) of what lies under it (eq. 4.1). What dries under wet paint has the colour
 //! that leaves all as it was: with α' of what stays wet, C'_d = (α·C_w + (1 − α)·C_d − α'·C_w)/(1 − α').
 
+mod wet_over;
+
 use maulstick_appearance::Appearance;
 use maulstick_appearance::colouring::{Colouring, EncodedTile, VolumeColours};
 use maulstick_appearance::display::DisplayTile;
@@ -14,7 +16,7 @@ use maulstick_optics::colour::{srgb_decode, srgb_encode};
 
 use crate::emboss::emboss;
 use crate::volume::{OPAQUE, UNIT};
-use crate::wet_over::{noted, wet_over, with_wet_noted};
+use wet_over::{noted, wet_over, with_wet_noted};
 
 /// Thickness of the film over white that has the colour of its paint, m: dark transparent paints are nearly black where
 /// they are thick, and their mixtures would be grey.

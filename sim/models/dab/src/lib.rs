@@ -57,7 +57,6 @@ pub mod stroke;
 pub mod touching;
 pub mod transfer;
 pub mod volume;
-mod wet_over;
 
 pub use entry::ENTRY;
 pub use layers::Layers;

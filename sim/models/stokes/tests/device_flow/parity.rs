@@ -1,8 +1,8 @@
 //! The device beside the processor.
 
-use maulstick_gpu::Tuning;
 use maulstick_stokes::flow::Effort;
 use maulstick_stokes::rheology::Paint;
+use maulstick_stokes_paint::device::Tuning;
 
 use super::device;
 use super::scenes::{Scene, bristles, channel, differences, pool, thinning};
