@@ -59,6 +59,11 @@ mod tests {
     }
 
     #[test]
+    fn the_first_is_that_of_scenes_that_name_none() {
+        assert_eq!(MODELS[0].name, maulstick_types::scene::default_model());
+    }
+
+    #[test]
     fn auto_begins_with_one_model_and_proposes_one() {
         for role in [AutoRole::First, AutoRole::Lighter] {
             let having = MODELS.iter().filter(|entry| entry.auto == Some(role));

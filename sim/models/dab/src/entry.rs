@@ -10,7 +10,7 @@ use crate::step::Dab;
 /// Strength of the embossing, encoded channel by metre.
 const EMBOSS: f32 = 250.0;
 
-/// Oil paint, whose resistance a share of thinner takes away as it does in the models in which paint flows: here it does not.
+/// Oil paint from the tube, as the hand alone feels it: in this model paint does not flow (Baxter 2004, § 5.2).
 const RHEOLOGY: Rheology = Rheology {
     viscosity_m2_s: 1e-2,
     thinning: -4.6,
