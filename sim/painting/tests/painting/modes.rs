@@ -454,7 +454,10 @@ fn what_lies_under_the_brush_has_the_viscosity_of_its_model() {
     for model in &MODELS {
         let tube = under(model, WHITE);
         assert!((5e-5..2e-4).contains(&tube.film_m), "{model:?}: {tube:?}");
-        assert!((1e-3..2e-2).contains(&tube.contact_m), "{model:?}: {tube:?}");
+        assert!(
+            (1e-3..2e-2).contains(&tube.contact_m),
+            "{model:?}: {tube:?}"
+        );
         let thin = under(model, "Titanium White=0.5,Thinner=0.5");
         for (found, thinner) in [(tube, 0.0), (thin, 0.5)] {
             let own = model.rheology.thinned_m2_s(thinner);
