@@ -7,6 +7,10 @@ use crate::appearance::Appearance;
 /// Encoded red, green and blue of a tile, a plane each.
 pub type EncodedTile = [Vec<f32>; 3];
 
+/// Lays planes over a tile in colours by slot; the last is the share that a cell's quanta replace.
+pub type LayVolumes =
+    fn(&mut EncodedTile, &Planes, &[Option<[f32; 3]>], &dyn Fn(usize, f32) -> f32);
+
 /// How the counts of a paint model become colours.
 #[derive(Clone, Copy, Debug)]
 pub enum Colouring {
@@ -27,8 +31,8 @@ pub struct VolumeColours {
     pub hides: fn(f32) -> f32,
     /// Share by which dried paint replaces the colour under it, by its quanta and by those that stayed wet over it.
     pub dry_share: fn(f32, f32) -> f32,
-    /// Lays planes over a tile in the colours by slot; the last is the share that a cell's quanta replace.
-    pub lay: fn(&mut EncodedTile, &Planes, &[Option<[f32; 3]>], &dyn Fn(usize, f32) -> f32),
+    /// Lays planes over a tile.
+    pub lay: LayVolumes,
     /// Wet quanta that stayed over dried planes, a cell; `None` where nothing did.
     pub wet_over: fn(&Planes) -> Option<Vec<f32>>,
     /// Dried planes with these wet quanta noted over each cell.
