@@ -2,9 +2,9 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_models::{MODELS, ModelEntry};
+use maulstick_painting::edits::Dry;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::{BrushRelief, Solve};
-use maulstick_types::edits::Dry;
 use maulstick_types::haptics::heights_um;
 use maulstick_types::scene::CANVAS;
 

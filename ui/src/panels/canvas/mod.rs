@@ -13,7 +13,7 @@ use maulstick_appearance::ground::GROUNDS;
 use maulstick_canvas::assets::{IMAGE, SPECTRUM};
 use maulstick_canvas::relief::tooth;
 use maulstick_models::model_names;
-use maulstick_types::edits::{Convert, Ground, Piles, Place, Size, Tooth};
+use maulstick_painting::edits::{Convert, Ground, Piles, Place, Size, Tooth};
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 use maulstick_types::values::{MaterialName, ModelName, StainThickness, ValueError};
 use maulstick_ui_kit::pending::Pending;
