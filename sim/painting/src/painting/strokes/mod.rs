@@ -3,6 +3,7 @@
 pub(crate) mod backend;
 mod cells;
 mod claims;
+pub(crate) mod deferral;
 mod relaxing;
 mod step;
 mod stroke;
