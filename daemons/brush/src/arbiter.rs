@@ -124,7 +124,10 @@ mod tests {
         assert!(admit(&mut arbiter, PEN, Near, None, 2));
         assert!(!admit(&mut arbiter, MOUSE, Near, None, 3));
         admit(&mut arbiter, PEN, Away, None, 4);
-        assert!(admit(&mut arbiter, MOUSE, Near, None, 5), "the pen has left");
+        assert!(
+            admit(&mut arbiter, MOUSE, Near, None, 5),
+            "the pen has left"
+        );
     }
 
     #[test]
