@@ -10,8 +10,8 @@ use maulstick_rig::UserError;
 use maulstick_types::node::NodeStatus;
 use serde_json::{Value, json};
 
-use super::listener::Listener;
 use crate::commands::client::Target;
+use crate::commands::streams::listener::Listener;
 use crate::commands::table::table;
 use crate::commands::{print_json, print_text};
 
