@@ -81,11 +81,11 @@ pub struct Servo {
 #[derive(Clone, Copy, Debug)]
 struct Last {
     position: DVec3,
-    /// What models and guide asked for, with all that bounds it, without what depends on velocity, N.
+    /// Force that models and guide asked for, with all its bounds, without the part that depends on velocity, N.
     models: DVec3,
-    /// What the models' force was multiplied by.
+    /// Factor on the models' force.
     share: f64,
-    /// What the guide's force was multiplied by.
+    /// Factor on the guide's force.
     guided: f64,
     cap_n: f64,
 }
@@ -293,7 +293,7 @@ impl Servo {
         }
     }
 
-    /// The ramp and the recovery go on by a tick, and models age by all the time that has passed.
+    /// The ramp and the recovery continue by a tick, and models age by all the time that has passed.
     fn age(&mut self, dt: f64, passed_s: f64) {
         self.engagement.age(dt);
         self.guidance.age(&self.limits, dt, passed_s);
@@ -311,7 +311,7 @@ impl Servo {
         self.models.hold(handle, touch, dt);
     }
 
-    /// Latches a hand that goes on shaking; without force no device shakes it.
+    /// Latches the fault of a hand that keeps shaking; without force no device shakes it.
     fn watch(&mut self, handle: &HandleState, touch: Touch, dt: f64) {
         let Some(model) = self.models.active() else {
             return;

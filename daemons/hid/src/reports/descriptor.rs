@@ -50,49 +50,49 @@ pub fn read(bytes: &[u8]) -> Result<ReportDescriptor, DescriptorError> {
     Ok(ReportDescriptor::try_from(needed.as_slice())?)
 }
 
-/// Error in a descriptor.
+/// A descriptor that is not read.
 #[derive(Debug, thiserror::Error)]
 pub enum DescriptorError {
-    /// Its length is out of range, bytes.
+    /// Of no length that the kernel gives.
     #[error("it has {0} bytes, not 1 to {LONGEST}")]
     Length(usize),
-    /// An item is wrong.
-    #[error("{fault} at byte {at}")]
+    /// An item that no descriptor has there.
+    #[error("{defect} at byte {at}")]
     Item {
-        /// Its fault.
-        fault: ItemFault,
+        /// What is wrong with it.
+        defect: Defect,
         /// Its place.
         at: usize,
     },
-    /// No input is left of it.
+    /// No report.
     #[error("it says nothing of a report")]
     Empty,
-    /// `hidreport` rejects it.
+    /// What `hidreport` refuses.
     #[error(transparent)]
     Parser(#[from] ParserError),
 }
 
-/// Fault of an item of a descriptor.
+/// What is wrong with an item of a descriptor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ItemFault {
-    /// Its end is missing.
+pub enum Defect {
+    /// The bytes end within it.
     #[error("an item is cut off")]
-    CutOff,
-    /// A main item without a page.
+    Cut,
+    /// No page says what it is about.
     #[error("a main item comes before any usage page")]
     NoPage,
-    /// Pop without push.
-    #[error("globals are taken back that were not kept")]
-    NothingKept,
-    /// A field with too many bits.
+    /// A Pop without a Push.
+    #[error("globals are restored that were not saved")]
+    NotSaved,
+    /// More bits than an input of a device has.
     #[error("a field is too long")]
-    LongField,
-    /// A collection with too many usages.
+    Long,
+    /// More usages than a collection of a device has.
     #[error("a collection has too many usages")]
     Usages,
-    /// Fields, usages or nesting beyond what any device needs.
+    /// More fields, usages or levels than a device has.
     #[error("it asks for too much")]
-    Excess,
+    Greedy,
 }
 
 /// Page and number of a usage.
@@ -175,8 +175,8 @@ fn needed(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
     let mut walk = Walk::default();
     let mut at = 0;
     while at < bytes.len() {
-        let wrong = |fault| DescriptorError::Item { fault, at };
-        let (head, value, next) = item(bytes, at).ok_or_else(|| wrong(ItemFault::CutOff))?;
+        let wrong = |defect| DescriptorError::Item { defect, at };
+        let (head, value, next) = item(bytes, at).ok_or_else(|| wrong(Defect::Cut))?;
         walk.pass(head, value, &bytes[at..next]).map_err(wrong)?;
         at = next;
     }
@@ -186,33 +186,32 @@ fn needed(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
     Ok(walk.needed)
 }
 
-/// State of the walk over the items of a descriptor.
+/// A walk over the items of a descriptor.
 #[derive(Default)]
 struct Walk {
-    /// The items to be read.
+    /// The items that are needed so far.
     needed: Vec<u8>,
     globals: Globals,
-    kept: Vec<Globals>,
+    saved: Vec<Globals>,
     locals: Locals,
-    /// Nesting of collections.
     depth: usize,
     fields: usize,
     usages: u64,
 }
 
 impl Walk {
-    /// Passes over an item with this head, value and bytes.
-    fn pass(&mut self, head: u8, value: u64, whole: &[u8]) -> Result<(), ItemFault> {
+    /// Passes an item: its head without its size, its value, all its bytes.
+    fn pass(&mut self, head: u8, value: u64, whole: &[u8]) -> Result<(), Defect> {
         let is_main = matches!(head, 0x80 | 0x90 | 0xA0 | 0xB0 | 0xC0);
         if is_main && head != 0xC0 && self.globals.page.is_none() {
-            return Err(ItemFault::NoPage);
+            return Err(Defect::NoPage);
         }
         match head {
             0x04 => self.globals.page = u16::try_from(value).ok(),
             0x74 => self.globals.bits = usize::try_from(value).unwrap_or(usize::MAX),
             0x94 => self.globals.count = usize::try_from(value).unwrap_or(usize::MAX),
-            0xA4 => self.kept.push(self.globals),
-            0xB4 => self.globals = self.kept.pop().ok_or(ItemFault::NothingKept)?,
+            0xA4 => self.saved.push(self.globals),
+            0xB4 => self.globals = self.saved.pop().ok_or(Defect::NotSaved)?,
             0x08 => {
                 self.locals.named += 1;
                 if let (5, Ok(page)) = (whole.len(), u16::try_from(value >> 16)) {
@@ -221,20 +220,14 @@ impl Walk {
             }
             0x18 => self.locals.least = Some(value),
             0x28 => self.locals.most = Some(value),
-            0x80 => self.input(value, whole)?,
-            0xA0 => {
-                self.depth += 1;
-                if self.locals.usages() > COLLECTION_USAGES {
-                    return Err(ItemFault::Usages);
-                }
-                self.read(whole);
-            }
+            0x80 => self.input(value & 1 == 1, whole)?,
+            0xA0 => self.collection(whole)?,
             0xC0 => self.depth = self.depth.saturating_sub(1),
             _ => {}
         }
-        let is_deep = self.depth > DEPTH || self.kept.len() > DEPTH;
+        let is_deep = self.depth > DEPTH || self.saved.len() > DEPTH;
         if is_deep || self.fields > FIELDS || self.usages > USAGES {
-            return Err(ItemFault::Excess);
+            return Err(Defect::Greedy);
         }
         match head & 0x0C {
             _ if is_main => self.locals = Locals::default(),
@@ -247,32 +240,33 @@ impl Walk {
         Ok(())
     }
 
-    /// Passes over an input.
-    fn input(&mut self, value: u64, whole: &[u8]) -> Result<(), ItemFault> {
+    /// An input. A constant has no usages, whatever stands before it.
+    fn input(&mut self, is_constant: bool, whole: &[u8]) -> Result<(), Defect> {
         let bits = self.globals.bits.saturating_mul(self.globals.count);
-        let is_constant = value & 1 == 1;
-        // A constant has no usages, whatever stands before it.
-        if is_constant || !self.locals.is_read(self.globals.page) {
-            if bits > PASSED_BITS {
-                return Err(ItemFault::LongField);
-            }
+        let is_read = !is_constant && self.locals.is_read(self.globals.page);
+        if bits > if is_read { BITS } else { PASSED_BITS } {
+            return Err(Defect::Long);
+        }
+        if is_read {
+            self.fields += self.globals.count;
+            self.usages += self.locals.usages();
+            self.needed.extend(self.locals.items.iter().chain(whole));
+        } else {
             self.fields += 1;
-            self.needed
-                .extend(if is_constant { whole } else { PASSED_OVER });
-            return Ok(());
+            let kept = if is_constant { whole } else { PASSED_OVER };
+            self.needed.extend(kept);
         }
-        if bits > BITS {
-            return Err(ItemFault::LongField);
-        }
-        self.fields += self.globals.count;
-        self.read(whole);
         Ok(())
     }
 
-    /// Has a main item read, with the usages before it.
-    fn read(&mut self, whole: &[u8]) {
+    fn collection(&mut self, whole: &[u8]) -> Result<(), Defect> {
+        self.depth += 1;
+        if self.locals.usages() > COLLECTION_USAGES {
+            return Err(Defect::Usages);
+        }
         self.usages += self.locals.usages();
         self.needed.extend(self.locals.items.iter().chain(whole));
+        Ok(())
     }
 }
 

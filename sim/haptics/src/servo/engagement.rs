@@ -7,7 +7,7 @@ pub(super) const CALM_TICKS: u32 = 4;
 /// Stage of an engagement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
-    /// Little has been asked for in so many ticks running.
+    /// Consecutive ticks in which little was asked for.
     Waiting(u32),
     /// Force has begun.
     Begun,

@@ -66,7 +66,7 @@ impl Painting {
     pub(crate) fn converted(
         &self,
         on: usize,
-        to: maulstick_convert::Colouring,
+        to: Colouring,
     ) -> (Changed, Distance) {
         let surface = &self.surfaces[on];
         let converter = Converter::new(&self.optics.look, surface.model.shown.colouring(), to);
