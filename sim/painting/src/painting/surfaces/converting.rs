@@ -63,11 +63,7 @@ impl Painting {
     }
 
     /// The tiles of a surface in another colouring, as far as they change, and how near they come to what was seen.
-    pub(crate) fn converted(
-        &self,
-        on: usize,
-        to: maulstick_convert::Colouring,
-    ) -> (Changed, Distance) {
+    pub(crate) fn converted(&self, on: usize, to: Colouring) -> (Changed, Distance) {
         let surface = &self.surfaces[on];
         let converter = Converter::new(&self.optics.look, surface.model.shown.colouring(), to);
         let is_even = matches!(
