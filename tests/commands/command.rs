@@ -2,7 +2,6 @@
 
 mod beside;
 mod inputs;
-mod motions;
 mod rigs;
 #[path = "../support/mod.rs"]
 mod support;
@@ -274,7 +273,7 @@ fn bad_takes_are_refused_and_damaged_ones_recovered() {
     place.done(&["render", "saved.mcap", "-o", "p.png"]);
     has(
         &fault(&place, &["render", "p.png", "-o", "q.png"], 2),
-        &["no MCAP file"],
+        &["not an MCAP file"],
     );
     let info = place.done(&["take", "info", "demo.mcap", "--json"]);
     let info: serde_json::Value = serde_json::from_slice(&info.stdout).expect("JSON");

@@ -50,7 +50,7 @@ pub(crate) unsafe fn foreign_connection(display: WaylandDisplayHandle) -> Connec
     Connection::from_backend(backend)
 }
 
-/// A tool as its events have told so far.
+/// State of a tool by its events so far.
 #[derive(Debug, Default)]
 #[expect(
     clippy::struct_excessive_bools,
@@ -74,6 +74,56 @@ struct KnownTool {
 }
 
 impl KnownTool {
+    /// Follows an event that concerns the tool alone.
+    fn follow(&mut self, event: zwp_tablet_tool_v2::Event) {
+        use zwp_tablet_tool_v2::{ButtonState, Capability, Event, Type};
+        match event {
+            Event::Type { tool_type } => {
+                self.eraser = tool_type.into_result().is_ok_and(|own| own == Type::Eraser);
+            }
+            Event::Capability { capability } => match capability.into_result() {
+                Ok(Capability::Pressure) => self.axes.pressure = true,
+                Ok(Capability::Tilt) => self.axes.tilt = true,
+                Ok(Capability::Rotation) => self.axes.twist = true,
+                _ => {}
+            },
+            Event::HardwareSerial {
+                hardware_serial_hi,
+                hardware_serial_lo,
+            } => {
+                let serial = u64::from(hardware_serial_hi) << 32 | u64::from(hardware_serial_lo);
+                // Pens without one are told apart by the connection.
+                if serial != 0 {
+                    self.tool = Tool(serial << 1 | u64::from(self.eraser));
+                }
+            }
+            Event::ProximityOut => {
+                self.has_left = self.is_near;
+                (self.is_near, self.is_down) = (false, false);
+            }
+            Event::Down { .. } => self.is_down = true,
+            Event::Up => self.is_down = false,
+            Event::Motion { x, y } => self.point_px = [x, y],
+            Event::Pressure { pressure } => self.pressure = f64::from(pressure) / PRESSURE,
+            Event::Tilt { tilt_x, tilt_y } => {
+                // Theirs leans toward the hand with y.
+                self.tilt_rad = [tilt_x.to_radians(), -tilt_y.to_radians()];
+            }
+            // Theirs turns clockwise, seen from above.
+            Event::Rotation { degrees } => self.twist_rad = -degrees.to_radians(),
+            Event::Button { button, state, .. } => {
+                if let Some(place) = BUTTONS.iter().position(|own| *own == button) {
+                    let bit = 1 << place;
+                    match state.into_result() {
+                        Ok(ButtonState::Pressed) => self.switches |= bit,
+                        _ => self.switches &= !bit,
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
     fn read(&self) -> PenReading {
         PenReading {
             tool: self.tool,
@@ -91,15 +141,13 @@ impl KnownTool {
                 (true, false) => Presence::Hovering,
                 (true, true) => Presence::Touching,
             },
-            end: match self.eraser {
-                true => End::Eraser,
-                false => End::Tip,
-            },
+            end: if self.eraser { End::Eraser } else { End::Tip },
             point_m: [0.0; 2],
             height_m: 0.0,
-            pressure: match self.axes.pressure {
-                true => self.pressure,
-                false => 0.5,
+            pressure: if self.axes.pressure {
+                self.pressure
+            } else {
+                0.5
             },
             tilt_rad: self.axes.tilt.then_some(self.tilt_rad),
             twist_rad: self.axes.twist.then_some(self.twist_rad),
@@ -108,7 +156,7 @@ impl KnownTool {
     }
 }
 
-/// What the events of the connection are told to.
+/// Listener to the events of the connection.
 #[derive(Debug, Default)]
 struct Listener {
     /// The window's surface; others' are not its own.
@@ -119,7 +167,7 @@ struct Listener {
     readings: Vec<PenReading>,
 }
 
-/// True if the compositor that `WAYLAND_DISPLAY` names tells of pens.
+/// True if the compositor that `WAYLAND_DISPLAY` names reports pens.
 ///
 /// # Errors
 /// A [`UserError`] where there is none.
@@ -156,8 +204,8 @@ impl WaylandPens {
         let handle = queue.handle();
         let manager = globals.bind::<ZwpTabletManagerV2, _, _>(&handle, 1..=1, ());
         let manager = manager.map_err(|_| {
-            UserError::failure("this compositor tells nothing of pens (zwp_tablet_manager_v2)").help(
-                "the pen paints as a mouse: for its pressure give its tablet to the rig, `maulstick device list` says how",
+            UserError::failure("this compositor does not report pens (zwp_tablet_manager_v2)").help(
+                "the pen paints as a mouse does; to use its pressure, add its tablet to the rig (`maulstick device list` says how)",
             )
         })?;
         let seats = globals.contents().with_list(|list| {
@@ -208,16 +256,17 @@ impl Source for WaylandPens {
         readings: &mut Vec<PenReading>,
     ) -> Result<(), UserError> {
         flush(&self.connection)?;
-        // Where events wait already they are told first.
+        // Events that wait already come first.
         if let Some(guard) = self.queue.prepare_read() {
-            match readable(guard.connection_fd(), stop, timeout)? {
-                true => match guard.read() {
+            if readable(guard.connection_fd(), stop, timeout)? {
+                match guard.read() {
                     Ok(_) => {}
                     // The window's own thread has read them.
                     Err(WaylandError::Io(error)) if error.kind() == ErrorKind::WouldBlock => {}
                     Err(error) => return Err(gone(&error)),
-                },
-                false => drop(guard),
+                }
+            } else {
+                drop(guard)
             }
         }
         self.queue
@@ -248,7 +297,7 @@ impl Dispatch<ZwpTabletToolV2, ()> for Listener {
         _: &Connection,
         _: &QueueHandle<Self>,
     ) {
-        use zwp_tablet_tool_v2::{ButtonState, Capability, Event, Type};
+        use zwp_tablet_tool_v2::Event;
         let id = proxy.id().protocol_id();
         let near = match &event {
             Event::ProximityIn { surface, .. } => listener.is_own(&surface.id()),
@@ -267,53 +316,11 @@ impl Dispatch<ZwpTabletToolV2, ()> for Listener {
             }
         });
         match event {
-            Event::Type { tool_type } => {
-                tool.eraser = tool_type.into_result().is_ok_and(|own| own == Type::Eraser);
-            }
-            Event::Capability { capability } => match capability.into_result() {
-                Ok(Capability::Pressure) => tool.axes.pressure = true,
-                Ok(Capability::Tilt) => tool.axes.tilt = true,
-                Ok(Capability::Rotation) => tool.axes.twist = true,
-                _ => {}
-            },
-            Event::HardwareSerial {
-                hardware_serial_hi,
-                hardware_serial_lo,
-            } => {
-                let serial = u64::from(hardware_serial_hi) << 32 | u64::from(hardware_serial_lo);
-                // Pens without one are told apart by the connection.
-                if serial != 0 {
-                    tool.tool = Tool(serial << 1 | u64::from(tool.eraser));
-                }
-            }
             Event::ProximityIn { serial, .. } => {
                 tool.is_near = near;
                 if near {
                     // The window draws brush and pointer itself.
                     proxy.set_cursor(serial, None, 0, 0);
-                }
-            }
-            Event::ProximityOut => {
-                tool.has_left = tool.is_near;
-                (tool.is_near, tool.is_down) = (false, false);
-            }
-            Event::Down { .. } => tool.is_down = true,
-            Event::Up => tool.is_down = false,
-            Event::Motion { x, y } => tool.point_px = [x, y],
-            Event::Pressure { pressure } => tool.pressure = f64::from(pressure) / PRESSURE,
-            Event::Tilt { tilt_x, tilt_y } => {
-                // Theirs leans toward the hand with y.
-                tool.tilt_rad = [tilt_x.to_radians(), -tilt_y.to_radians()];
-            }
-            // Theirs turns clockwise, seen from above.
-            Event::Rotation { degrees } => tool.twist_rad = -degrees.to_radians(),
-            Event::Button { button, state, .. } => {
-                if let Some(place) = BUTTONS.iter().position(|own| *own == button) {
-                    let bit = 1 << place;
-                    match state.into_result() {
-                        Ok(ButtonState::Pressed) => tool.switches |= bit,
-                        _ => tool.switches &= !bit,
-                    }
                 }
             }
             Event::Frame { time } => {
@@ -330,7 +337,7 @@ impl Dispatch<ZwpTabletToolV2, ()> for Listener {
                 listener.tools.remove(&id);
                 proxy.destroy();
             }
-            _ => {}
+            event => tool.follow(event),
         }
     }
 }

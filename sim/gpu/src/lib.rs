@@ -12,17 +12,42 @@
 //! | `batch` | tiles as the shaders take them |
 //! | `shade_films`, `bake_films` | the stages of films |
 //!
-//! It also computes the films of all models whose colours are films. Surfaces with wells, the sampler and the vacuum
-//! cleaner stay with the processor. Exports use the processor alone, for the same bytes everywhere; a device promises the
-//! same bytes for one adapter and driver, and which backend paints is journalled.
+//! A film of blue paint over white, on the graphics device and on the processor. Without a device the processor computes
+//! both:
 //!
-//! ```no_run
-//! use maulstick_gpu::{Choice, Device, GpuFilms};
-//!
-//! let device = Device::open(Choice::Auto)?;
-//! let films = GpuFilms::new(device);
-//! # Ok::<(), maulstick_gpu::GpuError>(())
 //! ```
+//! use maulstick_gpu::{Choice, Device, GpuFilms};
+//! use maulstick_optics::backend::TILE_CELLS;
+//! use maulstick_optics::{CpuFilms, FilmBackend, FilmPlanes, PaintLibrary, Studio, Under};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut backend: Box<dyn FilmBackend> = match Device::open(Choice::Forced) {
+//!     Ok(device) => Box::new(GpuFilms::new(device)?),
+//!     Err(missing) => {
+//!         eprintln!("{missing}");
+//!         Box::new(CpuFilms::new())
+//!     }
+//! };
+//! let mut studio = Studio::daylight();
+//! let blue = studio.add(PaintLibrary::measured()?.find("Ultramarine Blue")?);
+//! // From 0 to 80 µm along the tile.
+//! let thickness_m: Vec<f32> = (0..TILE_CELLS).map(|cell| 8e-5 * cell as f32 / TILE_CELLS as f32).collect();
+//! let white = vec![0.9; studio.wavelengths()];
+//! let tile = FilmPlanes { paints: &[(blue, &thickness_m)], opacity: 1.0, under: Under::Even(&white) };
+//! let [red, ..] = backend.shade(&studio, &[tile])?.remove(0);
+//! let [on_cpu, ..] = CpuFilms::new().shade(&studio, &[tile])?.remove(0);
+//! println!("{}: red falls from {:.2} to {:.2}", backend.name(), red[0], red[TILE_CELLS - 1]);
+//! assert!(red[0] > 20.0 * red[TILE_CELLS - 1]);
+//! assert!(red.iter().zip(&on_cpu).all(|(gpu, cpu)| (gpu - cpu).abs() < 1e-5));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # What a device computes
+//!
+//! Steps of the models that have a twin on it, and the films of all models whose colours are films. Surfaces with wells,
+//! the sampler and the vacuum cleaner stay with the processor. Exports use the processor alone, for the same bytes
+//! everywhere; a device promises the same bytes for one adapter and driver, and which backend paints is journalled.
 //!
 //! # Steps
 //!

@@ -1,7 +1,7 @@
 //! The devices that may move the brush: their claims, their presence, and which of them has it.
 
 use maulstick_bus::Recent;
-use maulstick_bus::rivals::Once;
+use maulstick_bus::sender_arbiter::Once;
 use maulstick_types::stylus::{StylusInfo, axes};
 use maulstick_types::{Flags, Header, Origin};
 
@@ -119,7 +119,7 @@ impl Devices {
         stroke: Stroke,
         now_ns: u64,
     ) -> bool {
-        self.arbiter.hear(device, priority, range, stroke, now_ns)
+        self.arbiter.admit(device, priority, range, stroke, now_ns)
     }
 
     /// True if a take has exclusive use of the brush.

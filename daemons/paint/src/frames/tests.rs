@@ -68,7 +68,7 @@ fn ask(rig: &mut Rig, asked: &FrameRequest) -> Option<FrameReply> {
         .ask("frame", Qos::Data, bytes, limit, &Wake::new())
         .expect("asked");
     rig.net.advance(1);
-    rig.server.turn();
+    rig.server.poll();
     rig.net.advance(1);
     match pending.try_recv() {
         Some(Answer::Bytes(bytes)) => Some(decode(&bytes).expect("a reply").1),
@@ -357,7 +357,7 @@ fn a_look_of_a_brush_is_told_once_for_each_load_and_light() {
     let mut looks: Receiver<BrushLook> =
         Receiver::new(&bus, &key, Qos::Cached, Queue::Ring(16), &Wake::new()).expect("one");
     let mut told = |rig: &mut Rig| {
-        rig.server.turn();
+        rig.server.poll();
         rig.net.advance(1_000_000);
         std::iter::from_fn(|| looks.try_recv()).count()
     };

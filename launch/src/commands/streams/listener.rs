@@ -24,7 +24,7 @@ const LATE: Duration = Duration::from_millis(200);
 
 /// A message that was received.
 #[derive(Clone)]
-pub(super) struct ReceivedMessage {
+pub(crate) struct ReceivedMessage {
     /// Its topic, without the rig's prefix.
     pub topic: String,
     /// Header, size and time.
@@ -51,7 +51,7 @@ impl Listener {
     ///
     /// # Errors
     /// A [`UserError`] where no rig of that name runs, or the pattern is none.
-    pub(super) fn open(target: &Target, pattern: &str) -> Result<Self, UserError> {
+    pub(crate) fn open(target: &Target, pattern: &str) -> Result<Self, UserError> {
         let (folder, _) = RigFolder::join(target.rig())?;
         let member = NodeHandle::join(&NodeArgs {
             folder: folder.path().to_owned(),
@@ -95,7 +95,7 @@ impl Listener {
     }
 
     /// The next message until then, or until this program is told to end.
-    pub(super) fn next(&mut self, until: Instant) -> Option<ReceivedMessage> {
+    pub(crate) fn next(&mut self, until: Instant) -> Option<ReceivedMessage> {
         // However fast they come, the time ends.
         while !self.member.stop.requested() && Instant::now() < until {
             let now_ns = self.member.bus.now_ns();
@@ -112,14 +112,14 @@ impl Listener {
     }
 
     /// What has arrived and was not asked for, for a moment at most: more may come meanwhile.
-    pub(super) fn rest(&mut self) -> Vec<ReceivedMessage> {
+    pub(crate) fn rest(&mut self) -> Vec<ReceivedMessage> {
         let until = Instant::now() + REST;
         let waiting = std::iter::from_fn(|| self.waiting());
         waiting.take_while(|_| Instant::now() < until).collect()
     }
 
     /// What comes from now on, for a time. What another message has overtaken may come a moment later.
-    pub(super) fn traffic(&mut self, time: Duration) -> Traffic {
+    pub(crate) fn traffic(&mut self, time: Duration) -> Traffic {
         let mut traffic = Traffic::since(self.member.bus.now_ns());
         let until = Instant::now() + time;
         while let Some(received) = self.next(until) {
@@ -165,26 +165,26 @@ impl Listener {
 
     /// True for a topic whose last message is kept for late joiners.
     #[must_use]
-    pub(super) fn is_cached(topic: &str) -> bool {
+    pub(crate) fn is_cached(topic: &str) -> bool {
         CACHED.iter().any(|pattern| matches(pattern, topic))
     }
 
     /// Messages that this program was too slow for.
     #[must_use]
-    pub(super) fn dropped(&self) -> u64 {
+    pub(crate) fn dropped(&self) -> u64 {
         let all = self.cached.iter().chain([&self.live]);
         all.map(|subscription| subscription.counts().dropped).sum()
     }
 
     /// True if this program was told to end.
     #[must_use]
-    pub(super) fn is_over(&self) -> bool {
+    pub(crate) fn is_over(&self) -> bool {
         self.member.stop.requested()
     }
 
     /// True while the rig runs.
     #[must_use]
-    pub(super) fn has_rig(&self) -> bool {
+    pub(crate) fn has_rig(&self) -> bool {
         RigFolder::join_at(&self.member.folder).is_ok()
     }
 }

@@ -3,7 +3,7 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`listener`] | messages of a running rig |
-//! | [`echo`], [`measure`], [`nodes`] | contents, rates and senders of live streams |
+//! | [`echo`], [`measure`] | contents and rates of live streams |
 //! | [`graph`] | the processes of a rig, and what they send each other, as a picture |
 //! | [`recorder`], [`record`] | recordings, made and kept within bounds |
 //! | [`recording`], [`foxglove_export`] | recordings, looked at and written for Foxglove |
@@ -18,7 +18,6 @@ mod graph;
 pub(crate) mod listener;
 mod measure;
 mod message_lines;
-pub mod nodes;
 mod record;
 pub(crate) mod recorder;
 pub mod recording;

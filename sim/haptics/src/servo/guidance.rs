@@ -25,10 +25,9 @@ pub(super) struct Guidance {
     share: f64,
     active: Option<Active>,
     arrived: Option<Guide>,
-    /// What the force still keeps of what was asked for before, N.
+    /// Part of the previous force that is still to fade, N.
     correction: DVec3,
     engagement: Engagement,
-    engaged_s: f64,
     oscillation: Oscillation,
     fast_hand: FastHand,
 }
@@ -39,7 +38,7 @@ struct Active {
     guide: Guide,
     foot: Foot,
     age_s: f64,
-    /// What it asked for at the last tick, and the hand's place then.
+    /// Force that it asked for at the last tick, and the hand's place then.
     asked: Pull,
     position: DVec3,
 }
@@ -51,7 +50,7 @@ pub(super) struct Guiding {
     pub(super) force: DVec3,
     /// Part that depends on position alone, N.
     pub(super) conservative: DVec3,
-    /// What the guide's force was multiplied by.
+    /// Factor on the guide's force.
     pub(super) share: f64,
 }
 
@@ -76,8 +75,7 @@ impl Guidance {
             active: None,
             arrived: None,
             correction: DVec3::ZERO,
-            engagement: Engagement::ANEW,
-            engaged_s: 0.0,
+            engagement: Engagement::NEW,
             oscillation: Oscillation::default(),
             fast_hand: FastHand::default(),
         }
@@ -106,12 +104,12 @@ impl Guidance {
 
     /// The force engages anew.
     pub(super) fn engage_anew(&mut self) {
-        self.engagement = Engagement::ANEW;
+        self.engagement.wait_anew();
     }
 
     /// The ramp begins anew.
     pub(super) fn ramp_anew(&mut self) {
-        self.engaged_s = 0.0;
+        self.engagement.ramp_anew();
     }
 
     /// True while a guide is alive.
@@ -119,7 +117,7 @@ impl Guidance {
         self.fading(limits) > 0.0
     }
 
-    /// What is left of the guide past its time to live; 0 without one.
+    /// Share that is left of the guide past its time to live; 0 without one.
     fn fading(&self, limits: &Limits) -> f64 {
         self.active.map_or(0.0, |active| {
             let overdue_s = (active.age_s - active.guide.time_to_live_s).max(0.0);
@@ -127,7 +125,7 @@ impl Guidance {
         })
     }
 
-    /// What the guide of the last tick asks for at the hand's place now, N, before its share.
+    /// Force that the guide of the last tick asks for at the hand's place now, N, before its factor.
     pub(super) fn asked(&self, handle: &HandleState, limits: &Limits) -> DVec3 {
         let Some(active) = &self.active else {
             return DVec3::ZERO;
@@ -137,18 +135,21 @@ impl Guidance {
         pull.conservative * self.share + self.correction
     }
 
-    /// The ramp and the correction go on by a tick, and the guide ages by all the time that has passed.
+    /// The ramp and the correction continue by a tick, and the guide ages by all the time that has passed.
     pub(super) fn age(&mut self, limits: &Limits, dt: f64, passed_s: f64) {
-        self.engaged_s += dt;
+        self.engagement.age(dt);
         if let Some(active) = &mut self.active {
             active.age_s += passed_s;
         }
         if !self.is_alive(limits) {
             self.active = None;
             self.correction = DVec3::ZERO;
-            self.engagement = Engagement::ANEW;
+            self.engagement.wait_anew();
         }
-        let (size, shrunk) = (self.correction.length(), limits.guide_n * (dt / RECOVERY_S));
+        let (size, shrunk) = (
+            self.correction.length(),
+            limits.guide.force_n * (dt / RECOVERY_S),
+        );
         self.correction = match size > shrunk {
             true => self.correction * ((size - shrunk) / size),
             false => DVec3::ZERO,
@@ -195,11 +196,12 @@ impl Guidance {
         };
         // From the largest force one way to the largest the other way.
         self.correction = (self.correction - change).clamp_length_max(2.0 * bounds.force_n);
-        let touch = match self.engagement == Engagement::Begun && self.holds(limits) {
-            true => Touch::Contact,
-            false => Touch::Air,
+        let touch = if self.engagement.has_begun() && self.holds(limits) {
+            Touch::Contact
+        } else {
+            Touch::Air
         };
-        // What a hand that was let go feels again, it feels from the path on, as in a wall.
+        // A hand that was let go feels the guide again from the path on, as it would feel a wall.
         let speed = handle.velocity.length() / limits.max_speed_m_s;
         self.fast_hand.follow(speed, touch);
         // Without force no device shakes it.
@@ -230,12 +232,11 @@ impl Guidance {
             false => asked.length(),
         };
         if self.engagement.waits(asked_n, limits.engage_n) {
-            self.engaged_s = 0.0;
             self.correction = DVec3::ZERO;
             return Guiding::default();
         }
         let most = limits.guide_bounds().force_n;
-        let ramp = (self.engaged_s / limits.engage_s).min(1.0);
+        let ramp = self.engagement.ramp(limits.engage_s);
         let softer = strength * self.oscillation.softness() * self.fast_hand.softness();
         let share = fading * ramp * softer;
         Guiding {

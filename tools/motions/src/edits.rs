@@ -1,0 +1,378 @@
+//! Operations on the motion of a take. What it is painted with stays in it.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use maulstick_device::{Take, TakeSample, TakeSetup};
+use maulstick_motion::join::PAUSE_S;
+use maulstick_motion::strokes::middle;
+use maulstick_motion::{
+    Mirror, MotionError, Pace, Part, Placement, joined, mirrored, retimed, strokes,
+};
+use maulstick_rig::UserError;
+use maulstick_rig::files::Kind;
+
+use crate::recorded::read_motion;
+use maulstick::commands::motion::{HeadOptions, parse_place, refused};
+
+use crate::TakeFiles;
+use maulstick::commands::write_take;
+use maulstick::outputs::{UsedFile, check_outputs};
+
+/// Options of `maulstick take cut`.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct CutOptions {
+    #[command(flatten)]
+    files: TakeFiles,
+    /// Stylus of a recording whose motion is cut, such as pen [default: the only one of a take]
+    #[arg(long, value_name = "DEVICE")]
+    device: Option<String>,
+    /// From so many seconds after its beginning [default: 0]
+    #[arg(long, value_name = "S", conflicts_with = "strokes")]
+    start: Option<f64>,
+    /// To so many seconds after its beginning [default: its end]
+    #[arg(long, value_name = "S", conflicts_with = "strokes")]
+    end: Option<f64>,
+    /// Strokes to keep, by their numbers: 3, or 2-5
+    #[arg(long, value_name = "N|N-M", value_parser = parse_strokes, required_unless_present_any = ["start", "end"])]
+    strokes: Option<[usize; 2]>,
+}
+
+/// Options of `maulstick take join`.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct JoinOptions {
+    /// Takes, in order, which are not changed
+    #[arg(required = true, num_args = 2..)]
+    takes: Vec<PathBuf>,
+    /// Take to write
+    #[arg(short, long, value_name = "TAKE")]
+    output: PathBuf,
+    /// Pause between two takes at least, .2 to 60 s; a long way takes longer
+    #[arg(long, value_name = "S", default_value_t = PAUSE_S)]
+    pause: f64,
+    #[command(flatten)]
+    head: HeadOptions,
+}
+
+/// A point of the surface about which a motion is changed.
+#[derive(Args, Clone, Copy, Debug)]
+struct AboutOptions {
+    /// Point that stays, mm from the middle of the desk [default: the middle of its strokes]
+    #[arg(long, value_name = "X,Y", value_parser = parse_place, allow_hyphen_values = true)]
+    about: Option<[f64; 2]>,
+}
+
+/// Options of `maulstick take scale`.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct ScaleOptions {
+    #[command(flatten)]
+    files: TakeFiles,
+    /// Factor, .01 to 100
+    #[arg(long, value_name = "FACTOR", allow_negative_numbers = true)]
+    by: f64,
+    #[command(flatten)]
+    about: AboutOptions,
+}
+
+/// Options of `maulstick take rotate`.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct RotateOptions {
+    #[command(flatten)]
+    files: TakeFiles,
+    /// Angle, degrees, counter-clockwise
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    by: f64,
+    #[command(flatten)]
+    about: AboutOptions,
+}
+
+/// Options of `maulstick take move`.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct MoveOptions {
+    #[command(flatten)]
+    files: TakeFiles,
+    /// To the right and up, mm
+    #[arg(long, value_name = "X,Y", value_parser = parse_place, allow_hyphen_values = true)]
+    by: [f64; 2],
+}
+
+/// Options of `maulstick take retime`.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct RetimeOptions {
+    #[command(flatten)]
+    files: TakeFiles,
+    /// Rate, .01 to 100: 2 is twice as fast
+    #[arg(
+        long,
+        value_name = "R",
+        required_unless_present = "seconds",
+        allow_negative_numbers = true
+    )]
+    rate: Option<f64>,
+    /// Duration of all of it, s
+    #[arg(
+        long,
+        value_name = "S",
+        conflicts_with = "rate",
+        allow_negative_numbers = true
+    )]
+    seconds: Option<f64>,
+}
+
+/// What a mirror exchanges.
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum MirrorAxis {
+    /// Left and right
+    X,
+    /// Above and below
+    Y,
+}
+
+/// Options of `maulstick take mirror`.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct MirrorOptions {
+    #[command(flatten)]
+    files: TakeFiles,
+    /// Exchange left and right (x), or above and below (y)
+    #[arg(long, value_name = "AXIS", default_value = "x")]
+    axis: MirrorAxis,
+    #[command(flatten)]
+    about: AboutOptions,
+}
+
+/// Reads `N` or `N-M`.
+fn parse_strokes(text: &str) -> Result<[usize; 2], String> {
+    let number = |part: &str| part.trim().parse::<usize>().ok();
+    let (first, last) = text.split_once('-').unwrap_or((text, text));
+    number(first)
+        .zip(number(last))
+        .map(<[usize; 2]>::from)
+        .ok_or_else(|| format!("'{text}' is neither a number nor a range such as 2-5"))
+}
+
+impl TakeFiles {
+    /// Reads the take, has its motion changed and writes it.
+    fn change(
+        &self,
+        change: impl FnOnce(&[TakeSample], f64) -> Result<Vec<TakeSample>, MotionError>,
+    ) -> Result<i32, UserError> {
+        self.change_all(None, |take, head_m| {
+            let samples = change(&take.samples, head_m)?;
+            Ok(Take { samples, ..take })
+        })
+    }
+
+    /// As [`change`](Self::change), with what the take is painted with.
+    fn change_all(
+        &self,
+        device: Option<&str>,
+        change: impl FnOnce(Take, f64) -> Result<Take, MotionError>,
+    ) -> Result<i32, UserError> {
+        check_outputs(
+            &[UsedFile::new("the take", &self.output).of(Kind::Take)],
+            &[UsedFile::new("the take that stays as it is", &self.take)],
+        )?;
+        let take = read_motion(&self.take, device)?;
+        let head_m = self.head.length_m(&take, &self.take)?;
+        let changed = change(take, head_m).map_err(refused(&self.take))?;
+        write_take(&changed, &self.output)?;
+        Ok(0)
+    }
+}
+
+impl AboutOptions {
+    /// The point, m.
+    fn point(self, samples: &[TakeSample], head_m: f64) -> [f64; 2] {
+        let given = self.about.map(|place| place.map(|mm| 1e-3 * mm));
+        given.unwrap_or_else(|| middle(samples, head_m))
+    }
+}
+
+pub(crate) fn cut(options: &CutOptions) -> Result<i32, UserError> {
+    let ns = |name: &str, seconds: f64| match seconds >= 0.0 && seconds.is_finite() {
+        true => Ok((seconds * 1e9).round() as u64),
+        false => Err(
+            UserError::usage(format!("{name} {seconds} is no time of a take"))
+                .help("count seconds from its beginning"),
+        ),
+    };
+    let part = match options.strokes {
+        Some([first, last]) => Part::Strokes(first..=last),
+        None => Part::Times([
+            ns("--start", options.start.unwrap_or(0.0))?,
+            options.end.map_or(Ok(u64::MAX), |end| ns("--end", end))?,
+        ]),
+    };
+    options
+        .files
+        .change_all(options.device.as_deref(), |take, head_m| {
+            let samples = maulstick_motion::cut(&take.samples, &part, head_m)?;
+            let begin_ns = take.samples.first().map_or(0, |first| first.time_ns);
+            let before = match part {
+                Part::Strokes(numbers) => numbers.start() - 1,
+                Part::Times([from_ns, _]) => {
+                    let all = strokes(&take.samples, head_m).into_iter();
+                    let end = |stroke: &maulstick_motion::Stroke| {
+                        let last = &take.samples[stroke.samples.end - 1];
+                        last.time_ns - begin_ns
+                    };
+                    all.filter(|stroke| end(stroke) < from_ns).count()
+                }
+            };
+            // Strokes load in turn, and the first that is left keeps its own.
+            let setup = take.setup.map(|mut setup| {
+                if !setup.loads.is_empty() {
+                    let by = before % setup.loads.len();
+                    setup.loads.rotate_left(by);
+                }
+                setup
+            });
+            Ok(Take {
+                samples,
+                setup,
+                ..take
+            })
+        })
+}
+
+pub(crate) fn join(options: &JoinOptions) -> Result<i32, UserError> {
+    let named = |path: &PathBuf| UsedFile::new("a take that stays as it is", path);
+    let inputs: Vec<UsedFile> = options.takes.iter().map(named).collect();
+    check_outputs(
+        &[UsedFile::new("the take", &options.output).of(Kind::Take)],
+        &inputs,
+    )?;
+    let read: Result<Vec<Take>, UserError> =
+        options.takes.iter().map(|path| Take::read(path)).collect();
+    let takes: Vec<(&PathBuf, Take)> = options.takes.iter().zip(read?).collect();
+    let (mut setup, mut each): (Option<TakeSetup>, Vec<(Vec<String>, usize)>) = (None, Vec::new());
+    for (path, take) in &takes {
+        let head_m = options.head.length_m(take, path)?;
+        let loads = take
+            .setup
+            .as_ref()
+            .map_or_else(Vec::new, |own| own.loads.clone());
+        each.push((loads, strokes(&take.samples, head_m).len()));
+        match (&setup, &take.setup) {
+            (Some(one), Some(other)) if !is_same(one, other) => {
+                let what = "the takes embed different canvases, brushes, paints or lights";
+                return Err(UserError::usage(what)
+                    .at(path.display().to_string())
+                    .help("embed the same in all of them: `maulstick take embed`"));
+            }
+            (None, Some(own)) => setup = Some(own.clone()),
+            _ => {}
+        }
+    }
+    if let Some(setup) = &mut setup {
+        setup.loads = in_turn(&each);
+    }
+    let parts: Vec<&[TakeSample]> = takes.iter().map(|(_, take)| &*take.samples).collect();
+    let samples = joined(&parts, options.pause).map_err(refused(&options.takes[0]))?;
+    let device = takes[0].1.device.clone();
+    write_take(
+        &Take {
+            device,
+            samples,
+            setup,
+        },
+        &options.output,
+    )?;
+    Ok(0)
+}
+
+/// True if two takes are painted with the same, but for what their strokes load.
+fn is_same(one: &TakeSetup, other: &TakeSetup) -> bool {
+    (&one.settings, &one.files) == (&other.settings, &other.files)
+}
+
+/// Loads of the strokes of takes that follow each other; those of the takes where they are the same in all.
+fn in_turn(each: &[(Vec<String>, usize)]) -> Vec<String> {
+    let mut loading = each.iter().filter(|(loads, _)| !loads.is_empty());
+    let Some((first, _)) = loading.next() else {
+        return Vec::new();
+    };
+    let is_one = first.len() == 1 && each.iter().all(|(loads, _)| loads == first);
+    if is_one {
+        return first.clone();
+    }
+    let of = |(loads, strokes): &(Vec<String>, usize)| {
+        // A take without loads goes on with the first of the others.
+        let loads = if loads.is_empty() { first } else { loads };
+        let own: Vec<String> = loads.iter().cycle().take(*strokes).cloned().collect();
+        own
+    };
+    each.iter().flat_map(of).collect()
+}
+
+pub(crate) fn scale(options: &ScaleOptions) -> Result<i32, UserError> {
+    options.files.change(|samples, head_m| {
+        let about = options.about.point(samples, head_m);
+        Placement::scaled(about, options.by).motion(samples, head_m)
+    })
+}
+
+pub(crate) fn rotate(options: &RotateOptions) -> Result<i32, UserError> {
+    options.files.change(|samples, head_m| {
+        let about = options.about.point(samples, head_m);
+        Placement::turned(about, options.by.to_radians()).motion(samples, head_m)
+    })
+}
+
+pub(crate) fn shift(options: &MoveOptions) -> Result<i32, UserError> {
+    let by = options.by.map(|mm| 1e-3 * mm);
+    let place = Placement::moved(by);
+    options
+        .files
+        .change(|samples, head_m| place.motion(samples, head_m))
+}
+
+pub(crate) fn retime(options: &RetimeOptions) -> Result<i32, UserError> {
+    let pace = match (options.rate, options.seconds) {
+        (_, Some(seconds)) => Pace::Length(seconds),
+        (rate, None) => Pace::Rate(rate.unwrap_or(1.0)),
+    };
+    options.files.change(|samples, _| retimed(samples, pace))
+}
+
+pub(crate) fn mirror(options: &MirrorOptions) -> Result<i32, UserError> {
+    let axis = match options.axis {
+        MirrorAxis::X => Mirror::X,
+        MirrorAxis::Y => Mirror::Y,
+    };
+    options.files.change(|samples, head_m| {
+        let about = options.about.point(samples, head_m);
+        mirrored(samples, axis, about)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strokes_of_joined_takes_keep_their_loads() {
+        let loads = |text: &str| {
+            text.split_whitespace()
+                .map(str::to_owned)
+                .collect::<Vec<_>>()
+        };
+        let each = [(loads("a b"), 3), (loads("c"), 2)];
+        assert_eq!(in_turn(&each), loads("a b a c c"));
+        assert_eq!(in_turn(&[(loads("a"), 3), (loads("a"), 2)]), loads("a"));
+        assert_eq!(in_turn(&[(Vec::new(), 3), (Vec::new(), 1)]), loads(""));
+        assert_eq!(
+            in_turn(&[(Vec::new(), 1), (loads("a b"), 2)]),
+            loads("a a b")
+        );
+    }
+
+    #[test]
+    fn numbers_of_strokes_are_read() {
+        assert_eq!(parse_strokes("3"), Ok([3, 3]));
+        assert_eq!(parse_strokes("2-5"), Ok([2, 5]));
+        for wrong in ["", "a", "2-", "-3", "1.5"] {
+            assert!(parse_strokes(wrong).is_err(), "{wrong}");
+        }
+    }
+}
