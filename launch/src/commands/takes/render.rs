@@ -202,7 +202,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, UserError> {
     choose_backend(&mut sequencer, &config.paint.backend)?;
     let file = brush_file(&section)?;
     let (name, share) = (&section.name, section.depth_share);
-    let offline = Offline::going_on(sequencer, name, file, share, loads).map_err(refused)?;
+    let offline = Offline::resume(sequencer, name, file, share, loads).map_err(refused)?;
     let too_fast = options.paint(offline, autosave, script, &export)?;
     if unloaded {
         eprintln!("the brush carried no paint: `--load \"Ultramarine Blue\"` gives it some");
