@@ -300,15 +300,13 @@ mod tests {
         let even = vec![0.9; look.studio.wavelengths()];
         let ground = Under::Even(&even);
         let id = TileId { x: 0, y: 0 };
+        let baked = |bakery: &mut Bakery, look: &Appearance, stack: &Arc<DryStack>| {
+            let mut films = CpuFilms::new();
+            bakery.planes((look, &mut films), &Counted, 0, id, (stack, ground))
+        };
         let stack = DryStack::over(None, layer(7, 0, 8000));
         let mut bakery = Bakery::default();
-        let full = bakery.planes(
-            (&look, &mut CpuFilms::new()),
-            &Counted,
-            0,
-            id,
-            (&stack, ground),
-        );
+        let full = baked(&mut bakery, &look, &stack);
         let set = |look: &mut Appearance, opacity: f32| {
             look.set_layers(&[Layer {
                 number: 7,
@@ -318,22 +316,10 @@ mod tests {
         };
         set(&mut look, 0.5);
         assert!(!bakery.holds(&look, 0, id, &stack));
-        let half = bakery.planes(
-            (&look, &mut CpuFilms::new()),
-            &Counted,
-            0,
-            id,
-            (&stack, ground),
-        );
+        let half = baked(&mut bakery, &look, &stack);
         let thinner = DryStack::over(None, layer(7, 0, 4000));
         set(&mut look, 1.0);
-        let same = Bakery::default().planes(
-            (&look, &mut CpuFilms::new()),
-            &Counted,
-            0,
-            id,
-            (&thinner, ground),
-        );
+        let same = baked(&mut Bakery::default(), &look, &thinner);
         assert!(
             half.iter()
                 .zip(same.iter())
@@ -345,13 +331,7 @@ mod tests {
                 .any(|(a, b)| (a - b).abs() > 1e-2)
         );
         set(&mut look, 0.0);
-        let none = bakery.planes(
-            (&look, &mut CpuFilms::new()),
-            &Counted,
-            0,
-            id,
-            (&stack, ground),
-        );
+        let none = baked(&mut bakery, &look, &stack);
         assert!(
             none.iter().all(|r| (r - 0.9).abs() < 1e-6),
             "the ground shows"

@@ -106,6 +106,11 @@ pub struct Kernel {
 }
 
 impl Kernel {
+    /// Its whole WGSL.
+    fn wgsl(&self) -> String {
+        SHARED.iter().chain(self.source).copied().collect()
+    }
+
     /// True if it takes the parameters of a blend.
     pub fn blends(&self) -> bool {
         self.bindings.contains(&Binding::Blend)
@@ -164,7 +169,6 @@ impl Pipeline {
             entry(*binding as u32, ty, size)
         }));
         let label = Some(kernel.name);
-        let source: String = SHARED.iter().chain(kernel.source).copied().collect();
         let layout = gpu
             .device
             .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -182,7 +186,7 @@ impl Pipeline {
             .device
             .create_shader_module(wgpu::ShaderModuleDescriptor {
                 label,
-                source: wgpu::ShaderSource::Wgsl(source.into()),
+                source: wgpu::ShaderSource::Wgsl(kernel.wgsl().into()),
             });
         let pipeline = gpu
             .device

@@ -1,7 +1,7 @@
 //! Gives the paint of a surface another model.
 
 use maulstick_canvas::EditError;
-use maulstick_models::model_called;
+use maulstick_models::{AutoRole, auto_model, model_called};
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::CANVAS;
@@ -43,7 +43,7 @@ impl Form for Convert {
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {
-            model: ModelName::new("dab")?,
+            model: ModelName::new(auto_model(AutoRole::Lighter).name)?,
             surface: CANVAS,
         })
     }
