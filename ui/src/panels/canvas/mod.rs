@@ -13,7 +13,7 @@ use maulstick_appearance::ground::GROUNDS;
 use maulstick_canvas::assets::{IMAGE, SPECTRUM};
 use maulstick_canvas::relief::tooth;
 use maulstick_models::model_names;
-use maulstick_painting::edits::{Convert, Ground, Piles, Place, Size, Tooth};
+use maulstick_painting::edits::{Convert, Flip, Ground, Piles, Place, Size, Tooth};
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 use maulstick_types::values::{MaterialName, ModelName, StainThickness, ValueError};
 use maulstick_ui_kit::pending::Pending;
@@ -67,6 +67,9 @@ const ZOOM: Number<'_> = Number {
     decimals: 0,
     factors: true,
 };
+
+/// Name of a flip among the steps of the history.
+const _: &str = tr_noop!("flip");
 
 /// The panel.
 #[derive(Debug, Default)]
@@ -205,8 +208,13 @@ fn ground(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
 }
 
 impl CanvasPanel {
-    /// The piece of cloth that is the tooth, and a measured ground.
+    /// The canvas flipped, the piece of cloth that is the tooth, and a measured ground.
     fn advanced(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
+        let hover = tr!("Mirrors the paint, to see the drawing afresh; again, and it is as before");
+        let flip = ui.button(tr!("Flip left to right")).on_hover_text(hover);
+        if flip.clicked() {
+            ask(work, Ok(Flip { surface: CANVAS }));
+        }
         let (name, seed) = (&canvas.tooth, canvas.tooth_seed);
         if !name.starts_with(IMAGE) {
             let mut piece = seed;

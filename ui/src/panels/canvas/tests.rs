@@ -1,7 +1,7 @@
 use eframe::egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use maulstick_painting::edits::{Fill, FillPaint, Ground, Piles, Place, Size, Tooth};
+use maulstick_painting::edits::{Fill, FillPaint, Flip, Ground, Piles, Place, Size, Tooth};
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
 use maulstick_types::values::{BrushName, FilmThickness, MaterialName, StainThickness};
@@ -220,6 +220,17 @@ fn a_film_is_of_a_paint_or_of_what_the_brush_carries() {
     harness.run();
     let told = harness.state().notifications.told();
     assert!(told[0].what.contains("5000 µm"), "{told:?}");
+}
+
+#[test]
+fn the_canvas_is_flipped() {
+    let mut harness = panel();
+    harness.get_by_label("Advanced").click();
+    harness.run();
+    harness.get_by_label("Flip left to right").click();
+    harness.run();
+    let expected = Command::from(Flip { surface: CANVAS });
+    assert_eq!(harness.state_mut().asked(), [expected]);
 }
 
 #[test]
