@@ -13,7 +13,6 @@
 //! | [`swatch`] | colours in the terminal |
 //! | [`chart`] | the mixing chart, and one mixture by four ways of mixing |
 //! | [`sheet`] | the sheet of brushes and their marks |
-//! | [`attached`] | attached devices, as the system lists them |
 //! | [`backend`] | backend of the paint's steps |
 //! | [`cells`] | the side of the cells that pictures are painted with |
 //! | [`doctor`] | what of this machine keeps a rig from painting well |
@@ -59,7 +58,6 @@
 //! - `topic bridge` serves JSON of what is watched only. `topic graph` reads zenoh's administration space.
 
 pub mod advice;
-pub mod attached;
 pub mod chart;
 pub mod cli;
 pub mod commands;

@@ -194,7 +194,7 @@ impl App {
     /// Shows what a device is to touch that is being fitted.
     pub(super) fn show_fit(&self, painter: &egui::Painter, view: &View) {
         if let (Some(fit), Some(canvas)) = (&self.rig.setup.fit, self.rig.live.canvas()) {
-            fit_crosses::draw(painter, view, canvas, fit.asks.as_deref());
+            fit_crosses::draw(painter, view, canvas, fit.asked_corner());
         }
     }
 

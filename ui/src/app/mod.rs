@@ -45,7 +45,7 @@ use crate::render::device_loss::DeviceLoss;
 use crate::render::frame_reports::Presenter;
 use crate::render::scene::{SceneRenderer, Seen, Source};
 use crate::rig::brushes::{BrushTracker, SILENCE_NS};
-use crate::rig::device_commands::DeviceCommands;
+use crate::rig::device_setup::DeviceSetupRunner;
 use crate::rig::health::HealthMonitor;
 use crate::rig::requests::Requests;
 use crate::rig::state::RigState;
@@ -121,7 +121,7 @@ pub struct App {
     barrier: StrokeBarrier,
     pending: PendingSender,
     dispatcher: CommandDispatcher,
-    device_commands: DeviceCommands,
+    device_setup: DeviceSetupRunner,
     session_processes: SessionProcesses,
     fetcher: ThumbnailFetcher,
     notifications: Notifications,
@@ -192,7 +192,7 @@ impl App {
                 ..RigState::new(&member.config.rig.name, &names, Arc::new(library))
             },
             dispatcher: CommandDispatcher::new(Arc::clone(bus), topics, &member.wake),
-            device_commands: DeviceCommands::own(),
+            device_setup: DeviceSetupRunner::default(),
             session_processes: SessionProcesses::own(),
             fetcher: ThumbnailFetcher::of_rig(member),
             bus: Arc::clone(bus),

@@ -20,7 +20,7 @@ impl App {
         let is_shown = self.shows_devices();
         let orders = self.requests.take_device_orders();
         let told = (&mut self.rig, &mut self.notifications);
-        self.device_commands.turn(context, orders, is_shown, told);
+        self.device_setup.poll(context, orders, is_shown, told);
         let orders = self.requests.take_session_orders();
         let told = (&mut self.rig, &mut self.notifications);
         self.session_processes.turn(context, orders, told);

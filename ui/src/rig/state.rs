@@ -8,6 +8,7 @@ use maulstick_brush::BrushFile;
 use maulstick_brush::desk::Desk;
 use maulstick_client::listener::RigListener;
 use maulstick_client::state::LiveRig;
+use maulstick_device_setup::listing::DeviceListing;
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::Sketches;
 use maulstick_types::command::Command;
@@ -16,8 +17,7 @@ use maulstick_ui_kit::display_transform::DisplayTransform;
 use maulstick_ui_kit::swatches::Showing;
 
 use crate::rig::carried_paint::CarriedPaint;
-use crate::rig::device_commands::FitProgress;
-use crate::rig::device_listing::DeviceListing;
+use crate::rig::device_setup::FitProgress;
 use crate::sessions::player::ReplayProgress;
 use crate::sessions::recorder::RecordingProgress;
 
