@@ -47,6 +47,14 @@ pub enum BrushContact {
     Held,
 }
 
+impl BrushContact {
+    /// The contact of a brush that a hand holds on a surface, or does not.
+    #[must_use]
+    pub(crate) fn of(is_held: bool) -> Self {
+        if is_held { Self::Held } else { Self::Lifted }
+    }
+}
+
 /// Set-up of the devices, as far as the window shows it.
 #[derive(Clone, Debug, Default)]
 pub struct DeviceSetup {
