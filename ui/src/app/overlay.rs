@@ -5,12 +5,12 @@ mod column;
 mod first_run;
 mod help_pages;
 mod outcome_words;
+mod table_of_keys;
 
-use eframe::egui::{self, Align, Align2, Context, Layout, Rect, Ui};
+use eframe::egui::{self, Context, Rect, Ui};
 use maulstick_types::edits::{Clean, Dry, Redo, Relight, Scrape, Undo};
 use maulstick_types::scene::{CANVAS, Light, PALETTE};
 use maulstick_types::values::BrushName;
-use maulstick_ui_kit::language::translated;
 
 use self::column::Column;
 use self::first_run::FirstRun;
@@ -19,8 +19,7 @@ use crate::advice;
 use crate::app::rack;
 use crate::app::sides;
 use crate::dialogs::Files;
-use crate::input::keymap::Keymap;
-use crate::input::keys::{self, Action};
+use crate::input::keys::Action;
 use crate::input::presses;
 use crate::input::size_drag::SizeDrag;
 use crate::matching::colour_window::ColourWindow;
@@ -35,17 +34,12 @@ use crate::settings::brush_memory::BrushMemory;
 use crate::settings::preferences::Preferences;
 use crate::settings_page::SettingsPage;
 use crate::widgets::context::{PanelContext, ask};
-use crate::widgets::key_picture;
 use maulstick_client::dispatcher::Outcome;
 
 /// Turn of the mouse's brush by one press of a key, degrees.
 const TURN_DEG: f64 = 15.0;
 /// Change of the mouse's pressure by one press of a key.
 const PRESS: f64 = 0.05;
-
-/// Height of the table of keys beyond its list, points, and width of the picture over it.
-const HEAD: f32 = 80.0;
-const PICTURE: f32 = 480.0;
 
 /// Rack, panels, dialogs and notifications over the desk.
 #[derive(Default)]
@@ -149,7 +143,7 @@ impl Overlay {
             self.size_drag.follow(context, work);
         }
         if self.keys {
-            self.table_of_keys(context, &work.preferences.keys);
+            table_of_keys::show(context, &work.preferences.keys, &mut self.keys);
         }
         if !in_dialog && self.alone.is_none() {
             self.first_run
@@ -309,41 +303,6 @@ impl Overlay {
         }
         true
     }
-
-    fn table_of_keys(&mut self, context: &Context, keymap: &Keymap) {
-        let mut open = self.keys;
-        egui::Window::new(tr!("Keys"))
-            .open(&mut open)
-            .collapsible(false)
-            .resizable(false)
-            .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
-            .show(context, |ui| {
-                let height = context.content_rect().height() - HEAD;
-                let list = egui::ScrollArea::vertical()
-                    .max_height(height)
-                    .min_scrolled_height(height);
-                list.show(ui, |ui| {
-                    let colour = ui.visuals().text_color();
-                    key_picture::show(ui, keymap, PICTURE, colour);
-                    ui.separator();
-                    egui::Grid::new("keys")
-                        .num_columns(2)
-                        .striped(true)
-                        .show(ui, |ui| {
-                            for (binding, key) in keymap.bindings() {
-                                // What has no key is in the menu, and in the settings.
-                                if let Some(key) = key {
-                                    key_row(ui, &keys::written(context, &key), binding.words);
-                                }
-                            }
-                            for (keys, words) in keys::HELD {
-                                key_row(ui, translated(keys), words);
-                            }
-                        });
-                });
-            });
-        self.keys = open;
-    }
 }
 
 /// Changes how the mouse holds the brush.
@@ -392,13 +351,6 @@ fn relight(work: &mut PanelContext<'_>, light: Light) {
     work.requests.send(Relight { light, expose });
     work.notifications
         .note(tr!("The light is as it was").to_owned());
-}
-
-/// A row of the table of keys: a key at the right of its column, beside what it does.
-fn key_row(ui: &mut Ui, key: &str, words: &str) {
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.monospace(key));
-    ui.label(translated(words));
-    ui.end_row();
 }
 
 fn fills_screen(context: &Context) -> bool {
