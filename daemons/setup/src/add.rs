@@ -53,7 +53,10 @@ pub fn add(new: &NewDevice, rig: &str) -> Result<Added, UserError> {
         None => {
             let found = attached(&Places::here());
             let (one, address) = chosen(&found, new.address.as_deref(), &file.devices)?;
-            missing = one.missing.clone().map(|missing| (one.name.clone(), missing));
+            missing = one
+                .missing
+                .clone()
+                .map(|missing| (one.name.clone(), missing));
             (one.driver.unwrap_or_default().to_owned(), Some(address))
         }
     };

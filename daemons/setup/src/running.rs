@@ -28,10 +28,7 @@ pub(crate) fn in_rig(rig: &str) -> Result<Vec<DeviceSection>, UserError> {
 ///
 /// # Errors
 /// A [`UserError`] with the rig's refusal.
-pub(crate) fn put_in_rig(
-    rig: &str,
-    device: &DeviceSection,
-) -> Result<Option<Detail>, UserError> {
+pub(crate) fn put_in_rig(rig: &str, device: &DeviceSection) -> Result<Option<Detail>, UserError> {
     let Ok(client) = Client::open(rig) else {
         return Ok(None);
     };

@@ -114,7 +114,10 @@ impl Notifications {
         };
         context.request_repaint_after_secs((first - now) as f32);
         let mut gone = None;
-        let faults = self.shown.iter().any(|toast| toast.severity == Severity::Fault);
+        let faults = self
+            .shown
+            .iter()
+            .any(|toast| toast.severity == Severity::Fault);
         Area::new(Id::unique("toasts"))
             .order(Order::Foreground)
             .interactable(faults)

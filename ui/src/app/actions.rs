@@ -37,7 +37,11 @@ impl App {
         let on_desk = |at: egui::Pos2| view.area.contains(at) && !is_panel(context, at);
         let input = context.input(Clone::clone);
         let keys = &self.studio.preferences.keys;
-        let places = self.hands.pointer_path.follow(&input, keys, on_desk).into_iter();
+        let places = self
+            .hands
+            .pointer_path
+            .follow(&input, keys, on_desk)
+            .into_iter();
         let pointer = |(at, pressed): (egui::Pos2, bool)| Pointer {
             at: view.to_desk(at, &scene.surfaces).to_array(),
             pressed,
@@ -66,7 +70,10 @@ impl App {
 
     /// The point of the desk at the pointer.
     fn pointed_at(&self, context: &Context) -> Option<DVec3> {
-        let (scene, view) = (self.studio.rig.live.scene.as_ref()?, self.desk.view.as_ref()?);
+        let (scene, view) = (
+            self.studio.rig.live.scene.as_ref()?,
+            self.desk.view.as_ref()?,
+        );
         let at = context.input(|input| input.pointer.latest_pos())?;
         let is_on_desk = view.area.contains(at) && !is_panel(context, at);
         is_on_desk.then(|| view.to_desk(at, &scene.surfaces))
@@ -104,8 +111,10 @@ impl App {
 
     /// Slides the palette over the canvas, or back beside it.
     pub(super) fn slide(&mut self) {
-        let (Some(canvas), Some(palette)) = (self.studio.rig.live.canvas(), self.studio.rig.live.palette())
-        else {
+        let (Some(canvas), Some(palette)) = (
+            self.studio.rig.live.canvas(),
+            self.studio.rig.live.palette(),
+        ) else {
             return;
         };
         let side = side(&self.studio.preferences);
@@ -124,7 +133,8 @@ impl App {
             return;
         };
         let surfaces = self
-            .studio.rig
+            .studio
+            .rig
             .live
             .scene
             .as_ref()
@@ -159,7 +169,9 @@ impl App {
             });
         }
         let handling = self.studio.rig.handling();
-        self.hands.clean_key.follow(now_s, is_down, painting, &handling);
+        self.hands
+            .clean_key
+            .follow(now_s, is_down, painting, &handling);
         if self.hands.clean_key.is_down() {
             context.request_repaint_after(STILL);
         }
@@ -167,10 +179,13 @@ impl App {
         let at = aim.map(|(at, _)| (at.truncate() - view.middle) / wide_m);
         let at = gone(context, view).or(at);
         let free = !painting && !self.hands.navigation.holds();
-        if self
-            .hands.palette_gesture
-            .follow(now_s, at, wide_m, free, side(&self.studio.preferences))
-        {
+        if self.hands.palette_gesture.follow(
+            now_s,
+            at,
+            wide_m,
+            free,
+            side(&self.studio.preferences),
+        ) {
             self.slide();
         }
     }
@@ -193,7 +208,9 @@ impl App {
 
     /// Shows what a device is to touch that is being fitted.
     pub(super) fn show_fit(&self, painter: &egui::Painter, view: &View) {
-        if let (Some(fit), Some(canvas)) = (&self.studio.rig.setup.fit, self.studio.rig.live.canvas()) {
+        if let (Some(fit), Some(canvas)) =
+            (&self.studio.rig.setup.fit, self.studio.rig.live.canvas())
+        {
             fit_crosses::draw(painter, view, canvas, fit.asked_corner());
         }
     }
@@ -202,7 +219,8 @@ impl App {
     pub(super) fn draw_force(&self, painter: &egui::Painter, view: &View) {
         let seen = self.studio.preferences.panels && self.studio.preferences.is_open("Device");
         let Some((place_m, force_n)) =
-            force_history::force_arrow(&self.studio.rig.live, self.studio.rig.brush_name()).filter(|_| seen)
+            force_history::force_arrow(&self.studio.rig.live, self.studio.rig.brush_name())
+                .filter(|_| seen)
         else {
             return;
         };
@@ -218,8 +236,10 @@ impl App {
     /// Lays palette and wells for the hand that paints, where the painter has changed it.
     pub(super) fn change_hands(&mut self) {
         let side = side(&self.studio.preferences);
-        let (Some(canvas), Some(palette)) = (self.studio.rig.live.canvas(), self.studio.rig.live.palette())
-        else {
+        let (Some(canvas), Some(palette)) = (
+            self.studio.rig.live.canvas(),
+            self.studio.rig.live.palette(),
+        ) else {
             return;
         };
         let other = match side {

@@ -242,7 +242,12 @@ impl Overlay {
     }
 
     /// Changes what of the canvas is seen, and whether beside tools.
-    fn follow_window(&mut self, context: &Context, act: Action, work: &mut PanelContext<'_>) -> bool {
+    fn follow_window(
+        &mut self,
+        context: &Context,
+        act: Action,
+        work: &mut PanelContext<'_>,
+    ) -> bool {
         match act {
             Action::Mirror => {
                 let mirrored = &mut work.preferences.mirrored;
@@ -273,7 +278,12 @@ impl Overlay {
     }
 
     /// Opens and closes panels, dialogs and pictures.
-    fn follow_tools(&mut self, context: &Context, act: Action, work: &mut PanelContext<'_>) -> bool {
+    fn follow_tools(
+        &mut self,
+        context: &Context,
+        act: Action,
+        work: &mut PanelContext<'_>,
+    ) -> bool {
         match act {
             Action::Panels => work.preferences.panels = !work.preferences.panels,
             Action::Focus => {

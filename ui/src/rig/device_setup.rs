@@ -279,7 +279,9 @@ impl DeviceSetupRunner {
         }
         self.seen = Some(seen);
         let (list, rig) = (self.functions.list, rig.live.name.clone());
-        self.listing = Some(BackgroundTask::start(context, "devices", move || list(&rig)));
+        self.listing = Some(BackgroundTask::start(context, "devices", move || {
+            list(&rig)
+        }));
     }
 
     fn begin_fit(&mut self, context: &Context, device: String, rig: &mut RigState) {

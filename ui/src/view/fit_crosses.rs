@@ -32,11 +32,7 @@ fn place(canvas: &Surface, corner: Corner) -> DVec3 {
 pub(crate) fn draw(painter: &Painter, view: &View, canvas: &Surface, asked: Option<Corner>) {
     for corner in Corner::ALL {
         let at = view.to_window(place(canvas, corner));
-        let colour = if asked == Some(corner) {
-            ASKED
-        } else {
-            OTHER
-        };
+        let colour = if asked == Some(corner) { ASKED } else { OTHER };
         // On any ground: a dark rim below.
         for stroke in [
             Stroke::new(5.0, Color32::from_black_alpha(130)),

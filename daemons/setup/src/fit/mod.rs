@@ -159,7 +159,11 @@ pub struct FitSettings<'a> {
 /// # Errors
 /// A [`UserError`] for a device that is not there, corners that do not fit the canvas, or settings that
 /// cannot be written.
-pub fn fit(settings: &FitSettings<'_>, stop: &Stop, report: Report<'_>) -> Result<FitEnd, UserError> {
+pub fn fit(
+    settings: &FitSettings<'_>,
+    stop: &Stop,
+    report: Report<'_>,
+) -> Result<FitEnd, UserError> {
     let (path, config, rig) = match settings.file {
         Some(path) => {
             let config = RigConfig::read(path)?;

@@ -7,11 +7,11 @@ use maulstick_ui_kit::language::capitalized;
 use maulstick_ui_kit::rows::{choice, note, row};
 
 use super::pressure_curve::CurveEditor;
-use maulstick_device_setup::change::DeviceChange;
-use maulstick_device_setup::listing::RigDevice;
 use crate::rig::device_setup::{DeviceOrder, SetupChange, fit_event};
 use crate::widgets::context::PanelContext;
 use maulstick_client::state::Device;
+use maulstick_device_setup::change::DeviceChange;
+use maulstick_device_setup::listing::RigDevice;
 
 /// Settings that are being changed.
 #[derive(Debug, Default)]
@@ -175,7 +175,8 @@ pub(super) fn buttons(ui: &mut Ui, known: &RigDevice, work: &mut PanelContext<'_
         let hint = tr!("It moves the brush no more");
         let remove = ui.add_enabled(idle, eframe::egui::Button::new(tr!("Remove")));
         if remove.on_hover_text(hint).clicked() {
-            work.requests.change_device(SetupChange::Remove(name.clone()));
+            work.requests
+                .change_device(SetupChange::Remove(name.clone()));
         }
     });
 }

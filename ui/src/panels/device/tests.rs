@@ -7,8 +7,8 @@ use maulstick_device_setup::attached::{Attached, Permission};
 use maulstick_device_setup::change::DeviceChange;
 use maulstick_device_setup::fit::{FitEvent, Gesture};
 use maulstick_device_setup::listing::{DeviceListing, RigDevice};
-use maulstick_rig::config::DeviceSection;
 use maulstick_num::sin;
+use maulstick_rig::config::DeviceSection;
 use maulstick_types::haptics::ForceOrder;
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus, axes};
 

@@ -36,11 +36,7 @@ fn list(_: &str) -> DeviceListing {
 }
 
 /// Asks for a corner until it is stopped.
-fn fit_forever(
-    _: &FitSettings<'_>,
-    stop: &Stop,
-    report: Report<'_>,
-) -> Result<FitEnd, UserError> {
+fn fit_forever(_: &FitSettings<'_>, stop: &Stop, report: Report<'_>) -> Result<FitEnd, UserError> {
     report(FitEvent::Touch {
         corner: Corner::LowerLeft,
         gesture: Gesture::Pen,
