@@ -136,8 +136,8 @@ impl BrushTracker {
         })
     }
 
-    /// Takes in what has come.
-    pub fn take_in(&mut self, now_ns: u64) {
+    /// Reads what has come.
+    pub fn drain(&mut self, now_ns: u64) {
         while let Some(def) = self.defs.try_recv() {
             match BrushFile::parse(&def.message.toml) {
                 Ok(file) => {

@@ -6,7 +6,7 @@ use maulstick_types::command::Command;
 use maulstick_types::haptics::ForceOrder;
 
 use crate::input::keys::Action;
-use crate::rig::device_commands::DeviceOrder;
+use crate::rig::device_setup::{DeviceOrder, SetupChange};
 use crate::sessions::SessionOrder;
 
 /// Requests that wait to be sent.
@@ -45,13 +45,12 @@ impl Requests {
         });
     }
 
-    /// Runs `maulstick device` with these words.
-    pub fn device<'a>(&mut self, words: impl IntoIterator<Item = &'a str>) {
-        let words = words.into_iter().map(str::to_owned).collect();
-        self.devices.push(DeviceOrder::Run(words));
+    /// Asks for a change of the devices.
+    pub fn change_device(&mut self, change: SetupChange) {
+        self.devices.push(DeviceOrder::Change(change));
     }
 
-    /// As [`device`](Self::device), for what is no single command.
+    /// Asks for a fit, or its end.
     pub fn order_device(&mut self, order: DeviceOrder) {
         self.devices.push(order);
     }

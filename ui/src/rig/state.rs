@@ -8,6 +8,7 @@ use maulstick_brush::BrushFile;
 use maulstick_brush::desk::Desk;
 use maulstick_client::listener::RigListener;
 use maulstick_client::state::LiveRig;
+use maulstick_device_setup::listing::DeviceListing;
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::Sketches;
 use maulstick_types::command::Command;
@@ -16,8 +17,7 @@ use maulstick_ui_kit::display_transform::DisplayTransform;
 use maulstick_ui_kit::swatches::Showing;
 
 use crate::rig::carried_paint::CarriedPaint;
-use crate::rig::device_commands::FitProgress;
-use crate::rig::device_listing::DeviceListing;
+use crate::rig::device_setup::FitProgress;
 use crate::sessions::player::ReplayProgress;
 use crate::sessions::recorder::RecordingProgress;
 
@@ -45,6 +45,14 @@ pub enum BrushContact {
     Lifted,
     /// A hand has it on a surface.
     Held,
+}
+
+impl BrushContact {
+    /// The contact of a brush that a hand holds on a surface, or does not.
+    #[must_use]
+    pub(crate) fn of(is_held: bool) -> Self {
+        if is_held { Self::Held } else { Self::Lifted }
+    }
 }
 
 /// Set-up of the devices, as far as the window shows it.

@@ -83,7 +83,7 @@ impl SessionProcesses {
     }
 
     /// Carries out orders, and takes in what the processes say.
-    pub(crate) fn turn(
+    pub(crate) fn poll(
         &mut self,
         context: &Context,
         orders: Vec<SessionOrder>,

@@ -338,7 +338,7 @@ fn a_brush_file_that_is_none_is_told() {
     harness.get_by_label("Add to the rack").click();
     harness.run();
     assert!(harness.state().preferences.own_brushes.is_empty());
-    let told = harness.state().notifications.told();
+    let told = harness.state().notifications.shown();
     assert_eq!(told.len(), 1, "{told:?}");
 }
 
