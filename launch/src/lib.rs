@@ -12,12 +12,6 @@
 //! | [`destination`] | the display or file that colours go to: profile and gamut |
 //! | [`viewing`] | options of light, observer and rule |
 //! | [`swatch`] | colours in the terminal |
-<<<<<<< HEAD
-//! | [`attached`] | attached devices, as the system lists them |
-=======
-//! | [`chart`] | the mixing chart, and one mixture by four ways of mixing |
-//! | [`sheet`] | the sheet of brushes and their marks |
->>>>>>> h-desk-setup
 //! | [`backend`] | backend of the paint's steps |
 //! | [`cells`] | the side of the cells that pictures are painted with |
 //! | [`doctor`] | what of this machine keeps a rig from painting well |
@@ -63,12 +57,7 @@
 //! - `topic bridge` serves JSON of what is watched only. `topic graph` reads zenoh's administration space.
 
 pub mod advice;
-<<<<<<< HEAD
-pub mod attached;
 pub mod beside;
-=======
-pub mod chart;
->>>>>>> h-desk-setup
 pub mod cli;
 pub mod commands;
 pub mod doctor;

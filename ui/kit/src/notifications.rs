@@ -105,7 +105,7 @@ impl Notifications {
         self.shown
             .retain(|toast| toast.until_s.is_none_or(|until| now < until));
         let Some(first) = self
-            .told
+            .shown
             .iter()
             .filter_map(|toast| toast.until_s)
             .reduce(f64::min)
@@ -176,7 +176,7 @@ mod tests {
         notifications.note("saved");
         notifications.value("pressure", "50 %");
         notifications.value("width", "12 mm");
-        let told = notifications.told().iter().map(|toast| &*toast.what);
+        let told = notifications.shown().iter().map(|toast| &*toast.what);
         assert_eq!(told.collect::<Vec<_>>(), ["saved", "50 %", "12 mm"]);
     }
 
