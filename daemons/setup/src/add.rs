@@ -94,7 +94,7 @@ fn chosen<'a>(
     found: &'a [Attached],
     address: Option<&str>,
     known: &[DeviceSection],
-) -> Result<(&'a Attached, String), UserError> {
+) -> Result<(&'a Attached, String), ChoiceError> {
     let is_known = |device: &Attached| {
         let mut addresses = known.iter().filter_map(|own| own.address.as_ref());
         addresses.any(|own| *own == device.address())
@@ -110,18 +110,36 @@ fn chosen<'a>(
     meant.dedup_by_key(|device| (device.driver, device.address()));
     match meant.as_slice() {
         [one] => Ok((*one, address.map_or_else(|| one.address(), str::to_owned))),
-        [] if address.is_none() && found.iter().any(is_known) => {
-            Err(UserError::usage("what is attached is yours already")
-                .help("`maulstick device use` has it paint"))
-        }
-        [] => Err(UserError::usage("no device is attached that a driver fits")
-            .help("`maulstick device list` shows what is; `--driver` names one that shows nowhere, as `openhaptics`, `forcedimension`, `openxr` or `inverse3`")),
+        [] if address.is_none() && found.iter().any(is_known) => Err(ChoiceError::Yours),
+        [] => Err(ChoiceError::Nothing),
         several => {
             let of = |device: &&Attached| format!("{} {}", device.address(), plain(&device.name));
-            let all: Vec<String> = several.iter().map(of).collect();
-            Err(UserError::usage(format!("several devices are attached: {}", all.join(", ")))
-                .help("say which: --address"))
+            Err(ChoiceError::Several(several.iter().map(of).collect()))
         }
+    }
+}
+
+/// Reason why no attached device can be chosen.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+enum ChoiceError {
+    #[error("what is attached is yours already")]
+    Yours,
+    #[error("no device is attached that a driver fits")]
+    Nothing,
+    /// Address and name of each.
+    #[error("several devices are attached: {}", .0.join(", "))]
+    Several(Vec<String>),
+}
+
+impl From<ChoiceError> for UserError {
+    fn from(error: ChoiceError) -> Self {
+        Self::usage(error.to_string()).help(match error {
+            ChoiceError::Yours => "`maulstick device use` has it paint",
+            ChoiceError::Nothing => {
+                "`maulstick device list` shows what is; `--driver` names one that shows nowhere, as `openhaptics`, `forcedimension`, `openxr` or `inverse3`"
+            }
+            ChoiceError::Several(_) => "say which: --address",
+        })
     }
 }
 
@@ -159,40 +177,32 @@ mod tests {
             pen("056a:0357", "/dev/hidraw1"),
             pen("28bd:0935", "/dev/hidraw2"),
         ];
-        let told = |address, known: &[DeviceSection]| {
-            chosen(&found, address, known).map_err(|fault| fault.to_string())
+        let meant = |address, known: &[DeviceSection]| {
+            let chosen = chosen(&found, address, known);
+            chosen.map(|(one, address)| (one.id.clone(), address))
         };
-        let of = |address: &str| Ok(("pen".to_owned(), address.to_owned()));
-        assert_eq!(told(Some("28bd:0935"), &[]), of("28bd:0935"));
-        assert_eq!(told(Some("/dev/hidraw1"), &[]), of("/dev/hidraw1"));
-        let fault = told(None, &[]).expect_err("two");
-        assert!(
-            fault.contains("056a:0357") && fault.contains("28bd:0935"),
-            "{fault}"
-        );
+        let of = |id: &str, address: &str| Ok((id.to_owned(), address.to_owned()));
+        let deco = "28bd:0935";
+        assert_eq!(meant(Some(deco), &[]), of(deco, deco));
+        let path = "/dev/hidraw1";
+        assert_eq!(meant(Some(path), &[]), of("056a:0357", path));
+        let all = found.iter().map(|pen| format!("{} {}", pen.id, pen.name));
+        assert_eq!(meant(None, &[]), Err(ChoiceError::Several(all.collect())));
         let known = DeviceSection {
             address: Some("056a:0357".into()),
             ..DeviceSection::new("tablet", "pen", "main")
         };
-        assert_eq!(told(None, std::slice::from_ref(&known)), of("28bd:0935"));
-        assert!(
-            told(Some("1:2"), &[])
-                .expect_err("none")
-                .contains("no device is attached")
-        );
+        assert_eq!(meant(None, std::slice::from_ref(&known)), of(deco, deco));
+        assert_eq!(meant(Some("1:2"), &[]), Err(ChoiceError::Nothing));
         let both = [
             known.clone(),
             DeviceSection {
-                address: Some("28bd:0935".into()),
+                address: Some(deco.into()),
                 ..known.clone()
             },
         ];
-        assert!(
-            told(None, &both)
-                .expect_err("known")
-                .contains("yours already")
-        );
-        assert_eq!(told(Some("28BD:0935"), &[]), of("28BD:0935"));
+        assert_eq!(meant(None, &both), Err(ChoiceError::Yours));
+        assert_eq!(meant(Some("28BD:0935"), &[]), of(deco, "28BD:0935"));
         assert_eq!(free_name("pen", &[known]), "tablet-2");
         assert_eq!(free_name("polhem", &[]), "polhem");
     }

@@ -162,7 +162,7 @@ mod tests {
             notifications.note(what);
         }
         let told: Vec<&str> = notifications
-            .told()
+            .shown()
             .iter()
             .map(|t| t.what.as_str())
             .collect();
@@ -194,6 +194,6 @@ mod tests {
         harness.get_by_label("plug it in");
         harness.run_steps(FAULT_S as usize + 2);
         assert!(harness.query_by_label("the arm is gone").is_none());
-        assert!(harness.state().told().is_empty());
+        assert!(harness.state().shown().is_empty());
     }
 }

@@ -91,7 +91,7 @@ impl Desk {
     fn turn(&mut self, orders: Vec<SessionOrder>) {
         let mut notifications = Notifications::default();
         let told = (&mut self.rig, &mut notifications);
-        self.processes.turn(&Context::default(), orders, told);
+        self.processes.poll(&Context::default(), orders, told);
         let told = notifications.shown().iter();
         self.told
             .extend(told.map(|toast| (toast.severity, toast.what.clone())));

@@ -165,7 +165,7 @@ fn a_missing_picture_is_told_once() {
         std::thread::yield_now();
     }
     let told = std::mem::take(&mut desk.notifications);
-    let what = &told.told()[0].what;
+    let what = &told.shown()[0].what;
     assert!(what.contains("/nowhere/sketch.png"), "{what}");
     for _ in 0..10 {
         assert!(tracing.follow(&context, &mut desk.work()).is_none());

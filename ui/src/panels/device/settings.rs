@@ -3,7 +3,6 @@
 use eframe::egui::{CollapsingHeader, Frame, Key, RichText, TextEdit, Ui};
 use maulstick_device::pressure_curve::sensed;
 use maulstick_rig::config::{ACTIONS, DeviceSection, FORCES, PEN_DRIVERS};
-use maulstick_ui_kit::language::capitalized;
 use maulstick_ui_kit::rows::{choice, note, row};
 
 use super::pressure_curve::CurveEditor;
