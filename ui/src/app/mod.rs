@@ -272,7 +272,8 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let preferences = &mut self.studio.preferences;
-        self.look.follow(ui.ctx(), preferences);
+        self.look
+            .follow(ui.ctx(), preferences.theme, &mut preferences.text_size);
         preferences.is_narrow = ui.max_rect().width() < sides::NARROW;
         CentralPanel::default()
             .frame(Frame::NONE)

@@ -11,7 +11,7 @@ use maulstick_ui_kit::language::{capitalized, known, translated};
 use maulstick_ui_kit::units::Units;
 
 use crate::dialogs::dialog::{self, Answer, Foot, in_words, line, number};
-use crate::dialogs::discard_prompt::Unkept;
+use crate::dialogs::open::discard_prompt::UnsavedState;
 use crate::dialogs::paths;
 
 /// Sizes that are chosen with a click: name, width and height, cm.
@@ -48,7 +48,7 @@ pub(crate) struct NewPainting {
     tooth: String,
     as_sketch: bool,
     path: String,
-    unkept: Unkept,
+    unkept: UnsavedState,
     /// True if the painter accepts that painting on it is slow.
     may_be_slow: bool,
     wrong: Option<String>,
@@ -57,12 +57,12 @@ pub(crate) struct NewPainting {
 impl NewPainting {
     /// A form for a painting in `folder`.
     #[must_use]
-    pub(crate) fn new(folder: &Path, units: Units, unkept: Unkept) -> Self {
+    pub(crate) fn new(folder: &Path, units: Units, unkept: UnsavedState) -> Self {
         let free = paths::free(folder, tr!("Painting"), paths::PAINTING);
         Self::kept_in(paths::shown(&free), units, unkept)
     }
 
-    fn kept_in(path: String, units: Units, unkept: Unkept) -> Self {
+    fn kept_in(path: String, units: Units, unkept: UnsavedState) -> Self {
         Self {
             units,
             width: units.typed(29.7),

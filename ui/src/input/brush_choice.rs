@@ -1,10 +1,10 @@
 //! The brush in the hand and its width, as rack, keys, panel and presets change them.
 
+mod presets;
+
 use std::ops::RangeInclusive;
 use std::path::Path;
-use std::sync::OnceLock;
 
-use maulstick_brush::file::library::LIBRARY;
 use maulstick_brush::{BrushError, BrushFile};
 use maulstick_rig::UserError;
 use maulstick_rig::files::ending;
@@ -15,6 +15,7 @@ use maulstick_types::values::{BrushName, BrushToml};
 use maulstick_ui_kit::language::{capitalized, known};
 
 use crate::rig::state::{BrushContact, RigBrush};
+use crate::settings::brush_library::{is_of_library, library, of_library};
 use crate::settings::brush_load::{BrushLoad, written};
 use crate::widgets::context::PanelContext;
 use maulstick_client::dispatcher::Outcome;
@@ -26,28 +27,6 @@ const STEP: f64 = 0.15;
 const GRAIN_MM: f64 = 0.5;
 /// Widths offered for a brush file that lists no sizes, mm.
 const OFFERED_MM: RangeInclusive<f64> = 0.5..=60.0;
-
-/// The brushes of the library, in their order.
-pub(crate) fn library() -> &'static [BrushFile] {
-    static FILES: OnceLock<Vec<BrushFile>> = OnceLock::new();
-    FILES.get_or_init(|| {
-        let files = LIBRARY.iter().map(|(kind, _)| BrushFile::library(kind));
-        files.filter_map(Result::ok).collect()
-    })
-}
-
-/// The library's brush of a kind.
-#[must_use]
-pub(crate) fn of_library(kind: &str) -> Option<&'static BrushFile> {
-    library().iter().find(|file| file.kind == kind)
-}
-
-/// True if a brush differs from the library's only in its width.
-#[must_use]
-pub(crate) fn is_of_library(file: &BrushFile) -> bool {
-    let own = of_library(&file.kind).map(|own| own.scaled_to(file.head.width_mm));
-    own.is_some_and(|own| own.as_ref() == Ok(file))
-}
 
 /// A brush at another width, mm; one of the library from its own numbers, so that they do not drift.
 ///

@@ -10,7 +10,7 @@ use maulstick_rig::config::{ACTIONS, FORCES};
 use maulstick_types::scene::RULES;
 use maulstick_ui_kit::language::{FILES, Language, all};
 
-use crate::input::brush_choice::library;
+use crate::settings::brush_library::library;
 use crate::input::keys::{BINDINGS, HELD};
 
 /// Keys whose names are not the signs on them.

@@ -10,11 +10,10 @@ use std::task::Poll;
 use std::time::SystemTime;
 
 use eframe::egui::Context;
-use maulstick_device::corner_calibration::Corner;
 use maulstick_device::node_watch::NodeWatch;
-use maulstick_device_setup::add::{Added, NewDevice, add};
+use maulstick_device_setup::add::{Added, add};
 use maulstick_device_setup::allow::allow;
-use maulstick_device_setup::change::{DeviceChange, change};
+use maulstick_device_setup::change::change as change_device;
 use maulstick_device_setup::fit::{FitEnd, FitEvent, FitSettings, Report, fit};
 use maulstick_device_setup::listing::DeviceListing;
 use maulstick_device_setup::remove::remove;
@@ -23,6 +22,7 @@ use maulstick_rig::{Stop, UserError};
 use maulstick_ui_kit::background_task::BackgroundTask;
 use maulstick_ui_kit::notifications::Notifications;
 
+use crate::rig::device_order::{DeviceOrder, FitProgress, SetupChange};
 use crate::rig::state::RigState;
 
 pub(crate) use words::fit_event;
@@ -31,37 +31,6 @@ pub(crate) use words::fit_event;
 const NODES: [&str; 2] = ["/dev", "/dev/input"];
 /// Time between two looks while a device lacks a permission, s, where the system does not tell that it has one.
 const LOOK_S: f64 = 3.0;
-
-/// A request to this runner.
-#[derive(Clone, Debug, PartialEq)]
-pub enum DeviceOrder {
-    /// A change, after those before it.
-    Change(SetupChange),
-    /// Fits a device to the canvas, by the hand's touches.
-    Fit(String),
-    /// Ends the fit in progress: nothing is written.
-    StopFit,
-}
-
-/// A change of the devices.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SetupChange {
-    /// Lets the user at this machine use its devices.
-    Allow,
-    /// Adds a device.
-    Add(NewDevice),
-    /// Changes one.
-    Use(DeviceChange),
-    /// Gives one another name.
-    Rename {
-        /// The device.
-        device: String,
-        /// Its new name.
-        name: String,
-    },
-    /// Removes one.
-    Remove(String),
-}
 
 /// A change that was made.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,60 +42,17 @@ enum Made {
     Removed(String),
 }
 
-impl SetupChange {
-    fn carry_out(&self, rig: &str) -> Result<Made, UserError> {
-        match self {
-            Self::Allow => allow().map(|()| Made::Allowed),
-            Self::Add(new) => add(new, rig).map(Made::Added),
-            Self::Use(wanted) => change(wanted, rig).map(|changed| Made::Used(changed.device.name)),
-            Self::Rename { device, name } => rename(device, name, rig).map(|()| Made::Renamed {
-                device: device.clone(),
-                name: name.clone(),
-            }),
-            Self::Remove(device) => remove(device, rig).map(|_| Made::Removed(device.clone())),
-        }
-    }
-
-    /// True if a later change of the same device sets all that this one sets.
-    fn is_replaced_by(&self, later: &Self) -> bool {
-        let (Self::Use(own), Self::Use(later)) = (self, later) else {
-            return false;
-        };
-        let settings = |change: &DeviceChange| {
-            [
-                change.brush.is_some(),
-                change.force.is_some(),
-                change.pressure_curve.is_some(),
-                change.switches.is_some(),
-                change.max_force_n.is_some(),
-                change.paint_drag.is_some(),
-                change.relief.is_some(),
-            ]
-        };
-        own.device == later.device
-            && own.priority == later.priority
-            && settings(own) == settings(later)
-    }
-}
-
-/// A fit in progress.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct FitProgress {
-    /// The device.
-    pub device: String,
-    /// Its steps so far.
-    pub events: Vec<FitEvent>,
-}
-
-impl FitProgress {
-    /// The corner that is to be touched now.
-    #[must_use]
-    pub fn asked_corner(&self) -> Option<Corner> {
-        let mut newest = self.events.iter().rev();
-        newest.find_map(|event| match event {
-            FitEvent::Touch { corner, .. } => Some(*corner),
-            _ => None,
-        })
+/// Makes a change.
+fn carry_out(change: &SetupChange, rig: &str) -> Result<Made, UserError> {
+    match change {
+        SetupChange::Allow => allow().map(|()| Made::Allowed),
+        SetupChange::Add(new) => add(new, rig).map(Made::Added),
+        SetupChange::Use(wanted) => change_device(wanted, rig).map(|changed| Made::Used(changed.device.name)),
+        SetupChange::Rename { device, name } => rename(device, name, rig).map(|()| Made::Renamed {
+            device: device.clone(),
+            name: name.clone(),
+        }),
+        SetupChange::Remove(device) => remove(device, rig).map(|_| Made::Removed(device.clone())),
     }
 }
 
@@ -183,7 +109,7 @@ pub(crate) struct DeviceSetupRunner {
 impl Default for DeviceSetupRunner {
     fn default() -> Self {
         Self::new(Functions {
-            carry_out: SetupChange::carry_out,
+            carry_out,
             list: DeviceListing::read,
             fit,
         })

@@ -5,6 +5,7 @@
 //! | `state` | what is known of the rig; plain data |
 //! | [`brushes`] | newest sample and bend of each brush |
 //! | `child_process` | a command that runs beside the window |
+//! | `device_order` | orders to it, and a fit in progress |
 //! | `device_setup` | changes and listings of devices, on a thread |
 //! | `health` | events of the other processes |
 //! | `requests` | commands that wait to be sent |
@@ -13,6 +14,7 @@
 pub mod brushes;
 pub(crate) mod carried_paint;
 pub(crate) mod child_process;
+pub(crate) mod device_order;
 pub(crate) mod device_setup;
 pub(crate) mod health;
 #[cfg(test)]

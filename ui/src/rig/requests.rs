@@ -6,7 +6,7 @@ use maulstick_types::command::Command;
 use maulstick_types::haptics::ForceOrder;
 
 use crate::input::keys::Action;
-use crate::rig::device_setup::{DeviceOrder, SetupChange};
+use crate::rig::device_order::{DeviceOrder, SetupChange};
 use crate::sessions::SessionOrder;
 
 /// Requests that wait to be sent.

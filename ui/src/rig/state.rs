@@ -17,7 +17,7 @@ use maulstick_ui_kit::display_transform::DisplayTransform;
 use maulstick_ui_kit::swatches::Showing;
 
 use crate::rig::carried_paint::CarriedPaint;
-use crate::rig::device_setup::FitProgress;
+use crate::rig::device_order::FitProgress;
 use crate::sessions::player::ReplayProgress;
 use crate::sessions::recorder::RecordingProgress;
 

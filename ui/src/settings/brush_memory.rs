@@ -120,7 +120,7 @@ impl Known {
         if now_s - since_s < RESTS_S {
             return context.request_repaint_after(Duration::from_secs_f64(RESTS_S));
         }
-        if let Some(preset) = Preset::of("", work) {
+        if let Some(preset) = work.preset_in_hand("") {
             let held = Preset {
                 loading: BrushLoad::default(),
                 pressure: None,

@@ -12,7 +12,7 @@ use maulstick_rig::files::{Kind, write_whole};
 use maulstick_ui_kit::units::Units;
 
 use crate::input::keymap::Keymap;
-use crate::reference::ReferencePreferences;
+use crate::reference::settings::ReferencePreferences;
 use crate::settings::brush_load::BrushLoad;
 use crate::settings::grip::Grip;
 use crate::settings::look::{TEXT_SIZES, Theme};

@@ -101,7 +101,7 @@ impl PresetRows {
         match asked {
             Some((place, Deed::Apply)) => {
                 let preset = work.preferences.presets[place].clone();
-                if let Err(fault) = preset.apply(work) {
+                if let Err(fault) = work.take_up_preset(&preset) {
                     work.notifications.of(&fault);
                 }
             }
@@ -189,7 +189,7 @@ impl PresetRows {
                 .map(|preset| preset.name.as_str());
             match check_name(&name, others) {
                 Ok(()) => {
-                    if let Some(preset) = Preset::of(&name, work) {
+                    if let Some(preset) = work.preset_in_hand(&name) {
                         work.preferences.presets.push(preset);
                         self.name.clear();
                     }

@@ -320,11 +320,13 @@ fn a_preset_that_was_spoilt_changes_nothing_and_is_told() {
         spoilt(|preset| preset.loading.paint = "Blue=3".into()),
     ];
     for preset in faults {
-        assert!(preset.apply(&mut bench.work()).is_err(), "{preset:?}");
+        assert!(bench.work().take_up_preset(&preset).is_err(), "{preset:?}");
         assert!(bench.requests.take().is_empty(), "{preset:?}");
     }
     assert!(
-        Preset::default().apply(&mut bench.work()).is_ok(),
+        bench
+            .work()
+            .take_up_preset(&Preset::default()).is_ok(),
         "a fault would pass"
     );
 }
@@ -355,7 +357,7 @@ fn it_looks_as_it_should() {
     let bench = || {
         let mut bench = Bench::new();
         bench.preferences.loading.paint = "Ultramarine Blue=0.6,Titanium White=0.4".into();
-        let preset = Preset::of("Evening sky", &bench.work()).expect("a brush");
+        let preset = bench.work().preset_in_hand("Evening sky").expect("a brush");
         bench.preferences.presets.push(preset);
         bench
     };

@@ -7,7 +7,7 @@ use maulstick_device_setup::listing::UnusedDevice;
 use maulstick_rig::user_devices::ALLOW_BY_HAND;
 use maulstick_ui_kit::rows::note;
 
-use crate::rig::device_setup::SetupChange;
+use crate::rig::device_order::SetupChange;
 use crate::widgets::context::PanelContext;
 
 /// Shows it.

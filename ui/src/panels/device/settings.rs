@@ -6,7 +6,8 @@ use maulstick_rig::config::{ACTIONS, DeviceSection, FORCES, PEN_DRIVERS};
 use maulstick_ui_kit::rows::{choice, note, row};
 
 use super::pressure_curve::CurveEditor;
-use crate::rig::device_setup::{DeviceOrder, SetupChange, fit_event};
+use crate::rig::device_order::{DeviceOrder, SetupChange};
+use crate::rig::device_setup::fit_event;
 use crate::widgets::context::PanelContext;
 use maulstick_client::state::Device;
 use maulstick_device_setup::change::DeviceChange;

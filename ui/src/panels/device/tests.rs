@@ -13,7 +13,8 @@ use maulstick_types::haptics::ForceOrder;
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus, axes};
 
 use super::*;
-use crate::rig::device_setup::{DeviceOrder, FitProgress, SetupChange, fit_event};
+use crate::rig::device_order::{DeviceOrder, FitProgress, SetupChange};
+use crate::rig::device_setup::fit_event;
 use crate::rig::state::RigState;
 use crate::test_support::panel_bench::{Bench, harness, picture, rig};
 use maulstick_client::request::Request;

@@ -6,6 +6,7 @@
 //! | `sets` | the painter's own sets of paints |
 //! | `wells` | mixtures on the palette |
 
+pub(crate) mod palette_wells;
 mod rows;
 mod sets;
 mod wells;

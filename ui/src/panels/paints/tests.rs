@@ -219,7 +219,7 @@ fn a_set_of_paints_that_the_rig_lacks_is_told() {
 #[test]
 fn a_full_palette_takes_no_more() {
     let mut bench = Bench::new();
-    let many = vec![Mixture::pure("Bone Black"); crate::input::palette_wells::MOST + 1];
+    let many = vec![Mixture::pure("Bone Black"); crate::panels::paints::palette_wells::MOST + 1];
     bench.work().lay_wells(&many);
     assert!(bench.requests.take().is_empty());
     assert!(bench.told()[0].contains("at most 24"), "{:?}", bench.told());

@@ -2,6 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use maulstick_device::corner_calibration::Corner;
+use maulstick_device_setup::change::DeviceChange;
 use maulstick_device_setup::fit::Gesture;
 use maulstick_device_setup::listing::RigDevice;
 use maulstick_rig::config::DeviceSection;
