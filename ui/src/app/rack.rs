@@ -140,33 +140,9 @@ fn brushes(ui: &mut Ui, work: &mut PanelContext<'_>) {
         }
     }
     for path in &own {
-        match icon_cache::own(ui.ctx(), path) {
-            Ok(file) => {
-                let same = |hand: &BrushFile| {
-                    file.scaled_to(hand.head.width_mm).as_ref() == Ok(hand) || *file == *hand
-                };
-                let in_hand = hand.as_ref().filter(|hand| same(hand));
-                is_shown |= in_hand.is_some();
-                let place = Place {
-                    name: stem(path),
-                    key: path.display().to_string(),
-                    file: &file,
-                    width_mm: in_hand.map_or(file.head.width_mm, |hand| hand.head.width_mm),
-                    in_hand: in_hand.is_some(),
-                };
-                if cell(ui, work, &place).clicked() {
-                    chosen = Some((*file).clone());
-                }
-            }
-            Err(fault) => {
-                let button = eframe::egui::Button::new(stem(path)).truncate();
-                let hover = tr!("This brush file cannot be read; click: why");
-                if ui.add(button).on_hover_text(hover).clicked() {
-                    icon_cache::forget(ui.ctx(), path);
-                    work.notifications.of(&fault);
-                }
-            }
-        }
+        let (is_in_hand, taken) = own_brush(ui, work, path, hand.as_ref());
+        is_shown |= is_in_hand;
+        chosen = taken.or(chosen);
     }
     // A brush that was changed by hand matches no entry.
     if let Some(hand) = hand.filter(|_| !is_shown) {
@@ -184,6 +160,41 @@ fn brushes(ui: &mut Ui, work: &mut PanelContext<'_>) {
     }
     if let Some(file) = chosen {
         work.choose(&file);
+    }
+}
+
+/// A brush of a file of the painter's: true if it is in the hand, and itself if it is chosen.
+fn own_brush(
+    ui: &mut Ui,
+    work: &mut PanelContext<'_>,
+    path: &Path,
+    hand: Option<&BrushFile>,
+) -> (bool, Option<BrushFile>) {
+    match icon_cache::own(ui.ctx(), path) {
+        Ok(file) => {
+            let same = |hand: &BrushFile| {
+                file.scaled_to(hand.head.width_mm).as_ref() == Ok(hand) || *file == *hand
+            };
+            let in_hand = hand.filter(|hand| same(hand));
+            let place = Place {
+                name: stem(path),
+                key: path.display().to_string(),
+                file: &file,
+                width_mm: in_hand.map_or(file.head.width_mm, |hand| hand.head.width_mm),
+                in_hand: in_hand.is_some(),
+            };
+            let is_chosen = cell(ui, work, &place).clicked();
+            (place.in_hand, is_chosen.then(|| (*file).clone()))
+        }
+        Err(fault) => {
+            let button = eframe::egui::Button::new(stem(path)).truncate();
+            let hover = tr!("This brush file cannot be read; click: why");
+            if ui.add(button).on_hover_text(hover).clicked() {
+                icon_cache::forget(ui.ctx(), path);
+                work.notifications.of(&fault);
+            }
+            (false, None)
+        }
     }
 }
 

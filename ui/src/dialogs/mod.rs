@@ -263,16 +263,10 @@ impl Files {
             Dialog::Open(open) => open.show(context, busy),
             Dialog::SaveAs(save_as) => save_as.show(context, busy),
             Dialog::Export(export) => export.show(context, busy),
-            Dialog::Close(close) => match close.show(context) {
-                Decision::None => return,
-                Decision::Stay => return self.dialog = None,
-                Decision::Name => return self.save_as(work),
-                Decision::Close => {
-                    self.dialog = None;
-                    self.closes = true;
-                    return;
-                }
-            },
+            Dialog::Close(close) => {
+                let decision = close.show(context);
+                return self.decide(decision, work);
+            }
             Dialog::Picture(picture) => {
                 let (answer, path) = picture.show(context);
                 if let Some(path) = path {
@@ -309,12 +303,23 @@ impl Files {
                 // An export runs in the background and shows its progress.
                 let is_export = matches!(command, Command::File(FileCommand::Export(_)));
                 let order = ask(command, work);
-                match is_export {
-                    true => self.dialog = None,
-                    false => self.waiting = Some(order),
+                if is_export {
+                    self.dialog = None;
+                } else {
+                    self.waiting = Some(order);
                 }
             }
             _ => {}
+        }
+    }
+
+    /// Closes the window, or stays, as the painter has decided.
+    fn decide(&mut self, decision: Decision, work: &mut PanelContext<'_>) {
+        match decision {
+            Decision::None => {}
+            Decision::Stay => self.dialog = None,
+            Decision::Name => self.save_as(work),
+            Decision::Close => (self.dialog, self.closes) = (None, true),
         }
     }
 

@@ -62,6 +62,20 @@ impl PaintRows {
         if labelled::named(ui, tr!("Thinner"), hover, slider).changed() {
             work.preferences.loading.thinner = percent / 100.0;
         }
+        self.buttons(ui, work, enter);
+        if before != work.preferences.loading {
+            self.fault = None;
+        }
+        if let Some(fault) = &self.fault {
+            labelled::wrong(ui, &fault.what);
+            if let Some(help) = &fault.help {
+                ui.label(help);
+            }
+        }
+    }
+
+    /// Load and Clean; `enter` loads as well.
+    fn buttons(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, enter: bool) {
         ui.horizontal(|ui| {
             let load = ui.add_enabled(
                 !work.preferences.loading.paint.is_empty(),
@@ -82,15 +96,6 @@ impl PaintRows {
                 crate::widgets::context::ask(work, brush.map(|brush| Clean { brush }));
             }
         });
-        if before != work.preferences.loading {
-            self.fault = None;
-        }
-        if let Some(fault) = &self.fault {
-            labelled::wrong(ui, &fault.what);
-            if let Some(help) = &fault.help {
-                ui.label(help);
-            }
-        }
     }
 
     fn load(&mut self, work: &mut PanelContext<'_>) {

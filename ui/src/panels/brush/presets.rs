@@ -42,7 +42,7 @@ fn shown_name(preset: &Preset) -> &str {
 }
 
 /// Action on a preset.
-enum Deed {
+enum PresetAction {
     Apply,
     Rename,
     Delete,
@@ -64,7 +64,7 @@ impl PresetRows {
             let taken = [tr!("Rename"), tr!("Delete")].map(|word| small_width(ui, word));
             let room = ui.available_width() - taken.iter().sum::<f32>();
             let width = room.ceil().min(NAME);
-            let mut deed = None;
+            let mut action = None;
             entry(
                 ui,
                 |ui| {
@@ -82,44 +82,49 @@ impl PresetRows {
                         .on_hover_text(tr!("Delete {name}", name))
                         .clicked()
                     {
-                        deed = Some(Deed::Delete);
+                        action = Some(PresetAction::Delete);
                     }
                     if ui
                         .small_button(tr!("Rename"))
                         .on_hover_text(tr!("Rename {name}", name))
                         .clicked()
                     {
-                        deed = Some(Deed::Rename);
+                        action = Some(PresetAction::Rename);
                     }
                 },
             );
             if take {
-                deed = Some(Deed::Apply);
+                action = Some(PresetAction::Apply);
             }
-            asked = deed.map(|deed| (place, deed)).or(asked);
+            asked = action.map(|action| (place, action)).or(asked);
         }
-        match asked {
-            Some((place, Deed::Apply)) => {
+        if let Some((place, action)) = asked {
+            self.carry_out(place, action, work);
+        }
+        self.take_back(ui, work);
+        self.save(ui, work);
+    }
+
+    fn carry_out(&mut self, place: usize, action: PresetAction, work: &mut PanelContext<'_>) {
+        match action {
+            PresetAction::Apply => {
                 let preset = work.preferences.presets[place].clone();
                 if let Err(fault) = work.take_up_preset(&preset) {
                     work.notifications.of(&fault);
                 }
             }
-            Some((place, Deed::Rename)) => {
+            PresetAction::Rename => {
                 self.renamed = Some((
                     place,
                     shown_name(&work.preferences.presets[place]).to_owned(),
                 ));
                 self.wrong = None;
             }
-            Some((place, Deed::Delete)) => {
+            PresetAction::Delete => {
                 self.deleted = Some((place, work.preferences.presets.remove(place)));
                 self.renamed = None;
             }
-            None => {}
         }
-        self.take_back(ui, work);
-        self.save(ui, work);
     }
 
     fn take_back(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
