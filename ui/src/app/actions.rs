@@ -99,7 +99,7 @@ impl App {
                 x,
                 y,
                 surface,
-                thinner: self.studio.preferences.loading.share(),
+                thinner: self.studio.preferences.brushes.loading.share(),
                 brush,
             }),
             _ => self.studio.notifications.fault(
@@ -217,7 +217,7 @@ impl App {
 
     /// Draws the force in the hand as an arrow from the brush, as long as its panel is seen.
     pub(super) fn draw_force(&self, painter: &egui::Painter, view: &View) {
-        let seen = self.studio.preferences.panels && self.studio.preferences.is_open("Device");
+        let seen = self.studio.preferences.window.panels && self.studio.preferences.is_open("Device");
         let Some((place_m, force_n)) =
             force_history::force_arrow(&self.studio.rig.live, self.studio.rig.brush_name())
                 .filter(|_| seen)
@@ -278,7 +278,7 @@ fn over_panel(context: &Context) -> bool {
 
 /// The side of the palette for the hand that paints.
 fn side(preferences: &Preferences) -> Side {
-    match preferences.left_handed {
+    match preferences.window.left_handed {
         false => Side::Left,
         true => Side::Right,
     }

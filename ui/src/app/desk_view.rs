@@ -94,7 +94,7 @@ impl DeskView {
         };
         let (canvas, palette) = (studio.rig.live.canvas(), studio.rig.live.palette());
         let mut wanted = canvas.and_then(|canvas| View::of(area, canvas, palette, side, taken));
-        if preferences.mirrored {
+        if preferences.window.mirrored {
             wanted = wanted.map(View::mirrored);
         }
         let pixels_per_point = ui.ctx().pixels_per_point();

@@ -56,7 +56,7 @@ impl Hands {
         (now_ns, studio): (u64, &mut Studio),
     ) {
         let taken = self.mouse.take(now_ns, studio.rig.brush_name());
-        let grip = studio.preferences.mouse;
+        let grip = studio.preferences.brushes.mouse;
         let pixels_per_point = f64::from(context.pixels_per_point());
         let pixel_m = view.map_or(0.0, |view| 1.0 / (view.scale * pixels_per_point));
         let path = self.brush_turn.turned(now_ns, path, &grip, pixel_m);

@@ -131,7 +131,7 @@ impl App {
     /// Width and height that the window had, points.
     #[must_use]
     pub fn size(&self) -> [f32; 2] {
-        self.studio.preferences.size
+        self.studio.preferences.window.size
     }
 
     /// Monitor of the graphics device.
@@ -180,7 +180,7 @@ impl App {
         let waits = !self.sending.dispatcher.waits().is_empty();
         if works || waits || self.studio.shows_devices() {
             STATUS_LOOK
-        } else if self.studio.preferences.panels || self.connection.tracker.hears_another() {
+        } else if self.studio.preferences.window.panels || self.connection.tracker.hears_another() {
             SILENCE
         } else {
             IDLE_LOOK
@@ -273,8 +273,8 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let preferences = &mut self.studio.preferences;
         self.look
-            .follow(ui.ctx(), preferences.theme, &mut preferences.text_size);
-        preferences.is_narrow = ui.max_rect().width() < sides::NARROW;
+            .follow(ui.ctx(), preferences.window.theme, &mut preferences.window.text_size);
+        preferences.window.is_narrow = ui.max_rect().width() < sides::NARROW;
         CentralPanel::default()
             .frame(Frame::NONE)
             .show(ui, |ui| self.show_desk(ui));

@@ -135,7 +135,7 @@ impl Overlay {
             if sides::has_rack(work.preferences) {
                 rack::show(context, work);
             }
-            if work.preferences.panels {
+            if work.preferences.window.panels {
                 self.column.show(context, work);
             }
         }
@@ -250,7 +250,7 @@ impl Overlay {
     ) -> bool {
         match act {
             Action::Mirror => {
-                let mirrored = &mut work.preferences.mirrored;
+                let mirrored = &mut work.preferences.window.mirrored;
                 *mirrored = !*mirrored;
                 let words = match *mirrored {
                     true => tr!("The view is mirrored; the painting is not"),
@@ -285,9 +285,9 @@ impl Overlay {
         work: &mut PanelContext<'_>,
     ) -> bool {
         match act {
-            Action::Panels => work.preferences.panels = !work.preferences.panels,
+            Action::Panels => work.preferences.window.panels = !work.preferences.window.panels,
             Action::Focus => {
-                work.preferences.panels = true;
+                work.preferences.window.panels = true;
                 self.column.focus();
             }
             Action::Reference if self.reference.toggle(work.preferences) => {}
@@ -324,15 +324,15 @@ fn follow_mouse(act: Action, work: &mut PanelContext<'_>) -> bool {
             } else {
                 -TURN_DEG
             };
-            work.preferences.mouse.turn(by_deg);
-            let turn = work.preferences.mouse.turn_deg;
+            work.preferences.brushes.mouse.turn(by_deg);
+            let turn = work.preferences.brushes.mouse.turn_deg;
             work.notifications.note(tr!(
                 "Brush turned by {turn}°",
                 turn = format_args!("{turn:.0}")
             ));
         }
         Action::Follow => {
-            let follows = &mut work.preferences.mouse.follows;
+            let follows = &mut work.preferences.brushes.mouse.follows;
             *follows = !*follows;
             let words = match *follows {
                 true => tr!("The mouse's brush follows the stroke"),
@@ -342,8 +342,8 @@ fn follow_mouse(act: Action, work: &mut PanelContext<'_>) -> bool {
         }
         Action::Lighter | Action::Harder => {
             let by = if act == Action::Harder { PRESS } else { -PRESS };
-            work.preferences.mouse.press(by);
-            let percent = 100.0 * work.preferences.mouse.pressure;
+            work.preferences.brushes.mouse.press(by);
+            let percent = 100.0 * work.preferences.brushes.mouse.pressure;
             let words = tr!(
                 "Mouse presses with {percent} %",
                 percent = format_args!("{percent:.0}")

@@ -119,14 +119,14 @@ fn switch(ui: &mut Ui, work: &mut PanelContext<'_>) {
 fn brushes(ui: &mut Ui, work: &mut PanelContext<'_>) {
     ui.spacing_mut().item_spacing.y = 2.0;
     let hand = work.in_hand().cloned();
-    let own: Vec<_> = work.preferences.own_brushes.clone();
+    let own: Vec<_> = work.preferences.brushes.own_brushes.clone();
     let mut chosen = None;
     let mut is_shown = false;
     for file in library() {
         let in_hand = hand.as_ref().filter(|hand| hand.kind == file.kind);
         let in_hand = in_hand.filter(|hand| is_of_library(hand));
         is_shown |= in_hand.is_some();
-        let remembered = work.preferences.widths_mm.get(&file.kind).copied();
+        let remembered = work.preferences.brushes.widths_mm.get(&file.kind).copied();
         let held_mm = in_hand.map(|hand| hand.head.width_mm);
         let place = Place {
             name: called(&file.kind),
@@ -221,7 +221,7 @@ fn cell(ui: &mut Ui, work: &PanelContext<'_>, place: &Place<'_>) -> Response {
     let words = format!(
         "{}, {}",
         place.name,
-        work.preferences.units.width(place.width_mm)
+        work.preferences.window.units.width(place.width_mm)
     );
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, place.in_hand, &words));
     if ui.is_rect_visible(area) {

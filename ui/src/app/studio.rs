@@ -33,6 +33,6 @@ impl Studio {
 
     /// True while the panel of the devices is open.
     pub(super) fn shows_devices(&self) -> bool {
-        self.preferences.panels && self.preferences.is_open("Device")
+        self.preferences.window.panels && self.preferences.is_open("Device")
     }
 }

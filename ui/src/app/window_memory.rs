@@ -86,6 +86,6 @@ fn remember_size(context: &Context, preferences: &mut Preferences) {
     });
     // The window system does not know of the text size.
     if let Some(size) = size.map(|size| size * context.zoom_factor()) {
-        preferences.size = size.round().into();
+        preferences.window.size = size.round().into();
     }
 }

@@ -125,7 +125,7 @@ impl Files {
         match act {
             Action::New => {
                 let unkept = UnsavedState::of(work.rig);
-                let new = NewPainting::new(&folder(work), work.preferences.units, unkept);
+                let new = NewPainting::new(&folder(work), work.preferences.window.units, unkept);
                 self.begin(Dialog::New(new));
             }
             Action::Open => {

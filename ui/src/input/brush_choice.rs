@@ -175,7 +175,7 @@ impl PanelContext<'_> {
         };
         let width_mm = file.head.width_mm;
         self.preferences
-            .widths_mm
+            .brushes.widths_mm
             .insert(file.kind.clone(), width_mm);
         let in_hand = self.rig.in_hand;
         if let Some(own) = self.rig.brushes.get_mut(in_hand) {
@@ -187,9 +187,9 @@ impl PanelContext<'_> {
     /// Writes what the brush in the hand was loaded with into the field of its paint, wherever that was asked for.
     fn loaded(&mut self, load: &Load) {
         let name = self.rig.brush_name();
-        let known = self.preferences.loading.edit(name, &self.rig.library);
+        let known = self.preferences.brushes.loading.edit(name, &self.rig.library);
         if load.brush.as_str() == name && known.ok().as_ref() != Some(load) {
-            self.preferences.loading = BrushLoad {
+            self.preferences.brushes.loading = BrushLoad {
                 paint: written(&load.mixture),
                 beside: load.beside.as_ref().map(written),
                 thinner: 0.0,
@@ -238,12 +238,12 @@ impl PanelContext<'_> {
         let brush = self.rig.brush_name().to_owned();
         let before = self
             .preferences
-            .before_preset
+            .brushes.before_preset
             .take_if(|before| before.brush == brush);
-        if !is_limited && self.preferences.loading.thinner == 0.0 && before.is_none() {
+        if !is_limited && self.preferences.brushes.loading.thinner == 0.0 && before.is_none() {
             return;
         }
-        self.preferences.loading.thinner = 0.0;
+        self.preferences.brushes.loading.thinner = 0.0;
         let words = match before {
             Some(_) => {
                 tr!(
@@ -253,8 +253,8 @@ impl PanelContext<'_> {
             None => tr!("This brush lays full paint: no limit, no thinner."),
         };
         if let Some(before) = before {
-            self.preferences.mouse.pressure = before.pressure;
-            self.preferences.mouse = self.preferences.mouse.sane();
+            self.preferences.brushes.mouse.pressure = before.pressure;
+            self.preferences.brushes.mouse = self.preferences.brushes.mouse.sane();
             let tuning = Tuning {
                 brush,
                 stiffness: before.stiffness,
@@ -293,7 +293,7 @@ impl PanelContext<'_> {
             return;
         }
         self.lay_full_paint();
-        let width_mm = self.preferences.widths_mm.get(&file.kind);
+        let width_mm = self.preferences.brushes.widths_mm.get(&file.kind);
         let scaled = width_mm.and_then(|width_mm| file.scaled_to(*width_mm).ok());
         self.take_up(scaled.unwrap_or_else(|| file.clone()));
     }
@@ -319,7 +319,7 @@ impl PanelContext<'_> {
             return;
         };
         let (now_mm, range) = (file.head.width_mm, widths_mm(file));
-        let units = self.preferences.units;
+        let units = self.preferences.window.units;
         let next_mm = next_width_mm(now_mm, up);
         let file = match range.contains(&next_mm) {
             true => resized(file, next_mm).ok(),

@@ -70,7 +70,7 @@ impl SizeDrag {
             let words = format!(
                 "{} {}",
                 called(&file.kind),
-                work.preferences.units.width(width_mm)
+                work.preferences.window.units.width(width_mm)
             );
             tell(context, from, &words);
         } else {

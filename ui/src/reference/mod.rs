@@ -117,7 +117,7 @@ impl Reference {
             .open(&mut open)
             .collapsible(false)
             .frame(frame.fill(fill.gamma_multiply(preferences.opacity)))
-            .default_size(preferences.size)
+            .default_size(preferences.window.size)
             .min_size(LEAST)
             .resizable(true);
         let window = self.frame.placed(window, context, palette, &preferences);

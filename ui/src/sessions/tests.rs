@@ -406,7 +406,7 @@ fn the_bar_looks_as_in_its_picture() {
     let state = || {
         let mut bench = context_bench::Bench::new();
         bench.rig.replay = Some(replay(false));
-        bench.preferences.panels = false;
+        bench.preferences.window.panels = false;
         (TransportBar::default(), bench)
     };
     overlay_bench::picture(

@@ -31,9 +31,9 @@ impl PanelContext<'_> {
             mode: mode.map_or("normal", |(name, _)| name).to_owned(),
             flow: handling.flow,
             most_m: handling.most_m,
-            loading: self.preferences.loading.clone(),
+            loading: self.preferences.brushes.loading.clone(),
             clean: false,
-            pressure: Some(self.preferences.mouse.pressure),
+            pressure: Some(self.preferences.brushes.mouse.pressure),
         })
     }
 
@@ -50,7 +50,7 @@ impl PanelContext<'_> {
         let (tune, handle) = preset.edits(&brush)?;
         let mut loading = preset.loading.clone();
         if loading.paint.is_empty() && loading.thinner > 0.0 {
-            loading.paint.clone_from(&self.preferences.loading.paint);
+            loading.paint.clone_from(&self.preferences.brushes.loading.paint);
         }
         let load: Option<Edit> = match loading.paint.is_empty() {
             true if preset.clean => Some(
@@ -62,8 +62,8 @@ impl PanelContext<'_> {
             true => None,
             false => Some(loading.edit(&brush, &self.rig.library)?.into()),
         };
-        let (tuning, pressure) = (self.rig.tuning(), self.preferences.mouse.pressure);
-        let before = &mut self.preferences.before_preset;
+        let (tuning, pressure) = (self.rig.tuning(), self.preferences.brushes.mouse.pressure);
+        let before = &mut self.preferences.brushes.before_preset;
         before.take_if(|before| before.brush != brush);
         before.get_or_insert(BeforePreset {
             brush: brush.clone(),
@@ -75,8 +75,8 @@ impl PanelContext<'_> {
         self.requests.send(tune);
         self.requests.send(handle);
         if let Some(pressure) = preset.pressure {
-            self.preferences.mouse.pressure = pressure;
-            self.preferences.mouse = self.preferences.mouse.sane();
+            self.preferences.brushes.mouse.pressure = pressure;
+            self.preferences.brushes.mouse = self.preferences.brushes.mouse.sane();
         }
         if loading.paint.is_empty() && loading.thinner > 0.0 {
             let percent = 100.0 * loading.thinner;
@@ -85,10 +85,10 @@ impl PanelContext<'_> {
                 percent = format_args!("{percent:.0}")
             );
             self.notifications.note(words);
-            self.preferences.loading.thinner = loading.thinner;
+            self.preferences.brushes.loading.thinner = loading.thinner;
         }
         if !loading.paint.is_empty() {
-            self.preferences.loading = loading;
+            self.preferences.brushes.loading = loading;
         }
         if let Some(load) = load {
             self.then(load.into());

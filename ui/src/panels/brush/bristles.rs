@@ -84,7 +84,7 @@ pub(super) fn show(
     for number in &NUMBERS {
         let value = (number.of)(&mut wanted);
         let (unit, decimals, sign) = match number.unit {
-            MILLIMETRES => work.preferences.units.small(),
+            MILLIMETRES => work.preferences.window.units.small(),
             other => (1.0, 2, other),
         };
         let mut shown = *value / unit;

@@ -67,7 +67,7 @@ impl Panel for BrushPanel {
         self.tuning(ui, work);
         modes::show(ui, work, &mut self.handling);
         ui.collapsing(tr!("Mouse"), |ui| {
-            mouse(ui, &work.preferences.keys, &mut work.preferences.mouse);
+            mouse(ui, &work.preferences.keys, &mut work.preferences.brushes.mouse);
         });
         ui.separator();
         self.paint.show(ui, work);
@@ -162,7 +162,7 @@ impl BrushPanel {
 
     /// Width slider; true while it is dragged.
     fn width(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, file: &BrushFile) -> bool {
-        let (unit_mm, decimals, sign) = work.preferences.units.small();
+        let (unit_mm, decimals, sign) = work.preferences.window.units.small();
         let mut width = file.head.width_mm / unit_mm;
         let hover = work.preferences.keys.hint(
             ui.ctx(),

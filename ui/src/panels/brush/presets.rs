@@ -52,14 +52,14 @@ impl PresetRows {
     pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         ui.strong(tr!("Presets"));
         let mut asked = None;
-        for place in 0..work.preferences.presets.len() {
+        for place in 0..work.preferences.brushes.presets.len() {
             if self.renamed.as_ref().is_some_and(|(own, _)| *own == place) {
                 self.rename(ui, work, place);
                 continue;
             }
-            let preset = &work.preferences.presets[place];
+            let preset = &work.preferences.brushes.presets[place];
             let name = shown_name(preset).to_owned();
-            let words = preset.words(work.preferences.units);
+            let words = preset.words(work.preferences.window.units);
             let mut take = false;
             let taken = [tr!("Rename"), tr!("Delete")].map(|word| small_width(ui, word));
             let room = ui.available_width() - taken.iter().sum::<f32>();
@@ -108,7 +108,7 @@ impl PresetRows {
     fn carry_out(&mut self, place: usize, action: PresetAction, work: &mut PanelContext<'_>) {
         match action {
             PresetAction::Apply => {
-                let preset = work.preferences.presets[place].clone();
+                let preset = work.preferences.brushes.presets[place].clone();
                 if let Err(fault) = work.take_up_preset(&preset) {
                     work.notifications.of(&fault);
                 }
@@ -116,12 +116,12 @@ impl PresetRows {
             PresetAction::Rename => {
                 self.renamed = Some((
                     place,
-                    shown_name(&work.preferences.presets[place]).to_owned(),
+                    shown_name(&work.preferences.brushes.presets[place]).to_owned(),
                 ));
                 self.wrong = None;
             }
             PresetAction::Delete => {
-                self.deleted = Some((place, work.preferences.presets.remove(place)));
+                self.deleted = Some((place, work.preferences.brushes.presets.remove(place)));
                 self.renamed = None;
             }
         }
@@ -139,8 +139,8 @@ impl PresetRows {
             |ui| back = ui.small_button(tr!("Bring back")).clicked(),
         );
         if back {
-            let place = (*place).min(work.preferences.presets.len());
-            work.preferences.presets.insert(place, preset.clone());
+            let place = (*place).min(work.preferences.brushes.presets.len());
+            work.preferences.brushes.presets.insert(place, preset.clone());
             self.deleted = None;
         }
     }
@@ -163,11 +163,11 @@ impl PresetRows {
         }
         let name = name.trim().to_owned();
         let is_kept = ui.input(|input| input.key_pressed(Key::Escape));
-        let others = work.preferences.presets.iter().enumerate();
+        let others = work.preferences.brushes.presets.iter().enumerate();
         let others = others.filter(|(other, _)| *other != place);
         match check_name(&name, others.map(|(_, preset)| preset.name.as_str())) {
             _ if is_kept => {}
-            Ok(()) => work.preferences.presets[place].name = name,
+            Ok(()) => work.preferences.brushes.presets[place].name = name,
             Err(what) => work.notifications.fault(what, String::new()),
         }
         self.renamed = None;
@@ -189,13 +189,13 @@ impl PresetRows {
             let name = self.name.trim().to_owned();
             let others = work
                 .preferences
-                .presets
+                .brushes.presets
                 .iter()
                 .map(|preset| preset.name.as_str());
             match check_name(&name, others) {
                 Ok(()) => {
                     if let Some(preset) = work.preset_in_hand(&name) {
-                        work.preferences.presets.push(preset);
+                        work.preferences.brushes.presets.push(preset);
                         self.name.clear();
                     }
                 }

@@ -176,7 +176,7 @@ fn the_hand_and_the_lasting_paint_are_switched() {
     let mut harness = panel();
     harness.get_by_label("Left-handed").click();
     harness.run();
-    assert!(harness.state().preferences.left_handed);
+    assert!(harness.state().preferences.window.left_handed);
     harness.get_by_label("Palette never runs out").click();
     harness.run();
     let expected = Command::from(Piles {

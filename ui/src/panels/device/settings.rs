@@ -188,11 +188,11 @@ pub(super) fn window_pen(ui: &mut Ui, curve: &mut CurveEditor, work: &mut PanelC
         .show(ui, |ui| {
             ui.label(tr!("Pressure"));
             const STRAIGHT: &[[f64; 2]] = &[[0.0, 0.0], [1.0, 1.0]];
-            let own = work.preferences.pen_curve.clone();
+            let own = work.preferences.brushes.pen_curve.clone();
             let sensed = work.rig.pen_pressure;
             let actual = if own.is_empty() { STRAIGHT } else { &own };
             if let Some(drawn) = curve.show(ui, "pen", actual, sensed) {
-                work.preferences.pen_curve = drawn;
+                work.preferences.brushes.pen_curve = drawn;
             }
             note(ui, tr!("Press here: over a panel the pen paints nothing."));
         });

@@ -40,7 +40,7 @@ impl PanelContext<'_> {
             return;
         };
         let wells = wells_of(mixtures, palette.cells, palette.cell_m);
-        let wells = match self.preferences.left_handed {
+        let wells = match self.preferences.window.left_handed {
             false => wells,
             true => mirrored(&wells, size_m(palette)),
         };

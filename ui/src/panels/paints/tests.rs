@@ -49,7 +49,7 @@ fn laid(harness: &mut Harness<'_, Bench>) -> Vec<String> {
 #[test]
 fn a_click_loads_the_brush_with_the_paint() {
     let mut bench = Bench::new();
-    bench.preferences.loading.beside = Some("Bone Black".into());
+    bench.preferences.brushes.loading.beside = Some("Bone Black".into());
     let mut harness = panel(bench);
     write(&mut harness, "Search", "pb 28");
     harness.get_by_label("Cobalt Blue").click();
@@ -60,7 +60,7 @@ fn a_click_loads_the_brush_with_the_paint() {
         brush: BrushName::main(),
     });
     assert_eq!(harness.state_mut().commands(), [load]);
-    assert_eq!(harness.state().preferences.loading.paint, "Cobalt Blue");
+    assert_eq!(harness.state().preferences.brushes.loading.paint, "Cobalt Blue");
     let white = harness.query_by_label("Titanium White to the palette");
     assert!(white.is_none(), "it is not searched for");
 }
@@ -170,8 +170,8 @@ fn sets_are_kept_shown_laid_out_renamed_deleted_and_brought_back() {
             "Yellow Ochre=0.5,Bone Black=0.5".into(),
         ],
     };
-    harness.state_mut().preferences.paint_sets.push(own);
-    assert_eq!(harness.state().preferences.paint_sets[0].paints.len(), 10);
+    harness.state_mut().preferences.brushes.paint_sets.push(own);
+    assert_eq!(harness.state().preferences.brushes.paint_sets[0].paints.len(), 10);
     harness.get_by_label("Set").click();
     harness.run();
     harness.get_by_label("Earth").click();
@@ -187,19 +187,19 @@ fn sets_are_kept_shown_laid_out_renamed_deleted_and_brought_back() {
     write(&mut harness, "Name", "Ground");
     harness.get_by_label("Rename the set").click();
     harness.run();
-    assert_eq!(harness.state().preferences.paint_sets[1].name, "Ground");
+    assert_eq!(harness.state().preferences.brushes.paint_sets[1].name, "Ground");
     harness.get_by_label("Delete set").click();
     harness.run();
-    assert_eq!(harness.state().preferences.paint_sets.len(), 1);
+    assert_eq!(harness.state().preferences.brushes.paint_sets.len(), 1);
     harness.get_by_label("Bring back").click();
     harness.run();
-    assert_eq!(harness.state().preferences.paint_sets[1].name, "Ground");
+    assert_eq!(harness.state().preferences.brushes.paint_sets[1].name, "Ground");
 }
 
 #[test]
 fn a_set_of_paints_that_the_rig_lacks_is_told() {
     let mut bench = Bench::new();
-    bench.preferences.paint_sets.push(PaintSet {
+    bench.preferences.brushes.paint_sets.push(PaintSet {
         name: "Old".into(),
         paints: vec!["Lead White".into()],
     });
