@@ -217,7 +217,8 @@ impl App {
 
     /// Draws the force in the hand as an arrow from the brush, as long as its panel is seen.
     pub(super) fn draw_force(&self, painter: &egui::Painter, view: &View) {
-        let seen = self.studio.preferences.window.panels && self.studio.preferences.is_open("Device");
+        let seen =
+            self.studio.preferences.window.panels && self.studio.preferences.is_open("Device");
         let Some((place_m, force_n)) =
             force_history::force_arrow(&self.studio.rig.live, self.studio.rig.brush_name())
                 .filter(|_| seen)

@@ -272,8 +272,11 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let preferences = &mut self.studio.preferences;
-        self.look
-            .follow(ui.ctx(), preferences.window.theme, &mut preferences.window.text_size);
+        self.look.follow(
+            ui.ctx(),
+            preferences.window.theme,
+            &mut preferences.window.text_size,
+        );
         preferences.window.is_narrow = ui.max_rect().width() < sides::NARROW;
         CentralPanel::default()
             .frame(Frame::NONE)

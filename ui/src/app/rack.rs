@@ -11,8 +11,8 @@ use eframe::egui::{
 use maulstick_brush::BrushFile;
 use maulstick_ui_kit::language::known;
 
-use crate::input::brush_choice::{called, is_of_library, library};
 use crate::render::brush::icon_cache;
+use crate::settings::brush_library::{called, is_of_library, library};
 use crate::widgets::context::PanelContext;
 
 /// Width of the rack, points.

@@ -24,7 +24,8 @@ pub(crate) fn rack_side(preferences: &Preferences) -> WindowSide {
 #[must_use]
 pub(crate) fn column_side(preferences: &Preferences) -> WindowSide {
     preferences
-        .window.panel_side
+        .window
+        .panel_side
         .unwrap_or_else(|| rack_side(preferences))
 }
 

@@ -30,7 +30,7 @@ impl WindowMemory {
             notifications.of(&fault);
             Preferences::default()
         });
-        language::choose(saved.language.as_deref());
+        language::choose(saved.window.language.as_deref());
         if let Some(what) = saved.keys.fault() {
             notifications.fault(
                 what,

@@ -44,15 +44,15 @@ use choose::ChooseFile;
 use close::{ClosePainting, Decision};
 pub(crate) use dialog::wrong;
 use dialog::{Answer, in_words};
-use open::discard_prompt::UnsavedState;
 use dropped::Dropped;
 use export::ExportPicture;
 use maulstick_client::dispatcher::Outcome;
 use maulstick_client::request::Request;
 use new::NewPainting;
 use open::OpenPainting;
-use painting_file::{folder, stem};
+use open::discard_prompt::UnsavedState;
 use open::recent::RecentList;
+use painting_file::{folder, stem};
 use save_as::SaveAs;
 use sketch_offer::{Choice, SketchOffer};
 

@@ -11,8 +11,8 @@ use maulstick_types::command::{Command, RigCommand};
 use crate::dialogs::browser::{Browser, Purpose};
 use crate::dialogs::dialog::{self, Answer, Foot};
 use crate::dialogs::open::discard_prompt::UnsavedState;
-use crate::dialogs::paths;
 use crate::dialogs::open::recent::RecentList;
+use crate::dialogs::paths;
 
 /// File endings of paintings.
 pub(super) const PAINTINGS: &[&str] = &[paths::PAINTING];

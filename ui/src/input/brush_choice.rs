@@ -12,10 +12,9 @@ use maulstick_types::command::{BrushCommand, Command};
 use maulstick_types::edits::{Edit, Handle, Load, Tune};
 use maulstick_types::scene::{BrushHandling, Tuning};
 use maulstick_types::values::{BrushName, BrushToml};
-use maulstick_ui_kit::language::{capitalized, known};
 
 use crate::rig::state::{BrushContact, RigBrush};
-use crate::settings::brush_library::{is_of_library, library, of_library};
+use crate::settings::brush_library::{called, is_of_library, library, of_library};
 use crate::settings::brush_load::{BrushLoad, written};
 use crate::widgets::context::PanelContext;
 use maulstick_client::dispatcher::Outcome;
@@ -37,12 +36,6 @@ pub(crate) fn resized(file: &BrushFile, width_mm: f64) -> Result<BrushFile, Brus
         Some(own) => own.scaled_to(width_mm),
         None => file.scaled_to(width_mm),
     }
-}
-
-/// A kind as a word in a sentence: its first letter large.
-#[must_use]
-pub(crate) fn called(kind: &str) -> String {
-    capitalized(known(kind))
 }
 
 /// Widths that a brush can have, mm: from its file's smallest to its largest size, where all that scales with them stays
@@ -109,7 +102,7 @@ pub(crate) fn read(path: &Path) -> Result<BrushFile, UserError> {
 impl RigBrush {
     /// Its brush file, or the one that it is about to get.
     #[must_use]
-    pub fn wanted(&self) -> Option<&BrushFile> {
+    pub(crate) fn wanted(&self) -> Option<&BrushFile> {
         let known = self.file.as_ref().map(|(file, _)| file);
         self.asked.as_ref().or(known)
     }
@@ -118,12 +111,12 @@ impl RigBrush {
 impl PanelContext<'_> {
     /// Brush file of the brush in the hand, or the one it is about to get; `None` until its node has sent it.
     #[must_use]
-    pub fn in_hand(&self) -> Option<&BrushFile> {
+    pub(crate) fn in_hand(&self) -> Option<&BrushFile> {
         self.rig.brush()?.wanted()
     }
 
     /// True if the brush may be changed now. While the hand has it on a surface it stays as it is, which is said once.
-    pub fn may_change_brush(&mut self) -> bool {
+    pub(crate) fn may_change_brush(&mut self) -> bool {
         let is_lifted = self.rig.contact == BrushContact::Lifted;
         if !is_lifted {
             self.tell_refusal();
@@ -132,7 +125,7 @@ impl PanelContext<'_> {
     }
 
     /// True if a request is refused, which is said once: it changes the brush while the hand has it on a surface.
-    pub fn refuses(&mut self, request: &Request) -> bool {
+    pub(crate) fn refuses(&mut self, request: &Request) -> bool {
         if self.rig.contact == BrushContact::Lifted || !request.changes_brush() {
             return false;
         }
@@ -150,7 +143,7 @@ impl PanelContext<'_> {
     }
 
     /// Gives the hand another brush; the brush already in the hand is not requested again.
-    pub fn take_up(&mut self, file: BrushFile) {
+    pub(crate) fn take_up(&mut self, file: BrushFile) {
         if self.in_hand() == Some(&file) || !self.may_change_brush() {
             return;
         }
@@ -175,7 +168,8 @@ impl PanelContext<'_> {
         };
         let width_mm = file.head.width_mm;
         self.preferences
-            .brushes.widths_mm
+            .brushes
+            .widths_mm
             .insert(file.kind.clone(), width_mm);
         let in_hand = self.rig.in_hand;
         if let Some(own) = self.rig.brushes.get_mut(in_hand) {
@@ -187,7 +181,11 @@ impl PanelContext<'_> {
     /// Writes what the brush in the hand was loaded with into the field of its paint, wherever that was asked for.
     fn loaded(&mut self, load: &Load) {
         let name = self.rig.brush_name();
-        let known = self.preferences.brushes.loading.edit(name, &self.rig.library);
+        let known = self
+            .preferences
+            .brushes
+            .loading
+            .edit(name, &self.rig.library);
         if load.brush.as_str() == name && known.ok().as_ref() != Some(load) {
             self.preferences.brushes.loading = BrushLoad {
                 paint: written(&load.mixture),
@@ -199,7 +197,7 @@ impl PanelContext<'_> {
 
     /// Takes in the outcome of a request: a brush that refused keeps its file; one that has the requested file runs the
     /// command that waited for it.
-    pub fn brush_answered(&mut self, outcome: &Outcome) {
+    pub(crate) fn brush_answered(&mut self, outcome: &Outcome) {
         if let Request::Command {
             command: Command::Edit(Edit::Load(load)),
             ..
@@ -238,7 +236,8 @@ impl PanelContext<'_> {
         let brush = self.rig.brush_name().to_owned();
         let before = self
             .preferences
-            .brushes.before_preset
+            .brushes
+            .before_preset
             .take_if(|before| before.brush == brush);
         if !is_limited && self.preferences.brushes.loading.thinner == 0.0 && before.is_none() {
             return;
@@ -275,7 +274,7 @@ impl PanelContext<'_> {
     }
 
     /// Sends a command to the paint node once the brush in the hand has its requested file.
-    pub fn then(&mut self, command: Command) {
+    pub(crate) fn then(&mut self, command: Command) {
         if !self.may_change_brush() {
             return;
         }
@@ -288,7 +287,7 @@ impl PanelContext<'_> {
 
     /// Takes a brush at the width that it was last used at, or at its own. What a preset made of the one before ends with
     /// it: another brush lays full paint.
-    pub fn choose(&mut self, file: &BrushFile) {
+    pub(crate) fn choose(&mut self, file: &BrushFile) {
         if !self.may_change_brush() {
             return;
         }
@@ -299,7 +298,7 @@ impl PanelContext<'_> {
     }
 
     /// Makes the brush in the hand so wide, as far as it can be, mm.
-    pub fn widen(&mut self, width_mm: f64) {
+    pub(crate) fn widen(&mut self, width_mm: f64) {
         let Some(file) = self.in_hand() else {
             return;
         };
@@ -311,7 +310,7 @@ impl PanelContext<'_> {
     }
 
     /// The next wider brush of its kind, or the next narrower one.
-    pub fn step_width(&mut self, up: bool) {
+    pub(crate) fn step_width(&mut self, up: bool) {
         if !self.may_change_brush() {
             return;
         }
@@ -344,7 +343,7 @@ impl PanelContext<'_> {
     }
 
     /// The brush after the one in the hand, of the library.
-    pub fn next_brush(&mut self) {
+    pub(crate) fn next_brush(&mut self) {
         let now = file_kind(self);
         let place = library().iter().position(|file| file.kind == now);
         let next = place.map_or(0, |place| (place + 1) % library().len());

@@ -287,11 +287,17 @@ fn another_language_is_chosen_on_the_page_of_settings_and_holds_at_once() {
         harness.run_steps(3);
     };
     choose_by_name(&mut harness, "Deutsch");
-    assert_eq!(harness.state().preferences.window.language.as_deref(), Some("de"));
+    assert_eq!(
+        harness.state().preferences.window.language.as_deref(),
+        Some("de")
+    );
     harness.get_by_label("Schriftgröße");
     harness.get_by_role_and_label(Role::Button, "Rückgängig");
     choose_by_name(&mut harness, "English");
-    assert_eq!(harness.state().preferences.window.language.as_deref(), Some("en"));
+    assert_eq!(
+        harness.state().preferences.window.language.as_deref(),
+        Some("en")
+    );
     harness.get_by_label("Text size");
     assert!(chosen().is_none());
 }

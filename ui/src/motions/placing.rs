@@ -1,6 +1,8 @@
 //! A motion that follows the pointer over the desk until it is put down, or let go.
 
-use eframe::egui::{Color32, Context, Event, Key, Modifiers, MouseWheelUnit, Painter, PointerButton, Vec2};
+use eframe::egui::{
+    Color32, Context, Event, Key, Modifiers, MouseWheelUnit, Painter, PointerButton, Vec2,
+};
 use glam::DVec3;
 use maulstick_motion::Placement;
 use maulstick_motion::placement::SCALES;

@@ -31,7 +31,7 @@ impl PictureFrame {
         if std::mem::replace(&mut self.is_placed, true) {
             return window;
         }
-        let outer = Vec2::from(preferences.window.size) + AROUND;
+        let outer = Vec2::from(preferences.size) + AROUND;
         let room = context.content_rect();
         window.current_pos(opening(preferences.place.into(), outer, palette, room))
     }

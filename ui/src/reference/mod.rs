@@ -9,9 +9,9 @@
 
 mod frame;
 pub(crate) mod picture;
-pub mod settings;
+pub(crate) mod settings;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use eframe::egui::{
     self, Color32, Context, CornerRadius, Frame, Id, Key, Modifiers, Pos2, Rect, Response,
@@ -117,7 +117,7 @@ impl Reference {
             .open(&mut open)
             .collapsible(false)
             .frame(frame.fill(fill.gamma_multiply(preferences.opacity)))
-            .default_size(preferences.window.size)
+            .default_size(preferences.size)
             .min_size(LEAST)
             .resizable(true);
         let window = self.frame.placed(window, context, palette, &preferences);

@@ -7,7 +7,7 @@ use maulstick_device_setup::fit::FitEvent;
 
 /// A request to the runner of changes.
 #[derive(Clone, Debug, PartialEq)]
-pub enum DeviceOrder {
+pub(crate) enum DeviceOrder {
     /// A change, after those before it.
     Change(SetupChange),
     /// Fits a device to the canvas, by the hand's touches.
@@ -18,7 +18,7 @@ pub enum DeviceOrder {
 
 /// A change of the devices.
 #[derive(Clone, Debug, PartialEq)]
-pub enum SetupChange {
+pub(crate) enum SetupChange {
     /// Lets the user at this machine use its devices.
     Allow,
     /// Adds a device.
@@ -62,7 +62,7 @@ impl SetupChange {
 
 /// A fit in progress.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct FitProgress {
+pub(crate) struct FitProgress {
     /// The device.
     pub device: String,
     /// Its steps so far.
@@ -72,7 +72,7 @@ pub struct FitProgress {
 impl FitProgress {
     /// The corner that is to be touched now.
     #[must_use]
-    pub fn asked_corner(&self) -> Option<Corner> {
+    pub(crate) fn asked_corner(&self) -> Option<Corner> {
         let mut newest = self.events.iter().rev();
         newest.find_map(|event| match event {
             FitEvent::Touch { corner, .. } => Some(*corner),

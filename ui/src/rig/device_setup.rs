@@ -47,7 +47,9 @@ fn carry_out(change: &SetupChange, rig: &str) -> Result<Made, UserError> {
     match change {
         SetupChange::Allow => allow().map(|()| Made::Allowed),
         SetupChange::Add(new) => add(new, rig).map(Made::Added),
-        SetupChange::Use(wanted) => change_device(wanted, rig).map(|changed| Made::Used(changed.device.name)),
+        SetupChange::Use(wanted) => {
+            change_device(wanted, rig).map(|changed| Made::Used(changed.device.name))
+        }
         SetupChange::Rename { device, name } => rename(device, name, rig).map(|()| Made::Renamed {
             device: device.clone(),
             name: name.clone(),

@@ -32,7 +32,7 @@ const MOTION: &str = "motion";
 
 /// A request to recorder or player.
 #[derive(Clone, Debug, PartialEq)]
-pub enum SessionOrder {
+pub(crate) enum SessionOrder {
     /// Records the session from now on.
     Record,
     /// Ends the recording.

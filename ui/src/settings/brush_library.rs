@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 
 use maulstick_brush::BrushFile;
 use maulstick_brush::file::library::LIBRARY;
+use maulstick_ui_kit::language::{capitalized, known};
 
 /// The brushes of the library, in their order.
 pub(crate) fn library() -> &'static [BrushFile] {
@@ -25,4 +26,10 @@ pub(crate) fn of_library(kind: &str) -> Option<&'static BrushFile> {
 pub(crate) fn is_of_library(file: &BrushFile) -> bool {
     let own = of_library(&file.kind).map(|own| own.scaled_to(file.head.width_mm));
     own.is_some_and(|own| own.as_ref() == Ok(file))
+}
+
+/// A kind as a word in a sentence: its first letter large.
+#[must_use]
+pub(crate) fn called(kind: &str) -> String {
+    capitalized(known(kind))
 }

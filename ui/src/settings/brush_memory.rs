@@ -126,7 +126,10 @@ impl Known {
                 pressure: None,
                 ..preset
             };
-            work.preferences.brushes.in_hand.insert(name.to_owned(), held);
+            work.preferences
+                .brushes
+                .in_hand
+                .insert(name.to_owned(), held);
         }
         (self.kept, self.seen) = (Some(used), None);
     }
@@ -160,7 +163,7 @@ mod tests {
     use maulstick_types::edits::Edit;
     use maulstick_types::scene::BrushMode;
 
-    use crate::input::brush_choice::of_library;
+    use crate::settings::brush_library::of_library;
     use crate::settings::preferences::Preferences;
     use crate::test_support::overlay_bench::{Bench, window};
 
@@ -255,7 +258,11 @@ mod tests {
     #[test]
     fn a_brush_that_is_none_is_told_once_and_forgotten() {
         let mut preferences = remembered();
-        let held = preferences.brushes.in_hand.get_mut("main").expect("remembered");
+        let held = preferences
+            .brushes
+            .in_hand
+            .get_mut("main")
+            .expect("remembered");
         held.kind = "broom".into();
         let harness = session(preferences, "round", 10.0);
         let told = harness.state().told();

@@ -2,13 +2,12 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_rig::UserError;
-use maulstick_types::edits::{Clean, Edit, Handle, Tune};
-use maulstick_types::scene::{BrushHandling, BrushMode, MARKER_FLOW, Tuning};
-use maulstick_types::values::BrushName;
+use maulstick_types::edits::{Handle, Tune};
+use maulstick_types::scene::{BrushHandling, MARKER_FLOW, Tuning};
 use maulstick_ui_kit::units::Units;
 use serde::{Deserialize, Serialize};
 
-use crate::settings::brush_library::of_library;
+use crate::settings::brush_library::{called, of_library};
 use crate::settings::brush_load::BrushLoad;
 
 /// The name of a preset, or of a set of paints, has at most so many letters.
@@ -118,6 +117,25 @@ pub(crate) fn classic() -> Vec<Preset> {
 }
 
 impl Preset {
+    /// Short description.
+    #[must_use]
+    pub fn words(&self, units: Units) -> String {
+        let kind = called(&self.kind);
+        let width = units.width(self.width_mm);
+        if self.loading.paint.is_empty() {
+            return format!("{kind}, {width}");
+        }
+        let mut paint = self.loading.paint.clone();
+        if let Some(other) = &self.loading.beside {
+            paint = tr!("{paint} beside {other}", paint, other);
+        }
+        if self.loading.thinner > 0.0 {
+            let percent = (100.0 * self.loading.thinner).round();
+            paint = tr!("{paint}, {percent} % thinner", paint, percent);
+        }
+        format!("{kind}, {width}\n{paint}")
+    }
+
     /// The brush.
     ///
     /// # Errors
@@ -201,7 +219,9 @@ mod tests {
         for preset in &classic {
             let file = preset.brush().expect(&preset.name);
             assert_eq!(file.head.width_mm, preset.width_mm, "{}", preset.name);
-            preset.mode.parse::<BrushMode>().expect("a mode");
+            preset
+                .mode
+                .parse::<maulstick_types::scene::BrushMode>().expect("a mode");
             let others = classic.iter().filter(|other| *other != preset);
             let names = others.map(|other| other.name.as_str());
             assert_eq!(check_name(&preset.name, names), Ok(()));

@@ -110,32 +110,32 @@ impl PanelContext<'_> {
 
     /// The tracing picture of the painting that is open.
     #[must_use]
-    pub fn tracing(&self) -> Option<&Tracing> {
+    pub(crate) fn tracing(&self) -> Option<&Tracing> {
         self.preferences.tracings.0.get(&self.painting()?)
     }
 
     /// The same, to be changed.
-    pub fn tracing_mut(&mut self) -> Option<&mut Tracing> {
+    pub(crate) fn tracing_mut(&mut self) -> Option<&mut Tracing> {
         let painting = self.painting()?;
         self.preferences.tracings.0.get_mut(&painting)
     }
 
     /// Gives the painting that is open another tracing picture, of the strength of the one before.
-    pub fn trace(&mut self, path: &Path) {
+    pub(crate) fn trace(&mut self, path: &Path) {
         if let Some(painting) = self.painting() {
             self.preferences.tracings.trace(painting, path);
         }
     }
 
     /// Takes the tracing picture away.
-    pub fn untrace(&mut self) {
+    pub(crate) fn untrace(&mut self) {
         if let Some(painting) = self.painting() {
             self.preferences.tracings.0.remove(&painting);
         }
     }
 
     /// A painting goes on in another file: so does its tracing picture.
-    pub fn carry_tracing(&mut self, from: &str, to: &str) {
+    pub(crate) fn carry_tracing(&mut self, from: &str, to: &str) {
         let tracings = &mut self.preferences.tracings.0;
         if let Some(tracing) = tracings.remove(from) {
             tracings.insert(to.to_owned(), tracing);
@@ -143,7 +143,7 @@ impl PanelContext<'_> {
     }
 
     /// Another sketch begins: the picture of the one before is not its own.
-    pub fn forget_sketch(&mut self) {
+    pub(crate) fn forget_sketch(&mut self) {
         self.preferences.tracings.0.remove("");
     }
 }

@@ -160,7 +160,7 @@ mod tests {
     use maulstick_types::command::{BrushCommand, Command};
 
     use super::*;
-    use crate::input::brush_choice::of_library;
+    use crate::settings::brush_library::of_library;
     use crate::test_support::overlay_bench::{Bench, press, window};
 
     fn shown() -> Harness<'static, Bench> {

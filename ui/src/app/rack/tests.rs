@@ -23,7 +23,11 @@ fn rack<'a>(bench: Bench) -> Harness<'a, Bench> {
 #[test]
 fn a_click_takes_a_brush_into_the_hand_at_its_width() {
     let mut bench = Bench::new();
-    bench.preferences.brushes.widths_mm.insert("flat".into(), 30.0);
+    bench
+        .preferences
+        .brushes
+        .widths_mm
+        .insert("flat".into(), 30.0);
     let mut harness = rack(bench);
     harness.get_by_label("Flat, 30 mm").click();
     harness.run();

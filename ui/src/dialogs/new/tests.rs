@@ -2,8 +2,11 @@ use super::*;
 use crate::test_support::overlay_bench::picture;
 
 fn asked(change: impl FnOnce(&mut NewPainting)) -> Result<Command, String> {
-    let mut new =
-        NewPainting::kept_in("/nowhere/Painting".into(), Units::Metric, UnsavedState::default());
+    let mut new = NewPainting::kept_in(
+        "/nowhere/Painting".into(),
+        Units::Metric,
+        UnsavedState::default(),
+    );
     new.as_sketch = true;
     change(&mut new);
     new.command()

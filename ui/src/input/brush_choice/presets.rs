@@ -12,7 +12,7 @@ use crate::widgets::context::PanelContext;
 impl PanelContext<'_> {
     /// A preset of the brush in the hand as it is used now; `None` until it is known.
     #[must_use]
-    pub fn preset_in_hand(&self, name: &str) -> Option<Preset> {
+    pub(crate) fn preset_in_hand(&self, name: &str) -> Option<Preset> {
         let file = self.in_hand()?;
         let (tuning, handling) = (self.rig.tuning(), self.rig.handling());
         let text = match is_of_library(file) {
@@ -41,7 +41,7 @@ impl PanelContext<'_> {
     ///
     /// # Errors
     /// A [`UserError`] where something of it is wrong; then nothing is changed.
-    pub fn take_up_preset(&mut self, preset: &Preset) -> Result<(), UserError> {
+    pub(crate) fn take_up_preset(&mut self, preset: &Preset) -> Result<(), UserError> {
         if !self.may_change_brush() {
             return Ok(());
         }
@@ -50,7 +50,9 @@ impl PanelContext<'_> {
         let (tune, handle) = preset.edits(&brush)?;
         let mut loading = preset.loading.clone();
         if loading.paint.is_empty() && loading.thinner > 0.0 {
-            loading.paint.clone_from(&self.preferences.brushes.loading.paint);
+            loading
+                .paint
+                .clone_from(&self.preferences.brushes.loading.paint);
         }
         let load: Option<Edit> = match loading.paint.is_empty() {
             true if preset.clean => Some(
@@ -94,24 +96,5 @@ impl PanelContext<'_> {
             self.then(load.into());
         }
         Ok(())
-    }
-
-    /// Short description.
-    #[must_use]
-    pub fn words(&self, units: Units) -> String {
-        let kind = crate::input::brush_choice::called(&preset.kind);
-        let width = units.width(preset.width_mm);
-        if preset.loading.paint.is_empty() {
-            return format!("{kind}, {width}");
-        }
-        let mut paint = preset.loading.paint.clone();
-        if let Some(other) = &preset.loading.beside {
-            paint = tr!("{paint} beside {other}", paint, other);
-        }
-        if preset.loading.thinner > 0.0 {
-            let percent = (100.0 * preset.loading.thinner).round();
-            paint = tr!("{paint}, {percent} % thinner", paint, percent);
-        }
-        format!("{kind}, {width}\n{paint}")
     }
 }

@@ -5,7 +5,7 @@ use maulstick_brush::BrushFile;
 use maulstick_ui_kit::labelled;
 use maulstick_ui_kit::language::translated;
 
-use crate::input::brush_choice::{is_of_library, of_library};
+use crate::settings::brush_library::{is_of_library, of_library};
 use crate::widgets::context::PanelContext;
 
 /// Unit that is shown as the painter has chosen.

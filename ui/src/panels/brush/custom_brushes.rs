@@ -58,7 +58,10 @@ fn add_file(ui: &Ui, work: &mut PanelContext<'_>, path: PathBuf) -> bool {
     icon_cache::forget(ui.ctx(), &path);
     match icon_cache::own(ui.ctx(), &path) {
         Ok(file) => {
-            work.preferences.brushes.own_brushes.retain(|known| *known != path);
+            work.preferences
+                .brushes
+                .own_brushes
+                .retain(|known| *known != path);
             work.preferences.brushes.own_brushes.push(path);
             work.take_up((*file).clone());
             true

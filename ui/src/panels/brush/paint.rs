@@ -100,7 +100,11 @@ impl PaintRows {
 
     fn load(&mut self, work: &mut PanelContext<'_>) {
         let brush = work.rig.brush_name().to_owned();
-        let load = work.preferences.brushes.loading.edit(&brush, &work.rig.library);
+        let load = work
+            .preferences
+            .brushes
+            .loading
+            .edit(&brush, &work.rig.library);
         self.fault = match load {
             Ok(load) => {
                 work.then(load.into());

@@ -140,7 +140,10 @@ impl PresetRows {
         );
         if back {
             let place = (*place).min(work.preferences.brushes.presets.len());
-            work.preferences.brushes.presets.insert(place, preset.clone());
+            work.preferences
+                .brushes
+                .presets
+                .insert(place, preset.clone());
             self.deleted = None;
         }
     }
@@ -189,7 +192,8 @@ impl PresetRows {
             let name = self.name.trim().to_owned();
             let others = work
                 .preferences
-                .brushes.presets
+                .brushes
+                .presets
                 .iter()
                 .map(|preset| preset.name.as_str());
             match check_name(&name, others) {

@@ -264,7 +264,13 @@ fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
     assert!(saved[0].file.is_empty(), "it is of the library");
     // Another brush, and the preset again.
     harness.state_mut().work().next_brush();
-    harness.state_mut().preferences.brushes.loading.paint.clear();
+    harness
+        .state_mut()
+        .preferences
+        .brushes
+        .loading
+        .paint
+        .clear();
     harness.state_mut().commands();
     harness.run();
     harness.get_by_label("Ink").click();
@@ -283,7 +289,10 @@ fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
         matches!(then, Some((Command::Edit(Edit::Load(_)), _))),
         "once it is a round one"
     );
-    assert_eq!(harness.state().preferences.brushes.loading.paint, "Bone Black");
+    assert_eq!(
+        harness.state().preferences.brushes.loading.paint,
+        "Bone Black"
+    );
     harness.get_by_label("Rename").click();
     harness.run();
     harness.run();
@@ -291,13 +300,19 @@ fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
     harness.run();
     harness.key_press(Key::Enter);
     harness.run();
-    assert_eq!(harness.state().preferences.brushes.presets[0].name, "Ink wash");
+    assert_eq!(
+        harness.state().preferences.brushes.presets[0].name,
+        "Ink wash"
+    );
     harness.get_by_label("Delete").click();
     harness.run();
     assert!(harness.state().preferences.brushes.presets.is_empty());
     harness.get_by_label("Bring back").click();
     harness.run();
-    assert_eq!(harness.state().preferences.brushes.presets[0].name, "Ink wash");
+    assert_eq!(
+        harness.state().preferences.brushes.presets[0].name,
+        "Ink wash"
+    );
 }
 
 #[test]
@@ -324,9 +339,7 @@ fn a_preset_that_was_spoilt_changes_nothing_and_is_told() {
         assert!(bench.requests.take().is_empty(), "{preset:?}");
     }
     assert!(
-        bench
-            .work()
-            .take_up_preset(&Preset::default()).is_ok(),
+        bench.work().take_up_preset(&Preset::default()).is_ok(),
         "a fault would pass"
     );
 }

@@ -24,12 +24,12 @@ pub(crate) fn mixtures(palette: &Surface) -> Vec<Mixture> {
 impl PanelContext<'_> {
     /// Mixtures in the wells of the palette, from the top; empty before there is a palette.
     #[must_use]
-    pub fn wells(&self) -> Vec<Mixture> {
+    pub(crate) fn wells(&self) -> Vec<Mixture> {
         self.rig.live.palette().map_or_else(Vec::new, mixtures)
     }
 
     /// Lays these mixtures in the palette's wells, from the top.
-    pub fn lay_wells(&mut self, mixtures: &[Mixture]) {
+    pub(crate) fn lay_wells(&mut self, mixtures: &[Mixture]) {
         if mixtures.len() > MOST {
             return self.notifications.fault(
                 tr!("A palette holds at most {most} paints.", most = MOST),

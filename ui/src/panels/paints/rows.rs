@@ -64,13 +64,21 @@ pub(super) fn show(panel: &mut PaintsPanel, ui: &mut Ui, work: &mut PanelContext
         });
     match asked {
         Some((tube, Deed::Load)) => {
-            work.preferences.brushes.loading.paint.clone_from(&tube.text);
+            work.preferences
+                .brushes
+                .loading
+                .paint
+                .clone_from(&tube.text);
             work.preferences.brushes.loading.beside = None;
             if tube.name == THINNER {
                 work.preferences.brushes.loading.thinner = 0.0;
             }
             let brush = work.rig.brush_name().to_owned();
-            let load = work.preferences.brushes.loading.edit(&brush, &work.rig.library);
+            let load = work
+                .preferences
+                .brushes
+                .loading
+                .edit(&brush, &work.rig.library);
             match load {
                 Ok(load) => work.then(load.into()),
                 Err(fault) => work.notifications.of(&fault),

@@ -106,7 +106,10 @@ impl SetRows {
         });
         if back {
             let place = (*place).min(work.preferences.brushes.paint_sets.len());
-            work.preferences.brushes.paint_sets.insert(place, set.clone());
+            work.preferences
+                .brushes
+                .paint_sets
+                .insert(place, set.clone());
             self.deleted = None;
         }
     }
@@ -139,7 +142,9 @@ impl SetRows {
 
     fn rename(&mut self, work: &mut PanelContext<'_>, shown: &mut Option<String>, place: usize) {
         if let Some(name) = self.named(work, Some(place)) {
-            work.preferences.brushes.paint_sets[place].name.clone_from(&name);
+            work.preferences.brushes.paint_sets[place]
+                .name
+                .clone_from(&name);
             *shown = Some(name);
         }
     }

@@ -60,7 +60,10 @@ fn a_click_loads_the_brush_with_the_paint() {
         brush: BrushName::main(),
     });
     assert_eq!(harness.state_mut().commands(), [load]);
-    assert_eq!(harness.state().preferences.brushes.loading.paint, "Cobalt Blue");
+    assert_eq!(
+        harness.state().preferences.brushes.loading.paint,
+        "Cobalt Blue"
+    );
     let white = harness.query_by_label("Titanium White to the palette");
     assert!(white.is_none(), "it is not searched for");
 }
@@ -171,7 +174,12 @@ fn sets_are_kept_shown_laid_out_renamed_deleted_and_brought_back() {
         ],
     };
     harness.state_mut().preferences.brushes.paint_sets.push(own);
-    assert_eq!(harness.state().preferences.brushes.paint_sets[0].paints.len(), 10);
+    assert_eq!(
+        harness.state().preferences.brushes.paint_sets[0]
+            .paints
+            .len(),
+        10
+    );
     harness.get_by_label("Set").click();
     harness.run();
     harness.get_by_label("Earth").click();
@@ -187,13 +195,19 @@ fn sets_are_kept_shown_laid_out_renamed_deleted_and_brought_back() {
     write(&mut harness, "Name", "Ground");
     harness.get_by_label("Rename the set").click();
     harness.run();
-    assert_eq!(harness.state().preferences.brushes.paint_sets[1].name, "Ground");
+    assert_eq!(
+        harness.state().preferences.brushes.paint_sets[1].name,
+        "Ground"
+    );
     harness.get_by_label("Delete set").click();
     harness.run();
     assert_eq!(harness.state().preferences.brushes.paint_sets.len(), 1);
     harness.get_by_label("Bring back").click();
     harness.run();
-    assert_eq!(harness.state().preferences.brushes.paint_sets[1].name, "Ground");
+    assert_eq!(
+        harness.state().preferences.brushes.paint_sets[1].name,
+        "Ground"
+    );
 }
 
 #[test]
