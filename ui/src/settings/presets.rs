@@ -1,8 +1,8 @@
 //! Presets: brushes with their paint, by name.
 
 use maulstick_brush::BrushFile;
+use maulstick_painting::edits::{Clean, Handle, Tune};
 use maulstick_rig::UserError;
-use maulstick_types::edits::{Handle, Tune};
 use maulstick_types::scene::{BrushHandling, MARKER_FLOW, Tuning};
 use maulstick_ui_kit::units::Units;
 use serde::{Deserialize, Serialize};
@@ -221,7 +221,8 @@ mod tests {
             assert_eq!(file.head.width_mm, preset.width_mm, "{}", preset.name);
             preset
                 .mode
-                .parse::<maulstick_types::scene::BrushMode>().expect("a mode");
+                .parse::<maulstick_types::scene::BrushMode>()
+                .expect("a mode");
             let others = classic.iter().filter(|other| *other != preset);
             let names = others.map(|other| other.name.as_str());
             assert_eq!(check_name(&preset.name, names), Ok(()));

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use maulstick_painting::edits::Load;
 use maulstick_rig::UserError;
 use maulstick_rig::command_client::CommandClient;
-use maulstick_types::edits::Load;
 use maulstick_types::values::BrushName;
 
 use super::Supervisor;

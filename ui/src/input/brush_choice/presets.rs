@@ -1,7 +1,8 @@
 //! Presets taken up, and made of the brush in the hand.
 
+use maulstick_painting::edits::Clean;
 use maulstick_rig::UserError;
-use maulstick_types::edits::{Clean, Edit};
+use maulstick_types::Edit;
 use maulstick_types::scene::BrushMode;
 use maulstick_types::values::BrushName;
 
