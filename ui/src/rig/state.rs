@@ -12,7 +12,7 @@ use maulstick_device_setup::listing::DeviceListing;
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::Sketches;
 use maulstick_types::command::Command;
-use maulstick_types::scene::{BrushHandling, Scene, Tuning};
+use maulstick_types::scene::{BrushHandling, Tuning};
 use maulstick_ui_kit::display_transform::DisplayTransform;
 use maulstick_ui_kit::swatches::Showing;
 
@@ -148,7 +148,7 @@ impl RigState {
 
     /// Puts a scene on the desk.
     #[cfg(test)]
-    pub(crate) fn lay(&mut self, scene: Scene) {
+    pub(crate) fn lay(&mut self, scene: maulstick_types::scene::Scene) {
         self.desk = Some(Desk::of(&scene));
         self.live.scene = Some(scene);
     }

@@ -1,7 +1,7 @@
 //! Presets: brushes with their paint, by name.
 
 use maulstick_brush::BrushFile;
-use maulstick_painting::edits::{Clean, Handle, Tune};
+use maulstick_painting::edits::{Handle, Tune};
 use maulstick_rig::UserError;
 use maulstick_types::scene::{BrushHandling, MARKER_FLOW, Tuning};
 use maulstick_ui_kit::units::Units;
