@@ -39,7 +39,9 @@ pub(super) fn run(options: &RecorderOptions) -> Result<i32, UserError> {
         topic: ALL.to_owned(),
         lasts: None,
         division: Division {
-            last: section.last().map_err(UserError::usage)?,
+            last: section
+                .last()
+                .map_err(|error| UserError::usage(error.to_string()))?,
             quota_bytes: section.quota_mb.map(|mb| mb.saturating_mul(1_000_000)),
             ..Division::default()
         },

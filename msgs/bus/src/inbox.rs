@@ -41,7 +41,7 @@ impl Wake {
         Self::default()
     }
 
-    /// Rings: the waiting thread, or the next one to wait, goes on.
+    /// Rings: the waiting thread, or the next one to wait, continues.
     pub fn ring(&self) {
         let (rung, condition) = &*self.inner;
         *rung.lock().unwrap_or_else(PoisonError::into_inner) = true;

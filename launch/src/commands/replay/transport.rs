@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use maulstick_device::player::Rate;
+use maulstick_device::player::{Rate, RateError};
 
 /// Slowest and fastest rate.
 pub(super) const RATES: std::ops::RangeInclusive<f64> = 0.1..=100.0;
@@ -59,7 +59,8 @@ impl FromStr for Order {
 /// # Errors
 /// What is wrong with it.
 pub(super) fn parse_rate(text: &str) -> Result<Rate, String> {
-    match text.parse()? {
+    let rate: Rate = text.parse().map_err(|error: RateError| error.to_string())?;
+    match rate {
         Rate::Times(rate) if !RATES.contains(&rate) => {
             Err(format!("{rate} is no rate from .1 to 100, nor 'max'"))
         }

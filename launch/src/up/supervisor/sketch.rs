@@ -39,7 +39,7 @@ pub(in crate::up) fn begin(sketches: &Sketches) -> Option<PathBuf> {
 /// Removes the sketches that leave and of which the painter was told, and those on which nothing was ever painted. One
 /// that is open in another rig stays.
 pub(in crate::up) fn tidy(sketches: &Sketches) {
-    for sketch in sketches.told() {
+    for sketch in sketches.notified() {
         // Who has it open has it locked.
         if glance(&sketch.path).is_ok() {
             tracing::info!("{} goes: the newer sketches stay", sketch.path.display());
