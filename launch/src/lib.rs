@@ -12,7 +12,6 @@
 //! | [`destination`] | the display or file that colours go to: profile and gamut |
 //! | [`viewing`] | options of light, observer and rule |
 //! | [`swatch`] | colours in the terminal |
-//! | [`attached`] | attached devices, as the system lists them |
 //! | [`backend`] | backend of the paint's steps |
 //! | [`cells`] | the side of the cells that pictures are painted with |
 //! | [`doctor`] | what of this machine keeps a rig from painting well |
@@ -58,7 +57,6 @@
 //! - `topic bridge` serves JSON of what is watched only. `topic graph` reads zenoh's administration space.
 
 pub mod advice;
-pub mod attached;
 pub mod beside;
 pub mod cli;
 pub mod commands;

@@ -115,7 +115,7 @@ impl Panel for CanvasPanel {
 
 /// Size of the canvas; another size means another painting.
 fn size(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
-    let (unit_m, unit) = work.preferences.units.large();
+    let (unit_m, unit) = work.preferences.window.units.large();
     let [width, height] = canvas
         .cells
         .map(|cells| f64::from(cells) * canvas.cell_m / unit_m);
@@ -163,7 +163,7 @@ fn shown<'a>(name: &'a str, measured: &'a str) -> &'a str {
 
 /// Preferences of the painter, the same for every painting.
 fn preferences(ui: &mut Ui, work: &mut PanelContext<'_>) {
-    ui.checkbox(&mut work.preferences.left_handed, tr!("Left-handed"))
+    ui.checkbox(&mut work.preferences.window.left_handed, tr!("Left-handed"))
         .on_hover_text(tr!(
             "The palette lies at the right, brushes and panels at the left"
         ));

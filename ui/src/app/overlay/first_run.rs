@@ -218,7 +218,7 @@ mod tests {
     fn the_line_gives_way_to_the_palette_at_either_side() {
         for left_handed in [false, true] {
             let mut harness = day(false);
-            harness.state_mut().preferences.left_handed = left_handed;
+            harness.state_mut().preferences.window.left_handed = left_handed;
             harness.set_size([1280.0, 800.0].into());
             for left in [0.0, 350.0, 600.0, 900.0] {
                 let palette = Rect::from_min_size([left, 0.0].into(), [380.0, 800.0].into());

@@ -6,13 +6,13 @@ use crate::rig::state::RigState;
 
 /// State of the painting that would be closed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Unkept {
+pub(crate) struct UnsavedState {
     /// True if the painting is only in memory and has paint on it.
     would_go: bool,
     let_go: bool,
 }
 
-impl Unkept {
+impl UnsavedState {
     /// The painting on the easel.
     #[must_use]
     pub(crate) fn of(rig: &RigState) -> Self {

@@ -96,7 +96,7 @@ fn head(ui: &mut Ui, side: WindowSide, work: &mut PanelContext<'_>) {
                 button.on_hover_text(name).clicked()
             };
             if named(ui, "×", tr!("Hide the panels")) {
-                work.preferences.panels = false;
+                work.preferences.window.panels = false;
             }
             let other = side.other();
             let (word, name) = match other {
@@ -104,7 +104,7 @@ fn head(ui: &mut Ui, side: WindowSide, work: &mut PanelContext<'_>) {
                 WindowSide::Right => (tr!("To the right"), tr!("Move the panels to the right")),
             };
             if named(ui, word, name) {
-                work.preferences.panel_side = Some(other);
+                work.preferences.window.panel_side = Some(other);
             }
             let size = ui.available_size_before_wrap();
             let (area, handle) = ui.allocate_exact_size(size, Sense::drag());
@@ -120,7 +120,7 @@ fn head(ui: &mut Ui, side: WindowSide, work: &mut PanelContext<'_>) {
                 let window = ui.ctx().content_rect();
                 let to = half_of(window, pointer);
                 if handle.drag_stopped() && to != side {
-                    work.preferences.panel_side = Some(to);
+                    work.preferences.window.panel_side = Some(to);
                 } else if handle.dragged() && to != side {
                     mark(ui.ctx(), window, to);
                 }
@@ -160,7 +160,7 @@ mod tests {
     use maulstick_types::command::{BrushCommand, Command};
 
     use super::*;
-    use crate::input::brush_choice::of_library;
+    use crate::settings::brush_library::of_library;
     use crate::test_support::overlay_bench::{Bench, press, window};
 
     fn shown() -> Harness<'static, Bench> {
@@ -207,7 +207,7 @@ mod tests {
             .click_accesskit();
         harness.run_steps(3);
         assert!(left_of(&harness, "Tubes") < 100.0);
-        let kept = harness.state().preferences.panel_side;
+        let kept = harness.state().preferences.window.panel_side;
         assert_eq!(kept, Some(WindowSide::Left));
         // Neither rack nor bar is under them.
         let column = left_of(&harness, "Tubes") + COLUMN;
@@ -216,7 +216,7 @@ mod tests {
         let handle = harness.get_by_label("Hide the panels").rect().center() - vec2(150.0, 0.0);
         drag(&mut harness, handle, vec2(600.0, 100.0), None);
         assert_eq!(
-            harness.state().preferences.panel_side,
+            harness.state().preferences.window.panel_side,
             Some(WindowSide::Right)
         );
         assert!(left_of(&harness, "Tubes") > 450.0);

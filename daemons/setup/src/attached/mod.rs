@@ -20,7 +20,7 @@ use nix::unistd::{AccessFlags, access};
 use serde::Serialize;
 
 /// The rule by which udev lets a person at the machine use its devices.
-pub const UDEV_RULES: &str = include_str!("../../../tools/udev/70-maulstick.rules");
+pub const UDEV_RULES: &str = include_str!("../../../../tools/udev/70-maulstick.rules");
 
 /// A device at a node below `/dev`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

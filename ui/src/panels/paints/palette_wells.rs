@@ -24,12 +24,12 @@ pub(crate) fn mixtures(palette: &Surface) -> Vec<Mixture> {
 impl PanelContext<'_> {
     /// Mixtures in the wells of the palette, from the top; empty before there is a palette.
     #[must_use]
-    pub fn wells(&self) -> Vec<Mixture> {
+    pub(crate) fn wells(&self) -> Vec<Mixture> {
         self.rig.live.palette().map_or_else(Vec::new, mixtures)
     }
 
     /// Lays these mixtures in the palette's wells, from the top.
-    pub fn lay_wells(&mut self, mixtures: &[Mixture]) {
+    pub(crate) fn lay_wells(&mut self, mixtures: &[Mixture]) {
         if mixtures.len() > MOST {
             return self.notifications.fault(
                 tr!("A palette holds at most {most} paints.", most = MOST),
@@ -40,7 +40,7 @@ impl PanelContext<'_> {
             return;
         };
         let wells = wells_of(mixtures, palette.cells, palette.cell_m);
-        let wells = match self.preferences.left_handed {
+        let wells = match self.preferences.window.left_handed {
             false => wells,
             true => mirrored(&wells, size_m(palette)),
         };

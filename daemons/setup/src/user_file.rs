@@ -1,4 +1,4 @@
-//! The file of a user's devices, changed without touching what else is written in it, and the running rig told of it.
+//! The file of a user's devices, changed without touching what else is written in it.
 
 use std::collections::BTreeSet;
 use std::fs::DirBuilder;
@@ -9,19 +9,15 @@ use std::path::{Path, PathBuf};
 use maulstick_rig::config::{BrushSection, DeviceSection};
 use maulstick_rig::files::{Kind, write_whole};
 use maulstick_rig::{RigConfig, UserError, user_devices};
-use maulstick_types::command::RigCommand;
-use maulstick_types::values::{DeviceName, DeviceToml};
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, Value};
-
-use crate::commands::client::{Client, Target};
 
 /// The user's devices, read for a change.
 #[derive(Debug)]
-pub(super) struct UserFile {
+pub struct UserFile {
     path: PathBuf,
     text: DocumentMut,
     /// The devices in it.
-    pub(super) devices: Vec<DeviceSection>,
+    pub devices: Vec<DeviceSection>,
 }
 
 impl UserFile {
@@ -29,7 +25,7 @@ impl UserFile {
     ///
     /// # Errors
     /// A [`UserError`] where it cannot be read, with the line.
-    pub(super) fn read() -> Result<Self, UserError> {
+    pub fn read() -> Result<Self, UserError> {
         let path = user_devices::path()?;
         let text = match std::fs::read_to_string(&path) {
             Ok(text) => text,
@@ -52,7 +48,7 @@ impl UserFile {
     }
 
     /// Its path.
-    pub(super) fn path(&self) -> &Path {
+    pub fn path(&self) -> &Path {
         &self.path
     }
 
@@ -60,7 +56,7 @@ impl UserFile {
     ///
     /// # Errors
     /// A [`UserError`] with the nearest name where the user has none.
-    pub(super) fn device(
+    pub fn device(
         &self,
         name: &str,
         in_rig: &[DeviceSection],
@@ -73,7 +69,7 @@ impl UserFile {
     ///
     /// # Errors
     /// A [`UserError`] that says who has it.
-    pub(super) fn check_free(&self, name: &str, in_rig: &[DeviceSection]) -> Result<(), UserError> {
+    pub fn check_free(&self, name: &str, in_rig: &[DeviceSection]) -> Result<(), UserError> {
         let is_it = |device: &DeviceSection| device.name == name;
         if self.devices.iter().any(is_it) {
             let what = format!("you have a device called '{name}' already");
@@ -93,7 +89,7 @@ impl UserFile {
     ///
     /// # Errors
     /// A [`UserError`] where the device is wrong, or the file cannot be written.
-    pub(super) fn put(&mut self, device: &DeviceSection) -> Result<(), UserError> {
+    pub fn put(&mut self, device: &DeviceSection) -> Result<(), UserError> {
         self.change(device)?;
         self.write()
     }
@@ -138,7 +134,7 @@ impl UserFile {
     ///
     /// # Errors
     /// A [`UserError`] where there is no such device, the name is invalid, or the file cannot be written.
-    pub(super) fn rename(&mut self, device: &str, name: &str) -> Result<(), UserError> {
+    pub fn rename(&mut self, device: &str, name: &str) -> Result<(), UserError> {
         self.change_name(device, name)?;
         self.write()
     }
@@ -161,7 +157,7 @@ impl UserFile {
     ///
     /// # Errors
     /// A [`UserError`] where the file cannot be written.
-    pub(super) fn remove(&mut self, name: &str) -> Result<(), UserError> {
+    pub fn remove(&mut self, name: &str) -> Result<(), UserError> {
         self.tables()?.retain(|table| name_of(table) != Some(name));
         self.write()
     }
@@ -237,12 +233,12 @@ fn table(device: &DeviceSection) -> Result<Table, UserError> {
     Ok(written.as_table().clone())
 }
 
-fn toml_text(device: &DeviceSection) -> Result<String, UserError> {
+pub(crate) fn toml_text(device: &DeviceSection) -> Result<String, UserError> {
     toml::to_string(device).map_err(|error| UserError::failure(error.to_string()))
 }
 
 /// The error that neither the user nor the rig has a device called `name`.
-pub(super) fn unknown(name: &str, own: &[DeviceSection], in_rig: &[DeviceSection]) -> UserError {
+pub fn unknown(name: &str, own: &[DeviceSection], in_rig: &[DeviceSection]) -> UserError {
     let what = match in_rig.is_empty() {
         true => format!("you have no device called '{name}'"),
         false => format!("there is no device called '{name}', neither of yours nor of the rig's"),
@@ -253,65 +249,6 @@ pub(super) fn unknown(name: &str, own: &[DeviceSection], in_rig: &[DeviceSection
         true => UserError::usage(what)
             .help("`maulstick device list` shows what is attached, `maulstick device add` adds it"),
         false => UserError::unknown(what, name, names),
-    }
-}
-
-/// The devices of the rig of `target`, none if that does not run.
-///
-/// # Errors
-/// A [`UserError`] where its settings cannot be read.
-pub(super) fn in_rig(target: &Target) -> Result<Vec<DeviceSection>, UserError> {
-    match Client::open(target) {
-        Ok(client) => Ok(client.config()?.device),
-        Err(_) => Ok(Vec::new()),
-    }
-}
-
-/// Starts a device in the rig of `target`, if that runs; what the rig says.
-///
-/// # Errors
-/// A [`UserError`] with the rig's refusal.
-pub(super) fn put_in_rig(
-    target: &Target,
-    device: &DeviceSection,
-) -> Result<Option<String>, UserError> {
-    let Ok(client) = Client::open(target) else {
-        return Ok(None);
-    };
-    let toml = DeviceToml::new(toml_text(device)?)?;
-    client.send(RigCommand::PutDevice { toml }).map(Some)
-}
-
-/// Ends a device in the rig of `target`, if that runs and has it; true if so.
-///
-/// # Errors
-/// A [`UserError`] with the rig's refusal.
-pub(super) fn remove_from_rig(target: &Target, name: &str) -> Result<bool, UserError> {
-    let Ok(client) = Client::open(target) else {
-        return Ok(false);
-    };
-    let has = client.config()?.device.iter().any(|own| own.name == name);
-    if has {
-        let name = DeviceName::new(name)?;
-        client.send(RigCommand::RemoveDevice { name })?;
-    }
-    Ok(has)
-}
-
-/// Checks that the device of that name in the rig is the same as the user's.
-///
-/// # Errors
-/// A [`UserError`] where it is another one.
-pub(super) fn is_same(
-    own: &DeviceSection,
-    running: Option<&DeviceSection>,
-) -> Result<(), UserError> {
-    match running {
-        Some(other) if (&other.driver, &other.address) != (&own.driver, &own.address) => {
-            let what = format!("the rig has another device called '{}'", own.name);
-            Err(UserError::usage(what).help("give yours another name: `maulstick device rename`"))
-        }
-        _ => Ok(()),
     }
 }
 
