@@ -25,6 +25,7 @@
 //! | [`memory`] | memory that a command allocates at once |
 //! | [`picture`] | pictures that a command reads |
 //! | [`outputs`] | files that are written; none replaces one that is read |
+//! | [`runtime`] | the tokio runtime of commands that wait for many things at once |
 //! | [`script`] | a day at the easel, a step after the other |
 //! | [`paintings`] | the bundled paintings |
 //! | [`panics`] | panics as errors that a user can read |
@@ -48,10 +49,7 @@
 //!
 //! # Recordings
 //!
-//! - The recorder is a member that no node waits for; with `[record]` it runs in every rig and ends last. A recording
-//!   of a session holds a copy of the painting's file, taken once the paint's credit covers what was on its way, or
-//!   half a second later. Where the journal breaks off (another paint node, a lost entry or state), another file
-//!   begins.
+//! - `maulstick-recorder` records and replays; with `[record]` a recorder runs in every rig and ends last.
 //! - `take from` makes a take of a session, or of a painting's own record: a copy of the painting taken back to its
 //!   beginning.
 //! - `recording replay --rate max` sends as the brushes have credit; with `--at` it puts a motion down live under the name
@@ -70,6 +68,7 @@ pub mod paintings;
 pub mod panics;
 pub mod performance;
 pub mod processes;
+pub mod runtime;
 pub mod script;
 mod setup;
 pub mod sheet;

@@ -27,10 +27,7 @@ mod takes;
 pub use colour::light;
 pub use device::force_order;
 pub use rig::{begin, client, endpoint, open, save_as, schema, snapshot};
-pub(crate) use streams::listener::Listener;
-pub(crate) use streams::recorder::{
-    Division, RecorderSettings, Ring, Voice, record as record_files,
-};
+pub(crate) use streams::recorder_words::LogFormat;
 pub use streams::{nodes, recording, topic};
 pub use takes::{demo, render, take};
 

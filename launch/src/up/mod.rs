@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use maulstick_bus::RigFolder;
-use maulstick_device::Take;
+use maulstick_device::{Take, use_kit};
 use maulstick_device::player::Rate;
 use maulstick_document::scene;
 use maulstick_optics::PaintLibrary;
@@ -31,7 +31,6 @@ use maulstick_types::Mixture;
 use crate::cells::{check_memory, check_speed, picture_settings};
 use crate::destination::{VIEW, export};
 use crate::document::{Presence, measure, presence, wrong};
-use crate::kit::use_kit;
 use crate::outputs::{Relayed, UsedFile, check_outputs, named_by};
 use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
 use crate::up::conductor::Performance;

@@ -2,11 +2,10 @@
 
 pub mod demo;
 mod fluid_force;
-pub(crate) mod from;
+mod from;
 mod import;
 mod painting_record;
 pub mod render;
 mod render_session;
-pub(crate) mod session_file;
 pub mod take;
 mod take_writer;

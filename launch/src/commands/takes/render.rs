@@ -4,22 +4,21 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use maulstick_brush::speed_limit::FASTEST_M_S;
-use maulstick_device::Take;
+use maulstick_device::{Take, use_kit};
 use maulstick_paint_node::snapshots::write_snapshot;
 use maulstick_painting::{Painting, Sequencer};
+use maulstick_recorder::session_file::SessionFile;
 use maulstick_rig::files::{Kind, ending};
 use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::{Autosave, Offline};
 
 use super::render_session::render_session;
-use super::session_file::SessionFile;
 use crate::backend::choose_backend;
 use crate::cells::picture_settings;
 use crate::commands::progress_bar;
 use crate::destination::export;
 use crate::document::{Presence, go_on, presence, wrong};
 use crate::easel::Easel;
-use crate::kit::use_kit;
 use crate::outputs::{UsedFile, check_apart, check_outputs, named_by};
 use crate::performance::{PaintingOptions, brush_file, library_from, painting_setup, refused};
 use crate::script::{Act, Script, advice};

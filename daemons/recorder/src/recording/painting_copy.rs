@@ -1,23 +1,26 @@
 //! The painting as it is at the beginning of a recording, so that what is accepted from then on can be painted again.
 
 use std::collections::BTreeMap;
-use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::future::pending;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
 
 use maulstick_document::{Checkpoint, record};
-use maulstick_rig::UserError;
+use maulstick_rig::command_client::CommandClient;
+use maulstick_rig::{NodeHandle, UserError, whole_path};
 use maulstick_types::command::FileCommand;
 use maulstick_types::decode;
 use maulstick_types::paint::PaintStatus;
+use tokio::task::{JoinHandle, spawn_blocking};
+use tokio::time::Instant;
 
+use super::event::CopyTrouble;
 use super::on_the_way::{Brush, OnTheWay, Painted};
-use super::voice::{RecorderNews, Voice};
-use crate::commands::client::{Client, Target};
-use crate::commands::open::{LONGEST, whole};
-use crate::commands::streams::listener::ReceivedMessage;
-use crate::commands::takes::from::open_begin;
-use crate::commands::takes::session_file::PAINTING;
-use crate::document::wrong;
+use crate::listener::ReceivedMessage;
+use crate::paintings::{open_begin, wrong};
+use crate::session_file::PAINTING;
+use crate::work::has_rig;
 
 /// Where the credit does not say it, brush states that are on their way at the beginning are painted after this time.
 const SETTLES: Duration = Duration::from_millis(500);
@@ -25,17 +28,15 @@ const SETTLES: Duration = Duration::from_millis(500);
 const LONGEST_LAG: Duration = Duration::from_secs(10);
 /// Time until the paint node is asked again, where it refused.
 const AGAIN: Duration = Duration::from_secs(2);
+/// Longest wait for the paint node.
+const PATIENCE: Duration = Duration::from_secs(3600);
 /// Topic of the paint's status, which has the painting's file.
 const STATUS: &str = "paint/status";
-/// Why a painting without a file is not copied, as the paint node says it.
-const IN_MEMORY: &str = "a painting in memory only cannot be copied";
-/// Interval at which a copy that is waited for is looked at.
-const LOOK: Duration = Duration::from_millis(20);
 
-/// Thread that makes a copy: the painting's file.
+/// Task that makes a copy: the painting's file.
 type Copying = JoinHandle<Result<Vec<u8>, UserError>>;
 
-/// A copy of the painting, made by a thread of its own while the recording goes on.
+/// A copy of the painting, made beside the recording.
 #[derive(Debug)]
 pub(super) struct PaintingCopy {
     /// When the paint node is asked at the latest, unless states are known to be on their way.
@@ -68,15 +69,8 @@ impl PaintingCopy {
         }
     }
 
-    /// Takes in a message of the file. That the painting is in no file is said at once.
-    ///
-    /// # Errors
-    /// A [`UserError`] where nothing can be said.
-    pub(super) fn note(
-        &mut self,
-        received: &ReceivedMessage,
-        voice: Voice,
-    ) -> Result<(), UserError> {
+    /// Takes in a message of the file; returned is a trouble that was not said yet.
+    pub(super) fn note(&mut self, received: &ReceivedMessage) -> Option<CopyTrouble> {
         if self.copying.is_none() {
             self.on_the_way.note(received);
         }
@@ -84,20 +78,19 @@ impl PaintingCopy {
             && !self.is_told
             && decode::<PaintStatus>(&received.bytes)
                 .is_ok_and(|(_, status)| status.path.is_empty());
-        match is_homeless {
-            true => self.refused(IN_MEMORY, voice),
-            false => Ok(()),
+        if is_homeless {
+            self.refused(CopyTrouble::InMemory)
+        } else {
+            None
         }
     }
 
-    /// Takes in that it was refused, which is said once.
-    fn refused(&mut self, why: &str, voice: Voice) -> Result<(), UserError> {
+    /// Takes in that it was refused; returned is the trouble where none was said yet.
+    pub(super) fn refused(&mut self, trouble: CopyTrouble) -> Option<CopyTrouble> {
         self.at = Instant::now() + AGAIN;
         self.is_refused = true;
-        match std::mem::replace(&mut self.is_told, true) {
-            true => Ok(()),
-            false => voice.say(&RecorderNews::LacksPainting { why }),
-        }
+        let was_told = std::mem::replace(&mut self.is_told, true);
+        (!was_told).then_some(trouble)
     }
 
     /// True if the painting has all that was sent before the file, and no other copy is being made.
@@ -115,59 +108,43 @@ impl PaintingCopy {
         }
     }
 
-    /// The painting's file, once it is there. That it is refused is said once.
-    ///
-    /// # Errors
-    /// A [`UserError`] where nothing can be said.
-    pub(super) fn look(
-        &mut self,
-        target: &Target,
-        voice: Voice,
-    ) -> Result<Option<Vec<u8>>, UserError> {
-        let Some(copying) = self.copying.take_if(|copying| copying.is_finished()) else {
-            if self.copying.is_none() && self.is_due() {
-                let target = target.clone();
-                self.copying = Some(std::thread::spawn(move || copy(&target)));
-            }
-            return Ok(None);
+    /// Asks the paint node for it once it may be made.
+    pub(super) fn begin_if_due(&mut self, member: &NodeHandle) {
+        if self.copying.is_none() && self.is_due() {
+            let client = CommandClient::new(Arc::clone(&member.bus), &member.topics);
+            let rig = member.folder.clone();
+            self.copying = Some(spawn_blocking(move || copy(client, &rig)));
+        }
+    }
+
+    /// Waits for the end of the copy that is being made: for ever where none is. Dropped before that, it loses nothing.
+    pub(super) async fn made(copy: &mut Option<Self>) -> Result<Vec<u8>, UserError> {
+        let Some(own) = copy else {
+            return pending().await;
         };
-        let fault = match copying.join() {
-            Ok(Ok(painting)) => return Ok(Some(painting)),
-            Ok(Err(fault)) => fault.what,
-            Err(_) => "internal error: the copy panicked".into(),
+        let Some(copying) = &mut own.copying else {
+            return pending().await;
         };
-        self.refused(&fault, voice)?;
-        Ok(None)
+        let made = copying.await;
+        own.copying = None;
+        made.unwrap_or_else(|_| Err(UserError::failure("internal error: the copy panicked")))
     }
 
     /// True while it is being made.
     pub(super) fn is_made(&self) -> bool {
         self.copying.is_some()
     }
-
-    /// Waits for a copy that is being made, unless it comes to nothing.
-    pub(super) fn wait(self, is_gone: &dyn Fn() -> bool) -> Option<Vec<u8>> {
-        let copying = self.copying?;
-        while !copying.is_finished() {
-            if is_gone() {
-                return None;
-            }
-            // Nothing signals that the rig has gone, so both are looked at.
-            std::thread::sleep(LOOK);
-        }
-        copying.join().ok()?.ok()
-    }
 }
 
 /// A copy of the painting as it is now, without the record of what was painted before.
-fn copy(target: &Target) -> Result<Vec<u8>, UserError> {
+fn copy(mut client: CommandClient, rig: &Path) -> Result<Vec<u8>, UserError> {
     let failed = |error: std::io::Error| UserError::failure(error.to_string());
     let folder = tempfile::tempdir().map_err(failed)?;
     let copy = folder.path().join(PAINTING);
     let command = FileCommand::Copy {
-        path: whole(&copy)?,
+        path: whole_path(&copy)?,
     };
-    Client::open(target)?.send_within(command, LONGEST)?;
+    client.send(command, None, PATIENCE, &|| !has_rig(rig))?;
     // What its journal holds is of this version: another one could not read it.
     let (document, mut sequencer, since) = open_begin(&copy)?;
     document.write_checkpoint(Checkpoint::of(&mut sequencer, since));
@@ -182,12 +159,12 @@ mod tests {
 
     use super::*;
 
-    #[test]
-    fn a_copy_waits_for_the_end_of_one_that_is_of_no_use_any_more() {
+    #[tokio::test]
+    async fn a_copy_waits_for_the_end_of_one_that_is_of_no_use_any_more() {
         let (end, ended) = channel::<()>();
         let mut copy = PaintingCopy::new(None, BTreeMap::new());
         copy.is_told = true;
-        copy.copying = Some(std::thread::spawn(move || {
+        copy.copying = Some(spawn_blocking(move || {
             ended.recv().ok();
             Ok(Vec::new())
         }));
@@ -199,10 +176,8 @@ mod tests {
             assert!(copy.is_told);
         }
         drop(end);
-        let runs = |former: &Copying| !former.is_finished();
-        while copy.former.as_ref().is_some_and(runs) {
-            std::thread::yield_now();
-        }
+        let former = copy.former.as_mut().expect("the first one");
+        former.await.expect("it ends").expect("copied");
         assert!(copy.is_due());
     }
 }

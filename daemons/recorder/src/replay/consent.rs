@@ -11,7 +11,7 @@ use maulstick_types::{Flags, Origin, encode};
 /// Longest wait for the device's daemon.
 const ANSWER: Duration = Duration::from_secs(3);
 /// Time after which a consent is renewed; it holds for three seconds.
-const RENEWAL: Duration = Duration::from_secs(1);
+pub(super) const RENEWAL: Duration = Duration::from_secs(1);
 
 /// A device's consent to a sender.
 pub(super) struct Consent {

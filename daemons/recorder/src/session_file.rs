@@ -1,7 +1,6 @@
 //! A session in a file: a recording that holds the painting as it was, what was accepted since, and the samples of the
 //! hands.
 
-use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -13,33 +12,33 @@ use maulstick_session::RecordedSession;
 use maulstick_session::recorded::SessionFault;
 use maulstick_streams::Recording;
 use maulstick_streams::recording::{RecordedMessage, Topic};
-use maulstick_streams::topic_pattern::{matches, parts};
+use maulstick_streams::topic_pattern::matches;
 use maulstick_types::brush::BrushState;
 use maulstick_types::paint::JournalEntry;
 use maulstick_types::{Header, Message};
 
-use super::take_writer::TakeOrigin;
 
 /// Name of the attached painting.
-pub(crate) const PAINTING: &str = "painting.maul";
+pub const PAINTING: &str = "painting.maul";
 /// Topic of the painting's journal.
-pub(crate) const JOURNAL: &str = "paint/journal";
+pub const JOURNAL: &str = "paint/journal";
 /// Name of the note that a recording has once it was ended.
-const COUNTS: &str = "counts";
+pub const COUNTS: &str = "counts";
 /// Name of the note with the file in which a recording goes on.
-pub(crate) const NEXT: &str = "next";
+pub const NEXT: &str = "next";
 /// Topics of the brush states.
-const STATES: &str = "brush/*/state";
+pub const STATES: &str = "brush/*/state";
 
 /// A session in a file.
 #[derive(Clone, Debug)]
-pub(crate) struct SessionFile {
+pub struct SessionFile {
     path: PathBuf,
-    pub(crate) recording: Recording,
+    /// The recording.
+    pub recording: Recording,
 }
 
 /// What happens in a session, in the order of time.
-pub(crate) enum Event<'a> {
+pub enum Event<'a> {
     /// A record that the painting accepts.
     Accepted(Record),
     /// A message of another topic than the journal and the brush states.
@@ -56,7 +55,7 @@ impl SessionFile {
     ///
     /// # Errors
     /// A [`UserError`] where it cannot be read, or lacks the painting.
-    pub(crate) fn open(path: &Path) -> Result<Option<Self>, UserError> {
+    pub fn open(path: &Path) -> Result<Option<Self>, UserError> {
         Self::of(Recording::open(path)?)
     }
 
@@ -64,7 +63,7 @@ impl SessionFile {
     ///
     /// # Errors
     /// A [`UserError`] where it lacks the painting.
-    pub(crate) fn find(path: &Path) -> Result<Option<Self>, UserError> {
+    pub fn find(path: &Path) -> Result<Option<Self>, UserError> {
         Recording::open(path).map_or(Ok(None), Self::of)
     }
 
@@ -72,7 +71,7 @@ impl SessionFile {
     ///
     /// # Errors
     /// A [`UserError`] where it lacks the painting.
-    pub(crate) fn of(recording: Recording) -> Result<Option<Self>, UserError> {
+    pub fn of(recording: Recording) -> Result<Option<Self>, UserError> {
         let path = recording.path();
         let mut topics = recording.topics().values();
         if !topics.any(|topic| topic.name == JOURNAL) {
@@ -95,7 +94,7 @@ impl SessionFile {
     ///
     /// # Errors
     /// A [`UserError`] where it cannot be written.
-    pub(crate) fn write_painting(&self, to: &Path) -> Result<(), UserError> {
+    pub fn write_painting(&self, to: &Path) -> Result<(), UserError> {
         let written = write_whole(to, Kind::Own, |file| {
             self.recording.copy_attachment(PAINTING, file)
         });
@@ -109,39 +108,14 @@ impl SessionFile {
         })
     }
 
-    /// What a take of it begins with, but for the painting.
-    ///
-    /// # Errors
-    /// A [`UserError`] where an attached file cannot be read.
-    pub(super) fn origin(&self) -> Result<TakeOrigin, UserError> {
-        let mut notes = self.recording.notes().clone();
-        notes.remove(COUNTS);
-        notes.remove(NEXT);
-        let mut files = BTreeMap::new();
-        for name in self.recording.attachments().keys() {
-            if name != PAINTING
-                && let Some(bytes) = self.recording.attachment(name)?
-            {
-                files.insert(name.clone(), bytes);
-            }
-        }
-        let topics = self.recording.topics().values();
-        let brush = |topic: &Topic| Some(parts(STATES, &topic.name)?.first()?.to_string());
-        Ok(TakeOrigin {
-            notes,
-            files,
-            brushes: topics.filter_map(brush).collect(),
-        })
-    }
-
     /// Name of the file in which the recording goes on, if it does.
-    pub(super) fn next(&self) -> Option<&str> {
+    pub fn next(&self) -> Option<&str> {
         let note = self.recording.notes().get(NEXT)?;
         note.get("file").map(String::as_str)
     }
 
     /// Length of the session, ns.
-    pub(crate) fn length_ns(&self) -> u64 {
+    pub fn length_ns(&self) -> u64 {
         let [first, last] = self.recording.times_ns().unwrap_or_default();
         last.saturating_sub(first)
     }
@@ -151,7 +125,7 @@ impl SessionFile {
     ///
     /// # Errors
     /// A [`UserError`] where the file cannot be read, is damaged, or something is missing in it; that of `each`.
-    pub(crate) fn follow(
+    pub fn follow(
         &mut self,
         mut session: RecordedSession,
         sequencer: &mut Sequencer,

@@ -3,14 +3,13 @@
 use std::time::{Duration, Instant};
 
 use maulstick_bus::{Qos, Queue, RigFolder, Subscription};
-use maulstick_rig::pulse::Pulse;
 use maulstick_rig::{NodeArgs, NodeHandle, UserError};
 use maulstick_streams::Traffic;
 use maulstick_streams::topic_pattern::matches;
 use maulstick_streams::traffic::Arrived;
 use maulstick_types::Header;
 
-use crate::commands::client::Target;
+use crate::work::has_rig;
 
 /// Topics whose last message is kept for late joiners.
 const CACHED: [&str; 4] = ["scene", "brush/*/def", "brush/*/look", "stylus/*/info"];
@@ -22,9 +21,12 @@ const REST: Duration = Duration::from_millis(200);
 /// Time for which missing messages are waited for when a measurement ends.
 const LATE: Duration = Duration::from_millis(200);
 
+/// Interval at which it is looked whether the rig is still there.
+const LOOK: Duration = Duration::from_millis(50);
+
 /// A message that was received.
 #[derive(Clone)]
-pub(super) struct ReceivedMessage {
+pub struct ReceivedMessage {
     /// Its topic, without the rig's prefix.
     pub topic: String,
     /// Header, size and time.
@@ -34,7 +36,7 @@ pub(super) struct ReceivedMessage {
 }
 
 /// Receives the topics of a pattern.
-pub(crate) struct Listener {
+pub struct Listener {
     /// This program in the rig.
     pub member: NodeHandle,
     pattern: String,
@@ -42,17 +44,15 @@ pub(crate) struct Listener {
     cached: Vec<Subscription>,
     /// Messages that are none of Maulstick's.
     pub foreign: u64,
-    /// The pulse of one that the launcher watches.
-    pub pulse: Option<Pulse>,
 }
 
 impl Listener {
-    /// Joins the rig.
+    /// Joins a rig as a process of its own, which signals stop.
     ///
     /// # Errors
     /// A [`UserError`] where no rig of that name runs, or the pattern is none.
-    pub(super) fn open(target: &Target, pattern: &str) -> Result<Self, UserError> {
-        let (folder, _) = RigFolder::join(target.rig())?;
+    pub fn open(rig: &str, pattern: &str) -> Result<Self, UserError> {
+        let (folder, _) = RigFolder::join(rig)?;
         let member = NodeHandle::join(&NodeArgs {
             folder: folder.path().to_owned(),
             node: format!("listener-{}", std::process::id()),
@@ -65,7 +65,7 @@ impl Listener {
     ///
     /// # Errors
     /// A [`UserError`] where the pattern is none.
-    pub(crate) fn over(member: NodeHandle, pattern: &str) -> Result<Self, UserError> {
+    pub fn over(member: NodeHandle, pattern: &str) -> Result<Self, UserError> {
         let pattern = pattern.trim_start_matches(member.topics.prefix());
         let is_key = !pattern.is_empty() && pattern.split('/').all(|part| !part.is_empty());
         if !is_key || pattern.contains(['?', '#', '$']) {
@@ -89,19 +89,29 @@ impl Listener {
             live,
             cached,
             foreign: 0,
-            pulse: None,
             member,
         })
     }
 
-    /// The next message until then, or until this program is told to end.
-    pub(super) fn next(&mut self, until: Instant) -> Option<ReceivedMessage> {
-        // However fast they come, the time ends.
-        while !self.member.stop.requested() && Instant::now() < until {
-            let now_ns = self.member.bus.now_ns();
-            if let Some(Err(error)) = self.pulse.as_mut().map(|pulse| pulse.turn(now_ns)) {
-                tracing::debug!("{error}");
+    /// The next message; `None` once this program is told to end. Dropped before that, it loses no message.
+    pub async fn arrival(&mut self) -> Option<ReceivedMessage> {
+        loop {
+            // However fast they come, other tasks have their turn.
+            tokio::task::coop::consume_budget().await;
+            if self.is_over() {
+                return None;
             }
+            if let Some(received) = self.waiting() {
+                return Some(received);
+            }
+            self.member.wake.ringing().await;
+        }
+    }
+
+    /// The next message until then, or until this program is told to end.
+    pub fn next(&mut self, until: Instant) -> Option<ReceivedMessage> {
+        // However fast they come, the time ends.
+        while !self.is_over() && Instant::now() < until {
             if let Some(received) = self.waiting() {
                 return Some(received);
             }
@@ -112,14 +122,14 @@ impl Listener {
     }
 
     /// What has arrived and was not asked for, for a moment at most: more may come meanwhile.
-    pub(super) fn rest(&mut self) -> Vec<ReceivedMessage> {
+    pub fn rest(&mut self) -> Vec<ReceivedMessage> {
         let until = Instant::now() + REST;
         let waiting = std::iter::from_fn(|| self.waiting());
         waiting.take_while(|_| Instant::now() < until).collect()
     }
 
     /// What comes from now on, for a time. What another message has overtaken may come a moment later.
-    pub(super) fn traffic(&mut self, time: Duration) -> Traffic {
+    pub fn traffic(&mut self, time: Duration) -> Traffic {
         let mut traffic = Traffic::since(self.member.bus.now_ns());
         let until = Instant::now() + time;
         while let Some(received) = self.next(until) {
@@ -165,26 +175,34 @@ impl Listener {
 
     /// True for a topic whose last message is kept for late joiners.
     #[must_use]
-    pub(super) fn is_cached(topic: &str) -> bool {
+    pub fn is_cached(topic: &str) -> bool {
         CACHED.iter().any(|pattern| matches(pattern, topic))
     }
 
     /// Messages that this program was too slow for.
     #[must_use]
-    pub(super) fn dropped(&self) -> u64 {
+    pub fn dropped(&self) -> u64 {
         let all = self.cached.iter().chain([&self.live]);
         all.map(|subscription| subscription.counts().dropped).sum()
     }
 
     /// True if this program was told to end.
     #[must_use]
-    pub(super) fn is_over(&self) -> bool {
+    pub fn is_over(&self) -> bool {
         self.member.stop.requested()
+    }
+
+    /// Waits until the rig has gone. Nothing signals that, so its folder is looked at.
+    pub(crate) async fn rig_gone(&self) {
+        let mut look = tokio::time::interval(LOOK);
+        while self.has_rig() {
+            look.tick().await;
+        }
     }
 
     /// True while the rig runs.
     #[must_use]
-    pub(super) fn has_rig(&self) -> bool {
-        RigFolder::join_at(&self.member.folder).is_ok()
+    pub fn has_rig(&self) -> bool {
+        has_rig(&self.member.folder)
     }
 }

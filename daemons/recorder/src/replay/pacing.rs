@@ -2,6 +2,7 @@
 //! what is played is painted, and nothing else waits behind it.
 
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 use maulstick_bus::credit::{RETRY_NS, WINDOW};
 use maulstick_bus::typed::Receiver;
@@ -35,10 +36,7 @@ struct Stream {
 impl Stream {
     /// Longest wait for credit: samples that no brush follows go on by the window, not all at once.
     fn patience_ns(&self) -> u64 {
-        match self.is_followed {
-            true => GONE_NS,
-            false => RETRY_NS,
-        }
+        if self.is_followed { GONE_NS } else { RETRY_NS }
     }
 }
 
@@ -64,8 +62,9 @@ impl Pacing {
         stream.next = next;
     }
 
-    /// True if another sample may be sent: fewer than the window of each device are on their way.
-    pub(super) fn has_credit(&mut self, now_ns: u64) -> bool {
+    /// Time to wait for credit, unless some comes before; `None` where another sample may be sent: fewer than the window of
+    /// each device are on their way.
+    pub(super) fn wait_for_credit(&mut self, now_ns: u64) -> Option<Duration> {
         while let Some(told) = self.consumed.try_recv() {
             let told = told.message;
             let device = Origin {
@@ -85,8 +84,13 @@ impl Pacing {
                 (stream.consumed, stream.progress_ns) = (stream.next, now_ns);
             }
         }
-        let mut streams = self.streams.values();
-        streams.all(|stream| stream.next - stream.consumed < WINDOW)
+        let full = self.streams.values();
+        let full = full.filter(|stream| stream.next - stream.consumed >= WINDOW);
+        let left_ns = full.map(|stream| {
+            let gone_ns = stream.progress_ns + stream.patience_ns() + 1;
+            gone_ns.saturating_sub(now_ns)
+        });
+        left_ns.max().map(Duration::from_nanos)
     }
 }
 
@@ -118,7 +122,7 @@ mod tests {
         for _ in 0..ms {
             // A thousand times as fast as a hand.
             for _ in 0..1000 {
-                if pacing.has_credit(bus.now_ns()) {
+                if pacing.wait_for_credit(bus.now_ns()).is_none() {
                     next += 1;
                     pacing.sent(DEVICE, next, bus.now_ns());
                 }

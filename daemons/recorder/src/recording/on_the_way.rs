@@ -6,10 +6,9 @@ use maulstick_streams::topic_pattern::matches;
 use maulstick_types::decode;
 use maulstick_types::paint::PaintConsumed;
 
-use crate::commands::streams::listener::ReceivedMessage;
+use crate::listener::ReceivedMessage;
+use crate::session_file::STATES;
 
-/// Topic of the brush states.
-pub(super) const STATES: &str = "brush/*/state";
 /// Topic of the paint's credit.
 pub(super) const CREDIT: &str = "paint/consumed";
 

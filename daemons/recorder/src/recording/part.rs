@@ -12,14 +12,10 @@ use maulstick_streams::catalogue::KnownTables;
 use maulstick_streams::traffic::Arrived;
 use maulstick_streams::{RateLimit, RecordingWriter};
 use maulstick_types::HEADER_BYTES;
-use mcap::McapResult;
+use mcap::{McapError, McapResult};
 
-use crate::commands::streams::fault;
-use crate::commands::streams::listener::{Listener, ReceivedMessage};
-use crate::commands::takes::session_file::{NEXT, PAINTING};
-
-/// How a file is created.
-pub(crate) type Create = fn(&Path) -> std::io::Result<File>;
+use crate::listener::{Listener, ReceivedMessage};
+use crate::session_file::{NEXT, PAINTING};
 
 /// A file of a recording.
 pub(super) struct Part {
@@ -39,7 +35,7 @@ impl Part {
     /// Begins a file, with what it takes to understand it later.
     pub(super) fn begin(
         path: &Path,
-        create: Create,
+        create: fn(&Path) -> std::io::Result<File>,
         listener: &Listener,
         json_hz: u32,
     ) -> Result<Self, UserError> {
@@ -161,7 +157,7 @@ impl Part {
     /// Ends it, with the numbers of messages that were lost, dropped and foreign, and the file in which the recording goes on;
     /// returns the number of messages that it holds.
     pub(super) fn finish(
-        mut self,
+        &mut self,
         missing: [u64; 3],
         next: Option<&Path>,
     ) -> Result<u64, UserError> {
@@ -185,4 +181,13 @@ impl Part {
         end().map_err(|error| fault(&self.path, error))?;
         Ok(self.messages)
     }
+}
+
+/// Why a file could not be written.
+fn fault(path: &Path, error: McapError) -> UserError {
+    let error = match error {
+        McapError::Io(error) => error,
+        other => std::io::Error::other(other),
+    };
+    UserError::writing(path, &error)
 }

@@ -1,15 +1,15 @@
 //! The transport of a replay: where it is, how fast it goes on, and the orders that change it. It reads no clock.
 
-use std::str::FromStr;
+use std::time::Duration;
 
 use maulstick_device::player::Rate;
 
 /// Slowest and fastest rate.
-pub(super) const RATES: std::ops::RangeInclusive<f64> = 0.1..=100.0;
+pub const RATES: std::ops::RangeInclusive<f64> = 0.1..=100.0;
 
-/// An order to the transport.
+/// An order to a player.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Order {
+pub enum Order {
     /// Stands still, or goes on.
     Pause,
     /// Goes so far, s; back where it is negative.
@@ -28,53 +28,6 @@ pub(super) enum Order {
     Stronger(f64),
     /// Ends.
     End,
-}
-
-impl FromStr for Order {
-    type Err = String;
-
-    fn from_str(line: &str) -> Result<Self, String> {
-        let (word, rest) = line.trim().split_once(' ').unwrap_or((line.trim(), ""));
-        let number = || match rest.trim().parse::<f64>() {
-            Ok(number) if number.is_finite() => Ok(number),
-            _ => Err(format!("'{line}' lacks a number of seconds")),
-        };
-        match word {
-            "pause" => Ok(Self::Pause),
-            "step" => Ok(Self::Step),
-            "end" => Ok(Self::End),
-            "seek" => number().map(Self::Seek),
-            "skip" => number().map(Self::Skip),
-            "rate" => parse_rate(rest.trim()).map(Self::Rate),
-            "strength" => parse_strength(rest.trim()).map(Self::Strength),
-            _ => Err(format!(
-                "'{line}' is none of pause, step, seek S, skip S, rate R, strength P, end"
-            )),
-        }
-    }
-}
-
-/// A rate within [`RATES`], or `max`.
-///
-/// # Errors
-/// What is wrong with it.
-pub(super) fn parse_rate(text: &str) -> Result<Rate, String> {
-    match text.parse()? {
-        Rate::Times(rate) if !RATES.contains(&rate) => {
-            Err(format!("{rate} is no rate from .1 to 100, nor 'max'"))
-        }
-        rate => Ok(rate),
-    }
-}
-
-/// A strength from 0 to 1.
-///
-/// # Errors
-/// What is wrong with it.
-pub(super) fn parse_strength(text: &str) -> Result<f64, String> {
-    let strength = text.parse().ok();
-    let good = strength.filter(|strength| (0.0..=1.0).contains(strength));
-    good.ok_or_else(|| format!("'{text}' is no strength from 0 to 1"))
 }
 
 /// Where a replay is.
@@ -119,6 +72,16 @@ impl Transport {
     /// True once an event of this time is due.
     pub(super) fn is_due(&self, event_ns: u64) -> bool {
         event_ns <= self.position_ns
+    }
+
+    /// Time until an event of this time is due; `None` while it stands still.
+    pub(super) fn time_to(&self, event_ns: u64) -> Option<Duration> {
+        let left_ns = event_ns.saturating_sub(self.position_ns);
+        match self.rate {
+            _ if self.paused => None,
+            Rate::Max => Some(Duration::ZERO),
+            Rate::Times(rate) => Some(Duration::from_nanos((left_ns as f64 / rate) as u64)),
+        }
     }
 
     /// Where it is, ns since the beginning of the recording.
@@ -204,11 +167,14 @@ mod tests {
         let mut transport = Transport::new([2 * S, 12 * S], Rate::Times(0.5), false);
         transport.look(100 * S);
         assert!(transport.is_due(2 * S) && !transport.is_due(2 * S + 1));
+        let to_next = transport.time_to(3 * S);
+        assert_eq!(to_next, Some(Duration::from_secs(2)));
         transport.look(102 * S);
         assert_eq!(transport.position_ns(), 3 * S);
         transport.order(Order::Pause, None);
         transport.look(109 * S);
         assert_eq!(transport.position_ns(), 3 * S);
+        assert_eq!(transport.time_to(4 * S), None);
         transport.order(Order::Step, Some(4 * S));
         assert_eq!(
             (transport.position_ns(), transport.is_paused()),
@@ -233,17 +199,5 @@ mod tests {
         transport.order(Order::Pause, Some(5 * S));
         transport.look(111 * S);
         assert!(!transport.is_due(5 * S) && !transport.is_over());
-    }
-
-    #[test]
-    fn orders_are_read_and_wrong_ones_are_told() {
-        assert_eq!("seek 3.5".parse(), Ok(Order::Seek(3.5)));
-        assert_eq!(" skip -2\n".parse(), Ok(Order::Skip(-2.0)));
-        assert_eq!("rate max".parse(), Ok(Order::Rate(Rate::Max)));
-        assert_eq!("strength 0.4".parse(), Ok(Order::Strength(0.4)));
-        assert!("strength 1.1".parse::<Order>().is_err());
-        for wrong in ["", "seek", "seek nan", "rate 0", "rate 101", "halt"] {
-            assert!(wrong.parse::<Order>().is_err(), "{wrong}");
-        }
     }
 }

@@ -6,9 +6,9 @@ use maulstick_streams::topic_pattern::matches;
 use maulstick_types::paint::{Entry, JournalEntry, PaintConsumed};
 use maulstick_types::{Header, decode, name_hash};
 
-use super::on_the_way::{Brush, CREDIT, STATES};
-use crate::commands::streams::listener::ReceivedMessage;
-use crate::commands::takes::session_file::JOURNAL;
+use super::on_the_way::{Brush, CREDIT};
+use crate::listener::ReceivedMessage;
+use crate::session_file::{JOURNAL, STATES};
 
 /// Brushes that are remembered.
 const BRUSHES: usize = 64;

@@ -1,12 +1,14 @@
 //! The files of a recording that is divided: their names, and those that go for newer ones.
 
 use std::collections::VecDeque;
+use std::fs::{File, TryLockError};
+use std::io::{Error, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use maulstick_rig::UserError;
-use maulstick_rig::files::first_free;
+use maulstick_rig::files::{create_private, first_free, open_private};
 
-use super::Division;
+use super::recorder::Division;
 
 /// Files into which the time that is kept is divided.
 pub(super) const FILES: u32 = 5;
@@ -17,8 +19,10 @@ const ENDING: &str = "mcap";
 
 /// The files of a recording, the oldest first.
 #[derive(Debug)]
-pub(crate) struct Ring {
+pub struct Ring {
     first: PathBuf,
+    /// Creates the first file.
+    pub(super) create: fn(&Path) -> std::io::Result<File>,
     number: u32,
     /// Files of earlier runs, which go before those of this one.
     earlier: VecDeque<PathBuf>,
@@ -30,10 +34,13 @@ pub(crate) struct Ring {
 }
 
 impl Ring {
-    /// A recording of which everything is kept, or [`FILES`] files, and so many bytes at most.
-    pub(crate) fn new(first: &Path, division: Division) -> Self {
+    /// A recording of which everything is kept, or five files and the newest, and so many bytes at most. Where the first
+    /// file is there already, it is written anew.
+    #[must_use]
+    pub fn new(first: &Path, division: Division) -> Self {
         Self {
             first: first.to_owned(),
+            create: begin_anew,
             number: 1,
             earlier: VecDeque::new(),
             kept: VecDeque::from([first.to_owned()]),
@@ -46,7 +53,7 @@ impl Ring {
     ///
     /// # Errors
     /// A [`UserError`] where the folder cannot be read.
-    pub(crate) fn dated(
+    pub fn dated(
         folder: &Path,
         rig: &str,
         now: &jiff::Zoned,
@@ -68,6 +75,7 @@ impl Ring {
         let (number, newest) = first_free(1, named);
         Ok(Self {
             number,
+            create: create_private,
             kept: VecDeque::from([newest]),
             earlier: earlier.into_iter().map(|(_, path)| path).collect(),
             ..Self::new(&first, division)
@@ -116,10 +124,23 @@ impl Ring {
     }
 }
 
+/// Opens a file to be written anew, once no other program records into it.
+fn begin_anew(path: &Path) -> std::io::Result<File> {
+    let file = open_private(path)?;
+    file.try_lock().map_err(|error| match error {
+        TryLockError::WouldBlock => {
+            Error::new(ErrorKind::ResourceBusy, "another program records into it")
+        }
+        TryLockError::Error(error) => error,
+    })?;
+    file.set_len(0)?;
+    Ok(file)
+}
+
 /// Removes a file; one that is gone already is no fault.
 fn remove(path: &Path) -> Result<(), UserError> {
     match std::fs::remove_file(path) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+        Err(error) if error.kind() != ErrorKind::NotFound => {
             Err(UserError::writing(path, &error))
         }
         _ => Ok(()),

@@ -1,6 +1,6 @@
 //! The device whose hand feels a recording, by contact models or guides.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Qos, Queue};
@@ -9,8 +9,8 @@ use maulstick_streams::recording::RecordedMessage;
 use maulstick_types::haptics::{ContactModel, FluidForce};
 use maulstick_types::stylus::{StylusInfo, StylusSample};
 use maulstick_types::{Origin, decode};
+use tokio::time::timeout;
 
-use super::TURN;
 
 /// Longest wait for the device.
 pub(super) const PATIENCE: Duration = Duration::from_secs(5);
@@ -24,7 +24,7 @@ pub(super) struct Driven {
 
 impl Driven {
     /// Finds the device in the rig, in its current session.
-    pub(super) fn find(member: &NodeHandle, name: &str) -> Result<Self, UserError> {
+    pub(super) async fn find(member: &NodeHandle, name: &str) -> Result<Self, UserError> {
         let (bus, topics) = (&*member.bus, &member.topics);
         let queue = || Queue::Ring(16);
         let sample = topics.sample(name);
@@ -33,30 +33,28 @@ impl Driven {
         let info = topics.stylus_info(name);
         let mut infos: Receiver<StylusInfo> =
             Receiver::new(bus, &info, Qos::Cached, queue(), &member.wake)?;
-        let give_up = Instant::now() + PATIENCE;
         let (mut origin, mut brush) = (None, None);
-        while Instant::now() < give_up && !member.stop.requested() {
-            origin = samples
-                .newest()
-                .map(|sample| sample.header.origin())
-                .or(origin);
-            brush = infos.newest().map(|info| info.message.brush).or(brush);
-            if let (Some(origin), Some(brush)) = (origin, &brush) {
-                return Ok(Self {
-                    name: name.to_owned(),
-                    origin,
-                    brush: match brush.is_empty() {
-                        true => "main".to_owned(),
-                        false => brush.clone(),
-                    },
-                });
+        let found = async {
+            while !member.stop.requested() {
+                let sample = samples.newest();
+                origin = sample.map(|sample| sample.header.origin()).or(origin);
+                brush = infos.newest().map(|info| info.message.brush).or(brush.take());
+                if let (Some(origin), Some(brush)) = (origin, &brush) {
+                    let main = "main".to_owned();
+                    return Some(Self {
+                        name: name.to_owned(),
+                        origin,
+                        brush: if brush.is_empty() { main } else { brush.clone() },
+                    });
+                }
+                member.wake.ringing().await;
             }
-            member.wake.wait(TURN);
-        }
-        Err(
+            None
+        };
+        timeout(PATIENCE, found).await.ok().flatten().ok_or_else(|| {
             UserError::usage(format!("no device called '{name}' is in the rig"))
-                .help("`maulstick device list` shows which are"),
-        )
+                .help("`maulstick device list` shows which are")
+        })
     }
 
     /// A recorded force of paint as one for this device.
