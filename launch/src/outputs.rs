@@ -3,11 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use maulstick_optics::Illuminant;
-use maulstick_rig::{UserError, whole_path};
 use maulstick_rig::config::{RigConfig, is_path};
 use maulstick_rig::files::{FileId, Kind, check_writable, gives_way, is_companion};
+use maulstick_rig::{UserError, whole_path};
 use maulstick_types::values::WholePath;
-
 
 /// A file that a command reads or writes.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -52,7 +52,5 @@ pub use recording::event::{Continuation, CopyTrouble, FileSummary, RecorderEvent
 pub use recording::recorder::{Division, LEAST_LAST, Recorder, RecorderSettings};
 pub use recording::ring::Ring;
 pub use replay::place::TakePlace;
-pub use replay::player::{
-    GuideSettings, Guiding, Player, Position, ReplayReport, ReplaySettings,
-};
+pub use replay::player::{GuideSettings, Guiding, Player, Position, ReplayReport, ReplaySettings};
 pub use replay::transport::{Order, RATES};

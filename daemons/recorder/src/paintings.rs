@@ -43,8 +43,7 @@ pub fn open_begin(path: &Path) -> Result<(Document, Sequencer, u64), UserError> 
     let opened = opened.ok_or_else(|| failed(DocumentError::NoPainting))?;
     let since = opened.snapshot().versions;
     let sequencer = opened.in_its_midst();
-    let sequencer = sequencer.map_err(|refusal| {
-        UserError::usage(refusal.to_string()).advise(refusal.advice())
-    })?;
+    let sequencer = sequencer
+        .map_err(|refusal| UserError::usage(refusal.to_string()).advise(refusal.advice()))?;
     Ok((document, sequencer, since))
 }

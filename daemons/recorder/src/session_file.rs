@@ -17,7 +17,6 @@ use maulstick_types::brush::BrushState;
 use maulstick_types::paint::JournalEntry;
 use maulstick_types::{Header, Message};
 
-
 /// Name of the attached painting.
 pub const PAINTING: &str = "painting.maul";
 /// Topic of the painting's journal.

@@ -18,8 +18,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use maulstick_bus::RigFolder;
-use maulstick_device::{Take, use_kit};
 use maulstick_device::player::Rate;
+use maulstick_device::{Take, use_kit};
 use maulstick_document::scene;
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::config::{DEFAULT, DeviceSection, RigConfig, is_path};

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use maulstick_brush::BrushFile;
+use maulstick_rig::UserError;
 use maulstick_rig::config::{BrushSection, RigConfig, is_path};
 use maulstick_rig::files::{Kind, write_whole};
 use maulstick_rig::user_error::EXIT_FAILURE;
-use maulstick_rig::UserError;
 
 use crate::brush_file;
 use crate::take::Take;

@@ -140,9 +140,7 @@ fn begin_anew(path: &Path) -> std::io::Result<File> {
 /// Removes a file; one that is gone already is no fault.
 fn remove(path: &Path) -> Result<(), UserError> {
     match std::fs::remove_file(path) {
-        Err(error) if error.kind() != ErrorKind::NotFound => {
-            Err(UserError::writing(path, &error))
-        }
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(UserError::writing(path, &error)),
         _ => Ok(()),
     }
 }

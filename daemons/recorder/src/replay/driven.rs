@@ -11,7 +11,6 @@ use maulstick_types::stylus::{StylusInfo, StylusSample};
 use maulstick_types::{Origin, decode};
 use tokio::time::timeout;
 
-
 /// Longest wait for the device.
 pub(super) const PATIENCE: Duration = Duration::from_secs(5);
 
@@ -38,23 +37,34 @@ impl Driven {
             while !member.stop.requested() {
                 let sample = samples.newest();
                 origin = sample.map(|sample| sample.header.origin()).or(origin);
-                brush = infos.newest().map(|info| info.message.brush).or(brush.take());
+                brush = infos
+                    .newest()
+                    .map(|info| info.message.brush)
+                    .or(brush.take());
                 if let (Some(origin), Some(brush)) = (origin, &brush) {
                     let main = "main".to_owned();
                     return Some(Self {
                         name: name.to_owned(),
                         origin,
-                        brush: if brush.is_empty() { main } else { brush.clone() },
+                        brush: if brush.is_empty() {
+                            main
+                        } else {
+                            brush.clone()
+                        },
                     });
                 }
                 member.wake.ringing().await;
             }
             None
         };
-        timeout(PATIENCE, found).await.ok().flatten().ok_or_else(|| {
-            UserError::usage(format!("no device called '{name}' is in the rig"))
-                .help("`maulstick device list` shows which are")
-        })
+        timeout(PATIENCE, found)
+            .await
+            .ok()
+            .flatten()
+            .ok_or_else(|| {
+                UserError::usage(format!("no device called '{name}' is in the rig"))
+                    .help("`maulstick device list` shows which are")
+            })
     }
 
     /// A recorded force of paint as one for this device.

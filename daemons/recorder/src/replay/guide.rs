@@ -144,7 +144,8 @@ async fn guide_as(
 fn hand(settings: &ReplaySettings, recording: &Recording) -> Result<u16, UserError> {
     let is_meant = |topic: &str| {
         let mut chosen = settings.topics.iter();
-        matches(HANDS, topic) && (settings.topics.is_empty() || chosen.any(|own| matches(own, topic)))
+        matches(HANDS, topic)
+            && (settings.topics.is_empty() || chosen.any(|own| matches(own, topic)))
     };
     let topics = recording.topics().iter();
     let hands: Vec<(u16, &str)> = topics

@@ -242,4 +242,3 @@ async fn play(call: Call, controls: Controls) -> Result<(), UserError> {
     }
     streams::replay(&call, &recording, controls).await
 }
-

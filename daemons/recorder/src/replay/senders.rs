@@ -66,7 +66,11 @@ impl Senders<'_> {
     }
 
     /// Tells the rig of the device as which samples are sent.
-    pub(super) fn introduce(&mut self, recording: &Recording, device: &str) -> Result<(), UserError> {
+    pub(super) fn introduce(
+        &mut self,
+        recording: &Recording,
+        device: &str,
+    ) -> Result<(), UserError> {
         let infos: Vec<u16> = recording
             .topics()
             .iter()
@@ -118,7 +122,11 @@ impl Senders<'_> {
     }
 
     /// Sends a message as one of now: its number and its times are new.
-    pub(super) fn send(&mut self, recorded: &str, message: &RecordedMessage) -> Result<(), UserError> {
+    pub(super) fn send(
+        &mut self,
+        recorded: &str,
+        message: &RecordedMessage,
+    ) -> Result<(), UserError> {
         let topic = self.topic(recorded);
         let now_ns = self.member.bus.now_ns();
         let old = message.header;

@@ -18,8 +18,7 @@ const STRONGER: f64 = 0.1;
 const KEYS: &str =
     "space: pause   ← →: 5 s   . : next event   + -: faster, slower   0: beginning   q: end";
 /// What the keys do while a hand is guided.
-const GUIDE_KEYS: &str =
-    "space: let go   [ ]: softer, stronger   ← →: 5 s   0: beginning   q: end";
+const GUIDE_KEYS: &str = "space: let go   [ ]: softer, stronger   ← →: 5 s   0: beginning   q: end";
 
 /// Orders as they come.
 #[derive(Debug)]
@@ -176,7 +175,15 @@ mod tests {
         assert_eq!(parse(" skip -2\n"), Ok(Order::Skip(-2.0)));
         assert_eq!(parse("rate max"), Ok(Order::Rate(Rate::Max)));
         assert_eq!(parse("strength 0.4"), Ok(Order::Strength(0.4)));
-        for wrong in ["", "seek", "seek nan", "rate 0", "rate 101", "halt", "strength 1.1"] {
+        for wrong in [
+            "",
+            "seek",
+            "seek nan",
+            "rate 0",
+            "rate 101",
+            "halt",
+            "strength 1.1",
+        ] {
             assert!(parse(wrong).is_err(), "{wrong}");
         }
     }

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use maulstick_rig::{UserError, whole_path};
 use maulstick_rig::config::{CanvasSection, is_path};
+use maulstick_rig::{UserError, whole_path};
 use maulstick_types::command::{NewCanvas, RigCommand};
 use maulstick_types::values::MaterialName;
 

@@ -38,10 +38,9 @@ impl LogFormat {
                 say!("{}; Ctrl-C ends it", in_words(event));
             }
             (Self::Words, _) => say!("{}", in_words(event)),
-            (
-                Self::Log,
-                RecorderEvent::PaintingAttached { .. } | RecorderEvent::FileEnded(_),
-            ) => tracing::debug!("{}", in_words(event)),
+            (Self::Log, RecorderEvent::PaintingAttached { .. } | RecorderEvent::FileEnded(_)) => {
+                tracing::debug!("{}", in_words(event))
+            }
             (Self::Log, _) if is_full => tracing::debug!("{}", in_words(event)),
             (Self::Log, _) => tracing::info!("{}", in_words(event)),
         }

@@ -10,7 +10,6 @@ use maulstick_streams::recording::RecordedMessage;
 use maulstick_types::paint::{Entry, JournalEntry};
 use maulstick_types::{Flags, Header, Message, Origin, encode, name_hash};
 
-
 /// What a take begins with.
 #[derive(Clone, Debug, Default)]
 pub(super) struct TakeOrigin {
