@@ -1,0 +1,143 @@
+//! The processes of a rig: each started in a group of its own, signalled, and awaited together.
+//!
+//! None can outlive its launcher: the launcher holds its standard input open and it ends when that ends; besides, the
+//! kernel signals it when the launcher's thread that started it dies. That is the main thread, on which the supervisor runs.
+
+use std::collections::BTreeMap;
+use std::future::poll_fn;
+use std::path::Path;
+use std::pin::pin;
+use std::process::{ExitStatus, Stdio};
+use std::task::Poll;
+
+use maulstick_rig::UserError;
+use maulstick_rig::program::own_program;
+use maulstick_rig::user_error::EXIT_USAGE;
+use nix::sys::signal::{Signal, killpg};
+use nix::unistd::Pid;
+use tokio::process::{Child, ChildStdin, Command};
+
+use crate::up::plan::NodeSpec;
+
+/// End of a process.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// With success.
+    Well,
+    /// With an exit code of bad usage: starting it again would not help.
+    Refused(i32),
+    /// Otherwise.
+    Badly,
+}
+
+/// The processes that run, by the names of their nodes. Dropped, all are killed.
+#[derive(Debug, Default)]
+pub struct Processes {
+    running: BTreeMap<String, Process>,
+}
+
+/// A process.
+#[derive(Debug)]
+struct Process {
+    child: Child,
+    group: Option<Pid>,
+    /// Held open until it is asked to end.
+    stdin: Option<ChildStdin>,
+}
+
+impl Processes {
+    /// Starts the process of a node; returns its id.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the system cannot.
+    pub fn start(&mut self, spec: &NodeSpec, folder: &Path) -> Result<u32, UserError> {
+        let program = spec.program;
+        let failed = |error: std::io::Error| {
+            let what = format!("node '{}' cannot be started: {error}", spec.name);
+            UserError::failure(what)
+                .help("the machine may be out of memory or processes: end what is not needed")
+        };
+        let mut child = Command::new(own_program())
+            .arg0(program.process_name())
+            .args(["node", program.subcommand(), "--folder"])
+            .arg(folder)
+            .args(["--node", &spec.name, "--guarded"])
+            .args(&spec.args)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .process_group(0)
+            .kill_on_drop(true)
+            .spawn()
+            .map_err(failed)?;
+        let id = child.id().unwrap_or_default();
+        let process = Process {
+            group: i32::try_from(id).ok().map(Pid::from_raw),
+            stdin: child.stdin.take(),
+            child,
+        };
+        self.running.insert(spec.name.clone(), process);
+        Ok(id)
+    }
+
+    /// Waits for the next process that ends: the name of its node, and how it ended. Dropped before that, it loses none.
+    pub async fn ended(&mut self) -> (String, Ended) {
+        let (name, ended) = poll_fn(|context| {
+            for (name, process) in &mut self.running {
+                // A status that cannot be had is that of no process.
+                if let Poll::Ready(status) = pin!(process.child.wait()).poll(context) {
+                    return Poll::Ready((name.clone(), status.map_or(Ended::Badly, judge)));
+                }
+            }
+            Poll::Pending
+        })
+        .await;
+        self.running.remove(&name);
+        (name, ended)
+    }
+
+    /// True while the process of a node runs.
+    #[must_use]
+    pub fn runs(&self, name: &str) -> bool {
+        self.running.contains_key(name)
+    }
+
+    /// Asks the process of a node to end.
+    pub fn terminate(&mut self, name: &str) {
+        if let Some(process) = self.running.get_mut(name) {
+            process.stdin.take();
+            process.signal(Signal::SIGTERM);
+            // A stopped process hears no other signal.
+            process.signal(Signal::SIGCONT);
+        }
+    }
+
+    /// Kills the process of a node and all that it started; its end is awaited as if it had ended by itself.
+    pub fn kill(&mut self, name: &str) {
+        if let Some(process) = self.running.get(name) {
+            process.signal(Signal::SIGKILL);
+        }
+    }
+}
+
+impl Process {
+    fn signal(&self, signal: Signal) {
+        if let Some(group) = self.group {
+            killpg(group, signal).ok();
+        }
+    }
+}
+
+impl Drop for Processes {
+    fn drop(&mut self) {
+        let processes = self.running.values();
+        processes.for_each(|process| process.signal(Signal::SIGKILL));
+    }
+}
+
+fn judge(status: ExitStatus) -> Ended {
+    match status.code() {
+        Some(0) => Ended::Well,
+        Some(code) if code == EXIT_USAGE => Ended::Refused(code),
+        _ => Ended::Badly,
+    }
+}
