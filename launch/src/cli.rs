@@ -4,15 +4,16 @@ use std::fmt::Write as _;
 
 use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use maulstick_rig::UserError;
-use maulstick_rig::files::{allow_overwriting, clear_on_signals};
+use maulstick_rig::files::allow_overwriting;
 use nix::sys::prctl::set_name;
 
 use crate::advice;
+use crate::beside;
 use crate::commands::completions::{self, CompletionsCommand, Headings};
 use crate::commands::edit::{self, DailyEdits, EditsOf, LayerEdits, PaletteEdits};
 use crate::commands::{
-    bench, brush, canvas, colour, demo, device, endpoint, nodes, painting, recording, render,
-    schema, snapshot, take, topic,
+    brush, canvas, colour, demo, device, endpoint, nodes, painting, recording, render, schema,
+    snapshot, take, topic,
 };
 use crate::doctor;
 use crate::processes::{self, NodeCommand};
@@ -64,7 +65,7 @@ enum Command {
     /// Load, clean, tune, take in hand, set the mode; show brushes, import one
     #[command(subcommand)]
     Brush(brush::BrushCommand),
-    /// List paints, mix them, match a colour, fit paints to measurements
+    /// List paints, mix them, match a colour, draw charts, fit paints to measurements
     #[command(subcommand)]
     Colour(colour::ColourCommand),
     /// Make, paint, show, cut, join, place, retime, recover takes; fill an outline by example
@@ -82,8 +83,6 @@ enum Command {
     /// Make a demo: a take, a painting, a sheet of effects, the force of a fluid
     #[command(subcommand)]
     Demo(demo::DemoCommand),
-    /// Run benchmarks against reference programs
-    Bench(bench::BenchOptions),
     /// Print completions for a shell, write manual pages
     #[command(subcommand)]
     Completions(CompletionsCommand),
@@ -131,7 +130,8 @@ fn help(command: &clap::Command) -> [String; 2] {
 
 /// The program: its short commands have the help of those that they are short for.
 fn program() -> clap::Command {
-    SHORT.iter().fold(Cli::command(), |program, (name, group)| {
+    let program = beside::with_commands(Cli::command());
+    SHORT.iter().fold(program, |program, (name, group)| {
         let group_of = program.find_subcommand(group);
         let long_form = group_of.and_then(|group| group.find_subcommand(name));
         let [about, long] = long_form.map(help).unwrap_or_default();
@@ -165,7 +165,11 @@ fn grouped(program: clap::Command) -> clap::Command {
 /// # Errors
 /// A [`UserError`] as the user sees it.
 pub fn run() -> Result<i32, UserError> {
-    let matches = grouped(program()).get_matches();
+    let matches = match grouped(program()).try_get_matches() {
+        Ok(matches) => matches,
+        Err(error) => return beside::run_unknown(&error),
+    };
+    beside::run_given(&matches)?;
     let Cli { command, overwrite } =
         Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     if overwrite {
@@ -181,8 +185,7 @@ pub fn run() -> Result<i32, UserError> {
         _ => false,
     };
     if !handles_signals {
-        clear_on_signals(crate::EXIT_INTERRUPTED)
-            .map_err(|error| UserError::failure(format!("cannot watch for signals: {error}")))?;
+        beside::clear_files_on_signals()?;
     }
     carry_out(command).map_err(|fault| fault.worded(advice::words))
 }
@@ -209,7 +212,6 @@ fn carry_out(command: Command) -> Result<i32, UserError> {
         Command::Topic(command) => topic::run(&command),
         Command::Device(command) => device::run(&command),
         Command::Demo(command) => demo::run(&command),
-        Command::Bench(options) => bench::run(&options),
         Command::Completions(command) => completions::run(&command, program(), HEADINGS),
     }
 }

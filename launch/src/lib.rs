@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | [`cli`] | the command line |
 //! | [`commands`] | what its subcommands do |
+//! | [`beside`] | commands of programs that lie beside this one |
 //! | [`up`] | the supervisor |
 //! | [`processes`] | the processes of a rig |
 //! | [`page`] | pictures made of patches, pictures and words |
@@ -11,8 +12,6 @@
 //! | [`destination`] | the display or file that colours go to: profile and gamut |
 //! | [`viewing`] | options of light, observer and rule |
 //! | [`swatch`] | colours in the terminal |
-//! | [`chart`] | the mixing chart, and one mixture by four ways of mixing |
-//! | [`sheet`] | the sheet of brushes and their marks |
 //! | [`attached`] | attached devices, as the system lists them |
 //! | [`backend`] | backend of the paint's steps |
 //! | [`cells`] | the side of the cells that pictures are painted with |
@@ -58,7 +57,7 @@
 
 pub mod advice;
 pub mod attached;
-pub mod chart;
+pub mod beside;
 pub mod cli;
 pub mod commands;
 pub mod doctor;
@@ -71,7 +70,6 @@ pub mod processes;
 pub mod runtime;
 pub mod script;
 mod setup;
-pub mod sheet;
 pub mod up;
 
 pub use figures::{page, plot, swatch};

@@ -2,17 +2,20 @@
 
 use std::path::Path;
 
+use clap::Args;
+use clap::builder::PossibleValuesParser;
 use indicatif::ProgressBar;
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
+use maulstick_painting::models::{MODELS, model_called, model_names};
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_rig::UserError;
 use maulstick_session::Offline;
 
+use crate::cells::SheetCells;
 use crate::easel::Easel;
 use crate::performance::refused;
 use crate::script::Script;
-use crate::sheet::Board;
 
 /// Names and scripts of the paintings.
 pub const PAINTINGS: [(&str, &str); 3] = [
@@ -25,6 +28,51 @@ pub const PAINTINGS: [(&str, &str); 3] = [
 const BRUSH: &str = "main";
 /// The share of its head's length by which full pressure presses that brush in.
 const DEPTH_SHARE: f64 = 0.5;
+
+/// What is painted on.
+#[derive(Clone, Copy, Debug)]
+pub struct Board {
+    /// Side of a cell, mm.
+    pub cell_mm: f64,
+    /// Name of the paint model.
+    pub model: &'static str,
+}
+
+impl Board {
+    /// The first paint model on cells of this side, mm.
+    #[must_use]
+    pub fn new(cell_mm: f64) -> Self {
+        Self {
+            cell_mm,
+            model: MODELS[0].name,
+        }
+    }
+}
+
+/// Options of what is painted on.
+#[derive(Args, Clone, Debug)]
+pub struct BoardOptions {
+    #[command(flatten)]
+    cells: SheetCells,
+    /// Paint model [default: impasto]
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(model_names()))]
+    model: Option<String>,
+}
+
+impl BoardOptions {
+    /// The board that is asked for.
+    ///
+    /// # Errors
+    /// A [`UserError`] for a model that there is not.
+    pub fn board(&self) -> Result<Board, UserError> {
+        let board = Board::new(self.cells.side_mm());
+        let Some(model) = &self.model else {
+            return Ok(board);
+        };
+        let model = model_called(model).map_err(refused)?.name;
+        Ok(Board { model, ..board })
+    }
+}
 
 /// The script of a painting.
 ///

@@ -20,17 +20,6 @@ fn numbers(value: &Value) -> Vec<f64> {
         .collect()
 }
 
-/// Size and pixels of a PNG.
-fn picture(place: &Place, name: &str) -> ([u32; 2], Vec<u8>) {
-    let file = std::fs::File::open(place.path(name)).expect("there");
-    let mut reader = png::Decoder::new(std::io::BufReader::new(file))
-        .read_info()
-        .expect("a PNG");
-    let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
-    reader.next_frame(&mut pixels).expect("pixels");
-    ([reader.info().width, reader.info().height], pixels)
-}
-
 /// A paint file of one's own: a white, a grey, a black.
 fn own_paints() -> String {
     let mut text = String::from("# mine\n");
@@ -199,8 +188,6 @@ fn bad_mixes_are_refused() {
     blue(&["--over", "black"], &["--film-um"]);
     blue(&["--film-um", "9", "--thinner", "1.5"], &["1.5", "share"]);
     blue(&["--paints", "none.csv"], &["none.csv", "check the path"]);
-    refused(&["--chart"], &["--output"]);
-    refused(&["--compare", "A", "B", "C"], &["two ends, not 3"]);
     std::fs::write(place.path("light.csv"), "nm,power\n380,1\n390,x\n").expect("written");
     blue(&["--illuminant", "light.csv"], &["light.csv:3", "'x'"]);
     let broken = own_paints().replacen("0.3,", "bad,", 1);
@@ -208,85 +195,6 @@ fn bad_mixes_are_refused() {
     blue(
         &["--paints", "paints.csv"],
         &["paints.csv:4", "'bad'", "column 5"],
-    );
-    has(
-        &fault(
-            &place,
-            &["colour", "mix", "--chart", "-o", "no/chart.png"],
-            1,
-        ),
-        &["no/chart.png", "folder"],
-    );
-}
-
-#[test]
-fn the_mixing_chart_has_every_pair() {
-    let place = Place::new();
-    std::fs::write(place.path("paints.csv"), own_paints()).expect("written");
-    place.done(&["colour", "mix", "--chart", "-o", "all.png"]);
-    place.done(&[
-        "colour",
-        "mix",
-        "--chart",
-        "-o",
-        "own.png",
-        "--paints",
-        "paints.csv",
-    ]);
-    place.done(&[
-        "colour",
-        "mix",
-        "--chart",
-        "-o",
-        "bulb.png",
-        "--illuminant",
-        "A",
-    ]);
-    let (all, pixels) = picture(&place, "all.png");
-    let (own, _) = picture(&place, "own.png");
-    assert!(all[0] > own[0] && all[1] > own[1] + 25 * 30);
-    let mut colours: Vec<&[u8]> = pixels.chunks_exact(3).collect();
-    colours.sort_unstable();
-    colours.dedup();
-    assert!(colours.len() > 2000, "{} colours", colours.len());
-    assert!(picture(&place, "bulb.png").1 != pixels, "another light");
-}
-
-#[test]
-fn four_ways_to_mix_are_compared() {
-    let place = Place::new();
-    let compared = json(&place, &["colour", "mix", "--compare", "-o", "four.png"]);
-    assert_eq!(compared["from"], "Yellow Ochre");
-    let shares = numbers(&compared["shares"]);
-    let rows = compared["rows"].as_array().expect("rows");
-    assert_eq!(rows.len(), 4);
-    let worst = |row: &Value| numbers(&row["delta_e"]).into_iter().fold(0.0, f64::max);
-    for row in rows {
-        assert_eq!(numbers(&row["delta_e"]).len(), shares.len());
-        assert_eq!(row["lab"].as_array().map(Vec::len), Some(shares.len()));
-    }
-    assert!(worst(&rows[0]) == 0.0 && worst(&rows[1]) < 1.0);
-    assert!(worst(&rows[2]) > 3.0 && worst(&rows[3]) > 10.0);
-    assert!(picture(&place, "four.png").0[0] > 800);
-    let ends = json(
-        &place,
-        &[
-            "colour",
-            "mix",
-            "--compare",
-            "Pyrrole Red=0.5,Titanium White=0.5",
-        ],
-    );
-    assert_eq!(
-        (&ends["from"], &ends["to"]),
-        (&"Pyrrole Red".into(), &"Titanium White".into())
-    );
-    let text = place
-        .done(&["colour", "mix", "--compare", "Green Gold", "Bone Black"])
-        .stdout;
-    has(
-        &String::from_utf8_lossy(&text),
-        &["Green Gold to Bone Black", "101 samples", "linear RGB"],
     );
 }
 

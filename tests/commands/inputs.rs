@@ -159,24 +159,6 @@ fn other_commands_write_over_nothing_that_they_read() {
             ["the place of the brush", "link.toml"],
         ),
         (
-            &[
-                "colour", "mix", "--chart", "--paints", "p.csv", "-o", "p.csv",
-            ],
-            ["the place of the paints", "p.csv"],
-        ),
-        (
-            &[
-                "colour",
-                "mix",
-                "--compare",
-                "--illuminant",
-                "lamp.csv",
-                "-o",
-                "lamp.csv",
-            ],
-            ["the spectrum of the light", "lamp.csv"],
-        ),
-        (
             &["take", "embed", "t.mcap", "-o", "t.mcap"],
             ["stays as it is", "t.mcap"],
         ),
@@ -193,10 +175,6 @@ fn other_commands_write_over_nothing_that_they_read() {
         (
             &["brush", "import", "own.toml", "-o", "link.toml"],
             ["the place of the model", "link.toml"],
-        ),
-        (
-            &["demo", "fluid-force", "-o", "q.csv", "--plot", "q.csv"],
-            ["the table and the plot", "one file"],
         ),
         (
             &[

@@ -5,14 +5,16 @@
     dead_code,
     unreachable_pub,
     missing_docs,
+    unused_imports,
     reason = "shared by test programs, each of which uses a part"
 )]
 
 pub mod display;
+pub mod place;
 
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Output, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -28,94 +30,9 @@ use nix::unistd::Pid;
 /// Nothing in a test takes longer than this, unless it hangs.
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Options of a picture that is painted in a fraction of the time.
-pub const COARSE: [&str; 2] = ["--cell-mm", "0.25"];
-
-/// The command under test.
-pub const MAULSTICK: &str = env!("CARGO_BIN_EXE_maulstick");
-
-/// Runs a command that must fail with `code`, and returns what it says.
-pub fn fault(place: &Place, args: &[&str], code: i32) -> String {
-    let output = place.run(args);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
-    assert!(said.starts_with("error: "), "{args:?}: {said}");
-    assert!(!said.contains("panicked"), "{said}");
-    said
-}
-
-/// Asserts that all words are said.
-pub fn has(said: &str, words: &[&str]) {
-    for word in words {
-        assert!(said.contains(word), "'{word}' is missing in: {said}");
-    }
-}
-
-/// A folder for files and one for rigs; both go when dropped.
-pub struct Place {
-    folder: tempfile::TempDir,
-}
+pub use place::{COARSE, MAULSTICK, Place, fault, has};
 
 impl Place {
-    pub fn new() -> Self {
-        Self {
-            folder: tempfile::tempdir().expect("a temporary folder"),
-        }
-    }
-
-    pub fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    /// A command in this place.
-    pub fn maulstick(&self, args: &[&str]) -> Command {
-        let mut command = Command::new(MAULSTICK);
-        command
-            .args(args)
-            .current_dir(self.folder.path())
-            .env("XDG_RUNTIME_DIR", self.folder.path())
-            .env("XDG_CONFIG_HOME", self.folder.path())
-            .env("XDG_STATE_HOME", self.folder.path());
-        command
-    }
-
-    /// Runs a command to its end.
-    pub fn run(&self, args: &[&str]) -> Output {
-        self.maulstick(args).output().expect("started")
-    }
-
-    /// Runs a command that must succeed.
-    pub fn done(&self, args: &[&str]) -> Output {
-        let output = self.run(args);
-        assert!(
-            output.status.success(),
-            "{args:?}: {}",
-            String::from_utf8_lossy(&output.stderr)
-        );
-        output
-    }
-
-    /// A demo of the first `seconds`, as `name`.
-    pub fn short_demo(&self, name: &str, seconds: f64) {
-        let take = maulstick_device::demo::performance(maulstick_device::demo::Subject::Flower, 3);
-        let end = (seconds * 1e9) as u64;
-        let samples = take
-            .samples
-            .into_iter()
-            .filter(|sample| sample.time_ns <= end)
-            .collect();
-        let take = maulstick_device::Take {
-            setup: None,
-            device: "demo".into(),
-            samples,
-        };
-        take.write(&self.path(name)).expect("written");
-    }
-
-    pub fn bytes(&self, name: &str) -> Vec<u8> {
-        std::fs::read(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
-    }
-
     /// Processes of a rig in this place.
     pub fn processes(&self) -> Vec<(u32, String)> {
         let mark = self.folder.path().display().to_string();

@@ -1,10 +1,9 @@
-//! `maulstick brush`: the brushes of the library, their sheet, and one spine tried out by itself.
+//! `maulstick brush`: the brushes of the library, and one spine tried out by itself.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
-use indicatif::ProgressBar;
 use maulstick_brush::file::library::LIBRARY;
 use maulstick_brush::single_spine::{SpineFile, TrialPose, TrialRow, follow, poses};
 use maulstick_brush::{BrushError, BrushFile};
@@ -12,28 +11,24 @@ use maulstick_device::read_brush;
 use maulstick_rig::UserError;
 use maulstick_rig::config::BrushSection;
 use maulstick_rig::config::toml_fault;
-use maulstick_rig::files::{Kind, check_writable, write_whole};
+use maulstick_rig::files::{Kind, write_whole};
 use maulstick_rig::table_file::{MOST_BYTES, read_table};
 use maulstick_types::command::advice::Advice;
 use maulstick_types::values::{BrushName, BrushToml};
 use serde_json::json;
 
-use crate::cells::SheetCells;
 use crate::commands::client::{Client, Target};
 use crate::commands::edit::{self, BrushEdits, EditsOf};
 use crate::commands::say;
-use crate::commands::{print_json, print_text, write_picture};
+use crate::commands::{print_json, print_text};
 use crate::outputs::{UsedFile, check_outputs};
-use crate::performance::{brush_file, library, of_a_brush};
-use crate::sheet::sheet;
+use crate::performance::{brush_file, of_a_brush};
 
 /// `maulstick brush`.
 #[derive(Subcommand, Clone, Debug)]
 pub enum BrushCommand {
     /// List the brushes of the library
     List(ListOptions),
-    /// Draw each brush and its marks
-    Sheet(SheetOptions),
     /// Convert a brush modelled in Blender to a brush file
     Import(ImportOptions),
     /// Take another brush in hand
@@ -62,16 +57,6 @@ pub struct ListOptions {
     /// Print JSON
     #[arg(long)]
     json: bool,
-}
-
-/// Options of `maulstick brush sheet`.
-#[derive(Args, Clone, Debug)]
-pub struct SheetOptions {
-    /// Picture to write, a PNG
-    #[arg(short, long, value_name = "PNG")]
-    output: PathBuf,
-    #[command(flatten)]
-    cells: SheetCells,
 }
 
 /// Options of `maulstick brush solve`.
@@ -121,7 +106,6 @@ pub struct TakeOptions {
 pub fn run(command: &BrushCommand) -> Result<i32, UserError> {
     match command {
         BrushCommand::List(options) => list(options),
-        BrushCommand::Sheet(options) => draw_sheet(options),
         BrushCommand::Import(options) => import(options),
         BrushCommand::Take(options) => take_up(options),
         BrushCommand::Edit(edit) => edit::run(edit),
@@ -190,25 +174,6 @@ fn take_up(options: &TakeOptions) -> Result<i32, UserError> {
         toml: BrushToml::new(toml)?,
     };
     Client::command(&options.target, command)?;
-    Ok(0)
-}
-
-fn draw_sheet(options: &SheetOptions) -> Result<i32, UserError> {
-    let path = &options.output;
-    check_writable(path, Kind::Png).map_err(|error| UserError::writing(path, &error))?;
-    let bar = ProgressBar::new(0).with_message("painting");
-    let picture = sheet(&library()?, options.cells.side_mm(), |done, of| {
-        bar.set_length(of as u64);
-        bar.set_position(done as u64);
-    })?;
-    bar.finish_and_clear();
-    write_picture(&picture, path)?;
-    say!(
-        "{}: {}×{} pixels",
-        path.display(),
-        picture.width,
-        picture.height
-    );
     Ok(0)
 }
 

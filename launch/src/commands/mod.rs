@@ -3,13 +3,12 @@
 //! | module | commands |
 //! | --- | --- |
 //! | [`edit`] | edits, wherever they are grouped: `brush load`, `layer dry`, `painting undo` |
-//! | [`brush`], `canvas`, `colour`, [`device`], [`bench`], `completions` | those of these names, besides edits; `canvas light` lies in `colour` |
+//! | [`brush`], `canvas`, `colour`, [`device`], `completions` | those of these names, besides edits; `canvas light` lies in `colour` |
 //! | [`painting`], `rig` | paintings in files; `new`, `open`, `save-as`, `snapshot` of a running rig, `endpoint`, `schema` |
 //! | `takes`, [`motion`] | takes that are made, imported, painted, and `demo`; takes that are cut, joined, placed, filled |
 //! | `streams`, [`replay`] | `topic`, `node list`, `recording` |
-//! | `table` | tables as text, for all of them |
+//! | [`table`] | tables as text, for all of them |
 
-pub mod bench;
 pub mod brush;
 pub mod canvas;
 pub mod colour;
@@ -21,7 +20,7 @@ pub mod painting;
 pub mod replay;
 mod rig;
 mod streams;
-mod table;
+pub mod table;
 mod takes;
 
 pub use colour::light;
@@ -51,12 +50,13 @@ pub fn write_picture(picture: &Picture, path: &Path) -> Result<(), UserError> {
 }
 
 /// Prints a line as `println!` does, through [`print_line`]: for functions that return a [`UserError`].
+#[macro_export]
 macro_rules! say {
     ($($text:tt)*) => {
         $crate::commands::print_line(&format!($($text)*))?
     };
 }
-pub(crate) use say;
+pub use say;
 
 /// Prints one line, whatever the names in it hold.
 ///
@@ -112,7 +112,7 @@ pub fn write_take(take: &Take, path: &Path) -> Result<(), UserError> {
     Ok(())
 }
 
-/// A progress bar over seconds of a take, drawn only on a terminal.
+/// A progress bar over the length of a take, ns, or over parts that are set later; drawn only on a terminal.
 #[must_use]
 pub fn progress_bar(length_ns: u64) -> ProgressBar {
     let bar = ProgressBar::new(length_ns / 1_000_000);
@@ -120,4 +120,12 @@ pub fn progress_bar(length_ns: u64) -> ProgressBar {
         bar.set_style(style);
     }
     bar
+}
+
+/// Callback that shows done and all on a bar.
+pub fn progress(bar: &ProgressBar) -> impl FnMut(u64, u64) {
+    |done, all| {
+        bar.set_length(all);
+        bar.set_position(done);
+    }
 }

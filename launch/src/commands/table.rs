@@ -5,7 +5,7 @@ const WIDEST: usize = 100;
 
 /// Rows with a head; all but the last column are padded.
 #[must_use]
-pub(crate) fn table<const N: usize>(head: [&str; N], rows: &[[String; N]]) -> String {
+pub fn table<const N: usize>(head: [&str; N], rows: &[[String; N]]) -> String {
     let head = head.map(str::to_owned);
     let all = || std::iter::once(&head).chain(rows);
     let wide = |column: usize| all().map(|row| row[column].chars().count()).max();

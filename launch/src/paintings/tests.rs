@@ -9,7 +9,6 @@ use maulstick_types::paint::TILE;
 use maulstick_types::scene::CANVAS;
 
 use super::*;
-use crate::sheet::Board;
 
 /// Side of a cell, mm.
 const CELL_MM: f64 = 0.5;
@@ -28,13 +27,8 @@ struct Measured {
 impl Measured {
     fn of(name: &str) -> Self {
         let library = PaintLibrary::measured().expect("whole");
-        let mut offline = paint(
-            name,
-            Board::impasto(CELL_MM),
-            library,
-            ProgressBar::hidden(),
-        )
-        .expect(name);
+        let mut offline =
+            paint(name, Board::new(CELL_MM), library, ProgressBar::hidden()).expect(name);
         let painting = offline.painting_mut();
         let report = painting.report();
         assert_eq!(report.quanta_missing, 0, "{name}: {report:?}");

@@ -1,6 +1,7 @@
 //! A sweep as the hand gets it: a thousand times a second, as the solver last told it and filtered.
 
-use crate::bartlett_hanning::BartlettHanning;
+use maulstick_haptics::bartlett_hanning::BartlettHanning;
+
 use crate::geometry::ProbeState;
 use crate::sweep::{ARC_S, RATE_HZ, Sample, arc};
 

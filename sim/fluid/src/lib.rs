@@ -4,7 +4,6 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`stress`] | force and torque on a probe of whole cells, in two and three dimensions, of any staggered fields |
-//! | [`bartlett_hanning`] | the filter between a slow solver and a hand at 1 kHz |
 //! | [`solver`] | Navier-Stokes equations around a probe in two dimensions |
 //! | [`geometry`] | the probe's outline on the grid: a staircase, or shares of nodes and links |
 //! | [`hand`] | a sweep a thousand times a second, raw and filtered |
@@ -17,7 +16,6 @@
 //! seventh of a staircase's. The projection starts from the pressure of the step before; Chorin's own has the drag in a
 //! channel wrong by half at steps that are long for viscosity.
 
-pub mod bartlett_hanning;
 mod five_point;
 pub mod geometry;
 pub mod grid;

@@ -14,9 +14,15 @@ mod scaled_devices;
 mod walls;
 mod zero_order_hold;
 
+pub(crate) use crate::extent::Extent;
+use crate::plant::Hand;
 use crate::servo::limits::Limits;
-pub(crate) use crate::stability_grid::extent::Extent;
-pub(crate) use crate::stability_grid::{DT, HANDS, HEAD_M};
+
+pub(crate) const HANDS: [Hand; 3] = [Hand::FINGERTIP, Hand::PEN_GRIP, Hand::ARM];
+/// Period of the servo, s.
+pub(crate) const DT: f64 = 1e-3;
+/// Length of the head, m.
+pub(crate) const HEAD_M: f64 = 0.025;
 
 /// Movement of the tip that no hand feels, peak to peak, m: a literal, for the stability grid's own is what it judges by.
 pub(crate) const STILL_M: f64 = 1e-4;
@@ -47,4 +53,12 @@ pub(crate) fn unguarded() -> Limits {
         max_speed_m_s: f64::INFINITY,
         ..Limits::default()
     }
+}
+
+/// Uniform on [0, 1): the upper bits of a linear congruential generator (Knuth's multiplier).
+pub(crate) fn random(state: &mut u64) -> f64 {
+    *state = state
+        .wrapping_mul(6_364_136_223_846_793_005)
+        .wrapping_add(1_442_695_040_888_963_407);
+    (*state >> 40) as f64 / (1u64 << 24) as f64
 }

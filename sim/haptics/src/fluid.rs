@@ -9,8 +9,8 @@
 //! of which nothing is known may have come to rest, and drags from then on. Held, it would push on a hand with energy that the
 //! paint has lost.
 
+use crate::bartlett_hanning::step_response;
 use glam::{DMat3, DVec3};
-use maulstick_fluid_force::bartlett_hanning::step_response;
 use maulstick_types::haptics::{ContactModel, FluidForce};
 
 /// Drag at most, N·s/m: more, on a velocity in encoder steps, would shake itself.

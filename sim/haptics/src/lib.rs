@@ -9,11 +9,14 @@
 //! | [`relief`] | heights over the plane: force by depth and slope, stiffness within bounds |
 //! | [`contact`] | the force of one contact model at one pose |
 //! | [`guide`] | the force of a guide, which holds the hand to a recorded path |
+//! | [`bartlett_hanning`] | the filter between a slow solver and a hand at 1 kHz |
 //! | [`fluid`] | the force of moving paint, from a solver slower than the hand |
 //! | [`recipient`] | the device, session and brush that accept a model |
 //! | [`servo`] | one tick: models, ageing, limits |
 //! | [`plant`] | a device and a hand that hold each other, for the simulated stylus and for tests |
-//! | [`stability_grid`] | hands, walls, rates and losses by the thousand: whether the servo is stable |
+//! | [`extent`] | how far a tip moves |
+//!
+//! `tools/grid` tries hands, walls, rates and losses by the thousand: whether the servo is stable.
 //!
 //! # Guards
 //!
@@ -44,9 +47,11 @@
 //! - A scaled device is a servo in desk lengths whose force is divided by the scale and whose torque by its square;
 //!   stiffness and damping, and so their bounds, are the same numbers in the hand.
 
+pub mod bartlett_hanning;
 #[cfg(test)]
 mod closed_loop_tests;
 pub mod contact;
+pub mod extent;
 pub mod fluid;
 pub mod force_law;
 pub mod friction;
@@ -56,7 +61,6 @@ pub mod plant;
 pub mod recipient;
 pub mod relief;
 pub mod servo;
-pub mod stability_grid;
 
 pub use contact::{Contact, ContactForce};
 pub use fluid::Fluid;

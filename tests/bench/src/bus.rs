@@ -38,8 +38,7 @@ fn fault(error: impl std::fmt::Display) -> UserError {
 pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     let base = tempfile::tempdir().map_err(fault)?;
     let folder = RigFolder::create_in(&base.path().join("rigs"), "bench")?;
-    let clock = RigClock::start();
-    let locator = folder.locator("near");
+    let (clock, locator) = (RigClock::start(), folder.locator("near"));
     let dial = Dial {
         name: "near".into(),
         listen: Some(locator.clone()),
@@ -47,7 +46,8 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
     };
     let bus = ZenohBus::open(&dial, clock)?;
     let mut child = Command::new(std::env::current_exe().map_err(fault)?)
-        .args(["--far-end", &format!("{locator} {}", clock.offset_ns())])
+        .args(["bench", "--far-end"])
+        .arg(format!("{locator} {}", clock.offset_ns()))
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .spawn()

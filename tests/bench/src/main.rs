@@ -54,8 +54,8 @@ mod window;
 
 use std::path::PathBuf;
 
-use clap::Parser;
 use clap::builder::PossibleValuesParser;
+use clap::{Args, Parser};
 use maulstick_painting::models::model_names;
 use maulstick_rig::UserError;
 
@@ -67,9 +67,16 @@ const MODEL: &str = "impasto";
 /// Backend that computes where no other is asked for.
 const BACKEND: &str = "cpu";
 
-/// Run benchmarks against reference programs
+/// The command that this program carries out.
 #[derive(Parser)]
-#[command(name = "maulstick-bench", version)]
+#[command(name = "maulstick", version)]
+enum Line {
+    /// Run benchmarks against reference programs
+    Bench(Options),
+}
+
+/// Options of `maulstick bench`.
+#[derive(Args)]
 struct Options {
     /// What to measure: brush, bus, document, frames, haptics, idle, latency, looks, optics, paint, pen,
     /// recording, render, view, window [default: everything]
@@ -123,7 +130,7 @@ const AREAS: [Area; 15] = [
 ];
 
 fn main() {
-    let options = Options::parse();
+    let Line::Bench(options) = Line::parse();
     if let Err(fault) = measure(&options) {
         eprintln!("{fault}");
         std::process::exit(fault.code);

@@ -1,6 +1,5 @@
 //! Commands of colour: paints, mixtures, measurements, light.
 
-pub mod fit;
 pub mod light;
 pub mod matching;
 pub mod mix;
@@ -18,8 +17,6 @@ pub enum ColourCommand {
     Mix(mix::MixOptions),
     /// Propose mixtures for a colour
     Match(matching::MatchOptions),
-    /// Fit paints to measured reflectances
-    Fit(fit::FitCommand),
 }
 
 /// Runs the command.
@@ -31,6 +28,5 @@ pub fn run(command: &ColourCommand) -> Result<i32, UserError> {
         ColourCommand::Paints(options) => paints::run(options),
         ColourCommand::Mix(options) => mix::run(options),
         ColourCommand::Match(options) => matching::run(options),
-        ColourCommand::Fit(options) => fit::run(options),
     }
 }

@@ -3,11 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use maulstick_optics::{Blend, Coat, Paint, RuleKind, StudioSettings, Viewing};
+use maulstick_optics::{Blend, Coat, Paint, PaintLibrary, RuleKind, StudioSettings, Viewing};
 use maulstick_rig::UserError;
 use serde_json::json;
 
-use crate::chart::every_pair::whitest;
 use crate::commands::{print_json, print_text};
 use crate::performance::library_from;
 use crate::swatch::{Terminal, hex};
@@ -25,6 +24,18 @@ pub struct PaintsOptions {
 
 /// Parts of white to one part of paint.
 const TINT: f64 = 10.0;
+
+/// The whitest paint, with which others are tinted.
+#[must_use]
+pub fn whitest<'a>(library: &'a PaintLibrary, viewing: &Viewing) -> &'a Paint {
+    let lightness = |paint: &Paint| {
+        let seen = viewing.coat(&Blend::new(&[(paint, 1.0)]), &Coat::masstone());
+        seen.lab[0] - seen.chroma()
+    };
+    let paints = library.paints();
+    let whiter = |a: &&Paint, b: &&Paint| lightness(a).total_cmp(&lightness(b));
+    paints.iter().max_by(whiter).unwrap_or(&paints[0])
+}
 
 /// Lists the paints with their masstones, and their tints of one part in ten of white.
 ///

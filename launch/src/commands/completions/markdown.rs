@@ -73,7 +73,8 @@ fn rows_below(command: &Command, path: &str) -> Vec<[String; 3]> {
 
 fn row(command: &Command, path: &str) -> [String; 3] {
     let mut usage = path.to_owned();
-    for place in command.get_positionals() {
+    let places = command.get_positionals();
+    for place in places.filter(|place| !place.is_hide_set()) {
         let more = if is_list(place) { "…" } else { "" };
         let name = values(place);
         let shown = if place.is_required_set() {
@@ -88,7 +89,10 @@ fn row(command: &Command, path: &str) -> [String; 3] {
         !option.is_positional() && !option.is_hide_set() && !is_common
     });
     let options: Vec<_> = options.map(option).collect();
-    [format!("`{usage}`"), about(command), options.join(", ")]
+    // A command of a program beside says where its options are.
+    let elsewhere = command.get_after_help().map(ToString::to_string);
+    let options = elsewhere.unwrap_or_else(|| options.join(", "));
+    [format!("`{usage}`"), about(command), options]
 }
 
 fn is_list(argument: &Arg) -> bool {

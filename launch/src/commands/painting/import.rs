@@ -12,7 +12,7 @@ use maulstick_types::edits::{Ground, Tooth};
 use maulstick_types::scene::{CANVAS, WellKind};
 use maulstick_types::values::MaterialName;
 
-use crate::commands::say;
+use crate::commands::{progress, progress_bar, say};
 use crate::document::{go_on, there, wrong};
 use crate::performance::refused;
 use crate::picture::{no_picture, open_picture};
@@ -106,8 +106,8 @@ impl ImportOptions {
         };
         let wrong = |error: ImportError| self.fault(&error);
         let support = Support::of(painting, CANVAS, &paints).map_err(wrong)?;
-        let bar = super::bar("mixing");
-        let found = underpaint(&support, image, self.um * 1e-6, &mut super::tell(&bar));
+        let bar = progress_bar(0).with_message("mixing");
+        let found = underpaint(&support, image, self.um * 1e-6, &mut progress(&bar));
         bar.finish_and_clear();
         let found = found.map_err(wrong)?;
         let wetness = match &self.dry {

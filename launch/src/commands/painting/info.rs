@@ -10,7 +10,7 @@ use maulstick_session::{LoggedWhat, painting_log};
 use serde_json::{Value, json};
 
 use super::wall_time::{utc, utc_seconds};
-use crate::commands::{print_json, say};
+use crate::commands::{print_json, progress, progress_bar, say};
 use crate::document::{read, wrong};
 use crate::performance::refused;
 
@@ -35,8 +35,8 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, UserError> {
     let path = &options.file;
     let stats = DocumentStats::read(path).map_err(|error| wrong(path, &error))?;
     if options.check {
-        let bar = super::bar("reading");
-        let checked = stats.check(path, &mut super::tell(&bar));
+        let bar = progress_bar(0).with_message("reading");
+        let checked = stats.check(path, &mut progress(&bar));
         bar.finish_and_clear();
         checked.map_err(|error| wrong(path, &error))?;
     }

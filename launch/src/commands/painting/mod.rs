@@ -9,7 +9,6 @@ mod info;
 mod log;
 mod log_words;
 mod pack;
-mod recover;
 mod timelapse;
 mod versions;
 mod wall_time;
@@ -17,7 +16,6 @@ mod wall_time;
 pub(super) use timelapse::no_record;
 
 use clap::Subcommand;
-use indicatif::{ProgressBar, ProgressStyle};
 use maulstick_rig::UserError;
 
 use crate::commands::edit::{self, EditsOf, PaintingEdits};
@@ -45,8 +43,6 @@ pub enum PaintingCommand {
     Import(import::ImportOptions),
     /// Write a copy with another paint model
     Convert(convert::ConvertOptions),
-    /// Recover what is intact in a damaged painting
-    Recover(recover::RecoverOptions),
     /// List, keep, compare versions of a painting, or return to one
     Versions(versions::VersionsOptions),
     /// Make a painting's file as small as possible
@@ -72,27 +68,9 @@ pub fn run(command: &PaintingCommand) -> Result<i32, UserError> {
         PaintingCommand::Export(options) => export::run(options),
         PaintingCommand::Import(options) => import::run(options),
         PaintingCommand::Convert(options) => convert::run(options),
-        PaintingCommand::Recover(options) => recover::run(options),
         PaintingCommand::Versions(options) => versions::run(options),
         PaintingCommand::Pack(options) => pack::run(options),
         PaintingCommand::Timelapse(options) => timelapse::run(options),
         PaintingCommand::Log(options) => log::run(options),
-    }
-}
-
-/// A bar for work of so many parts, with the time left; drawn only on a terminal.
-fn bar(what: &'static str) -> ProgressBar {
-    let bar = ProgressBar::new(0).with_message(what);
-    if let Ok(style) = ProgressStyle::with_template("{msg} {bar:40} {percent:>3} %, {eta} left") {
-        bar.set_style(style);
-    }
-    bar
-}
-
-/// Callback that shows progress on a bar.
-fn tell(bar: &ProgressBar) -> impl FnMut(u64, u64) {
-    |done, all| {
-        bar.set_length(all);
-        bar.set_position(done);
     }
 }

@@ -7,7 +7,7 @@ use maulstick_document::pack::{Forget, pack};
 use maulstick_rig::UserError;
 use maulstick_rig::size::show_bytes;
 
-use crate::commands::say;
+use crate::commands::{progress, progress_bar, say};
 use crate::document::wrong;
 
 /// Options of `maulstick painting pack`.
@@ -34,8 +34,8 @@ pub(super) fn run(options: &PackOptions) -> Result<i32, UserError> {
         (false, true) => Forget::Record,
         (false, false) => Forget::Nothing,
     };
-    let bar = super::bar("packing");
-    let packed = pack(path, forget, &mut super::tell(&bar));
+    let bar = progress_bar(0).with_message("packing");
+    let packed = pack(path, forget, &mut progress(&bar));
     bar.finish_and_clear();
     let [before, after] = packed.map_err(|error| wrong(path, &error))?;
     say!(

@@ -15,7 +15,7 @@ use maulstick_session::{Reexecution, TilePrints, WorkClock, tile_prints};
 
 use super::film_file::{FilmFile, FilmKind};
 use crate::backend::choose_backend;
-use crate::commands::say;
+use crate::commands::{progress_bar, say};
 use crate::document::{read, wrong};
 use crate::performance::refused;
 
@@ -91,7 +91,7 @@ pub(super) fn run(options: &TimelapseOptions) -> Result<i32, UserError> {
     choose_backend(first.sequencer_mut(), &options.backend)?;
 
     let plan = FramePlan::new(options.seconds, options.fps, all_ns);
-    let bar = super::bar("painting");
+    let bar = progress_bar(0).with_message("painting");
     let mut differing = 0;
     let written = file.write([finished.picture.width, finished.picture.height], |add| {
         let result = shoot(options, &mut first, &finished, plan, &bar, add)?;

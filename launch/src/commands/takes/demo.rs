@@ -1,26 +1,18 @@
-//! `maulstick demo`: a performance from a seed, a sheet of what paint can do, paintings, the force of a fluid.
+//! `maulstick demo`: a performance from a seed, and the bundled paintings.
 
 use std::path::PathBuf;
 
-use clap::builder::PossibleValuesParser;
 use clap::{Args, Subcommand};
-use indicatif::ProgressBar;
 use maulstick_device::demo::{Subject, performance};
-use maulstick_painting::models::{model_called, model_names};
 use maulstick_painting::picture::picture;
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 use maulstick_types::scene::CANVAS;
 
-use crate::cells::SheetCells;
 use crate::commands::{progress_bar, say, write_picture, write_take};
 use crate::outputs::{UsedFile, check_outputs};
-use crate::paintings::{paint, script};
-use crate::performance::{library, refused};
-use crate::sheet::Board;
-use crate::sheet::effects::effects;
-
-use super::fluid_force::{self, FluidForceOptions};
+use crate::paintings::{BoardOptions, paint, script};
+use crate::performance::library;
 
 /// Commands of `maulstick demo`.
 #[derive(Clone, Debug, Subcommand)]
@@ -29,14 +21,6 @@ pub enum DemoCommand {
     Take(TakeOptions),
     /// Paint one of the bundled paintings: still-life, flower, landscape
     Painting(PaintingOptions),
-    /// Paint a sheet of the effects of the paint model, with captions
-    ///
-    /// Transfer both ways, loading, drying, blending, glazing, impasto, scumbling.
-    Effects(EffectsOptions),
-    /// Sweep a square through a fluid along an arc and write the force on it
-    ///
-    /// Raw and filtered for the hand, at several resolutions (Baxter 2004, fig. 8.8).
-    FluidForce(FluidForceOptions),
 }
 
 /// Options of `maulstick demo take`.
@@ -53,27 +37,6 @@ pub struct TakeOptions {
     seed: u64,
 }
 
-/// What is painted on, and with what.
-#[derive(Args, Clone, Debug)]
-struct BoardOptions {
-    #[command(flatten)]
-    cells: SheetCells,
-    /// Paint model [default: impasto]
-    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(model_names()))]
-    model: Option<String>,
-}
-
-impl BoardOptions {
-    fn board(&self) -> Result<Board, UserError> {
-        let board = Board::impasto(self.cells.side_mm());
-        let Some(model) = &self.model else {
-            return Ok(board);
-        };
-        let model = model_called(model).map_err(refused)?.name;
-        Ok(Board { model, ..board })
-    }
-}
-
 /// Options of `maulstick demo painting`.
 #[derive(Args, Clone, Debug)]
 pub struct PaintingOptions {
@@ -87,16 +50,6 @@ pub struct PaintingOptions {
     board: BoardOptions,
 }
 
-/// Options of `maulstick demo effects`.
-#[derive(Args, Clone, Debug)]
-pub struct EffectsOptions {
-    /// Picture to write, a PNG
-    #[arg(short, long, value_name = "PNG")]
-    output: PathBuf,
-    #[command(flatten)]
-    board: BoardOptions,
-}
-
 /// Writes the demo.
 ///
 /// # Errors
@@ -105,8 +58,6 @@ pub fn run(command: &DemoCommand) -> Result<i32, UserError> {
     match command {
         DemoCommand::Take(options) => make_take(options),
         DemoCommand::Painting(options) => paint_painting(options),
-        DemoCommand::Effects(options) => paint_effects(options),
-        DemoCommand::FluidForce(options) => fluid_force::run(options),
     }
 }
 
@@ -119,20 +70,6 @@ fn make_take(options: &TakeOptions) -> Result<i32, UserError> {
         Subject::Flower
     };
     write_take(&performance(subject, options.seed), path)?;
-    Ok(0)
-}
-
-fn paint_effects(options: &EffectsOptions) -> Result<i32, UserError> {
-    let path = &options.output;
-    check_outputs(&[UsedFile::new("the sheet", path).of(Kind::Png)], &[])?;
-    let bar = ProgressBar::new(1);
-    let picture = effects(&library()?, options.board.board()?, |done, of| {
-        bar.set_length(of as u64);
-        bar.set_position(done as u64);
-    })?;
-    bar.finish_and_clear();
-    write_picture(&picture, path)?;
-    say!("{}", path.display());
     Ok(0)
 }
 

@@ -1,7 +1,6 @@
 //! Commands of takes: performances made, imported and painted.
 
 pub mod demo;
-mod fluid_force;
 mod from;
 mod import;
 mod painting_record;

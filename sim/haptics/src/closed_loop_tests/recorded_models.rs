@@ -7,13 +7,13 @@ use maulstick_types::Pose;
 use maulstick_types::haptics::{ContactModel, ForceLaw};
 
 use super::{DT, Extent, HANDS, HEAD_M, MOST_N, MOST_SLEW_N_S, STILL_M, device};
+use crate::closed_loop_tests::random;
 use crate::contact::Contact;
 use crate::contact::tests::model;
 use crate::plant::Plant;
 use crate::servo::Servo;
 use crate::servo::limits::Limits;
 use crate::servo::tick::Sender;
-use crate::stability_grid::link::random;
 
 const TICKS: usize = 3000;
 /// The hand presses on here, and then holds still.

@@ -28,9 +28,9 @@ pub(crate) fn rough(most_um: i16, seed: u64) -> HeightPatch {
     let of = |i: usize, j: usize| {
         let mut state = seed.wrapping_add((i * SIDE + j) as u64 * 77);
         for _ in 0..3 {
-            crate::stability_grid::link::random(&mut state);
+            crate::closed_loop_tests::random(&mut state);
         }
-        ((crate::stability_grid::link::random(&mut state) * 2.0 - 1.0) * f64::from(most_um)) as i16
+        ((crate::closed_loop_tests::random(&mut state) * 2.0 - 1.0) * f64::from(most_um)) as i16
     };
     patch(of)
 }

@@ -11,8 +11,8 @@ use super::engagement::CALM_TICKS;
 use super::*;
 use crate::contact::tests::{linear, model};
 
-pub(super) use crate::stability_grid::DT;
-use crate::stability_grid::HEAD_M;
+pub(super) use crate::closed_loop_tests::DT;
+use crate::closed_loop_tests::HEAD_M;
 
 /// An upright brush whose tip is so deep in the plane z = 0, m.
 pub(super) fn handle(depth: f64) -> HandleState {

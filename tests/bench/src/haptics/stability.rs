@@ -1,7 +1,7 @@
 //! The stability grid of the servo, the same that `./test` asserts, on its own clock.
 
-use maulstick_haptics::stability_grid::{HANDS, Outcome, Path, Run, Worst, grid};
 use maulstick_rig::UserError;
+use maulstick_stability_grid::{HANDS, Outcome, Path, Run, Worst, grid};
 
 use super::fault;
 use crate::report::Report;

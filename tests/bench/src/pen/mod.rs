@@ -101,7 +101,9 @@ pub(crate) fn run(report: &mut Report) -> Result<(), UserError> {
 /// The process of a pen, which reads its system at `end`.
 fn sender(pen: &str, at: &str, end: OwnedFd) -> Result<Running, UserError> {
     let mut command = Command::new(std::env::current_exe().map_err(fault)?);
-    command.args(["--pen", &format!("{pen} {at}")]).stdin(end);
+    command
+        .args(["bench", "--pen", &format!("{pen} {at}")])
+        .stdin(end);
     Running::begin(&mut command)
 }
 

@@ -10,7 +10,7 @@ use maulstick_rig::{UserError, files};
 use maulstick_types::scene::{CANVAS, PALETTE};
 
 use super::ExportOptions;
-use crate::commands::say;
+use crate::commands::{progress, progress_bar, say};
 use crate::destination::export;
 use crate::document::{read, wrong};
 use crate::outputs::{UsedFile, check_outputs};
@@ -38,8 +38,8 @@ pub(super) fn run(options: &ExportOptions, [file, out]: [&Path; 2]) -> Result<i3
     let mut sequencer = opened.sequencer().map_err(refused)?;
     let painting = sequencer.painting_mut();
     let surface = if options.palette { PALETTE } else { CANVAS };
-    let bar = super::super::bar("exporting");
-    let mut tell = super::super::tell(&bar);
+    let bar = progress_bar(0).with_message("exporting");
+    let mut tell = progress(&bar);
     let order = Order {
         format,
         surface,

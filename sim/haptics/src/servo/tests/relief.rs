@@ -5,6 +5,7 @@ use maulstick_num::geometry::rotation;
 use maulstick_num::sin;
 use maulstick_types::haptics::{ContactModel, ForceLaw, HeightPatch};
 
+use crate::closed_loop_tests::random;
 use crate::closed_loop_tests::{DT, HEAD_M, MOST_N, MOST_SLEW_N_S, device};
 use crate::contact::tests::{linear, model};
 use crate::contact::{Contact, HandleState};
@@ -14,7 +15,6 @@ use crate::servo::Servo;
 use crate::servo::engagement::CALM_TICKS;
 use crate::servo::limits::Limits;
 use crate::servo::tick::Sender;
-use crate::stability_grid::link::random;
 
 /// An upright brush with its tip at a place, m.
 fn at(tip: DVec3) -> HandleState {

@@ -1,9 +1,0 @@
-//! Pictures of mixtures.
-//!
-//! | module | holds |
-//! | --- | --- |
-//! | [`every_pair`] | the mixing chart of all paints |
-//! | [`four_ways`] | one graded mixture by four ways of mixing |
-
-pub mod every_pair;
-pub mod four_ways;

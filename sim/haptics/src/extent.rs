@@ -1,0 +1,30 @@
+//! How far a tip moves.
+
+use glam::DVec3;
+
+/// Smallest box, along the axes, around the places of a tip.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent {
+    low: DVec3,
+    high: DVec3,
+}
+
+impl Extent {
+    /// Around no place.
+    pub const NONE: Self = Self {
+        low: DVec3::MAX,
+        high: DVec3::MIN,
+    };
+
+    /// Grows around a place, m.
+    pub fn include(&mut self, place: DVec3) {
+        self.low = self.low.min(place);
+        self.high = self.high.max(place);
+    }
+
+    /// Greatest movement along an axis, peak to peak, m.
+    #[must_use]
+    pub fn peak_to_peak_m(&self) -> f64 {
+        (self.high - self.low).max_element()
+    }
+}

@@ -1,0 +1,38 @@
+//! `maulstick demo effects`: what the paint model is for.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use maulstick::commands::{progress_bar, write_picture};
+use maulstick::outputs::{UsedFile, check_outputs};
+use maulstick::paintings::BoardOptions;
+use maulstick::performance::library;
+use maulstick::say;
+use maulstick_rig::UserError;
+use maulstick_rig::files::Kind;
+
+use crate::sheet::effects::effects;
+
+/// Options of `maulstick demo effects`.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct EffectsOptions {
+    /// Picture to write, a PNG
+    #[arg(short, long, value_name = "PNG")]
+    output: PathBuf,
+    #[command(flatten)]
+    board: BoardOptions,
+}
+
+pub(super) fn run(options: &EffectsOptions) -> Result<i32, UserError> {
+    let path = &options.output;
+    check_outputs(&[UsedFile::new("the sheet", path).of(Kind::Png)], &[])?;
+    let bar = progress_bar(0).with_message("painting");
+    let picture = effects(&library()?, options.board.board()?, |done, of| {
+        bar.set_length(of as u64);
+        bar.set_position(done as u64);
+    })?;
+    bar.finish_and_clear();
+    write_picture(&picture, path)?;
+    say!("{}", path.display());
+    Ok(0)
+}

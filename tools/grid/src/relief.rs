@@ -1,0 +1,352 @@
+//! Relief in the hand: the runs of the grid over rough ground, a ridge and an edge, across which the hand is drawn and kicked.
+//!
+//! Patches are those of a brush node: 16 × 16 cells around where the hand was when the model was made, late and lost as the
+//! models are. Judged is what the hand was given beyond the work of the models' own force along its true way, felt without
+//! samples, which round a closed way is nothing.
+
+use glam::DVec3;
+use maulstick_num::sin;
+use maulstick_types::haptics::{ContactModel, ForceLaw, HeightPatch, height_bytes};
+
+use super::fluid::Film;
+use super::ledger::Ledger;
+use super::link::{Link, random};
+use super::{
+    DT, END_S, FORCE_ERROR, GuideLine, HEAD_M, MOVED_S, Motion, NO_ENERGY_J, Path, RECOVERY_S, Run,
+    STILL_M, STILL_S, TOUCH_S, Wall, grid,
+};
+use maulstick_haptics::contact::Contact;
+use maulstick_haptics::extent::Extent;
+use maulstick_haptics::fluid::Fluid;
+use maulstick_haptics::friction::ramp;
+use maulstick_haptics::plant::Plant;
+use maulstick_haptics::servo::Servo;
+use maulstick_haptics::servo::fault::Fault;
+use maulstick_haptics::servo::tick::Sender;
+
+/// Side of a cell, m.
+const CELL_M: f64 = 1e-3;
+/// Coulomb friction of its device, N.
+pub(super) const COULOMB_N: f64 = 0.06;
+/// Stiffnesses of its walls, N/m.
+const WALLS_N_M: [f64; 5] = [100.0, 300.0, 500.0, 800.0, 1000.0];
+/// The hand is drawn across the relief by so much to each side, and holds still on a flank, m.
+const DRAWN_M: f64 = 4e-3;
+const FLANK_M: f64 = 1.3e-3;
+/// It paints along a guide by so much to each side, m.
+const STROKE_M: f64 = 0.03;
+/// It begins so much higher than over bare relief, m, and comes down within so long, s.
+const ABOVE_M: f64 = 6e-3;
+const DESCENT_S: f64 = 0.3;
+/// Time that an arm that has painted needs beyond the usual to come to rest, s.
+const SETTLE_S: f64 = 1.0;
+
+/// What lies on the plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ground {
+    /// Lumps without order, 4 mm wide, to .8 mm up and down.
+    Rough,
+    /// A ridge of .9 mm.
+    Ridge,
+    /// An edge of 3 mm.
+    Edge,
+}
+
+impl Ground {
+    /// Height of a cell, µm.
+    fn height_um(self, column: i64, row: i64) -> i16 {
+        match self {
+            Self::Rough => {
+                let lump = [column, row].map(|cell| cell.div_euclid(4));
+                let mut state = (lump[0] * 7919 + lump[1] * 104_729) as u64;
+                random(&mut state);
+                random(&mut state);
+                (1600.0 * random(&mut state) - 800.0) as i16
+            }
+            Self::Ridge => match column {
+                -1 | 0 => 900,
+                -2 | 1 => 450,
+                _ => 0,
+            },
+            Self::Edge => 3000 * i16::from(column >= 0),
+        }
+    }
+
+    /// The patch on a wall around a place.
+    fn patch(self, wall: &Wall, around: DVec3) -> HeightPatch {
+        let along = DVec3::Y.cross(wall.normal).normalize();
+        let up = wall.normal.cross(along);
+        let place = around - wall.point;
+        let first = [along, up].map(|axis| (axis.dot(place) / CELL_M).floor() as i64 - 8);
+        let corner =
+            wall.point + along * (first[0] as f64 * CELL_M) + up * (first[1] as f64 * CELL_M);
+        let side = HeightPatch::SIDE as i64;
+        let cells = (0..side).flat_map(|j| (0..side).map(move |i| (i, j)));
+        HeightPatch {
+            corner_m: corner.to_array(),
+            along: along.to_array(),
+            cell_m: CELL_M,
+            heights_um: height_bytes(
+                cells.map(|(i, j)| self.height_um(first[0] + i, first[1] + j)),
+            ),
+        }
+    }
+}
+
+/// Direction of the force on relief.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tilt {
+    /// Tilted by the slope.
+    BySlope,
+    /// Along the normal of the plane alone.
+    Upright,
+}
+
+/// One hand over one ground.
+#[derive(Clone, Copy, Debug)]
+pub struct ReliefRun {
+    /// Hand, wall, rate and losses.
+    pub run: Run,
+    /// What lies on the wall.
+    pub ground: Ground,
+    /// Direction of the force that reaches the motors.
+    pub tilt: Tilt,
+    /// Friction, at rest half as much again.
+    pub friction: f64,
+    /// Coulomb friction of the device, N, which hides what a hand is given that moves.
+    pub coulomb_n: f64,
+    /// Film of paint, if the hand goes through one.
+    pub film: Option<Film>,
+}
+
+/// How it went.
+#[derive(Clone, Copy, Debug)]
+pub struct ReliefOutcome {
+    /// Movement of the tip while the hand holds still, peak to peak, m.
+    pub wobble_m: f64,
+    /// Greatest energy given to the hand that nobody put in, J.
+    pub net_j: f64,
+    /// Greatest energy given to hand and device from some time on, J.
+    pub rise_j: f64,
+    /// Steady force along the normal by that of the model at the tip's true place.
+    pub share: f64,
+    /// Greatest force across the normal, N.
+    pub across_n: f64,
+    /// Greatest force, N.
+    pub most_n: f64,
+    /// Fastest change of it, N/s.
+    pub slew_n_s: f64,
+    /// True if the observer took energy back.
+    pub braked: bool,
+    /// What latched the force at zero, if anything did.
+    pub fault: Option<Fault>,
+}
+
+/// Where a hand wants to be that paints along a guide and across it.
+fn painting(run: &Run, guide: &GuideLine, s: f64) -> DVec3 {
+    let painted_s = s.clamp(TOUCH_S, MOVED_S) - TOUCH_S;
+    let drawn = DVec3::new(
+        DRAWN_M * sin(5.0 * painted_s),
+        STROKE_M * sin(8.0 * painted_s),
+        0.0,
+    );
+    // Along the guide's normal it comes down from above all relief, so gently that no force is cut.
+    let left = 1.0 - ((s - TOUCH_S) / DESCENT_S).clamp(0.0, 1.0);
+    let above = guide.normal * (guide.normal.z * ABOVE_M * left);
+    let resting_s = if s < MOVED_S {
+        s
+    } else {
+        (s - SETTLE_S).max(MOVED_S)
+    };
+    run.target(resting_s) + drawn + above
+}
+
+impl ReliefRun {
+    /// When the hand is judged to hold still, s.
+    fn still_s(&self) -> [f64; 2] {
+        STILL_S.map(|s| s + self.settle_s())
+    }
+
+    /// Time that a hand needs to come to rest beyond the usual, s.
+    fn settle_s(&self) -> f64 {
+        match self.run.guide {
+            Some(_) => SETTLE_S,
+            None => 0.0,
+        }
+    }
+
+    /// Time to live of models and guides, s: what is lost shall not fade.
+    fn live_s(&self) -> f64 {
+        (6.0 / self.run.rate_hz).max(0.1)
+    }
+
+    fn contact(&self, wall: &Wall, patch: HeightPatch) -> Result<Contact, &'static str> {
+        let law = ForceLaw::Rigid {
+            stiffness_n_m: wall.stiffness,
+        };
+        Contact::new(&ContactModel {
+            plane_point_m: wall.point.to_array(),
+            plane_normal: wall.normal.to_array(),
+            friction_static: 1.5 * self.friction,
+            friction_kinetic: self.friction,
+            time_to_live_ns: (self.live_s() * 1e9) as u64,
+            recovery_ns: (RECOVERY_S * 1e9) as u64,
+            relief: patch,
+            ..ContactModel::bare(law, HEAD_M)
+        })
+    }
+
+    /// Where the hand wants to be at a time.
+    fn target(&self, s: f64) -> DVec3 {
+        if let Some(guide) = &self.run.guide {
+            return painting(&self.run, guide, s);
+        }
+        let aside = match s {
+            s if s < TOUCH_S => -DRAWN_M,
+            s if s < MOVED_S => -DRAWN_M * maulstick_num::cos(5.0 * (s - TOUCH_S)),
+            _ => FLANK_M,
+        };
+        let kicked = (1.0..2.4).contains(&s) && (s * 10.0) as u64 % 2 == 1;
+        let kick = if kicked {
+            DVec3::new(0.0, 2e-3, 0.0)
+        } else {
+            DVec3::ZERO
+        };
+        self.run.target(s) + DVec3::X * aside + kick + DVec3::Y * (1e-3 * sin(3.0 * s.min(MOVED_S)))
+    }
+
+    /// Lets the hand go through it all.
+    ///
+    /// # Errors
+    /// What is wrong with a wall, a guide or a film that is refused.
+    pub fn go(&self) -> Result<ReliefOutcome, &'static str> {
+        let mut servo = Servo::new(self.run.limits());
+        let mut plant = Plant::omni(self.run.hand, self.target(0.0));
+        plant.coulomb_n = self.coulomb_n;
+        let (mut contact, mut sent) = (
+            self.contact(&self.run.wall(0.0), HeightPatch::flat())?,
+            None,
+        );
+        let guide = self.run.guide.map(|guide| guide.guide(self.live_s()));
+        let guide = guide.transpose()?;
+        let mut ledger = Ledger::new(contact, self.run.guide);
+        let mut link = Link::new(self.run.rate_hz, self.run.jitter, 1);
+        let mut paint = self
+            .film
+            .map(|film| (film, Link::new(film.rate_hz, film.jitter, 2), DVec3::ZERO));
+        let mut extent = Extent::NONE;
+        let (mut force, mut given) = (DVec3::ZERO, DVec3::ZERO);
+        let (mut push, mut asked, mut across_n): (f64, f64, f64) = (0.0, 0.0, 0.0);
+        let (mut most_n, mut slew_n_s): (f64, f64) = (0.0, 0.0);
+        let (mut braked, mut fault) = (false, None);
+        let still_s = self.still_s();
+        for number in 0..((END_S + self.settle_s()) / DT) as usize {
+            let s = number as f64 * DT;
+            let handle = plant.handle();
+            let tip = handle.position - DVec3::Z * HEAD_M;
+            ledger.age();
+            if let Some((wall, around)) = link.newest(s, |s| (self.run.wall(s), tip)) {
+                let patch = self.ground.patch(&wall, around);
+                // Over a wall that rests most patches are the one before.
+                if self.run.motion != Motion::Still || sent.as_ref() != Some(&patch) {
+                    contact = self.contact(&wall, patch.clone())?;
+                    sent = Some(patch);
+                }
+                servo.receive(contact, Sender::Same);
+                if let Some(guide) = guide {
+                    servo.receive_guide(guide, Sender::Same);
+                }
+                ledger.change(contact, handle.position);
+            }
+            if let Some((film, link, carried)) = &mut paint {
+                let touch = ramp(ledger.depth(handle.position));
+                *carried = film.follow(*carried, handle.velocity, touch);
+                if let Some(message) = link.newest(s, |_| film.message(handle.velocity, *carried)) {
+                    servo.receive_fluid(Fluid::new(&message, 1.0)?);
+                }
+            }
+            let (wanted, tick) = servo.step(&handle, DT);
+            (braked, fault) = (braked || tick.braked, fault.or(tick.fault));
+            most_n = most_n.max(wanted.length());
+            slew_n_s = slew_n_s.max((wanted - given).length() / DT);
+            given = wanted;
+            match self.run.path {
+                Path::Servo => force = wanted,
+                Path::Sent if number % 16 == 0 => force = wanted,
+                Path::Sent | Path::Nothing => {}
+            }
+            let normal = ledger.normal();
+            let force = match self.tilt {
+                Tilt::BySlope => force,
+                Tilt::Upright => normal * force.dot(normal),
+            };
+            let before = plant;
+            if fault.is_none() && self.run.path == Path::Servo {
+                ledger.soften(&handle, tick.stiffness_n_m, before.true_position());
+            }
+            plant.advance(force, self.target(s), DT);
+            let kept_j = paint
+                .as_ref()
+                .map_or(0.0, |(film, _, carried)| film.kept_j(*carried));
+            ledger.book(&before, &plant, kept_j);
+            across_n = across_n.max((force - normal * force.dot(normal)).length());
+            if (still_s[0]..still_s[1]).contains(&s) {
+                let to = plant.true_position();
+                extent.include(to);
+                let guide = self.run.guide;
+                let guided = guide.map_or(DVec3::ZERO, |it| it.force(to - DVec3::Z * HEAD_M));
+                push += (force - guided).dot(normal);
+                asked += ledger.force(to).dot(normal);
+            }
+        }
+        Ok(ReliefOutcome {
+            wobble_m: extent.peak_to_peak_m(),
+            net_j: ledger.most_j,
+            rise_j: ledger.rise_j,
+            share: push / asked,
+            across_n,
+            most_n,
+            slew_n_s,
+            braked,
+            fault,
+        })
+    }
+
+    /// Whether the hand is still, is given no energy, and feels its wall. Friction hides what is given, and a wall beyond
+    /// 2b/T may be softened.
+    #[must_use]
+    pub fn is_good(&self, outcome: &ReliefOutcome) -> bool {
+        let judged = self.run.stiffness < super::BOUND_N_M;
+        outcome.wobble_m <= STILL_M
+            && outcome.net_j <= NO_ENERGY_J
+            && outcome.fault.is_none()
+            && (!judged || (outcome.share - 1.0).abs() <= FORCE_ERROR)
+    }
+}
+
+/// All runs of the grid over each ground, and those over a wall that rests again with friction.
+#[must_use]
+pub fn relief_grid(path: Path) -> Vec<ReliefRun> {
+    let mut runs = Vec::new();
+    for ground in [Ground::Rough, Ground::Ridge, Ground::Edge] {
+        let walls = grid(path).into_iter();
+        for run in walls.filter(|run| WALLS_N_M.contains(&run.stiffness)) {
+            for friction in [0.0, 0.2] {
+                if friction == 0.0 || run.motion == Motion::Still {
+                    runs.push(ReliefRun {
+                        run,
+                        ground,
+                        tilt: Tilt::BySlope,
+                        friction,
+                        coulomb_n: COULOMB_N,
+                        film: None,
+                    });
+                }
+            }
+        }
+    }
+    runs
+}
+
+#[cfg(test)]
+mod tests;
