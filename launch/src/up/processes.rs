@@ -4,18 +4,16 @@
 //! kernel signals it when the launcher's thread that started it dies. That is the main thread, on which the supervisor runs.
 
 use std::collections::BTreeMap;
-use std::future::poll_fn;
+use std::os::unix::process::CommandExt as _;
 use std::path::Path;
-use std::pin::pin;
-use std::process::{ExitStatus, Stdio};
-use std::task::Poll;
+use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 
 use maulstick_rig::UserError;
 use maulstick_rig::program::own_program;
 use maulstick_rig::user_error::EXIT_USAGE;
 use nix::sys::signal::{Signal, killpg};
 use nix::unistd::Pid;
-use tokio::process::{Child, ChildStdin, Command};
+use tokio::signal::unix::{Signal as SignalStream, SignalKind, signal};
 
 use crate::up::plan::NodeSpec;
 
@@ -31,21 +29,34 @@ pub enum Ended {
 }
 
 /// The processes that run, by the names of their nodes. Dropped, all are killed.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Processes {
     running: BTreeMap<String, Process>,
+    /// SIGCHLD: some process has ended.
+    ends: SignalStream,
 }
 
 /// A process.
 #[derive(Debug)]
 struct Process {
     child: Child,
-    group: Option<Pid>,
     /// Held open until it is asked to end.
     stdin: Option<ChildStdin>,
 }
 
 impl Processes {
+    /// None yet; to be called within a runtime.
+    ///
+    /// # Errors
+    /// A [`UserError`] where signals cannot be watched.
+    pub fn new() -> Result<Self, UserError> {
+        let ends = signal(SignalKind::child());
+        Ok(Self {
+            running: BTreeMap::new(),
+            ends: ends.map_err(|error| UserError::failure(error.to_string()))?,
+        })
+    }
+
     /// Starts the process of a node; returns its id.
     ///
     /// # Errors
@@ -66,12 +77,10 @@ impl Processes {
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .process_group(0)
-            .kill_on_drop(true)
             .spawn()
             .map_err(failed)?;
-        let id = child.id().unwrap_or_default();
+        let id = child.id();
         let process = Process {
-            group: i32::try_from(id).ok().map(Pid::from_raw),
             stdin: child.stdin.take(),
             child,
         };
@@ -81,18 +90,17 @@ impl Processes {
 
     /// Waits for the next process that ends: the name of its node, and how it ended. Dropped before that, it loses none.
     pub async fn ended(&mut self) -> (String, Ended) {
-        let (name, ended) = poll_fn(|context| {
-            for (name, process) in &mut self.running {
-                // A status that cannot be had is that of no process.
-                if let Poll::Ready(status) = pin!(process.child.wait()).poll(context) {
-                    return Poll::Ready((name.clone(), status.map_or(Ended::Badly, judge)));
-                }
+        loop {
+            let ended = self.running.iter_mut().find_map(|(name, process)| {
+                let status = process.child.try_wait().ok()??;
+                Some((name.clone(), judge(status)))
+            });
+            if let Some((name, ended)) = ended {
+                self.running.remove(&name);
+                return (name, ended);
             }
-            Poll::Pending
-        })
-        .await;
-        self.running.remove(&name);
-        (name, ended)
+            self.ends.recv().await;
+        }
     }
 
     /// True while the process of a node runs.
@@ -121,16 +129,18 @@ impl Processes {
 
 impl Process {
     fn signal(&self, signal: Signal) {
-        if let Some(group) = self.group {
-            killpg(group, signal).ok();
+        if let Ok(group) = i32::try_from(self.child.id()) {
+            killpg(Pid::from_raw(group), signal).ok();
         }
     }
 }
 
 impl Drop for Processes {
     fn drop(&mut self) {
-        let processes = self.running.values();
-        processes.for_each(|process| process.signal(Signal::SIGKILL));
+        for process in self.running.values_mut() {
+            process.signal(Signal::SIGKILL);
+            process.child.wait().ok();
+        }
     }
 }
 

@@ -55,7 +55,7 @@ use loads::Loads;
 use orders::Orders;
 use settings::Settings;
 use shown::Shown;
-use switch::{CLOSE_TIME, Switch, SwitchEvent};
+use switch::{CLOSE_TIME, Switch};
 use turns::Turns;
 use watchdog::Watchdog;
 
@@ -159,7 +159,7 @@ impl Supervisor {
             conductor: conductor.transpose()?,
             link,
             settings,
-            processes: Processes::default(),
+            processes: Processes::new()?,
             crew: Crew::new(start.nodes),
             watchdog: Watchdog::default(),
             turns: Turns::default(),

@@ -10,7 +10,7 @@
 //! | [`pacing`] | no faster than brushes follow |
 //! | [`driven`] | the device whose hand feels it |
 //! | [`consent`] | its consent |
-//! | [`guide`], [`guiding`], [`traced`] | its strokes guide a hand that paints |
+//! | [`guide`] | its strokes guide a hand that paints |
 //! | [`place`] | a take elsewhere on the desk |
 //! | [`events`] | what is to come |
 
@@ -18,7 +18,6 @@ mod consent;
 mod driven;
 mod events;
 mod guide;
-mod guiding;
 mod pacing;
 pub(crate) mod place;
 mod playback;
@@ -27,5 +26,4 @@ mod senders;
 mod session;
 mod session_painting;
 mod streams;
-mod traced;
 pub(crate) mod transport;

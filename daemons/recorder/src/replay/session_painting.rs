@@ -28,11 +28,11 @@ pub(super) fn free_name(chosen: Option<&Path>, recording: &Path) -> Result<PathB
         return Err(wrong("a name that ends so may belong to a painting")
             .help("give the painting another name"));
     }
+    check_writable(&path, Kind::Own).map_err(|error| UserError::writing(&path, &error))?;
     if path.exists() {
         return Err(wrong("this painting is there already")
             .help("name one that is not: the session is painted there from its beginning"));
     }
-    check_writable(&path, Kind::Own).map_err(|error| UserError::writing(&path, &error))?;
     Ok(path)
 }
 

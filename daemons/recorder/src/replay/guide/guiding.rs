@@ -10,13 +10,13 @@ use maulstick_types::stylus::StylusSample;
 use tokio::task::block_in_place;
 use tokio::time::Instant;
 
-use super::consent::Consent;
-use super::driven::Driven;
-use super::guide::Brush;
-use super::playback::{Controls, REPORT_PERIOD};
-use super::player::{Guiding, ReplayReport};
+use crate::replay::consent::Consent;
+use crate::replay::driven::Driven;
+use super::Brush;
+use crate::replay::playback::{Controls, REPORT_PERIOD};
+use crate::replay::player::{Guiding, ReplayReport};
 use super::traced::Traced;
-use super::transport::Order;
+use crate::replay::transport::Order;
 
 /// Time between two guides.
 const PERIOD: Duration = Duration::from_millis(10);

@@ -1,4 +1,12 @@
 //! A recording guides the hand at a device: its strokes are sent as guides, each as far as the hand has come along it.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`guiding`] | the loop that sends them |
+//! | [`traced`] | how far a hand has traced the strokes |
+
+mod guiding;
+mod traced;
 
 use glam::DVec3;
 use maulstick_brush::BrushFile;
@@ -17,18 +25,18 @@ use maulstick_types::stylus::{StylusPose, StylusSample};
 use tokio::task::block_in_place;
 use tokio::time::timeout;
 
-use super::driven::{Driven, PATIENCE};
-use super::guiding::Guidance;
-use super::playback::Controls;
-use super::player::{Call, GuideSettings, ReplaySettings};
-use super::traced::{Touch, Traced};
+use crate::replay::driven::{Driven, PATIENCE};
+use self::guiding::Guidance;
+use crate::replay::playback::Controls;
+use crate::replay::player::{Call, GuideSettings, ReplaySettings};
+use self::traced::{Touch, Traced};
 
 /// Topics of the hands.
 const HANDS: &str = "stylus/*/sample";
 
 /// The brush at the guided device.
-pub(super) struct Brush {
-    pub(super) head_length_m: f64,
+struct Brush {
+    head_length_m: f64,
     depth_share: f64,
 }
 
@@ -71,7 +79,7 @@ impl Brush {
     }
 
     /// The undeformed tip, and whether the brush touches the canvas.
-    pub(super) fn tip(&self, sample: &StylusSample) -> (DVec3, Touch) {
+    fn tip(&self, sample: &StylusSample) -> (DVec3, Touch) {
         let length = self.head_length_m;
         let frame = ferrule(sample, length, self.depth_share, &HalfSpace::SURFACE);
         let tip = frame.point(DVec3::NEG_Z * length);
