@@ -1,10 +1,21 @@
-//! The window's words for the advice that comes with a refusal.
+//! The window's words for requests that were not carried out.
 
+use maulstick_client::dispatcher::RequestError;
+use maulstick_rig::UserError;
 use maulstick_types::command::advice::Advice;
+
+/// The reason why a request was not carried out, in the window's words.
+#[must_use]
+pub(crate) fn worded(error: &RequestError) -> UserError {
+    match error {
+        RequestError::NotSent => UserError::failure(tr!("it was not sent")),
+        RequestError::Refused(fault) => fault.clone().worded(words),
+    }
+}
 
 /// What to do about it in this window; `None` where the general words do.
 #[must_use]
-pub(crate) fn words(advice: &Advice) -> Option<String> {
+fn words(advice: &Advice) -> Option<String> {
     let words = match advice {
         Advice::StopDrying => tr!("wait for its end, or press Stop in the panel Layers"),
         Advice::BeginDrying => tr!("press Start in the panel Layers"),

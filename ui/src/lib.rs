@@ -7,7 +7,6 @@
 //! | [`rig`] | state of the rig, and requests to it |
 //! | [`view`] | the desk seen from above |
 //! | [`render`] | drawing of desk, surfaces and brushes |
-//! | `language` | languages, and the English sentences that are their keys |
 //! | `motions` | takes that are put on the canvas |
 //! | `matching` | from a colour to mixtures of paints |
 //! | `panels` | the panels, a folder each |
@@ -15,9 +14,8 @@
 //! | `reference` | a picture to paint after, and the mixtures of its colours |
 //! | `sessions` | recorder and player of sessions |
 //! | `settings_page` | the dialog of settings: text size, theme, units, keys |
-//! | `widgets` | parts that panels and dialogs are made of |
+//! | `widgets` | parts of several panels that know the rig; those that do not are in `maulstick-ui-kit` |
 //! | [`settings`] | settings that outlive the window |
-//! | `background_task` | work on a thread beside the window |
 //! | `spectrum_file` | spectra from CSV files |
 //!
 //! # Three parts
@@ -66,13 +64,14 @@
 //!   sources.
 
 #[macro_use]
-mod language;
+extern crate maulstick_ui_kit;
 
 mod advice;
 pub mod app;
-mod background_task;
 mod dialogs;
 mod input;
+#[cfg(test)]
+mod language_tests;
 mod matching;
 mod motions;
 mod panels;
@@ -104,7 +103,7 @@ pub fn run(
     export: &Export,
     library: PaintLibrary,
 ) -> Result<(), UserError> {
-    language::follow_system();
+    maulstick_ui_kit::language::follow_system();
     let mut app = app::App::new(&member, pointers, library)?;
     let export = export.clone();
     let viewport = eframe::egui::ViewportBuilder::default()

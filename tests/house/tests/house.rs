@@ -105,7 +105,7 @@ rules! {
         ("ui/c.rs", "fn f(text: &str) -> bool { text == \"model dab proposed\" }"),
     ] => "ui/a.rs + ui/c.rs";
     asserted_words "asserted-words" [
-        ("ui/src/language/a.rs", "fn f() { assert!(a.contains(\"two words\")); }"),
+        ("ui/kit/src/language/a.rs", "fn f() { assert!(a.contains(\"two words\")); }"),
         ("sim/a.rs", "#[cfg(test)] mod tests { fn f() { assert!(a.is_err_and(|b| b.contains(\"two words\"))); } }"),
         ("sim/b.rs", "fn f() { assert!(a.contains(\"word\") && b); a.contains(\"two words\"); }"),
     ] => "sim/a.rs";

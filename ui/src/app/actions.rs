@@ -11,11 +11,11 @@ use super::{App, STILL};
 use crate::input::keys::Action;
 use crate::input::mouse_stylus::Pointer;
 use crate::input::navigation::{Around, is_panel, place};
-use crate::rig::force_history;
 use crate::settings::preferences::Preferences;
 use crate::view::camera::View;
 use crate::view::fit_crosses;
 use crate::view::well_labels::{self, Shown};
+use maulstick_client::force_history;
 
 /// A newton is shown so long, m.
 const ARROW_M_N: f64 = 0.02;
@@ -24,7 +24,7 @@ const ARROW: Color32 = Color32::from_rgb(230, 120, 40);
 impl App {
     /// Path of the pointer over the desk since the last frame.
     pub(super) fn pointer(&mut self, context: &Context) -> Vec<Pointer> {
-        let (Some(scene), Some(view)) = (&self.rig.scene, &self.view) else {
+        let (Some(scene), Some(view)) = (&self.rig.live.scene, &self.view) else {
             return Vec::new();
         };
         // Two fingers move the canvas.
@@ -48,7 +48,7 @@ impl App {
 
     /// Does what concerns the desk.
     pub(super) fn act(&mut self, act: Action, context: &Context) {
-        let (Some(canvas), Some(view)) = (self.rig.canvas(), &self.view) else {
+        let (Some(canvas), Some(view)) = (self.rig.live.canvas(), &self.view) else {
             return;
         };
         self.navigation.forget();
@@ -66,7 +66,7 @@ impl App {
 
     /// The point of the desk at the pointer.
     fn pointed_at(&self, context: &Context) -> Option<DVec3> {
-        let (scene, view) = (self.rig.scene.as_ref()?, self.view.as_ref()?);
+        let (scene, view) = (self.rig.live.scene.as_ref()?, self.view.as_ref()?);
         let at = context.input(|input| input.pointer.latest_pos())?;
         let is_on_desk = view.area.contains(at) && !is_panel(context, at);
         is_on_desk.then(|| view.to_desk(at, &scene.surfaces))
@@ -104,7 +104,8 @@ impl App {
 
     /// Slides the palette over the canvas, or back beside it.
     pub(super) fn slide(&mut self) {
-        let (Some(canvas), Some(palette)) = (self.rig.canvas(), self.rig.palette()) else {
+        let (Some(canvas), Some(palette)) = (self.rig.live.canvas(), self.rig.live.palette())
+        else {
             return;
         };
         let side = side(&self.preferences);
@@ -122,7 +123,12 @@ impl App {
         let Some(view) = &self.view else {
             return;
         };
-        let surfaces = self.rig.scene.as_ref().map(|scene| &scene.surfaces[..]);
+        let surfaces = self
+            .rig
+            .live
+            .scene
+            .as_ref()
+            .map(|scene| &scene.surfaces[..]);
         let around = Around {
             view,
             surfaces: surfaces.unwrap_or_default(),
@@ -172,7 +178,7 @@ impl App {
     /// Names the wells on the palette as it is seen.
     pub(super) fn name_wells(&self, painter: &egui::Painter, view: &View, seen: &[Surface]) {
         let palette = seen.iter().find(|surface| surface.id == PALETTE);
-        let (Some(canvas), Some(palette)) = (self.rig.canvas(), palette) else {
+        let (Some(canvas), Some(palette)) = (self.rig.live.canvas(), palette) else {
             return;
         };
         let aim = self.tracker.aim(self.rig.brush_name());
@@ -187,7 +193,7 @@ impl App {
 
     /// Shows what a device is to touch that is being fitted.
     pub(super) fn show_fit(&self, painter: &egui::Painter, view: &View) {
-        if let (Some(fit), Some(canvas)) = (&self.rig.fit, self.rig.canvas()) {
+        if let (Some(fit), Some(canvas)) = (&self.rig.setup.fit, self.rig.live.canvas()) {
             fit_crosses::draw(painter, view, canvas, fit.asks.as_deref());
         }
     }
@@ -195,7 +201,8 @@ impl App {
     /// Draws the force in the hand as an arrow from the brush, as long as its panel is seen.
     pub(super) fn draw_force(&self, painter: &egui::Painter, view: &View) {
         let seen = self.preferences.panels && self.preferences.is_open("Device");
-        let Some((place_m, force_n)) = force_history::force_arrow(&self.rig).filter(|_| seen)
+        let Some((place_m, force_n)) =
+            force_history::force_arrow(&self.rig.live, self.rig.brush_name()).filter(|_| seen)
         else {
             return;
         };
@@ -211,7 +218,8 @@ impl App {
     /// Lays palette and wells for the hand that paints, where the painter has changed it.
     pub(super) fn change_hands(&mut self) {
         let side = side(&self.preferences);
-        let (Some(canvas), Some(palette)) = (self.rig.canvas(), self.rig.palette()) else {
+        let (Some(canvas), Some(palette)) = (self.rig.live.canvas(), self.rig.live.palette())
+        else {
             return;
         };
         let other = match side {
@@ -219,10 +227,10 @@ impl App {
             Side::Right => Side::Left,
         };
         // Once for each start of the paint node, and when the painter has changed hands.
-        let key = (side, self.rig.starts);
+        let key = (side, self.rig.live.starts);
         let before = self.side.replace(key);
         let rests = is_same(&palette.pose, &beside(canvas, palette, other));
-        let changes = before == Some((other, self.rig.starts));
+        let changes = before == Some((other, self.rig.live.starts));
         if before == Some(key) || !(rests || changes) {
             return;
         }

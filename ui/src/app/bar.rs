@@ -4,11 +4,11 @@ use eframe::egui::containers::menu::MenuButton;
 use eframe::egui::{
     Area, Button, Context, Frame, Id, Margin, Order, Response, Role, TextWrapMode, Ui, WidgetInfo,
 };
+use maulstick_ui_kit::language::translated;
 
 use crate::app::sides;
 use crate::input::keymap::Keymap;
 use crate::input::keys::{Action, BINDINGS, Binding};
-use crate::language::translated;
 use crate::widgets::brush_gauge;
 use crate::widgets::context::PanelContext;
 

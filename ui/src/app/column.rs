@@ -4,9 +4,9 @@ use eframe::egui::{
     Align, Area, CollapsingHeader, Color32, Context, CursorIcon, Frame, Id, LayerId, Layout, Order,
     Pos2, Rect, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2,
 };
+use maulstick_ui_kit::language::translated;
 
 use crate::app::sides::{COLUMN, MARGIN, column_side, rack_at};
-use crate::language::translated;
 use crate::panels::{self, Panel};
 use crate::settings::window_side::WindowSide;
 use crate::widgets::context::PanelContext;

@@ -4,10 +4,10 @@
 use std::time::Duration;
 
 use eframe::egui::{Area, Color32, Context, Frame, Id, Margin, Order, Rect, RichText, Stroke};
+use maulstick_ui_kit::language::translated;
 
 use crate::app::sides;
 use crate::input::keys::Action;
-use crate::language::translated;
 use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 use crate::settings::window_side::WindowSide;
@@ -53,7 +53,7 @@ impl FirstRun {
             return;
         }
         let now = context.input(|input| input.time);
-        let status = rig.paint.as_ref().map(|node| &node.status);
+        let status = rig.live.paint.as_ref().map(|node| &node.status);
         let is_bare = status.is_none_or(|status| status.blank);
         if !is_bare {
             preferences.has_painted = true;
@@ -164,7 +164,7 @@ mod tests {
     }
 
     fn says(harness: &mut Harness<'static, Day>, change: impl FnOnce(&mut PaintStatus)) -> bool {
-        let node = harness.state_mut().rig.paint.as_mut();
+        let node = harness.state_mut().rig.live.paint.as_mut();
         change(&mut node.expect("a node").status);
         harness.run_steps(2);
         harness.query_by_label_contains(HELP).is_some()

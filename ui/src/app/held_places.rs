@@ -1,7 +1,7 @@
 //! Placements of surfaces that wait until no brush touches one.
 
-use crate::rig::requests::Request;
 use crate::rig::state::BrushContact;
+use maulstick_client::request::Request;
 
 /// The placements in wait: the desk is not moved under a brush, whoever asks for that.
 #[derive(Debug, Default)]

@@ -129,7 +129,12 @@ fn about_it(ui: &mut Ui, work: &PanelContext<'_>) {
         "Oil paint and brushes, computed from what was measured of them."
     ));
     ui.add_space(6.0);
-    let backend = work.rig.paint.as_ref().map(|node| &*node.status.backend);
+    let backend = work
+        .rig
+        .live
+        .paint
+        .as_ref()
+        .map(|node| &*node.status.backend);
     let rows = [
         (tr!("Version"), env!("CARGO_PKG_VERSION")),
         (tr!("Licence"), env!("CARGO_PKG_LICENSE")),

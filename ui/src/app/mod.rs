@@ -27,6 +27,9 @@ use maulstick_rig::{NodeHandle, Sketches, Stop, UserError};
 use maulstick_types::scene::{PALETTE, Surface};
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
+use maulstick_ui_kit::display_transform::DisplayTransform;
+use maulstick_ui_kit::language;
+use maulstick_ui_kit::notifications::Notifications;
 
 use crate::app::held_places::HeldPlaces;
 use crate::app::overlay::Overlay;
@@ -38,21 +41,14 @@ use crate::input::palette_gesture::PaletteGesture;
 use crate::input::pen::WindowPen;
 use crate::input::pointer_path::PointerPath;
 use crate::input::presses;
-use crate::language;
 use crate::render::device_loss::DeviceLoss;
-use crate::render::display_transform::DisplayTransform;
 use crate::render::frame_reports::Presenter;
 use crate::render::scene::{SceneRenderer, Seen, Source};
 use crate::rig::brushes::{BrushTracker, SILENCE_NS};
 use crate::rig::device_commands::DeviceCommands;
-use crate::rig::dispatcher::CommandDispatcher;
 use crate::rig::health::HealthMonitor;
-use crate::rig::listener::RigListener;
 use crate::rig::requests::Requests;
 use crate::rig::state::RigState;
-use crate::rig::stroke_barrier::StrokeBarrier;
-use crate::rig::stroke_barrier::pending::PendingTeller;
-use crate::rig::thumbnails::ThumbnailFetcher;
 use crate::sessions::SessionProcesses;
 use crate::settings::look::Look;
 use crate::settings::preferences::Preferences;
@@ -61,8 +57,12 @@ use crate::view::camera::{DESK_COLOUR, View};
 use crate::view::held_view::{self, HeldView};
 use crate::view::palette_slide::PaletteSlide;
 use crate::widgets::context::PanelContext;
-use crate::widgets::notifications::Notifications;
 use crate::widgets::progress::Progress;
+use maulstick_client::dispatcher::CommandDispatcher;
+use maulstick_client::listener::RigListener;
+use maulstick_client::pending_orders::PendingSender;
+use maulstick_client::stroke_barrier::StrokeBarrier;
+use maulstick_client::thumbnails::ThumbnailFetcher;
 
 mod actions;
 pub(crate) mod bar;
@@ -119,7 +119,7 @@ pub struct App {
     tracing: TracingPicture,
     requests: Requests,
     barrier: StrokeBarrier,
-    pending: PendingTeller,
+    pending: PendingSender,
     dispatcher: CommandDispatcher,
     device_commands: DeviceCommands,
     session_processes: SessionProcesses,
@@ -216,7 +216,7 @@ impl App {
             tracing: TracingPicture::default(),
             requests: Requests::default(),
             barrier: StrokeBarrier::new(&**bus, topics)?,
-            pending: PendingTeller::new(&**bus, topics)?,
+            pending: PendingSender::new(&**bus, topics)?,
             notifications,
             title: String::new(),
             look: Look::default(),
@@ -274,7 +274,7 @@ impl App {
     }
 
     fn take_in(&mut self, now_ns: u64) {
-        self.listener.take_in(now_ns, &mut self.rig);
+        self.rig.drain(&mut self.listener, now_ns);
         self.tracker.take_in(now_ns);
         for brush in &mut self.rig.brushes {
             brush.carried = self.tracker.carried(&brush.name).cloned();
@@ -282,9 +282,9 @@ impl App {
         let (rig, notifications) = (&mut self.rig, &mut self.notifications);
         self.watch.look(rig, &self.topics, notifications);
         self.scene_renderer.take_in(&mut self.rig);
-        self.fetcher.exchange(&mut self.rig.thumbnails, now_ns);
+        self.fetcher.exchange(&mut self.rig.live.thumbnails, now_ns);
         for outcome in self.dispatcher.outcomes() {
-            self.overlay.hear(
+            self.overlay.on_reply(
                 &outcome,
                 &mut PanelContext {
                     rig: &mut self.rig,
@@ -303,7 +303,7 @@ impl App {
 
     /// Time until statuses, and devices that fall silent, are looked at again: nothing signals them.
     fn next_look(&self) -> Duration {
-        let status = self.rig.paint.as_ref().map(|node| &node.status);
+        let status = self.rig.live.paint.as_ref().map(|node| &node.status);
         let works = status.is_some_and(|status| {
             status.baked < status.baking
                 || status.drying.is_some()
@@ -353,7 +353,7 @@ impl eframe::App for App {
         self.rig.pen_pressure = self.pen.pressure();
         // After the mouse has sent its position: its brush is drawn there.
         self.take_in(now_ns);
-        self.barrier.take_in(now_ns);
+        self.barrier.drain(now_ns);
         self.rig.contact = self.contact();
         self.send(context);
         self.follow(context, now_ns);
@@ -370,7 +370,7 @@ impl eframe::App for App {
                 false => Side::Left,
                 true => Side::Right,
             };
-            let (canvas, palette) = (self.rig.canvas(), self.rig.palette());
+            let (canvas, palette) = (self.rig.live.canvas(), self.rig.live.palette());
             let [left, right] = self.overlay.taken(&self.preferences);
             // Beside the palette the desk itself is narrower.
             let mut area = ui.max_rect();
@@ -396,7 +396,12 @@ impl eframe::App for App {
             };
             let is_held = self.holds_desk();
             self.view = self.held_view.follow(wanted, frame, is_held);
-            let surfaces = self.rig.scene.as_ref().map(|scene| &scene.surfaces[..]);
+            let surfaces = self
+                .rig
+                .live
+                .scene
+                .as_ref()
+                .map(|scene| &scene.surfaces[..]);
             let shown = self.view.as_ref().zip(surfaces);
             let brush = self.rig.brush_name();
             self.pen.set_pointing(self.overlay.motions.is_placing());
@@ -407,7 +412,7 @@ impl eframe::App for App {
                 return;
             };
             ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
-            let surfaces = self.rig.scene.iter().flat_map(|scene| &scene.surfaces);
+            let surfaces = self.rig.live.scene.iter().flat_map(|scene| &scene.surfaces);
             let mut surfaces: Vec<Surface> = surfaces.cloned().collect();
             let now_s = ui.input(|input| input.time);
             if self.palette_slide.show(now_s, &mut surfaces) {
@@ -445,7 +450,7 @@ impl eframe::App for App {
             self.overlay.palette = palette.map(|palette| view.covered(palette));
             self.draw_force(ui.painter(), &view);
             if let Some(presenter) = &mut self.presenter {
-                let (begun_ns, holding) = (self.rig.now_ns, self.scene_renderer.holding());
+                let (begun_ns, holding) = (self.rig.live.now_ns, self.scene_renderer.holding());
                 ui.painter()
                     .add(presenter.shape(view.area, begun_ns, holding));
             }

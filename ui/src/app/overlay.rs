@@ -6,7 +6,9 @@ use eframe::egui::{self, Align, Align2, Context, Layout, Rect, Ui};
 use maulstick_types::edits::{Clean, Dry, Redo, Relight, Scrape, Undo};
 use maulstick_types::scene::{CANVAS, Light, PALETTE};
 use maulstick_types::values::BrushName;
+use maulstick_ui_kit::language::translated;
 
+use crate::advice;
 use crate::app::bar;
 use crate::app::column::Column;
 use crate::app::first_run::FirstRun;
@@ -18,22 +20,20 @@ use crate::input::keymap::Keymap;
 use crate::input::keys::{self, Action};
 use crate::input::presses;
 use crate::input::size_drag::SizeDrag;
-use crate::language::translated;
 use crate::matching::colour_window::ColourWindow;
 use crate::motions::Motions;
 use crate::panels;
 use crate::panels::light::lamp_undo::LampUndo;
 use crate::reference::Reference;
-use crate::rig::dispatcher::Outcome;
 use crate::rig::state::RigState;
 use crate::sessions::SessionOrder;
 use crate::sessions::transport_bar::TransportBar;
 use crate::settings::brush_memory::BrushMemory;
 use crate::settings::preferences::Preferences;
 use crate::settings_page::SettingsPage;
-use crate::widgets::context::PanelContext;
+use crate::widgets::context::{PanelContext, ask};
 use crate::widgets::key_picture;
-use crate::widgets::rows::ask;
+use maulstick_client::dispatcher::Outcome;
 
 /// Turn of the mouse's brush by one press of a key, degrees.
 const TURN_DEG: f64 = 15.0;
@@ -173,13 +173,13 @@ impl Overlay {
 
     /// Takes in the outcome of a request; a failure becomes a notification, and so does an edit
     /// whose effect may be out of view.
-    pub(crate) fn hear(&mut self, outcome: &Outcome, work: &mut PanelContext<'_>) {
-        if self.files.hear(outcome, work) {
+    pub(crate) fn on_reply(&mut self, outcome: &Outcome, work: &mut PanelContext<'_>) {
+        if self.files.on_reply(outcome, work) {
             return;
         }
         work.brush_answered(outcome);
         match &outcome.result {
-            Err(fault) => work.notifications.of(fault),
+            Err(error) => work.notifications.of(&advice::worded(error)),
             Ok(detail) => {
                 if let Some(done) = outcome_words::done(&outcome.request, detail) {
                     work.notifications.note(done);
@@ -408,11 +408,17 @@ mod tests {
     fn undo_takes_back_a_lamp_that_was_changed_last() {
         let mut harness = window(None);
         let light = |harness: &Harness<'_, Bench>| {
-            let scene = harness.state().rig.scene.as_ref().expect("a scene");
+            let scene = harness.state().rig.live.scene.as_ref().expect("a scene");
             scene.light.clone()
         };
         let before = light(&harness);
-        let scene = harness.state_mut().rig.scene.as_mut().expect("a scene");
+        let scene = harness
+            .state_mut()
+            .rig
+            .live
+            .scene
+            .as_mut()
+            .expect("a scene");
         scene.light.direction = [0.3, 0.2, 0.9];
         harness.run_steps(2);
         ctrl(&mut harness, Key::Z, Modifiers::NONE);
@@ -425,6 +431,7 @@ mod tests {
         harness
             .state_mut()
             .rig
+            .live
             .scene
             .as_mut()
             .expect("a scene")

@@ -9,9 +9,9 @@ use eframe::egui::{
     Response, Role, ScrollArea, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 use maulstick_brush::BrushFile;
+use maulstick_ui_kit::language::known;
 
 use crate::input::brush_choice::{called, is_of_library, library};
-use crate::language::known;
 use crate::render::brush::icon_cache;
 use crate::widgets::context::PanelContext;
 

@@ -6,9 +6,9 @@ use std::time::Duration;
 use eframe::egui::Context;
 
 use super::App;
-use crate::rig::requests::Request;
 use crate::rig::state::BrushContact;
 use crate::widgets::context::PanelContext;
+use maulstick_client::request::Request;
 
 /// Interval at which a request that waits for its stroke is checked again.
 const BARRIER_LOOK: Duration = Duration::from_millis(50);
@@ -26,7 +26,7 @@ impl App {
         self.session_processes.turn(context, orders, told);
         // The mouse's samples until then are sent, and those of others heard.
         let heard_ns = self.tracker.heard_until_ns().min(now_ns);
-        let asked_ns = self.rig.now_ns.max(heard_ns);
+        let asked_ns = self.rig.live.now_ns.max(heard_ns);
         for follow_up in self.requests.take_follow_ups() {
             self.barrier.push_follow_up(follow_up);
         }
@@ -53,7 +53,7 @@ impl App {
         }
         let oldest = [self.barrier.oldest_ns(), self.dispatcher.oldest_ns()];
         let since_ns = oldest.into_iter().flatten().min();
-        if let Err(error) = self.pending.tell(now_ns, since_ns) {
+        if let Err(error) = self.pending.send(now_ns, since_ns) {
             tracing::warn!("the brushes are not told what is pending: {error}");
         }
         if self.barrier.is_waiting() || since_ns.is_some() {

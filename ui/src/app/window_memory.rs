@@ -10,7 +10,7 @@ use crate::dialogs::paths;
 impl App {
     /// Titles the window with the painting's name.
     pub(super) fn name_window(&mut self, context: &Context) {
-        let path = self.rig.paint.as_ref().map(|node| &*node.status.path);
+        let path = self.rig.live.paint.as_ref().map(|node| &*node.status.path);
         let title = match path.filter(|path| !path.is_empty()) {
             Some(_) if self.rig.is_sketch() => tr!("Sketch · Maulstick").to_owned(),
             Some(path) => format!("{} · Maulstick", paths::name(Path::new(path))),

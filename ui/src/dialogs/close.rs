@@ -44,7 +44,7 @@ impl ClosePainting {
     /// is in a file with a name.
     #[must_use]
     pub(super) fn of(rig: &RigState) -> Option<Self> {
-        let status = &rig.paint.as_ref()?.status;
+        let status = &rig.live.paint.as_ref()?.status;
         let fate = if !status.fault.is_empty() && !status.all_committed {
             Fate::Unwritten(status.fault.clone())
         } else if status.blank {
@@ -133,7 +133,7 @@ mod tests {
     fn rig_with(status: PaintStatus) -> RigState {
         let mut rig = rig();
         rig.sketches = Some(Sketches::in_folder(Path::new(SKETCHES)));
-        rig.paint.as_mut().expect("a node").status = status;
+        rig.live.paint.as_mut().expect("a node").status = status;
         rig
     }
 

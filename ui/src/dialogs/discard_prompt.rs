@@ -16,7 +16,7 @@ impl Unkept {
     /// The painting on the easel.
     #[must_use]
     pub(crate) fn of(rig: &RigState) -> Self {
-        let status = rig.paint.as_ref().map(|paint| &paint.status);
+        let status = rig.live.paint.as_ref().map(|paint| &paint.status);
         Self {
             would_go: status.is_some_and(|status| status.path.is_empty() && !status.blank),
             let_go: false,

@@ -9,9 +9,9 @@ use maulstick_brush::BrushFile;
 use maulstick_exchange::PictureKind;
 use maulstick_exchange::read_image::kind::HEAD;
 use maulstick_types::command::BRUSH_FILE_MAX;
+use maulstick_ui_kit::language::translated;
 
 use crate::dialogs::paths;
-use crate::language::translated;
 use crate::sessions::RECORDING;
 
 /// The kinds of files that may be dropped.

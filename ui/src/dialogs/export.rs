@@ -4,11 +4,11 @@ use std::path::Path;
 
 use eframe::egui::{ComboBox, Context, Grid, Ui};
 use maulstick_types::command::{Command, ExportOrder, FileCommand};
+use maulstick_ui_kit::language::{known, translated};
 
 use crate::dialogs::browser::{Browser, Purpose};
 use crate::dialogs::dialog::{self, Answer, Foot, line, number};
 use crate::dialogs::paths;
-use crate::language::{known, translated};
 
 /// A file format: its name in the command, its file ending, its description.
 struct Format {

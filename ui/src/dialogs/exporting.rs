@@ -36,7 +36,7 @@ fn left(export: &ExportStatus) -> String {
 
 /// Shows it at the lower edge.
 pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) {
-    let status = work.rig.paint.as_ref().map(|node| &node.status);
+    let status = work.rig.live.paint.as_ref().map(|node| &node.status);
     let export = status.and_then(|status| status.export.clone());
     let Some(export) = export.filter(|export| export.since_ns >= SHORT_NS) else {
         return;

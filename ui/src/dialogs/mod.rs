@@ -33,13 +33,12 @@ use std::task::Poll;
 use eframe::egui::Context;
 use maulstick_rig::Sketches;
 use maulstick_types::command::{Command, FileCommand, RigCommand};
+use maulstick_ui_kit::background_task::BackgroundTask;
+use maulstick_ui_kit::language::translated;
 
-use crate::background_task::BackgroundTask;
+use crate::advice;
 use crate::input::keys::Action;
-use crate::language::translated;
 use crate::reference::Reference;
-use crate::rig::dispatcher::Outcome;
-use crate::rig::requests::Request;
 use crate::rig::state::RigState;
 use crate::sessions::SessionOrder;
 use crate::widgets::context::PanelContext;
@@ -50,6 +49,8 @@ use dialog::{Answer, in_words};
 use discard_prompt::Unkept;
 use dropped::Dropped;
 use export::ExportPicture;
+use maulstick_client::dispatcher::Outcome;
+use maulstick_client::request::Request;
 use new::NewPainting;
 use open::OpenPainting;
 use paths::{folder, stem};
@@ -192,7 +193,7 @@ impl Files {
     }
 
     fn save(&mut self, work: &mut PanelContext<'_>) {
-        let Some(node) = &work.rig.paint else {
+        let Some(node) = &work.rig.live.paint else {
             work.notifications.fault(
                 tr!("nothing is known of the painting yet"),
                 tr!("wait for the painting engine: it comes back by itself"),
@@ -320,7 +321,7 @@ impl Files {
     }
 
     /// Takes in the outcome of a request; `false` if it was about no file.
-    pub(crate) fn hear(&mut self, outcome: &Outcome, work: &mut PanelContext<'_>) -> bool {
+    pub(crate) fn on_reply(&mut self, outcome: &Outcome, work: &mut PanelContext<'_>) -> bool {
         let Request::Command { command, .. } = &outcome.request else {
             return false;
         };
@@ -345,7 +346,8 @@ impl Files {
                     (self.dialog, self.waiting) = (None, None);
                 }
             }
-            Err(fault) if is_waited_for => {
+            Err(error) if is_waited_for => {
+                let fault = advice::worded(error);
                 let words = in_words(&fault.what, fault.help.as_deref().unwrap_or_default());
                 self.waiting = None;
                 match &mut self.dialog {
@@ -359,10 +361,10 @@ impl Files {
                         | Dialog::Tracing(_)
                         | Dialog::Recording(_),
                     )
-                    | None => work.notifications.of(fault),
+                    | None => work.notifications.of(&fault),
                 }
             }
-            Err(fault) => work.notifications.of(fault),
+            Err(error) => work.notifications.of(&advice::worded(error)),
         }
         true
     }
@@ -382,7 +384,7 @@ impl Files {
 
     /// Remembers which paintings were open.
     fn remember(&mut self, work: &mut PanelContext<'_>) {
-        let Some(node) = &work.rig.paint else {
+        let Some(node) = &work.rig.live.paint else {
             return;
         };
         // Empty for one in memory: the one before is no longer open then.

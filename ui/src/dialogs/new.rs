@@ -7,12 +7,12 @@ use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_types::command::{Command, NewCanvas, RigCommand};
 use maulstick_types::scene::default_stain_m;
 use maulstick_types::values::{MaterialName, ValueError, WholePath};
+use maulstick_ui_kit::language::{capitalized, known, translated};
+use maulstick_ui_kit::units::Units;
 
 use crate::dialogs::dialog::{self, Answer, Foot, in_words, line, number};
 use crate::dialogs::discard_prompt::Unkept;
 use crate::dialogs::paths;
-use crate::language::{capitalized, known, translated};
-use crate::settings::units::Units;
 
 /// Sizes that are chosen with a click: name, width and height, cm.
 const SIZES: [(&str, f64, f64); 3] = [("A5", 21.0, 14.8), ("A4", 29.7, 21.0), ("A3", 42.0, 29.7)];

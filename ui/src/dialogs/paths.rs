@@ -135,7 +135,7 @@ pub(crate) fn age(changed: SystemTime, now: SystemTime) -> String {
 
 /// The folder in which a dialog begins: that of the painting, or of the one before.
 pub(super) fn folder(work: &PanelContext<'_>) -> PathBuf {
-    let status = work.rig.paint.as_ref().map(|node| &node.status);
+    let status = work.rig.live.paint.as_ref().map(|node| &node.status);
     let open = status.filter(|status| !status.path.is_empty() && !work.rig.is_sketch());
     let open = open.map(|status| PathBuf::from(&status.path));
     let known = open.as_ref().or(work.preferences.recent.first());
@@ -147,7 +147,12 @@ pub(super) fn folder(work: &PanelContext<'_>) -> PathBuf {
 
 /// File stem of the painting.
 pub(super) fn stem(work: &PanelContext<'_>) -> String {
-    let node = work.rig.paint.as_ref().filter(|_| !work.rig.is_sketch());
+    let node = work
+        .rig
+        .live
+        .paint
+        .as_ref()
+        .filter(|_| !work.rig.is_sketch());
     let status = node.map(|node| &node.status);
     let stem = status.and_then(|status| Path::new(&status.path).file_stem());
     stem.map_or_else(

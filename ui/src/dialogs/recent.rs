@@ -5,8 +5,8 @@ use std::task::Poll;
 use std::time::SystemTime;
 
 use eframe::egui::{Button, Context, RichText, Sense, Ui};
+use maulstick_ui_kit::background_task::BackgroundTask;
 
-use crate::background_task::BackgroundTask;
 use crate::dialogs::browser::PICTURE;
 use crate::dialogs::browser::pictures::Pictures;
 use crate::dialogs::paths;

@@ -7,12 +7,12 @@ use eframe::egui::containers::menu::MenuButton;
 use eframe::egui::{
     Area, Button, Context, Frame, Id, Margin, Order, Rect, RichText, TextWrapMode, Ui,
 };
+use maulstick_ui_kit::language::translated;
 
 use crate::app::{bar, sides};
 use crate::dialogs::paths;
 use crate::input::keymap::Keymap;
 use crate::input::keys::{Action, BINDINGS};
-use crate::language::translated;
 use crate::sessions::recording_mark;
 use crate::widgets::context::PanelContext;
 
@@ -34,7 +34,7 @@ const OFFERS: [Action; 6] = [
 
 /// The line; empty where nothing is known of the painting.
 fn words(context: &Context, work: &PanelContext<'_>) -> String {
-    let Some(node) = &work.rig.paint else {
+    let Some(node) = &work.rig.live.paint else {
         return String::new();
     };
     let status = &node.status;
@@ -47,7 +47,7 @@ fn words(context: &Context, work: &PanelContext<'_>) -> String {
             },
         };
     }
-    let since = work.rig.now_ns.saturating_sub(status.committed_ns);
+    let since = work.rig.live.now_ns.saturating_sub(status.committed_ns);
     let state = match (status.fault.is_empty(), status.all_committed) {
         (false, _) => tr!("not saved"),
         (true, false) if since > LATE_NS => tr!("saving …"),

@@ -8,8 +8,8 @@ use std::time::SystemTime;
 use eframe::egui::{Align2, Button, Context, RichText, Sense, Ui, Window};
 use maulstick_rig::Sketches;
 use maulstick_rig::sketches::{Sketch, leaving};
+use maulstick_ui_kit::background_task::BackgroundTask;
 
-use crate::background_task::BackgroundTask;
 use crate::dialogs::browser::PICTURE;
 use crate::dialogs::browser::pictures::Pictures;
 use crate::dialogs::paths;
@@ -112,7 +112,7 @@ impl SketchOffer {
     }
 
     fn follow(&mut self, context: &Context, rig: &RigState) {
-        let (Some(sketches), Some(node)) = (&rig.sketches, &rig.paint) else {
+        let (Some(sketches), Some(node)) = (&rig.sketches, &rig.live.paint) else {
             return;
         };
         match &self.state {
@@ -201,7 +201,7 @@ mod tests {
         }
         let mut rig = panel_bench::rig();
         rig.sketches = Some(sketches.clone());
-        rig.paint.as_mut().expect("a node").status.path = open.display().to_string();
+        rig.live.paint.as_mut().expect("a node").status.path = open.display().to_string();
         rig
     }
 
@@ -227,7 +227,7 @@ mod tests {
         until(&mut harness, |harness| {
             harness.query_by_label_contains("sketch 01").is_some()
         });
-        let node = harness.state_mut().rig.paint.as_mut();
+        let node = harness.state_mut().rig.live.paint.as_mut();
         node.expect("a node").status.blank = false;
         harness.run_steps(3);
         assert!(harness.query_by_label_contains("sketch 01").is_none());

@@ -119,7 +119,7 @@ fn what_is_in_no_file_is_let_go_only_where_that_is_said() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("sea.maul"), "").expect("written");
     let mut harness = window(Some(folder.path()));
-    let node = harness.state_mut().rig.paint.as_mut().expect("a node");
+    let node = harness.state_mut().rig.live.paint.as_mut().expect("a node");
     node.status.blank = false;
     ctrl(&mut harness, Key::O, gone());
     write(&mut harness, "File", &text(&folder.path().join("sea.maul")));
@@ -190,7 +190,7 @@ fn saving_is_confirmed_and_what_is_in_no_file_gets_one() {
         .state_mut()
         .answer(&save(false), Ok(Detail::say("Painting.maul")));
     harness.run_steps(2);
-    let node = harness.state_mut().rig.paint.as_mut().expect("a node");
+    let node = harness.state_mut().rig.live.paint.as_mut().expect("a node");
     (node.status.path, node.status.blank) = (text(&path), false);
     harness.run_steps(2);
     assert_eq!(harness.state().preferences.recent[0], path);
@@ -228,7 +228,7 @@ fn an_export_goes_on_by_itself_and_can_be_stopped() {
     let asked = (PAINT.to_owned(), Command::from(FileCommand::Export(order)));
     assert_eq!(harness.state_mut().asked(), std::slice::from_ref(&asked));
     assert!(harness.query_by_label("Depth").is_none(), "it is closed");
-    let node = harness.state_mut().rig.paint.as_mut().expect("a node");
+    let node = harness.state_mut().rig.live.paint.as_mut().expect("a node");
     node.status.export = Some(ExportStatus {
         path,
         share: 0.5,
@@ -288,7 +288,7 @@ fn a_file_that_is_dropped_becomes_what_it_is() {
     harness.run_steps(2);
     assert!(harness.state().told().contains("drop one at a time"));
     // What is in no file does not go for a dropped one.
-    let node = harness.state_mut().rig.paint.as_mut().expect("a node");
+    let node = harness.state_mut().rig.live.paint.as_mut().expect("a node");
     node.status.blank = false;
     let_go(&mut harness, &[&painting]);
     until(&mut harness, |harness| {
@@ -305,9 +305,9 @@ fn the_line_at_the_edge_says_whether_it_is_saved_and_offers_all() {
         crate::test_support::overlay_bench::Bench,
     >,
                 change: fn(&mut maulstick_types::paint::PaintStatus)| {
-        let node = harness.state_mut().rig.paint.as_mut().expect("a node");
+        let node = harness.state_mut().rig.live.paint.as_mut().expect("a node");
         change(&mut node.status);
-        harness.state_mut().rig.now_ns = 10_000_000_000;
+        harness.state_mut().rig.live.now_ns = 10_000_000_000;
         harness.run_steps(3);
     };
     harness.get_by_label("New painting");

@@ -12,13 +12,13 @@ use maulstick_types::command::{BrushCommand, Command};
 use maulstick_types::edits::{Edit, Handle, Load, Tune};
 use maulstick_types::scene::{BrushHandling, Tuning};
 use maulstick_types::values::{BrushName, BrushToml};
+use maulstick_ui_kit::language::{capitalized, known};
 
-use crate::language::{capitalized, known};
-use crate::rig::dispatcher::Outcome;
-use crate::rig::requests::Request;
 use crate::rig::state::{BrushContact, RigBrush};
 use crate::settings::brush_load::{BrushLoad, written};
 use crate::widgets::context::PanelContext;
+use maulstick_client::dispatcher::Outcome;
+use maulstick_client::request::Request;
 
 /// A painter's step from one width to the next: this factor, but at least half a millimetre.
 const STEP: f64 = 0.15;
@@ -157,7 +157,7 @@ impl PanelContext<'_> {
         if self.rig.contact == BrushContact::Lifted || !request.changes_brush() {
             return false;
         }
-        let result = Err(UserError::failure(self.tell_refusal()));
+        let result = Err(UserError::failure(self.tell_refusal()).into());
         let request = request.clone();
         self.brush_answered(&Outcome { request, result });
         true
@@ -300,7 +300,7 @@ impl PanelContext<'_> {
         if !self.may_change_brush() {
             return;
         }
-        let (in_hand, now_ns) = (self.rig.in_hand, self.rig.now_ns);
+        let (in_hand, now_ns) = (self.rig.in_hand, self.rig.live.now_ns);
         match self.rig.brushes.get_mut(in_hand) {
             Some(own) if own.asked.is_some() => own.then = Some((command, now_ns)),
             _ => self.requests.send(command),

@@ -4,7 +4,8 @@ use maulstick_types::edits::{Clean, Handle};
 use maulstick_types::scene::{BrushHandling, BrushMode};
 use maulstick_types::values::BrushName;
 
-use crate::rig::requests::{Request, Requests};
+use crate::rig::requests::Requests;
+use maulstick_client::request::Request;
 
 /// Longest press that counts as a tap, s.
 const TAP_S: f64 = 0.25;

@@ -1,11 +1,11 @@
 //! The keys that the painter has chosen: the table of [`BINDINGS`], with changes that are kept in the preferences.
 
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
+use maulstick_ui_kit::language::translated;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use crate::input::keys::{Action, BINDINGS, Binding, written};
-use crate::language::translated;
 
 /// Keys that cannot be given to an action, and what they do.
 const FIXED: [(KeyboardShortcut, &str); 5] = [

@@ -1,9 +1,8 @@
 //! Actions of keys, and the keys that they have unless the painter chose others.
 
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
+use maulstick_ui_kit::language;
 use serde::{Deserialize, Serialize};
-
-use crate::language;
 
 /// Action of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

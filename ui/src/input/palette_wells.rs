@@ -25,7 +25,7 @@ impl PanelContext<'_> {
     /// Mixtures in the wells of the palette, from the top; empty before there is a palette.
     #[must_use]
     pub fn wells(&self) -> Vec<Mixture> {
-        self.rig.palette().map_or_else(Vec::new, mixtures)
+        self.rig.live.palette().map_or_else(Vec::new, mixtures)
     }
 
     /// Lays these mixtures in the palette's wells, from the top.
@@ -36,7 +36,7 @@ impl PanelContext<'_> {
                 tr!("Take one off the palette first."),
             );
         }
-        let Some(palette) = self.rig.palette() else {
+        let Some(palette) = self.rig.live.palette() else {
             return;
         };
         let wells = wells_of(mixtures, palette.cells, palette.cell_m);

@@ -11,6 +11,7 @@ use maulstick_bus::{Bus, BusError};
 use maulstick_types::Origin;
 use maulstick_types::scene::Surface;
 use maulstick_types::wire::topics::Topics;
+use maulstick_ui_kit::notifications::Notifications;
 use maulstick_window_pen::{
     DeskView, PenLink, PenState, PenThread, PointerEvent, WindowStylus, pens_of,
 };
@@ -22,7 +23,6 @@ use crate::input::presses;
 use crate::panels::device;
 use crate::settings::preferences::Preferences;
 use crate::view::camera::View;
-use crate::widgets::notifications::Notifications;
 
 /// The pointer that a pen has moved is still its own so long after it has left, ns: the window hears of the two apart.
 const LINGERS_NS: u64 = 200_000_000;

@@ -6,8 +6,7 @@ use eframe::egui::{
     Color32, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2,
     vec2,
 };
-
-use crate::widgets::arrow_keys::arrow_steps;
+use maulstick_ui_kit::arrow_keys::arrow_steps;
 
 /// Size of the square, points.
 const SQUARE: Vec2 = vec2(240.0, 110.0);

@@ -155,10 +155,10 @@ impl ColourWindow {
             .on_hover_text(tr!("Not only those on the palette"));
         let paints = match *all {
             true => None,
-            false => of_palette(work.rig.palette()),
+            false => of_palette(work.rig.live.palette()),
         };
         let is_dragged = ui.ctx().egui_is_using_pointer();
-        if let Some(scene) = work.rig.scene.as_ref().filter(|_| !is_dragged) {
+        if let Some(scene) = work.rig.live.scene.as_ref().filter(|_| !is_dragged) {
             let bytes = self.colour.to_srgb();
             self.picker.ask(Ask {
                 linear: bytes.map(|byte| srgb_decode(f64::from(byte) / 255.0)),
@@ -237,7 +237,7 @@ mod tests {
         let [(_, Command::Edit(Edit::Load(Load { mixture, .. })))] = &asked[..] else {
             panic!("{asked:?}");
         };
-        let names = of_palette(harness.state().rig.palette()).expect("paints");
+        let names = of_palette(harness.state().rig.live.palette()).expect("paints");
         assert!(mixture.parts.iter().all(|part| names.contains(&part.paint)));
         ctrl(&mut harness, Key::M, Modifiers::NONE);
         assert!(harness.query_by_label("Hex").is_none());

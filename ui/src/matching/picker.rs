@@ -10,8 +10,7 @@ use maulstick_optics::matching::{Proposal, propose};
 use maulstick_optics::{Paint, PaintLibrary, Viewing};
 use maulstick_types::Mixture;
 use maulstick_types::scene::{Light, Surface, WellKind};
-
-use crate::background_task::BackgroundTask;
+use maulstick_ui_kit::background_task::BackgroundTask;
 
 /// Number of mixtures proposed.
 const PROPOSED: usize = 3;

@@ -48,7 +48,7 @@ fn proposal(ui: &mut Ui, found: &Match, work: &mut PanelContext<'_>) {
                 beside: None,
                 brush,
             });
-            crate::widgets::rows::ask(work, load);
+            crate::widgets::context::ask(work, load);
         }
         let put = ui.button("+").on_hover_text(tr!("Put it on the palette"));
         put.widget_info(|| {

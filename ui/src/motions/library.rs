@@ -5,8 +5,8 @@ use std::task::Poll;
 
 use eframe::egui::Context;
 use maulstick_device::Take;
+use maulstick_ui_kit::background_task::BackgroundTask;
 
-use crate::background_task::BackgroundTask;
 use crate::dialogs::paths;
 use crate::motions::drawn_paths::DrawnPaths;
 use crate::sessions::RECORDING;

@@ -11,6 +11,7 @@ use maulstick_brush::palette_place::Side;
 use maulstick_device::Take;
 use maulstick_device::demo::{Subject, performance};
 use maulstick_types::scene::Surface;
+use maulstick_ui_kit::notifications::Weight;
 
 use super::*;
 use crate::motions::drawn_paths::DrawnPaths;
@@ -20,7 +21,6 @@ use crate::sessions::SessionOrder;
 use crate::settings::preferences::Preferences;
 use crate::test_support::overlay_bench::{Bench, ctrl, until, window_of};
 use crate::test_support::panel_bench::rig;
-use crate::widgets::notifications::Weight;
 
 /// A take of the demo's first strokes.
 fn take() -> Take {
@@ -182,7 +182,7 @@ impl Desk {
 
 fn desk() -> Harness<'static, Desk> {
     let rig = rig();
-    let surfaces = rig.scene.as_ref().map(|scene| scene.surfaces.clone());
+    let surfaces = rig.live.scene.as_ref().map(|scene| scene.surfaces.clone());
     let desk = Desk {
         motions: Motions {
             dialog: None,
@@ -193,7 +193,7 @@ fn desk() -> Harness<'static, Desk> {
             rig,
             requests: Requests::default(),
             preferences: Preferences::default(),
-            notifications: crate::widgets::notifications::Notifications::default(),
+            notifications: maulstick_ui_kit::notifications::Notifications::default(),
         },
         surfaces: surfaces.expect("a scene"),
         view: None,

@@ -17,6 +17,7 @@ use eframe::egui::{
     pos2, vec2,
 };
 use maulstick_optics::colour::srgb_encode;
+use maulstick_ui_kit::arrow_keys::arrow_steps;
 use serde::{Deserialize, Serialize};
 
 use crate::dialogs::paths;
@@ -24,7 +25,6 @@ use crate::input::keys::Action;
 use crate::matching::picker::{Ask, Picker, of_palette};
 use crate::matching::proposals::{hex, matches, swatch};
 use crate::settings::preferences::Preferences;
-use crate::widgets::arrow_keys::arrow_steps;
 use crate::widgets::context::PanelContext;
 use frame::PictureFrame;
 use picture::{Picture, Pinned};
@@ -329,7 +329,7 @@ impl Reference {
 
     /// Asks for mixtures of the colour under the cross.
     fn pick(&mut self, picture: &Picture, work: &PanelContext<'_>) {
-        let (Some(cross), Some(scene)) = (self.look.cross, &work.rig.scene) else {
+        let (Some(cross), Some(scene)) = (self.look.cross, &work.rig.live.scene) else {
             return;
         };
         let pixel = |at: f32, side: usize| ((at * side as f32) as usize).min(side - 1);
@@ -340,7 +340,7 @@ impl Reference {
         self.picked = Some(linear);
         let paints = match work.preferences.reference.all_paints {
             true => None,
-            false => of_palette(work.rig.palette()),
+            false => of_palette(work.rig.live.palette()),
         };
         self.picker.ask(Ask {
             linear,

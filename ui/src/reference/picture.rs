@@ -9,8 +9,7 @@ use std::task::Poll;
 use eframe::egui::{Color32, ColorImage, Context, TextureHandle, TextureOptions};
 use maulstick_exchange::{Image, ImportError, fit_to};
 use maulstick_optics::colour::srgb_decode;
-
-use crate::background_task::BackgroundTask;
+use maulstick_ui_kit::background_task::BackgroundTask;
 
 /// Most pixels of the longer side after reduction: every display takes such a texture.
 const MOST_SIDE: usize = 2048;

@@ -1,4 +1,4 @@
-use maulstick_types::command::Command;
+use maulstick_types::command::{Command, PAINT_NODE};
 use std::path::PathBuf;
 
 use eframe::egui::{Key, Modifiers, MouseWheelUnit, OutputCommand};
@@ -7,13 +7,13 @@ use egui_kittest::kittest::Queryable as _;
 use maulstick_types::Mixture;
 use maulstick_types::edits::{Edit, Load, Wells};
 use maulstick_types::scene::{Well, WellKind};
+use maulstick_ui_kit::notifications::Notifications;
 
 use super::*;
-use crate::rig::requests::{PAINT, Requests};
+use crate::rig::requests::Requests;
 use crate::rig::state::RigState;
 use crate::test_support::overlay_bench::{Bench, ctrl, let_go, picture, press, until, window};
 use crate::test_support::panel_bench::rig;
-use crate::widgets::notifications::Notifications;
 
 const PICTURE: &str = "Reference picture. Arrow keys move the cross, Enter picks, + and - zoom";
 
@@ -80,8 +80,8 @@ fn a_click_on_a_colour_proposes_mixtures_that_are_loaded_put_on_the_palette_and_
     let [(node, Command::Edit(Edit::Load(Load { mixture, brush, .. })))] = &asked[..] else {
         panic!("{asked:?}");
     };
-    assert_eq!((node.as_str(), brush.as_str()), (PAINT, "main"));
-    let names = of_palette(harness.state().rig.palette()).expect("paints");
+    assert_eq!((node.as_str(), brush.as_str()), (PAINT_NODE, "main"));
+    let names = of_palette(harness.state().rig.live.palette()).expect("paints");
     assert!(mixture.parts.iter().all(|part| names.contains(&part.paint)));
     let copy = harness.query_all_by_label_contains("Copy ").next();
     copy.expect("a mixture").click();

@@ -20,7 +20,6 @@
 pub mod backdrop;
 pub mod brush;
 pub(crate) mod device_loss;
-pub(crate) mod display_transform;
 pub(crate) mod frame_reports;
 pub mod frames;
 pub(crate) mod gpu;

@@ -22,11 +22,11 @@ use crate::render::gpu::Gpu;
 use crate::render::show_surface::PixelRect;
 use crate::render::surface::{Laid, Passes, SurfaceView};
 use crate::rig::brushes::BrushTracker;
-use crate::rig::health::RigEvent;
 use crate::rig::state::RigState;
 use crate::tracing::projection::{Projector, Slide};
 use crate::view::camera::View;
 use crate::view::visible_tiles::Wanted;
+use maulstick_client::state::RigEvent;
 
 /// The window is drawn anew at most this often for frames and samples, of which a device sends up to
 /// 1,000 a second; where the processor draws, less often, for the paint needs it too.
@@ -153,12 +153,12 @@ impl SceneRenderer {
             if let Some(error) = layer.inbox.fault() {
                 let (topic, reason) = (self.topic.clone(), error.into());
                 let refusal = Refusal { topic, reason };
-                rig.events.push(RigEvent::Refused(refusal));
+                rig.live.events.push(RigEvent::Refused(refusal));
             }
         }
         let progress = self.surfaces.iter().map(|layer| layer.inbox.progress());
         rig.drawn = progress.fold([0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);
-        let (Some(painter), Some(scene)) = (&self.painter, &rig.scene) else {
+        let (Some(painter), Some(scene)) = (&self.painter, &rig.live.scene) else {
             return;
         };
         for (layer, id) in self.surfaces.iter_mut().zip(SURFACES) {
@@ -168,7 +168,7 @@ impl SceneRenderer {
                 }
                 layer.view.update(&painter.gpu, &painter.passes, &shown);
             }
-            if let Some(surface) = rig.surface(id) {
+            if let Some(surface) = rig.live.surface(id) {
                 let lamp = lamp_over(scene, id);
                 let (gpu, passes) = (&painter.gpu, &painter.passes);
                 layer.view.light(gpu, passes, &lamp, surface.cell_m);
@@ -185,7 +185,8 @@ impl SceneRenderer {
         seen: &Seen<'_>,
     ) -> Vec<Shape> {
         let (view, pixels_per_point) = (seen.view, seen.pixels_per_point);
-        let (Some(painter), Some(scene), Some(desk)) = (&mut self.painter, &rig.scene, &rig.desk)
+        let (Some(painter), Some(scene), Some(desk)) =
+            (&mut self.painter, &rig.live.scene, &rig.desk)
         else {
             return Vec::new();
         };

@@ -11,6 +11,7 @@ use maulstick_brush::desk::{Desk, Plane, aim, ferrule};
 use maulstick_brush::{BrushFile, Head};
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, BusError, Qos, Queue, Wake};
+use maulstick_client::stroke_barrier::SampleNumber;
 use maulstick_num::geometry::Rigid;
 use maulstick_types::brush::{BrushDef, BrushLook, BrushState, Solve};
 use maulstick_types::name_hash;
@@ -35,17 +36,6 @@ struct Heard {
 
 /// States that come later than so many samples say nothing of how a pen is led.
 const RECENT: usize = 256;
-
-/// A sample of a device.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SampleNumber {
-    /// The source of its samples.
-    pub device: u32,
-    /// Its epoch.
-    pub epoch: u32,
-    /// Its number.
-    pub seq: u64,
-}
 
 /// A brush that made itself known.
 #[derive(Debug)]

@@ -9,13 +9,13 @@ use std::time::SystemTime;
 use eframe::egui::Context;
 use maulstick_device::node_watch::NodeWatch;
 use maulstick_rig::program::{command, own_program};
+use maulstick_ui_kit::background_task::BackgroundTask;
+use maulstick_ui_kit::notifications::Notifications;
 use serde::Deserialize;
 
-use crate::background_task::BackgroundTask;
 use crate::rig::child_process::{ChildProcess, Ended, Refused, complaint};
 use crate::rig::device_listing::DeviceListing;
 use crate::rig::state::RigState;
-use crate::widgets::notifications::Notifications;
 
 /// Folders that change where a device is plugged in or out.
 const NODES: [&str; 2] = ["/dev", "/dev/input"];
@@ -141,7 +141,7 @@ impl DeviceCommands {
         if self.running.is_none()
             && let Some(words) = self.waiting.pop_front()
         {
-            let command = self.command(&words, &rig.rig);
+            let command = self.command(&words, &rig.live.name);
             let run = move || run(command).map(|output| last_line(&output.stdout));
             self.running = Some(BackgroundTask::start(context, "device", run));
         }
@@ -149,7 +149,7 @@ impl DeviceCommands {
         if let Some(Poll::Ready(listed)) = self.listing.as_ref().map(BackgroundTask::poll) {
             (self.listing, self.listed) = (None, self.seen.as_ref().map_or(0, |seen| seen.done));
             match listed {
-                Some(Ok(listing)) => rig.listing = Some(listing),
+                Some(Ok(listing)) => rig.setup.listing = Some(listing),
                 Some(Err(Refused { what, help })) => notifications.fault(what, help),
                 None => {}
             }
@@ -158,18 +158,19 @@ impl DeviceCommands {
         if (is_shown || is_behind) && self.listing.is_none() {
             self.list(context, rig);
         }
-        rig.changes_devices = self.running.is_some() || !self.waiting.is_empty() || is_behind;
+        rig.setup.is_changing = self.running.is_some() || !self.waiting.is_empty() || is_behind;
     }
 
     /// Lists the devices where something has changed.
     fn list(&mut self, context: &Context, rig: &RigState) {
-        let mut nodes = rig.nodes.clone();
+        let mut nodes = rig.live.nodes.clone();
         nodes.sort_unstable();
         if self.nodes.as_ref().is_some_and(NodeWatch::has_news) {
             self.news += 1;
         }
         // A permission changes no folder.
         let waits = rig
+            .setup
             .listing
             .as_ref()
             .is_some_and(DeviceListing::lacks_permission);
@@ -187,7 +188,7 @@ impl DeviceCommands {
             return;
         }
         self.seen = Some(seen);
-        let command = self.command(&["list".to_owned(), "--json".to_owned()], &rig.rig);
+        let command = self.command(&["list".to_owned(), "--json".to_owned()], &rig.live.name);
         let list = move || {
             let output = run(command)?;
             DeviceListing::parse(&output.stdout).map_err(|what| Refused {
@@ -216,18 +217,18 @@ impl DeviceCommands {
         notifications: &mut Notifications,
     ) {
         let words = ["fit".to_owned(), device.clone(), "--json".to_owned()];
-        match ChildProcess::start(context, self.command(&words, &rig.rig)) {
+        match ChildProcess::start(context, self.command(&words, &rig.live.name)) {
             Ok(child) => self.fit = Some(child),
             Err(error) => return notifications.fault(error.to_string(), ""),
         }
-        rig.fit = Some(FitProgress {
+        rig.setup.fit = Some(FitProgress {
             device,
             ..FitProgress::default()
         });
     }
 
     fn follow_fit(&mut self, rig: &mut RigState, notifications: &mut Notifications) {
-        let (Some(fit), Some(progress)) = (&mut self.fit, &mut rig.fit) else {
+        let (Some(fit), Some(progress)) = (&mut self.fit, &mut rig.setup.fit) else {
             return;
         };
         fit.lines().for_each(|line| progress.read(&line));
@@ -242,7 +243,7 @@ impl DeviceCommands {
             _ => notifications.note(said),
         }
         self.done += 1;
-        (self.fit, rig.fit) = (None, None);
+        (self.fit, rig.setup.fit) = (None, None);
     }
 }
 

@@ -8,9 +8,10 @@ use maulstick_types::DecodeError;
 use maulstick_types::paint::Decision;
 use maulstick_types::stylus::StylusStatus;
 use maulstick_types::wire::topics::Topics;
+use maulstick_ui_kit::notifications::Notifications;
 
 use crate::rig::state::RigState;
-use crate::widgets::notifications::Notifications;
+use maulstick_client::state::RigEvent;
 
 /// The node of the painting.
 const PAINT: &str = "paint";
@@ -19,15 +20,6 @@ const PLAYER: &str = "player";
 /// Message that a node has left.
 fn stopped(who: &str) -> String {
     tr!("{who} stopped; it is being started again.", who)
-}
-
-/// An event that changes nothing in the state of the rig.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum RigEvent {
-    /// A message that this window does not understand.
-    Refused(Refusal),
-    /// The paint node has decided something.
-    Decided(Decision),
 }
 
 /// Fault of a device.
@@ -85,7 +77,7 @@ impl HealthMonitor {
         topics: &Topics,
         notifications: &mut Notifications,
     ) {
-        for events in std::mem::take(&mut state.events) {
+        for events in std::mem::take(&mut state.live.events) {
             match events {
                 RigEvent::Refused(refusal) => self.refused(topics, &refusal, notifications),
                 RigEvent::Decided(decision) => decided(&decision, notifications),
@@ -97,15 +89,15 @@ impl HealthMonitor {
     }
 
     fn nodes(&mut self, state: &RigState, notifications: &mut Notifications) {
-        let present: BTreeSet<String> = state.nodes.iter().cloned().collect();
+        let present: BTreeSet<String> = state.live.nodes.iter().cloned().collect();
         for node in self.known.difference(&present) {
             if !self.gone.insert(node.clone()) {
                 continue;
             }
-            let changes = state.changes_devices || state.fit.is_some();
+            let changes = state.setup.is_changing || state.setup.fit.is_some();
             // A session is painted again in a painting of its own: what leaves later has failed.
             let opens = state.switching || state.replay.as_ref().is_some_and(|own| own.opens);
-            if opens || changes && state.devices.contains_key(node) {
+            if opens || changes && state.live.devices.contains_key(node) {
                 self.expected.insert(node.clone());
                 continue;
             }
@@ -131,7 +123,7 @@ impl HealthMonitor {
     }
 
     fn devices(&mut self, state: &RigState, notifications: &mut Notifications) {
-        for (name, device) in &state.devices {
+        for (name, device) in &state.live.devices {
             let Some(status) = &device.status else {
                 continue;
             };
@@ -162,7 +154,7 @@ impl HealthMonitor {
 
     /// Notifies that saving works again; that it fails stays in the progress lines meanwhile.
     fn saving(&mut self, state: &RigState, notifications: &mut Notifications) {
-        let Some(paint) = &state.paint else {
+        let Some(paint) = &state.live.paint else {
             return;
         };
         let unsaved = !paint.status.fault.is_empty();
@@ -216,7 +208,7 @@ fn who(node: &str, state: &RigState) -> Option<(String, Option<&'static str>)> {
         let help = tr!("Lift the stylus; the brush follows again when it is back.");
         return Some((tr!("The node of the brush '{brush}'", brush), Some(help)));
     }
-    let is_device = node != PLAYER && state.devices.contains_key(node);
+    let is_device = node != PLAYER && state.live.devices.contains_key(node);
     let device = node;
     is_device.then(|| (tr!("The device '{device}'", device), None))
 }
@@ -256,10 +248,10 @@ mod tests {
     use maulstick_types::stylus::Trouble;
 
     use super::*;
-    use crate::rig::state::PaintNode;
     use crate::sessions::player::ReplayProgress;
     use crate::test_support::panel_bench::status;
-    use crate::widgets::notifications::Weight;
+    use maulstick_client::state::PaintNode;
+    use maulstick_ui_kit::notifications::Weight;
 
     struct Rig {
         watch: HealthMonitor,
@@ -270,14 +262,14 @@ mod tests {
         fn new() -> Self {
             let library = Arc::new(PaintLibrary::measured().expect("paints"));
             let mut state = RigState::new("t", &["main".to_owned()], library);
-            state.nodes = ["paint", "brush-main", "arm", "player", "ui"]
+            state.live.nodes = ["paint", "brush-main", "arm", "player", "ui"]
                 .map(str::to_owned)
                 .to_vec();
             for device in ["arm", "player"] {
-                let device = state.devices.entry(device.to_owned()).or_default();
+                let device = state.live.devices.entry(device.to_owned()).or_default();
                 device.status = Some(StylusStatus::fresh(0));
             }
-            state.paint = Some(PaintNode {
+            state.live.paint = Some(PaintNode {
                 status: status(),
                 heard_ns: 0,
             });
@@ -310,12 +302,12 @@ mod tests {
         }
 
         fn arm(&mut self) -> &mut StylusStatus {
-            let arm = self.state.devices.get_mut("arm").expect("an arm");
+            let arm = self.state.live.devices.get_mut("arm").expect("an arm");
             arm.status.as_mut().expect("a status")
         }
 
         fn saving(&mut self) -> &mut String {
-            &mut self.state.paint.as_mut().expect("paint").status.fault
+            &mut self.state.live.paint.as_mut().expect("paint").status.fault
         }
     }
 
@@ -335,15 +327,15 @@ mod tests {
         ] {
             let mut rig = Rig::new();
             for _ in 0..2 {
-                rig.state.nodes.retain(|other| other != node);
+                rig.state.live.nodes.retain(|other| other != node);
                 let told = fault(&format!("{who} stopped; it is being started again."));
                 assert_eq!(rig.look(), told);
-                rig.state.nodes.push(node.to_owned());
+                rig.state.live.nodes.push(node.to_owned());
                 assert_eq!(rig.look(), note(&format!("{who} is back.")));
             }
         }
         let mut rig = Rig::new();
-        rig.state.nodes.retain(|other| other != "player");
+        rig.state.live.nodes.retain(|other| other != "player");
         assert_eq!(rig.look(), [], "its take is over");
     }
 
@@ -351,10 +343,10 @@ mod tests {
     fn a_device_that_leaves_is_no_fault() {
         let mut rig = Rig::new();
         for _ in 0..2 {
-            rig.state.nodes.retain(|other| other != "arm");
+            rig.state.live.nodes.retain(|other| other != "arm");
             let left = "The device 'arm' has left. Any other stylus and the mouse go on painting.";
             assert_eq!(rig.look(), note(left));
-            rig.state.nodes.push("arm".to_owned());
+            rig.state.live.nodes.push("arm".to_owned());
             assert_eq!(rig.look(), note("The device 'arm' is back."));
         }
     }
@@ -363,13 +355,13 @@ mod tests {
     fn nodes_that_another_painting_starts_anew_are_not_told() {
         let mut rig = Rig::new();
         rig.state.switching = true;
-        rig.state.nodes.retain(|node| node != "arm");
+        rig.state.live.nodes.retain(|node| node != "arm");
         assert_eq!(rig.look(), []);
         // The answer may come before the last of them is back.
         rig.state.switching = false;
-        rig.state.nodes.push("arm".to_owned());
+        rig.state.live.nodes.push("arm".to_owned());
         assert_eq!(rig.look(), []);
-        rig.state.nodes.retain(|node| node != "arm");
+        rig.state.live.nodes.retain(|node| node != "arm");
         assert_eq!(rig.look().len(), 1, "it is told where nothing is switched");
     }
 
@@ -380,13 +372,13 @@ mod tests {
             opens: true,
             ..ReplayProgress::new(Path::new("sea.mcap"))
         });
-        rig.state.nodes.retain(|node| node != "paint");
+        rig.state.live.nodes.retain(|node| node != "paint");
         assert_eq!(rig.look(), [], "it goes on in another painting");
-        rig.state.nodes.push("paint".to_owned());
+        rig.state.live.nodes.push("paint".to_owned());
         assert_eq!(rig.look(), []);
         rig.state.replay = Some(ReplayProgress::new(Path::new("sea.mcap")));
         for node in ["paint", "brush-main"] {
-            rig.state.nodes.retain(|other| other != node);
+            rig.state.live.nodes.retain(|other| other != node);
             assert_eq!(rig.look().len(), 1, "{node} failed");
         }
     }
@@ -394,12 +386,12 @@ mod tests {
     #[test]
     fn a_device_that_is_changed_here_is_not_told() {
         let mut rig = Rig::new();
-        rig.state.changes_devices = true;
+        rig.state.setup.is_changing = true;
         for node in ["arm", "paint"] {
-            rig.state.nodes.retain(|other| other != node);
+            rig.state.live.nodes.retain(|other| other != node);
         }
         assert_eq!(rig.look().len(), 1, "the paint is");
-        rig.state.nodes.push("arm".to_owned());
+        rig.state.live.nodes.push("arm".to_owned());
         assert_eq!(rig.look(), []);
     }
 
@@ -444,18 +436,18 @@ mod tests {
                 reason: error.into(),
             })
         };
-        rig.state.events = vec![refused(topics.paint_status()), refused(topics.scene())];
+        rig.state.live.events = vec![refused(topics.paint_status()), refused(topics.scene())];
         let strange = |who: &str| {
             fault(&format!(
                 "{who} is of another version of Maulstick than this window."
             ))
         };
         assert_eq!(rig.look(), strange("The painting engine"));
-        rig.state.events = vec![refused(topics.paint_status())];
+        rig.state.live.events = vec![refused(topics.paint_status())];
         assert_eq!(rig.look(), []);
-        rig.state.events = vec![refused(topics.stylus_info("arm"))];
+        rig.state.live.events = vec![refused(topics.stylus_info("arm"))];
         assert_eq!(rig.look(), strange("The device 'arm'"));
-        rig.state.events = vec![refused(topics.brush_def("main"))];
+        rig.state.live.events = vec![refused(topics.brush_def("main"))];
         assert_eq!(rig.look(), strange("The node of the brush 'main'"));
     }
 
@@ -463,7 +455,7 @@ mod tests {
     fn that_the_processor_has_taken_over_is_told_and_a_choice_at_the_start_is_not() {
         let mut rig = Rig::new();
         let chosen = |name: &str| Decision::Backend { name: name.into() };
-        rig.state.events = [chosen("cpu"), chosen("gpu A: B"), Decision::Resumed]
+        rig.state.live.events = [chosen("cpu"), chosen("gpu A: B"), Decision::Resumed]
             .map(RigEvent::Decided)
             .to_vec();
         assert_eq!(rig.look(), []);
@@ -471,7 +463,7 @@ mod tests {
             name: "cpu".into(),
             why: "the device is lost".into(),
         };
-        rig.state.events = vec![RigEvent::Decided(lost)];
+        rig.state.live.events = vec![RigEvent::Decided(lost)];
         let told = fault("The paint is computed by the processor from now on: the device is lost");
         assert_eq!(rig.look(), told);
     }
@@ -480,7 +472,7 @@ mod tests {
     fn that_flow_is_found_on_coarser_cells_is_told() {
         let mut rig = Rig::new();
         let why = "a window needs 300 MiB".to_owned();
-        rig.state.events = vec![RigEvent::Decided(Decision::CoarserFlow { why })];
+        rig.state.live.events = vec![RigEvent::Decided(Decision::CoarserFlow { why })];
         let told = note(
             "The graphics card has too little memory for so wide a brush: thick paint flows in less detail around it (a window \
              needs 300 MiB)",

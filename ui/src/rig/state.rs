@@ -1,27 +1,23 @@
-//! State of the rig as the window knows it: plain data, filled by the [`listener`](crate::rig::listener).
+//! State of the rig as the window knows it.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
 use maulstick_appearance::picture::Export;
 use maulstick_brush::BrushFile;
 use maulstick_brush::desk::Desk;
+use maulstick_client::listener::RigListener;
+use maulstick_client::state::LiveRig;
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::Sketches;
 use maulstick_types::command::Command;
-use maulstick_types::paint::PaintStatus;
-use maulstick_types::scene::{BrushHandling, CANVAS, PALETTE, Scene, Surface, Tuning};
-use maulstick_types::stylus::{StylusInfo, StylusStatus};
+use maulstick_types::scene::{BrushHandling, Scene, Tuning};
+use maulstick_ui_kit::display_transform::DisplayTransform;
+use maulstick_ui_kit::swatches::Showing;
 
-use crate::render::display_transform::DisplayTransform;
 use crate::rig::carried_paint::CarriedPaint;
 use crate::rig::device_commands::FitProgress;
 use crate::rig::device_listing::DeviceListing;
-use crate::rig::force_history::ForceHistory;
-use crate::rig::health::RigEvent;
-use crate::rig::sample_history::SampleHistory;
-use crate::rig::thumbnails::Thumbnails;
 use crate::sessions::player::ReplayProgress;
 use crate::sessions::recorder::RecordingProgress;
 
@@ -42,30 +38,6 @@ pub struct RigBrush {
     pub carried: Option<CarriedPaint>,
 }
 
-/// An input device of the rig.
-#[derive(Clone, Debug, Default)]
-pub struct Device {
-    /// Description of the stylus; `None` until it was received.
-    pub info: Option<StylusInfo>,
-    /// Status of the stylus; `None` until it was received.
-    pub status: Option<StylusStatus>,
-    /// Time of its last message, rig clock, ns.
-    pub heard_ns: u64,
-    /// Its newest samples.
-    pub forces: ForceHistory,
-    /// What they sensed.
-    pub samples: SampleHistory,
-}
-
-/// Last known state of a paint node.
-#[derive(Clone, Debug)]
-pub struct PaintNode {
-    /// Its status.
-    pub status: PaintStatus,
-    /// Time of its last message, rig clock, ns.
-    pub heard_ns: u64,
-}
-
 /// Whether a brush is on a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BrushContact {
@@ -75,59 +47,50 @@ pub enum BrushContact {
     Held,
 }
 
-/// The rig as the window knows it.
-#[derive(Clone, Debug)]
-pub struct RigState {
-    /// Name of the rig.
-    pub rig: String,
-    /// The time of the rig, ns.
-    pub now_ns: u64,
-    /// The scene on the desk; `None` until the paint node has sent it.
-    pub scene: Option<Scene>,
-    /// The same as brushes see it.
-    pub desk: Option<Desk>,
-    /// The paint node; `None` until its status was received.
-    pub paint: Option<PaintNode>,
-    /// The brushes of the rig, in the order of `rig.toml`.
-    pub brushes: Vec<RigBrush>,
-    /// Index of the brush that the window's mouse moves and its panels show.
-    pub in_hand: usize,
-    /// Devices by name.
-    pub devices: BTreeMap<String, Device>,
-    /// Number of starts of the paint node: each invalidates what was remembered of its painting.
-    pub starts: u64,
-    /// True while another painting is opened, for which nodes are restarted.
-    pub switching: bool,
-    /// The nodes that are alive, by name.
-    pub nodes: Vec<String>,
+/// Set-up of the devices, as far as the window shows it.
+#[derive(Clone, Debug, Default)]
+pub struct DeviceSetup {
     /// What is attached; `None` until it was looked for.
     pub listing: Option<DeviceListing>,
     /// A fit of a device to the canvas in progress.
     pub fit: Option<FitProgress>,
+    /// True while a change of a device is not in the listing yet.
+    pub is_changing: bool,
+}
+
+/// The rig as the window knows it.
+#[derive(Clone, Debug)]
+pub struct RigState {
+    /// What its messages say.
+    pub live: LiveRig,
+    /// The scene on the desk as brushes see it.
+    pub desk: Option<Desk>,
+    /// The brushes of the rig, in the order of `rig.toml`.
+    pub brushes: Vec<RigBrush>,
+    /// Index of the brush that the window's mouse moves and its panels show.
+    pub in_hand: usize,
+    /// Whether a hand has the brush of the panels on a surface: it is not changed then.
+    pub contact: BrushContact,
+    /// Set-up of its devices.
+    pub setup: DeviceSetup,
+    /// True while another painting is opened, for which nodes are restarted.
+    pub switching: bool,
     /// A recording in progress that this window began.
     pub recording: Option<RecordingProgress>,
     /// A replay in progress that this window began.
     pub replay: Option<ReplayProgress>,
     /// Pressure that a pen over the window senses now, 0 to 1; `None` while none is near.
     pub pen_pressure: Option<f64>,
-    /// True while a change of a device is not in the listing yet.
-    pub changes_devices: bool,
     /// Tiles of the view that have arrived of those that are missing, and those in all.
     pub drawn: [u32; 2],
-    /// Whether a hand has the brush of the panels on a surface: it is not changed then.
-    pub contact: BrushContact,
     /// The sketches of this user, if the system has a folder for them.
     pub sketches: Option<Sketches>,
     /// The paints of the rig.
     pub library: Arc<PaintLibrary>,
     /// True if the wet paint of the canvas is tinted.
     pub show_wet: bool,
-    /// Small pictures of the versions.
-    pub thumbnails: Thumbnails,
     /// Colours of the window's own things as its display has to be sent them.
     pub tint: Arc<DisplayTransform>,
-    /// Events received and not yet notified.
-    pub events: Vec<RigEvent>,
 }
 
 impl RigState {
@@ -139,66 +102,65 @@ impl RigState {
             ..RigBrush::default()
         };
         Self {
-            rig: rig.to_owned(),
-            now_ns: 0,
-            scene: None,
+            live: LiveRig::new(rig),
             desk: None,
-            paint: None,
             brushes: brushes.iter().map(brush).collect(),
             in_hand: 0,
-            devices: BTreeMap::new(),
-            starts: 0,
+            contact: BrushContact::Lifted,
+            setup: DeviceSetup::default(),
             switching: false,
-            nodes: Vec::new(),
-            listing: None,
-            fit: None,
             recording: None,
             replay: None,
             pen_pressure: None,
-            changes_devices: false,
             drawn: [0; 2],
-            contact: BrushContact::Lifted,
             sketches: None,
             library,
             show_wet: false,
-            thumbnails: Thumbnails::default(),
             tint: Arc::new(DisplayTransform::new(&Export::default())),
-            events: Vec::new(),
+        }
+    }
+
+    /// Reads what the messages of the rig say.
+    pub fn drain(&mut self, listener: &mut RigListener, now_ns: u64) {
+        if listener.drain(now_ns, &mut self.live) {
+            self.desk = self.live.scene.as_ref().map(Desk::of);
+        }
+        for definition in std::mem::take(&mut self.live.definitions) {
+            // The renderer of the brush reports a file that cannot be read.
+            let Ok(file) = BrushFile::parse(&definition.toml) else {
+                continue;
+            };
+            let mut brushes = self.brushes.iter_mut();
+            if let Some(known) = brushes.find(|known| known.name == definition.brush) {
+                known.asked.take_if(|asked| *asked == file);
+                (known.file, known.epoch) = (Some((file, definition.toml)), definition.epoch);
+            }
         }
     }
 
     /// Puts a scene on the desk.
     pub fn lay(&mut self, scene: Scene) {
         self.desk = Some(Desk::of(&scene));
-        self.scene = Some(scene);
+        self.live.scene = Some(scene);
+    }
+
+    /// What swatches are shown with.
+    #[must_use]
+    pub fn showing(&self) -> Showing<'_> {
+        Showing {
+            library: &self.library,
+            light: self.live.scene.as_ref().map(|scene| &scene.light),
+            tint: &self.tint,
+        }
     }
 
     /// True if the painting has no name yet: it is in the file of a sketch.
     #[must_use]
     pub fn is_sketch(&self) -> bool {
-        let (Some(sketches), Some(node)) = (&self.sketches, &self.paint) else {
+        let (Some(sketches), Some(node)) = (&self.sketches, &self.live.paint) else {
             return false;
         };
         sketches.has(Path::new(&node.status.path))
-    }
-
-    /// A surface of the scene.
-    #[must_use]
-    pub fn surface(&self, id: u32) -> Option<&Surface> {
-        let mut surfaces = self.scene.as_ref()?.surfaces.iter();
-        surfaces.find(|surface| surface.id == id)
-    }
-
-    /// The canvas.
-    #[must_use]
-    pub fn canvas(&self) -> Option<&Surface> {
-        self.surface(CANVAS)
-    }
-
-    /// The palette.
-    #[must_use]
-    pub fn palette(&self) -> Option<&Surface> {
-        self.surface(PALETTE)
     }
 
     /// The brush that the panels are about.
@@ -217,7 +179,7 @@ impl RigState {
     #[must_use]
     pub fn handling(&self) -> BrushHandling {
         let name = self.brush_name();
-        let mut handlings = self.scene.iter().flat_map(|scene| &scene.handlings);
+        let mut handlings = self.live.scene.iter().flat_map(|scene| &scene.handlings);
         let own = handlings.find(|handling| handling.brush == name);
         own.cloned().unwrap_or_else(|| BrushHandling::normal(name))
     }
@@ -226,7 +188,7 @@ impl RigState {
     #[must_use]
     pub fn tuning(&self) -> Tuning {
         let name = self.brush_name();
-        let mut tunings = self.scene.iter().flat_map(|scene| &scene.tunings);
+        let mut tunings = self.live.scene.iter().flat_map(|scene| &scene.tunings);
         let own = tunings.find(|tuning| tuning.brush == name);
         own.cloned().unwrap_or_else(|| Tuning {
             brush: name.to_owned(),

@@ -23,7 +23,7 @@ use maulstick_rig::program::{command, own_program};
 use crate::rig::state::RigState;
 use crate::sessions::player::{Player, TransportOrder};
 use crate::sessions::recorder::Recorder;
-use crate::widgets::notifications::Notifications;
+use maulstick_ui_kit::notifications::Notifications;
 
 /// File ending of a recording.
 pub(crate) const RECORDING: &str = "mcap";
@@ -150,7 +150,7 @@ impl SessionProcesses {
 
     fn command(&self, words: [&str; 2], rig: &RigState) -> Command {
         let mut command = command(&self.program);
-        command.args(words).args(["--name", &rig.rig]);
+        command.args(words).args(["--name", &rig.live.name]);
         command.stdin(Stdio::null());
         command
     }

@@ -6,12 +6,12 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use eframe::egui::Context;
+use maulstick_ui_kit::notifications::Notifications;
 use serde::Deserialize;
 
 use crate::dialogs::paths;
 use crate::rig::child_process::{ChildProcess, Ended, Refused};
 use crate::rig::state::RigState;
-use crate::widgets::notifications::Notifications;
 
 /// Interval at which the end of the process is looked for.
 const LOOK: Duration = Duration::from_millis(200);

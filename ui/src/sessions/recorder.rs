@@ -5,13 +5,13 @@ use std::process::Command;
 use std::time::Duration;
 
 use eframe::egui::Context;
+use maulstick_ui_kit::notifications::Notifications;
 use serde::Deserialize;
 
 use crate::dialogs::paths;
 use crate::rig::child_process::{ChildProcess, Ended, Refused};
 use crate::rig::state::RigState;
 use crate::sessions::RECORDING;
-use crate::widgets::notifications::Notifications;
 
 /// Interval at which the elapsed time is shown.
 const TICK: Duration = Duration::from_millis(500);
@@ -49,7 +49,7 @@ impl Recorder {
         })?;
         rig.recording = Some(RecordingProgress {
             file,
-            begun_ns: rig.now_ns,
+            begun_ns: rig.live.now_ns,
         });
         Ok(Self { child })
     }
@@ -133,7 +133,7 @@ fn tell(line: &str, notifications: &mut Notifications) {
 
 /// The file of the painting; empty for one in memory.
 fn painting(rig: &RigState) -> PathBuf {
-    let node = rig.paint.as_ref();
+    let node = rig.live.paint.as_ref();
     node.map_or_else(PathBuf::new, |node| PathBuf::from(&node.status.path))
 }
 

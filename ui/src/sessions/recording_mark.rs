@@ -18,7 +18,7 @@ const DOT: f32 = 4.0;
 /// Shows it; `None` if nothing is recorded.
 pub(crate) fn show(ui: &mut Ui, work: &mut PanelContext<'_>) -> Option<Response> {
     let recording = work.rig.recording.as_ref()?;
-    let elapsed_ns = work.rig.now_ns.saturating_sub(recording.begun_ns);
+    let elapsed_ns = work.rig.live.now_ns.saturating_sub(recording.begun_ns);
     let [dark, light] = RED;
     let red = match ui.visuals().dark_mode {
         true => dark,

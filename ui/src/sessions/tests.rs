@@ -8,13 +8,13 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use maulstick_ui_kit::notifications::Weight;
 
 use super::*;
 use crate::sessions::player::{Position, ReplayProgress};
 use crate::sessions::recorder::{RecordingProgress, place};
 use crate::sessions::transport_bar::TransportBar;
 use crate::test_support::{context_bench, overlay_bench, panel_bench};
-use crate::widgets::notifications::Weight;
 use overlay_bench::{Bench, ctrl, press, until, window};
 
 /// A program that records until it is interrupted, and notes the orders that it gets while it plays.
@@ -85,7 +85,7 @@ impl Desk {
 
     fn painting(&mut self, name: &str) {
         let path = self.folder.path().join(name).display().to_string();
-        self.rig.paint.as_mut().expect("a node").status.path = path;
+        self.rig.live.paint.as_mut().expect("a node").status.path = path;
     }
 
     fn turn(&mut self, orders: Vec<SessionOrder>) {
@@ -111,7 +111,7 @@ impl Desk {
 fn a_recording_stands_beside_the_painting_until_it_is_ended_and_its_file_is_told() {
     let mut desk = Desk::new();
     desk.painting("Sea.maul");
-    desk.rig.now_ns = 7;
+    desk.rig.live.now_ns = 7;
     desk.turn(vec![SessionOrder::Record, SessionOrder::Record]);
     let recording = desk.rig.recording.clone().expect("it records");
     assert_eq!(recording.begun_ns, 7);

@@ -103,7 +103,7 @@ pub(crate) fn completions<'a>(text: &str, library: &'a PaintLibrary, most: usize
     }
     let found = all
         .iter()
-        .filter(|paint| crate::widgets::swatches::matches(paint, typed));
+        .filter(|paint| maulstick_ui_kit::swatches::matches(paint, typed));
     found.map(|paint| paint.name.as_str()).take(most).collect()
 }
 

@@ -54,10 +54,20 @@ impl BrushMemory {
             let is_key = |event: &Event| matches!(event, Event::Key { .. });
             input.pointer.latest_pos().is_some() || input.events.iter().any(is_key)
         });
-        let is_taken = work.rig.paint.as_ref().is_none_or(|node| node.status.take)
+        let is_taken = work
+            .rig
+            .live
+            .paint
+            .as_ref()
+            .is_none_or(|node| node.status.take)
             || work.rig.replay.is_some()
-            || work.rig.nodes.iter().any(|node| node.starts_with(PLAYER));
-        if !self.is_used || is_taken || work.rig.switching || work.rig.scene.is_none() {
+            || work
+                .rig
+                .live
+                .nodes
+                .iter()
+                .any(|node| node.starts_with(PLAYER));
+        if !self.is_used || is_taken || work.rig.switching || work.rig.live.scene.is_none() {
             return;
         }
         let Some(brush) = work.rig.brush().filter(|brush| brush.file.is_some()) else {
@@ -128,7 +138,7 @@ impl Known {
 /// A [`UserError`] where that is no brush, as after an edit of the preferences by hand.
 fn restore(held: &Preset, work: &mut PanelContext<'_>) -> Result<(), UserError> {
     let (file, (tune, handle)) = (held.brush()?, held.edits(work.rig.brush_name())?);
-    let (name, scene) = (work.rig.brush_name(), work.rig.scene.as_ref());
+    let (name, scene) = (work.rig.brush_name(), work.rig.live.scene.as_ref());
     let tuned = scene.is_some_and(|scene| scene.tunings.iter().any(|own| own.brush == name));
     let handled = scene.is_some_and(|scene| scene.handlings.iter().any(|own| own.brush == name));
     let usual = (work.rig.tuning(), work.rig.handling());
@@ -176,7 +186,7 @@ mod tests {
         handling.mode = BrushMode::NoPush;
         let mut tuning = rig.tuning();
         tuning.stiffness = 1.5;
-        let scene = rig.scene.as_mut().expect("a scene");
+        let scene = rig.live.scene.as_mut().expect("a scene");
         scene.handlings.push(handling);
         scene.tunings.push(tuning);
         harness.state_mut().preferences.loading.paint = "Bone Black".into();
@@ -220,7 +230,7 @@ mod tests {
         let mut harness = session(Preferences::default(), "round", 10.0);
         let rig = &mut harness.state_mut().rig;
         let (tuning, handling) = (rig.tuning(), rig.handling());
-        let scene = rig.scene.as_mut().expect("a scene");
+        let scene = rig.live.scene.as_mut().expect("a scene");
         scene.tunings.push(tuning);
         scene.handlings.push(handling);
         harness.state_mut().preferences = preferences.clone();
@@ -232,7 +242,7 @@ mod tests {
             "the brush alone: {asked:?}"
         );
         let mut harness = window(None);
-        harness.state_mut().rig.nodes.push("player".into());
+        harness.state_mut().rig.live.nodes.push("player".into());
         harness.state_mut().preferences = preferences;
         let file = of_library("round").expect("round").clone();
         let text = file.to_toml().expect("written");

@@ -18,5 +18,4 @@ pub mod look;
 pub(crate) mod paint_sets;
 pub mod preferences;
 pub(crate) mod presets;
-pub mod units;
 pub mod window_side;

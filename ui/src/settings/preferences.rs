@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use maulstick_device::pressure_curve::rises;
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, write_whole};
+use maulstick_ui_kit::units::Units;
 
 use crate::input::keymap::Keymap;
 use crate::reference::ReferencePreferences;
@@ -17,7 +18,6 @@ use crate::settings::grip::Grip;
 use crate::settings::look::{TEXT_SIZES, Theme};
 use crate::settings::paint_sets::PaintSet;
 use crate::settings::presets::{BeforePreset, Preset, classic};
-use crate::settings::units::Units;
 use crate::settings::window_side::WindowSide;
 use crate::tracing::settings::Tracings;
 

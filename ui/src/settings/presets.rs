@@ -5,11 +5,11 @@ use maulstick_rig::UserError;
 use maulstick_types::edits::{Clean, Edit, Handle, Tune};
 use maulstick_types::scene::{BrushHandling, BrushMode, MARKER_FLOW, Tuning};
 use maulstick_types::values::BrushName;
+use maulstick_ui_kit::units::Units;
 use serde::{Deserialize, Serialize};
 
 use crate::input::brush_choice::{is_of_library, of_library};
 use crate::settings::brush_load::BrushLoad;
-use crate::settings::units::Units;
 use crate::widgets::context::PanelContext;
 
 /// The name of a preset, or of a set of paints, has at most so many letters.

@@ -5,11 +5,11 @@ use eframe::egui::{
     Button, Context, Event, EventFilter, Grid, Key, KeyboardShortcut, Modifiers, Role, ScrollArea,
     Ui, WidgetInfo,
 };
+use maulstick_ui_kit::language::translated;
 
 use crate::dialogs::wrong;
 use crate::input::keymap::{Holder, Keymap, fits};
 use crate::input::keys::{BINDINGS, Binding, written};
-use crate::language::translated;
 
 /// Height of the list, and the least in a small window, points.
 const HEIGHT: f32 = 220.0;

@@ -10,13 +10,13 @@ use eframe::egui::{
     Align, Button, Context, Frame, Id, Layout, Margin, Modal, RichText, Role, Ui, WidgetInfo,
     gui_zoom,
 };
+use maulstick_ui_kit::language;
+use maulstick_ui_kit::language::translated;
+use maulstick_ui_kit::rows::cell;
+use maulstick_ui_kit::units::Units;
 
-use crate::language;
-use crate::language::translated;
 use crate::settings::look::{TEXT_SIZES, Theme};
-use crate::settings::units::Units;
 use crate::widgets::context::PanelContext;
-use crate::widgets::rows::cell;
 use key_rows::KeyRows;
 
 /// Width of the dialog, points.

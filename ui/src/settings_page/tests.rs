@@ -3,10 +3,10 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use maulstick_types::command::Command;
 use maulstick_types::edits::Edit;
+use maulstick_ui_kit::units::Units;
 
 use crate::input::keymap::Keymap;
 use crate::settings::preferences::Preferences;
-use crate::settings::units::Units;
 use crate::test_support::overlay_bench::{Bench, ctrl, picture, press, window, window_of};
 use crate::test_support::panel_bench::rig;
 

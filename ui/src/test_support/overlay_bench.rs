@@ -9,15 +9,16 @@ use egui_kittest::kittest::Queryable as _;
 use egui_kittest::{Harness, SnapshotOptions};
 use maulstick_rig::UserError;
 use maulstick_types::command::{Command, Detail};
+use maulstick_ui_kit::notifications::Notifications;
 
 use crate::app::overlay::Overlay;
-use crate::rig::dispatcher::Outcome;
-use crate::rig::requests::{Request, Requests};
+use crate::rig::requests::Requests;
 use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 use crate::test_support::panel_bench::rig;
 use crate::widgets::context::PanelContext;
-use crate::widgets::notifications::Notifications;
+use maulstick_client::dispatcher::{Outcome, RequestError};
+use maulstick_client::request::Request;
 
 /// Longest wait for background work before a test fails.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -61,9 +62,9 @@ impl Bench {
                 node: asked.0.clone(),
                 command: asked.1.clone(),
             },
-            result,
+            result: result.map_err(RequestError::from),
         };
-        self.with(|overlay, work| overlay.hear(&told, work));
+        self.with(|overlay, work| overlay.on_reply(&told, work));
     }
 
     /// Words of all notifications.

@@ -9,13 +9,15 @@ use maulstick_optics::PaintLibrary;
 use maulstick_painting::PaintingSetup;
 use maulstick_types::command::Command;
 use maulstick_types::paint::PaintStatus;
+use maulstick_ui_kit::notifications::Notifications;
 
 use crate::panels::Panel;
-use crate::rig::requests::{Request, Requests};
-use crate::rig::state::{PaintNode, RigState};
+use crate::rig::requests::Requests;
+use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 use crate::widgets::context::PanelContext;
-use crate::widgets::notifications::Notifications;
+use maulstick_client::request::Request;
+use maulstick_client::state::PaintNode;
 
 /// Width of the column of panels, points.
 const COLUMN: f32 = 300.0;
@@ -27,7 +29,7 @@ pub(crate) fn rig() -> RigState {
     let library = PaintLibrary::measured().expect("the paints that come with it");
     let mut rig = RigState::new("default", &["main".to_owned()], Arc::new(library));
     rig.lay(PaintingSetup::default().scene());
-    rig.paint = Some(PaintNode {
+    rig.live.paint = Some(PaintNode {
         status: status(),
         heard_ns: 0,
     });
@@ -111,7 +113,9 @@ impl<P> Bench<P> {
     pub(crate) fn asked(&mut self) -> Vec<Command> {
         let requests = self.requests.take_all().into_iter();
         let paint = |order| match order {
-            Request::Command { node, command } if node == crate::rig::requests::PAINT => command,
+            Request::Command { node, command } if node == maulstick_types::command::PAINT_NODE => {
+                command
+            }
             other => panic!("not to the paint node: {other:?}"),
         };
         requests.map(paint).collect()

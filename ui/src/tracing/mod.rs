@@ -14,8 +14,8 @@ use std::sync::Arc;
 use std::task::Poll;
 
 use eframe::egui::Context;
+use maulstick_ui_kit::background_task::BackgroundTask;
 
-use crate::background_task::BackgroundTask;
 use crate::reference::picture::Picture;
 use crate::widgets::context::PanelContext;
 use projection::Slide;

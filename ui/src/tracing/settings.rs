@@ -71,7 +71,7 @@ impl Tracings {
 impl PanelContext<'_> {
     /// File of the painting that is open, by which its tracing picture is remembered; `None` while it is not known.
     fn painting(&self) -> Option<String> {
-        let status = self.rig.paint.as_ref().map(|node| &node.status);
+        let status = self.rig.live.paint.as_ref().map(|node| &node.status);
         status.map(|status| status.path.clone())
     }
 

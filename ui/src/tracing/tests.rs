@@ -4,16 +4,17 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use eframe::egui_wgpu::wgpu;
+use maulstick_ui_kit::notifications::Notifications;
 
 use super::projection::Projector;
 use super::*;
 use crate::render::gpu::testing::{draw, gpu, read, target};
 use crate::render::surface::tests::{CELLS, look, surface};
 use crate::rig::requests::Requests;
-use crate::rig::state::{PaintNode, RigState};
+use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 use crate::test_support::panel_bench::{rig, status};
-use crate::widgets::notifications::Notifications;
+use maulstick_client::state::PaintNode;
 
 /// Left half black, right half white, twice as high as wide.
 fn halves() -> Arc<Slide> {
@@ -90,7 +91,7 @@ impl Desk {
     fn open(&mut self, painting: &str) {
         let mut status = status();
         status.path = painting.to_owned();
-        self.rig.paint = Some(PaintNode {
+        self.rig.live.paint = Some(PaintNode {
             status,
             heard_ns: 0,
         });
@@ -144,7 +145,7 @@ fn a_sketch_leaves_its_picture_to_no_other_and_an_unknown_painting_has_none() {
     let mut desk = Desk::new();
     desk.open("");
     desk.work().trace(Path::new("/one.png"));
-    desk.rig.paint = None;
+    desk.rig.live.paint = None;
     assert!(desk.work().tracing().is_none(), "which painting is it?");
     desk.open("");
     assert!(desk.work().tracing().is_some());

@@ -1,9 +1,12 @@
 //! State that a panel reads and changes.
 
+use maulstick_types::command::Command;
+use maulstick_types::values::ValueError;
+use maulstick_ui_kit::notifications::Notifications;
+
 use crate::rig::requests::Requests;
 use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
-use crate::widgets::notifications::Notifications;
 
 /// The rig as it is, and what the painter makes of it.
 #[derive(Debug)]
@@ -16,4 +19,21 @@ pub struct PanelContext<'a> {
     pub preferences: &'a mut Preferences,
     /// Notifications to the painter.
     pub notifications: &'a mut Notifications,
+}
+
+/// Sends an edit; one that cannot be made is rejected with a notification.
+pub(crate) fn ask<E: Into<Command>>(
+    work: &mut PanelContext<'_>,
+    edit: Result<E, ValueError>,
+) -> bool {
+    match edit {
+        Ok(edit) => {
+            work.requests.send(edit);
+            true
+        }
+        Err(error) => {
+            work.notifications.of(&error.into());
+            false
+        }
+    }
 }

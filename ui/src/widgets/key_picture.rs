@@ -4,10 +4,10 @@ use eframe::egui::{
     Align2, Color32, FontId, Painter, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui,
     WidgetInfo, pos2, vec2,
 };
+use maulstick_ui_kit::language::translated;
 
 use crate::input::keymap::Keymap;
 use crate::input::keys::Action;
-use crate::language::translated;
 
 /// Size of a key with its word, points.
 const CELL: [f32; 2] = [92.0, 46.0];

@@ -9,9 +9,9 @@ use maulstick_types::edits::{Relight, StopDrying};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::{CANVAS, Light};
 
-use crate::rig::requests::Peer;
 use crate::rig::state::RigState;
 use crate::widgets::context::PanelContext;
+use maulstick_client::request::Peer;
 
 /// Duration up to which work is not shown, ns.
 const SHORT_NS: u64 = 500_000_000;
@@ -75,7 +75,7 @@ impl Progress {
         work: &mut PanelContext<'_>,
         waits: &[Peer],
     ) -> bool {
-        let status = work.rig.paint.as_ref().map(|paint| &paint.status);
+        let status = work.rig.live.paint.as_ref().map(|paint| &paint.status);
         let lines: Vec<String> = status.into_iter().flat_map(lines).collect();
         let jobs = self.jobs(work.rig, waits);
         if jobs.is_empty() && lines.is_empty() {
@@ -91,7 +91,7 @@ impl Progress {
                         ui.label(line);
                     }
                     for (job, begun_ns) in &jobs {
-                        let elapsed_s = elapsed_s(work.rig.now_ns, *begun_ns);
+                        let elapsed_s = elapsed_s(work.rig.live.now_ns, *begun_ns);
                         if bar(ui, job, elapsed_s) {
                             cancelled.clone_from(&job.cancel);
                         }
@@ -113,7 +113,7 @@ impl Progress {
         jobs.extend(self.relighting(rig));
         jobs.extend(drawing(rig));
         jobs.extend(drying(rig));
-        let now_ns = rig.now_ns;
+        let now_ns = rig.live.now_ns;
         self.since_ns
             .retain(|kind, _| jobs.iter().any(|job| job.kind == *kind));
         let begun = jobs.into_iter().enumerate().filter_map(|(place, job)| {
@@ -126,23 +126,23 @@ impl Progress {
     }
 
     fn relighting(&mut self, rig: &RigState) -> Option<Job> {
-        let light = rig.scene.as_ref().map(|scene| &scene.light);
-        if self.starts != rig.starts {
+        let light = rig.live.scene.as_ref().map(|scene| &scene.light);
+        if self.starts != rig.live.starts {
             // Another painting has another light.
-            (self.starts, self.lights) = (rig.starts, [None, None]);
+            (self.starts, self.lights) = (rig.live.starts, [None, None]);
         }
-        let status = &rig.paint.as_ref()?.status;
+        let status = &rig.live.paint.as_ref()?.status;
         let [now, before] = &mut self.lights;
         if light != now.as_ref() {
             // Of a lamp that is dragged, what counts is where it stood.
-            if rig.now_ns >= self.stood_ns.saturating_add(STOOD_NS) {
+            if rig.live.now_ns >= self.stood_ns.saturating_add(STOOD_NS) {
                 before.clone_from(now);
             }
-            (*now, self.stood_ns) = (light.cloned(), rig.now_ns);
+            (*now, self.stood_ns) = (light.cloned(), rig.live.now_ns);
         }
         let share = f64::from(status.baked) / f64::from(status.baking.max(1));
         let begun_ns = self.since_ns.get(&Kind::Relighting);
-        let begun_ns = begun_ns.copied().unwrap_or(rig.now_ns);
+        let begun_ns = begun_ns.copied().unwrap_or(rig.live.now_ns);
         // Otherwise a layer has another opacity.
         let is_relit = self.stood_ns.saturating_add(STOOD_NS) >= begun_ns;
         let back = |light: &Light| {
@@ -199,7 +199,7 @@ fn drawing(rig: &RigState) -> Option<Job> {
 }
 
 fn drying(rig: &RigState) -> Option<Job> {
-    let drying = rig.paint.as_ref()?.status.drying.as_ref()?;
+    let drying = rig.live.paint.as_ref()?.status.drying.as_ref()?;
     let stop = StopDrying { surface: CANVAS };
     Some(Job {
         kind: Kind::Drying,
@@ -280,11 +280,13 @@ mod tests {
     use egui_kittest::kittest::Queryable as _;
 
     use super::*;
-    use crate::rig::requests::{Request as Asked, Requests};
-    use crate::rig::state::PaintNode;
+    use maulstick_client::request::Request as Asked;
+
+    use crate::rig::requests::Requests;
     use crate::settings::preferences::Preferences;
     use crate::test_support::panel_bench::{rig, status};
-    use crate::widgets::notifications::Notifications;
+    use maulstick_client::state::PaintNode;
+    use maulstick_ui_kit::notifications::Notifications;
 
     struct Desk {
         progress: Progress,
@@ -296,15 +298,15 @@ mod tests {
 
     impl Desk {
         fn baked(&mut self, seconds: f64, baked: u32) {
-            self.rig.now_ns = (1e9 * seconds) as u64;
+            self.rig.live.now_ns = (1e9 * seconds) as u64;
             let status = maulstick_types::paint::PaintStatus {
                 baking: 100,
                 baked,
                 ..status()
             };
-            self.rig.paint = Some(PaintNode {
+            self.rig.live.paint = Some(PaintNode {
                 status,
-                heard_ns: self.rig.now_ns,
+                heard_ns: self.rig.live.now_ns,
             });
         }
     }
@@ -338,7 +340,7 @@ mod tests {
     fn relighting_is_told_after_half_a_second_with_the_time_left_and_can_be_ended() {
         let mut harness = harness();
         harness.step();
-        let scene = harness.state().rig.scene.clone().expect("a scene");
+        let scene = harness.state().rig.live.scene.clone().expect("a scene");
         let mut other = scene.clone();
         other.light.intensity = 2.0;
         harness.state_mut().rig.lay(other);
@@ -369,9 +371,9 @@ mod tests {
     #[test]
     fn another_opacity_is_told_and_is_not_ended_by_another_light() {
         let mut harness = harness();
-        harness.state_mut().rig.now_ns = 1_000_000_000;
+        harness.state_mut().rig.live.now_ns = 1_000_000_000;
         harness.step();
-        let mut other = harness.state().rig.scene.clone().expect("a scene");
+        let mut other = harness.state().rig.live.scene.clone().expect("a scene");
         other.light.intensity = 2.0;
         harness.state_mut().rig.lay(other);
         harness.state_mut().baked(10.0, 100);
@@ -408,14 +410,14 @@ mod tests {
         harness.state_mut().baked(1.0, 100);
         let words = "Painting falls behind: until the brush lifts, its marks are coarser";
         for longer in [1, 4, 1] {
-            let paint = harness.state_mut().rig.paint.as_mut();
+            let paint = harness.state_mut().rig.live.paint.as_mut();
             paint.expect("paint").status.longer = longer;
             harness.run_steps(2);
             assert_eq!(harness.query_by_label(words).is_some(), longer > 1);
         }
         let words = "The paint is 2.3 s behind the hand";
         for lag_ns in [400_000_000, 2_340_000_000, 0] {
-            let paint = harness.state_mut().rig.paint.as_mut();
+            let paint = harness.state_mut().rig.live.paint.as_mut();
             paint.expect("paint").status.lag_ns = lag_ns;
             harness.run_steps(2);
             assert_eq!(
@@ -430,13 +432,13 @@ mod tests {
         let mut harness = harness();
         harness.state_mut().baked(1.0, 100);
         let fault = |desk: &mut Desk, what: &str| {
-            let paint = desk.rig.paint.as_mut().expect("paint");
+            let paint = desk.rig.live.paint.as_mut().expect("paint");
             what.clone_into(&mut paint.status.fault);
         };
         let words = "A fault of the painting's file: no room: free some space";
         fault(harness.state_mut(), "no room: free some space");
         for _ in 0..3 {
-            harness.state_mut().rig.now_ns += 100_000_000_000;
+            harness.state_mut().rig.live.now_ns += 100_000_000_000;
             harness.run_steps(2);
             harness.get_by_label(words);
         }

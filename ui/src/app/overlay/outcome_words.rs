@@ -2,10 +2,10 @@
 
 use maulstick_types::command::{Command, Detail};
 use maulstick_types::edits::Edit;
+use maulstick_ui_kit::language::{layer_name, step};
 
-use crate::language::{layer_name, step};
-use crate::rig::requests::Request;
 use crate::settings::brush_load;
+use maulstick_client::request::Request;
 
 /// A request that is done, and what it was about; `None` for one whose effect is seen.
 #[must_use]

@@ -9,8 +9,8 @@ use maulstick_types::command::BrushCommand;
 use maulstick_types::command::Command;
 
 use super::*;
-use crate::rig::requests::Request as Asked;
 use crate::test_support::context_bench::{Bench, differ, pictures, window};
+use maulstick_client::request::Request as Asked;
 
 fn rack<'a>(bench: Bench) -> Harness<'a, Bench> {
     let mut harness = window(vec2(240.0, 700.0), bench, |ui, work| {

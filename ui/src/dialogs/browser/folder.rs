@@ -5,8 +5,8 @@ use std::task::Poll;
 use std::time::SystemTime;
 
 use eframe::egui::Context;
+use maulstick_ui_kit::background_task::BackgroundTask;
 
-use crate::background_task::BackgroundTask;
 use crate::dialogs::paths;
 
 /// So many entries of a folder are shown at most.

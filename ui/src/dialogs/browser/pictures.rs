@@ -13,9 +13,9 @@ use maulstick_document::shown_tiles;
 use maulstick_optics::colour::srgb_encode;
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::Surface;
+use maulstick_ui_kit::background_task::BackgroundTask;
 
-use crate::background_task::BackgroundTask;
-use crate::rig::thumbnails::Picture;
+use maulstick_client::thumbnails::Picture;
 
 /// Pixels of the longer side.
 const SIDE: u32 = 96;

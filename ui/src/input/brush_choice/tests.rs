@@ -6,9 +6,9 @@ use maulstick_types::edits::{Clean, Undo};
 use maulstick_types::values::BrushName;
 
 use super::*;
-use crate::rig::requests::PAINT;
 use crate::settings::presets::BeforePreset;
 use crate::test_support::context_bench::Bench;
+use maulstick_types::command::PAINT_NODE;
 
 fn defined(bench: &mut Bench) -> Vec<(String, BrushFile)> {
     let commands = bench.commands().into_iter();
@@ -106,7 +106,7 @@ fn another_brush_lays_full_paint_and_another_width_what_the_preset_says() {
         most_m: 15e-6,
         ..BrushHandling::normal("main")
     };
-    bench.rig.scene.as_mut().expect("a scene").handlings = vec![limited];
+    bench.rig.live.scene.as_mut().expect("a scene").handlings = vec![limited];
     bench.preferences.loading.thinner = 0.7;
     bench.preferences.mouse.pressure = 0.08;
     bench.preferences.before_preset = Some(BeforePreset {
@@ -136,7 +136,7 @@ fn another_brush_lays_full_paint_and_another_width_what_the_preset_says() {
 
 #[test]
 fn a_brush_that_refuses_keeps_what_it_has_and_one_that_does_takes_up_its_paint() {
-    let refused = || Err(UserError::failure("the brush is painting"));
+    let refused = || Err(UserError::failure("the brush is painting").into());
     let load = || {
         Command::from(Clean {
             brush: BrushName::main(),
@@ -166,7 +166,7 @@ fn a_brush_that_refuses_keeps_what_it_has_and_one_that_does_takes_up_its_paint()
     let done = answer(&request, Ok(Detail::Nothing));
     bench.work().brush_answered(&done);
     let then = Request::Command {
-        node: PAINT.to_owned(),
+        node: PAINT_NODE.to_owned(),
         command: load(),
     };
     assert_eq!(bench.requests.take_all(), [then]);

@@ -2,11 +2,11 @@
 
 use eframe::egui::{Slider, SliderClamping, Ui};
 use maulstick_brush::BrushFile;
+use maulstick_ui_kit::labelled;
+use maulstick_ui_kit::language::translated;
 
 use crate::input::brush_choice::{is_of_library, of_library};
-use crate::language::translated;
 use crate::widgets::context::PanelContext;
-use crate::widgets::labelled;
 
 /// Unit that is shown as the painter has chosen.
 const MILLIMETRES: &str = " mm";

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use eframe::egui::{Button, Key, TextEdit, Ui};
+use maulstick_ui_kit::labelled;
 
 use super::entry;
 use crate::render::brush::icon_cache;
 use crate::widgets::context::PanelContext;
-use crate::widgets::labelled;
 
 /// The rows.
 #[derive(Debug, Default)]

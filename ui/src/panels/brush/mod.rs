@@ -21,16 +21,16 @@ use maulstick_brush::BrushFile;
 use maulstick_types::command::STIFFNESS;
 use maulstick_types::edits::Tune;
 use maulstick_types::scene::{BrushHandling, Tuning};
+use maulstick_ui_kit::labelled::{self, PendingValue};
+use maulstick_ui_kit::language::known;
 
 use crate::input::brush_choice::{called, library, resized, widths_mm};
 use crate::input::keymap::Keymap;
 use crate::input::keys::Action;
-use crate::language::known;
 use crate::panels::Panel;
 use crate::render::brush::icon_cache;
 use crate::settings::grip::{Grip, MOUSE_PRESSURE};
 use crate::widgets::context::PanelContext;
-use crate::widgets::labelled::{self, PendingValue};
 
 /// The portrait of the brush in the hand, points.
 const PORTRAIT: [f32; 2] = [44.0, 64.0];
@@ -206,7 +206,7 @@ impl BrushPanel {
         }
         if wanted != tuning {
             self.tuning.ask(ui, wanted.clone());
-            crate::widgets::rows::ask(work, Tune::try_from(&wanted));
+            crate::widgets::context::ask(work, Tune::try_from(&wanted));
         }
     }
 }

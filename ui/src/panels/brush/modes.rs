@@ -3,10 +3,10 @@
 use eframe::egui::{ComboBox, Ui};
 use maulstick_types::edits::Handle;
 use maulstick_types::scene::{BrushHandling, BrushMode, FLOWS};
+use maulstick_ui_kit::labelled::{self, PendingValue};
+use maulstick_ui_kit::language::translated;
 
-use crate::language::translated;
 use crate::widgets::context::PanelContext;
-use crate::widgets::labelled::{self, PendingValue};
 
 /// Most paint that a painter is offered as a bound, µm.
 const MOST_UM: std::ops::RangeInclusive<f64> = 1.0..=2000.0;
@@ -99,7 +99,7 @@ pub(super) fn show(
     }
     if wanted != handling {
         asked.ask(ui, wanted.clone());
-        crate::widgets::rows::ask(work, Handle::try_from(&wanted));
+        crate::widgets::context::ask(work, Handle::try_from(&wanted));
     }
 }
 

@@ -4,12 +4,12 @@ use eframe::egui::{Button, TextEdit, Ui};
 use maulstick_rig::UserError;
 use maulstick_types::edits::Clean;
 use maulstick_types::values::{BrushName, ThinnerShare};
+use maulstick_ui_kit::labelled;
 
 use crate::input::keys::Action;
 use crate::settings::brush_load::{completed, completions};
 use crate::widgets::brush_gauge;
 use crate::widgets::context::PanelContext;
-use crate::widgets::labelled;
 
 /// Names that are proposed at most.
 const PROPOSED: usize = 4;
@@ -79,7 +79,7 @@ impl PaintRows {
             let clean = ui.button(tr!("Clean")).on_hover_text(hover);
             if clean.clicked() {
                 let brush = BrushName::new(work.rig.brush_name());
-                crate::widgets::rows::ask(work, brush.map(|brush| Clean { brush }));
+                crate::widgets::context::ask(work, brush.map(|brush| Clean { brush }));
             }
         });
         if before != work.preferences.loading {

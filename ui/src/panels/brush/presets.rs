@@ -1,12 +1,12 @@
 //! Presets: brushes with their paint.
 
 use eframe::egui::{Button, Color32, Key, TextEdit, TextStyle, Ui, vec2};
+use maulstick_ui_kit::labelled;
+use maulstick_ui_kit::language::known;
 
 use super::entry;
-use crate::language::known;
 use crate::settings::presets::{Preset, check_name};
 use crate::widgets::context::PanelContext;
-use crate::widgets::labelled;
 
 /// The rows.
 #[derive(Debug, Default)]

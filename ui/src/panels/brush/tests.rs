@@ -71,7 +71,7 @@ fn sliders_ask_for_what_they_say() {
 #[test]
 fn what_the_rig_says_is_shown_where_nothing_was_asked() {
     let mut bench = Bench::new();
-    let mut scene = bench.rig.scene.clone().expect("a scene");
+    let mut scene = bench.rig.live.scene.clone().expect("a scene");
     scene.tunings = vec![Tuning {
         brush: "main".into(),
         stiffness: 0.5,
@@ -106,7 +106,7 @@ fn the_way_shows_what_belongs_to_it() {
         [Command::from(Handle::try_from(&marker).expect("in range"))]
     );
     // The rig answers.
-    let scene = harness.state_mut().rig.scene.as_mut();
+    let scene = harness.state_mut().rig.live.scene.as_mut();
     scene.expect("a scene").handlings.push(marker.clone());
     harness.run();
     let flow = harness

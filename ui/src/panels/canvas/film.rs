@@ -5,9 +5,9 @@ use maulstick_types::Mixture;
 use maulstick_types::edits::{Fill, FillPaint};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{BrushName, FilmThickness, ValueError};
+use maulstick_ui_kit::rows::{Number, Sliders, below, choice};
 
-use crate::widgets::context::PanelContext;
-use crate::widgets::rows::{Number, Sliders, ask, below, choice};
+use crate::widgets::context::{PanelContext, ask};
 
 /// The paint that the brush carries.
 const CARRIED: &str = tr_noop!("What the brush carries");

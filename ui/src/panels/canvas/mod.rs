@@ -16,13 +16,13 @@ use maulstick_painting::models::model_names;
 use maulstick_types::edits::{Convert, Ground, Piles, Place, Size, Tooth};
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 use maulstick_types::values::{MaterialName, ModelName, StainThickness, ValueError};
+use maulstick_ui_kit::pending::Pending;
+use maulstick_ui_kit::rows::{Number, Sliders, below, choice, note, row, wrong};
 
 use crate::input::keys::Action;
 use crate::panels::Panel;
 use crate::spectrum_file;
-use crate::widgets::context::PanelContext;
-use crate::widgets::pending::Pending;
-use crate::widgets::rows::{Number, Sliders, ask, below, choice, note, row, wrong};
+use crate::widgets::context::{PanelContext, ask};
 
 mod film;
 mod placement;
@@ -85,7 +85,7 @@ impl Panel for CanvasPanel {
     }
 
     fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
-        let Some(canvas) = work.rig.canvas().cloned() else {
+        let Some(canvas) = work.rig.live.canvas().cloned() else {
             return;
         };
         size(ui, work, &canvas);
@@ -164,7 +164,7 @@ fn preferences(ui: &mut Ui, work: &mut PanelContext<'_>) {
         .on_hover_text(tr!(
             "The palette lies at the right, brushes and panels at the left"
         ));
-    let Some(mut last) = work.rig.palette().map(|palette| palette.piles_last) else {
+    let Some(mut last) = work.rig.live.palette().map(|palette| palette.piles_last) else {
         return;
     };
     let lasts = ui

@@ -49,7 +49,7 @@ fn advanced(harness: &mut Harness<'static, Bench<CanvasPanel>>) {
 #[test]
 fn tooth_ground_and_sizing_are_asked_for() {
     let mut harness = panel();
-    let seed = harness.state().rig.canvas().expect("one").tooth_seed;
+    let seed = harness.state().rig.live.canvas().expect("one").tooth_seed;
     choose(&mut harness, "Tooth", "paper");
     advanced(&mut harness);
     set(&mut harness, Role::SpinButton, "Cloth piece", 7.0);
@@ -118,7 +118,7 @@ fn the_canvas_is_tilted_turned_and_zoomed_each_beside_the_others() {
     set(&mut harness, Role::Slider, "Tilt", 30.0);
     set(&mut harness, Role::Slider, "Turn", -15.0);
     set(&mut harness, Role::Slider, "Zoom", 200.0);
-    let canvas = harness.state().rig.canvas().expect("one").clone();
+    let canvas = harness.state().rig.live.canvas().expect("one").clone();
     let (pose, zoom) = Posture {
         tilt_deg: 30.0,
         turn_deg: -15.0,
@@ -232,7 +232,7 @@ fn the_panel_looks_as_it_did() {
         harness.remove_cursor();
     };
     picture::<CanvasPanel>("canvas", &rig(), open, |rig| {
-        let scene = rig.scene.as_mut().expect("a scene");
+        let scene = rig.live.scene.as_mut().expect("a scene");
         scene.surfaces[0].zoom = 4.0;
     });
 }

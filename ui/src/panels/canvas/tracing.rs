@@ -1,11 +1,11 @@
 //! The picture that is traced: which, whether it is shown, and how strong.
 
 use eframe::egui::Ui;
+use maulstick_ui_kit::rows::{Number, Sliders, below};
 
 use crate::dialogs::paths;
 use crate::input::keys::Action;
 use crate::widgets::context::PanelContext;
-use crate::widgets::rows::{Number, Sliders, below};
 
 const STRENGTH: Number<'_> = Number {
     word: tr_noop!("picture|Strength"),

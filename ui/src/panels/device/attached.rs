@@ -2,20 +2,25 @@
 
 use eframe::egui::{Frame, RichText, Ui};
 use maulstick_rig::user_devices::ALLOW_BY_HAND;
+use maulstick_ui_kit::rows::note;
 
 use crate::rig::device_listing::AttachedDevice;
 use crate::widgets::context::PanelContext;
-use crate::widgets::rows::note;
 
 /// Shows it.
 pub(super) fn show(ui: &mut Ui, work: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         ui.label(RichText::new(tr!("Attached")).strong());
-        if work.rig.listing.is_none() || work.rig.changes_devices {
+        if work.rig.setup.listing.is_none() || work.rig.setup.is_changing {
             ui.weak(tr!("looking…"));
         }
     });
-    let unused = work.rig.listing.as_ref().map(|listing| listing.unused());
+    let unused = work
+        .rig
+        .setup
+        .listing
+        .as_ref()
+        .map(|listing| listing.unused());
     let Some(unused) = unused else {
         return;
     };

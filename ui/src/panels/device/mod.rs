@@ -26,11 +26,12 @@ use maulstick_types::haptics::ForceOrder;
 use maulstick_types::stylus::{StylusInfo, StylusStatus, Trouble, axes};
 
 use crate::input::keys::Action;
-use crate::language::capitalized;
 use crate::panels::Panel;
-use crate::rig::force_history::{self, KEPT_S, size};
-use crate::rig::state::{Device, RigState};
+use crate::rig::state::RigState;
 use crate::widgets::context::PanelContext;
+use maulstick_client::force_history::{self, KEPT_S, size};
+use maulstick_client::state::Device;
+use maulstick_ui_kit::language::capitalized;
 use settings::Edits;
 
 /// Of the button that switches force off, and of a trouble.
@@ -101,7 +102,8 @@ impl Panel for DevicePanel {
     }
 
     fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
-        let painting = force_history::active_device(work.rig).map(|(name, _)| name.to_owned());
+        let painting = force_history::active_device(&work.rig.live, work.rig.brush_name())
+            .map(|(name, _)| name.to_owned());
         match &painting {
             Some(name) => {
                 ui.label(RichText::new(tr!("{device} paints", device = worded(name))).strong())
@@ -111,20 +113,20 @@ impl Panel for DevicePanel {
         settings::fit(ui, work);
         let is_there = |(name, device): &(&String, &Device)| is_there(work.rig, name, device);
         let mut devices: Vec<(&String, &Device)> =
-            work.rig.devices.iter().filter(is_there).collect();
+            work.rig.live.devices.iter().filter(is_there).collect();
         let priority = |device: &Device| device.info.as_ref().map_or(i32::MIN, |it| it.priority);
         devices.sort_by_key(|(name, device)| (-i64::from(priority(device)), (*name).clone()));
         let names: Vec<String> = devices.into_iter().map(|(name, _)| name.clone()).collect();
         for name in names {
             // What it sensed is long.
-            let Some(device) = work.rig.devices.remove(&name) else {
+            let Some(device) = work.rig.live.devices.remove(&name) else {
                 continue;
             };
             Frame::group(ui.style()).show(ui, |ui| {
                 ui.set_width(ui.available_width());
                 ui.push_id(&name, |ui| self.device(ui, &name, &device, work));
             });
-            work.rig.devices.insert(name, device);
+            work.rig.live.devices.insert(name, device);
         }
         attached::show(ui, work);
         let tested = self.tested.take();
@@ -163,7 +165,7 @@ impl DevicePanel {
     /// The name that a device goes by once the rig has it under another one.
     fn renamed(&self, name: String, rig: &RigState) -> String {
         match &self.edits.renamed {
-            Some((from, to)) if *from == name && rig.nodes.contains(to) => to.clone(),
+            Some((from, to)) if *from == name && rig.live.nodes.contains(to) => to.clone(),
             _ => name,
         }
     }
@@ -176,13 +178,13 @@ impl DevicePanel {
         device: &Device,
         work: &mut PanelContext<'_>,
     ) {
-        let listing = work.rig.listing.as_ref();
+        let listing = work.rig.setup.listing.as_ref();
         let known = listing.and_then(|listing| listing.device(name)).cloned();
         let driver = device.info.as_ref().map(|info| info.driver.as_str());
         match known.filter(|known| known.is_in_rig) {
             Some(known) => {
                 // A change begins with the settings as they were listed.
-                ui.add_enabled_ui(!work.rig.changes_devices, |ui| {
+                ui.add_enabled_ui(!work.rig.setup.is_changing, |ui| {
                     settings::buttons(ui, &known, work);
                     settings::show(ui, &known, device, &mut self.edits, work);
                 });
@@ -241,7 +243,7 @@ impl DevicePanel {
                 work.requests.force(name, ForceOrder::Rearm);
             }
         }
-        let now_ns = work.rig.now_ns;
+        let now_ns = work.rig.live.now_ns;
         let most_n = match status.cap_n > 0.0 {
             true => status.cap_n,
             false => info.max_force_n,
@@ -263,7 +265,7 @@ impl DevicePanel {
         (share, status): (Share, &StylusStatus),
         work: &mut PanelContext<'_>,
     ) {
-        let now_ns = work.rig.now_ns;
+        let now_ns = work.rig.live.now_ns;
         let told = (100.0 * share.of(status)).round();
         self.asked = self.asked.take().filter(|(.., until)| now_ns < *until);
         let is_this = |asked: &&(String, Share, f64, u64)| asked.0 == name && asked.1 == share;
@@ -288,7 +290,7 @@ impl DevicePanel {
 
 /// Switches off the force of every device that gives one.
 pub(crate) fn force_off(work: &mut PanelContext<'_>) {
-    for (name, device) in &work.rig.devices {
+    for (name, device) in &work.rig.live.devices {
         let info = device.info.as_ref();
         if info.is_some_and(|info| info.drives & axes::FORCE != 0) {
             work.requests.force(name, ForceOrder::Off);
@@ -300,9 +302,9 @@ pub(crate) fn force_off(work: &mut PanelContext<'_>) {
 fn is_there(rig: &RigState, name: &str, device: &Device) -> bool {
     let driver = device.info.as_ref().map(|info| info.driver.as_str());
     let is_own = driver.is_some_and(|driver| OF_THE_WINDOW.contains(&driver));
-    let is_fitted = rig.fit.as_ref().is_some_and(|fit| fit.device == name);
-    let heard = rig.now_ns < device.heard_ns.saturating_add(PRESENT_NS);
-    !is_fitted && (is_own || heard || rig.nodes.iter().any(|node| node == name))
+    let is_fitted = rig.setup.fit.as_ref().is_some_and(|fit| fit.device == name);
+    let heard = rig.live.now_ns < device.heard_ns.saturating_add(PRESENT_NS);
+    !is_fitted && (is_own || heard || rig.live.nodes.iter().any(|node| node == name))
 }
 
 /// A button as wide as the panel.

@@ -5,9 +5,8 @@ use eframe::egui::{
     StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 use maulstick_device::pressure_curve::given;
-
-use crate::language::translated;
-use crate::widgets::arrow_keys::arrow_steps;
+use maulstick_ui_kit::arrow_keys::arrow_steps;
+use maulstick_ui_kit::language::translated;
 
 /// Height of the field, points.
 const HEIGHT: f32 = 120.0;

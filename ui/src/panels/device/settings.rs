@@ -3,14 +3,14 @@
 use eframe::egui::{CollapsingHeader, Frame, Key, RichText, TextEdit, Ui};
 use maulstick_device::pressure_curve::sensed;
 use maulstick_rig::config::{ACTIONS, DeviceSection, FORCES, PEN_DRIVERS};
+use maulstick_ui_kit::language::capitalized;
+use maulstick_ui_kit::rows::{choice, note, row};
 
 use super::pressure_curve::CurveEditor;
-use crate::language::capitalized;
 use crate::rig::device_commands::DeviceOrder;
 use crate::rig::device_listing::RigDevice;
-use crate::rig::state::Device;
 use crate::widgets::context::PanelContext;
-use crate::widgets::rows::{choice, note, row};
+use maulstick_client::state::Device;
 
 /// Settings that are being changed.
 #[derive(Debug, Default)]
@@ -84,7 +84,7 @@ pub(super) fn show(
             change = switches(ui, section).or(change);
             if PEN_DRIVERS.contains(&&*section.driver) {
                 ui.label(tr!("Pressure"));
-                let newest = device.samples.newest(work.rig.now_ns);
+                let newest = device.samples.newest(work.rig.live.now_ns);
                 let given = newest.and_then(|sample| sample.pen).map(|(given, _)| given);
                 let sensed = given.map(|given| sensed(&section.pressure_curve, given));
                 let drawn = edits.curve.show(ui, &name, &section.pressure_curve, sensed);
@@ -126,7 +126,7 @@ fn written(points: &[[f64; 2]]) -> String {
 
 /// The fit in progress: the rig has let go of its device meanwhile.
 pub(super) fn fit(ui: &mut Ui, work: &mut PanelContext<'_>) {
-    let Some(fit) = work.rig.fit.clone() else {
+    let Some(fit) = work.rig.setup.fit.clone() else {
         return;
     };
     Frame::group(ui.style()).show(ui, |ui| {
@@ -151,7 +151,12 @@ pub(super) fn buttons(ui: &mut Ui, known: &RigDevice, work: &mut PanelContext<'_
     let section = &known.section;
     let name = &section.name;
     ui.horizontal_wrapped(|ui| {
-        let others = work.rig.devices.iter().filter(|(other, _)| *other != name);
+        let others = work
+            .rig
+            .live
+            .devices
+            .iter()
+            .filter(|(other, _)| *other != name);
         let infos = others.filter_map(|(_, other)| other.info.as_ref());
         let rivals = infos.filter(|info| info.brush == section.brush);
         let highest = rivals.map(|info| info.priority).max();
@@ -161,7 +166,7 @@ pub(super) fn buttons(ui: &mut Ui, known: &RigDevice, work: &mut PanelContext<'_
         if first.on_hover_text(hint).clicked() {
             work.requests.device(["use", name]);
         }
-        let idle = work.rig.fit.is_none();
+        let idle = work.rig.setup.fit.is_none();
         if known.is_own && section.driver != "spacemouse" {
             let fit = ui.add_enabled(idle, eframe::egui::Button::new(tr!("Fit to the canvas…")));
             let hint = tr!("Touch three corners of the canvas with it");

@@ -4,8 +4,9 @@ use eframe::egui::{Context, Grid, Ui, Window, vec2};
 use egui_plot::{Legend, Line, Plot, PlotPoints};
 
 use super::{still, worded};
-use crate::rig::sample_history::SensedSample;
-use crate::rig::state::{Device, RigState};
+use crate::rig::state::RigState;
+use maulstick_client::sample_history::SensedSample;
+use maulstick_client::state::Device;
 
 /// Height of a plot, points, and its length, s.
 const HEIGHT: f32 = 76.0;
@@ -51,8 +52,8 @@ pub(super) fn show(context: &Context, name: &str, rig: &RigState) -> bool {
         .id(eframe::egui::Id::unique("device test"))
         .open(&mut is_open)
         .default_width(420.0)
-        .show(context, |ui| match rig.devices.get(name) {
-            Some(device) => page(ui, device, rig.now_ns),
+        .show(context, |ui| match rig.live.devices.get(name) {
+            Some(device) => page(ui, device, rig.live.now_ns),
             None => {
                 ui.label(tr!("It is not there."));
             }
@@ -98,7 +99,7 @@ fn page(ui: &mut Ui, device: &Device, now_ns: u64) {
             // It senses nothing of the kind.
             continue;
         }
-        ui.small(crate::language::translated(title));
+        ui.small(maulstick_ui_kit::language::translated(title));
         still(ui, Plot::new(title))
             .height(HEIGHT)
             .include_x(-SHOWN_S)

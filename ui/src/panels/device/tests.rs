@@ -8,9 +8,9 @@ use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus
 use super::*;
 use crate::rig::device_commands::{DeviceOrder, FitProgress};
 use crate::rig::device_listing::DeviceListing;
-use crate::rig::requests::Request;
 use crate::rig::state::RigState;
 use crate::test_support::panel_bench::{Bench, harness, picture, rig};
+use maulstick_client::request::Request;
 
 fn info(device: &str, driver: &str, priority: i32, senses: u32, drives: u32) -> StylusInfo {
     StylusInfo {
@@ -30,7 +30,7 @@ fn info(device: &str, driver: &str, priority: i32, senses: u32, drives: u32) -> 
 /// A mouse, a pen that is not there and an arm that pushes.
 pub(crate) fn devices() -> RigState {
     let mut rig = rig();
-    rig.now_ns = 10_000_000_000;
+    rig.live.now_ns = 10_000_000_000;
     let pen = axes::POSITION | axes::PRESSURE | axes::TILT | axes::PROXIMITY;
     let arm = axes::POSITION | axes::ORIENTATION | axes::SWITCHES | axes::VELOCITY;
     for info in [
@@ -38,17 +38,17 @@ pub(crate) fn devices() -> RigState {
         info("tablet", "pen", 5, pen, 0),
         info("phantom", "openhaptics", 10, arm, axes::FORCE),
     ] {
-        rig.nodes.push(info.device.clone());
-        let device = rig.devices.entry(info.device.clone()).or_default();
+        rig.live.nodes.push(info.device.clone());
+        let device = rig.live.devices.entry(info.device.clone()).or_default();
         device.info = Some(info);
     }
-    let tablet = rig.devices.get_mut("tablet").expect("a tablet");
+    let tablet = rig.live.devices.get_mut("tablet").expect("a tablet");
     tablet.status = Some(StylusStatus {
         trouble: "no pen (/dev/hidraw0)".into(),
         help: "plug it in".into(),
         ..StylusStatus::fresh(0)
     });
-    let phantom = rig.devices.get_mut("phantom").expect("a phantom");
+    let phantom = rig.live.devices.get_mut("phantom").expect("a phantom");
     phantom.status = Some(StylusStatus {
         samples: 123_456,
         lateness: vec![100_000, 20_000, 900, 30, 4, 0, 0, 0, 0, 0, 0, 0],
@@ -71,13 +71,13 @@ pub(crate) fn devices() -> RigState {
             in_range: true,
             ..StylusSample::away()
         };
-        phantom.forces.hear(ms * 1_000_000, &sample);
+        phantom.forces.add(ms * 1_000_000, &sample);
     }
     rig
 }
 
 fn status<'a>(harness: &'a mut Harness<'_, Bench<DevicePanel>>) -> &'a mut StylusStatus {
-    let devices = &mut harness.state_mut().rig.devices;
+    let devices = &mut harness.state_mut().rig.live.devices;
     let phantom = devices.get_mut("phantom").expect("a phantom");
     phantom.status.as_mut().expect("a status")
 }
@@ -102,7 +102,7 @@ fn who_paints_and_what_is_wrong_stand_in_words() {
     harness.get_by_label("Senses position, pressure, tilt, nearness");
     harness.get_by_label("400 of 700 N/m");
     harness.get_by_label_contains("Force on the hand: ");
-    harness.state_mut().rig.now_ns += 60_000_000_000;
+    harness.state_mut().rig.live.now_ns += 60_000_000_000;
     harness.run();
     harness.get_by_label("No pen in range. You are painting with the mouse.");
     harness.get_by_label("silent");
@@ -125,7 +125,7 @@ const LISTING: &str = r#"{
 /// The same with what is attached.
 fn listed() -> RigState {
     let mut rig = devices();
-    rig.listing = Some(DeviceListing::parse(LISTING.as_bytes()).expect("a listing"));
+    rig.setup.listing = Some(DeviceListing::parse(LISTING.as_bytes()).expect("a listing"));
     rig
 }
 
@@ -153,7 +153,7 @@ fn what_is_attached_is_added_with_a_click_or_first_allowed() {
         harness.query_by_label("Add Deco L").is_none(),
         "it may not be used"
     );
-    harness.state_mut().rig.listing = Some(DeviceListing::default());
+    harness.state_mut().rig.setup.listing = Some(DeviceListing::default());
     harness.run();
     harness.get_by_label_contains("No other tablet");
 }
@@ -175,7 +175,7 @@ fn a_device_is_preferred_fitted_and_removed() {
         harness.run();
         assert_eq!(orders(&mut harness), [command]);
     }
-    harness.state_mut().rig.fit = Some(FitProgress {
+    harness.state_mut().rig.setup.fit = Some(FitProgress {
         device: "tablet".into(),
         said: vec!["touch the lower left corner".into()],
         asks: Some("lower left".into()),
@@ -273,11 +273,11 @@ fn a_typed_name_renames_a_device_of_ones_own_which_stays_unfolded_and_tested() {
     // The rig has it under its new name.
     let rig = &mut harness.state_mut().rig;
     let said = LISTING.replace(r#""name": "tablet""#, r#""name": "tablet-2""#);
-    rig.listing = Some(DeviceListing::parse(said.as_bytes()).expect("a listing"));
-    rig.nodes.retain(|node| node != "tablet");
-    rig.nodes.push("tablet-2".into());
-    let tablet = rig.devices.remove("tablet").expect("a tablet");
-    rig.devices.insert("tablet-2".into(), tablet);
+    rig.setup.listing = Some(DeviceListing::parse(said.as_bytes()).expect("a listing"));
+    rig.live.nodes.retain(|node| node != "tablet");
+    rig.live.nodes.push("tablet-2".into());
+    let tablet = rig.live.devices.remove("tablet").expect("a tablet");
+    rig.live.devices.insert("tablet-2".into(), tablet);
     harness.run_steps(20);
     assert!(harness.query_all_by_label("Test of tablet-2").count() > 0);
     let field = harness.get_by_role_and_label(Role::TextInput, "Name");
@@ -290,6 +290,7 @@ fn a_device_that_left_is_shown_no_more() {
     harness
         .state_mut()
         .rig
+        .live
         .nodes
         .retain(|node| node != "tablet");
     harness.run();
@@ -362,7 +363,7 @@ fn a_new_strength_is_asked_for_and_shown_until_the_device_has_it() {
     assert_eq!(value(&harness), Some((100.0 * share).round()));
     // The device has something else in the end.
     status(&mut harness).strength = 0.3;
-    harness.state_mut().rig.now_ns += PATIENCE_NS;
+    harness.state_mut().rig.live.now_ns += PATIENCE_NS;
     harness.run();
     assert_eq!(value(&harness), Some(30.0));
 }
@@ -406,10 +407,10 @@ fn it_looks_like_its_picture() {
         harness.run_steps(20);
     };
     let mut rig = devices();
-    rig.devices.retain(|name, _| name == "phantom");
+    rig.live.devices.retain(|name, _| name == "phantom");
     picture::<DevicePanel>("device", &rig, open, |rig| {
-        let phantom = rig.devices.get_mut("phantom").expect("a phantom");
-        phantom.forces = crate::rig::force_history::ForceHistory::default();
+        let phantom = rig.live.devices.get_mut("phantom").expect("a phantom");
+        phantom.forces = maulstick_client::force_history::ForceHistory::default();
     });
 }
 
@@ -420,14 +421,14 @@ fn what_is_attached_and_a_pens_settings_look_like_their_picture() {
         harness.run_steps(20);
     };
     let mut rig = listed();
-    rig.devices.retain(|name, _| name == "tablet");
-    let tablet = rig.devices.get_mut("tablet").expect("a tablet");
+    rig.live.devices.retain(|name, _| name == "tablet");
+    let tablet = rig.live.devices.get_mut("tablet").expect("a tablet");
     let mut pen = StylusSample::away();
     if let StylusPose::Contact { pressure, .. } = &mut pen.pose {
         *pressure = 0.4;
     }
-    tablet.samples.hear(10_000_000_000, 9_990_000_000, &pen);
+    tablet.samples.add(10_000_000_000, 9_990_000_000, &pen);
     picture::<DevicePanel>("device_settings", &rig, open, |rig| {
-        rig.devices.get_mut("tablet").expect("a tablet").status = None;
+        rig.live.devices.get_mut("tablet").expect("a tablet").status = None;
     });
 }

@@ -16,11 +16,11 @@ use eframe::egui::{
 use maulstick_types::edits::{Branch, Forget, Keep, ReturnTo};
 use maulstick_types::scene::NamedVersion;
 use maulstick_types::values::VersionName;
+use maulstick_ui_kit::rows::note;
 
 use crate::panels::Panel;
-use crate::rig::thumbnails::{Picture, Pictured};
-use crate::widgets::context::PanelContext;
-use crate::widgets::rows::{ask, note};
+use crate::widgets::context::{PanelContext, ask};
+use maulstick_client::thumbnails::{Picture, Pictured};
 
 mod steps;
 mod tree;
@@ -52,11 +52,11 @@ impl Panel for HistoryPanel {
     }
 
     fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
-        let scene = work.rig.scene.as_ref();
+        let scene = work.rig.live.scene.as_ref();
         let versions = scene.map_or_else(Vec::new, |scene| scene.versions.clone());
         let mut shown = steps::pictured(work);
         shown.extend(versions.iter().map(|version| version.name.as_str().into()));
-        work.rig.thumbnails.keep(&shown);
+        work.rig.live.thumbnails.keep(&shown);
         self.textures.retain(|what, _| shown.contains(what));
         steps::show(ui, work, &mut self.textures);
         self.keep(ui, work);
@@ -209,8 +209,8 @@ fn paint_picture(
     textures: &mut Textures,
     what: &Pictured,
 ) {
-    let now_ns = work.rig.now_ns;
-    let Some(picture) = work.rig.thumbnails.of(what.clone(), now_ns) else {
+    let now_ns = work.rig.live.now_ns;
+    let Some(picture) = work.rig.live.thumbnails.of(what.clone(), now_ns) else {
         let colour = ui.visuals().faint_bg_color;
         let corners = CornerRadius::same(2);
         ui.painter().rect_filled(place, corners, colour);

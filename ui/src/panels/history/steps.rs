@@ -6,13 +6,12 @@ use eframe::egui::{
 };
 use maulstick_types::edits::{GoTo, Redo, Undo};
 use maulstick_types::paint::HistoryStep;
+use maulstick_ui_kit::language;
 
 use super::{Textures, paint_picture};
 use crate::input::keys::Action;
-use crate::language;
-use crate::rig::thumbnails::Pictured;
-use crate::widgets::context::PanelContext;
-use crate::widgets::rows::ask;
+use crate::widgets::context::{PanelContext, ask};
+use maulstick_client::thumbnails::Pictured;
 
 /// Width and height of the picture of a step, points.
 const PICTURE: [f32; 2] = [40.0, 32.0];
@@ -31,7 +30,7 @@ struct Row {
 
 /// The rows: the steps of a status, and the beginning where the list reaches back to it.
 fn rows(work: &PanelContext<'_>) -> Vec<Row> {
-    let Some(paint) = &work.rig.paint else {
+    let Some(paint) = &work.rig.live.paint else {
         return Vec::new();
     };
     let row = |step: &HistoryStep| Row {
@@ -59,7 +58,7 @@ pub(super) fn pictured(work: &PanelContext<'_>) -> Vec<Pictured> {
 
 /// Undo and redo, how many steps there are, and the list.
 pub(super) fn show(ui: &mut Ui, work: &mut PanelContext<'_>, textures: &mut Textures) {
-    let status = work.rig.paint.as_ref().map(|paint| &paint.status);
+    let status = work.rig.live.paint.as_ref().map(|paint| &paint.status);
     let (undo, redo) = status.map_or((0, 0), |status| (status.undo, status.redo));
     ui.horizontal(|ui| {
         let step = |ui: &mut Ui, word: &str, count: u32, hover: &str| {

@@ -7,8 +7,9 @@ use maulstick_types::paint::{HistoryStep, StepName};
 use maulstick_types::values::VersionName;
 
 use super::*;
-use crate::rig::state::{PaintNode, RigState};
+use crate::rig::state::RigState;
 use crate::test_support::panel_bench::{Bench, harness, picture, rig, steps};
+use maulstick_client::state::PaintNode;
 
 fn landscape([red, green, blue]: [u8; 3]) -> Picture {
     let pixel = |i: usize| match i / 40 < 18 {
@@ -21,7 +22,7 @@ fn landscape([red, green, blue]: [u8; 3]) -> Picture {
 
 fn versioned() -> RigState {
     let mut rig = rig();
-    let scene = rig.scene.as_mut().expect("a scene");
+    let scene = rig.live.scene.as_mut().expect("a scene");
     for (name, parent, here) in [
         ("Cold evening", "Sketch", false),
         ("Sketch", "", false),
@@ -33,13 +34,13 @@ fn versioned() -> RigState {
             here,
         });
     }
-    rig.paint = Some(PaintNode {
+    rig.live.paint = Some(PaintNode {
         status: steps(12, 0),
         heard_ns: 1,
     });
     for (name, colour) in [("Sketch", [90, 120, 60]), ("Warm", [200, 120, 60])] {
-        assert!(rig.thumbnails.of(name, 0).is_none());
-        rig.thumbnails.came(name, Some(landscape(colour)), 0);
+        assert!(rig.live.thumbnails.of(name, 0).is_none());
+        rig.live.thumbnails.came(name, Some(landscape(colour)), 0);
     }
     rig
 }
@@ -47,7 +48,7 @@ fn versioned() -> RigState {
 /// A rig whose steps 5 to 7 are done and 8 undone.
 fn stepped() -> RigState {
     let mut rig = versioned();
-    let status = &mut rig.paint.as_mut().expect("a node").status;
+    let status = &mut rig.live.paint.as_mut().expect("a node").status;
     (status.undo, status.redo) = (3, 1);
     let stroke = |kind: &str, on_palette| StepName::Stroke {
         kind: kind.to_owned(),
@@ -71,8 +72,9 @@ fn stepped() -> RigState {
         .collect();
     for (step, blue) in [(8, 60), (7, 60), (6, 0), (0, 0)] {
         let step = Pictured::Step(step);
-        assert!(rig.thumbnails.of(step.clone(), 0).is_none());
-        rig.thumbnails
+        assert!(rig.live.thumbnails.of(step.clone(), 0).is_none());
+        rig.live
+            .thumbnails
             .came(step, Some(landscape([90, 120, blue])), 0);
     }
     rig
@@ -109,7 +111,7 @@ fn steps_go_back_and_forth_where_there_are_some() {
         [undo],
         "there is nothing to redo"
     );
-    let paint = harness.state_mut().rig.paint.as_mut().expect("a node");
+    let paint = harness.state_mut().rig.live.paint.as_mut().expect("a node");
     paint.status = steps(11, 1);
     harness.run();
     click(&mut harness, "Redo (1)");
@@ -136,7 +138,7 @@ fn a_click_or_a_key_goes_to_a_step() {
     let asked = [5, 8, 0].map(|step| Command::from(GoTo { step }));
     assert_eq!(harness.state_mut().asked(), asked);
     // Where older steps are left out, the list does not reach back to the beginning.
-    let paint = harness.state_mut().rig.paint.as_mut().expect("a node");
+    let paint = harness.state_mut().rig.live.paint.as_mut().expect("a node");
     paint.status.undo = 40;
     harness.run();
     assert!(harness.query_by_label("Back to: Beginning").is_none());
@@ -146,7 +148,7 @@ fn a_click_or_a_key_goes_to_a_step() {
 fn pictures_of_steps_that_are_gone_go() {
     let mut harness = harness::<HistoryPanel>(stepped());
     assert_eq!(harness.state().panel.textures.len(), 2 + 4);
-    let paint = harness.state_mut().rig.paint.as_mut().expect("a node");
+    let paint = harness.state_mut().rig.live.paint.as_mut().expect("a node");
     paint.status.history.remove(0);
     harness.run();
     assert_eq!(harness.state().panel.textures.len(), 2 + 3);
@@ -212,7 +214,13 @@ fn a_name_that_no_version_can_have_is_told() {
 fn pictures_of_forgotten_versions_go() {
     let mut harness = panel();
     assert_eq!(harness.state().panel.textures.len(), 2);
-    let scene = harness.state_mut().rig.scene.as_mut().expect("a scene");
+    let scene = harness
+        .state_mut()
+        .rig
+        .live
+        .scene
+        .as_mut()
+        .expect("a scene");
     scene.versions.retain(|version| version.name != "Warm");
     harness.run();
     assert_eq!(harness.state().panel.textures.len(), 1);
@@ -226,7 +234,7 @@ fn the_panel_looks_as_it_did() {
         harness.remove_cursor();
     };
     picture::<HistoryPanel>("history", &stepped(), ask, |rig| {
-        let scene = rig.scene.as_mut().expect("a scene");
+        let scene = rig.live.scene.as_mut().expect("a scene");
         scene.versions[2].here = false;
         scene.versions[0].here = true;
     });

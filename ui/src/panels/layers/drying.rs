@@ -8,10 +8,10 @@ use maulstick_types::edits::{Dry, StopDrying, Wet};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{LayerName, Share, Ticks, ValueError};
+use maulstick_ui_kit::rows::{Number, Sliders, choice, row};
 
 use super::region;
-use crate::widgets::context::PanelContext;
-use crate::widgets::rows::{Number, Sliders, ask, choice, row};
+use crate::widgets::context::{PanelContext, ask};
 
 /// Choice of region.
 const PLACES: [&str; 2] = [tr_noop!("Whole canvas"), tr_noop!("A part")];
@@ -84,7 +84,7 @@ impl DryingForm {
             let name = TextEdit::singleline(&mut self.name).hint_text(tr!("of the new layer"));
             ui.add(name.desired_width(f32::INFINITY))
         });
-        let Some(canvas) = work.rig.canvas() else {
+        let Some(canvas) = work.rig.live.canvas() else {
             return;
         };
         let size_m = canvas.cells.map(|cells| f64::from(cells) * canvas.cell_m);
@@ -159,7 +159,7 @@ impl DryingForm {
             }
             time.on_hover_text(tr!("Minutes and seconds"))
         });
-        let status = work.rig.paint.as_ref().map(|paint| &paint.status);
+        let status = work.rig.live.paint.as_ref().map(|paint| &paint.status);
         if let Some(goes_on) = status.and_then(drying) {
             let time = clock(goes_on.left_s);
             let text = match goes_on.layer.as_str() {

@@ -13,12 +13,12 @@ use eframe::egui::{Align, Button, Key, Layout, TextEdit, Ui, WidgetInfo};
 use maulstick_types::edits::{LayerRef, NameLayer, Opacity};
 use maulstick_types::scene::Layer;
 use maulstick_types::values::{LayerName, OpacityFactor, ValueError};
+use maulstick_ui_kit::language::layer_name;
+use maulstick_ui_kit::pending::Pending;
+use maulstick_ui_kit::rows::{Number, Sliders, cell, note};
 
-use crate::language::layer_name;
 use crate::panels::Panel;
-use crate::widgets::context::PanelContext;
-use crate::widgets::pending::Pending;
-use crate::widgets::rows::{Number, Sliders, ask, cell, note};
+use crate::widgets::context::{PanelContext, ask};
 
 mod drying;
 mod eye;
@@ -56,7 +56,7 @@ impl Panel for LayersPanel {
     }
 
     fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
-        let Some(scene) = &work.rig.scene else {
+        let Some(scene) = &work.rig.live.scene else {
             return;
         };
         let layers = scene.layers.clone();
@@ -105,7 +105,7 @@ impl LayersPanel {
             Some(asked.shown(now_s, &layer.opacity) != layer.opacity)
         });
         let is_asked = asked.any(|differs| differs);
-        let status = work.rig.paint.as_ref().map(|node| &node.status);
+        let status = work.rig.live.paint.as_ref().map(|node| &node.status);
         is_asked || status.is_some_and(|status| status.baked < status.baking)
     }
 

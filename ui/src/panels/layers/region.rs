@@ -5,8 +5,7 @@ use eframe::egui::{
     Color32, CornerRadius, DragValue, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2,
 };
 use maulstick_types::Region;
-
-use crate::settings::units::Units;
+use maulstick_ui_kit::units::Units;
 
 /// The longer side of the map, points.
 const MAP: f32 = 120.0;

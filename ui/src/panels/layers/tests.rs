@@ -14,7 +14,7 @@ use crate::test_support::panel_bench::{Bench, harness, picture, rig};
 
 fn layered() -> RigState {
     let mut rig = rig();
-    let scene = rig.scene.as_mut().expect("a scene");
+    let scene = rig.live.scene.as_mut().expect("a scene");
     for (number, name, opacity) in [
         (1, "Underpainting", 1.0),
         (2, "Sky", 0.6),
@@ -46,7 +46,13 @@ fn the_eye_hides_a_layer_and_shows_it_as_it_was() {
     harness.get_by_label("Show Sky").click();
     harness.run_steps(4);
     assert_eq!(harness.state_mut().asked(), [opacity(2, 0.0)]);
-    let scene = harness.state_mut().rig.scene.as_mut().expect("a scene");
+    let scene = harness
+        .state_mut()
+        .rig
+        .live
+        .scene
+        .as_mut()
+        .expect("a scene");
     scene.layers[1].opacity = 0.0;
     harness.run_steps(4);
     harness.get_by_label("Show Sky").click();
@@ -78,14 +84,15 @@ fn a_hidden_layer_is_shown_as_hidden_at_once_and_that_its_picture_comes() {
         "the rig has not answered"
     );
     let rig = &mut harness.state_mut().rig;
-    rig.scene.as_mut().expect("a scene").layers[1].opacity = 0.0;
-    let status = &mut rig.paint.as_mut().expect("a node").status;
+    rig.live.scene.as_mut().expect("a scene").layers[1].opacity = 0.0;
+    let status = &mut rig.live.paint.as_mut().expect("a node").status;
     (status.baking, status.baked) = (100, 20);
     harness.run_steps(3);
     assert!(comes(&harness), "it is computed");
     let status = &mut harness
         .state_mut()
         .rig
+        .live
         .paint
         .as_mut()
         .expect("a node")
@@ -210,7 +217,7 @@ fn a_part_is_drawn_and_one_that_is_none_is_told() {
     else {
         panic!("{asked:?}");
     };
-    let canvas = harness.state().rig.canvas().expect("a canvas");
+    let canvas = harness.state().rig.live.canvas().expect("a canvas");
     let size = canvas.cells.map(|cells| f64::from(cells) * canvas.cell_m);
     let expected = Region {
         corner_m: size.map(|side| 0.25 * side),
@@ -245,7 +252,7 @@ fn the_panel_looks_as_it_did() {
         harness.remove_cursor();
     };
     picture::<LayersPanel>("layers", &layered(), part, |rig| {
-        let scene = rig.scene.as_mut().expect("a scene");
+        let scene = rig.live.scene.as_mut().expect("a scene");
         scene.layers[1].opacity = 0.1;
     });
 }

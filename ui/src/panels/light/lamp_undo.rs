@@ -36,7 +36,7 @@ pub(crate) struct LampUndo {
 
 /// Number of the newest step that is done.
 fn newest_step(rig: &RigState) -> u64 {
-    let history = rig.paint.iter().flat_map(|node| &node.status.history);
+    let history = rig.live.paint.iter().flat_map(|node| &node.status.history);
     let mut done = history.filter(|step| step.done);
     done.next().map_or(0, |step| step.id)
 }
@@ -44,17 +44,17 @@ fn newest_step(rig: &RigState) -> u64 {
 impl LampUndo {
     /// Follows the light of the rig; `in_hand` is true while a control is dragged.
     pub(crate) fn follow(&mut self, rig: &RigState, in_hand: bool) {
-        let Some(light) = rig.scene.as_ref().map(|scene| &scene.light) else {
+        let Some(light) = rig.live.scene.as_ref().map(|scene| &scene.light) else {
             return;
         };
-        if self.starts != rig.starts {
+        if self.starts != rig.live.starts {
             *self = Self {
-                starts: rig.starts,
+                starts: rig.live.starts,
                 ..Self::default()
             };
         }
         if let Some((asked, until_ns)) = &self.asked {
-            if asked != light && rig.now_ns < *until_ns {
+            if asked != light && rig.live.now_ns < *until_ns {
                 return;
             }
             self.known = Some(light.clone());
@@ -62,7 +62,7 @@ impl LampUndo {
         }
         let step = newest_step(rig);
         // What was undone and is followed by another step cannot be redone.
-        let redo = rig.paint.as_ref().map_or(0, |node| node.status.redo);
+        let redo = rig.live.paint.as_ref().map_or(0, |node| node.status.redo);
         if redo == 0 && self.undone.last().is_some_and(|undone| undone.step != step) {
             self.undone.clear();
         }
@@ -72,8 +72,8 @@ impl LampUndo {
         if before == *light {
             return;
         }
-        let is_one = in_hand || rig.now_ns < self.changed_ns.saturating_add(ONE_NS);
-        self.changed_ns = rig.now_ns;
+        let is_one = in_hand || rig.live.now_ns < self.changed_ns.saturating_add(ONE_NS);
+        self.changed_ns = rig.live.now_ns;
         self.undone.clear();
         match self.done.last_mut() {
             Some(last) if is_one && last.step == step && last.after == before => {
@@ -91,7 +91,7 @@ impl LampUndo {
 
     /// The light before its newest change, if nothing else was done since.
     pub(crate) fn undo(&mut self, rig: &RigState) -> Option<Light> {
-        let (step, light) = (newest_step(rig), &rig.scene.as_ref()?.light);
+        let (step, light) = (newest_step(rig), &rig.live.scene.as_ref()?.light);
         let is_newest = |change: &mut Change| change.step == step && change.after == *light;
         let change = self.done.pop_if(is_newest)?;
         let to = change.before.clone();
@@ -101,7 +101,7 @@ impl LampUndo {
 
     /// The light as it was before the newest undo, if that was one of the light.
     pub(crate) fn redo(&mut self, rig: &RigState) -> Option<Light> {
-        let (step, light) = (newest_step(rig), &rig.scene.as_ref()?.light);
+        let (step, light) = (newest_step(rig), &rig.live.scene.as_ref()?.light);
         let is_newest = |change: &mut Change| change.step == step && change.before == *light;
         let change = self.undone.pop_if(is_newest)?;
         let to = change.after.clone();
@@ -110,7 +110,7 @@ impl LampUndo {
     }
 
     fn ask(&mut self, rig: &RigState, light: Light) -> Option<Light> {
-        self.asked = Some((light.clone(), rig.now_ns.saturating_add(WAITED_NS)));
+        self.asked = Some((light.clone(), rig.live.now_ns.saturating_add(WAITED_NS)));
         Some(light)
     }
 }
@@ -135,20 +135,20 @@ mod tests {
                 rig: rig(),
                 lamps: LampUndo::default(),
             };
-            desk.rig.now_ns = 100 * SECOND;
+            desk.rig.live.now_ns = 100 * SECOND;
             desk.lamps.follow(&desk.rig, false);
             desk
         }
 
         fn light(&mut self, intensity: f64, after_ns: u64, in_hand: bool) {
-            let scene = self.rig.scene.as_mut().expect("a scene");
+            let scene = self.rig.live.scene.as_mut().expect("a scene");
             scene.light.intensity = intensity;
-            self.rig.now_ns += after_ns;
+            self.rig.live.now_ns += after_ns;
             self.lamps.follow(&self.rig, in_hand);
         }
 
         fn steps(&mut self, done: &[u64], undone: u32) {
-            let status = &mut self.rig.paint.as_mut().expect("a node").status;
+            let status = &mut self.rig.live.paint.as_mut().expect("a node").status;
             let step = |id: &u64| HistoryStep {
                 id: *id,
                 what: StepName::Fill,
@@ -210,7 +210,7 @@ mod tests {
     fn another_painting_has_another_light() {
         let mut desk = Desk::new();
         desk.light(2.0, 5 * SECOND, false);
-        desk.rig.starts += 1;
+        desk.rig.live.starts += 1;
         desk.light(3.0, SECOND, false);
         assert_eq!(desk.undo(), None);
     }

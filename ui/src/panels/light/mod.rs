@@ -14,12 +14,12 @@ use maulstick_optics::cie::ILLUMINANTS;
 use maulstick_types::edits::Relight;
 use maulstick_types::scene::{Light, RULES, SAMPLES};
 use maulstick_types::values::ValueError;
+use maulstick_ui_kit::pending::Pending;
+use maulstick_ui_kit::rows::{Number, Sliders, below, choice, note, row, wrong};
 
 use crate::panels::Panel;
 use crate::spectrum_file;
-use crate::widgets::context::PanelContext;
-use crate::widgets::pending::Pending;
-use crate::widgets::rows::{Number, Sliders, ask, below, choice, note, row, wrong};
+use crate::widgets::context::{PanelContext, ask};
 
 pub(crate) mod lamp_undo;
 mod pad;
@@ -95,7 +95,13 @@ impl Panel for LightPanel {
     }
 
     fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
-        let Some(actual) = work.rig.scene.as_ref().map(|scene| scene.light.clone()) else {
+        let Some(actual) = work
+            .rig
+            .live
+            .scene
+            .as_ref()
+            .map(|scene| scene.light.clone())
+        else {
             return;
         };
         let now_s = ui.input(|input| input.time);

@@ -6,8 +6,7 @@ use eframe::egui::{
 };
 use maulstick_num::{acos, atan2};
 use maulstick_optics::light::LOWEST;
-
-use crate::widgets::arrow_keys::arrow_steps;
+use maulstick_ui_kit::arrow_keys::arrow_steps;
 
 /// Side of the pad, points.
 const SIDE: f32 = 132.0;

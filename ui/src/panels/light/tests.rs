@@ -44,14 +44,21 @@ fn the_lamp_follows_the_pointer_and_nothing_else_changes() {
     };
     assert_eq!(
         &rest,
-        &harness.state().rig.scene.as_ref().expect("a scene").light
+        &harness
+            .state()
+            .rig
+            .live
+            .scene
+            .as_ref()
+            .expect("a scene")
+            .light
     );
 }
 
 #[test]
 fn arrows_move_the_lamp() {
     let mut harness = panel();
-    let before = harness.state().rig.scene.as_ref().expect("a scene");
+    let before = harness.state().rig.live.scene.as_ref().expect("a scene");
     let [x, y, z] = before.light.direction;
     let length = (x * x + y * y + z * z).sqrt();
     harness.get_by_label("Lamp").focus();
@@ -180,7 +187,7 @@ fn the_panel_looks_as_it_did() {
         harness.remove_cursor();
     };
     picture::<LightPanel>("light", &rig(), open, |rig| {
-        let scene = rig.scene.as_mut().expect("a scene");
+        let scene = rig.live.scene.as_mut().expect("a scene");
         scene.light.direction = [0.5, -0.5, 0.7];
     });
 }

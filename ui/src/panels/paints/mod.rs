@@ -11,11 +11,11 @@ mod sets;
 mod wells;
 
 use eframe::egui::{ComboBox, TextEdit, Ui};
+use maulstick_ui_kit::labelled;
+use maulstick_ui_kit::swatches::Swatches;
 
 use crate::panels::Panel;
 use crate::widgets::context::PanelContext;
-use crate::widgets::labelled;
-use crate::widgets::swatches::Swatches;
 
 /// A swatch: masstone at its left, tint at its right, points.
 const SWATCH: [f32; 2] = [44.0, 18.0];

@@ -6,12 +6,12 @@ use eframe::egui::{
 };
 use maulstick_optics::THINNER;
 use maulstick_types::Mixture;
+use maulstick_ui_kit::swatches;
 
 use super::{Carried, PaintsPanel, SWATCH};
 use crate::settings::brush_load::{self, words};
 use crate::settings::paint_sets::PaintSet;
 use crate::widgets::context::PanelContext;
-use crate::widgets::swatches;
 
 /// Height of the list, points: more is scrolled to.
 const LIST: f32 = 264.0;
@@ -109,7 +109,7 @@ fn tubes(panel: &mut PaintsPanel, work: &mut PanelContext<'_>) -> Vec<Tube> {
                     about: swatches::words(paint),
                     text: paint.name.clone(),
                     mixture: Mixture::pure(&paint.name),
-                    colours: panel.swatches.paint(rig, paint),
+                    colours: panel.swatches.paint(rig.showing(), paint),
                 });
             }
         }
@@ -129,14 +129,14 @@ fn tubes(panel: &mut PaintsPanel, work: &mut PanelContext<'_>) -> Vec<Tube> {
             Some(paint) => swatches::matches(paint, &panel.search),
             None => name.to_lowercase().contains(&panel.search.to_lowercase()),
         };
-        let whole = panel.swatches.mixture(rig, &mixture);
+        let whole = panel.swatches.mixture(rig.showing(), &mixture);
         let whole = [whole.unwrap_or(Color32::TRANSPARENT); 2];
         if found {
             tubes.push(Tube {
                 index: single.map_or(String::new(), |paint| paint.colour_index.clone()),
                 about: single.map_or_else(|| name.clone(), swatches::words),
                 text: text.clone(),
-                colours: single.map_or(whole, |paint| panel.swatches.paint(rig, paint)),
+                colours: single.map_or(whole, |paint| panel.swatches.paint(rig.showing(), paint)),
                 mixture,
                 name,
             });

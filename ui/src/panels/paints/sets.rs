@@ -1,11 +1,11 @@
 //! The painter's own sets of paints.
 
 use eframe::egui::{Key, TextEdit, Ui};
+use maulstick_ui_kit::labelled;
 
 use crate::settings::paint_sets::PaintSet;
 use crate::settings::presets::check_name;
 use crate::widgets::context::PanelContext;
-use crate::widgets::labelled;
 
 /// The rows.
 #[derive(Debug, Default)]

@@ -233,7 +233,7 @@ fn it_looks_as_it_should() {
     shown.fit_contents();
     shown.snapshot_options("tubes", &pictures());
     let mut lamp = Bench::new();
-    let mut scene = lamp.rig.scene.clone().expect("a scene");
+    let mut scene = lamp.rig.live.scene.clone().expect("a scene");
     scene.light.illuminant = "A".into();
     lamp.rig.lay(scene);
     let mut lamp = panel(lamp);

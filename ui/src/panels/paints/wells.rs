@@ -7,13 +7,13 @@ use eframe::egui::{
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_rig::UserError;
 use maulstick_types::Mixture;
+use maulstick_ui_kit::labelled;
+use maulstick_ui_kit::swatches::{Swatches, draw};
 
 use super::{Carried, SWATCH};
 use crate::input::palette_wells::MOST;
 use crate::settings::brush_load::{self, completed, completions, words};
 use crate::widgets::context::PanelContext;
-use crate::widgets::labelled;
-use crate::widgets::swatches::{Swatches, draw};
 
 /// Names that are proposed at most.
 const PROPOSED: usize = 4;
@@ -92,7 +92,7 @@ impl WellRows {
         let mut wells = work.wells();
         ui.horizontal(|ui| {
             ui.strong(tr!("On the palette"));
-            let paints = work.rig.scene.as_ref().map_or(0, |scene| scene.paints.len());
+            let paints = work.rig.live.scene.as_ref().map_or(0, |scene| scene.paints.len());
             ui.weak(tr!("{paints} of {slots} paints in this painting", paints, slots = SLOTS)).on_hover_text(tr!("Tubes that this painting has used. It has room for {slots}, its palette for {most} mixtures.", slots = SLOTS, most = MOST));
         });
         self.chosen.take_if(|place| *place >= wells.len());
@@ -100,7 +100,7 @@ impl WellRows {
         ui.scope(|ui| {
             ui.spacing_mut().item_spacing.y = 1.0;
             for (place, mixture) in wells.iter().enumerate() {
-                let colour = swatches.mixture(work.rig, mixture);
+                let colour = swatches.mixture(work.rig.showing(), mixture);
                 let colour = colour.unwrap_or(Color32::TRANSPARENT);
                 let end = place + 1 == wells.len();
                 let chosen = self.chosen == Some(place);

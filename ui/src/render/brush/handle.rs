@@ -3,9 +3,9 @@
 use eframe::egui::{Mesh, Pos2, Vec2};
 use glam::{DVec3, Vec3};
 use maulstick_num::sin_cos;
+use maulstick_ui_kit::display_transform::DisplayTransform;
 
 use crate::render::brush::geometry::{Material, Section};
-use crate::render::display_transform::DisplayTransform;
 use crate::render::view_light::{ViewLight, smoothstep};
 
 /// Width of the soft edge, points.

@@ -10,10 +10,10 @@ use eframe::egui::{
 use maulstick_brush::BrushFile;
 use maulstick_optics::colour::srgb_decode;
 use maulstick_rig::UserError;
+use maulstick_ui_kit::display_transform::DisplayTransform;
 
 use crate::input::brush_choice::read;
 use crate::render::brush::thumbnail::brush_thumbnail;
-use crate::render::display_transform::DisplayTransform;
 
 /// Largest number of cached textures; beyond, all are drawn anew.
 const KEPT: usize = 128;

@@ -4,8 +4,7 @@ use glam::Vec3;
 use half::f16;
 use maulstick_brush::Head;
 use maulstick_types::brush::BrushLook;
-
-use crate::render::display_transform::DisplayTransform;
+use maulstick_ui_kit::display_transform::DisplayTransform;
 
 /// Colours of films over the hair, and how thick they are.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -12,6 +12,7 @@ use maulstick_brush::{Head, HeadPose, Hold};
 use maulstick_num::geometry::Rigid;
 use maulstick_optics::light::Lamp;
 use maulstick_types::scene::{CANVAS, PALETTE};
+use maulstick_ui_kit::display_transform::DisplayTransform;
 
 use crate::render::brush::bristles::{Bristles, ribbons, tones};
 use crate::render::brush::cast_shadow::{Board, CastShadow, Chain, On, Projection, ShadowSlot};
@@ -20,7 +21,6 @@ use crate::render::brush::geometry::{
 };
 use crate::render::brush::handle::{Finish, handle};
 use crate::render::brush::paint_colour::PaintColour;
-use crate::render::display_transform::DisplayTransform;
 use crate::render::gpu::Gpu;
 use crate::render::view_light::ViewLight;
 use crate::rig::brushes::BrushPose;

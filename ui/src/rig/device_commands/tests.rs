@@ -3,9 +3,10 @@
 use std::os::unix::fs::PermissionsExt as _;
 use std::time::{Duration, Instant};
 
+use maulstick_ui_kit::notifications::Weight;
+
 use super::*;
 use crate::test_support::panel_bench::rig;
-use crate::widgets::notifications::Weight;
 
 const PROGRAM: &str = r#"#!/bin/sh
 case "$2" in
@@ -73,9 +74,9 @@ fn commands_run_one_after_the_other_and_are_told() {
         (Weight::Fault, "no such device".to_owned()),
     ];
     assert_eq!(desk.told, told);
-    assert!(desk.rig.changes_devices, "the listing is of before");
-    desk.until(|desk| !desk.rig.changes_devices);
-    assert!(desk.rig.listing.is_some());
+    assert!(desk.rig.setup.is_changing, "the listing is of before");
+    desk.until(|desk| !desk.rig.setup.is_changing);
+    assert!(desk.rig.setup.listing.is_some());
 }
 
 #[test]
@@ -99,16 +100,17 @@ fn devices_are_listed_where_somebody_looks_and_something_has_changed() {
     desk.turn(Vec::new(), false);
     assert!(desk.commands.listing.is_none(), "nobody looks");
     desk.turn(Vec::new(), true);
-    desk.until(|desk| desk.rig.listing.is_some());
+    desk.until(|desk| desk.rig.setup.listing.is_some());
     assert!(
         desk.rig
+            .setup
             .listing
             .as_ref()
             .expect("listed")
             .device("arm")
             .is_some()
     );
-    desk.rig.nodes.push("arm".into());
+    desk.rig.live.nodes.push("arm".into());
     desk.turn(Vec::new(), true);
     assert!(desk.commands.listing.is_some(), "a device came");
     let dev = tempfile::tempdir().expect("a folder");
@@ -125,11 +127,11 @@ fn devices_are_listed_where_somebody_looks_and_something_has_changed() {
 fn a_fit_says_what_to_touch_until_it_is_stopped() {
     let mut desk = Desk::new();
     desk.turn(vec![DeviceOrder::Fit("arm".into())], false);
-    let said = |desk: &Desk| desk.rig.fit.as_ref().map_or(0, |fit| fit.said.len());
+    let said = |desk: &Desk| desk.rig.setup.fit.as_ref().map_or(0, |fit| fit.said.len());
     desk.until(|desk| said(desk) == 1);
-    let asks = desk.rig.fit.as_ref().and_then(|fit| fit.asks.clone());
+    let asks = desk.rig.setup.fit.as_ref().and_then(|fit| fit.asks.clone());
     assert_eq!(asks.as_deref(), Some("lower left"));
     desk.turn(vec![DeviceOrder::StopFit], false);
-    desk.until(|desk| desk.rig.fit.is_none());
+    desk.until(|desk| desk.rig.setup.fit.is_none());
     assert_eq!(desk.told, [(Weight::Note, "nothing is written".to_owned())]);
 }

@@ -9,18 +9,14 @@ use crate::language;
 
 /// Work in progress. Its result is dropped with it.
 #[derive(Debug)]
-pub(crate) struct BackgroundTask<T> {
+pub struct BackgroundTask<T> {
     found: Receiver<T>,
 }
 
 impl<T: Send + 'static> BackgroundTask<T> {
     /// Begins work; the window of `context` is drawn anew when it is done.
     #[must_use]
-    pub(crate) fn start(
-        context: &Context,
-        name: &str,
-        work: impl FnOnce() -> T + Send + 'static,
-    ) -> Self {
+    pub fn start(context: &Context, name: &str, work: impl FnOnce() -> T + Send + 'static) -> Self {
         let (to_window, found) = channel();
         let context = context.clone();
         let language = language::chosen();
@@ -38,7 +34,7 @@ impl<T: Send + 'static> BackgroundTask<T> {
     }
 
     /// The result, returned once; `None` inside if the thread panicked.
-    pub(crate) fn poll(&self) -> Poll<Option<T>> {
+    pub fn poll(&self) -> Poll<Option<T>> {
         match self.found.try_recv() {
             Ok(found) => Poll::Ready(Some(found)),
             Err(TryRecvError::Empty) => Poll::Pending,

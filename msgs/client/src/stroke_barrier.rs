@@ -1,23 +1,31 @@
-//! Delays a command until the stroke that preceded it is painted. A key is pressed before the newest samples
+//! Barrier that holds a command back until the stroke before it is painted. A key is pressed before the newest samples
 //! of a stylus have become paint, and what it undoes or dries is the whole stroke.
-
-pub(crate) mod pending;
 
 use std::collections::{BTreeMap, VecDeque};
 
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, BusError, Qos, Queue, Wake};
 use maulstick_types::brush::BrushConsumed;
-use maulstick_types::command::{After, Command, FileCommand};
+use maulstick_types::command::{After, Command, FileCommand, PAINT_NODE};
 use maulstick_types::name_hash;
 use maulstick_types::paint::{BrushCredit, PaintConsumed};
 use maulstick_types::wire::topics::Topics;
 
-use crate::rig::brushes::SampleNumber;
-use crate::rig::requests::{PAINT, Request};
+use crate::request::Request;
 
 /// Longest wait without progress, ns: a brush node may have ended in its stroke.
 const LONGEST_NS: u64 = 1_000_000_000;
+
+/// Number of a sample of a device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SampleNumber {
+    /// The source of its samples.
+    pub device: u32,
+    /// Its epoch.
+    pub epoch: u32,
+    /// Its number.
+    pub seq: u64,
+}
 
 /// Progress of a sample toward the painting.
 #[derive(Clone, Copy, Debug)]
@@ -66,7 +74,7 @@ struct Waiting {
 
 /// A request that may be sent.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Ready {
+pub struct Ready {
     /// The request.
     pub request: Request,
     /// The state of a brush behind which the painting carries it out; at once if absent.
@@ -76,7 +84,7 @@ pub(crate) struct Ready {
 }
 
 /// Requests that wait for a stroke.
-pub(crate) struct StrokeBarrier {
+pub struct StrokeBarrier {
     topics: Topics,
     consumed: Receiver<BrushConsumed>,
     painted: Receiver<PaintConsumed>,
@@ -92,7 +100,7 @@ impl StrokeBarrier {
     ///
     /// # Errors
     /// [`BusError::Topic`].
-    pub(crate) fn new(bus: &dyn Bus, topics: &Topics) -> Result<Self, BusError> {
+    pub fn new(bus: &dyn Bus, topics: &Topics) -> Result<Self, BusError> {
         let (from_brush, from_paint) = (topics.brush_consumed("*"), topics.paint_consumed());
         let silent = Wake::new();
         Ok(Self {
@@ -105,8 +113,8 @@ impl StrokeBarrier {
         })
     }
 
-    /// Takes in what has come; what a process works on is waited for longer.
-    pub(crate) fn take_in(&mut self, now_ns: u64) {
+    /// Reads how far brushes and painting are; what a process works on is waited for longer.
+    pub fn drain(&mut self, now_ns: u64) {
         let mut moved = Vec::new();
         while let Some(consumed) = self.consumed.try_recv() {
             let brush = self.topics.middle(&consumed.key).unwrap_or_default();
@@ -138,7 +146,7 @@ impl StrokeBarrier {
 
     /// Takes a request made when these samples were the newest that came lately. Of a hand that rests no sample is
     /// new, and its stroke may wait to be painted all the same.
-    pub(crate) fn push(
+    pub fn push(
         &mut self,
         now_ns: u64,
         (request, asked_ns): (Request, u64),
@@ -162,7 +170,7 @@ impl StrokeBarrier {
     }
 
     /// Takes a request that follows one that is done, and so waits for no stroke.
-    pub(crate) fn push_follow_up(&mut self, (request, asked_ns): (Request, u64)) {
+    pub fn push_follow_up(&mut self, (request, asked_ns): (Request, u64)) {
         self.waiting.push_back(Waiting {
             request,
             samples: Vec::new(),
@@ -173,7 +181,7 @@ impl StrokeBarrier {
 
     /// When the oldest request that waits, and for which strokes wait, was asked for, ns.
     #[must_use]
-    pub(crate) fn oldest_ns(&self) -> Option<u64> {
+    pub fn oldest_ns(&self) -> Option<u64> {
         let waiting = self.waiting.iter();
         let holding = waiting.filter(|waiting| waiting.request.precedes_strokes());
         holding.map(|waiting| waiting.asked_ns).min()
@@ -204,7 +212,7 @@ impl StrokeBarrier {
     }
 
     /// The next request that need not wait; call it until there is none.
-    pub(crate) fn next_ready(&mut self, now_ns: u64) -> Option<Ready> {
+    pub fn next_ready(&mut self, now_ns: u64) -> Option<Ready> {
         for waiting in &mut self.waiting {
             waiting
                 .samples
@@ -235,14 +243,14 @@ impl StrokeBarrier {
 
     /// True while a request waits.
     #[must_use]
-    pub(crate) fn is_waiting(&self) -> bool {
+    pub fn is_waiting(&self) -> bool {
         !self.waiting.is_empty()
     }
 }
 
 impl Ready {
     /// When it was asked for, ns, if strokes wait for it.
-    pub(crate) fn holds_strokes_ns(&self) -> Option<u64> {
+    pub fn holds_strokes_ns(&self) -> Option<u64> {
         self.request.precedes_strokes().then_some(self.asked_ns)
     }
 }
@@ -265,7 +273,8 @@ impl Waiting {
 
     /// The state behind which it takes its place.
     fn after(&self) -> Option<After> {
-        let for_paint = matches!(&self.request, Request::Command { node, .. } if node == PAINT);
+        let for_paint =
+            matches!(&self.request, Request::Command { node, .. } if node == PAINT_NODE);
         match self.samples[..] {
             [SampleStage::State(brush, epoch, sequence)] if for_paint => Some(After {
                 brush,
@@ -323,7 +332,5 @@ fn is_painted(
     credit.is_some_and(|credit| credit.epoch == epoch && credit.next > state)
 }
 
-#[cfg(test)]
-mod order_tests;
 #[cfg(test)]
 mod tests;

@@ -6,7 +6,7 @@ use super::known;
 
 /// A step of the history, as a painter reads it.
 #[must_use]
-pub(crate) fn step(name: &StepName) -> String {
+pub fn step(name: &StepName) -> String {
     let plain = match name {
         StepName::Stroke { kind, on_palette } => {
             let kind = known(kind);

@@ -10,7 +10,7 @@ const NAMES: f32 = 74.0;
 const ANSWER_S: f64 = 1.5;
 
 /// A row: a name in the left column, and the control that it names.
-pub(crate) fn named(ui: &mut Ui, name: &str, hover: &str, control: impl Widget) -> Response {
+pub fn named(ui: &mut Ui, name: &str, hover: &str, control: impl Widget) -> Response {
     ui.horizontal(|ui| {
         let label = label(ui, name, hover);
         let shown = ui.add(control).labelled_by(label.id);
@@ -23,7 +23,7 @@ pub(crate) fn named(ui: &mut Ui, name: &str, hover: &str, control: impl Widget) 
 }
 
 /// A name in the left column.
-pub(crate) fn label(ui: &mut Ui, name: &str, hover: &str) -> Response {
+pub fn label(ui: &mut Ui, name: &str, hover: &str) -> Response {
     let height = ui.spacing().interact_size.y;
     let layout = Layout::left_to_right(Align::Center);
     let shown = ui
@@ -39,11 +39,7 @@ pub(crate) fn label(ui: &mut Ui, name: &str, hover: &str) -> Response {
 }
 
 /// A slider over a range; one over orders of magnitude goes by factors.
-pub(crate) fn slider<'a>(
-    value: &'a mut f64,
-    range: RangeInclusive<f64>,
-    unit: &'a str,
-) -> Slider<'a> {
+pub fn slider<'a>(value: &'a mut f64, range: RangeInclusive<f64>, unit: &'a str) -> Slider<'a> {
     let factor = range.end() / range.start();
     let by_factors = *range.start() > 0.0 && factor >= 20.0;
     Slider::new(value, range)
@@ -55,20 +51,20 @@ pub(crate) fn slider<'a>(
 
 /// True if a [`slider`] was moved, and did not only round its value.
 #[must_use]
-pub(crate) fn is_moved(from: f64, to: f64) -> bool {
+pub fn is_moved(from: f64, to: f64) -> bool {
     const ROUNDED: f64 = 0.5001e-2;
     (to - from).abs() > ROUNDED
 }
 
 /// Error in the typed text, shown below it.
-pub(crate) fn wrong(ui: &mut Ui, what: &str) {
+pub fn wrong(ui: &mut Ui, what: &str) {
     ui.label(RichText::new(what).color(ui.visuals().warn_fg_color));
 }
 
 /// A value of the rig that a control changes: the requested value is shown until the rig has it, so that a dragged
 /// control does not jump back.
 #[derive(Clone, Debug)]
-pub(crate) struct PendingValue<T> {
+pub struct PendingValue<T> {
     asked: Option<(T, f64)>,
 }
 
@@ -80,7 +76,7 @@ impl<T> Default for PendingValue<T> {
 
 impl<T: Clone + PartialEq> PendingValue<T> {
     /// The value to show where the rig's is `actual`.
-    pub(crate) fn shown(&mut self, ui: &Ui, actual: T) -> T {
+    pub fn shown(&mut self, ui: &Ui, actual: T) -> T {
         let now = ui.input(|input| input.time);
         match &self.asked {
             Some((asked, at)) if *asked != actual && now - at < ANSWER_S => {
@@ -96,7 +92,7 @@ impl<T: Clone + PartialEq> PendingValue<T> {
     }
 
     /// Notes that a value was requested.
-    pub(crate) fn ask(&mut self, ui: &Ui, value: T) {
+    pub fn ask(&mut self, ui: &Ui, value: T) {
         self.asked = Some((value, ui.input(|input| input.time)));
     }
 }

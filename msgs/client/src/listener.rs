@@ -1,21 +1,19 @@
-//! Subscribers that fill the [`RigState`].
+//! Subscribers that fill the [`LiveRig`].
 
-use maulstick_brush::BrushFile;
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, BusError, Qos, Queue, Wake};
 use maulstick_types::brush::BrushDef;
+use maulstick_types::command::PAINT_NODE;
 use maulstick_types::paint::{Entry, JournalEntry, PaintStatus};
 use maulstick_types::scene::Scene;
 use maulstick_types::stylus::{StylusInfo, StylusSample, StylusStatus};
 use maulstick_types::wire::topics::Topics;
 
-use crate::rig::health::RigEvent;
-use crate::rig::requests::PAINT;
-use crate::rig::state::{PaintNode, RigState};
-use crate::rig::thumbnails::Thumbnails;
+use crate::state::{BrushDefinition, LiveRig, PaintNode, RigEvent};
+use crate::thumbnails::Thumbnails;
 
 /// Subscribers of the window besides samples and brush states.
-pub(crate) struct RigListener {
+pub struct RigListener {
     topics: Topics,
     scenes: Receiver<Scene>,
     paint: Receiver<PaintStatus>,
@@ -32,7 +30,7 @@ impl RigListener {
     ///
     /// # Errors
     /// [`BusError::Topic`].
-    pub(crate) fn new(bus: &dyn Bus, topics: &Topics, wake: &Wake) -> Result<Self, BusError> {
+    pub fn new(bus: &dyn Bus, topics: &Topics, wake: &Wake) -> Result<Self, BusError> {
         let quiet = Qos::Background;
         Ok(Self {
             scenes: Receiver::new(bus, &topics.scene(), Qos::Cached, Queue::Latest, wake)?
@@ -85,55 +83,17 @@ impl RigListener {
         })
     }
 
-    /// Takes in what has come; `true` where the scene is another.
-    pub(crate) fn take_in(&mut self, now_ns: u64, rig: &mut RigState) -> bool {
+    /// Reads what has come; `true` if the scene has changed.
+    pub fn drain(&mut self, now_ns: u64, rig: &mut LiveRig) -> bool {
         rig.now_ns = now_ns;
-        while let Some(token) = self.tokens.try_recv() {
-            let Some(node) = self.topics.node_of(&token.key) else {
-                continue;
-            };
-            rig.nodes.retain(|known| known != node);
-            if token.present {
-                rig.nodes.push(node.to_owned());
-                if node == PAINT {
-                    rig.starts += 1;
-                    rig.thumbnails = Thumbnails::default();
-                }
-            }
-        }
+        self.drain_nodes(rig);
+        self.drain_devices(rig);
         while let Some(def) = self.defs.try_recv() {
-            let epoch = def.header.epoch;
-            let BrushDef { brush, toml, .. } = def.message;
-            // The renderer of the brush reports a file that cannot be read.
-            let Ok(file) = BrushFile::parse(&toml) else {
-                continue;
-            };
-            let known = rig.brushes.iter_mut().find(|known| known.name == brush);
-            if let Some(known) = known {
-                known.asked.take_if(|asked| *asked == file);
-                (known.file, known.epoch) = (Some((file, toml)), epoch);
-            }
-        }
-        while let Some(info) = self.infos.try_recv() {
-            let name = info.message.device.clone();
-            let device = rig.devices.entry(name).or_default();
-            (device.info, device.heard_ns) = (Some(info.message), now_ns);
-        }
-        while let Some(status) = self.statuses.try_recv() {
-            let Some(name) = self.topics.middle(&status.key) else {
-                continue;
-            };
-            let device = rig.devices.entry(name.to_owned()).or_default();
-            (device.status, device.heard_ns) = (Some(status.message), now_ns);
-        }
-        while let Some(sample) = self.samples.try_recv() {
-            let Some(name) = self.topics.middle(&sample.key) else {
-                continue;
-            };
-            let device = rig.devices.entry(name.to_owned()).or_default();
-            device.forces.hear(sample.arrived_ns, &sample.message);
-            let event_ns = sample.header.event_ns;
-            device.samples.hear(now_ns, event_ns, &sample.message);
+            rig.definitions.push(BrushDefinition {
+                epoch: def.header.epoch,
+                brush: def.message.brush,
+                toml: def.message.toml,
+            });
         }
         while let Some(entry) = self.journal.try_recv() {
             if let Entry::Decision { what } = entry.message.entry {
@@ -160,8 +120,49 @@ impl RigListener {
         rig.events.extend(refused.map(RigEvent::Refused));
         let is_new = scene.is_some();
         if let Some(scene) = scene {
-            rig.lay(scene.message);
+            rig.scene = Some(scene.message);
         }
         is_new
+    }
+
+    fn drain_nodes(&self, rig: &mut LiveRig) {
+        while let Some(token) = self.tokens.try_recv() {
+            let Some(node) = self.topics.node_of(&token.key) else {
+                continue;
+            };
+            rig.nodes.retain(|known| known != node);
+            if token.present {
+                rig.nodes.push(node.to_owned());
+                if node == PAINT_NODE {
+                    rig.starts += 1;
+                    rig.thumbnails = Thumbnails::default();
+                }
+            }
+        }
+    }
+
+    fn drain_devices(&mut self, rig: &mut LiveRig) {
+        let now_ns = rig.now_ns;
+        while let Some(info) = self.infos.try_recv() {
+            let name = info.message.device.clone();
+            let device = rig.devices.entry(name).or_default();
+            (device.info, device.heard_ns) = (Some(info.message), now_ns);
+        }
+        while let Some(status) = self.statuses.try_recv() {
+            let Some(name) = self.topics.middle(&status.key) else {
+                continue;
+            };
+            let device = rig.devices.entry(name.to_owned()).or_default();
+            (device.status, device.heard_ns) = (Some(status.message), now_ns);
+        }
+        while let Some(sample) = self.samples.try_recv() {
+            let Some(name) = self.topics.middle(&sample.key) else {
+                continue;
+            };
+            let device = rig.devices.entry(name.to_owned()).or_default();
+            device.forces.add(sample.arrived_ns, &sample.message);
+            let event_ns = sample.header.event_ns;
+            device.samples.add(now_ns, event_ns, &sample.message);
+        }
     }
 }

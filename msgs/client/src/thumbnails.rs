@@ -121,7 +121,7 @@ type Answers = Arc<Mutex<Vec<(Pictured, Option<Picture>)>>>;
 
 /// Asks for small pictures on a thread of its own, one after the other.
 #[derive(Debug)]
-pub(crate) struct ThumbnailFetcher {
+pub struct ThumbnailFetcher {
     questions: Option<Sender<Pictured>>,
     answers: Answers,
     thread: Option<JoinHandle<()>>,
@@ -130,7 +130,7 @@ pub(crate) struct ThumbnailFetcher {
 impl ThumbnailFetcher {
     /// A fetcher of versions and steps from the paint node.
     #[must_use]
-    pub(crate) fn of_rig(member: &NodeHandle) -> Self {
+    pub fn of_rig(member: &NodeHandle) -> Self {
         let (bus, topic) = (Arc::clone(&member.bus), member.topics.thumbnail());
         let me = member.origin("ui");
         let fetch = move |what: &Pictured| {
@@ -154,10 +154,7 @@ impl ThumbnailFetcher {
 
     /// A fetcher that asks by `fetch`, which may take its time, and rings `wake` at each answer.
     #[must_use]
-    pub(crate) fn new(
-        fetch: impl Fn(&Pictured) -> Option<Picture> + Send + 'static,
-        wake: &Wake,
-    ) -> Self {
+    pub fn new(fetch: impl Fn(&Pictured) -> Option<Picture> + Send + 'static, wake: &Wake) -> Self {
         let (questions, asked): (Sender<Pictured>, Receiver<Pictured>) = channel();
         let answers = Answers::default();
         let (out, wake) = (Arc::clone(&answers), wake.clone());
@@ -184,7 +181,7 @@ impl ThumbnailFetcher {
     }
 
     /// Asks for what is wanted and brings what has come.
-    pub(crate) fn exchange(&self, thumbnails: &mut Thumbnails, now_ns: u64) {
+    pub fn exchange(&self, thumbnails: &mut Thumbnails, now_ns: u64) {
         let mut answers = self.answers.lock().unwrap_or_else(PoisonError::into_inner);
         for (what, picture) in answers.drain(..) {
             thumbnails.came(what, picture, now_ns);

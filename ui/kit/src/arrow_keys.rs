@@ -5,7 +5,7 @@ use eframe::egui::{EventFilter, Key, Modifiers, Response, Ui, Vec2, vec2};
 /// Steps to the right and down by the arrow keys that were pressed, which move the focus no more; zero while the field
 /// does not have the keyboard.
 #[must_use]
-pub(crate) fn arrow_steps(ui: &Ui, response: &Response) -> Vec2 {
+pub fn arrow_steps(ui: &Ui, response: &Response) -> Vec2 {
     if !response.has_focus() {
         return Vec2::ZERO;
     }

@@ -11,8 +11,7 @@ use maulstick_optics::{
 use maulstick_types::Mixture;
 use maulstick_types::scene::Light;
 
-use crate::render::display_transform::DisplayTransform;
-use crate::rig::state::RigState;
+use crate::display_transform::DisplayTransform;
 
 /// Parts of white to one part of paint in a tint.
 const TINT: f64 = 10.0;
@@ -23,9 +22,20 @@ const KEPT: usize = 256;
 /// Colour of pure thinner, linear.
 const CLEAR: [f32; 3] = [0.75, 0.75, 0.72];
 
+/// Paints, with the light and the display under which they are shown.
+#[derive(Clone, Copy, Debug)]
+pub struct Showing<'a> {
+    /// The paints.
+    pub library: &'a Arc<PaintLibrary>,
+    /// The light; the usual one until a scene is known.
+    pub light: Option<&'a Light>,
+    /// Colours as the display has to be sent them.
+    pub tint: &'a Arc<DisplayTransform>,
+}
+
 /// Paints as they look.
 #[derive(Debug, Default)]
-pub(crate) struct Swatches {
+pub struct Swatches {
     made: Option<Made>,
 }
 
@@ -43,8 +53,8 @@ struct Made {
 
 impl Swatches {
     /// Masstone and tint of a paint.
-    pub(crate) fn paint(&mut self, rig: &RigState, paint: &Paint) -> [Color32; 2] {
-        let made = self.made_for(rig);
+    pub fn paint(&mut self, showing: Showing<'_>, paint: &Paint) -> [Color32; 2] {
+        let made = self.made_for(showing);
         if let Some(colours) = made.paints.get(&paint.name) {
             return *colours;
         }
@@ -59,8 +69,8 @@ impl Swatches {
     }
 
     /// Colour of a thick layer of a mixture; `None` for paints that the rig does not have.
-    pub(crate) fn mixture(&mut self, rig: &RigState, mixture: &Mixture) -> Option<Color32> {
-        let made = self.made_for(rig);
+    pub fn mixture(&mut self, showing: Showing<'_>, mixture: &Mixture) -> Option<Color32> {
+        let made = self.made_for(showing);
         let text = mixture.to_string();
         if let Some(colour) = made.mixtures.get(&text) {
             return Some(*colour);
@@ -73,34 +83,33 @@ impl Swatches {
         Some(colour)
     }
 
-    fn made_for(&mut self, rig: &RigState) -> &mut Made {
-        let light = rig.scene.as_ref().map(|scene| &scene.light);
-        let light = light.cloned().unwrap_or_default();
+    fn made_for(&mut self, showing: Showing<'_>) -> &mut Made {
+        let light = showing.light.cloned().unwrap_or_default();
         let holds = |made: &Made| {
-            Arc::ptr_eq(&made.library, &rig.library)
-                && Arc::ptr_eq(&made.tint, &rig.tint)
+            Arc::ptr_eq(&made.library, showing.library)
+                && Arc::ptr_eq(&made.tint, showing.tint)
                 && !changes_colour(&made.light, &light)
         };
         if !self.made.as_ref().is_some_and(holds) {
             self.made = None;
         }
-        self.made.get_or_insert_with(|| Made::new(rig, light))
+        self.made.get_or_insert_with(|| Made::new(showing, light))
     }
 }
 
 impl Made {
-    fn new(rig: &RigState, light: Light) -> Self {
+    fn new(showing: Showing<'_>, light: Light) -> Self {
         // An invalid light was refused at its source.
         let settings = studio_settings(&light).unwrap_or_default();
         let settings = StudioSettings {
             rule: RuleKind::Reference,
             ..settings
         };
-        let viewing = Viewing::new(&settings, rig.library.paints());
+        let viewing = Viewing::new(&settings, showing.library.paints());
         Self {
-            white: whitest(&rig.library, &viewing),
-            library: Arc::clone(&rig.library),
-            tint: Arc::clone(&rig.tint),
+            white: whitest(showing.library, &viewing),
+            library: Arc::clone(showing.library),
+            tint: Arc::clone(showing.tint),
             light,
             viewing,
             paints: BTreeMap::new(),
@@ -134,7 +143,7 @@ fn whitest(library: &PaintLibrary, viewing: &Viewing) -> Option<Blend> {
 
 /// Hiding power of a thin film of a paint over black and white, 0 to 1, in the middle of the spectrum.
 #[must_use]
-pub(crate) fn covers(paint: &Paint) -> f64 {
+pub fn covers(paint: &Paint) -> f64 {
     let blend = Blend::new(&[(paint, 1.0)]);
     let over = |ground: f64| {
         let coat = Coat {
@@ -155,7 +164,7 @@ pub(crate) fn covers(paint: &Paint) -> f64 {
 
 /// Description of a paint for the painter.
 #[must_use]
-pub(crate) fn words(paint: &Paint) -> String {
+pub fn words(paint: &Paint) -> String {
     if paint.is_thinner() {
         return tr!(
             "{name}\nA clear medium: it thins the paint.",
@@ -182,14 +191,14 @@ pub(crate) fn words(paint: &Paint) -> String {
 
 /// True if the typed text matches a paint's name or colour index.
 #[must_use]
-pub(crate) fn matches(paint: &Paint, typed: &str) -> bool {
+pub fn matches(paint: &Paint, typed: &str) -> bool {
     let plain = |text: &str| text.to_lowercase().replace(' ', "");
     let typed = plain(typed);
     plain(&paint.name).contains(&typed) || plain(&paint.colour_index).contains(&typed)
 }
 
 /// Draws masstone and tint side by side.
-pub(crate) fn draw(ui: &Ui, area: Rect, colours: [Color32; 2]) {
+pub fn draw(ui: &Ui, area: Rect, colours: [Color32; 2]) {
     let middle = area.center().x;
     let left = Rect::from_min_max(area.min, pos2(middle, area.max.y));
     let right = Rect::from_min_max(pos2(middle, area.min.y), area.max);
@@ -216,20 +225,35 @@ pub(crate) fn draw(ui: &Ui, area: Rect, colours: [Color32; 2]) {
 
 #[cfg(test)]
 mod tests {
+    use maulstick_appearance::picture::Export;
+
     use super::*;
 
-    fn rig() -> RigState {
-        let library = Arc::new(PaintLibrary::measured().expect("whole"));
-        RigState::new("test", &["main".to_owned()], library)
+    /// The measured paints, and a display.
+    fn studio() -> (Arc<PaintLibrary>, Arc<DisplayTransform>) {
+        let library = PaintLibrary::measured().expect("whole");
+        let display = DisplayTransform::new(&Export::default());
+        (Arc::new(library), Arc::new(display))
+    }
+
+    fn under<'a>(
+        (library, tint): &'a (Arc<PaintLibrary>, Arc<DisplayTransform>),
+        light: Option<&'a Light>,
+    ) -> Showing<'a> {
+        Showing {
+            library,
+            light,
+            tint,
+        }
     }
 
     #[test]
     fn a_paint_looks_as_it_was_measured_and_lighter_with_white() {
-        let rig = rig();
+        let studio = studio();
         let mut swatches = Swatches::default();
         let mut look = |name: &str| {
-            let paint = rig.library.find(name).expect("known");
-            swatches.paint(&rig, paint)
+            let paint = studio.0.find(name).expect("known");
+            swatches.paint(under(&studio, None), paint)
         };
         let [blue, tint] = look("Ultramarine Blue");
         assert!(
@@ -245,24 +269,27 @@ mod tests {
 
     #[test]
     fn another_light_gives_other_swatches() {
-        let mut rig = rig();
+        let studio = studio();
         let mut swatches = Swatches::default();
         let mixture = Mixture::pure("Cobalt Blue");
-        let day = swatches.mixture(&rig, &mixture).expect("known");
-        let mut scene = maulstick_painting::PaintingSetup::default().scene();
-        rig.lay(scene.clone());
-        assert_eq!(swatches.mixture(&rig, &mixture), Some(day));
-        scene.light.illuminant = "A".to_owned();
-        rig.lay(scene);
-        let lamp = swatches.mixture(&rig, &mixture).expect("known");
+        let mut look = |light: Option<&Light>, mixture: &Mixture| {
+            swatches.mixture(under(&studio, light), mixture)
+        };
+        let day = look(None, &mixture).expect("known");
+        assert_eq!(look(Some(&Light::default()), &mixture), Some(day));
+        let light = Light {
+            illuminant: "A".to_owned(),
+            ..Light::default()
+        };
+        let lamp = look(Some(&light), &mixture).expect("known");
         assert_ne!(lamp, day, "a fault would pass");
-        assert_eq!(swatches.mixture(&rig, &Mixture::pure("x")), None);
+        assert_eq!(look(Some(&light), &Mixture::pure("x")), None);
     }
 
     #[test]
     fn a_paint_is_found_by_name_and_index_and_told_in_words() {
-        let rig = rig();
-        let find = |name: &str| rig.library.find(name).expect("known");
+        let (library, _) = studio();
+        let find = |name: &str| library.find(name).expect("known");
         let white = find("Titanium White");
         for typed in ["titan", "pw6", "PW 6", "um wh", ""] {
             assert!(matches(white, typed), "{typed}");

@@ -1,4 +1,4 @@
-//! Languages of the window. The English sentences of the source are the keys; `ui/languages` has a file for each other
+//! Languages of the window. The English sentences of the source are the keys; `languages` has a file for each other
 //! language, of which the build makes the list.
 //!
 //! | macro, function | for |
@@ -11,9 +11,8 @@
 //!
 //! The choice belongs to a thread: the window's, and those of its background tasks.
 
-use std::cell::Cell;
-use std::collections::BTreeMap;
-use std::collections::HashMap;
+use std::cell::{Cell, RefCell};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fmt::{Display, Write as _};
 use std::sync::{LazyLock, OnceLock};
 
@@ -23,6 +22,7 @@ use serde::Deserialize;
 /// The sentence in the language of the window. Names fill its places: `tr!("Saved to {file}", file)`, or
 /// `tr!("{count} paints", count = paints.len())`. What one English word has several translations for has its meaning
 /// before a bar, which is not shown: `tr!("theme|Light")`.
+#[macro_export]
 macro_rules! tr {
     ($english:literal) => {
         $crate::language::translated($english)
@@ -30,7 +30,7 @@ macro_rules! tr {
     ($english:literal, $($name:ident $(= $value:expr)?),+ $(,)?) => {
         $crate::language::filled(
             $english,
-            &[$((stringify!($name), &tr!(@value $name $(= $value)?) as &dyn std::fmt::Display)),+],
+            &[$((stringify!($name), &$crate::tr!(@value $name $(= $value)?) as &dyn std::fmt::Display)),+],
         )
     };
     (@value $name:ident) => { $name };
@@ -38,6 +38,7 @@ macro_rules! tr {
 }
 
 /// A sentence that is translated where it is shown, as Qt's `QT_TR_NOOP`.
+#[macro_export]
 macro_rules! tr_noop {
     ($english:literal) => {
         $english
@@ -46,19 +47,19 @@ macro_rules! tr_noop {
 
 mod steps;
 
-pub(crate) use steps::step;
+pub use steps::step;
 
 include!(concat!(env!("OUT_DIR"), "/languages.rs"));
 
 /// Code of the language of the source, ISO 639.
-pub(crate) const ENGLISH: &str = "en";
+pub const ENGLISH: &str = "en";
 
-/// A file of `ui/languages`.
+/// A file of `languages`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Language {
+pub struct Language {
     /// Its name in itself.
-    pub(crate) name: String,
+    pub name: String,
     /// Translations by the English sentence, in tables that only order them.
     texts: BTreeMap<String, HashMap<String, String>>,
     #[serde(skip)]
@@ -66,21 +67,32 @@ pub(crate) struct Language {
 }
 
 impl Language {
-    fn read(text: &str) -> Result<Self, toml::de::Error> {
+    /// Reads a file of a language.
+    ///
+    /// # Errors
+    /// [`toml::de::Error`] with the place.
+    pub fn read(text: &str) -> Result<Self, toml::de::Error> {
         let mut language: Self = toml::from_str(text)?;
         let parts = std::mem::take(&mut language.texts).into_values();
         language.by_english = parts.flatten().collect();
         Ok(language)
     }
 
+    /// English sentences and their translations.
+    pub fn texts(&self) -> impl Iterator<Item = (&str, &str)> {
+        let texts = self.by_english.iter();
+        texts.map(|(english, text)| (english.as_str(), text.as_str()))
+    }
+
     /// Its translation of an English sentence.
-    fn of(&self, english: &str) -> Option<&str> {
+    #[must_use]
+    pub fn of(&self, english: &str) -> Option<&str> {
         self.by_english.get(english).map(String::as_str)
     }
 }
 
 /// The languages other than English, by their codes, ISO 639.
-pub(crate) fn all() -> &'static BTreeMap<&'static str, Language> {
+pub fn all() -> &'static BTreeMap<&'static str, Language> {
     static ALL: LazyLock<BTreeMap<&'static str, Language>> = LazyLock::new(|| {
         let read = |(code, text): &(&'static str, &str)| {
             let language = Language::read(text);
@@ -96,13 +108,15 @@ pub(crate) fn all() -> &'static BTreeMap<&'static str, Language> {
 thread_local! {
     /// The language of this thread; `None` for English.
     static CHOSEN: Cell<Option<&'static Language>> = const { Cell::new(None) };
+    /// Sentences without a translation into it that were shown.
+    static LACKING: RefCell<BTreeSet<String>> = const { RefCell::new(BTreeSet::new()) };
 }
 
 /// Code of the system's language; English unless [`follow_system`] was called.
 static SYSTEM: OnceLock<&'static str> = OnceLock::new();
 
 /// Takes the system's language as the one of a painter who has chosen none.
-pub(crate) fn follow_system() {
+pub fn follow_system() {
     let code = spoken(sys_locale::get_locales());
     if SYSTEM.set(code).is_err() {
         tracing::debug!("the system's language is known already");
@@ -123,7 +137,7 @@ fn spoken(locales: impl Iterator<Item = String>) -> &'static str {
 }
 
 /// Speaks another language from now on, by its code; absent or unknown: that of the system.
-pub(crate) fn choose(code: Option<&str>) {
+pub fn choose(code: Option<&str>) {
     let is_known = |code: &&str| *code == ENGLISH || all().contains_key(code);
     let system = SYSTEM.get().copied().unwrap_or(ENGLISH);
     CHOSEN.set(match code.filter(is_known).unwrap_or(system) {
@@ -133,34 +147,38 @@ pub(crate) fn choose(code: Option<&str>) {
 }
 
 /// Lets a thread beside the window's speak its language: called there with [`chosen`] of the window.
-pub(crate) fn adopt(language: Option<&'static Language>) {
+pub fn adopt(language: Option<&'static Language>) {
     CHOSEN.set(language);
 }
 
 /// The language of this thread; `None` for English.
 #[must_use]
-pub(crate) fn chosen() -> Option<&'static Language> {
+pub fn chosen() -> Option<&'static Language> {
     CHOSEN.get()
 }
 
 /// The sentence in the language of the window; English where a translation is missing.
 #[must_use]
-pub(crate) fn translated(english: &str) -> &str {
+pub fn translated(english: &str) -> &str {
     let plain = english.split_once('|').map_or(english, |(_, text)| text);
     let Some(language) = CHOSEN.get() else {
         return plain;
     };
-    let text = language.of(english);
-    #[cfg(test)]
-    if text.is_none() {
-        tests::missed(english);
-    }
-    text.unwrap_or(plain)
+    language.of(english).unwrap_or_else(|| {
+        LACKING.with_borrow_mut(|lacking| lacking.insert(english.to_owned()));
+        plain
+    })
+}
+
+/// Sentences that were shown in English for lack of a translation, on this thread.
+#[must_use]
+pub fn lacking() -> BTreeSet<String> {
+    LACKING.with_borrow(BTreeSet::clone)
 }
 
 /// A word of another process or of a file, in the language of the window where it is known there.
 #[must_use]
-pub(crate) fn known(english: &str) -> &str {
+pub fn known(english: &str) -> &str {
     let language = CHOSEN.get();
     let text = language.and_then(|language| language.of(english));
     text.unwrap_or(english)
@@ -168,7 +186,7 @@ pub(crate) fn known(english: &str) -> &str {
 
 /// A part of a shortcut, such as `Ctrl` or `Delete`, as it stands on keyboards of the language.
 #[must_use]
-pub(crate) fn key_name(english: &str) -> &str {
+pub fn key_name(english: &str) -> &str {
     let language = CHOSEN.get();
     let text = language.and_then(|language| language.of(&format!("key|{english}")));
     text.unwrap_or(english)
@@ -176,7 +194,7 @@ pub(crate) fn key_name(english: &str) -> &str {
 
 /// Words with a capital at the beginning.
 #[must_use]
-pub(crate) fn capitalized(words: &str) -> String {
+pub fn capitalized(words: &str) -> String {
     let mut letters = words.chars();
     let first = letters.next().map(char::to_uppercase);
     first.into_iter().flatten().chain(letters).collect()
@@ -184,7 +202,7 @@ pub(crate) fn capitalized(words: &str) -> String {
 
 /// The sentence with its places, such as `{file}`, filled in.
 #[must_use]
-pub(crate) fn filled(english: &'static str, parts: &[(&str, &dyn Display)]) -> String {
+pub fn filled(english: &'static str, parts: &[(&str, &dyn Display)]) -> String {
     let mut rest = translated(english);
     let mut text = String::with_capacity(2 * rest.len());
     while let Some((before, place)) = rest.split_once('{') {
@@ -207,7 +225,7 @@ pub(crate) fn filled(english: &'static str, parts: &[(&str, &dyn Display)]) -> S
 
 /// A layer as a painter reads its name: one without a name of its own has a number.
 #[must_use]
-pub(crate) fn layer_name(layer: &Layer) -> String {
+pub fn layer_name(layer: &Layer) -> String {
     if layer.is_unnamed() {
         tr!("layer {number}", number = layer.number)
     } else {

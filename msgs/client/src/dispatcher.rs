@@ -1,5 +1,5 @@
-//! Sends requests, with a queue and a thread for each node, so that no node waits for another and the window
-//! for none.
+//! Dispatcher of requests: a queue and a thread for each process, so that none waits for another and the caller for
+//! none.
 
 mod outcomes;
 
@@ -18,9 +18,8 @@ use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
-use crate::advice;
-use crate::rig::requests::{Peer, Request};
-use crate::rig::stroke_barrier::Ready;
+use crate::request::{Peer, Request};
+use crate::stroke_barrier::Ready;
 use outcomes::Outcomes;
 
 /// Longest wait for a node's answer to a command.
@@ -45,13 +44,24 @@ enum Lane {
     Ordered(Peer),
 }
 
+/// Reason why a request was not carried out.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RequestError {
+    /// It was given up before it was sent.
+    #[error("it was not sent")]
+    NotSent,
+    /// The process refused it, or did not answer.
+    #[error(transparent)]
+    Refused(#[from] UserError),
+}
+
 /// Outcome of a request.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// The request.
     pub request: Request,
     /// Answer of the process.
-    pub result: Result<Detail, UserError>,
+    pub result: Result<Detail, RequestError>,
 }
 
 /// Requests for one process.
@@ -73,8 +83,8 @@ struct QueueState {
     ended: bool,
 }
 
-/// The dispatcher of a window.
-pub(crate) struct CommandDispatcher {
+/// The dispatcher of a front end.
+pub struct CommandDispatcher {
     bus: Arc<dyn Bus>,
     topics: Topics,
     wake: Wake,
@@ -85,7 +95,7 @@ pub(crate) struct CommandDispatcher {
 impl CommandDispatcher {
     /// A dispatcher that signals `wake` at each answer.
     #[must_use]
-    pub(crate) fn new(bus: Arc<dyn Bus>, topics: &Topics, wake: &Wake) -> Self {
+    pub fn new(bus: Arc<dyn Bus>, topics: &Topics, wake: &Wake) -> Self {
         Self {
             bus,
             topics: topics.clone(),
@@ -97,11 +107,11 @@ impl CommandDispatcher {
 
     /// Sends a request after those for the same process. One still in the queue is replaced by a newer one that sets
     /// the same value, such as the placement of a surface.
-    pub(crate) fn send(&mut self, ready: Ready) {
+    pub fn send(&mut self, ready: Ready) {
         let (bus, topics, wake, outcomes) = (&self.bus, &self.topics, &self.wake, &self.outcomes);
         let (queue_of, _) = self.queues.entry(lane(&ready.request)).or_insert_with(|| {
             let queue_of = Arc::new(Queue::default());
-            let mut carrier = Worker {
+            let mut worker = Worker {
                 bus: Arc::clone(bus),
                 topics: topics.clone(),
                 commander: None,
@@ -109,8 +119,8 @@ impl CommandDispatcher {
                 outcomes: Arc::clone(outcomes),
                 wake: wake.clone(),
             };
-            let thread = std::thread::Builder::new().name("courier".into());
-            let thread = thread.spawn(move || carrier.run());
+            let thread = std::thread::Builder::new().name("dispatcher".into());
+            let thread = thread.spawn(move || worker.run());
             let thread = thread
                 .inspect_err(|error| tracing::error!("no thread for commands: {error}"))
                 .ok();
@@ -126,7 +136,7 @@ impl CommandDispatcher {
 
     /// Outcomes since the last call.
     #[must_use]
-    pub(crate) fn outcomes(&self) -> Vec<Outcome> {
+    pub fn outcomes(&self) -> Vec<Outcome> {
         let mut outcomes = self.outcomes.lock().unwrap_or_else(PoisonError::into_inner);
         outcomes.oldest_ns = None;
         std::mem::take(&mut outcomes.list)
@@ -135,7 +145,7 @@ impl CommandDispatcher {
     /// When the oldest request for which strokes wait was asked for, ns, of those whose outcome was not
     /// [taken](Self::outcomes).
     #[must_use]
-    pub(crate) fn oldest_ns(&self) -> Option<u64> {
+    pub fn oldest_ns(&self) -> Option<u64> {
         let queues = self.queues.values().filter_map(|(queue_of, _)| {
             let queue = queue_of
                 .state
@@ -157,7 +167,7 @@ const LONG: Duration = Duration::from_millis(500);
 impl CommandDispatcher {
     /// Processes that have not answered for half a second; an export tells how far it is by itself.
     #[must_use]
-    pub(crate) fn waits(&self) -> Vec<Peer> {
+    pub fn waits(&self) -> Vec<Peer> {
         let waits = |queue_of: &Queue| {
             let queue = queue_of
                 .state
@@ -177,7 +187,7 @@ impl CommandDispatcher {
 
     /// Gives up: the request in flight is not repeated, and the queue is not sent. Each request is reported as not
     /// done.
-    pub(crate) fn give_up(&self) {
+    pub fn give_up(&self) {
         let late = self.waits().into_iter().map(Lane::Ordered);
         let mut outcomes = self.outcomes.lock().unwrap_or_else(PoisonError::into_inner);
         for (queue_of, _) in late.filter_map(|lane| self.queues.get(&lane)) {
@@ -188,7 +198,7 @@ impl CommandDispatcher {
             queue.given_up = queue.since.is_some();
             for ready in queue.waiting.drain(..) {
                 let asked_ns = ready.holds_strokes_ns();
-                let result = Err(UserError::failure(tr!("it was not sent")));
+                let result = Err(RequestError::NotSent);
                 let request = ready.request;
                 outcomes.push(Outcome { request, result }, asked_ns);
             }
@@ -249,7 +259,7 @@ fn push(waiting: &mut VecDeque<Ready>, ready: Ready) {
     waiting.push_back(ready);
 }
 
-/// Serves one line.
+/// Sender of the requests of one queue.
 struct Worker {
     bus: Arc<dyn Bus>,
     topics: Topics,
@@ -262,7 +272,7 @@ struct Worker {
 impl Worker {
     fn run(&mut self) {
         while let Some(ready) = self.next() {
-            let result = self.deliver(&ready);
+            let result = self.deliver(&ready).map_err(RequestError::from);
             let asked_ns = ready.holds_strokes_ns();
             let outcome = Outcome {
                 request: ready.request,
@@ -318,14 +328,8 @@ impl Worker {
                 let commander = self.commander.get_or_insert_with(|| {
                     CommandClient::of(Arc::clone(bus), topics, node).asking(ASK)
                 });
-                commander
-                    .send(
-                        command.clone(),
-                        ready.after.clone(),
-                        patience(command),
-                        &ended,
-                    )
-                    .map_err(|fault| fault.worded(advice::words))
+                let after = ready.after.clone();
+                commander.send(command.clone(), after, patience(command), &ended)
             }
             Request::Force { device, order } => {
                 let me = Origin {
@@ -336,9 +340,10 @@ impl Worker {
                 let request = ForceRequest::by(&asker("the window"), order.clone());
                 let reply: ForceReply =
                     ask(&*self.bus, &topic, Qos::Control, me, &request, ANSWER)?;
-                match reply.fault.is_empty() {
-                    true => Ok(Detail::Nothing),
-                    false => Err(UserError::failure(reply.fault).at(device.clone())),
+                if reply.fault.is_empty() {
+                    Ok(Detail::Nothing)
+                } else {
+                    Err(UserError::failure(reply.fault).at(device.clone()))
                 }
             }
         }

@@ -10,9 +10,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use maulstick_optics::THINNER;
 use maulstick_types::paint::{HistoryStep, PaintStatus, StepName};
+use maulstick_ui_kit::language::{Language, all, choose, chosen, lacking, translated};
 
-use super::MISSED;
-use crate::language::{Language, all, choose, chosen, translated};
 use crate::panels::canvas::CanvasPanel;
 use crate::panels::device::tests::devices;
 use crate::rig::state::RigState;
@@ -30,7 +29,7 @@ const TOUCH: f32 = 1.5;
 /// A rig with a brush in the hand and steps in its history.
 fn studio() -> RigState {
     let mut studio = context_bench::rig();
-    let mut paint = rig().paint.expect("a paint node");
+    let mut paint = rig().live.paint.expect("a paint node");
     let step = |(id, what): (u64, StepName)| HistoryStep {
         id,
         what,
@@ -48,11 +47,11 @@ fn studio() -> RigState {
         history: named.into_iter().map(step).collect(),
         ..steps(3, 1)
     };
-    studio.paint = Some(paint);
+    studio.live.paint = Some(paint);
     let mut named = devices();
     // Its daemon words its driver and its trouble.
-    named.devices.remove("tablet");
-    (studio.devices, studio.now_ns) = (named.devices, named.now_ns);
+    named.live.devices.remove("tablet");
+    (studio.live.devices, studio.live.now_ns) = (named.live.devices, named.live.now_ns);
     studio.brushes.truncate(1);
     studio
 }
@@ -80,12 +79,9 @@ fn words(text: &str) -> impl Iterator<Item = String> {
 
 /// English words of the window that no sentence of the language and no paint has.
 fn english_words(language: &Language) -> BTreeSet<String> {
-    let english = language.by_english.keys().flat_map(|text| words(text));
-    let own: BTreeSet<String> = language
-        .by_english
-        .values()
-        .flat_map(|text| words(text))
-        .collect();
+    let english = language.texts().flat_map(|(english, _)| words(english));
+    let own = language.texts().flat_map(|(_, text)| words(text));
+    let own: BTreeSet<String> = own.collect();
     let library = maulstick_optics::PaintLibrary::measured().expect("whole");
     let paints = library.paints().iter().map(|paint| paint.name.as_str());
     let paints: BTreeSet<String> = paints.chain([THINNER]).flat_map(words).collect();
@@ -141,10 +137,10 @@ fn faults(harness: &Harness<'_, Bench>, language: &Language, may_overlap: bool) 
         }
     }
     let texts = texts(harness);
-    let known: BTreeSet<&String> = language.by_english.values().collect();
+    let known: BTreeSet<&str> = language.texts().map(|(_, text)| text).collect();
     let window = Rect::from_min_size(Default::default(), DISPLAY.into());
     for (place, (text, area, clip, elided)) in texts.iter().enumerate() {
-        if *elided && known.contains(text) {
+        if *elided && known.contains(text.as_str()) {
             faults.push(format!("cut off: {text:?}"));
         }
         let seen = clip.intersect(window);
@@ -161,12 +157,7 @@ fn faults(harness: &Harness<'_, Bench>, language: &Language, may_overlap: bool) 
             }
         }
     }
-    faults.extend(MISSED.with_borrow(|missed| {
-        missed
-            .iter()
-            .map(|text| format!("missed {text:?}"))
-            .collect::<Vec<_>>()
-    }));
+    faults.extend(lacking().iter().map(|text| format!("missed {text:?}")));
     faults
 }
 

@@ -13,28 +13,28 @@ const RATED_NS: u64 = 1_000_000_000;
 
 /// One sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SensedSample {
+pub struct SensedSample {
     /// Its event time, ns.
-    pub(crate) event_ns: u64,
+    pub event_ns: u64,
     /// The tip, or the ferrule of a 6-DOF device, m.
-    pub(crate) place_m: [f64; 3],
+    pub place_m: [f64; 3],
     /// Pressure and tilt, rad, of a pen.
-    pub(crate) pen: Option<(f64, [f64; 2])>,
+    pub pen: Option<(f64, [f64; 2])>,
     /// A bit a pressed switch.
-    pub(crate) switches: u32,
+    pub switches: u32,
     /// True if the stylus was in range.
-    pub(crate) in_range: bool,
+    pub in_range: bool,
 }
 
 /// How evenly the samples of the last second came.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SampleTiming {
+pub struct SampleTiming {
     /// Samples a second.
-    pub(crate) rate_hz: f64,
+    pub rate_hz: f64,
     /// Standard deviation of the times between samples, ms.
-    pub(crate) jitter_ms: f64,
+    pub jitter_ms: f64,
     /// The longest of these times, ms.
-    pub(crate) longest_ms: f64,
+    pub longest_ms: f64,
 }
 
 /// The samples of a device.
@@ -42,9 +42,9 @@ pub(crate) struct SampleTiming {
 pub struct SampleHistory(VecDeque<SensedSample>);
 
 impl SampleHistory {
-    /// Takes in a sample that came at `now_ns`. One of the time of the newest is a repetition, and one of a time to come is
+    /// Adds a sample that came at `now_ns`. One of the time of the newest is a repetition, and one of a time to come is
     /// of another clock.
-    pub fn hear(&mut self, now_ns: u64, event_ns: u64, sample: &StylusSample) {
+    pub fn add(&mut self, now_ns: u64, event_ns: u64, sample: &StylusSample) {
         let newest_ns = self.0.back().map(|newest| newest.event_ns);
         let is_old = newest_ns.is_some_and(|newest_ns| event_ns <= newest_ns);
         if sample.fault().is_some() || is_old || event_ns > now_ns.saturating_add(RATED_NS) {
@@ -74,17 +74,13 @@ impl SampleHistory {
     }
 
     /// The newest sample, if it is not from another time.
-    pub(crate) fn newest(&self, now_ns: u64) -> Option<&SensedSample> {
+    pub fn newest(&self, now_ns: u64) -> Option<&SensedSample> {
         let newest = self.0.back()?;
         (now_ns < newest.event_ns.saturating_add(KEPT_NS)).then_some(newest)
     }
 
     /// A quantity as a line: seconds before `now_ns`, below 0, and its value.
-    pub(crate) fn line(
-        &self,
-        now_ns: u64,
-        value: impl Fn(&SensedSample) -> Option<f64>,
-    ) -> Vec<[f64; 2]> {
+    pub fn line(&self, now_ns: u64, value: impl Fn(&SensedSample) -> Option<f64>) -> Vec<[f64; 2]> {
         let at = |sample: &SensedSample| {
             let is_kept = sample.event_ns.saturating_add(KEPT_NS) >= now_ns;
             let ago_s = (sample.event_ns as f64 - now_ns as f64) * 1e-9;
@@ -94,7 +90,7 @@ impl SampleHistory {
     }
 
     /// The timing of the last second of samples; `None` of less than three.
-    pub(crate) fn timing(&self) -> Option<SampleTiming> {
+    pub fn timing(&self) -> Option<SampleTiming> {
         let since_ns = self.0.back()?.event_ns.saturating_sub(RATED_NS);
         let times = self.0.iter().map(|sample| sample.event_ns);
         let times: Vec<u64> = times.filter(|event_ns| *event_ns >= since_ns).collect();
@@ -132,13 +128,13 @@ mod tests {
             } else {
                 6_000_000
             };
-            history.hear(event_ns, event_ns, &StylusSample::away());
+            history.add(event_ns, event_ns, &StylusSample::away());
         }
         let timing = history.timing().expect("samples");
         assert!((timing.rate_hz - 200.0).abs() < 1.0, "{timing:?}");
         assert!((timing.jitter_ms - 1.0).abs() < 0.01, "{timing:?}");
         assert!((timing.longest_ms - 6.0).abs() < 1e-9, "{timing:?}");
-        history.hear(
+        history.add(
             event_ns + 30_000_000,
             event_ns + 30_000_000,
             &StylusSample::away(),
@@ -152,7 +148,7 @@ mod tests {
         let mut history = SampleHistory::default();
         for ms in 1..60_000u64 {
             for _ in 0..2 {
-                history.hear(ms * 1_000_000, ms * 1_000_000, &StylusSample::away());
+                history.add(ms * 1_000_000, ms * 1_000_000, &StylusSample::away());
             }
         }
         assert!(history.0.len() <= MOST);
@@ -163,7 +159,7 @@ mod tests {
         let line = history.line(66_000_000_000, |sample| Some(sample.place_m[0]));
         assert_eq!(line, [[0.0; 2]; 0], "and long ago");
         let before = history.0.len();
-        history.hear(60_000_000_000, 90_000_000_000, &StylusSample::away());
+        history.add(60_000_000_000, 90_000_000_000, &StylusSample::away());
         assert_eq!(history.0.len(), before, "of another clock");
     }
 }

@@ -9,23 +9,27 @@ use maulstick_brush::BrushFile;
 use maulstick_brush_node::{BrushDevices, BrushNode, BrushSettings};
 use maulstick_bus::bus::{Answer, Pending};
 use maulstick_bus::credit::Stamp;
-use maulstick_bus::{CreditSender, Faults, MemoryNet};
+use maulstick_bus::typed::Receiver;
+use maulstick_bus::{Bus, CreditSender, Faults, MemoryNet, Qos, Queue, Wake};
+use maulstick_client::pending_orders::PendingSender;
+use maulstick_client::request::Request;
+use maulstick_client::stroke_barrier::{SampleNumber, StrokeBarrier};
 use maulstick_optics::PaintLibrary;
 use maulstick_paint_node::PaintNode;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::BrushState;
-use maulstick_types::command::{BrushCommand, CommandReply, CommandRequest, Outcome};
+use maulstick_types::command::{
+    BrushCommand, Command, CommandReply, CommandRequest, Outcome, PAINT_NODE,
+};
 use maulstick_types::edits::{Clean, Edit, Handle, Load, Tune};
 use maulstick_types::paint::{Entry, JournalEntry};
 use maulstick_types::scene::{BrushHandling, BrushMode, Tuning};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
 use maulstick_types::values::{BrushName, BrushToml};
-use maulstick_types::{Flags, Mixture, Origin, decode, encode};
+use maulstick_types::wire::topics::Topics;
+use maulstick_types::{Flags, Mixture, Origin, decode, encode, name_hash};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng as _;
-
-use super::pending::PendingTeller;
-use super::*;
 
 const MS: u64 = 1_000_000;
 const START_NS: u64 = 1_000_000_000_000;
@@ -59,7 +63,7 @@ struct Studio {
     mouse: CreditSender<StylusSample>,
     sent: u64,
     barrier: StrokeBarrier,
-    teller: PendingTeller,
+    pending: PendingSender,
     queues: BTreeMap<String, VecDeque<Sending>>,
     number: u64,
     journal: Receiver<JournalEntry>,
@@ -110,7 +114,7 @@ impl Studio {
             source: name_hash(name),
             epoch: 5,
         };
-        let paint = PaintNode::new(Arc::clone(&bus), &topics, &wake, me(PAINT), painting);
+        let paint = PaintNode::new(Arc::clone(&bus), &topics, &wake, me(PAINT_NODE), painting);
         let topic = topics.sample("mouse");
         let mouse = CreditSender::new(&*bus, &topics, &topic, me("mouse"), &wake);
         let listen = |topic: &str| (topic.to_owned(), Queue::Ring(1 << 16));
@@ -120,7 +124,7 @@ impl Studio {
         let states = Receiver::new(&*bus, &topic, Qos::Control, queue, &wake).expect("listens");
         Self {
             barrier: StrokeBarrier::new(&*bus, &topics).expect("listens"),
-            teller: PendingTeller::new(&*bus, &topics).expect("sends"),
+            pending: PendingSender::new(&*bus, &topics).expect("sends"),
             mouse: mouse.expect("a mouse"),
             paint: paint.expect("a paint node"),
             sent: 0,
@@ -172,7 +176,7 @@ impl Studio {
     /// A frame of the window: its queue is looked at.
     fn frame(&mut self) {
         let now_ns = self.now_ns();
-        self.barrier.take_in(now_ns);
+        self.barrier.drain(now_ns);
         while let Some(ready) = self.barrier.next_ready(now_ns) {
             let Request::Command { node, command } = ready.request else {
                 panic!("no command");
@@ -233,7 +237,7 @@ impl Studio {
             .flatten()
             .map(|sending| sending.asked_ns);
         let oldest = queued.chain(self.barrier.oldest_ns()).min();
-        self.teller.tell(now_ns, oldest).expect("told");
+        self.pending.send(now_ns, oldest).expect("told");
     }
 
     fn sample(&mut self, x_mm: f64, y_mm: f64, pressure: f64) {

@@ -1,29 +1,8 @@
 //! Languages.
-//!
-//! | module | holds |
-//! | --- | --- |
-//! | `sources` | the sentences of the sources, and what each language has of them |
-//! | `shown` | the window in German |
-
-mod shown;
-mod sources;
-
-use std::cell::RefCell;
-use std::collections::BTreeSet;
 
 use maulstick_types::paint::StepName;
 
 use super::*;
-use crate::settings::preferences::Preferences;
-
-thread_local! {
-    /// Sentences without a translation that were shown.
-    static MISSED: RefCell<BTreeSet<String>> = const { RefCell::new(BTreeSet::new()) };
-}
-
-pub(super) fn missed(english: &str) {
-    MISSED.with_borrow_mut(|missed| missed.insert(english.to_owned()));
-}
 
 #[test]
 fn places_are_filled_in_the_order_of_the_language() {
@@ -81,17 +60,8 @@ fn the_system_says_which_language_unless_it_is_unknown() {
 }
 
 #[test]
-fn the_choice_is_remembered_and_tasks_of_the_window_speak_it() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("window.toml");
-    let preferences = Preferences {
-        language: Some("de".to_owned()),
-        ..Preferences::default()
-    };
-    preferences.keep(&path).expect("kept");
-    let read = Preferences::read(&path).expect("read");
-    assert_eq!(read.language.as_deref(), Some("de"));
-    choose(read.language.as_deref());
+fn tasks_of_the_window_speak_its_language() {
+    choose(Some("de"));
     let context = eframe::egui::Context::default();
     let work = || tr!("this is no folder").to_owned();
     let task = crate::background_task::BackgroundTask::start(&context, "words", work);

@@ -15,14 +15,14 @@ pub enum Units {
 
 impl Units {
     /// Both, as a painter reads them.
-    pub(crate) const WORDS: [(Self, &'static str); 2] = [
+    pub const WORDS: [(Self, &'static str); 2] = [
         (Self::Metric, tr_noop!("mm and cm")),
         (Self::Inches, tr_noop!("Inches")),
     ];
 
     /// Unit of small lengths: millimetres of one, digits after the point that are shown, and its sign.
     #[must_use]
-    pub(crate) fn small(self) -> (f64, usize, &'static str) {
+    pub fn small(self) -> (f64, usize, &'static str) {
         match self {
             Self::Metric => (1.0, 2, " mm"),
             Self::Inches => (25.4, 3, " in"),
@@ -31,7 +31,7 @@ impl Units {
 
     /// Unit of large lengths: metres of one, and its sign.
     #[must_use]
-    pub(crate) fn large(self) -> (f64, &'static str) {
+    pub fn large(self) -> (f64, &'static str) {
         match self {
             Self::Metric => (0.01, "cm"),
             Self::Inches => (0.0254, "in"),
@@ -40,7 +40,7 @@ impl Units {
 
     /// A width of a brush in words.
     #[must_use]
-    pub(crate) fn width(self, width_mm: f64) -> String {
+    pub fn width(self, width_mm: f64) -> String {
         let (unit_mm, decimals, sign) = self.small();
         let fine = 10f64.powi(decimals as i32);
         format!("{}{sign}", (width_mm / unit_mm * fine).round() / fine)
@@ -48,7 +48,7 @@ impl Units {
 
     /// A number of large units as it is typed, from centimetres.
     #[must_use]
-    pub(crate) fn typed(self, cm: f64) -> String {
+    pub fn typed(self, cm: f64) -> String {
         let (unit_m, _) = self.large();
         format!("{}", (cm / unit_m).round() / 100.0)
     }

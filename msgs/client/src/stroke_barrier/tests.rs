@@ -31,7 +31,7 @@ impl Desk {
         let topic = topics.brush_consumed(BRUSH);
         let brush = Sender::new(&bus, &topic, Qos::Control, me(BRUSH)).expect("sends");
         let topic = topics.paint_consumed();
-        let paint = Sender::new(&bus, &topic, Qos::Control, me(PAINT)).expect("sends");
+        let paint = Sender::new(&bus, &topic, Qos::Control, me(PAINT_NODE)).expect("sends");
         let mut desk = Self {
             barrier,
             brush,
@@ -44,7 +44,7 @@ impl Desk {
 
     fn pass(&mut self) {
         self.net.advance(10 * MILLISECOND);
-        self.barrier.take_in(self.net.bus().now_ns());
+        self.barrier.drain(self.net.bus().now_ns());
     }
 
     /// The brush has consumed the mouse's samples below `next`, the newest of them in `state`.
@@ -81,7 +81,7 @@ impl Desk {
 
     fn push(&mut self, command: Command, seq: u64) {
         let request = Request::Command {
-            node: PAINT.into(),
+            node: PAINT_NODE.into(),
             command,
         };
         let sample = SampleNumber {
@@ -176,7 +176,7 @@ fn a_stroke_that_is_not_painted_is_not_overtaken_however_long_the_hand_rests() {
     desk.net.advance(5000 * MILLISECOND);
     let push = |desk: &mut Desk| {
         let request = Request::Command {
-            node: PAINT.into(),
+            node: PAINT_NODE.into(),
             command: UNDO,
         };
         let now_ns = desk.net.bus().now_ns();
@@ -218,7 +218,7 @@ fn nobody_waits_for_a_brush_that_ended_nor_for_a_stylus_that_moves_none() {
         seq: 9,
     };
     let request = Request::Command {
-        node: PAINT.into(),
+        node: PAINT_NODE.into(),
         command: UNDO,
     };
     desk.barrier

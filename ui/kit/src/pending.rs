@@ -5,7 +5,7 @@ const WAITED_S: f64 = 2.0;
 
 /// A value that may be in the hand.
 #[derive(Clone, Debug)]
-pub(crate) struct Pending<T> {
+pub struct Pending<T> {
     asked: Option<(T, f64)>,
 }
 
@@ -17,7 +17,7 @@ impl<T> Default for Pending<T> {
 
 impl<T: Clone + PartialEq> Pending<T> {
     /// The value shown at `now_s` of the window's clock if the rig's own value is `actual`.
-    pub(crate) fn shown(&mut self, now_s: f64, actual: &T) -> T {
+    pub fn shown(&mut self, now_s: f64, actual: &T) -> T {
         let waits = |(asked, until_s): &(T, f64)| asked != actual && now_s < *until_s;
         self.asked = self.asked.take().filter(waits);
         self.asked
@@ -26,12 +26,12 @@ impl<T: Clone + PartialEq> Pending<T> {
     }
 
     /// Holds a value that was requested at `now_s`, or that is being dragged then.
-    pub(crate) fn hold(&mut self, now_s: f64, value: T) {
+    pub fn hold(&mut self, now_s: f64, value: T) {
         self.asked = Some((value, now_s + WAITED_S));
     }
 
     /// Lets go: the rig's value is shown from now on.
-    pub(crate) fn release(&mut self) {
+    pub fn release(&mut self) {
         self.asked = None;
     }
 }

@@ -7,35 +7,15 @@ use eframe::egui::{
     Align, ComboBox, Layout, Response, RichText, Slider, SliderClamping, TextWrapMode, Ui,
     UiBuilder, vec2,
 };
-use maulstick_types::command::Command;
-use maulstick_types::values::ValueError;
 
 use crate::language::{known, translated};
-use crate::widgets::context::PanelContext;
-use crate::widgets::pending::Pending;
+use crate::pending::Pending;
 
 /// Width of the words at the left, points.
 const WORDS: f32 = 84.0;
 
-/// Sends an edit; one that cannot be made is rejected with a notification.
-pub(crate) fn ask<E: Into<Command>>(
-    work: &mut PanelContext<'_>,
-    edit: Result<E, ValueError>,
-) -> bool {
-    match edit {
-        Ok(edit) => {
-            work.requests.send(edit);
-            true
-        }
-        Err(error) => {
-            work.notifications.of(&error.into());
-            false
-        }
-    }
-}
-
 /// A place of this width for what `add` adds from its left, cut off at its right.
-pub(crate) fn cell<T>(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui) -> T) -> T {
+pub fn cell<T>(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui) -> T) -> T {
     let height = ui.spacing().interact_size.y;
     let (_, place) = ui.allocate_space(vec2(width, height));
     let layout = Layout::left_to_right(Align::Center);
@@ -45,7 +25,7 @@ pub(crate) fn cell<T>(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui) -> T) -
 }
 
 /// Controls under those of rows, without a word of their own.
-pub(crate) fn below<T>(ui: &mut Ui, controls: impl FnOnce(&mut Ui) -> T) -> T {
+pub fn below<T>(ui: &mut Ui, controls: impl FnOnce(&mut Ui) -> T) -> T {
     ui.horizontal(|ui| {
         cell(ui, WORDS, |_| ());
         controls(ui)
@@ -54,7 +34,7 @@ pub(crate) fn below<T>(ui: &mut Ui, controls: impl FnOnce(&mut Ui) -> T) -> T {
 }
 
 /// A row: the word at the left names the control that `control` adds.
-pub(crate) fn row(ui: &mut Ui, word: &str, control: impl FnOnce(&mut Ui) -> Response) -> Response {
+pub fn row(ui: &mut Ui, word: &str, control: impl FnOnce(&mut Ui) -> Response) -> Response {
     ui.horizontal(|ui| {
         let label = cell(ui, WORDS, |ui| ui.label(word));
         control(ui).labelled_by(label.id)
@@ -63,18 +43,18 @@ pub(crate) fn row(ui: &mut Ui, word: &str, control: impl FnOnce(&mut Ui) -> Resp
 }
 
 /// A line of small words under what they explain.
-pub(crate) fn note(ui: &mut Ui, text: impl Into<String>) {
+pub fn note(ui: &mut Ui, text: impl Into<String>) {
     ui.label(RichText::new(text).small());
 }
 
 /// A line that says what is wrong.
-pub(crate) fn wrong(ui: &mut Ui, text: impl Into<String>) {
+pub fn wrong(ui: &mut Ui, text: impl Into<String>) {
     let colour = ui.visuals().error_fg_color;
     ui.label(RichText::new(text).color(colour));
 }
 
 /// The name that the painter chose; `None` if it is the same as before.
-pub(crate) fn choice<'a>(
+pub fn choice<'a>(
     ui: &mut Ui,
     word: &str,
     chosen: &str,
@@ -102,7 +82,7 @@ pub(crate) fn choice<'a>(
 
 /// A number of a slider.
 #[derive(Clone, Debug)]
-pub(crate) struct Number<'a> {
+pub struct Number<'a> {
     /// The word at its left.
     pub word: &'a str,
     /// Description in a painter's words, with its unit.
@@ -119,7 +99,7 @@ pub(crate) struct Number<'a> {
 
 /// A change of a number; `None` if there was none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Change {
+pub struct Change {
     /// It has just become this: it is being dragged, or was typed or stepped.
     pub moved: Option<f64>,
     /// The painter is done with it, and it is not what it was in the rig.
@@ -130,13 +110,13 @@ pub(crate) struct Change {
 
 /// The sliders of a panel, by name, with what is in the hand.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Sliders {
+pub struct Sliders {
     held: BTreeMap<String, Pending<f64>>,
 }
 
 impl Sliders {
     /// A row with a slider whose number is `actual` in the rig.
-    pub(crate) fn row(&mut self, ui: &mut Ui, number: &Number<'_>, actual: f64) -> Change {
+    pub fn row(&mut self, ui: &mut Ui, number: &Number<'_>, actual: f64) -> Change {
         let mut change = Change::default();
         row(ui, translated(number.word), |ui| {
             let (response, changed) = self.bare(ui, number, number.word, actual);
@@ -147,7 +127,7 @@ impl Sliders {
     }
 
     /// As [`row`](Self::row), without the word, for a number of this `key`.
-    pub(crate) fn bare(
+    pub fn bare(
         &mut self,
         ui: &mut Ui,
         number: &Number<'_>,

@@ -8,10 +8,10 @@ use maulstick_appearance::ground::GROUNDS;
 use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_rig::config::{ACTIONS, FORCES};
 use maulstick_types::scene::RULES;
+use maulstick_ui_kit::language::{FILES, Language, all};
 
 use crate::input::brush_choice::library;
 use crate::input::keys::{BINDINGS, HELD};
-use crate::language::{FILES, Language, all};
 
 /// Keys whose names are not the signs on them.
 const NAMED_KEYS: [&str; 18] = [
@@ -49,7 +49,7 @@ fn sources(folder: &Path, found: &mut BTreeMap<String, String>) {
         let path = entry.expect("an entry").path();
         let name = path.file_name().expect("a name").to_string_lossy();
         if path.is_dir() {
-            if name != "tests" && name != "test_support" {
+            if !["tests", "test_support", "language_tests"].contains(&&*name) {
                 sources(&path, found);
             }
         } else if name.ends_with(".rs") && name != "tests.rs" {
@@ -140,12 +140,20 @@ fn uses_in(place: &str, code: &str) -> Vec<Use> {
     found
 }
 
-fn uses() -> Vec<Use> {
+/// The sources of the window and of its kit.
+fn all_sources() -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
-    sources(
-        &Path::new(env!("CARGO_MANIFEST_DIR")).join("src"),
-        &mut found,
-    );
+    for folder in ["src", "kit/src"] {
+        sources(
+            &Path::new(env!("CARGO_MANIFEST_DIR")).join(folder),
+            &mut found,
+        );
+    }
+    found
+}
+
+fn uses() -> Vec<Use> {
+    let found = all_sources();
     let files = found
         .iter()
         .filter(|(place, _)| !place.ends_with("language/mod.rs"));
@@ -197,7 +205,7 @@ fn gaps(language: &Language, needed: &BTreeSet<String>) -> Vec<String> {
     let may: BTreeSet<String> = keys.chain(RULES.map(str::to_owned)).collect();
     let lacks = needed.iter().filter(|text| language.of(text).is_none());
     let lacks = lacks.map(|text| format!("lacks {text:?}"));
-    let has = language.by_english.keys();
+    let has = language.texts().map(|(english, _)| english);
     let unused = has.filter(|text| !needed.contains(*text) && !may.contains(*text));
     lacks
         .chain(unused.map(|text| format!("unused: {text:?}")))
@@ -206,9 +214,9 @@ fn gaps(language: &Language, needed: &BTreeSet<String>) -> Vec<String> {
 
 /// Translations whose places are not those of their sentences.
 fn misplaced(language: &Language) -> Vec<&str> {
-    let texts = language.by_english.iter();
-    let wrong = texts.filter(|(english, text)| places(english) != places(text));
-    wrong.map(|(english, _)| english.as_str()).collect()
+    let wrong = language.texts();
+    let wrong = wrong.filter(|(english, text)| places(english) != places(text));
+    wrong.map(|(english, _)| english).collect()
 }
 
 #[test]
@@ -239,7 +247,7 @@ fn no_sentence_is_in_two_tables_of_a_language() {
     for (code, text) in FILES {
         let lines = text.lines().filter(|line| line.starts_with('"'));
         let language = Language::read(text).expect("read");
-        assert_eq!(lines.count(), language.by_english.len(), "{code}");
+        assert_eq!(lines.count(), language.texts().count(), "{code}");
     }
 }
 
@@ -256,9 +264,9 @@ fn the_places_of_translations_are_those_of_their_sentences() {
 /// Translations into French where a line might break before a sign that belongs to the word.
 fn breakable(language: &Language) -> Vec<&str> {
     let signs = [" ;", " :", " ?", " !", " »", " %", "« "];
-    let texts = language.by_english.iter();
-    let wrong = texts.filter(|(_, text)| signs.iter().any(|sign| text.contains(sign)));
-    wrong.map(|(english, _)| english.as_str()).collect()
+    let wrong = language.texts();
+    let wrong = wrong.filter(|(_, text)| signs.iter().any(|sign| text.contains(sign)));
+    wrong.map(|(english, _)| english).collect()
 }
 
 #[test]
@@ -283,11 +291,7 @@ fn each_use_fills_the_places_of_its_sentence() {
 
 #[test]
 fn no_control_shows_a_sentence_that_is_not_translated() {
-    let mut found = BTreeMap::new();
-    sources(
-        &Path::new(env!("CARGO_MANIFEST_DIR")).join("src"),
-        &mut found,
-    );
+    let found = all_sources();
     let bare = |code: &str| -> Vec<String> {
         // Calls that show a literal as it is.
         let calls = [

@@ -4,10 +4,10 @@ use std::collections::VecDeque;
 
 use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 
-use crate::rig::state::{Device, RigState};
+use crate::state::{Device, LiveRig};
 
 /// Length of the history, s.
-pub(crate) const KEPT_S: f64 = 5.0;
+pub const KEPT_S: f64 = 5.0;
 /// Length of a span, ns, and how many there are at most.
 const SPAN_NS: u64 = 20_000_000;
 const SPANS: usize = 250;
@@ -43,8 +43,8 @@ pub struct ForceHistory {
 }
 
 impl ForceHistory {
-    /// Takes in a sample.
-    pub fn hear(&mut self, arrived_ns: u64, sample: &StylusSample) {
+    /// Adds a sample.
+    pub fn add(&mut self, arrived_ns: u64, sample: &StylusSample) {
         if sample.fault().is_some() {
             return;
         }
@@ -103,8 +103,8 @@ impl ForceHistory {
 
 /// Length of a force, N.
 #[must_use]
-pub(crate) fn size(force_n: [f64; 3]) -> f64 {
-    glam::DVec3::from_array(force_n).length()
+pub fn size(force_n: [f64; 3]) -> f64 {
+    force_n.iter().map(|part| part * part).sum::<f64>().sqrt()
 }
 
 fn is_near(device: &Device, now_ns: u64) -> bool {
@@ -115,23 +115,23 @@ fn is_near(device: &Device, now_ns: u64) -> bool {
     })
 }
 
-/// The device that moves the brush in hand: of those near the desk the one of highest priority.
+/// The device that moves a brush: of those near the desk the one of highest priority.
 #[must_use]
-pub(crate) fn active_device(rig: &RigState) -> Option<(&str, &Device)> {
+pub fn active_device<'a>(rig: &'a LiveRig, brush: &str) -> Option<(&'a str, &'a Device)> {
     let near = rig.devices.iter().filter_map(|(name, device)| {
         let info = device.info.as_ref()?;
-        let moves = info.brush == rig.brush_name() && is_near(device, rig.now_ns);
+        let moves = info.brush == brush && is_near(device, rig.now_ns);
         moves.then_some((info.priority, name.as_str(), device))
     });
     let first = near.max_by_key(|(priority, ..)| *priority)?;
     Some((first.1, first.2))
 }
 
-/// Point on the desk where the force of the active device acts, m, and that force, N; `None` if it is too small to
+/// Point on the desk where the force of the device that moves a brush acts, m, and that force, N; `None` if it is too small to
 /// show.
 #[must_use]
-pub(crate) fn force_arrow(rig: &RigState) -> Option<([f64; 3], [f64; 3])> {
-    let (_, device) = active_device(rig)?;
+pub fn force_arrow(rig: &LiveRig, brush: &str) -> Option<([f64; 3], [f64; 3])> {
+    let (_, device) = active_device(rig, brush)?;
     let drives = device.info.as_ref()?.drives & axes::FORCE != 0;
     let force_n = device.forces.force_n(rig.now_ns)?;
     let place_m = device.forces.newest.as_ref()?.place_m;
@@ -140,9 +140,6 @@ pub(crate) fn force_arrow(rig: &RigState) -> Option<([f64; 3], [f64; 3])> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
-    use maulstick_optics::PaintLibrary;
     use maulstick_types::stylus::StylusInfo;
 
     use super::*;
@@ -161,9 +158,9 @@ mod tests {
         for ms in 0..60_000u64 {
             // A spike of one sample.
             let force = if ms == 59_000 { 3.0 } else { 1.0 };
-            forces.hear(ms * 1_000_000, &sample([0.0, 0.0, force]));
+            forces.add(ms * 1_000_000, &sample([0.0, 0.0, force]));
         }
-        forces.hear(60_000_000_000, &sample([f64::NAN, 0.0, 0.0]));
+        forces.add(60_000_000_000, &sample([f64::NAN, 0.0, 0.0]));
         assert!(forces.spans.len() <= SPANS, "{}", forces.spans.len());
         let line = forces.line(60_000_000_000);
         let peak = line.iter().max_by(|a, b| a[1].total_cmp(&b[1]));
@@ -180,8 +177,7 @@ mod tests {
 
     #[test]
     fn of_those_near_the_one_of_highest_priority_paints_and_shows_its_arrow() {
-        let library = Arc::new(PaintLibrary::measured().expect("paints"));
-        let mut rig = RigState::new("t", &["main".to_owned()], library);
+        let mut rig = LiveRig::new("t");
         rig.now_ns = 10_000_000_000;
         for (name, driver, priority, drives) in [
             ("mouse", POINTER, -100, 0),
@@ -201,16 +197,16 @@ mod tests {
                 max_stiffness_n_m: 0.0,
                 workspace_m: [0.0; 6],
             });
-            device.forces.hear(9_900_000_000, &sample([0.0, 0.0, 0.5]));
+            device.forces.add(9_900_000_000, &sample([0.0, 0.0, 0.5]));
         }
-        let who = |rig: &RigState| active_device(rig).map(|(name, _)| name.to_owned());
+        let who = |rig: &LiveRig| active_device(rig, "main").map(|(name, _)| name.to_owned());
         assert_eq!(who(&rig).as_deref(), Some("arm"));
-        let (_, force_n) = force_arrow(&rig).expect("an arrow");
+        let (_, force_n) = force_arrow(&rig, "main").expect("an arrow");
         assert_eq!(force_n, [0.0, 0.0, 0.5]);
         let arm = rig.devices.get_mut("arm").expect("an arm");
-        arm.forces.hear(9_950_000_000, &StylusSample::away());
+        arm.forces.add(9_950_000_000, &StylusSample::away());
         assert_eq!(who(&rig).as_deref(), Some("pen"));
-        assert_eq!(force_arrow(&rig), None, "a pen gives no force");
+        assert_eq!(force_arrow(&rig, "main"), None, "a pen gives no force");
         rig.now_ns += SILENCE_NS;
         assert_eq!(who(&rig).as_deref(), Some("mouse"), "it keeps still");
     }

@@ -1,0 +1,47 @@
+//! Parts of which panels and dialogs are made: rows, notifications, swatches, and the languages that they speak.
+//!
+//! | module | content |
+//! | --- | --- |
+//! | [`rows`], [`labelled`] | rows of a panel: a word and a control |
+//! | [`pending`] | a value that the rig has not confirmed yet |
+//! | [`arrow_keys`] | arrow keys on a field that has the keyboard |
+//! | [`notifications`] | messages to the painter |
+//! | [`swatches`] | colour patches of paints |
+//! | [`display_transform`] | sRGB to the colours of the display |
+//! | [`language`] | languages, and the English sentences that are their keys |
+//! | [`units`] | millimetres or inches |
+//! | [`background_task`] | work on a thread beside the window |
+//!
+//! A part gets the values that it shows, and returns what the painter has changed; it knows neither rig nor settings.
+//!
+//! ```
+//! use eframe::egui::{Context, RawInput};
+//! use maulstick_ui_kit::rows::{Number, Sliders};
+//!
+//! let number = Number {
+//!     word: "Width",
+//!     hover: "Width of the brush, mm",
+//!     range: 1.0..=80.0,
+//!     unit: " mm",
+//!     decimals: 1,
+//!     factors: true,
+//! };
+//! let (context, mut sliders) = (Context::default(), Sliders::default());
+//! let _ = context.run_ui(RawInput::default(), |ui| {
+//!     let change = sliders.row(ui, &number, 12.0);
+//!     assert_eq!((change.shown, change.settled), (12.0, None));
+//! });
+//! ```
+
+#[macro_use]
+pub mod language;
+
+pub mod arrow_keys;
+pub mod background_task;
+pub mod display_transform;
+pub mod labelled;
+pub mod notifications;
+pub mod pending;
+pub mod rows;
+pub mod swatches;
+pub mod units;

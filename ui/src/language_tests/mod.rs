@@ -1,0 +1,30 @@
+//! Languages of the window.
+//!
+//! | module | content |
+//! | --- | --- |
+//! | `sources` | the sentences of the sources, and what each language has of them |
+//! | `shown` | the window in each language |
+
+mod shown;
+mod sources;
+
+use maulstick_ui_kit::language::{choose, chosen};
+
+use crate::settings::preferences::Preferences;
+
+#[test]
+fn the_choice_of_a_language_is_remembered() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("window.toml");
+    let preferences = Preferences {
+        language: Some("de".to_owned()),
+        ..Preferences::default()
+    };
+    preferences.keep(&path).expect("kept");
+    let read = Preferences::read(&path).expect("read");
+    choose(read.language.as_deref());
+    assert_eq!(
+        chosen().map(|language| language.name.as_str()),
+        Some("Deutsch")
+    );
+}
