@@ -46,6 +46,16 @@
 //!   32 within 4 GiB stay; others are removed at a start, after the window has named them. Without a window, or with a
 //!   take, a painting is in memory.
 //!
+//! # Tasks and threads
+//!
+//! `up`, the recorder and `recording replay` wait on a tokio runtime for processes, signals, messages, orders and times at
+//! once. What blocks (a painting that is checked or saved, loads, the keys of a terminal, a recording that is read ahead)
+//! is on the runtime's threads for that. The supervisor itself stays on the main thread: the kernel kills a node when the
+//! thread that started it ends. Threads of this crate's own are:
+//!
+//! - `bridge`, and `viewer` for each viewer of `topic bridge`: sockets that block;
+//! - one that `doctor` tries a real-time priority with, which the thread would keep.
+//!
 //! # Recordings
 //!
 //! - `maulstick-recorder` records and replays; with `[record]` a recorder runs in every rig and ends last.

@@ -19,7 +19,7 @@ use crate::up::plan::NodeSpec;
 
 /// End of a process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ended {
+pub(super) enum Ended {
     /// With success.
     Well,
     /// With an exit code of bad usage: starting it again would not help.
@@ -30,7 +30,7 @@ pub enum Ended {
 
 /// The processes that run, by the names of their nodes. Dropped, all are killed.
 #[derive(Debug)]
-pub struct Processes {
+pub(super) struct Processes {
     running: BTreeMap<String, Process>,
     /// SIGCHLD: some process has ended.
     ends: SignalStream,
@@ -49,7 +49,7 @@ impl Processes {
     ///
     /// # Errors
     /// A [`UserError`] where signals cannot be watched.
-    pub fn new() -> Result<Self, UserError> {
+    pub(super) fn new() -> Result<Self, UserError> {
         let ends = signal(SignalKind::child());
         Ok(Self {
             running: BTreeMap::new(),
@@ -61,7 +61,7 @@ impl Processes {
     ///
     /// # Errors
     /// A [`UserError`] where the system cannot.
-    pub fn start(&mut self, spec: &NodeSpec, folder: &Path) -> Result<u32, UserError> {
+    pub(super) fn start(&mut self, spec: &NodeSpec, folder: &Path) -> Result<u32, UserError> {
         let program = spec.program;
         let failed = |error: std::io::Error| {
             let what = format!("node '{}' cannot be started: {error}", spec.name);
@@ -89,7 +89,7 @@ impl Processes {
     }
 
     /// Waits for the next process that ends: the name of its node, and how it ended. Dropped before that, it loses none.
-    pub async fn ended(&mut self) -> (String, Ended) {
+    pub(super) async fn ended(&mut self) -> (String, Ended) {
         loop {
             let ended = self.running.iter_mut().find_map(|(name, process)| {
                 let status = process.child.try_wait().ok()??;
@@ -105,12 +105,12 @@ impl Processes {
 
     /// True while the process of a node runs.
     #[must_use]
-    pub fn runs(&self, name: &str) -> bool {
+    pub(super) fn runs(&self, name: &str) -> bool {
         self.running.contains_key(name)
     }
 
     /// Asks the process of a node to end.
-    pub fn terminate(&mut self, name: &str) {
+    pub(super) fn terminate(&mut self, name: &str) {
         if let Some(process) = self.running.get_mut(name) {
             process.stdin.take();
             process.signal(Signal::SIGTERM);
@@ -120,7 +120,7 @@ impl Processes {
     }
 
     /// Kills the process of a node and all that it started; its end is awaited as if it had ended by itself.
-    pub fn kill(&mut self, name: &str) {
+    pub(super) fn kill(&mut self, name: &str) {
         if let Some(process) = self.running.get(name) {
             process.signal(Signal::SIGKILL);
         }
