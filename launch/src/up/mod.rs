@@ -33,8 +33,8 @@ use crate::destination::{VIEW, export};
 use crate::document::{Presence, measure, presence, wrong};
 use crate::outputs::{Relayed, UsedFile, check_outputs, named_by};
 use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
-use crate::up::conductor::Performance;
 use crate::runtime::{EndSignals, block_on};
+use crate::up::conductor::Performance;
 use crate::up::plan::{Hands, NodeSpec, Window};
 use crate::up::supervisor::{Start, Supervisor, sketch};
 
@@ -180,7 +180,11 @@ impl UpOptions {
         } else {
             Window::Shown
         };
-        let hands = if is_played { Hands::Take } else { Hands::Devices };
+        let hands = if is_played {
+            Hands::Take
+        } else {
+            Hands::Devices
+        };
         plan::nodes(config, window, hands)
     }
 
@@ -243,7 +247,9 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
         .map_err(refused)?;
     let performance = match &take {
         None => None,
-        Some((path, take)) => Some(options.performance((path, take), &config, section.name, &loads)?),
+        Some((path, take)) => {
+            Some(options.performance((path, take), &config, section.name, &loads)?)
+        }
     };
     make_absolute(&mut config)?;
     export(&config.view, VIEW)?;

@@ -231,7 +231,7 @@ impl Supervisor {
         if self.crew.is_ready() {
             self.come_up();
         }
-        self.take_requests(now)?;
+        self.take_requests(now);
         self.follow_switch(now)?;
         self.conduct(now)
     }
@@ -322,13 +322,19 @@ impl Supervisor {
             GRACE
         };
         // The recorder ends last: it has what the others still send.
-        let is_kept = self.stop_those(|role| role != Role::Recorder, for_paint).await;
+        let is_kept = self
+            .stop_those(|role| role != Role::Recorder, for_paint)
+            .await;
         self.stop_those(|_| true, GRACE).await && is_kept
     }
 
     /// Asks the nodes of some roles to end, and kills those that do not; false where paint ended badly.
     async fn stop_those(&mut self, is_meant: fn(Role) -> bool, for_paint: Duration) -> bool {
-        let nodes = self.crew.nodes.iter().filter(|node| is_meant(node.spec.role));
+        let nodes = self
+            .crew
+            .nodes
+            .iter()
+            .filter(|node| is_meant(node.spec.role));
         let nodes: Vec<(String, Role)> = nodes
             .map(|node| (node.spec.name.clone(), node.spec.role))
             .collect();

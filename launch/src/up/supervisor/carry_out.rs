@@ -6,11 +6,11 @@ use std::time::{Duration, Instant};
 use maulstick_rig::UserError;
 use maulstick_types::command::Outcome;
 
+use super::Supervisor;
 use super::crew::{Action, Exit};
 use super::node::State;
 use super::sketch::Leave;
 use super::switch::{SwitchAction, SwitchEvent};
-use super::Supervisor;
 use crate::up::plan::Role;
 use crate::up::processes::Ended;
 
@@ -19,7 +19,11 @@ const STILL_THERE: Duration = Duration::from_millis(20);
 
 impl Supervisor {
     /// Carries out what is to be done with processes.
-    pub(super) fn carry_out(&mut self, actions: Vec<Action>, now: Instant) -> Result<(), UserError> {
+    pub(super) fn carry_out(
+        &mut self,
+        actions: Vec<Action>,
+        now: Instant,
+    ) -> Result<(), UserError> {
         for action in actions {
             match action {
                 Action::Start(name) => {

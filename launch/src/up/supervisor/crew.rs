@@ -147,8 +147,9 @@ impl Crew {
             Exit::Rests
         } else {
             Exit::Fails(
-                UserError::failure(format!("node '{name}' does not stay up"))
-                    .help("its own messages above say why; three failures in ten seconds are the limit"),
+                UserError::failure(format!("node '{name}' does not stay up")).help(
+                    "its own messages above say why; three failures in ten seconds are the limit",
+                ),
             )
         }
     }
@@ -226,12 +227,7 @@ impl Crew {
 }
 
 /// True if a node does not answer, get ready or leave in time.
-fn is_overdue(
-    node: &mut Node,
-    now: Instant,
-    config: &RigConfig,
-    opened: Option<Role>,
-) -> bool {
+fn is_overdue(node: &mut Node, now: Instant, config: &RigConfig, opened: Option<Role>) -> bool {
     let (name, role) = (&node.spec.name, node.spec.role);
     let passed = |since: Option<Instant>, limit: Duration| {
         since.is_some_and(|since| now.saturating_duration_since(since) > limit)

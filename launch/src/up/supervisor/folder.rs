@@ -39,7 +39,12 @@ impl FolderWatch {
 
     /// Where it is time: puts removed sockets back, and says once that the folder, or its lock, is gone. Returned are nodes
     /// whose sockets are gone for good, and that lose nothing by a new start.
-    pub(super) fn watch(&mut self, folder: &RigFolder, nodes: &[Node], now: Instant) -> Vec<String> {
+    pub(super) fn watch(
+        &mut self,
+        folder: &RigFolder,
+        nodes: &[Node],
+        now: Instant,
+    ) -> Vec<String> {
         if !self.is_due(now) {
             return Vec::new();
         }

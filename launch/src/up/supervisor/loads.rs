@@ -26,7 +26,13 @@ pub(super) struct Loads {
 
 impl Loads {
     /// Gives the painter loaded brushes, where they are due. The commands run by themselves: nothing waits for them.
-    pub(super) fn send(&mut self, bus: &Arc<dyn Bus>, topics: &Topics, config: &RigConfig, stop: &Stop) {
+    pub(super) fn send(
+        &mut self,
+        bus: &Arc<dyn Bus>,
+        topics: &Topics,
+        config: &RigConfig,
+        stop: &Stop,
+    ) {
         self.are_due = false;
         let Some(mixture) = self.first.clone() else {
             return;

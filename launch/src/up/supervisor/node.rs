@@ -123,11 +123,7 @@ impl Node {
 
     /// Gives it so much more time: the launcher stood still itself.
     pub(super) fn postpone(&mut self, by: Duration) {
-        for since in [
-            &mut self.missed,
-            &mut self.leaving_since,
-            &mut self.started,
-        ] {
+        for since in [&mut self.missed, &mut self.leaving_since, &mut self.started] {
             *since = since.map(|since| since + by);
         }
     }

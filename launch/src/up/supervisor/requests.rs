@@ -16,7 +16,7 @@ use crate::up::plan::{Hands, Role, device};
 
 impl Supervisor {
     /// Answers what is asked of the rig.
-    pub(super) fn take_requests(&mut self, now: Instant) -> Result<(), UserError> {
+    pub(super) fn take_requests(&mut self, now: Instant) {
         if let Some(file) = self.orders.follow_paint() {
             self.follow_painting(file);
         }
@@ -40,7 +40,6 @@ impl Supervisor {
             self.orders
                 .answer(&*bus, request, &CommandReply { number, outcome });
         }
-        Ok(())
     }
 
     /// A painting whose file was gone goes on in another one: there it is found again after a crash.

@@ -81,5 +81,8 @@ fn places(settings: &Settings) -> String {
             "this painting is not kept: `maulstick up FILE.maul` keeps one in a file\n".to_owned()
         }
     };
-    format!("{}{painting}Ctrl-C stops it\n", recorded.unwrap_or_default())
+    format!(
+        "{}{painting}Ctrl-C stops it\n",
+        recorded.unwrap_or_default()
+    )
 }

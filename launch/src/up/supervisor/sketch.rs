@@ -9,7 +9,6 @@ use maulstick_rig::UserError;
 use maulstick_rig::files::companion;
 use maulstick_rig::sketches::{Sketch, Sketches};
 
-
 /// A file so young may be of a rig that is just being started.
 const YOUNG: Duration = Duration::from_secs(60);
 /// The file of a blank sketch takes less, bytes.

@@ -104,16 +104,20 @@ enum Stage {
     /// The paint node keeps what was painted, and ends.
     Closing { plan: Box<Plan>, since: Instant },
     /// It starts with the other painting.
-    Opening {
-        plan: Box<Plan>,
-        /// The settings before.
-        before: Box<RigConfig>,
-        since: Instant,
-    },
+    Opening(Opening),
     /// It starts with the painting that there was, for this reason.
     Returning(Outcome),
     /// The paint node puts the painting there; who asks it gives up once it has ended.
     Saving { to: PathBuf, gone: Arc<AtomicBool> },
+}
+
+/// A painting that is being opened.
+#[derive(Debug)]
+struct Opening {
+    plan: Box<Plan>,
+    /// The settings before.
+    before: Box<RigConfig>,
+    since: Instant,
 }
 
 impl Switch {
@@ -153,7 +157,7 @@ impl Switch {
 
     /// Role whose node starts with another painting.
     pub(super) fn opened(&self) -> Option<Role> {
-        matches!(self.stage, Stage::Opening { .. }).then_some(Role::Paint)
+        matches!(self.stage, Stage::Opening(_)).then_some(Role::Paint)
     }
 
     /// True while the painting is put in another file.
@@ -163,7 +167,9 @@ impl Switch {
 
     /// Gives the paint node so much more time.
     pub(super) fn postpone(&mut self, by: Duration) {
-        if let Stage::Closing { since, .. } | Stage::Opening { since, .. } = &mut self.stage {
+        if let Stage::Closing { since, .. } | Stage::Opening(Opening { since, .. }) =
+            &mut self.stage
+        {
             *since += by;
         }
     }
@@ -176,96 +182,121 @@ impl Switch {
         now: Instant,
     ) -> Vec<SwitchAction> {
         let asker = self.asker;
-        let reply = |outcome| vec![SwitchAction::Reply(asker, outcome)];
-        let (stage, actions) = match (std::mem::take(&mut self.stage), event) {
-            (Stage::Checking { .. } | Stage::Saving { .. }, SwitchEvent::Fallen) => {
-                (Stage::Idle, reply(fallen()))
-            }
-            (Stage::Checking { .. }, SwitchEvent::Checked(checked)) => match checked {
-                Ok(plan) => {
-                    let plan = Box::new(plan);
-                    let closing = Stage::Closing { plan, since: now };
-                    (closing, vec![SwitchAction::RenewPaint])
-                }
-                Err(fault) => (Stage::Idle, reply(refusal(fault))),
-            },
-            (Stage::Closing { .. }, SwitchEvent::PaintAway) => (Stage::Idle, reply(starts_again())),
-            (Stage::Closing { plan, since }, SwitchEvent::Time(_)) => {
-                let is_late = now.saturating_duration_since(since) > CLOSE_TIME;
-                let kill = is_late.then_some(SwitchAction::KillPaint);
-                (Stage::Closing { plan, since }, Vec::from_iter(kill))
-            }
-            (Stage::Closing { plan, .. }, SwitchEvent::PaintLeft(ended)) => {
-                close(plan, ended, config, now)
-            }
-            (Stage::Opening { .. }, SwitchEvent::NotWritten(fault)) => (
-                Stage::Returning(refusal(fault)),
-                vec![SwitchAction::StartPaint],
-            ),
-            (Stage::Opening { plan, before, .. }, SwitchEvent::PaintLeft(_)) => {
-                go_back(&plan, before)
-            }
-            (
-                Stage::Opening {
-                    plan,
-                    before,
-                    since,
-                },
-                SwitchEvent::Time(limit),
-            ) => {
-                let is_late = now.saturating_duration_since(since) > limit;
-                let kill = is_late.then_some(SwitchAction::KillPaint);
-                let opening = Stage::Opening {
-                    plan,
-                    before,
-                    since,
-                };
-                (opening, Vec::from_iter(kill))
-            }
-            (Stage::Opening { plan, before, .. }, SwitchEvent::PaintRuns) => {
-                (Stage::Idle, opened(*plan, &before, config, asker))
-            }
-            (Stage::Returning(why), SwitchEvent::PaintRuns) => (Stage::Idle, reply(why)),
-            (Stage::Returning(why), SwitchEvent::NotWritten(_)) => {
-                (Stage::Returning(unwritten(why)), Vec::new())
-            }
-            (Stage::Saving { to, .. }, SwitchEvent::Saved(saved)) => match saved {
-                Ok(()) => (Stage::Idle, saved_as(to, asker)),
-                Err(fault) => {
-                    let fault = UserError {
-                        place: None,
-                        ..fault
-                    };
-                    (Stage::Idle, reply(refusal(fault)))
-                }
-            },
-            (Stage::Saving { to, gone }, SwitchEvent::PaintGone) => {
-                gone.store(true, Ordering::SeqCst);
-                (Stage::Idle, reply(ended_as_it_saved(&to)))
-            }
-            (stage, _) => (stage, Vec::new()),
+        let (stage, actions) = match std::mem::take(&mut self.stage) {
+            Stage::Idle => (Stage::Idle, Vec::new()),
+            Stage::Checking { forget } => checking(forget, event, asker, now),
+            Stage::Closing { plan, since } => closing((plan, since), event, (asker, config), now),
+            Stage::Opening(opening) => self::opening(opening, event, (asker, config), now),
+            Stage::Returning(why) => returning(why, event, asker),
+            Stage::Saving { to, gone } => saving(to, gone, event, asker),
         };
         self.stage = stage;
         actions
     }
 }
 
-/// The paint node has ended as it was asked to, or badly: the other painting is opened, or the one that there was.
-fn close(
-    plan: Box<Plan>,
-    ended: Ended,
-    config: &RigConfig,
+/// The next stage, and what is to be done.
+type Step = (Stage, Vec<SwitchAction>);
+
+/// The end of a switch.
+fn end(asker: Asker, outcome: Outcome) -> Step {
+    (Stage::Idle, vec![SwitchAction::Reply(asker, outcome)])
+}
+
+fn checking(forget: bool, event: SwitchEvent, asker: Asker, now: Instant) -> Step {
+    match event {
+        SwitchEvent::Checked(Ok(plan)) => {
+            let plan = Box::new(plan);
+            let closing = Stage::Closing { plan, since: now };
+            (closing, vec![SwitchAction::RenewPaint])
+        }
+        SwitchEvent::Checked(Err(fault)) => end(asker, refusal(fault)),
+        SwitchEvent::Fallen => end(asker, fallen()),
+        _ => (Stage::Checking { forget }, Vec::new()),
+    }
+}
+
+fn closing(
+    (plan, since): (Box<Plan>, Instant),
+    event: SwitchEvent,
+    (asker, config): (Asker, &RigConfig),
     now: Instant,
-) -> (Stage, Vec<SwitchAction>) {
+) -> Step {
+    match event {
+        SwitchEvent::PaintAway => end(asker, starts_again()),
+        SwitchEvent::PaintLeft(ended) => close(plan, ended, config, now),
+        SwitchEvent::Time(_) => {
+            let is_late = now.saturating_duration_since(since) > CLOSE_TIME;
+            let kill = is_late.then_some(SwitchAction::KillPaint);
+            (Stage::Closing { plan, since }, Vec::from_iter(kill))
+        }
+        _ => (Stage::Closing { plan, since }, Vec::new()),
+    }
+}
+
+fn opening(
+    opening: Opening,
+    event: SwitchEvent,
+    (asker, config): (Asker, &RigConfig),
+    now: Instant,
+) -> Step {
+    match event {
+        SwitchEvent::PaintRuns => {
+            let actions = opened(*opening.plan, &opening.before, config, asker);
+            (Stage::Idle, actions)
+        }
+        SwitchEvent::PaintLeft(_) => go_back(&opening.plan, opening.before),
+        SwitchEvent::NotWritten(fault) => {
+            let returning = Stage::Returning(refusal(fault));
+            (returning, vec![SwitchAction::StartPaint])
+        }
+        SwitchEvent::Time(limit) => {
+            let is_late = now.saturating_duration_since(opening.since) > limit;
+            let kill = is_late.then_some(SwitchAction::KillPaint);
+            (Stage::Opening(opening), Vec::from_iter(kill))
+        }
+        _ => (Stage::Opening(opening), Vec::new()),
+    }
+}
+
+fn returning(why: Outcome, event: SwitchEvent, asker: Asker) -> Step {
+    match event {
+        SwitchEvent::PaintRuns => end(asker, why),
+        SwitchEvent::NotWritten(_) => (Stage::Returning(unwritten(why)), Vec::new()),
+        _ => (Stage::Returning(why), Vec::new()),
+    }
+}
+
+fn saving(to: PathBuf, gone: Arc<AtomicBool>, event: SwitchEvent, asker: Asker) -> Step {
+    match event {
+        SwitchEvent::Saved(Ok(())) => (Stage::Idle, saved_as(to, asker)),
+        SwitchEvent::Saved(Err(fault)) => {
+            let fault = UserError {
+                place: None,
+                ..fault
+            };
+            end(asker, refusal(fault))
+        }
+        SwitchEvent::Fallen => end(asker, fallen()),
+        SwitchEvent::PaintGone => {
+            gone.store(true, Ordering::SeqCst);
+            end(asker, ended_as_it_saved(&to))
+        }
+        _ => (Stage::Saving { to, gone }, Vec::new()),
+    }
+}
+
+/// The paint node has ended as it was asked to, or badly: the other painting is opened, or the one that there was.
+fn close(plan: Box<Plan>, ended: Ended, config: &RigConfig, now: Instant) -> Step {
     if ended == Ended::Well {
         let actions = vec![SwitchAction::Use(Box::new(plan.config.clone()))];
         let before = Box::new(config.clone());
-        let opening = Stage::Opening {
+        let opening = Opening {
             plan,
             before,
             since: now,
         };
-        return (opening, actions);
+        return (Stage::Opening(opening), actions);
     }
     let help = if config.paint.document.is_some() {
         "it is open again with all that its file has"
@@ -279,7 +310,7 @@ fn close(
     (Stage::Returning(why), vec![SwitchAction::StartPaint])
 }
 
-fn go_back(plan: &Plan, before: Box<RigConfig>) -> (Stage, Vec<SwitchAction>) {
+fn go_back(plan: &Plan, before: Box<RigConfig>) -> Step {
     let why = Outcome::refused(
         format!("{} could not be opened", plan.name()),
         "the painting before is open again; the messages of the rig say what was wrong",
@@ -301,12 +332,7 @@ fn unwritten(why: Outcome) -> Outcome {
 }
 
 /// The other painting is open.
-fn opened(
-    plan: Plan,
-    before: &RigConfig,
-    config: &RigConfig,
-    asker: Asker,
-) -> Vec<SwitchAction> {
+fn opened(plan: Plan, before: &RigConfig, config: &RigConfig, asker: Asker) -> Vec<SwitchAction> {
     let name = plan.name();
     tracing::info!("painting in {name}");
     let mut actions = Vec::new();

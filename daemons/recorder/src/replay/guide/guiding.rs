@@ -10,12 +10,12 @@ use maulstick_types::stylus::StylusSample;
 use tokio::task::block_in_place;
 use tokio::time::Instant;
 
+use super::Brush;
+use super::traced::Traced;
 use crate::replay::consent::Consent;
 use crate::replay::driven::Driven;
-use super::Brush;
 use crate::replay::playback::{Controls, REPORT_PERIOD};
 use crate::replay::player::{Guiding, ReplayReport};
-use super::traced::Traced;
 use crate::replay::transport::Order;
 
 /// Time between two guides.

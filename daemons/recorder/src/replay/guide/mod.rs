@@ -25,11 +25,11 @@ use maulstick_types::stylus::{StylusPose, StylusSample};
 use tokio::task::block_in_place;
 use tokio::time::timeout;
 
-use crate::replay::driven::{Driven, PATIENCE};
 use self::guiding::Guidance;
+use self::traced::{Touch, Traced};
+use crate::replay::driven::{Driven, PATIENCE};
 use crate::replay::playback::Controls;
 use crate::replay::player::{Call, GuideSettings, ReplaySettings};
-use self::traced::{Touch, Traced};
 
 /// Topics of the hands.
 const HANDS: &str = "stylus/*/sample";
