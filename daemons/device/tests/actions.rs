@@ -71,7 +71,7 @@ impl Rig {
 
     fn turn(&mut self) {
         self.live.net.advance(1_000_000);
-        self.live.paint.turn().expect("turned");
+        self.live.paint.poll().expect("turned");
         while let Some(received) = self.journal.try_recv() {
             if let Entry::Command { command, .. } = received.message.entry {
                 self.commands.push(command);

@@ -27,9 +27,9 @@ fn live() -> Live {
 fn turn(live: &mut Live) {
     for _ in 0..4 {
         live.net.advance(1_000_000);
-        live.brush.turn().expect("turned");
+        live.brush.poll().expect("turned");
         live.net.advance(1_000_000);
-        live.paint.turn().expect("turned");
+        live.paint.poll().expect("turned");
     }
 }
 
@@ -311,14 +311,14 @@ fn a_take_without_credit_holds_up_no_other_device() {
     for _ in 0..100 {
         live.player_turn(&samples);
         live.net.advance(1_000_000);
-        live.brush.turn().expect("turned");
+        live.brush.poll().expect("turned");
     }
     assert_eq!(live.brush.sent(), 64);
     let mut mouse = live.device("mouse", 5);
     mouse.send(&pen(0.0, 0.0, 0.5));
     for _ in 0..4 {
         live.net.advance(1_000_000);
-        live.brush.turn().expect("turned");
+        live.brush.poll().expect("turned");
     }
     assert_eq!(mouse.consumed(), 1);
 }

@@ -12,9 +12,9 @@ const MOST: usize = 256 + 4 * 1024 + 1;
 
 fn turn(live: &mut Live) {
     live.net.advance(1_000_000);
-    live.brush.turn().expect("turned");
+    live.brush.poll().expect("turned");
     live.net.advance(1_000_000);
-    live.paint.turn().expect("turned");
+    live.paint.poll().expect("turned");
 }
 
 /// Solves of the states that came, and how many of them touch in the middle of a stroke.
@@ -46,7 +46,7 @@ fn after_a_flood_of_samples_the_next_device_paints() {
             sent += 1;
         }
         let before = live.brush.sent();
-        live.brush.turn().expect("turned");
+        live.brush.poll().expect("turned");
         live.net.advance(1_000);
         let (many, _) = solves(&mut states, 41);
         assert!(
@@ -55,7 +55,7 @@ fn after_a_flood_of_samples_the_next_device_paints() {
         );
         let work = live.brush.work();
         assert!(work.waiting + work.held < 5000, "{work:?}");
-        live.paint.turn().expect("turned");
+        live.paint.poll().expect("turned");
     }
     let work = live.brush.work();
     assert!(work.too_fast > 0, "{work:?}");

@@ -123,8 +123,8 @@ fn turns_of_all(
     for _ in 0..steps {
         match order() % 4 {
             0 => live.player_turn(&samples[..until]),
-            1 => drop(live.brush.turn().expect("turned")),
-            2 => drop(live.paint.turn().expect("turned")),
+            1 => drop(live.brush.poll().expect("turned")),
+            2 => drop(live.paint.poll().expect("turned")),
             _ => intruder.turn(),
         }
         live.net.advance(700_000);
@@ -233,17 +233,17 @@ fn a_live_brush_merges_while_paint_is_busy_and_keeps_the_path() {
         live.player.reset_credit();
         live.player.send(Flags::NONE, stamp, sample).expect("sent");
         live.net.advance(8_000_000);
-        live.brush.turn().expect("turned");
+        live.brush.poll().expect("turned");
         // Paint has its turn only now and then.
         if number % 12 == 0 {
-            live.paint.turn().expect("turned");
+            live.paint.poll().expect("turned");
         }
         states = live.brush.sent();
     }
     for _ in 0..200 {
         live.net.advance(5_000_000);
-        live.brush.turn().expect("turned");
-        live.paint.turn().expect("turned");
+        live.brush.poll().expect("turned");
+        live.paint.poll().expect("turned");
     }
     assert!(
         states < samples.len() as u64 * 3 / 4,
@@ -286,17 +286,17 @@ fn painted_late(every: usize) -> (u64, u64, u32) {
         let (x, y) = (10.0 * libm::cos(angle), 10.0 * libm::sin(angle));
         mouse.send(&pen(1e-3 * (16.0 + x), 1e-3 * (16.0 + y), 0.4));
         live.net.advance(4_000_000);
-        live.brush.turn().expect("turned");
+        live.brush.poll().expect("turned");
         if (number as usize).is_multiple_of(every) {
-            live.paint.turn().expect("turned");
+            live.paint.poll().expect("turned");
             longest = longest.max(live.paint.painting_mut().longer());
         }
     }
     mouse.send(&pen(0.016, 0.016, 0.0));
     for _ in 0..200 {
         live.net.advance(5_000_000);
-        live.brush.turn().expect("turned");
-        live.paint.turn().expect("turned");
+        live.brush.poll().expect("turned");
+        live.paint.poll().expect("turned");
     }
     let painting = live.paint.painting_mut();
     assert_eq!(painting.longer(), 1, "the brush has lifted");
@@ -331,13 +331,13 @@ fn what_has_waited_long_is_sent_in_messages_that_fit() {
         let y = 2e-3 * f64::from(step % 2);
         mouse.send(&pen(1e-4 * f64::from(step), y, 0.4));
         live.net.advance(1_000_000);
-        live.brush.turn().expect("turned");
+        live.brush.poll().expect("turned");
     }
     let before = live.brush.sent();
     for _ in 0..200 {
         live.net.advance(5_000_000);
-        live.paint.turn().expect("turned");
-        live.brush.turn().expect("turned");
+        live.paint.poll().expect("turned");
+        live.brush.poll().expect("turned");
     }
     let brush = Origin {
         source: name_hash("main"),

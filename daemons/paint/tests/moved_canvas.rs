@@ -22,7 +22,7 @@ fn stroke(live: &mut Live, mouse: &mut Device) {
     for step in 0..200 {
         mouse.send(&pen(REACH_M * (f64::from(step) / 100.0 - 1.0), 0.0, 0.4));
         live.net.advance(MILLISECOND);
-        live.brush.turn().expect("turned");
+        live.brush.poll().expect("turned");
     }
 }
 
@@ -31,8 +31,8 @@ fn lifted(live: &mut Live, mouse: &mut Device) {
     mouse.send(&pen(REACH_M, 0.0, 0.0));
     for _ in 0..200 {
         live.net.advance(5 * MILLISECOND);
-        live.paint.turn().expect("turned");
-        live.brush.turn().expect("turned");
+        live.paint.poll().expect("turned");
+        live.brush.poll().expect("turned");
     }
 }
 
@@ -59,7 +59,7 @@ fn what_was_painted_before_a_canvas_is_moved_stays_where_it_was_painted() {
     let mut states: Receiver<BrushState> = states.expect("listens");
     let mut mouse = live.device("mouse", 5);
     live.net.advance(MILLISECOND);
-    live.brush.turn().expect("turned");
+    live.brush.poll().expect("turned");
     stroke(&mut live, &mut mouse);
     let scene = painting().scene().clone();
     let mut pose = scene.surfaces[0].pose.clone();
@@ -85,7 +85,7 @@ fn a_device_is_told_of_its_samples_once_they_are_solved() {
     let mut live = Live::new(MemoryNet::new(1, START_NS, Faults::default()));
     let mut mouse = live.device("mouse", 5);
     live.net.advance(MILLISECOND);
-    live.brush.turn().expect("turned");
+    live.brush.poll().expect("turned");
     stroke(&mut live, &mut mouse);
     let told = mouse.consumed();
     assert!((1..200).contains(&told), "{told}: the last of them wait");
@@ -94,8 +94,8 @@ fn a_device_is_told_of_its_samples_once_they_are_solved() {
     // No further sample comes.
     for _ in 0..200 {
         live.net.advance(5 * MILLISECOND);
-        live.paint.turn().expect("turned");
-        live.brush.turn().expect("turned");
+        live.paint.poll().expect("turned");
+        live.brush.poll().expect("turned");
     }
     assert_eq!(mouse.consumed(), 400);
 }
@@ -111,14 +111,14 @@ fn covered(zoom: Option<Zoomed>) -> u64 {
     });
     live.command(1, load);
     live.net.advance(MILLISECOND);
-    live.brush.turn().expect("turned");
+    live.brush.poll().expect("turned");
     let larger = Command::from(
         Place::new(CANVAS, painting().scene().surfaces[0].pose.clone(), 1.3).expect("in reach"),
     );
     if zoom == Some(Zoomed::Before) {
         live.command(2, larger.clone());
         live.net.advance(MILLISECOND);
-        live.brush.turn().expect("turned");
+        live.brush.poll().expect("turned");
     }
     stroke(&mut live, &mut mouse);
     if zoom == Some(Zoomed::Before) {

@@ -49,9 +49,9 @@ impl Rig {
 
     fn turn(&mut self) {
         self.live.net.advance(1_000_000);
-        self.live.brush.turn().expect("turned");
+        self.live.brush.poll().expect("turned");
         self.live.net.advance(1_000_000);
-        self.live.paint.turn().expect("turned");
+        self.live.paint.poll().expect("turned");
     }
 
     /// Whether a short stroke becomes paint.

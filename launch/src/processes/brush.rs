@@ -100,7 +100,7 @@ pub(super) fn run(options: &BrushOptions) -> Result<i32, UserError> {
                 Err(fault) => tracing::warn!("the rig's settings: {fault}"),
             }
         }
-        let wait = node.turn()?;
+        let wait = node.poll()?;
         member.work.set(node.work());
         Ok(wait)
     })?;

@@ -41,7 +41,7 @@ pub(super) fn run(options: &PaintOptions) -> Result<i32, UserError> {
     let origin = member.origin("paint");
     let bus = Arc::clone(&member.bus);
     let (topics, wake) = (&member.topics, &member.wake);
-    let mut node = PaintNode::going_on(Arc::clone(&bus), topics, wake, origin, sequencer)?
+    let mut node = PaintNode::resume(Arc::clone(&bus), topics, wake, origin, sequencer)?
         .exporting(export(&member.config.view, VIEW)?);
     let (topic, feed) = (member.topics.frame(), node.feed());
     let mut frames =
@@ -64,7 +64,7 @@ pub(super) fn run(options: &PaintOptions) -> Result<i32, UserError> {
     let work = member.work.clone();
     let mut turn = |node: &mut PaintNode| {
         thread.check().map_err(fallen)?;
-        let wait = node.turn()?;
+        let wait = node.poll()?;
         work.set(node.work());
         match (node.fault(), node.document_path()) {
             (Some(what), Some(path)) => Err(wrong(path, &DocumentError::Damaged(what.to_owned()))),

@@ -1,5 +1,7 @@
 //! Messages instead of bytes.
 
+mod command_server;
+
 use std::collections::BTreeMap;
 use std::marker::PhantomData;
 use std::time::Duration;
@@ -10,6 +12,8 @@ use maulstick_types::{DecodeError, Flags, Header, Message, Origin, decode, encod
 use crate::bus::{Bus, BusError, Publish, Qos, Subscription};
 use crate::inbox::{Queue, Wake};
 use crate::rivals::{Once, Rivals, Verdict};
+
+pub use command_server::CommandServer;
 
 /// Draws an epoch: a number that differs at each start of a process.
 #[must_use]

@@ -154,13 +154,13 @@ impl Studio {
         self.net.advance(MS);
         self.mouse.reset_credit();
         self.mouse.serve(self.now_ns()).expect("served");
-        self.brush.turn().expect("turned");
+        self.brush.poll().expect("turned");
         if self.now_ns() >= self.busy_ns {
             let before = self.paint.consumed(Origin {
                 source: name_hash(BRUSH),
                 epoch: 77,
             });
-            self.paint.turn().expect("turned");
+            self.paint.poll().expect("turned");
             let after = self.paint.consumed(Origin {
                 source: name_hash(BRUSH),
                 epoch: 77,

@@ -1,107 +1,179 @@
 //! Publisher of contact models, and of the paint's drag, for the devices that move the brush.
 
+use std::sync::Arc;
+
 use glam::DVec3;
+use maulstick_brush::BrushModel;
 use maulstick_bus::typed::Sender;
-use maulstick_bus::{BusError, Qos};
+use maulstick_bus::{Bus, BusError, Qos, Recent};
 use maulstick_num::geometry::Rigid;
 use maulstick_types::Origin;
-use maulstick_types::haptics::{FluidForce, HeightPatch};
+use maulstick_types::brush::BrushRelief;
+use maulstick_types::haptics::{ContactModel, FluidForce, Grain, HeightPatch};
+use maulstick_types::paint::BrushCredit;
+use maulstick_types::scene::Scene;
+use maulstick_types::wire::topics::Topics;
 
-use super::{BrushNode, Painter};
-use crate::contact_model::{SurfaceFeel, contact_model, law};
-use crate::fluid_force::{Held, PERIOD_NS, fluid_force};
+use crate::contact_model::{ForceKind, NO_GRAIN, SurfaceFeel, contact_model, grain, law};
+use crate::fluid_force::{Held, PERIOD_NS, drag, fluid_force};
 use crate::relief::height_patch;
 
 /// Least time between two contact models, ns.
 const MODEL_PERIOD_NS: u64 = 4_000_000;
 
-/// Forces of paint to a device, and the newest one.
-pub(super) struct DragSent {
+/// A hand that feels the brush.
+pub(super) struct Hand<'a> {
+    /// Name of its device.
+    pub(super) device: &'a str,
+    pub(super) origin: Origin,
+    pub(super) held: Held,
+    /// Force law of the device.
+    pub(super) law: ForceKind,
+}
+
+/// Contact models sent to a device.
+struct ModelsSent {
+    models: Sender<ContactModel>,
+    sent_ns: u64,
+}
+
+/// Drag sent to a device.
+struct DragSent {
     forces: Sender<FluidForce>,
     sent_ns: u64,
     drag_n_s_m: f64,
 }
 
-impl BrushNode {
-    /// Gives a force-feedback device its contact model.
-    pub(super) fn feel(
+/// Presence of the paint node: without it nothing is painted and there is no force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Painter {
+    /// It is there, or never sent anything.
+    There,
+    /// It has gone.
+    Gone,
+}
+
+/// Publisher for the hands that feel the brush, with what the paint node said of the surface under it.
+pub(super) struct ContactPublisher {
+    bus: Arc<dyn Bus>,
+    topics: Topics,
+    brush: String,
+    me: Origin,
+    models: Recent<ModelsSent>,
+    drags: Recent<DragSent>,
+    painter: Painter,
+    /// Drag of the paint under the brush, N·s/m.
+    drag_n_s_m: f64,
+    /// Grain of the canvas.
+    grain: Grain,
+    /// The newest relief below the brush.
+    relief: Option<BrushRelief>,
+}
+
+impl ContactPublisher {
+    /// A publisher of the brush of this name.
+    pub(super) fn new(bus: Arc<dyn Bus>, topics: &Topics, brush: &str, me: Origin) -> Self {
+        Self {
+            bus,
+            topics: topics.clone(),
+            brush: brush.to_owned(),
+            me,
+            models: Recent::default(),
+            drags: Recent::default(),
+            painter: Painter::There,
+            drag_n_s_m: 0.0,
+            grain: NO_GRAIN,
+            relief: None,
+        }
+    }
+
+    /// Notes that the paint node came or went.
+    pub(super) fn on_painter(&mut self, is_present: bool) {
+        self.painter = if is_present {
+            Painter::There
+        } else {
+            Painter::Gone
+        };
+    }
+
+    /// Notes the paint under the brush.
+    pub(super) fn on_credit(&mut self, credit: &BrushCredit) {
+        self.drag_n_s_m = drag(credit);
+    }
+
+    /// Notes the relief below the brush.
+    pub(super) fn on_relief(&mut self, relief: BrushRelief) {
+        self.relief = Some(relief);
+    }
+
+    /// Notes the grain of a scene's canvas.
+    pub(super) fn set_scene(&mut self, scene: &Scene) {
+        self.grain = grain(scene);
+    }
+
+    /// Sends a hand its contact model and the drag, each once its period is over.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub(super) fn publish(
         &mut self,
-        device: &str,
-        origin: Origin,
-        held: &Held,
+        hand: &Hand<'_>,
+        model: &mut BrushModel,
         now_ns: u64,
     ) -> Result<(), BusError> {
-        let drives_force = self
-            .devices
-            .get(device)
-            .is_some_and(|told| told.drives_force);
-        if !drives_force || self.painter == Painter::Gone {
+        if self.painter == Painter::Gone {
             return Ok(());
         }
-        let Some(plane) = self.model.plane().copied() else {
+        let Some(plane) = model.plane().copied() else {
             return Ok(());
         };
-        self.drag_at(device, origin, held, plane.normal(), now_ns)?;
-        if !self.models.has(device) {
-            let topic = self.topics.contact_model(device);
-            let me = self.states.origin();
-            let sender = Sender::new(&*self.bus, &topic, Qos::RealTime, me)?;
-            self.models.set(device, (sender, 0));
+        self.publish_drag(hand, plane.normal(), now_ns)?;
+        if !self.models.has(hand.device) {
+            let topic = self.topics.contact_model(hand.device);
+            let models = Sender::new(&*self.bus, &topic, Qos::RealTime, self.me)?;
+            let sent_ns = 0;
+            self.models.set(hand.device, ModelsSent { models, sent_ns });
         }
-        let Some((sender, sent_ns)) = self.models.get_mut(device) else {
+        let Some(sent) = self.models.get_mut(hand.device) else {
             return Ok(());
         };
-        if now_ns < *sent_ns + MODEL_PERIOD_NS {
+        if now_ns < sent.sent_ns + MODEL_PERIOD_NS {
             return Ok(());
         }
-        *sent_ns = now_ns;
-        let kind = self
-            .settings
-            .devices
-            .laws
-            .get(device)
-            .copied()
-            .unwrap_or_default();
-        let head = DVec3::NEG_Z * self.model.file().length_m();
-        let tip = Rigid::from(&held.pose).point(head);
-        let desk = self.model.desk();
-        let relief = desk.map_or_else(HeightPatch::flat, |desk| {
+        sent.sent_ns = now_ns;
+        let head = DVec3::NEG_Z * model.file().length_m();
+        let tip = Rigid::from(&hand.held.pose).point(head);
+        let relief = model.desk().map_or_else(HeightPatch::flat, |desk| {
             height_patch(desk, &plane, tip, self.relief.as_ref())
         });
-        let felt = SurfaceFeel {
-            law: law(kind, &mut self.model, &plane),
+        let feel = SurfaceFeel {
+            law: law(hand.law, model, &plane),
             grain: self.grain.clone(),
             relief,
         };
-        let name = &self.settings.name;
-        let file = self.model.file();
-        let model = contact_model(origin, name, (file, tip), &plane, felt);
-        sender.send(now_ns, now_ns, &model)?;
-        Ok(())
+        let head = (model.file(), tip);
+        let contact = contact_model(hand.origin, &self.brush, head, &plane, feel);
+        sent.models.send(now_ns, now_ns, &contact)
     }
 
-    /// Gives it the drag of the paint; where there is none any more, once.
-    fn drag_at(
+    /// Sends the drag of the paint; where there is none any more, once.
+    fn publish_drag(
         &mut self,
-        device: &str,
-        origin: Origin,
-        held: &Held,
+        hand: &Hand<'_>,
         normal: DVec3,
         now_ns: u64,
     ) -> Result<(), BusError> {
         let drag_n_s_m = self.drag_n_s_m;
-        if !self.fluids.has(device) {
-            let topic = self.topics.fluid_force(device);
-            let me = self.states.origin();
-            let forces = Sender::new(&*self.bus, &topic, Qos::RealTime, me)?;
+        if !self.drags.has(hand.device) {
+            let topic = self.topics.fluid_force(hand.device);
             let sent = DragSent {
-                forces,
+                forces: Sender::new(&*self.bus, &topic, Qos::RealTime, self.me)?,
                 sent_ns: 0,
                 drag_n_s_m: 0.0,
             };
-            self.fluids.set(device, sent);
+            self.drags.set(hand.device, sent);
         }
-        let Some(sent) = self.fluids.get_mut(device) else {
+        let Some(sent) = self.drags.get_mut(hand.device) else {
             return Ok(());
         };
         let is_none = drag_n_s_m == 0.0 && sent.drag_n_s_m == 0.0;
@@ -109,8 +181,7 @@ impl BrushNode {
             return Ok(());
         }
         (sent.sent_ns, sent.drag_n_s_m) = (now_ns, drag_n_s_m);
-        let force = fluid_force(origin, held, drag_n_s_m, normal);
-        sent.forces.send(now_ns, now_ns, &force)?;
-        Ok(())
+        let force = fluid_force(hand.origin, &hand.held, drag_n_s_m, normal);
+        sent.forces.send(now_ns, now_ns, &force)
     }
 }

@@ -4,20 +4,20 @@
 use maulstick_bus::Recent;
 use maulstick_types::Header;
 
-/// A window that is silent for so long holds nothing up any more, ns.
+/// Silence after which a window holds nothing up, ns.
 const SILENCE_NS: u64 = 500_000_000;
-/// What is not done after so long is not waited for, ns.
+/// Longest time that a stroke waits for an order, ns.
 const LONGEST_NS: u64 = 10_000_000_000;
 
-/// What is pending, by the windows that say so.
+/// Oldest pending order of each window.
 #[derive(Debug, Default)]
 pub(super) struct Hold {
-    windows: Recent<Heard>,
+    windows: Recent<LastWord>,
 }
 
-/// What a window said last.
+/// Newest message of a window.
 #[derive(Debug)]
-struct Heard {
+struct LastWord {
     /// Since when something is pending, ns; 0 if nothing is.
     since_ns: u64,
     heard_ns: u64,
@@ -26,12 +26,12 @@ struct Heard {
 
 impl Hold {
     /// A window says since when something is pending; 0 if nothing is. A message that was overtaken counts no more.
-    pub(super) fn hear(&mut self, header: &Header, since_ns: u64, heard_ns: u64) {
+    pub(super) fn on_pending(&mut self, header: &Header, since_ns: u64, heard_ns: u64) {
         let window = format!("{:x}-{:x}", header.source, header.epoch);
         let seq = header.seq;
         let before = self.windows.get(&window);
         if before.is_none_or(|before| before.seq < seq) {
-            let heard = Heard {
+            let heard = LastWord {
                 since_ns,
                 heard_ns,
                 seq,
@@ -42,7 +42,7 @@ impl Hold {
 
     /// Time after which no stroke begins, ns; absent where nothing is pending.
     pub(super) fn since_ns(&self, now_ns: u64) -> Option<u64> {
-        let counts = |heard: &&Heard| {
+        let counts = |heard: &&LastWord| {
             heard.since_ns != 0
                 && now_ns < heard.heard_ns.saturating_add(SILENCE_NS)
                 && now_ns < heard.since_ns.saturating_add(LONGEST_NS)
@@ -69,15 +69,15 @@ mod tests {
     #[test]
     fn the_oldest_of_what_is_pending_counts_and_nobody_holds_a_brush_for_ever() {
         let mut hold = Hold::default();
-        hold.hear(&header(1, 1), 70, 100);
-        hold.hear(&header(2, 8), 60, 100);
+        hold.on_pending(&header(1, 1), 70, 100);
+        hold.on_pending(&header(2, 8), 60, 100);
         assert_eq!(hold.since_ns(110), Some(60));
-        hold.hear(&header(2, 9), 0, 120);
-        hold.hear(&header(2, 7), 60, 121);
+        hold.on_pending(&header(2, 9), 0, 120);
+        hold.on_pending(&header(2, 7), 60, 121);
         assert_eq!(hold.since_ns(130), Some(70), "it was overtaken");
         assert_eq!(hold.since_ns(100 + SILENCE_NS), None, "its window ended");
         let late = 70 + LONGEST_NS;
-        hold.hear(&header(1, 2), 70, late);
+        hold.on_pending(&header(1, 2), 70, late);
         assert_eq!(hold.since_ns(late), None);
     }
 }

@@ -1,10 +1,8 @@
-//! Settings of a brush node at its start, and claims of its devices.
+//! Settings of a brush node at its start.
 
 use std::collections::BTreeMap;
 
 use maulstick_brush::BrushFile;
-use maulstick_bus::Recent;
-use maulstick_types::stylus::{StylusInfo, axes};
 
 use crate::contact_model::ForceKind;
 
@@ -49,27 +47,4 @@ impl BrushDevices {
             .copied()
             .or(self.foreign_priority)
     }
-}
-
-/// Claims of a device about itself.
-#[derive(Clone, Debug)]
-pub(super) struct DeviceClaims {
-    /// The brush that it moves; any if empty.
-    brush: String,
-    /// True if it drives a force.
-    pub(super) drives_force: bool,
-}
-
-impl DeviceClaims {
-    pub(super) fn of(info: StylusInfo) -> Self {
-        Self {
-            brush: info.brush,
-            drives_force: info.drives & axes::FORCE != 0,
-        }
-    }
-}
-
-/// The brush that a device says it moves.
-pub(super) fn moved_by<'a>(devices: &'a Recent<DeviceClaims>, device: &str) -> &'a str {
-    devices.get(device).map_or("", |told| told.brush.as_str())
 }

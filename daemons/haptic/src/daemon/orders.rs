@@ -1,12 +1,12 @@
-//! Requests about the force of a device: followed, answered, and said with the name of who asked.
+//! Requests about the force of a device: carried out, answered, and logged with the name of who asked.
 
-use maulstick_bus::Server;
 use maulstick_bus::typed::Reader;
-use maulstick_haptics::Switch;
+use maulstick_bus::{Request, Server};
 use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::{Flags, Origin, encode, plain};
 
 use super::Daemon;
+use super::force_settings::share_of;
 use crate::senders::Consent;
 
 /// Time between two lines about shares that the same hand drags to and fro, ns.
@@ -26,6 +26,19 @@ impl Orders {
             reader: Reader::default(),
             log: OrderLog::default(),
         }
+    }
+
+    /// The next request that can be read.
+    fn next(&mut self) -> Option<(Request, ForceRequest)> {
+        while let Some(request) = self.server.try_recv() {
+            let read = self
+                .reader
+                .read::<ForceRequest>(&request.key, &request.bytes);
+            if let Some((_, asked)) = read {
+                return Some((request, asked));
+            }
+        }
+        None
     }
 }
 
@@ -71,102 +84,99 @@ impl OrderLog {
     }
 }
 
+/// Result of an order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Obeyed {
+    /// It has changed something.
+    Changed,
+    /// It was so before.
+    Unchanged,
+    /// Too many programs move the hand.
+    Crowded,
+}
+
 impl Daemon {
-    /// Follows the requests that have come, and answers each with the resulting state.
-    pub(super) fn obey(&mut self, now_ns: u64) {
-        while let Some(request) = self.orders.server.try_recv() {
-            let read = self
-                .orders
-                .reader
-                .read::<ForceRequest>(&request.key, &request.bytes);
-            let Some((_, asked)) = read else { continue };
-            let mut refusal = None;
-            let is_news = match asked.order {
-                ForceOrder::Off => self.switch(Switch::Off),
-                ForceOrder::On => self.switch(Switch::On),
-                ForceOrder::Strength { share } => {
-                    let share = share_of(share);
-                    std::mem::replace(&mut self.control.strength, share) != share
-                }
-                ForceOrder::Guidance { share } => {
-                    let share = share_of(share);
-                    std::mem::replace(&mut self.control.guidance, share) != share
-                }
-                ForceOrder::Rearm => {
-                    self.control.rearms += 1;
-                    self.told.faults.clear();
-                    self.latched = None;
-                    true
-                }
-                ForceOrder::Drive { source, epoch } => {
-                    let consent = self.senders.consent(Origin { source, epoch }, now_ns);
-                    if consent == Consent::Refused {
-                        refusal = Some("too many programs move this hand".to_owned());
-                    }
-                    consent == Consent::Given
-                }
-            };
-            self.tell_control();
-            if let Some(servo) = &mut self.servo {
-                servo.controls.write(self.control);
+    /// Carries out the requests that have come, and answers each with the resulting state.
+    pub(super) fn serve_orders(&mut self, now_ns: u64) {
+        while let Some((request, asked)) = self.orders.next() {
+            let obeyed = self.obey(&asked.order, now_ns);
+            if obeyed == Obeyed::Changed
+                && let Some(said) = self.orders.log.note(asked, now_ns)
+            {
+                log(self.connection.name(), &said);
             }
-            if !matches!(asked.order, ForceOrder::Drive { .. }) {
-                self.write_state();
-            }
-            if is_news && let Some(said) = self.orders.log.note(asked, now_ns) {
-                self.say(&said);
-            }
+            let control = self.force.control();
             let reply = ForceReply {
-                is_on: self.control.switch == Switch::On,
-                strength: self.control.strength,
-                fault: refusal.unwrap_or_else(|| self.fault()),
-                guidance: self.control.guidance,
+                is_on: self.force.is_on(),
+                strength: control.strength,
+                fault: if obeyed == Obeyed::Crowded {
+                    "too many programs move this hand".to_owned()
+                } else {
+                    self.output.fault()
+                },
+                guidance: control.guidance,
             };
-            let me = self.samples.origin();
-            match encode(&me, Flags::NONE, 0, now_ns, now_ns, &reply) {
-                Ok(bytes) => {
-                    if let Err(error) = request.answer(bytes) {
-                        tracing::debug!("a client is gone: {error}");
-                    }
-                }
-                Err(error) => tracing::error!("an order cannot be answered: {error}"),
-            }
+            answer(request, self.output.origin(), now_ns, &reply);
         }
         if let Some(said) = self.orders.log.due(now_ns) {
-            self.say(&said);
+            log(self.connection.name(), &said);
         }
     }
 
-    /// Switches the force; true if that changes it.
-    fn switch(&mut self, to: Switch) -> bool {
-        std::mem::replace(&mut self.control.switch, to) != to
-    }
-
-    /// Says what was done, and who asked for it.
-    fn say(&self, request: &ForceRequest) {
-        let percent = |share: f64| (100.0 * share_of(share)).round();
-        let what = match request.order {
-            ForceOrder::Off => "force off".to_owned(),
-            ForceOrder::On => "force on".to_owned(),
-            ForceOrder::Strength { share } => format!("force {} %", percent(share)),
-            ForceOrder::Guidance { share } => format!("guidance {} %", percent(share)),
-            ForceOrder::Rearm => "force re-armed".to_owned(),
-            ForceOrder::Drive { source, .. } => {
-                format!("another program (source {source:08x}) may move the hand")
-            }
-        };
-        let asker = match request.asker.as_str() {
-            "" => "a program without a name",
-            asker => asker,
-        };
-        let device = &self.settings.device.name;
-        tracing::info!("{device}: {what}, asked by {}", plain(asker));
+    /// Carries out an order.
+    fn obey(&mut self, order: &ForceOrder, now_ns: u64) -> Obeyed {
+        if let ForceOrder::Drive { source, epoch } = *order {
+            return match self.inlets.consent(Origin { source, epoch }, now_ns) {
+                Consent::Given => Obeyed::Changed,
+                Consent::Renewed => Obeyed::Unchanged,
+                Consent::Refused => Obeyed::Crowded,
+            };
+        }
+        let is_new = self.force.obey(order);
+        let status = self.output.status_mut();
+        if self.force.fault().is_none() {
+            status.faults.clear();
+        }
+        self.force.report(status);
+        self.connection.set_control(self.force.control());
+        self.force.write();
+        if is_new {
+            Obeyed::Changed
+        } else {
+            Obeyed::Unchanged
+        }
     }
 }
 
-/// A share from 0 to 1; NaN counts as 0.
-fn share_of(share: f64) -> f64 {
-    if share > 0.0 { share.min(1.0) } else { 0.0 }
+fn answer(request: Request, me: Origin, now_ns: u64, reply: &ForceReply) {
+    match encode(&me, Flags::NONE, 0, now_ns, now_ns, reply) {
+        Ok(bytes) => {
+            if let Err(error) = request.answer(bytes) {
+                tracing::debug!("a client is gone: {error}");
+            }
+        }
+        Err(error) => tracing::error!("an order cannot be answered: {error}"),
+    }
+}
+
+/// Logs what was done to a device, and who asked for it.
+fn log(device: &str, request: &ForceRequest) {
+    let percent = |share: f64| (100.0 * share_of(share)).round();
+    let what = match request.order {
+        ForceOrder::Off => "force off".to_owned(),
+        ForceOrder::On => "force on".to_owned(),
+        ForceOrder::Strength { share } => format!("force {} %", percent(share)),
+        ForceOrder::Guidance { share } => format!("guidance {} %", percent(share)),
+        ForceOrder::Rearm => "force re-armed".to_owned(),
+        ForceOrder::Drive { source, .. } => {
+            format!("another program (source {source:08x}) may move the hand")
+        }
+    };
+    let asker = match request.asker.as_str() {
+        "" => "a program without a name",
+        asker => asker,
+    };
+    tracing::info!("{device}: {what}, asked by {}", plain(asker));
 }
 
 #[cfg(test)]

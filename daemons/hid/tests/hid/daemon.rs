@@ -89,10 +89,10 @@ impl Rig {
     /// Turns for so long, each step so far from the next, ns.
     pub(crate) fn run(&mut self, for_ns: u64, step_ns: u64) {
         for _ in 0..for_ns.div_ceil(step_ns) {
-            self.daemon.turn().expect("turned");
+            self.daemon.poll().expect("turned");
             self.net.advance(step_ns);
         }
-        self.daemon.turn().expect("turned");
+        self.daemon.poll().expect("turned");
         self.net.advance(1);
     }
 

@@ -5,14 +5,15 @@
 use std::time::Instant;
 
 use maulstick_bus::bus::{Answer, Pending};
-use maulstick_bus::{Faults, MemoryBus, MemoryNet};
+use maulstick_bus::typed::Receiver;
+use maulstick_bus::{Faults, MemoryBus, MemoryNet, Qos, Queue};
 use maulstick_document::{Access, DocumentSettings};
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::PaintingSetup;
 use maulstick_types::command::{Command, CommandReply, CommandRequest, ExportOrder, Outcome};
 use maulstick_types::command::{FileCommand, SaveAs, TakeCommand};
 use maulstick_types::edits::{Fill, FillPaint, Forget, Keep};
-use maulstick_types::paint::{StepName, ThumbnailReply, ThumbnailRequest};
+use maulstick_types::paint::{PaintStatus, StepName, ThumbnailReply, ThumbnailRequest};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{FilmThickness, VersionName, WholePath};
 use maulstick_types::{Flags, Message, Mixture, decode, encode};
@@ -59,7 +60,7 @@ impl Rig {
 
     pub(super) fn turn(&mut self) {
         self.net.advance(1_000_000);
-        self.node.turn().expect("a turn");
+        self.node.poll().expect("a turn");
         self.net.advance(1_000);
     }
 
@@ -322,7 +323,7 @@ fn a_painting_that_is_refused_its_name_says_none_and_gets_another() {
     rig.fill("Yellow Ochre");
     begins_to_save(&mut rig, &at("a.maul"));
     std::fs::write(at("a.maul"), "a shopping list").expect("written");
-    while rig.node.saving.is_some() {
+    while rig.node.files.home().is_moving() {
         rig.turn();
     }
     let unnamed = rig.node.document_path().map(Path::to_owned);

@@ -4,6 +4,8 @@
 
 use std::os::unix::fs::MetadataExt as _;
 
+use maulstick_bus::typed::Receiver;
+use maulstick_bus::{Qos, Queue};
 use maulstick_types::command::{Command, CommandReply, CommandRequest, ExportOrder, Outcome};
 use maulstick_types::command::{FileCommand, TakeCommand};
 use maulstick_types::paint::PaintStatus;

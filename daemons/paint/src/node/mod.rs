@@ -1,47 +1,41 @@
 //! The paint node: brush states and commands in; journal, credit, scene and frames out.
 
-mod brush_reliefs;
+mod brush_files;
 mod commands;
+mod drying_clock;
+mod files;
 mod frame_feed;
+mod inputs;
+mod outputs;
 mod proposal;
-mod repeat;
-mod save_as;
+mod session;
 mod status;
-mod time;
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
 use maulstick_appearance::picture::Export;
-use maulstick_brush::BrushFile;
-use maulstick_bus::rivals::Once;
-use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
-use maulstick_bus::{
-    Announcer, Arrival, Bus, BusError, CreditReceiver, Qos, Queue, Server, Subscription, Wake,
-};
-use maulstick_document::{Document, DocumentError, Relocation};
+use maulstick_bus::typed::CommandServer;
+use maulstick_bus::{Bus, BusError, Wake};
+use maulstick_document::{Document, DocumentError};
 use maulstick_painting::{Painting, Sequencer};
-use maulstick_types::brush::{BRUSHES_MOST, BrushDef, BrushState};
-use maulstick_types::paint::{BrushCredit, Decision, JournalEntry, PaintConsumed, PaintStatus};
-use maulstick_types::scene::Scene;
-use maulstick_types::wire::topics::{Topics, check_name};
-use maulstick_types::{Origin, name_hash};
+use maulstick_types::Origin;
+use maulstick_types::node::NodeWork;
+use maulstick_types::paint::Decision;
+use maulstick_types::wire::topics::Topics;
 
-use crate::exporter::{Asker, Exporter};
 use crate::frames::Feed;
-use crate::snapshots::Snapshots;
 use crate::thumbnails::Thumbnails;
-use brush_reliefs::BrushReliefs;
-use frame_feed::FEED_PERIOD_NS;
-use maulstick_session::Autosave;
-use maulstick_session::ticker::Ticker;
-use maulstick_types::command::reply_cache::ReplyCache;
-use save_as::Saving;
+use brush_files::BrushFiles;
+use drying_clock::DryingClock;
+use files::Files;
+use frame_feed::FrameFeed;
+use inputs::{Inputs, NextState};
+use outputs::Outputs;
+use proposal::Proposal;
+use session::RepeatedSession;
 
-/// Time between two statuses, ns.
-const STATUS_PERIOD_NS: u64 = 100_000_000;
 /// States consumed in one turn before commands and frames have theirs.
 const STATES_A_TURN: usize = 16;
 /// Time after which a turn consumes no more states, ns: of a large brush each takes long.
@@ -50,62 +44,19 @@ const TURN_NS: u64 = 20_000_000;
 /// The paint node.
 pub struct PaintNode {
     bus: Arc<dyn Bus>,
-    topics: Topics,
-    me: Origin,
     sequencer: Sequencer,
-    states: CreditReceiver<BrushState>,
-    defs: Receiver<BrushDef>,
-    commands: Server,
-    replies: ReplyCache,
-    exporter: Exporter,
-    snapshots: Snapshots,
-    saving: Option<Saving>,
-    /// A copy that is being written: who asked, and where it will be.
-    copying: Option<(Asker, PathBuf, Relocation)>,
-    /// Its document has not got the name yet that the painter gave it.
-    unnamed: bool,
+    inputs: Inputs,
+    brush_files: BrushFiles,
+    commands: CommandServer,
+    /// The recorded session that is painted again, if one is.
+    session: RepeatedSession,
+    clock: DryingClock,
+    /// Proposal of a lighter paint model, where it may still be made.
+    proposal: Option<Proposal>,
+    files: Files,
     thumbnails: Thumbnails,
-    tokens: Subscription,
-    reader: Reader,
-    journal: Sender<JournalEntry>,
-    consumed: Sender<PaintConsumed>,
-    reliefs: BrushReliefs,
-    scene: Announcer<Scene>,
-    status: Sender<PaintStatus>,
-    /// The status that was sent last, and its time, ns.
-    told_status: Option<(PaintStatus, u64)>,
-    feed: Feed,
-    fed_version: u64,
-    fed_scene: u64,
-    fed_look: u64,
-    sent_scene: u64,
-    fed_ns: u64,
-    fed_brushes_ns: u64,
-    status_ns: u64,
-    told: BTreeMap<Origin, u64>,
-    tell_again: bool,
-    /// Sources of the brushes whose files or states were heard since the node began.
-    heard: BTreeSet<u32>,
-    refused: u64,
-    /// Brushes without a file, and topics with misfits or a stranger on them, of which it was said.
-    unknown: Once,
-    misfits: Once,
-    strangers: Once,
-    export: Export,
-    autosave: Option<Autosave>,
-    /// Most bytes of pages in memory, where the painting has a document.
-    memory: usize,
-    /// Commit counter at the newest commit seen, and its time, ns.
-    committed: (u64, u64),
-    ticker: Ticker,
-    /// Files with which the next states of brushes are painted, by the brushes' sources: their FNV-1a.
-    file_hashes: BTreeMap<u32, u32>,
-    /// Other files of known brushes, until something is done with them.
-    newer_brushes: BTreeMap<String, BrushFile>,
-    /// The recorded session that is painted again.
-    session: Option<repeat::Repetition>,
-    /// Watches whether a lighter paint model is to be proposed, where it may be.
-    proposal: Option<proposal::Proposal>,
+    feed: FrameFeed,
+    outputs: Outputs,
 }
 
 impl PaintNode {
@@ -122,113 +73,71 @@ impl PaintNode {
     ) -> Result<Self, BusError> {
         let mut sequencer = Sequencer::new(painting);
         sequencer.decide(Decision::Backend { name: "cpu".into() });
-        Self::going_on(bus, topics, wake, me, sequencer)
+        Self::resume(bus, topics, wake, me, sequencer)
     }
 
-    /// A node that goes on with a painting where its sequencer is.
+    /// A node that resumes a painting where its sequencer is.
     ///
     /// # Errors
     /// [`BusError`].
-    pub fn going_on(
+    pub fn resume(
         bus: Arc<dyn Bus>,
         topics: &Topics,
         wake: &Wake,
         me: Origin,
         sequencer: Sequencer,
     ) -> Result<Self, BusError> {
-        let painting = sequencer.painting();
         let b = &*bus;
-        let mut scene = Announcer::new(b, &topics.scene(), me, wake)?;
-        scene.send(b.now_ns(), painting.scene())?;
-        let sent_scene = painting.scene().version;
-        let fed_look = painting.look().generation();
-        let node = Self {
-            states: CreditReceiver::new(b, topics, &topics.brush_state("*"), me, wake)?,
-            defs: Receiver::new(
-                b,
-                &topics.brush_def("*"),
-                Qos::Cached,
-                Queue::Ring(64),
-                wake,
-            )?,
-            commands: b.serve(&topics.command("paint"), 256, wake)?,
-            replies: ReplyCache::default(),
-            exporter: Exporter::default(),
-            snapshots: Snapshots::default(),
-            saving: None,
-            copying: None,
-            unnamed: false,
-            thumbnails: Thumbnails::new(b, &topics.thumbnail(), wake, me)?,
-            tokens: b.watch(&topics.node("*"), wake)?,
-            reader: Reader::default(),
-            journal: Sender::new(b, &topics.journal(), Qos::Data, me)?,
-            consumed: Sender::new(b, &topics.paint_consumed(), Qos::Control, me)?,
-            reliefs: BrushReliefs::new(b, topics, wake)?,
-            status: Sender::new(b, &topics.paint_status(), Qos::Background, me)?,
-            scene,
-            feed: Feed::new(),
-            fed_version: 1,
-            fed_scene: sent_scene,
-            fed_look,
-            sent_scene,
-            fed_ns: 0,
-            fed_brushes_ns: 0,
-            status_ns: 0,
-            told_status: None,
-            told: BTreeMap::new(),
-            tell_again: false,
-            heard: BTreeSet::new(),
-            refused: 0,
-            unknown: Once::default(),
-            misfits: Once::default(),
-            strangers: Once::default(),
-            export: Export::default(),
-            autosave: None,
-            memory: 1 << 30,
-            committed: (0, 0),
-            ticker: Ticker::default(),
-            file_hashes: BTreeMap::new(),
-            newer_brushes: BTreeMap::new(),
-            session: sequencer
-                .is_repeating()
-                .then(|| repeat::Repetition::new(None, b.now_ns())),
+        Ok(Self {
+            inputs: Inputs::new(b, topics, me, wake)?,
+            brush_files: BrushFiles::new(b, topics, wake)?,
+            commands: CommandServer::new(b, &topics.command("paint"), 256, me, wake)?,
+            session: RepeatedSession::new(sequencer.is_repeating(), b.now_ns()),
+            clock: DryingClock::default(),
             proposal: None,
-            topics: topics.clone(),
-            me,
+            files: Files::default(),
+            thumbnails: Thumbnails::new(b, &topics.thumbnail(), wake, me)?,
+            feed: FrameFeed::new(sequencer.painting()),
+            outputs: Outputs::new(&bus, topics, wake, me, sequencer.painting().scene())?,
             sequencer,
             bus,
-        };
-        node.feed_first();
-        Ok(node)
+        })
     }
 
     /// Sets the conversion of snapshots from the working space.
     #[must_use]
     pub fn exporting(mut self, export: Export) -> Self {
-        self.export = export;
+        self.files.set_export(export);
         self
     }
 
     /// Keeps the painting in a document, where its tiles up to the version `since` are.
     #[must_use]
     pub fn keeping(mut self, document: Document, since: u64) -> Self {
-        self.autosave = Some(Autosave::new(document, &mut self.sequencer, since));
+        let home = self.files.home_mut();
+        home.keep(document, since, &mut self.sequencer);
         self
     }
 
     /// Keeps at most so many bytes of pages in memory once the painting gets a document.
     #[must_use]
     pub fn with_memory(mut self, bytes: usize) -> Self {
-        self.memory = bytes;
+        self.files.home_mut().limit_memory(bytes);
+        self
+    }
+
+    /// Proposes a lighter model for the canvas once painting falls behind: in the journal, which the window shows, and in
+    /// the log.
+    #[must_use]
+    pub fn proposing_models(mut self) -> Self {
+        self.proposal = Some(Proposal::default());
         self
     }
 
     /// The painting's file, if it has one.
     #[must_use]
     pub fn document_path(&self) -> Option<&Path> {
-        self.autosave
-            .as_ref()
-            .map(|autosave| autosave.document().path())
+        self.files.home().document().map(Document::path)
     }
 
     /// The error that stops the painting: a page of its document could not be read.
@@ -242,20 +151,13 @@ impl PaintNode {
     /// # Errors
     /// The reason why something could not be written, or not under that name.
     pub fn close(mut self) -> Result<(), DocumentError> {
-        // Snapshots may show pages that only the document has.
-        drop(std::mem::take(&mut self.snapshots));
-        let arrived = self.arrive();
-        let closed = match self.autosave.take() {
-            Some(autosave) => autosave.close(&mut self.sequencer),
-            None => Ok(()),
-        };
-        arrived.and(closed)
+        self.files.close(&mut self.sequencer)
     }
 
     /// Feed of the frames.
     #[must_use]
     pub fn feed(&self) -> Feed {
-        self.feed.clone()
+        self.feed.shared()
     }
 
     /// The painting, for tests and for who runs the node.
@@ -275,46 +177,63 @@ impl PaintNode {
         self.sequencer.consumed(brush)
     }
 
+    /// Work since the start, and what waits.
+    #[must_use]
+    pub fn work(&self) -> NodeWork {
+        let counts = self.inputs.counts();
+        let (waiting, held) = self.inputs.waiting(self.sequencer.painting());
+        NodeWork {
+            consumed: counts.received,
+            produced: self.outputs.entries(),
+            waiting,
+            held,
+            refused: self.refused(),
+            lost: counts.lost,
+            too_fast: 0,
+        }
+    }
+
+    /// Messages that it did not obey.
+    fn refused(&self) -> u64 {
+        self.inputs.refused()
+            + self.brush_files.refused()
+            + self.commands.refused()
+            + self.sequencer.ignored()
+    }
+
     /// Does all there is to do and returns how long to wait at most.
     ///
     /// # Errors
     /// [`BusError`].
-    pub fn turn(&mut self) -> Result<Duration, BusError> {
-        let bus = Arc::clone(&self.bus);
-        let now_ns = bus.now_ns();
-        while let Some(def) = self.defs.try_recv() {
-            self.define(&def.key, &def.message);
-        }
-        while let Some(token) = self.tokens.try_recv() {
-            self.note_player(&token);
-        }
-        self.states.poll(&*bus)?;
-        self.serve_commands(now_ns);
-        self.check_repeating(now_ns);
-        self.let_time_pass(now_ns);
-        let until_ns = bus.now_ns() + TURN_NS;
-        let mut is_more = self.next_state(now_ns)?;
-        for _ in 1..STATES_A_TURN {
-            if !is_more || bus.now_ns() >= until_ns {
-                break;
+    pub fn poll(&mut self) -> Result<Duration, BusError> {
+        let now_ns = self.bus.now_ns();
+        let credit = self.outputs.credit_mut();
+        self.brush_files.drain(&mut self.sequencer, credit);
+        while let Some(presence) = self.inputs.next_presence() {
+            // A take ends with its player, whatever it still had to play.
+            if presence.is_there {
+                self.sequencer.player_there(presence.node);
+            } else {
+                self.sequencer.player_gone(presence.node);
             }
-            is_more = self.next_state(now_ns)?;
         }
+        self.inputs.poll(&*self.bus)?;
+        self.serve_commands(now_ns);
+        self.session.check(&mut self.sequencer, now_ns);
+        self.clock.advance(&mut self.sequencer, now_ns);
+        let is_more = self.consume_states(now_ns)?;
         self.propose_model();
-        self.tell_again |= !self.states.unheard().is_empty();
-        self.tell(now_ns)?;
-        self.reliefs.tell(self.sequencer.painting(), now_ns)?;
-        for entry in self.sequencer.drain_journal() {
-            self.journal.send(now_ns, now_ns, &entry)?;
+        if self.inputs.take_unheard() {
+            self.outputs.credit_mut().send_again();
         }
-        if let Some(autosave) = &mut self.autosave {
-            autosave.turn(&mut self.sequencer, now_ns);
-        }
-        self.go_on_beside(now_ns);
-        self.thumbnails.turn(&*bus, self.sequencer.painting_mut());
-        self.publish_scene(now_ns)?;
-        self.hand_over(now_ns);
-        self.hand_over_brushes(now_ns);
+        self.outputs.publish_progress(&mut self.sequencer, now_ns)?;
+        self.files.home_mut().save(&mut self.sequencer, now_ns);
+        self.poll_background(now_ns);
+        let painting = self.sequencer.painting_mut();
+        self.thumbnails.turn(&*self.bus, painting);
+        self.outputs.publish_scene(painting.scene(), now_ns)?;
+        self.feed.update(&mut self.sequencer, now_ns);
+        self.feed.update_loads(self.sequencer.painting(), now_ns);
         self.publish_status(now_ns)?;
         Ok(if is_more {
             Duration::ZERO
@@ -323,88 +242,31 @@ impl PaintNode {
         })
     }
 
-    /// Takes in a brush file; its brush is the one of the topic, whose name is short.
-    fn define(&mut self, key: &str, def: &BrushDef) {
-        let brush = self.topics.middle(key).unwrap_or_default();
-        let refusal = match (check_name(brush), BrushFile::parse(&def.toml)) {
-            (Ok(()), Ok(file)) if def.brush == brush => {
-                // A session that is painted again has the brushes of then.
-                let taken = match self.knows_brush(brush) {
-                    true => {
-                        self.newer_brushes.insert(brush.to_owned(), file);
-                        Ok(())
-                    }
-                    false => self.sequencer.define_brush(brush, file),
-                };
-                match taken {
-                    Ok(()) => {
-                        self.heard.insert(name_hash(brush));
-                        self.file_hashes
-                            .insert(name_hash(brush), name_hash(&def.toml));
-                        self.tell_again = true;
-                        return;
-                    }
-                    Err(error) => format!("{error}: {}", error.advice()),
-                }
+    /// Consumes the states of a turn; true where there may be more.
+    fn consume_states(&mut self, now_ns: u64) -> Result<bool, BusError> {
+        let until_ns = self.bus.now_ns() + TURN_NS;
+        for number in 0..STATES_A_TURN {
+            if number > 0 && self.bus.now_ns() >= until_ns {
+                break;
             }
-            (Ok(()), Ok(_)) => "it names another brush".to_owned(),
-            (Ok(()), Err(error)) => error.to_string(),
-            (Err(error), _) => error,
-        };
-        self.refused += 1;
-        tracing::warn!("{key}: the brush file is refused: {refusal}");
-    }
-
-    /// Takes other files of known brushes in hand, before something is done with them.
-    fn take_up_brushes(&mut self) {
-        if self.session.is_none() {
-            for (brush, file) in std::mem::take(&mut self.newer_brushes) {
-                // It is known, so there is room for it.
-                if let Err(error) = self.sequencer.define_brush(&brush, file) {
-                    tracing::error!("{brush}: {error}");
-                }
+            if !self.consume_state(now_ns)? {
+                return Ok(false);
             }
         }
+        Ok(true)
     }
 
-    /// A take ends with its player, whatever it still had to play.
-    fn note_player(&mut self, token: &Arrival) {
-        let device = name_hash(self.topics.node_of(&token.key).unwrap_or_default());
-        if token.present {
-            self.sequencer.player_there(device);
-        } else {
-            self.sequencer.player_gone(device);
-        }
-    }
-
-    /// Consumes one state; false where none can be consumed now. A brush whose file has not come
-    /// waits, and holds up no other.
-    fn next_state(&mut self, now_ns: u64) -> Result<bool, BusError> {
-        let (painting, topics) = (self.sequencer.painting(), &self.topics);
-        let known = |next: &Received<BrushState>| {
-            let brush = topics.middle(&next.key);
-            brush.is_some_and(|brush| painting.knows_brush(brush))
+    /// Consumes one state; false where none can be consumed now.
+    fn consume_state(&mut self, now_ns: u64) -> Result<bool, BusError> {
+        let (brush, received) = match self.inputs.next_state(self.sequencer.painting()) {
+            NextState::None => return Ok(false),
+            NextState::Foreign => return Ok(true),
+            NextState::Of { brush, received } => (brush, received),
         };
-        let Some(received) = self.states.pop_where(known) else {
-            return Ok(false);
-        };
-        let brush = self
-            .topics
-            .middle(&received.key)
-            .unwrap_or_default()
-            .to_owned();
-        // Credit and places in the journal are by the hash of the brush's name.
-        if received.header.source != name_hash(&brush) {
-            self.refused += 1;
-            if self.strangers.say(&received.key) {
-                tracing::warn!("{}: a stranger's states are dropped", received.key);
-            }
-            return Ok(true);
-        }
-        self.heard.insert(received.header.source);
-        self.take_up_brushes();
+        self.outputs.credit_mut().note(received.header.source);
+        self.adopt_brushes();
         let newest = received.message.solves.last();
-        self.reliefs.note(&*self.bus, self.me, &brush, newest)?;
+        self.outputs.note_solve(&brush, newest)?;
         let (replies, painted) = self
             .sequencer
             .state(&brush, &received.header, &received.message);
@@ -412,70 +274,28 @@ impl PaintNode {
             self.complete(replied);
         }
         if let Err(error) = painted {
-            self.refused += 1;
-            if self.misfits.say(&received.key) {
-                tracing::warn!("{}: {error}: {}", received.key, error.advice());
-            }
+            self.inputs.reject(&received.key, &error);
         }
-        if now_ns >= self.fed_ns + FEED_PERIOD_NS {
-            self.hand_over(now_ns);
-        }
+        self.feed.update_while_painting(&mut self.sequencer, now_ns);
         Ok(true)
     }
 
-    /// Tells the brushes that were heard what is consumed of their states: a painting may know many more.
-    fn tell(&mut self, now_ns: u64) -> Result<(), BusError> {
-        let mut holds = self.sequencer.consumed_all();
-        holds.retain(|(origin, _)| self.heard.contains(&origin.source));
-        let news = holds
-            .iter()
-            .any(|(origin, next)| self.told.get(origin) != Some(next));
-        if !news && !self.tell_again {
-            return Ok(());
+    /// Adopts other files of known brushes before something is done with them. A session that is painted again has the
+    /// brushes of then.
+    fn adopt_brushes(&mut self) {
+        if !self.session.is_running() {
+            self.brush_files.adopt(&mut self.sequencer);
         }
-        self.tell_again = false;
-        self.told = holds.iter().copied().collect();
-        // A brush may wait to be told that its file is here before its first state.
-        let is_new = |source: &u32| holds.iter().all(|(origin, _)| origin.source != *source);
-        let new = self.file_hashes.keys().filter(|source| is_new(source));
-        let new = new.map(|source| {
-            let (source, epoch) = (*source, 0);
-            (Origin { source, epoch }, 0)
-        });
-        let credits: Vec<BrushCredit> = holds
-            .iter()
-            .copied()
-            .chain(new)
-            .map(|(origin, next)| {
-                let under = self.sequencer.painting().under_brush(origin.source);
-                BrushCredit {
-                    brush: origin.source,
-                    epoch: origin.epoch,
-                    next,
-                    wetness: self.sequencer.painting().fullness(origin.source),
-                    film_m: under.film_m as f32,
-                    viscosity_m2_s: under.viscosity_m2_s as f32,
-                    contact_m: under.contact_m as f32,
-                    file: self.file_hashes.get(&origin.source).copied().unwrap_or(0),
-                }
-            })
-            .collect();
-        // Paintings of before may have more brushes than one has now.
-        for brushes in credits.chunks(BRUSHES_MOST) {
-            let brushes = brushes.to_vec();
-            self.consumed
-                .send(now_ns, now_ns, &PaintConsumed { brushes })?;
-        }
-        Ok(())
     }
 
-    fn publish_scene(&mut self, now_ns: u64) -> Result<(), BusError> {
-        let scene = self.sequencer.painting().scene();
-        if scene.version != self.sent_scene {
-            self.sent_scene = scene.version;
-            self.scene.send(now_ns, scene)?;
+    /// Makes the proposal of a lighter model once it is due.
+    fn propose_model(&mut self) {
+        if !self.session.is_running()
+            && let Some(proposal) = &mut self.proposal
+            && proposal.poll(&mut self.sequencer)
+        {
+            self.proposal = None;
         }
-        self.scene.turn(now_ns)
     }
 }
 

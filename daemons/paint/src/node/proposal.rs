@@ -1,10 +1,9 @@
-//! Proposal of a lighter paint model where painting falls behind: told once, never carried out.
+//! Proposal of a lighter paint model where painting falls behind: made once, never carried out.
 
+use maulstick_painting::Sequencer;
 use maulstick_painting::models::AUTO_MODELS;
 use maulstick_types::paint::Decision;
 use maulstick_types::scene::CANVAS;
-
-use super::PaintNode;
 
 /// Late strokes after which it is made: one may be late because a program begins beside it.
 const LATE_STROKES: u32 = 3;
@@ -27,34 +26,21 @@ impl Proposal {
         self.is_late = is_late;
         self.strokes >= LATE_STROKES
     }
-}
 
-impl PaintNode {
-    /// Proposes a lighter model for the canvas once painting falls behind: in the journal, which the window shows, and in
-    /// the log.
-    #[must_use]
-    pub fn proposing_models(mut self) -> Self {
-        self.proposal = Some(Proposal::default());
-        self
-    }
-
-    /// Makes the proposal where it is due.
-    pub(super) fn propose_model(&mut self) {
+    /// Makes the proposal in the journal and the log where it is due; true if it did.
+    pub(super) fn poll(&mut self, sequencer: &mut Sequencer) -> bool {
         let [own, lighter] = AUTO_MODELS;
-        let painting = self.sequencer.painting();
-        if self.session.is_some() || painting.model(CANVAS) != Some(own) {
-            return;
+        let painting = sequencer.painting();
+        if painting.model(CANVAS) != Some(own) || !self.note(painting.longer()) {
+            return false;
         }
-        let longer = painting.longer();
-        if self.proposal.as_mut().is_some_and(|it| it.note(longer)) {
-            self.proposal = None;
-            tracing::info!(
-                "painting with {own} falls behind on this machine; `maulstick canvas convert {lighter}` converts this painting \
-                 to a lighter model, which can be undone"
-            );
-            let model = lighter.to_owned();
-            self.sequencer.decide(Decision::LighterModel { model });
-        }
+        tracing::info!(
+            "painting with {own} falls behind on this machine; `maulstick canvas convert {lighter}` converts this painting \
+             to a lighter model, which can be undone"
+        );
+        let model = lighter.to_owned();
+        sequencer.decide(Decision::LighterModel { model });
+        true
     }
 }
 

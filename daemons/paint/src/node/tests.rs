@@ -1,20 +1,22 @@
 //! What the node hands to the frames and to its clients.
 
-#![allow(clippy::panic, reason = "a test fails by it")]
+use std::collections::BTreeSet;
 
 use maulstick_appearance::display::WetFilms;
-use maulstick_brush::BrushModel;
-use maulstick_bus::bus::Answer;
-use maulstick_bus::{Faults, MemoryNet};
+use maulstick_brush::{BrushFile, BrushModel};
+use maulstick_bus::typed::{Receiver, Sender};
+use maulstick_bus::{Faults, MemoryNet, Qos, Queue};
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_optics::{PaintLibrary, Under};
 use maulstick_painting::PaintingSetup;
-use maulstick_types::command::{Command, CommandReply, CommandRequest, Detail, Outcome};
+use maulstick_types::brush::{BRUSHES_MOST, BrushDef, BrushState};
+use maulstick_types::command::{Command, CommandRequest, Outcome};
 use maulstick_types::edits::{Dry, Fill, FillPaint, Load};
+use maulstick_types::paint::PaintConsumed;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
 use maulstick_types::values::{BrushName, FilmThickness, Ticks};
-use maulstick_types::{Flags, Header, Mixture, decode};
+use maulstick_types::{Flags, Header, Mixture, name_hash};
 
 use super::*;
 
@@ -99,9 +101,10 @@ fn the_frames_know_a_paint_as_soon_as_a_tile_has_it() {
     let (mut node, mut model) = node(&net);
     load(&mut node, 1, "Bone Black");
     stroke(&mut node, &mut model);
-    node.feed.lock().wanted = true;
-    node.hand_over(2_000_000_000);
-    let fed = node.feed.lock();
+    let feed = node.feed();
+    feed.lock().wanted = true;
+    node.feed.update(&mut node.sequencer, 2_000_000_000);
+    let fed = feed.lock();
     let look = fed.look.as_ref().expect("a look");
     let surface = &fed.surfaces[&CANVAS];
     let painted = surface.tiles.values().filter_map(|(_, tile)| tile.as_ref());
@@ -110,38 +113,6 @@ fn the_frames_know_a_paint_as_soon_as_a_tile_has_it() {
         WetFilms::of(Some(tile)).shade(&look.studio, Under::Even(surface.bare.ground.mean()))
     });
     assert!(shown.count() > 0, "nothing was painted");
-}
-
-#[test]
-fn an_answer_that_does_not_fit_is_given_in_short() {
-    let net = MemoryNet::new(1, 1_000_000_000, Faults::default());
-    let (node, _) = node(&net);
-    let wake = Wake::new();
-    let topic = node.topics.command("paint");
-    let pending = net
-        .bus()
-        .ask(
-            &topic,
-            Qos::Control,
-            Vec::new(),
-            Duration::from_secs(1),
-            &wake,
-        )
-        .expect("asked");
-    net.advance(1);
-    let request = node.commands.try_recv().expect("a question");
-    let outcome = Outcome::Done {
-        journal: 1,
-        detail: Detail::say("x".repeat(70_000)),
-    };
-    node.answer(request, 0, CommandReply { number: 5, outcome });
-    net.advance(1);
-    let Some(Answer::Bytes(bytes)) = pending.try_recv() else {
-        panic!("no answer");
-    };
-    let reply = decode::<CommandReply>(&bytes).expect("a reply").1;
-    assert_eq!(reply.number, 5);
-    assert!(matches!(reply.outcome, Outcome::Refused { .. }));
 }
 
 #[test]
@@ -173,12 +144,12 @@ fn paint_dries_by_the_clock_of_the_node_and_each_tick_is_in_the_journal() {
     };
     ask(&mut node, 1, fill.clone());
     net.advance(5_000_000_000);
-    node.turn().expect("a turn");
+    node.poll().expect("a turn");
     assert_eq!(node.sequencer.painting().clock().ticks, 0, "nothing dries");
     ask(&mut node, 2, over(90));
     let begun = node.sequencer.journal_next();
     for turn in 0..=200u64 {
-        node.turn().expect("a turn");
+        node.poll().expect("a turn");
         let ticks = node.sequencer.painting().clock().ticks;
         assert_eq!(ticks, (turn * 7 * 60 / 1000).min(90), "turn {turn}");
         net.advance(7_000_000);
@@ -190,7 +161,7 @@ fn paint_dries_by_the_clock_of_the_node_and_each_tick_is_in_the_journal() {
     assert_eq!(node.sequencer.journal_next(), begun + ticks);
     net.advance(2_000_000_000);
     for _ in 0..3 {
-        node.turn().expect("a turn");
+        node.poll().expect("a turn");
     }
     let painting = node.sequencer.painting();
     assert!(!painting.is_drying());
@@ -200,12 +171,12 @@ fn paint_dries_by_the_clock_of_the_node_and_each_tick_is_in_the_journal() {
     let before = painting.clock().ticks;
     ask(&mut node, 3, fill);
     ask(&mut node, 4, over(3600));
-    node.turn().expect("a turn");
+    node.poll().expect("a turn");
     net.advance(4_000_000_000);
-    node.turn().expect("a turn");
+    node.poll().expect("a turn");
     assert_eq!(node.sequencer.painting().clock().ticks, before + 60);
     for _ in 0..9 {
-        node.turn().expect("a turn");
+        node.poll().expect("a turn");
     }
     assert_eq!(node.sequencer.painting().clock().ticks, before + 240);
 }
@@ -216,7 +187,7 @@ fn introduced(node: &mut PaintNode, net: &MemoryNet, brush: &str) -> bool {
         source: name_hash(brush),
         epoch: 1,
     };
-    let topic = node.topics.brush_def(brush);
+    let topic = Topics::new("t").brush_def(brush);
     let mut sender = Sender::new(&net.bus(), &topic, Qos::Cached, origin).expect("a sender");
     let toml = BrushFile::library_text("round").expect("round").to_owned();
     let def = BrushDef {
@@ -227,7 +198,7 @@ fn introduced(node: &mut PaintNode, net: &MemoryNet, brush: &str) -> bool {
     };
     sender.send(0, 0, &def).expect("sent");
     net.advance(1);
-    node.turn().expect("a turn");
+    node.poll().expect("a turn");
     node.knows_brush(brush)
 }
 
@@ -269,7 +240,7 @@ fn a_painting_of_before_with_hundreds_of_brushes_is_painted_on() {
         let (_, consumed) = node.sequencer.state(&brush, &header(&brush), &nothing);
         consumed.expect("consumed");
     }
-    let topic = node.topics.paint_consumed();
+    let topic = Topics::new("t").paint_consumed();
     let credit = Receiver::<PaintConsumed>::new(
         &net.bus(),
         &topic,
@@ -279,7 +250,7 @@ fn a_painting_of_before_with_hundreds_of_brushes_is_painted_on() {
     );
     let mut credit = credit.expect("subscribed");
     let mut told = |node: &mut PaintNode| {
-        node.turn().expect("a turn");
+        node.poll().expect("a turn");
         net.advance(1);
         let messages = std::iter::from_fn(|| credit.try_recv());
         let credits = messages.flat_map(|received| received.message.brushes);
@@ -293,7 +264,7 @@ fn a_painting_of_before_with_hundreds_of_brushes_is_painted_on() {
     for number in 0..300 {
         introduced(&mut node, &net, &format!("b{number}"));
     }
-    node.tell_again = true;
+    node.outputs.credit_mut().send_again();
     assert_eq!(
         told(&mut node).len(),
         300,

@@ -187,7 +187,7 @@ impl Live {
         let mut node =
             PaintNode::new(Arc::clone(bus), topics, &Wake::new(), me, painting).expect("paint");
         while !node.knows_brush("main") {
-            node.turn().expect("turned");
+            node.poll().expect("turned");
         }
         node
     }
@@ -222,8 +222,8 @@ impl Live {
             for _ in 0..100 {
                 self.net.advance(1_000_000);
                 match node {
-                    "paint" => self.paint.turn().expect("turned"),
-                    _ => self.brush.turn().expect("turned"),
+                    "paint" => self.paint.poll().expect("turned"),
+                    _ => self.brush.poll().expect("turned"),
                 };
                 if let Some(maulstick_bus::bus::Answer::Bytes(bytes)) = pending.try_recv() {
                     let reply: CommandReply = decode(&bytes).expect("a reply").1;
@@ -307,8 +307,8 @@ impl Live {
         for _ in 0..limit {
             match order() % 3 {
                 0 => self.player_turn(samples),
-                1 => drop(self.brush.turn().expect("turned")),
-                _ => drop(self.paint.turn().expect("turned")),
+                1 => drop(self.brush.poll().expect("turned")),
+                _ => drop(self.paint.poll().expect("turned")),
             }
             self.net.advance(700_000);
             let brush = Origin {

@@ -45,7 +45,7 @@ fn once(path: &std::path::Path) -> Result<[f64; 2], UserError> {
         epoch: 1,
     };
     let wake = Wake::new();
-    let node = PaintNode::going_on(Arc::clone(&bus), &topics, &wake, me, sequencer)?;
+    let node = PaintNode::resume(Arc::clone(&bus), &topics, &wake, me, sequencer)?;
     let frames = FrameServer::new(Arc::clone(&bus), &topics.frame(), node.feed(), &wake, me)?;
     let mut frames = frames.with_tile_cache(document.tile_cache());
     let mut node = node.keeping(document, since);
@@ -75,7 +75,7 @@ fn once(path: &std::path::Path) -> Result<[f64; 2], UserError> {
         more = reply.more;
     }
     let seen = ms(begun);
-    node.turn()?;
+    node.poll()?;
     let ready = ms(begun);
     node.close().map_err(fault)?;
     Ok([seen, ready])

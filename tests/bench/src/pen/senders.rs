@@ -66,7 +66,7 @@ fn send_tablets(reports: UnixStream, bus: Arc<dyn Bus>, origin: Origin) -> Resul
     });
     let mut daemon = Daemon::new(bus, &topics, &wake, origin, &settings, socket)?;
     loop {
-        let wait = daemon.turn()?;
+        let wait = daemon.poll()?;
         wake.wait(wait);
     }
 }

@@ -3,10 +3,10 @@
 
 use std::sync::Arc;
 
-use maulstick_model::brush::traits::BrushTraits;
 use maulstick_model::interface::{PaintModel, StepReport};
 use maulstick_types::paint::Decision;
 
+use super::stroke::Stroke;
 use crate::models::Models;
 use crate::painting::Painting;
 use crate::painting::brushes::handling::UnderBrush;
@@ -25,13 +25,6 @@ pub(crate) struct Deferral {
     unsettled: u32,
     /// Fullness of the brush when it was last read.
     fullness: Option<f32>,
-}
-
-impl Deferral {
-    /// Deferred steps that are not settled.
-    pub(super) fn unsettled_steps(&self) -> u32 {
-        self.unsettled
-    }
 }
 
 /// A fact of a model's backend. It is reported where a stroke ends.
@@ -94,7 +87,7 @@ pub(crate) struct Backend {
 }
 
 impl Backend {
-    /// True if steps on a surface are deferred. Those on one with wells never are: wells are tended on the CPU, step by
+    /// True if steps on a surface are deferred. Those on one with wells never are: wells are refilled on the CPU, step by
     /// step.
     pub(super) fn defers(&mut self, surface: &SurfaceState, has_wells: bool) -> bool {
         self.models.of(surface.model).defers() && !has_wells
@@ -124,34 +117,6 @@ impl Painting {
         self.backend.facts.limit.take()
     }
 
-    /// Fullness of a brush, as far as its stroke on a surface may know.
-    pub(super) fn seen_fullness(&mut self, brush: usize, on: usize, traits: &BrushTraits) -> f32 {
-        let defers = self.backend.defers(&self.surfaces[on], false);
-        if !defers {
-            return self.brushes[brush].load.fullness(traits);
-        }
-        if let Some(seen) = self.brushes[brush].deferral.fullness {
-            return seen;
-        }
-        self.settle();
-        let own = &mut self.brushes[brush];
-        let seen = own.load.fullness(traits);
-        own.deferral.fullness = Some(seen);
-        seen
-    }
-
-    /// Notes a deferred step.
-    pub(super) fn defer(&mut self, brush: usize) {
-        self.backend.unsettled = Some(brush);
-        let deferral = &mut self.brushes[brush].deferral;
-        deferral.steps += 1;
-        deferral.unsettled += 1;
-        if deferral.steps.is_multiple_of(SETTLE_EVERY) {
-            deferral.fullness = None;
-            self.settle();
-        }
-    }
-
     /// Has the model write back what it holds.
     pub(crate) fn settle(&mut self) {
         if let Some(brush) = self.backend.unsettled.take()
@@ -164,7 +129,7 @@ impl Painting {
             let report = model.settle(window, Arc::make_mut(&mut own.load));
             let steps = std::mem::take(&mut own.deferral.unsettled);
             surface.top = surface.top.max(window.top());
-            self.note((brush, on), &report, steps);
+            self.note(brush, on, &report, steps);
             self.book(Some(brush));
         }
         let Backend { models, facts, .. } = &mut self.backend;
@@ -173,12 +138,88 @@ impl Painting {
     }
 
     /// Notes what so many steps of a brush did on a surface; of deferred ones that is known when they are settled.
-    pub(super) fn note(&mut self, (brush, on): (usize, usize), report: &StepReport, steps: u32) {
+    fn note(&mut self, brush: usize, surface: usize, report: &StepReport, steps: u32) {
         self.accounts.note(report);
-        let defers = self.backend.defers(&self.surfaces[on], false);
+        let defers = self.backend.defers(&self.surfaces[surface], false);
         if !defers || report.footprint_cells > 0 {
             let under = UnderBrush::mean(report, steps, self.surfaces.cell_m());
             self.brushes[brush].under = under;
+        }
+    }
+}
+
+/// Time at which the model moves the paint of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Timing {
+    /// In the step.
+    Now,
+    /// When it is settled.
+    Deferred,
+}
+
+impl Stroke<'_> {
+    /// Time at which the model moves the paint of the stroke's steps.
+    pub(super) fn timing(&mut self) -> Timing {
+        let has_wells = self.has_wells();
+        let Painting {
+            backend, surfaces, ..
+        } = &mut *self.painting;
+        if backend.defers(&surfaces[self.surface], has_wells) {
+            Timing::Deferred
+        } else {
+            Timing::Now
+        }
+    }
+
+    /// Fullness of the brush, as far as its stroke may know.
+    pub(super) fn seen_fullness(&mut self) -> f32 {
+        let traits = self.traits();
+        let Painting {
+            backend, surfaces, ..
+        } = &mut *self.painting;
+        if !backend.defers(&surfaces[self.surface], false) {
+            return self.brush().load.fullness(&traits);
+        }
+        if let Some(seen) = self.brush().deferral.fullness {
+            return seen;
+        }
+        self.painting.settle();
+        let own = self.brush_mut();
+        let seen = own.load.fullness(&traits);
+        own.deferral.fullness = Some(seen);
+        seen
+    }
+
+    /// Settles earlier steps, unless this one is deferred with them.
+    pub(super) fn settle_before(&mut self, timing: Timing) {
+        let is_next = self.painting.backend.unsettled == Some(self.brush);
+        if timing == Timing::Now || !is_next {
+            self.painting.settle();
+        }
+    }
+
+    /// Notes what a step did; the report of a deferred one covers all that were not settled.
+    pub(super) fn note(&mut self, report: &StepReport, timing: Timing) {
+        let unsettled = match timing {
+            Timing::Deferred => self.brush().deferral.unsettled,
+            Timing::Now => 0,
+        };
+        self.painting
+            .note(self.brush, self.surface, report, 1 + unsettled);
+    }
+
+    /// Counts a deferred step; after many of them all are settled.
+    pub(super) fn note_deferred(&mut self, timing: Timing) {
+        if timing == Timing::Now {
+            return;
+        }
+        self.painting.backend.unsettled = Some(self.brush);
+        let deferral = &mut self.brush_mut().deferral;
+        deferral.steps += 1;
+        deferral.unsettled += 1;
+        if deferral.steps.is_multiple_of(SETTLE_EVERY) {
+            deferral.fullness = None;
+            self.painting.settle();
         }
     }
 }

@@ -4,127 +4,95 @@ use std::sync::Arc;
 
 use maulstick_canvas::relief::ride;
 use maulstick_model::brush::head::low_bounds;
-use maulstick_model::brush::scale::Scale;
 use maulstick_model::brush::traits::BrushTraits;
-use maulstick_model::interface::{Step, Sweep};
+use maulstick_model::interface::{Step, StepReport, Sweep};
 
-use crate::history::OpenStep;
+use super::backend::Timing;
+use super::cells::Cells;
+use super::stroke::Stroke;
 use crate::painting::Painting;
 use crate::painting::brushes::handling::handling_of;
 use crate::painting::optics::thinner_slot;
 use crate::painting::surfaces::preparation::Preparation;
 
-impl Painting {
-    /// One step of a brush on a surface, doubled so many times.
-    pub(super) fn step(
-        &mut self,
-        (brush, on): (usize, usize),
-        scale: Scale,
-        (sweep, doublings): (Sweep<'_>, u32),
-    ) {
-        self.accounts.steps += 1;
-        let own = &self.brushes[brush];
-        let traits = BrushTraits::of(&own.thinned, scale.cell_m, scale.zoom).doubled(doublings);
-        let surface = &self.surfaces[on];
-        let has_wells = !self.scene.surfaces[on].wells.is_empty();
-        let deferred = self.backend.defers(surface, has_wells);
-        let height = if deferred {
-            // The height of the paint is not known here.
-            f32::INFINITY
-        } else {
-            let [wet, tooth] = surface.heights();
-            let film = own.load.thickest() as f32 * traits.film_cells_per_quantum;
-            wet + film + traits.sink + tooth
-        };
-        let Some((from, to)) = low_bounds(&own.head, sweep.to, &traits, height) else {
+impl Stroke<'_> {
+    /// One step of the brush along its path, doubled so many times.
+    pub(super) fn step(&mut self, sweep: Sweep<'_>, doublings: u32) {
+        self.painting.accounts.steps += 1;
+        let traits = self.traits().doubled(doublings);
+        let timing = self.timing();
+        let height = self.paint_height(&traits, timing);
+        let bounds = low_bounds(&self.brush().head, sweep.to, &traits, height);
+        let Some((from, to)) = bounds else {
             return;
         };
-        if self.history.open_of(Some(&own.name)).is_none() {
-            // A command ended the stroke's undo step: the rest of the stroke is one of its own.
-            self.begin_stroke_step(brush);
-        }
+        let cells = Cells { from, to };
+        self.resume_undo_step();
         // Paint is pushed a cell farther than the brush comes.
-        self.claim(
-            (brush, on),
-            from.map(|cell| cell - 1),
-            to.map(|cell| cell + 1),
-        );
-        let ride = ride::reach(scale.cell_m) as i64;
-        let (ride_from, ride_to) = (from.map(|cell| cell - ride), to.map(|cell| cell + ride));
-        if !self.reach((brush, on), ride_from, ride_to) {
+        self.claim(cells.grown(1));
+        let ride = ride::reach(self.scale.cell_m) as i64;
+        if !self.open_window(cells.grown(ride)) {
             return;
         }
-        if !deferred || self.backend.unsettled != Some(brush) {
-            self.settle();
-        }
-        if has_wells {
-            self.tend_wells((brush, on), (from, to), (sweep.to, &traits));
-        }
-        let own = &mut self.brushes[brush];
-        let Some((_, window)) = &mut own.window else {
+        self.settle_before(timing);
+        self.refill_wells(cells, sweep.to, &traits);
+        let Some(report) = self.move_paint(sweep, traits, cells, timing) else {
             return;
         };
-        let handling = handling_of(&self.scene, &own.name, self.scene.surfaces[on].id);
-        let preparation = Preparation::of(&self.scene.surfaces[on]);
-        let surface = &mut self.surfaces[on];
+        self.note(&report, timing);
+        self.empty_jars(cells.grown(1));
+        self.note_deferred(timing);
+    }
+
+    /// Height to which there is paint, on the surface and the brush, cells; of deferred steps it is not known.
+    fn paint_height(&self, traits: &BrushTraits, timing: Timing) -> f32 {
+        if timing == Timing::Deferred {
+            return f32::INFINITY;
+        }
+        let [wet, tooth] = self.surface().heights();
+        let film = self.brush().load.thickest() as f32 * traits.film_cells_per_quantum;
+        wet + film + traits.sink + tooth
+    }
+
+    /// Has the model move the paint under the head.
+    fn move_paint(
+        &mut self,
+        sweep: Sweep<'_>,
+        traits: BrushTraits,
+        cells: Cells,
+        timing: Timing,
+    ) -> Option<StepReport> {
+        let Painting {
+            scene,
+            surfaces,
+            brushes,
+            backend,
+            ..
+        } = &mut *self.painting;
+        let (brush, surface) = (&mut brushes[self.brush], &mut surfaces[self.surface]);
+        let (_, window) = brush.window.as_mut()?;
+        let handling = handling_of(scene, &brush.name, surface.id);
+        let preparation = Preparation::of(&scene.surfaces[self.surface]);
         // Below this the head may touch.
         window.note_top(surface.top);
         let mut step = Step {
             window,
-            head: &own.head,
+            head: &brush.head,
             sweep,
-            bounds: (from, to),
-            load: Arc::make_mut(&mut own.load),
+            bounds: (cells.from, cells.to),
+            load: Arc::make_mut(&mut brush.load),
             traits: preparation.traits(traits, handling.transfer),
             handling,
             stain: preparation.stain,
             lasting: preparation.lasting,
-            thinner: thinner_slot(&self.scene),
+            thinner: thinner_slot(scene),
         };
-        let model = self.backend.models.of(surface.model);
-        let report = match deferred {
-            true => model.step(&mut step),
-            false => model.step_now(&mut step),
+        let model = backend.models.of(surface.model);
+        let report = match timing {
+            Timing::Deferred => model.step(&mut step),
+            Timing::Now => model.step_now(&mut step),
         };
         surface.top = surface.top.max(window.top());
-        // The report of deferred steps covers all that were not settled.
-        let unsettled = match deferred {
-            true => own.deferral.unsettled_steps(),
-            false => 0,
-        };
-        self.note((brush, on), &report, 1 + unsettled);
-        if has_wells {
-            let (from, to) = (from.map(|cell| cell - 1), to.map(|cell| cell + 1));
-            self.empty_jars((brush, on), (from, to));
-        }
-        if deferred {
-            self.defer(brush);
-        }
-    }
-
-    /// Notes which tiles a brush's step reaches, and ends the open steps of other brushes that have
-    /// reached one of them: no two steps change a tile at the same time.
-    pub(super) fn claim(&mut self, (brush, on): (usize, usize), from: [i64; 2], to: [i64; 2]) {
-        let surface = self.surfaces[on].id;
-        let Some(rect) = self.surfaces[on].store.around(from, to) else {
-            return;
-        };
-        let name = &self.brushes[brush].name;
-        let Some(open) = self.history.open_of(Some(name)) else {
-            return;
-        };
-        if open.last_reach == Some((surface, rect)) {
-            return;
-        }
-        open.last_reach = Some((surface, rect));
-        open.reached.extend(rect.tiles().map(|id| (surface, id)));
-        let own = open.id;
-        let shares = |step: &OpenStep| {
-            let mut tiles = rect.tiles();
-            step.id != own && tiles.any(|id| step.reached.contains(&(surface, id)))
-        };
-        if self.history.open().any(shares) {
-            self.end_step(shares);
-        }
+        Some(report)
     }
 }

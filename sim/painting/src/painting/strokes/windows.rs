@@ -1,47 +1,45 @@
 //! Windows: the tiles that brushes work on.
 
+use super::cells::Cells;
+use super::stroke::Stroke;
 use crate::painting::Painting;
 
 /// A window reaches this many cells beyond the head, so that it is not opened anew at each step.
 const WINDOW_MARGIN: i64 = 32;
 
-impl Painting {
-    /// Makes sure that the brush's window on a surface holds the cells `from`..`to`; false if they are all outside the
+impl Stroke<'_> {
+    /// Opens a window of the brush that holds these cells, unless it has one; false if they are all outside the
     /// surface.
-    pub(super) fn reach(
-        &mut self,
-        (brush, on): (usize, usize),
-        from: [i64; 2],
-        to: [i64; 2],
-    ) -> bool {
-        let store = &self.surfaces[on].store;
-        let Some(needed) = store.around(from, to) else {
+    pub(super) fn open_window(&mut self, cells: Cells) -> bool {
+        let store = &self.surface().store;
+        let Some(needed) = store.around(cells.from, cells.to) else {
             return false;
         };
-        if let Some((at, window)) = &self.brushes[brush].window
-            && *at == on
+        if let Some((on, window)) = &self.brush().window
+            && *on == self.surface
             && window.rect().holds(&needed)
         {
             return true;
         }
-        let wide = |edge: [i64; 2], by: i64| edge.map(|cell| cell + by);
-        let rect = store
-            .around(wide(from, -WINDOW_MARGIN), wide(to, WINDOW_MARGIN))
-            .unwrap_or(needed);
-        self.commit();
-        if let Some((at, window)) = self.brushes[brush].window.take() {
-            window.close(&mut self.surfaces[at].store);
+        let wide = cells.grown(WINDOW_MARGIN);
+        let rect = store.around(wide.from, wide.to).unwrap_or(needed);
+        self.painting.commit();
+        if let Some((on, window)) = self.brush_mut().window.take() {
+            window.close(&mut self.painting.surfaces[on].store);
         }
-        let window = self.surfaces[on].open_window(rect).or_else(|| {
+        let opened = self.painting.surfaces[self.surface].open_window(rect);
+        let opened = opened.or_else(|| {
             // Another brush holds some of these tiles: its paint is written back first.
-            self.close_windows();
-            self.surfaces[on].open_window(rect)
+            self.painting.close_windows();
+            self.painting.surfaces[self.surface].open_window(rect)
         });
-        let opened = window.is_some();
-        self.brushes[brush].window = window.map(|window| (on, window));
-        opened
+        let is_open = opened.is_some();
+        self.brush_mut().window = opened.map(|window| (self.surface, window));
+        is_open
     }
+}
 
+impl Painting {
     /// Writes what the windows hold back to the tiles.
     pub fn commit(&mut self) {
         self.settle();

@@ -16,7 +16,7 @@ pub(super) struct Progress {
 struct Consumed {
     newest: BrushConsumed,
     /// The last number reported to it.
-    told: Option<u64>,
+    reported: Option<u64>,
 }
 
 impl Progress {
@@ -40,8 +40,8 @@ impl Progress {
         if known
             .is_none_or(|known| (known.device, known.device_epoch) != (origin.source, origin.epoch))
         {
-            let (newest, told) = (fresh, None);
-            self.devices.set(device, Consumed { newest, told });
+            let (newest, reported) = (fresh, None);
+            self.devices.set(device, Consumed { newest, reported });
         }
         if let Some(known) = self.devices.get_mut(device) {
             known.newest.next = seq.wrapping_add(1);
@@ -63,20 +63,20 @@ impl Progress {
     }
 
     /// The last report may not have reached a device: forgets it.
-    pub(super) fn forget_told(&mut self, device: &str) {
+    pub(super) fn forget_report(&mut self, device: &str) {
         if let Some(known) = self.devices.get_mut(device) {
-            known.told = None;
+            known.reported = None;
         }
     }
 
     /// Reports the consumed samples to devices; `first` is the first sample of a device that waits to be solved.
-    pub(super) fn tell(
+    pub(super) fn publish(
         &mut self,
         now_ns: u64,
         to: &mut Sender<BrushConsumed>,
         first: impl Fn(Origin) -> Option<u64>,
     ) -> Result<(), BusError> {
-        for Consumed { newest, told } in self.devices.values_mut() {
+        for Consumed { newest, reported } in self.devices.values_mut() {
             let origin = Origin {
                 source: newest.device,
                 epoch: newest.device_epoch,
@@ -84,8 +84,8 @@ impl Progress {
             let waits = first(origin);
             let next = waits.map_or(newest.next, |first| first.min(newest.next));
             // Of one that has only begun there is nothing to report.
-            if *told != Some(next) && (waits.is_none() || told.is_some()) {
-                *told = Some(next);
+            if *reported != Some(next) && (waits.is_none() || reported.is_some()) {
+                *reported = Some(next);
                 let report = BrushConsumed {
                     next,
                     ..newest.clone()

@@ -1,6 +1,7 @@
 //! Relief below brushes, for the hands that feel it.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use maulstick_bus::typed::{Receiver, Sender};
 use maulstick_bus::{Bus, BusError, Qos, Queue, Wake};
@@ -17,14 +18,16 @@ const AGAIN_NS: u64 = 500_000_000;
 
 /// Sends the relief below each brush while its states come, where a device of the rig gives force.
 pub(super) struct BrushReliefs {
+    bus: Arc<dyn Bus>,
+    me: Origin,
     topics: Topics,
     infos: Receiver<StylusInfo>,
     is_felt: bool,
-    brushes: BTreeMap<String, Told>,
+    brushes: BTreeMap<String, LastSent>,
 }
 
 /// State last sent of a brush.
-struct Told {
+struct LastSent {
     sender: Sender<BrushRelief>,
     sent_ns: u64,
     read_ns: u64,
@@ -38,13 +41,20 @@ impl BrushReliefs {
     ///
     /// # Errors
     /// [`BusError`].
-    pub(super) fn new(bus: &dyn Bus, topics: &Topics, wake: &Wake) -> Result<Self, BusError> {
+    pub(super) fn new(
+        bus: Arc<dyn Bus>,
+        topics: &Topics,
+        me: Origin,
+        wake: &Wake,
+    ) -> Result<Self, BusError> {
         let key = topics.stylus_info("*");
         Ok(Self {
             topics: topics.clone(),
-            infos: Receiver::new(bus, &key, Qos::Cached, Queue::Ring(64), wake)?,
+            infos: Receiver::new(&*bus, &key, Qos::Cached, Queue::Ring(64), wake)?,
             is_felt: false,
             brushes: BTreeMap::new(),
+            bus,
+            me,
         })
     }
 
@@ -52,13 +62,7 @@ impl BrushReliefs {
     ///
     /// # Errors
     /// [`BusError`].
-    pub(super) fn note(
-        &mut self,
-        bus: &dyn Bus,
-        me: Origin,
-        brush: &str,
-        solve: Option<&Solve>,
-    ) -> Result<(), BusError> {
+    pub(super) fn note(&mut self, brush: &str, solve: Option<&Solve>) -> Result<(), BusError> {
         while let Some(info) = self.infos.try_recv() {
             self.is_felt |= info.message.drives & axes::FORCE != 0;
         }
@@ -66,17 +70,18 @@ impl BrushReliefs {
             return Ok(());
         }
         if !self.brushes.contains_key(brush) {
-            let told = Told {
-                sender: Sender::new(bus, &self.topics.brush_relief(brush), Qos::RealTime, me)?,
+            let topic = self.topics.brush_relief(brush);
+            let sent = LastSent {
+                sender: Sender::new(&*self.bus, &topic, Qos::RealTime, self.me)?,
                 sent_ns: 0,
                 read_ns: 0,
                 relief: None,
                 solve: None,
             };
-            self.brushes.insert(brush.to_owned(), told);
+            self.brushes.insert(brush.to_owned(), sent);
         }
-        if let Some(told) = self.brushes.get_mut(brush) {
-            told.solve = solve.cloned();
+        if let Some(sent) = self.brushes.get_mut(brush) {
+            sent.solve = solve.cloned();
         }
         Ok(())
     }
@@ -85,23 +90,23 @@ impl BrushReliefs {
     ///
     /// # Errors
     /// [`BusError`].
-    pub(super) fn tell(&mut self, painting: &Painting, now_ns: u64) -> Result<(), BusError> {
-        for (brush, told) in &mut self.brushes {
-            if now_ns < told.read_ns + PERIOD_NS {
+    pub(super) fn publish(&mut self, painting: &Painting, now_ns: u64) -> Result<(), BusError> {
+        for (brush, sent) in &mut self.brushes {
+            if now_ns < sent.read_ns + PERIOD_NS {
                 continue;
             }
-            let solve = told.solve.take();
+            let solve = sent.solve.take();
             let Some(relief) = solve.and_then(|solve| painting.relief_below(brush, &solve)) else {
                 continue;
             };
-            told.read_ns = now_ns;
-            let is_told = told.relief.as_ref() == Some(&relief);
-            if is_told && now_ns < told.sent_ns + AGAIN_NS {
+            sent.read_ns = now_ns;
+            let is_same = sent.relief.as_ref() == Some(&relief);
+            if is_same && now_ns < sent.sent_ns + AGAIN_NS {
                 continue;
             }
-            told.sent_ns = now_ns;
-            told.sender.send(now_ns, now_ns, &relief)?;
-            told.relief = Some(relief);
+            sent.sent_ns = now_ns;
+            sent.sender.send(now_ns, now_ns, &relief)?;
+            sent.relief = Some(relief);
         }
         Ok(())
     }

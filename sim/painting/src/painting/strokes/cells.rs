@@ -1,0 +1,18 @@
+//! Rectangles of cells of a surface.
+
+/// The cells `from` up to but not with `to`; they may lie beyond the surface's edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Cells {
+    pub(super) from: [i64; 2],
+    pub(super) to: [i64; 2],
+}
+
+impl Cells {
+    /// The cells grown by so many on each side.
+    pub(super) fn grown(self, by: i64) -> Self {
+        Self {
+            from: self.from.map(|cell| cell - by),
+            to: self.to.map(|cell| cell + by),
+        }
+    }
+}
