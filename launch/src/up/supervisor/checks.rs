@@ -51,7 +51,7 @@ impl Checks {
     pub(super) fn open(&self, asker: Asker, mut config: RigConfig, path: PathBuf) {
         self.beside(asker, move || {
             let checked = opened(&mut config, path);
-            SwitchEvent::Checked(checked.map(|()| Plan { config, load: None }))
+            SwitchEvent::Checked(checked.map(|()| Box::new(Plan { config, load: None })))
         });
     }
 
@@ -66,9 +66,9 @@ impl Checks {
         self.beside(asker, move || {
             let path = path.or_else(|| sketches.as_ref().and_then(sketch::begin));
             let checked = begun(&mut config, path, &canvas);
-            let plan = checked.map(|load| Plan {
-                config,
-                load: Some(load),
+            let plan = checked.map(|load| {
+                let load = Some(load);
+                Box::new(Plan { config, load })
             });
             SwitchEvent::Checked(plan)
         });

@@ -43,7 +43,7 @@ impl Plan {
 #[derive(Debug)]
 pub(super) enum SwitchEvent {
     /// The other painting was checked.
-    Checked(Result<Plan, UserError>),
+    Checked(Result<Box<Plan>, UserError>),
     /// The painting was put in another file, or not.
     Saved(Result<(), UserError>),
     /// Work beside the supervisor panicked.
@@ -206,7 +206,6 @@ fn end(asker: Asker, outcome: Outcome) -> Step {
 fn checking(forget: bool, event: SwitchEvent, asker: Asker, now: Instant) -> Step {
     match event {
         SwitchEvent::Checked(Ok(plan)) => {
-            let plan = Box::new(plan);
             let closing = Stage::Closing { plan, since: now };
             (closing, vec![SwitchAction::RenewPaint])
         }
@@ -387,10 +386,10 @@ mod tests {
     fn closing() -> (Switch, RigConfig, Instant) {
         let (mut switch, here, now) = (Switch::default(), painting("sea.maul"), Instant::now());
         switch.check(ASKER, false);
-        let plan = Plan {
+        let plan = Box::new(Plan {
             config: painting("hill.maul"),
             load: None,
-        };
+        });
         let actions = switch.on(SwitchEvent::Checked(Ok(plan)), &here, now);
         assert_eq!(actions, [SwitchAction::RenewPaint]);
         (switch, here, now)
