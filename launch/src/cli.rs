@@ -10,7 +10,7 @@ use nix::sys::prctl::set_name;
 use crate::advice;
 use crate::beside;
 use crate::commands::completions::{self, CompletionsCommand, Headings};
-use crate::commands::edit::{self, DailyEdits, EditsOf, LayerEdits, PaletteEdits};
+use crate::commands::edit::{self, DAILY, EditCommand};
 use crate::commands::{
     brush, canvas, colour, demo, device, endpoint, nodes, painting, recording, render, schema,
     snapshot, take, topic,
@@ -45,7 +45,7 @@ enum Command {
     Schema(schema::SchemaOptions),
     /// An edit of the painting
     #[command(flatten)]
-    Daily(EditsOf<DailyEdits>),
+    Daily(EditCommand),
     /// As `take render`
     Render(render::RenderOptions),
     /// As `painting snapshot`
@@ -58,10 +58,10 @@ enum Command {
     Canvas(canvas::CanvasCommand),
     /// Scrape the palette, let its paint deplete or last
     #[command(subcommand)]
-    Palette(EditsOf<PaletteEdits>),
+    Palette(EditCommand),
     /// Dry paint into a layer, make layers wet again, set their opacity
     #[command(subcommand)]
-    Layer(EditsOf<LayerEdits>),
+    Layer(EditCommand),
     /// Load, clean, tune, take in hand, set the mode; show brushes, import one
     #[command(subcommand)]
     Brush(brush::BrushCommand),
@@ -101,7 +101,7 @@ enum NodesCommand {
 /// The commands as `maulstick --help` lists them.
 const HEADINGS: &Headings = &[
     ("Rig", &["up", "doctor", "node", "endpoint", "schema"]),
-    ("Daily", &["load", "undo", "snapshot", "render"]),
+    ("Daily", &DAILY_NAMES),
     (
         "Paint",
         &["painting", "canvas", "palette", "layer", "brush", "colour"],
@@ -111,13 +111,16 @@ const HEADINGS: &Headings = &[
     ("Program", &["demo", "bench", "completions"]),
 ];
 
-/// Commands that stand beside the groups as well, each with its group.
-const SHORT: [(&str, &str); 4] = [
-    ("load", "brush"),
-    ("undo", "painting"),
-    ("snapshot", "painting"),
-    ("render", "take"),
-];
+/// Names of the daily commands.
+const DAILY_NAMES: [&str; DAILY.len()] = {
+    let mut names = [""; DAILY.len()];
+    let mut place = 0;
+    while place < names.len() {
+        names[place] = DAILY[place].0;
+        place += 1;
+    }
+    names
+};
 
 /// Help of a command, and its long form.
 fn help(command: &clap::Command) -> [String; 2] {
@@ -131,7 +134,7 @@ fn help(command: &clap::Command) -> [String; 2] {
 /// The program: its short commands have the help of those that they are short for.
 fn program() -> clap::Command {
     let program = beside::with_commands(Cli::command());
-    SHORT.iter().fold(program, |program, (name, group)| {
+    DAILY.iter().fold(program, |program, (name, group)| {
         let group_of = program.find_subcommand(group);
         let long_form = group_of.and_then(|group| group.find_subcommand(name));
         let [about, long] = long_form.map(help).unwrap_or_default();
@@ -218,7 +221,8 @@ fn carry_out(command: Command) -> Result<i32, UserError> {
 
 #[cfg(test)]
 mod tests {
-    use maulstick_types::edits::{self, Edit, Form as _, Relight};
+    use maulstick_painting::edits::{self, Relight};
+    use maulstick_types::Edit;
     use maulstick_types::scene::Light;
 
     use super::*;
@@ -252,29 +256,23 @@ mod tests {
     }
 
     /// Edits that only a window asks for: their numbers are found with the pointer.
-    const POINTED_AT: [&str; 4] = ["GoTo", "NameLayer", "Place", "Wells"];
+    const POINTED_AT: [&str; 4] = ["go_to", "name_layer", "place", "wells"];
 
-    macro_rules! walk {
-        ($($edit:ident),*) => {
-            #[test]
-            fn each_edit_is_read_from_its_command_line() {
-                let mut without = Vec::new();
-                $(
-                    let example = edits::$edit::example().expect("in range");
-                    match edits::$edit::ARGUMENTS {
-                        Some(arguments) => {
-                            assert_eq!(edit_of(arguments), Some(example.into()), "{arguments}");
-                        }
-                        None => without.push(stringify!($edit)),
-                    }
-                )*
-                without.sort_unstable();
-                assert_eq!(without, POINTED_AT);
+    #[test]
+    fn each_edit_is_read_from_its_command_line() {
+        let mut without = Vec::new();
+        for entry in edits::entries() {
+            match entry.arguments {
+                Some(arguments) => {
+                    let example = (entry.example)().expect("in range");
+                    assert_eq!(edit_of(arguments), Some(example), "{arguments}");
+                }
+                None => without.push(entry.name),
             }
-        };
+        }
+        without.sort_unstable();
+        assert_eq!(without, POINTED_AT);
     }
-
-    maulstick_types::for_each_edit!(walk);
 
     #[test]
     fn what_is_out_of_range_is_rejected_on_the_command_line() {
@@ -376,7 +374,7 @@ mod tests {
             ids.collect()
         };
         let program = program();
-        for (name, group) in SHORT {
+        for (name, group) in DAILY {
             let short = program.find_subcommand(name).expect(name);
             let group_of = program.find_subcommand(group).expect(group);
             let long = group_of.find_subcommand(name).expect(name);

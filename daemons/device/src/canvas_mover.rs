@@ -1,4 +1,4 @@
-//! Motion of the canvas by the free hand: samples of a 6-DOF mouse become [`Place`].
+//! Motion of the canvas by the free hand: samples of a 6-DOF mouse become edits of its place.
 //!
 //! Pushing right and up pans, pushing away from the desk zooms in, turning about the axis out of the desk turns the
 //! canvas; all about the middle of the desk, where the painter looks. The commands go into the journal, so a replay
@@ -16,8 +16,8 @@ use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, Qos, Queue, Wake};
 use maulstick_num::exp;
 use maulstick_rig::UserError;
+use maulstick_types::Edit;
 use maulstick_types::control::ControlSample;
-use maulstick_types::edits::Place;
 use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::wire::topics::Topics;
 
@@ -117,7 +117,7 @@ impl Drop for CanvasMover {
 fn follow(
     heard: &Samples<ControlSample>,
     mut shown: impl FnMut() -> Option<SurfacePlacement>,
-    mut send: impl FnMut(Place) -> Result<(), UserError>,
+    mut send: impl FnMut(Edit) -> Result<(), UserError>,
 ) {
     let mut lie: Option<SurfacePlacement> = None;
     while let Ok(mut control) = heard.recv() {

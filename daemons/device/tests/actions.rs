@@ -11,9 +11,9 @@ use maulstick_brush::desk::Desk;
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, Faults, MemoryNet, Qos, Queue, Wake};
 use maulstick_device::actions::{Actions, Actor};
+use maulstick_painting::edits::{Clean, Handle, Place, Undo};
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Clean, Edit, Handle, Place, Undo};
 use maulstick_types::paint::{Entry, JournalEntry};
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE, Scene, Surface};
 use maulstick_types::stylus::{StylusSample, switch};
@@ -107,10 +107,7 @@ impl Rig {
     /// The ways of using the brush that were asked for, in order.
     fn modes(&self) -> Vec<BrushMode> {
         let commands = self.commands.iter();
-        let modes = commands.filter_map(|command| match command {
-            Command::Edit(Edit::Handle(handle)) => Some(handle.mode.clone()),
-            _ => None,
-        });
+        let modes = commands.filter_map(|command| Some(command.edit::<Handle>()?.mode));
         modes.collect()
     }
 
@@ -239,7 +236,7 @@ fn what_is_refused_is_told_and_the_next_switch_works() {
     hold(&mut stranger, CLEAN | PICK);
     hold(&mut stranger, PALETTE_SWITCH);
     rig.until("a palette that moves", |rig| rig.commands.len() == 1);
-    assert!(matches!(rig.commands[0], Command::Edit(Edit::Place(_))));
+    assert!(rig.commands[0].edit::<Place>().is_some());
 }
 
 #[test]

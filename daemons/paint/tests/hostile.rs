@@ -4,8 +4,8 @@ mod support;
 
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Faults, MemoryNet, Qos, Queue, Wake};
+use maulstick_painting::edits::{Dry, Load, Place};
 use maulstick_types::command::{Command, Outcome, RigCommand, TakeCommand};
-use maulstick_types::edits::{Dry, Load, Place};
 use maulstick_types::paint::JournalEntry;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{BrushName, WholePath};

@@ -4,9 +4,9 @@ mod support;
 
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Faults, MemoryNet, Qos, Queue, Wake};
+use maulstick_painting::edits::{Load, Place};
 use maulstick_types::brush::BrushState;
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Load, Place};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::BrushName;
 use support::{Device, Live, START_NS, loads, painting, pen};

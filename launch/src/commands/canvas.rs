@@ -3,7 +3,7 @@
 use clap::Subcommand;
 use maulstick_rig::UserError;
 
-use super::edit::{self, CanvasEdits, EditsOf};
+use super::edit::{self, EditCommand};
 use super::light;
 
 /// Commands of `maulstick canvas`.
@@ -11,7 +11,7 @@ use super::light;
 pub enum CanvasCommand {
     /// An edit
     #[command(flatten)]
-    Edit(EditsOf<CanvasEdits>),
+    Edit(EditCommand),
     /// Show or change the light
     Light(light::LightOptions),
 }

@@ -1,67 +1,34 @@
 //! Edits as commands: `maulstick brush load`, `layer dry`, `painting undo` …, each parsed into the edit itself.
 
-use std::fmt::Debug;
-use std::marker::PhantomData;
-
 use clap::error::ErrorKind;
 use clap::{Args as _, FromArgMatches, Subcommand};
+use maulstick_painting::edits::{self, CommandForm, Ground, GroundSource};
 use maulstick_rig::UserError;
-use maulstick_types::edits::{CommandForm, Edit, Ground, GroundSource, commands};
+use maulstick_types::Edit;
 
 use crate::commands::client::{Client, Target};
 use crate::commands::say;
 use crate::ground::GroundFile;
 
-/// Edits of the daily commands, which stand beside the groups as well.
-pub const DAILY: [&str; 2] = ["load", "undo"];
+/// Commands that stand beside the groups as well, each with its group.
+pub const DAILY: [(&str, &str); 4] = [
+    ("load", "brush"),
+    ("undo", "painting"),
+    ("snapshot", "painting"),
+    ("render", "take"),
+];
 
-/// A list of commands that has edits among them.
-pub trait EditGroup: Clone + Debug {
-    /// True for an edit of the list.
-    fn has(form: &CommandForm) -> bool;
-}
-
-macro_rules! groups {
-    ($($(#[doc = $doc:literal])+ $group:ident, |$form:ident| $has:expr;)*) => { $(
-        $(#[doc = $doc])+
-        #[derive(Clone, Debug)]
-        pub struct $group;
-
-        impl EditGroup for $group {
-            fn has($form: &CommandForm) -> bool {
-                $has
-            }
-        }
-    )* };
-}
-
-groups! {
-    /// `maulstick brush`.
-    BrushEdits, |form| form.group == "brush";
-    /// `maulstick canvas`.
-    CanvasEdits, |form| form.group == "canvas";
-    /// `maulstick layer`.
-    LayerEdits, |form| form.group == "layer";
-    /// `maulstick painting`.
-    PaintingEdits, |form| form.group == "painting";
-    /// `maulstick palette`.
-    PaletteEdits, |form| form.group == "palette";
-    /// Beside the groups.
-    DailyEdits, |form| DAILY.contains(&form.name);
-}
-
-/// The edits of a list.
-fn forms<G: EditGroup>() -> impl Iterator<Item = CommandForm> {
-    commands().into_iter().filter(G::has)
-}
-
-/// An edit of the painting of a running rig.
+/// An edit of the painting of a running rig, among the commands of its group, or beside the groups if it is daily.
 #[derive(Clone, Debug)]
-pub struct EditsOf<G> {
+pub struct EditCommand {
     /// The edit.
     pub edit: Edit,
     target: Target,
-    group: PhantomData<G>,
+}
+
+/// The commands of all edits; no two have the same name.
+fn forms() -> impl Iterator<Item = CommandForm> {
+    edits::entries().iter().filter_map(|entry| entry.command)
 }
 
 /// Its command, with the help of the edit and the options that say which rig.
@@ -73,29 +40,34 @@ fn command(form: &CommandForm) -> clap::Command {
     both.long_about(long.or(about).unwrap_or_default())
 }
 
-impl<G: EditGroup> Subcommand for EditsOf<G> {
-    fn augment_subcommands(cli: clap::Command) -> clap::Command {
-        cli.subcommands(forms::<G>().map(|form| command(&form)))
+impl Subcommand for EditCommand {
+    fn augment_subcommands(parent: clap::Command) -> clap::Command {
+        let group = parent.get_name().to_owned();
+        let is_group = forms().any(|form| form.group == group);
+        let has = |form: &CommandForm| match is_group {
+            true => form.group == group,
+            false => DAILY.contains(&(form.name, form.group)),
+        };
+        parent.subcommands(forms().filter(has).map(|form| command(&form)))
     }
 
-    fn augment_subcommands_for_update(cli: clap::Command) -> clap::Command {
-        Self::augment_subcommands(cli)
+    fn augment_subcommands_for_update(parent: clap::Command) -> clap::Command {
+        Self::augment_subcommands(parent)
     }
 
     fn has_subcommand(name: &str) -> bool {
-        forms::<G>().any(|form| form.name == name)
+        forms().any(|form| form.name == name)
     }
 }
 
-impl<G: EditGroup> FromArgMatches for EditsOf<G> {
+impl FromArgMatches for EditCommand {
     fn from_arg_matches(matches: &clap::ArgMatches) -> Result<Self, clap::Error> {
         let missing = || clap::Error::new(ErrorKind::MissingSubcommand);
         let (name, options) = matches.subcommand().ok_or_else(missing)?;
-        let form = forms::<G>().find(|form| form.name == name);
+        let form = forms().find(|form| form.name == name);
         Ok(Self {
             edit: (form.ok_or_else(missing)?.read)(options)?,
             target: Target::from_arg_matches(options)?,
-            group: PhantomData,
         })
     }
 
@@ -105,52 +77,30 @@ impl<G: EditGroup> FromArgMatches for EditsOf<G> {
     }
 }
 
-/// Applies an edit to the painting of a running rig.
+/// Applies an edit to the painting of a running rig, with the file that it names, and says what it has done.
 ///
 /// # Errors
-/// A [`UserError`] with the refusal of the painting, or where no rig runs.
-pub fn run<G>(command: &EditsOf<G>) -> Result<i32, UserError> {
-    send(&command.target, command.edit.clone())
-}
-
-/// Sends an edit, with the file that it names, and says what it has done.
-///
-/// # Errors
-/// As [`run`], and for a file that cannot be read.
-fn send(target: &Target, mut edit: Edit) -> Result<i32, UserError> {
-    edit.check_idle()?;
-    if let Edit::Ground(ground) = &mut edit {
-        read_ground(ground)?;
+/// A [`UserError`] with the refusal of the painting, where no rig runs, and for a file that cannot be read.
+pub fn run(command: &EditCommand) -> Result<i32, UserError> {
+    let mut edit = command.edit.clone();
+    let known = edits::read(&edit)?;
+    known.check_idle()?;
+    if let Some(ground) = edit.get() {
+        edit = read_ground(ground)?.into();
     }
-    let said = word(&edit);
-    let done = Client::command(target, edit)?;
-    if let Some(said) = said {
+    let done = Client::command(&command.target, edit)?;
+    if let Some(said) = known.reply() {
         say!("{said}{done}");
     }
     Ok(0)
 }
 
-/// What a reply is introduced with; `None` for an edit that is done without a word.
-fn word(edit: &Edit) -> Option<&'static str> {
-    match edit {
-        Edit::Dry(dry) if dry.over.is_some() => Some("dries "),
-        Edit::Dry(_) => Some("dried: "),
-        Edit::StopDrying(_) => Some("the drying is ended"),
-        Edit::Wet(_) => Some("wet again: "),
-        Edit::Convert(_) => Some("converted: "),
-        Edit::Undo(_) => Some("undone: "),
-        Edit::Redo(_) => Some("redone: "),
-        Edit::LoadFrom(_) => Some("loaded: "),
-        _ => None,
-    }
-}
-
 /// Puts the spectrum of a file in the place of its path.
-fn read_ground(edit: &mut Ground) -> Result<(), UserError> {
+fn read_ground(edit: Ground) -> Result<Ground, UserError> {
     let GroundSource::Named { name } = &edit.ground else {
-        return Ok(());
+        return Ok(edit);
     };
-    *edit = match GroundFile::read(name)? {
+    Ok(match GroundFile::read(name)? {
         GroundFile::Named(name) => Ground::named(edit.surface, &name)?,
         GroundFile::Spectrum(csv) => Ground::spectrum(edit.surface, &csv)?,
         GroundFile::Picture(_, name) => {
@@ -161,6 +111,5 @@ fn read_ground(edit: &mut Ground) -> Result<(), UserError> {
                      `maulstick up --ground PICTURE`",
                 ));
         }
-    };
-    Ok(())
+    })
 }

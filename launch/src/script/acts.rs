@@ -7,11 +7,11 @@ use maulstick_canvas::assets::{Assets, IMAGE, SPECTRUM};
 use maulstick_device::Take;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::PaintingSetup;
+use maulstick_painting::edits::{Form, Ground, LightChange, Tooth};
 use maulstick_painting::setup::relief_called;
 use maulstick_rig::UserError;
 use maulstick_rig::config::{BrushSection, is_path};
 use maulstick_types::command::advice::choice;
-use maulstick_types::edits::{Edit, Form, Ground, LightChange, Tooth};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::wire::topics::check_name;
 use serde::Deserialize as _;
@@ -39,13 +39,13 @@ pub(super) fn edit<E: Form>(step: &Step<'_>, library: &PaintLibrary) -> Result<A
     if step.kind.form.switch {
         switched_on(step)?;
     }
-    let mut edit: Edit = step.keys.read(E::read_step)?.into();
+    let mut edit = step.keys.read(E::read_step)?;
     edit.check_idle()?;
     for mixture in edit.mixtures_mut() {
         let known = library.check(mixture);
         *mixture = known.map_err(|error| refused(maulstick_painting::paint_error(error)))?;
     }
-    Ok(Act::Edit(Box::new(edit)))
+    Ok(Act::Edit(edit.into()))
 }
 
 /// Steps taken back.
@@ -232,7 +232,7 @@ pub(super) fn ground(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError
         GroundFile::Spectrum(csv) => Ground::spectrum(CANVAS, csv)?,
         GroundFile::Picture(..) => return Ok(Act::Ground(ground)),
     };
-    Ok(Act::Edit(Box::new(edit.into())))
+    Ok(Act::Edit(edit.into()))
 }
 
 pub(super) fn tooth(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {
@@ -264,7 +264,7 @@ pub(super) fn tooth(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError>
         let cell_m = PaintingSetup::default().cell_m;
         relief_called(&edit.tooth, edit.seed, cell_m, &Assets::default()).map_err(refused)?;
     }
-    Ok(Act::Edit(Box::new(edit.into())))
+    Ok(Act::Edit(edit.into()))
 }
 
 pub(super) fn light(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, UserError> {

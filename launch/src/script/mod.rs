@@ -35,10 +35,11 @@ use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_device::Take;
 use maulstick_optics::PaintLibrary;
+use maulstick_painting::edits::{self, LightChange};
 use maulstick_rig::UserError;
 use maulstick_rig::files::ending;
+use maulstick_types::Edit;
 use maulstick_types::Mixture;
-use maulstick_types::edits::{Edit, LightChange};
 use toml::de::DeTable;
 
 use self::entries::Source;
@@ -52,7 +53,7 @@ use crate::tooth::ToothPicture;
 #[derive(Clone, Debug)]
 pub enum Act {
     /// Applies an edit; that of a brush is for the one in hand.
-    Edit(Box<Edit>),
+    Edit(Edit),
     /// Takes up a brush: its name, its file, the share of its head that full pressure presses in.
     Brush(String, Box<BrushFile>, f64),
     /// Follows a take; its strokes load these mixtures in turn.
@@ -73,10 +74,18 @@ pub enum Act {
 
 impl Act {
     /// The mixtures of paints that it names.
-    fn mixtures_mut(&mut self) -> Vec<&mut Mixture> {
+    fn mixtures(&self) -> Vec<Mixture> {
         match self {
-            Self::Edit(edit) => edit.mixtures_mut(),
-            Self::Take(_, loads) => loads.iter_mut().collect(),
+            Self::Edit(edit) => edits::read(edit).map_or_else(
+                |_| Vec::new(),
+                |mut edit| {
+                    edit.mixtures_mut()
+                        .into_iter()
+                        .map(|own| own.clone())
+                        .collect()
+                },
+            ),
+            Self::Take(_, loads) => loads.clone(),
             _ => Vec::new(),
         }
     }
@@ -134,9 +143,9 @@ impl Script {
         };
         let mut paints = BTreeSet::new();
         for step in steps::listed(source, file.get_ref())? {
-            let mut act = steps::act(&step, library)?;
-            let parts = act.mixtures_mut().into_iter().flat_map(|own| &own.parts);
-            paints.extend(parts.map(|part| part.paint.clone()));
+            let act = steps::act(&step, library)?;
+            let parts = act.mixtures().into_iter().flat_map(|own| own.parts);
+            paints.extend(parts.map(|part| part.paint));
             if paints.len() > SLOTS {
                 let what = format!("with this step the script has {} paints", paints.len());
                 let help = format!("a painting has at most {SLOTS}: mix it from those before");

@@ -3,9 +3,9 @@
 use std::sync::LazyLock;
 
 use maulstick_optics::PaintLibrary;
+use maulstick_painting::edits::{self, Form as _, StepForm};
 use maulstick_rig::UserError;
 use maulstick_types::command::advice::nearest;
-use maulstick_types::edits::{self, Form as _, StepForm};
 use maulstick_types::values::ticks_in;
 use toml::de::DeTable;
 
@@ -41,7 +41,7 @@ macro_rules! edit_kinds {
     };
 }
 
-maulstick_types::for_each_edit!(edit_kinds);
+maulstick_painting::for_each_edit!(edit_kinds);
 
 /// Edits for which a script says more than they hold: files, changes and counts.
 const MORE: [(&str, Read); 4] = [

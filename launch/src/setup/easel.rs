@@ -8,10 +8,10 @@ use maulstick_appearance::light::changes_colour;
 use maulstick_canvas::assets::IMAGE;
 use maulstick_canvas::store::TileStore;
 use maulstick_painting::Sequencer;
+use maulstick_painting::edits::{EditEntry, Ground, Relight, Tooth, Undo};
 use maulstick_rig::UserError;
 use maulstick_session::{Autosave, Offline};
 use maulstick_types::Mixture;
-use maulstick_types::edits::{Ground, Relight, Tooth, Undo};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::StylusSample;
 use maulstick_types::values::{BrushName, MaterialName};
@@ -77,11 +77,10 @@ impl<'a> Easel<'a> {
     fn act(&mut self, act: Act) -> Result<(), UserError> {
         let done = match act {
             Act::Brush(name, file, share) => self.offline.take_up(&name, *file, share),
-            Act::Edit(mut edit) => {
-                if let Some(brush) = edit.brush_mut() {
-                    *brush = BrushName::new(self.offline.brush())?;
-                }
-                self.offline.edit(*edit).map(drop)
+            Act::Edit(edit) => {
+                let brush = BrushName::new(self.offline.brush())?;
+                let edit = (EditEntry::find(&edit)?.for_brush)(&edit, &brush)?;
+                self.offline.edit(edit).map(drop)
             }
             Act::Take(take, loads) => {
                 let samples = take.samples.iter();

@@ -1,8 +1,8 @@
 //! Changes of the light over a painting, with the spectrum of a file.
 
 use maulstick_optics::Illuminant;
+use maulstick_painting::edits::LightChange;
 use maulstick_rig::UserError;
-use maulstick_types::edits::LightChange;
 use maulstick_types::scene::Light;
 
 use crate::viewing::illuminant;

@@ -13,7 +13,6 @@ use maulstick_bus::{Bus, Qos, Wake};
 use maulstick_rig::command_client::CommandClient;
 use maulstick_rig::{UserError, asker};
 use maulstick_types::command::{Command, Detail, FileCommand};
-use maulstick_types::edits::{Edit, Relight};
 use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
@@ -239,13 +238,13 @@ fn patience(command: &Command) -> Duration {
 /// True if the first of two successive requests need not be carried out.
 fn replaces(newer: &Request, older: &Request) -> bool {
     // An exposure that was to be chosen anew is chosen by the light that it was requested with.
-    let chooses = matches!(
-        older,
+    let chooses = match older {
         Request::Command {
-            command: Command::Edit(Edit::Relight(Relight { expose: true, .. })),
+            command: Command::Edit(edit),
             ..
-        }
-    );
+        } => edit.word("expose") == "true",
+        _ => false,
+    };
     let set = newer.sets();
     set.is_some() && set == older.sets() && !chooses
 }
@@ -372,8 +371,10 @@ impl Drop for CommandDispatcher {
 mod tests {
     use maulstick_types::Pose;
     use maulstick_types::command::TakeCommand;
-    use maulstick_types::edits::{Place, Tune, Undo};
-    use maulstick_types::scene::{Light, Tuning};
+    use maulstick_types::scene::Light;
+
+    use maulstick_types::Edit;
+    use serde_json::json;
 
     use super::*;
 
@@ -389,9 +390,8 @@ mod tests {
     }
 
     fn place(surface: u32, zoom: f64) -> Request {
-        request(Command::from(
-            Place::new(surface, Pose::IDENTITY, zoom).expect("in reach"),
-        ))
+        let fields = json!({ "surface": surface, "pose": Pose::IDENTITY, "zoom": zoom });
+        request(Edit::named("place", &fields).into())
     }
 
     #[test]
@@ -401,7 +401,7 @@ mod tests {
         ));
         assert!(patience(&export) > patience(&Command::from(TakeCommand::Mark)));
         let (undo, stop) = (
-            Command::from(Undo { brush: None }),
+            Command::from(Edit::named("undo", &json!({}))),
             Command::from(FileCommand::StopExport),
         );
         assert_eq!(lane(&request(undo)), lane(&request(stop.clone())));
@@ -411,16 +411,8 @@ mod tests {
     #[test]
     fn of_what_a_slider_asks_for_the_newest_is_sent() {
         let tune = |brush: &str, stiffness: f64| {
-            let brush = brush.to_owned();
-            let wetness = 0.0;
-            request(Command::from(
-                Tune::try_from(&Tuning {
-                    brush,
-                    stiffness,
-                    wetness,
-                })
-                .expect("in range"),
-            ))
+            let fields = json!({ "brush": brush, "stiffness": stiffness, "wetness": 0.0 });
+            request(Edit::named("tune", &fields).into())
         };
         let mut waiting = VecDeque::new();
         for request in [
@@ -443,7 +435,7 @@ mod tests {
 
     #[test]
     fn of_places_that_wait_the_newest_is_sent_and_nothing_overtakes() {
-        let undo = || request(Command::from(Undo { brush: None }));
+        let undo = || request(Command::from(Edit::named("undo", &json!({}))));
         let mut waiting = VecDeque::new();
         for request in [
             place(0, 1.0),
@@ -466,7 +458,8 @@ mod tests {
                 intensity,
                 ..Light::default()
             };
-            request(Command::from(Relight { light, expose }))
+            let fields = json!({ "light": light, "expose": expose });
+            request(Edit::named("relight", &fields).into())
         };
         let mut waiting = VecDeque::new();
         for request in [

@@ -1,8 +1,20 @@
 //! Requests to the processes of a rig.
 
 use maulstick_types::command::{BrushCommand, Command, PAINT_NODE, RIG_NODE};
-use maulstick_types::edits::Edit;
 use maulstick_types::haptics::ForceOrder;
+
+/// The edit that moves a surface.
+const PLACE: &str = "place";
+/// Edits of a brush, its paint and its use.
+const OF_A_BRUSH: [&str; 5] = ["tune", "handle", "load", "load_from", "clean"];
+/// Edits that set a value, of which the newest counts, and the field that says whose.
+const SETTINGS: [(&str, &str); 5] = [
+    (PLACE, "surface"),
+    ("tune", "brush"),
+    ("handle", "brush"),
+    ("wells", "surface"),
+    ("relight", ""),
+];
 
 /// A request to a process of the rig.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,13 +73,7 @@ impl Request {
     /// True if it moves a surface.
     #[must_use]
     pub fn moves_surface(&self) -> bool {
-        matches!(
-            self,
-            Self::Command {
-                command: Command::Edit(Edit::Place(_)),
-                ..
-            }
-        )
+        matches!(self, Self::Command { command: Command::Edit(edit), .. } if edit.name == PLACE)
     }
 
     /// True if it changes the brush, its paint or how it is used.
@@ -78,14 +84,7 @@ impl Request {
         };
         match command {
             Command::Brush(_) => true,
-            Command::Edit(edit) => matches!(
-                edit,
-                Edit::Tune(_)
-                    | Edit::Handle(_)
-                    | Edit::Load(_)
-                    | Edit::LoadFrom(_)
-                    | Edit::Clean(_)
-            ),
+            Command::Edit(edit) => OF_A_BRUSH.contains(&edit.name.as_str()),
             _ => false,
         }
     }
@@ -120,11 +119,10 @@ impl Request {
             Self::Force { .. } => return None,
         };
         Some(match command {
-            Command::Edit(Edit::Place(edit)) => ("place", edit.surface.to_string()),
-            Command::Edit(Edit::Tune(edit)) => ("tuning", edit.brush.to_string()),
-            Command::Edit(Edit::Handle(edit)) => ("handling", edit.brush.to_string()),
-            Command::Edit(Edit::Wells(edit)) => ("wells", edit.surface.to_string()),
-            Command::Edit(Edit::Relight(_)) => ("light", String::new()),
+            Command::Edit(edit) => {
+                let (name, of) = SETTINGS.iter().find(|(name, _)| *name == edit.name)?;
+                (*name, edit.word(of))
+            }
             Command::Brush(BrushCommand::Define { brush, .. }) => ("brush", brush.to_string()),
             _ => return None,
         })

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use maulstick_bus::BusError;
+use maulstick_types::EditFault;
 use maulstick_types::command::advice::Advice;
 use maulstick_types::plain;
 use maulstick_types::scene::LightError;
@@ -145,6 +146,12 @@ impl fmt::Display for UserError {
 }
 
 impl std::error::Error for UserError {}
+
+impl From<EditFault> for UserError {
+    fn from(fault: EditFault) -> Self {
+        Self::usage(fault.to_string())
+    }
+}
 
 impl From<ValueError> for UserError {
     fn from(error: ValueError) -> Self {

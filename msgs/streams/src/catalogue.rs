@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use maulstick_types::{CATALOGUE, CatalogueEntry};
 
-use crate::field_table::FieldTable;
+use crate::FieldTable;
 
 /// The message of a hash, if this program knows it.
 #[must_use]

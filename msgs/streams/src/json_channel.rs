@@ -3,8 +3,8 @@
 use maulstick_types::Header;
 use serde_json::{Value as Json, json};
 
-use crate::field_table::FieldTable;
-use crate::value::Value;
+use crate::FieldTable;
+use crate::Value;
 
 /// Encoding of the messages.
 pub const MESSAGE_ENCODING: &str = "json";

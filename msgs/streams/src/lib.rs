@@ -3,8 +3,6 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`catalogue`] | this program's messages by their hash |
-//! | [`field_table`] | bodies of messages, decoded by their field tables |
-//! | [`value`] | what comes of it |
 //! | [`translate`] | messages of other versions as those of this program |
 //! | [`topic_pattern`] | patterns of topics |
 //! | [`json_channel`] | messages as JSON, for viewers |
@@ -25,7 +23,6 @@
 //! - For viewers the same topics are written as thinned JSON, which our own readers skip.
 
 pub mod catalogue;
-pub mod field_table;
 pub mod json_channel;
 pub mod mcap_records;
 mod mcap_walk;
@@ -36,11 +33,10 @@ pub mod recovery;
 pub mod topic_pattern;
 pub mod traffic;
 pub mod translate;
-pub mod value;
 
-pub use field_table::{FieldTable, TableError};
+pub use maulstick_types::wire::field_table::{FieldTable, TableError};
+pub use maulstick_types::wire::value::{Fields, Value};
 pub use rate_limit::RateLimit;
 pub use recording::Recording;
 pub use recording_writer::RecordingWriter;
 pub use traffic::Traffic;
-pub use value::Value;

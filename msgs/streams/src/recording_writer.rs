@@ -9,10 +9,10 @@ use maulstick_types::wire::header::Header;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, McapResult, WriteOptions, Writer};
 
+use crate::FieldTable;
+use crate::Value;
 use crate::catalogue::message_of;
-use crate::field_table::FieldTable;
 use crate::json_channel;
-use crate::value::Value;
 
 /// Encoding of the messages: the bus's own header and body.
 pub const MESSAGE_ENCODING: &str = "x-maulstick";

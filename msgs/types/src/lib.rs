@@ -8,7 +8,7 @@
 //! | --- | --- |
 //! | [`wire`] | header, codec, field tables and their hash, the key expressions of a rig |
 //! | [`stylus`], [`control`], [`haptics`], [`brush`], [`scene`], [`paint`], [`command`], [`window`], [`node`] | the messages |
-//! | [`edits`] | edits of a painting, one in one file |
+//! | [`edit`] | edits of a painting, by name and fields |
 //! | [`values`] | numbers and names that are in range |
 //! | [`pose`], [`region`], [`mixture`] | where something is, a part of a surface, a mixture of paints |
 //!
@@ -60,10 +60,9 @@
 //!
 //! # Edits and commands
 //!
-//! - An edit is one struct in one file, used by wire, journal, script, command line and panel. Edits live here and not
-//!   beside the painting because daemons and windows send them and know no simulation. Their command-line options are
-//!   the feature `cli`, which the launcher alone enables.
-//! - Numbers and names with a range are types of `values`, so what decodes is valid; a request that does not decode is
+//! - An edit travels as its name and its fields in JSON, so that another one changes no message. Its struct is in the
+//!   painting; a device that asks for one and does not know the painting names it.
+//! - Numbers and names with a range are types of `values`, so what is read is valid; a request that does not decode is
 //!   answered with the reason. What to do about a refusal travels as an `Advice`, for which window, command line and
 //!   script have their own words.
 //! - Commands are nested by who carries them out (edit, take, file, brush, rig, session), so each node matches its own
@@ -74,7 +73,7 @@
 pub mod brush;
 pub mod command;
 pub mod control;
-pub mod edits;
+pub mod edit;
 pub mod haptics;
 pub mod mixture;
 pub mod node;
@@ -88,6 +87,7 @@ pub mod window;
 pub mod wire;
 
 pub use command::advice::nearest;
+pub use edit::{Edit, EditFault, EditFields};
 pub use mixture::{Mixture, MixtureError};
 pub use paint::frame_view::{FrameTileView, FrameView};
 pub use pose::Pose;

@@ -9,7 +9,6 @@ use maulstick_types::command::advice::Advice;
 use maulstick_types::command::{
     After, Command, CommandReply, CommandRequest, Detail, GapRequest, Outcome,
 };
-use maulstick_types::edits::{Undo, examples};
 use maulstick_types::haptics::{
     ContactModel, FluidForce, ForceLaw, ForceOrder, ForceRequest, Grain, GuideModel, HeightPatch,
     HermiteKnot, height_bytes,
@@ -23,10 +22,10 @@ use maulstick_types::scene::{
 };
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, TakeEnd, TakeStatus};
 use maulstick_types::window::PendingOrders;
-use maulstick_types::{CATALOGUE, Flags, Message, Mixture, Origin, decode, encode};
+use maulstick_types::{CATALOGUE, Edit, Flags, Message, Mixture, Origin, decode, encode};
 use parts::{
     control, files, force_reply, handling, node_status, paint_status, pose, presented, status,
-    takes, thumbnail, wide_light,
+    takes, thumbnail,
 };
 
 fn after() -> After {
@@ -57,6 +56,13 @@ fn line<M: Message + PartialEq + std::fmt::Debug>(message: &M) -> String {
         M::VERSION,
         M::schema().hash
     )
+}
+
+fn edit() -> Edit {
+    Edit {
+        name: "dry".into(),
+        fields: r#"{"share":0.5,"layer":"sky"}"#.into(),
+    }
 }
 
 fn decisions() -> [Decision; 6] {
@@ -364,7 +370,7 @@ fn all() -> String {
         line(&entry(Entry::Command {
             client: 1,
             number: 2,
-            command: Undo { brush: None }.into(),
+            command: edit().into(),
         })),
         line(&entry(Entry::Tick { count: 4 })),
         line(&entry(Entry::Cut {
@@ -425,12 +431,7 @@ fn all() -> String {
             step: Some(7),
         }),
         line(&thumbnail()),
-        examples()
-            .expect("in range")
-            .into_iter()
-            .map(|edit| line(&command(edit.into())))
-            .collect(),
-        line(&command(wide_light().into())),
+        line(&command(edit().into())),
         takes().map(|asked| line(&command(asked.into()))).concat(),
         files().map(|asked| line(&command(asked))).concat(),
         details()

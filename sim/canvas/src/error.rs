@@ -7,7 +7,7 @@ use maulstick_types::command::{CELLS_M, Outcome};
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::LightError;
 use maulstick_types::values::ValueError;
-use maulstick_types::{MixtureError, Region};
+use maulstick_types::{EditFault, MixtureError, Region};
 
 use crate::quantum::SLOTS;
 
@@ -76,6 +76,17 @@ pub enum EditError {
     /// A value out of its range.
     #[error(transparent)]
     Value(#[from] ValueError),
+    /// An edit that this program does not know, or a field that it does not have.
+    #[error(transparent)]
+    Edit(#[from] EditFault),
+    /// What one kind of edit alone refuses, in its own words.
+    #[error("{what}")]
+    Own {
+        /// What is wrong.
+        what: &'static str,
+        /// What to do.
+        help: &'static str,
+    },
     /// A region without a cell of its surface.
     #[error("the region {region} holds no cell of the surface")]
     NoCell {
@@ -264,7 +275,11 @@ impl EditError {
             ),
             Self::Unfit(_) => say("restart the brush node"),
             Self::NoSurface(_) => say("the canvas is 0, the palette 1"),
-            Self::Value(_) | Self::Light(_) => say("choose a value in range"),
+            Self::Edit(EditFault::Unknown(_)) => say("use a newer version of the program"),
+            Self::Edit(EditFault::Fields { .. }) | Self::Value(_) | Self::Light(_) => {
+                say("choose a value in range")
+            }
+            Self::Own { help, .. } => say(help),
             Self::NoCell { surface_mm, .. } => Advice::say(format!(
                 "the surface measures {} from its lower left corner",
                 size(surface_mm)

@@ -3,9 +3,11 @@
 use std::io::Read as _;
 use std::ops::Range;
 
+use maulstick_painting::edits;
 use maulstick_painting::sequencer::{Accepted, Record};
 use maulstick_types::brush::BrushState;
-use maulstick_types::paint::JournalEntry;
+use maulstick_types::command::Command;
+use maulstick_types::paint::{Entry, JournalEntry};
 use maulstick_types::{Flags, Header, Message, Origin, decode, encode};
 
 use rusqlite::params;
@@ -178,12 +180,17 @@ fn accepted(message: &[u8]) -> Result<Accepted, DocumentError> {
         return Ok(Accepted::State { header, state });
     }
     let (_, entry) = JournalEntry::decode_stored(message).map_err(damaged)?;
+    if let Entry::Command { command, .. } = &entry.entry
+        && let Command::Edit(edit) = command
+    {
+        edits::read(edit).map_err(damaged)?;
+    }
     Ok(Accepted::Entry(entry.entry))
 }
 
 #[cfg(test)]
 mod tests {
-    use maulstick_types::edits::Undo;
+    use maulstick_painting::edits::Undo;
     use maulstick_types::paint::{Decision, Entry};
 
     use super::*;

@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use maulstick_document::{Access, Checkpoint, Document, DocumentSettings};
 use maulstick_painting::Sequencer;
+use maulstick_painting::edits::Load;
 use maulstick_types::command::Command;
 use maulstick_types::command::TakeCommand;
-use maulstick_types::edits::Load;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::BrushName;
 use studio::{Act, BRUSHES, Painter, equip, mixture, sequencer};

@@ -7,8 +7,8 @@ use std::sync::Arc;
 use maulstick_canvas::quantum::SLOTS;
 use maulstick_document::{Access, Checkpoint, Document, DocumentSettings};
 use maulstick_painting::Sequencer;
+use maulstick_painting::edits::{Redo, Undo};
 use maulstick_types::command::Outcome;
-use maulstick_types::edits::{Redo, Undo};
 use proptest::prelude::*;
 use studio::{Painter, equip, print, sequencer};
 

@@ -5,7 +5,7 @@ mod easel;
 mod studio;
 
 use maulstick_canvas::quantum::SLOTS;
-use maulstick_types::edits::Undo;
+use maulstick_painting::edits::Undo;
 use std::path::Path;
 use std::sync::Arc;
 

@@ -11,9 +11,9 @@ use maulstick_document::{Access, Checkpoint, Document, DocumentSettings};
 use maulstick_model::footprint::Footprint;
 use maulstick_model::interface::{CountOwn, PaintModel, Step, StepReport};
 use maulstick_painting::Sequencer;
+use maulstick_painting::edits::{Load, Scrape};
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::edits::{Load, Scrape};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::BrushName;
 

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use easel::Easel;
 use maulstick_document::tables::schema::VERSION;
 use maulstick_document::{Access, Document, DocumentSettings, DocumentStats};
+use maulstick_painting::edits::Undo;
 use maulstick_painting::sequencer::Accepted;
-use maulstick_types::edits::Undo;
 use maulstick_types::paint::{Decision, Entry, StepName};
 use studio::tiles;
 

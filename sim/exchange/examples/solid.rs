@@ -10,10 +10,10 @@ use std::time::Instant;
 use maulstick_brush::BrushFile;
 use maulstick_exchange::{SolidSetup, write_glb, write_stl};
 use maulstick_optics::PaintLibrary;
+use maulstick_painting::edits::Load;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::edits::Load;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::BrushName;
 

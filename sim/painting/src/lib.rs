@@ -12,7 +12,7 @@
 //! | [`setup`] | the scene of a new painting |
 //! | [`ledger`], [`history`] | the books, undo |
 //! | [`beginning`] | where the record of what was accepted begins |
-//! | [`Apply`] | edits as the painting carries them out |
+//! | [`edits`] | all that changes a painting besides strokes, one in one file |
 //! | [`clock`] | ticks, and the dryings that they drive |
 //! | [`snapshot`] | the part of a document that is not tiles |
 //! | [`picture`] | pictures of its surfaces |
@@ -23,7 +23,7 @@
 //! ```
 //! use maulstick_optics::PaintLibrary;
 //! use maulstick_painting::{Painting, PaintingSetup};
-//! use maulstick_types::edits::{Fill, FillPaint};
+//! use maulstick_painting::edits::{Fill, FillPaint};
 //! use maulstick_types::scene::CANVAS;
 //! use maulstick_types::values::FilmThickness;
 //!
@@ -86,10 +86,10 @@
 //!   (`SurfaceState::staying`) and decides about planes of a model's own (`Planes::own`). One that moves paint has open
 //!   windows written back first; `begin_step` ends open steps.
 
-mod apply;
 pub mod beginning;
 pub mod brush_colour;
 pub mod clock;
+pub mod edits;
 mod error;
 pub mod history;
 pub mod ledger;
@@ -100,8 +100,8 @@ pub mod sequencer;
 pub mod setup;
 pub mod snapshot;
 
-pub use apply::{Applied, Apply};
 pub use beginning::{Beginning, RecordChange};
+pub use edits::Applied;
 pub use error::paint_error;
 pub use painting::{Checkpoint, LaidTile, NOW, Named, Painting, Restored, UnderBrush, Wetness};
 pub use sequencer::{Effect, Sequencer};

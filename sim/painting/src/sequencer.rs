@@ -15,7 +15,7 @@ use maulstick_types::command::{Command, CommandRequest, Outcome, TakeCommand};
 use maulstick_types::paint::{Decision, Entry, JournalEntry};
 use maulstick_types::{Flags, Header, Mixture, Origin};
 
-use crate::apply::{Applied, Apply as _};
+use crate::edits::Applied;
 use crate::painting::Painting;
 use crate::snapshot::{CutStates, TakeSnapshot};
 
@@ -355,7 +355,7 @@ impl Sequencer {
         let (client, number) = (request.client, request.number);
         let mut effect = None;
         let done = match &request.command {
-            Command::Edit(edit) => edit.apply(&mut self.painting),
+            Command::Edit(edit) => self.painting.apply(edit.clone()),
             Command::Take(command) => self.take(command, &mut effect),
             command @ (Command::File(_)
             | Command::Brush(_)

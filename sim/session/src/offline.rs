@@ -9,8 +9,8 @@ use maulstick_canvas::EditError;
 use maulstick_num::fork_join::with_cores_beyond;
 use maulstick_painting::clock::TICKS_A_SECOND;
 use maulstick_painting::{Applied, Painting, Sequencer};
+use maulstick_types::Edit;
 use maulstick_types::brush::BrushState;
-use maulstick_types::edits::Edit;
 use maulstick_types::stylus::StylusSample;
 use maulstick_types::{Flags, Header, Message as _, Mixture, Origin, name_hash};
 

@@ -58,7 +58,7 @@ pub(crate) fn contacts(state: &BrushState) -> impl Iterator<Item = &Solve> {
 
 #[cfg(test)]
 mod tests {
-    use maulstick_types::edits::Undo;
+    use maulstick_painting::edits::Undo;
     use maulstick_types::{Flags, Header, Pose};
 
     use super::*;

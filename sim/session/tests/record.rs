@@ -6,12 +6,12 @@ use std::path::Path;
 use maulstick_brush::BrushFile;
 use maulstick_document::{Access, Document, DocumentError, DocumentSettings, Opened};
 use maulstick_optics::PaintLibrary;
+use maulstick_painting::edits::{Dry, Load, Redo, Undo};
 use maulstick_painting::sequencer::Accepted;
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_session::{
     Autosave, LoggedWhat, Offline, Reexecution, TilePrints, WorkClock, painting_log, tile_prints,
 };
-use maulstick_types::edits::{Dry, Load, Redo, Undo};
 use maulstick_types::paint::Decision;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::{StylusPose, StylusSample, axes};
@@ -64,7 +64,7 @@ impl Desk {
         }
     }
 
-    fn edit(&mut self, edit: impl Into<maulstick_types::edits::Edit>) {
+    fn edit(&mut self, edit: impl Into<maulstick_types::Edit>) {
         self.offline.edit(edit).expect("done");
         self.turn();
     }

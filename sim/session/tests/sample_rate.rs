@@ -6,9 +6,9 @@ use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_num::{sin, sin_cos};
 use maulstick_optics::PaintLibrary;
 use maulstick_optics::colour::delta_e_2000;
+use maulstick_painting::edits::Handle;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_session::Offline;
-use maulstick_types::edits::Handle;
 use maulstick_types::scene::{BrushHandling, BrushMode};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
 

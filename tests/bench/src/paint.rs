@@ -1,6 +1,6 @@
 //! Steps of the paint model by themselves: states of a brush that were solved before, on wet paint.
 
-use maulstick_types::edits::Edit;
+use maulstick_types::Edit;
 use std::sync::Arc;
 use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
@@ -9,11 +9,11 @@ use maulstick_brush::BrushFile;
 use maulstick_gpu::{Choice, Device, DeviceModel, Traffic};
 use maulstick_num::fork_join::with_threads;
 use maulstick_optics::PaintLibrary;
+use maulstick_painting::edits::{Fill, FillPaint, Load};
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_rig::UserError;
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::edits::{Fill, FillPaint, Load};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{BrushName, FilmThickness};
 

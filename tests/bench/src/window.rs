@@ -8,9 +8,10 @@ use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, Dial, Qos, Queue, RigClock, Wake, ZenohBus};
+use maulstick_painting::edits::{Fill, FillPaint, Place};
 use maulstick_rig::UserError;
 use maulstick_rig::command_client::CommandClient;
-use maulstick_types::edits::{Edit, Fill, FillPaint, Place};
+use maulstick_types::Edit;
 use maulstick_types::scene::{CANVAS, Scene, Surface};
 use maulstick_types::values::FilmThickness;
 use maulstick_types::wire::topics::Topics;

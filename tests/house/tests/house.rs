@@ -83,9 +83,10 @@ rules! {
         REGISTRY, ("sim/gpu/src/shaders/dab/a.wgsl", ""), ("sim/gpu/src/b.rs", "fn f() { Gpu::dab(); }"),
     ] => "sim/gpu/src/b.rs + sim/gpu/src/shaders/dab";
     edits "edits" [
-        ("msgs/types/src/edits/layer/go_to.rs", "use crate::Edit; fn f() { Edit::GoTo }"),
-        ("ui/src/panels/a.rs", "use maulstick_types::edits::GoTo;"),
-        ("launch/src/a.rs", "use maulstick_types::edits::{Form, layer::GoTo};"),
+        ("sim/painting/src/edits/layer/go_to.rs", "use crate::Edit; fn f() { Edit::GoTo }"),
+        ("sim/painting/src/edits/form.rs", "pub trait Form {}"),
+        ("ui/src/panels/a.rs", "use maulstick_painting::edits::GoTo;"),
+        ("launch/src/a.rs", "use maulstick_painting::edits::{Form, layer::GoTo};"),
         ("launch/src/b.rs", "fn f(a: &E) -> bool { matches!(a, Edit::GoTo(_)) }"),
     ] => "launch/src/a.rs + launch/src/b.rs";
     clocks "clocks" [

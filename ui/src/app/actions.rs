@@ -3,7 +3,7 @@
 use eframe::egui::{self, Color32, Context, Event, Stroke};
 use glam::{DVec2, DVec3};
 use maulstick_brush::palette_place::{Side, beside, is_out, is_same, mirrored, over, size_m};
-use maulstick_types::edits::{LoadFrom, Place, Wells};
+use maulstick_painting::edits::{LoadFrom, Place, Wells};
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 use maulstick_types::values::{BrushName, Distance};
 

@@ -44,7 +44,7 @@ mod tests {
     use maulstick_brush::palette_place::Side;
     use maulstick_brush::placement::SurfacePlacement;
     use maulstick_painting::PaintingSetup;
-    use maulstick_types::edits::Clean;
+    use maulstick_painting::edits::Clean;
     use maulstick_types::scene::{CANVAS, PALETTE};
     use maulstick_types::values::BrushName;
 

@@ -3,7 +3,7 @@
 mod outcome_words;
 
 use eframe::egui::{self, Align, Align2, Context, Layout, Rect, Ui};
-use maulstick_types::edits::{Clean, Dry, Redo, Relight, Scrape, Undo};
+use maulstick_painting::edits::{Clean, Dry, Redo, Relight, Scrape, Undo};
 use maulstick_types::scene::{CANVAS, Light, PALETTE};
 use maulstick_types::values::BrushName;
 use maulstick_ui_kit::language::translated;
@@ -366,8 +366,8 @@ fn fill_screen(context: &Context, fills: bool) {
 mod tests {
     use eframe::egui::{Key, Modifiers};
     use egui_kittest::Harness;
+    use maulstick_painting::edits::{Relight, Undo};
     use maulstick_types::command::{Command, Detail};
-    use maulstick_types::edits::{Edit, Relight};
     use maulstick_types::paint::StepName;
     use maulstick_types::scene::Layer;
 
@@ -439,10 +439,7 @@ mod tests {
         harness.run_steps(2);
         ctrl(&mut harness, Key::Z, Modifiers::NONE);
         let asked = harness.state_mut().asked();
-        assert!(
-            matches!(asked[0].1, Command::Edit(Edit::Undo(_))),
-            "{asked:?}"
-        );
+        assert!(asked[0].1.edit::<Undo>().is_some(), "{asked:?}");
     }
 
     #[test]

@@ -6,10 +6,10 @@ use std::sync::OnceLock;
 
 use maulstick_brush::file::library::LIBRARY;
 use maulstick_brush::{BrushError, BrushFile};
+use maulstick_painting::edits::{Handle, Load, Tune};
 use maulstick_rig::UserError;
 use maulstick_rig::files::ending;
 use maulstick_types::command::{BrushCommand, Command};
-use maulstick_types::edits::{Edit, Handle, Load, Tune};
 use maulstick_types::scene::{BrushHandling, Tuning};
 use maulstick_types::values::{BrushName, BrushToml};
 use maulstick_ui_kit::language::{capitalized, known};
@@ -221,13 +221,11 @@ impl PanelContext<'_> {
     /// Takes in the outcome of a request: a brush that refused keeps its file; one that has the requested file runs the
     /// command that waited for it.
     pub fn brush_answered(&mut self, outcome: &Outcome) {
-        if let Request::Command {
-            command: Command::Edit(Edit::Load(load)),
-            ..
-        } = &outcome.request
+        if let Request::Command { command, .. } = &outcome.request
             && outcome.result.is_ok()
+            && let Some(load) = command.edit()
         {
-            return self.loaded(load);
+            return self.loaded(&load);
         }
         let Request::Command {
             command: Command::Brush(BrushCommand::Define { brush, toml }),

@@ -1,6 +1,6 @@
 //! The cleaning key: a tap cleans the brush; while it is held the brush lifts paint.
 
-use maulstick_types::edits::{Clean, Handle};
+use maulstick_painting::edits::{Clean, Handle};
 use maulstick_types::scene::{BrushHandling, BrushMode};
 use maulstick_types::values::BrushName;
 
@@ -91,7 +91,6 @@ fn handle(requests: &mut Requests, handling: &BrushHandling) {
 #[cfg(test)]
 mod tests {
     use maulstick_types::command::Command;
-    use maulstick_types::edits::Edit;
 
     use super::*;
 
@@ -112,10 +111,7 @@ mod tests {
     }
 
     fn modes(commands: &[Command]) -> Vec<BrushMode> {
-        let mode = |command: &Command| match command {
-            Command::Edit(Edit::Handle(handle)) => handle.mode.clone(),
-            other => panic!("{other:?}"),
-        };
+        let mode = |command: &Command| command.edit::<Handle>().expect("a mode").mode;
         commands.iter().map(mode).collect()
     }
 

@@ -283,8 +283,7 @@ mod tests {
     use maulstick_brush::palette_place::Side;
     use maulstick_num::geometry::Rigid;
     use maulstick_painting::PaintingSetup;
-    use maulstick_types::command::Command;
-    use maulstick_types::edits::Edit;
+    use maulstick_painting::edits::Place;
 
     use super::*;
 
@@ -312,17 +311,15 @@ mod tests {
         drop(harness);
         let requests = hand.into_inner().take();
         let lie = |order| match order {
-            Request::Command {
-                command: Command::Edit(Edit::Place(place)),
-                ..
-            } => (
-                place.surface,
-                SurfacePlacement {
+            Request::Command { command, .. } => {
+                let place: Place = command.edit().expect("a place");
+                let placement = SurfacePlacement {
                     pose: Rigid::from(&place.pose),
                     zoom: place.zoom.get(),
-                },
-            ),
-            other => panic!("{other:?}"),
+                };
+                (place.surface, placement)
+            }
+            other @ Request::Force { .. } => panic!("{other:?}"),
         };
         requests.into_iter().map(lie).collect()
     }

@@ -1,9 +1,9 @@
 //! Mixtures in the wells of the palette.
 
 use maulstick_brush::palette_place::{mirrored, size_m};
+use maulstick_painting::edits::Wells;
 use maulstick_painting::setup::wells_of;
 use maulstick_types::Mixture;
-use maulstick_types::edits::Wells;
 use maulstick_types::scene::{Surface, WellKind};
 
 use crate::widgets::context::PanelContext;

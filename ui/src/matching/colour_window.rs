@@ -177,8 +177,7 @@ mod tests {
     use eframe::egui::Modifiers;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable as _;
-    use maulstick_types::command::Command;
-    use maulstick_types::edits::{Edit, Load};
+    use maulstick_painting::edits::Load;
 
     use super::*;
     use crate::test_support::overlay_bench::{Bench, ctrl, picture, until, window, write};
@@ -234,9 +233,10 @@ mod tests {
         nearest.expect("a mixture").click();
         harness.run_steps(3);
         let asked = harness.state_mut().asked();
-        let [(_, Command::Edit(Edit::Load(Load { mixture, .. })))] = &asked[..] else {
+        let [(_, command)] = &asked[..] else {
             panic!("{asked:?}");
         };
+        let Load { mixture, .. } = command.edit().expect("a load");
         let names = of_palette(harness.state().rig.live.palette()).expect("paints");
         assert!(mixture.parts.iter().all(|part| names.contains(&part.paint)));
         ctrl(&mut harness, Key::M, Modifiers::NONE);

@@ -1,7 +1,7 @@
 //! Rows of proposed mixtures: how far off each is, and what can be done with it.
 
 use eframe::egui::{self, Color32, Role, Sense, StrokeKind, Ui, WidgetInfo, vec2};
-use maulstick_types::edits::Load;
+use maulstick_painting::edits::Load;
 use maulstick_types::values::BrushName;
 
 use crate::matching::picker::{Match, Matches};

@@ -1,11 +1,11 @@
-use maulstick_types::command::{Command, PAINT_NODE};
+use maulstick_types::command::PAINT_NODE;
 use std::path::PathBuf;
 
 use eframe::egui::{Key, Modifiers, MouseWheelUnit, OutputCommand};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use maulstick_painting::edits::{Load, Wells};
 use maulstick_types::Mixture;
-use maulstick_types::edits::{Edit, Load, Wells};
 use maulstick_types::scene::{Well, WellKind};
 use maulstick_ui_kit::notifications::Notifications;
 
@@ -77,9 +77,10 @@ fn a_click_on_a_colour_proposes_mixtures_that_are_loaded_put_on_the_palette_and_
     load(&harness).expect("a mixture");
     harness.run_steps(3);
     let asked = harness.state_mut().asked();
-    let [(node, Command::Edit(Edit::Load(Load { mixture, brush, .. })))] = &asked[..] else {
+    let [(node, command)] = &asked[..] else {
         panic!("{asked:?}");
     };
+    let Load { mixture, brush, .. } = command.edit().expect("a load");
     assert_eq!((node.as_str(), brush.as_str()), (PAINT_NODE, "main"));
     let names = of_palette(harness.state().rig.live.palette()).expect("paints");
     assert!(mixture.parts.iter().all(|part| names.contains(&part.paint)));
@@ -92,18 +93,19 @@ fn a_click_on_a_colour_proposes_mixtures_that_are_loaded_put_on_the_palette_and_
         _ => None,
     });
     let copied: Mixture = copied.expect("copied").parse().expect("a mixture");
-    assert_eq!(copied, *mixture);
+    assert_eq!(copied, mixture);
     let put = harness
         .query_all_by_label_contains("To the palette: ")
         .next();
     put.expect("a mixture").click();
     harness.run_steps(3);
     let asked_next = harness.state_mut().asked();
-    let [(_, Command::Edit(Edit::Wells(Wells { wells, .. })))] = &asked_next[..] else {
+    let [(_, command)] = &asked_next[..] else {
         panic!("{asked_next:?}");
     };
+    let Wells { wells, .. } = command.edit().expect("wells");
     let lies =
-        |well: &Well| matches!(&well.kind, WellKind::Paint { mixture: lies } if lies == mixture);
+        |well: &Well| matches!(&well.kind, WellKind::Paint { mixture: lies } if *lies == mixture);
     assert_eq!(wells.iter().filter(|well| lies(well)).count(), 1);
     harness.get_by_label("Done").click();
     harness.run_steps(3);

@@ -16,12 +16,12 @@ use maulstick_client::request::Request;
 use maulstick_client::stroke_barrier::{SampleNumber, StrokeBarrier};
 use maulstick_optics::PaintLibrary;
 use maulstick_paint_node::PaintNode;
+use maulstick_painting::edits::{Clean, Handle, Load, Tune};
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::BrushState;
 use maulstick_types::command::{
     BrushCommand, Command, CommandReply, CommandRequest, Outcome, PAINT_NODE,
 };
-use maulstick_types::edits::{Clean, Edit, Handle, Load, Tune};
 use maulstick_types::paint::{Entry, JournalEntry};
 use maulstick_types::scene::{BrushHandling, BrushMode, Tuning};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
@@ -359,17 +359,18 @@ impl Studio {
                     let file = BrushFile::parse(&toml).expect("a brush");
                     setting.width_mm = file.head.width_mm;
                 }
-                Entry::Command { command, .. } => match command {
-                    Command::Edit(Edit::Load(load)) => setting.load = load.mixture.to_string(),
-                    Command::Edit(Edit::Clean(_)) => setting.load = String::new(),
-                    Command::Edit(Edit::Handle(handle)) => {
+                Entry::Command { command, .. } => {
+                    if let Some(load) = command.edit::<Load>() {
+                        setting.load = load.mixture.to_string();
+                    } else if command.edit::<Clean>().is_some() {
+                        setting.load = String::new();
+                    } else if let Some(handle) = command.edit::<Handle>() {
                         setting.mode = format!("{:?}", handle.mode);
+                    } else {
+                        let tune: Tune = command.edit().expect("no other edit");
+                        setting.stiffness = Tuning::from(tune).stiffness;
                     }
-                    Command::Edit(Edit::Tune(tune)) => {
-                        setting.stiffness = Tuning::from(tune).stiffness
-                    }
-                    other => panic!("{other:?}"),
-                },
+                }
                 Entry::States { from, to, .. } => {
                     let solves = (from..=to).flat_map(|seq| &states[&seq].solves);
                     let touching = solves.filter(|solve| !solve.contacts.is_empty());

@@ -1,9 +1,9 @@
 //! Load of a brush: a paint or mixture, another one beside it, and thinner in both.
 
 use maulstick_optics::{PaintLibrary, THINNER, thinned};
+use maulstick_painting::edits::Load;
 use maulstick_rig::UserError;
 use maulstick_types::Mixture;
-use maulstick_types::edits::Load;
 use maulstick_types::values::{BrushName, ThinnerShare};
 use serde::{Deserialize, Serialize};
 

@@ -156,8 +156,8 @@ fn restore(held: &Preset, work: &mut PanelContext<'_>) -> Result<(), UserError> 
 mod tests {
     use eframe::egui::{Event, pos2};
     use egui_kittest::Harness;
+    use maulstick_painting::edits::{Handle, Tune};
     use maulstick_types::command::{BrushCommand, Command};
-    use maulstick_types::edits::Edit;
     use maulstick_types::scene::BrushMode;
 
     use crate::input::brush_choice::of_library;
@@ -202,12 +202,14 @@ mod tests {
         let asked = harness.state_mut().asked();
         let [
             (_, Command::Brush(BrushCommand::Define { toml, .. })),
-            (_, Command::Edit(Edit::Tune(tune))),
-            (_, Command::Edit(Edit::Handle(handle))),
+            (_, tune),
+            (_, handle),
         ] = &asked[..]
         else {
             panic!("{asked:?}");
         };
+        let tune: Tune = tune.edit().expect("a tuning");
+        let handle: Handle = handle.edit().expect("a mode");
         assert_eq!(tune.stiffness.get(), 1.5);
         assert_eq!(handle.mode, BrushMode::NoPush);
         let file = maulstick_brush::BrushFile::parse(toml.as_str()).expect("a brush");

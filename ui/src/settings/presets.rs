@@ -1,8 +1,9 @@
 //! Presets: brushes with their paint, by name.
 
 use maulstick_brush::BrushFile;
+use maulstick_painting::edits::{Clean, Handle, Tune};
 use maulstick_rig::UserError;
-use maulstick_types::edits::{Clean, Edit, Handle, Tune};
+use maulstick_types::Edit;
 use maulstick_types::scene::{BrushHandling, BrushMode, MARKER_FLOW, Tuning};
 use maulstick_types::values::BrushName;
 use maulstick_ui_kit::units::Units;

@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 
 use eframe::egui::{Align2, Area, Context, Frame, Id, Order, ProgressBar, Ui};
+use maulstick_painting::edits::{Relight, StopDrying};
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Relight, StopDrying};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::{CANVAS, Light};
 

@@ -6,16 +6,17 @@ use std::sync::mpsc::{Receiver as Edges, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 use maulstick_brush::palette_place::{Side, beside, is_same, over};
+use maulstick_brush::placement::place;
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, Qos, Queue, Wake};
 use maulstick_rig::UserError;
 use maulstick_rig::user_error::EXIT_USAGE;
-use maulstick_types::Pose;
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Clean, Handle, Place, Undo};
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE, Scene};
 use maulstick_types::values::BrushName;
 use maulstick_types::wire::topics::Topics;
+use maulstick_types::{Edit, Pose};
+use serde_json::json;
 
 use super::{Action, Edge, SwitchEvent};
 use maulstick_rig::command_client::CommandClient;
@@ -150,10 +151,10 @@ impl Worker {
                 self.follow();
             }
             SwitchEvent::Switch(Action::Undo, Edge::Pressed) => {
-                self.send(Undo { brush: Some(brush) });
+                self.send(of_brush("undo", &brush));
             }
             SwitchEvent::Switch(Action::Clean, Edge::Pressed) => {
-                self.send(Clean { brush });
+                self.send(of_brush("clean", &brush));
             }
             SwitchEvent::Switch(Action::Palette, Edge::Pressed) => self.slide(),
             SwitchEvent::Switch(..) => {}
@@ -217,13 +218,11 @@ impl Worker {
     }
 
     fn handle(&mut self, handling: BrushHandling) -> Told {
-        match Handle::try_from(&handling) {
-            Ok(edit) => self.send(edit),
-            Err(error) => {
-                tracing::warn!("a switch: {error}");
-                Told::Refused
-            }
-        }
+        let most = (handling.most_m != 0.0).then_some(handling.most_m);
+        let fields = json!({
+            "brush": handling.brush, "mode": handling.mode, "flow": handling.flow, "most": most,
+        });
+        self.send(Edit::named("handle", &fields))
     }
 
     /// Slides the palette over the canvas, or back to where it was.
@@ -244,7 +243,7 @@ impl Worker {
             None if is_same(&now, &over) => (beside, None),
             None => (over, Some(now)),
         };
-        let told = match Place::new(PALETTE, to.clone(), zoom) {
+        let told = match place(PALETTE, &to, zoom) {
             Ok(edit) => self.send(edit),
             Err(error) => return tracing::warn!("the palette stays where it is: {error}"),
         };
@@ -299,6 +298,11 @@ impl Worker {
         }
         told
     }
+}
+
+/// An edit that names a brush alone.
+fn of_brush(name: &str, brush: &BrushName) -> Edit {
+    Edit::named(name, &json!({ "brush": brush }))
 }
 
 /// Handling of a brush in a scene.

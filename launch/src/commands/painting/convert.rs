@@ -9,11 +9,11 @@ use maulstick_canvas::EditError;
 use maulstick_document::DocumentError;
 use maulstick_num::fork_join::with_cores_beyond;
 use maulstick_painting::Applied;
+use maulstick_painting::edits::Convert;
 use maulstick_painting::models::{model_called, model_names};
 use maulstick_rig::files::{Kind, check_writable};
 use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::Autosave;
-use maulstick_types::edits::Convert;
 use maulstick_types::scene::{CANVAS, PALETTE};
 use maulstick_types::values::ModelName;
 

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use maulstick_exchange::underpaint::{MOST_PAINTS, underpaint};
 use maulstick_exchange::{Image, ImportError, Likeness, Support, embed};
+use maulstick_painting::edits::{Ground, Tooth};
 use maulstick_painting::{Painting, Sequencer, Wetness};
 use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::Autosave;
-use maulstick_types::edits::{Ground, Tooth};
 use maulstick_types::scene::{CANVAS, WellKind};
 use maulstick_types::values::MaterialName;
 
@@ -188,8 +188,8 @@ fn paints_at_hand(painting: &Painting) -> Vec<String> {
 mod tests {
     use maulstick_optics::PaintLibrary;
     use maulstick_painting::PaintingSetup;
+    use maulstick_painting::edits::{Fill, Form as _};
     use maulstick_painting::setup::PALETTE_PAINTS;
-    use maulstick_types::edits::{Fill, Form as _};
 
     use super::*;
 

@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use maulstick_painting::edits::words::surface;
 use maulstick_rig::{RigConfig, UserError, user_devices};
 use maulstick_session::{Logged, LoggedWhat, painting_log};
 use maulstick_types::plain;
 use serde_json::{Value, json};
 
-use super::log_words::{Names, surface, words};
+use super::log_words::{Names, words};
 use super::timelapse::no_record;
 use super::wall_time::{utc, utc_seconds};
 use crate::commands::table::table;

@@ -18,7 +18,7 @@ pub(super) use timelapse::no_record;
 use clap::Subcommand;
 use maulstick_rig::UserError;
 
-use crate::commands::edit::{self, EditsOf, PaintingEdits};
+use crate::commands::edit::{self, EditCommand};
 use crate::commands::{begin, open, save_as, snapshot};
 
 /// Subcommands of `maulstick painting`.
@@ -34,7 +34,7 @@ pub enum PaintingCommand {
     Snapshot(snapshot::SnapshotOptions),
     /// An edit
     #[command(flatten)]
-    Edit(EditsOf<PaintingEdits>),
+    Edit(EditCommand),
     /// Show what a painting holds
     Info(info::InfoOptions),
     /// Export a painting: PNG, OpenEXR, OpenRaster, height map, STL, glTF

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use maulstick_bus::Qos;
+use maulstick_painting::edits::{Branch, Forget, Keep, ReturnTo};
 use maulstick_rig::{RigConfig, UserError};
-use maulstick_types::edits::{Branch, Edit, Forget, Keep, ReturnTo};
+use maulstick_types::Edit;
 use maulstick_types::scene::{NamedVersion, Scene};
 use maulstick_types::values::VersionName;
 use serde_json::json;

@@ -4,10 +4,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use maulstick_bus::Bus;
+use maulstick_painting::edits::Load;
 use maulstick_rig::command_client::CommandClient;
 use maulstick_rig::{RigConfig, Stop, UserError};
 use maulstick_types::Mixture;
-use maulstick_types::edits::Load;
 use maulstick_types::values::BrushName;
 use maulstick_types::wire::topics::Topics;
 use tokio::task::spawn_blocking;

@@ -109,8 +109,8 @@ pub(super) enum Leave {
 mod tests {
     use maulstick_document::Checkpoint;
     use maulstick_optics::PaintLibrary;
+    use maulstick_painting::edits::{Fill, FillPaint};
     use maulstick_painting::{Painting, PaintingSetup, Sequencer};
-    use maulstick_types::edits::{Fill, FillPaint};
     use maulstick_types::scene::CANVAS;
     use maulstick_types::values::FilmThickness;
 

@@ -1,8 +1,8 @@
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{Faults, MemoryNet};
-use maulstick_types::edits::Edit;
-use maulstick_types::edits::{Place, Undo};
+use maulstick_types::Edit;
 use maulstick_types::{Origin, Pose};
+use serde_json::json;
 
 use super::*;
 
@@ -108,27 +108,30 @@ impl Desk {
     }
 }
 
-const UNDO: Command = Command::Edit(Edit::Undo(Undo { brush: None }));
+fn undo() -> Command {
+    Edit::named("undo", &json!({})).into()
+}
 
 fn place() -> Command {
-    Command::from(Place::new(0, Pose::IDENTITY, 1.0).expect("in reach"))
+    let fields = json!({ "surface": 0, "pose": Pose::IDENTITY, "zoom": 1.0 });
+    Edit::named("place", &fields).into()
 }
 
 #[test]
 fn an_undo_goes_right_behind_the_stroke_before_it() {
     let mut desk = Desk::new();
     desk.painted(2);
-    desk.push(UNDO, 9);
+    desk.push(undo(), 9);
     assert_eq!(desk.next_ready(), None, "the brush has not consumed it");
     desk.consumed(9, 20);
     desk.painted(30);
     assert_eq!(desk.next_ready(), None, "nor the last of its samples");
     desk.consumed(10, 40);
-    assert_eq!(desk.next_ready(), Some((UNDO, Some(40))));
+    assert_eq!(desk.next_ready(), Some((undo(), Some(40))));
     assert!(!desk.barrier.is_waiting());
-    desk.push(UNDO, 9);
+    desk.push(undo(), 9);
     desk.painted(41);
-    assert_eq!(desk.next_ready(), Some((UNDO, None)), "it is painted");
+    assert_eq!(desk.next_ready(), Some((undo(), None)), "it is painted");
 }
 
 #[test]
@@ -136,7 +139,7 @@ fn another_node_is_asked_when_the_stroke_is_painted() {
     let mut desk = Desk::new();
     let request = Request::Command {
         node: "rig".into(),
-        command: UNDO,
+        command: undo(),
     };
     let sample = SampleNumber {
         device: MOUSE,
@@ -159,12 +162,12 @@ fn a_canvas_moves_at_once_but_overtakes_nothing() {
     let mut desk = Desk::new();
     desk.push(place(), 9);
     assert_eq!(desk.next_ready(), Some((place(), None)));
-    desk.push(UNDO, 9);
+    desk.push(undo(), 9);
     desk.push(place(), 20);
     assert_eq!(desk.next_ready(), None);
     desk.consumed(10, 4);
     let next_ready = [desk.next_ready(), desk.next_ready()];
-    assert_eq!(next_ready, [Some((UNDO, Some(4))), Some((place(), None))]);
+    assert_eq!(next_ready, [Some((undo(), Some(4))), Some((place(), None))]);
 }
 
 /// Paint may be seconds behind a hand that has long been at rest.
@@ -177,41 +180,41 @@ fn a_stroke_that_is_not_painted_is_not_overtaken_however_long_the_hand_rests() {
     let push = |desk: &mut Desk| {
         let request = Request::Command {
             node: PAINT_NODE.into(),
-            command: UNDO,
+            command: undo(),
         };
         let now_ns = desk.net.bus().now_ns();
         desk.barrier.push(now_ns, (request, now_ns), []);
     };
     push(&mut desk);
-    assert_eq!(desk.next_ready(), Some((UNDO, Some(40))));
+    assert_eq!(desk.next_ready(), Some((undo(), Some(40))));
     desk.painted(41);
     push(&mut desk);
-    assert_eq!(desk.next_ready(), Some((UNDO, None)), "all is painted");
+    assert_eq!(desk.next_ready(), Some((undo(), None)), "all is painted");
 }
 
 #[test]
 fn a_brush_that_works_is_waited_for() {
     let mut desk = Desk::new();
-    desk.push(UNDO, 9);
+    desk.push(undo(), 9);
     for next in 2..9 {
         desk.net.advance(900 * MILLISECOND);
         desk.consumed(next, next);
         assert_eq!(desk.next_ready(), None, "{next}");
     }
     desk.consumed(10, 40);
-    assert_eq!(desk.next_ready(), Some((UNDO, Some(40))));
+    assert_eq!(desk.next_ready(), Some((undo(), Some(40))));
 }
 
 #[test]
 fn nobody_waits_for_a_brush_that_ended_nor_for_a_stylus_that_moves_none() {
     let mut desk = Desk::new();
-    desk.push(UNDO, 9);
+    desk.push(undo(), 9);
     desk.net.advance(990 * MILLISECOND);
     assert_eq!(desk.next_ready(), None);
     desk.net.advance(20 * MILLISECOND);
-    assert_eq!(desk.next_ready(), Some((UNDO, None)));
-    desk.push(UNDO, 10);
-    assert_eq!(desk.next_ready(), Some((UNDO, None)), "once is enough");
+    assert_eq!(desk.next_ready(), Some((undo(), None)));
+    desk.push(undo(), 10);
+    assert_eq!(desk.next_ready(), Some((undo(), None)), "once is enough");
     let stranger = SampleNumber {
         device: MOUSE + 1,
         epoch: 3,
@@ -219,7 +222,7 @@ fn nobody_waits_for_a_brush_that_ended_nor_for_a_stylus_that_moves_none() {
     };
     let request = Request::Command {
         node: PAINT_NODE.into(),
-        command: UNDO,
+        command: undo(),
     };
     desk.barrier
         .push(START_NS, (request.clone(), 0), [stranger]);

@@ -9,11 +9,11 @@ use mcap::records::{Record, op};
 
 use super::attachment::Attachment;
 use super::{Topic, time_of};
-use crate::field_table::{FieldTable, TableError};
 use crate::json_channel;
 use crate::mcap_records::{Found, HEAD, after_texts, records, u64_at, unpack};
 use crate::mcap_walk::{read_at, walk};
 use crate::recording_writer::{MESSAGE_ENCODING, SCHEMA_ENCODING};
+use crate::{FieldTable, TableError};
 
 /// Length of a footer and the closing magic, bytes.
 const END_BYTES: u64 = (HEAD + 20 + MAGIC.len()) as u64;

@@ -22,10 +22,10 @@ use mcap::records::{Record, op};
 pub use self::attachment::Attachment;
 use self::in_order::InOrder;
 use self::layout::{Layout, Stretch};
-use crate::field_table::{FieldTable, TableError};
+use crate::Value;
 use crate::mcap_records::{Found, HEAD, records, u64_at, unpack};
 use crate::mcap_walk::read_at;
-use crate::value::Value;
+use crate::{FieldTable, TableError};
 
 /// Largest chunk that is read, bytes; those of a recorder have a quarter of a megabyte before they are compressed.
 const MOST_CHUNK: u64 = 256 << 20;

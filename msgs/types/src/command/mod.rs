@@ -11,7 +11,7 @@ use serde::de::Error as _;
 use crate::command::advice::Advice;
 pub use crate::command::detail::Detail;
 pub use crate::command::session::SessionCommand;
-use crate::edits::Edit;
+use crate::edit::Edit;
 use crate::mixture::Mixture;
 use crate::scene::{CANVAS, STAINS_M};
 use crate::values::{
@@ -374,7 +374,7 @@ impl Command {
 
 message! {
     /// A command with its sender and number; sending it again with the same number is safe.
-    pub struct CommandRequest [version 11, at most 1048576 bytes] {
+    pub struct CommandRequest [version 12, at most 1048576 bytes] {
         /// A number that the client drew at random.
         pub client: u64,
         /// Counts the client's commands.

@@ -3,16 +3,14 @@
 mod decision;
 pub(crate) mod frame_view;
 mod step_name;
-mod worded_entry;
+mod stored_entry;
 
 use serde_bytes::ByteBuf;
 
 use crate::command::Command;
 pub use crate::paint::decision::Decision;
 pub use crate::paint::step_name::StepName;
-use crate::wire::codec::{Message as _, decode};
 use crate::wire::define::{message, wire_enum, wire_struct};
-use crate::wire::header::{DecodeError, Header};
 
 /// Side of a tile in cells.
 pub const TILE: usize = 64;
@@ -110,32 +108,11 @@ wire_enum! {
 
 message! {
     /// An entry of the journal, in order; it has room for the largest command with its index.
-    pub struct JournalEntry [version 12, at most 1049600 bytes] {
+    pub struct JournalEntry [version 13, at most 1049600 bytes] {
         /// From 0, without gaps.
         pub index: u64,
         /// The record.
         pub entry: Entry,
-    }
-}
-
-impl JournalEntry {
-    /// Hashes of the schemas that [`decode_stored`](Self::decode_stored) reads, its own first.
-    #[must_use]
-    pub fn stored_hashes() -> [u32; 2] {
-        [Self::schema(), worded_entry::JournalEntry::schema()].map(|schema| schema.hash)
-    }
-
-    /// Decodes an entry of a file, which may be of the version before.
-    ///
-    /// # Errors
-    /// As [`decode`].
-    pub fn decode_stored(bytes: &[u8]) -> Result<(Header, Self), DecodeError> {
-        let [_, worded] = Self::stored_hashes();
-        if Header::from_bytes(bytes)?.schema != worded {
-            return decode(bytes);
-        }
-        let (header, entry) = decode::<worded_entry::JournalEntry>(bytes)?;
-        Ok((header, entry.into()))
     }
 }
 

@@ -129,3 +129,16 @@ pub enum ValueError {
     #[error(transparent)]
     Light(#[from] crate::scene::LightError),
 }
+
+/// Sees that a surface can lie so.
+///
+/// # Errors
+/// [`ValueError::Pose`] where it is not finite, or out of reach.
+pub fn check_reach(pose: &crate::Pose) -> Result<(), ValueError> {
+    let near = |metres: &f64| metres.abs() <= FARTHEST_M;
+    if pose.is_valid() && pose.position_m.iter().all(near) {
+        Ok(())
+    } else {
+        Err(ValueError::Pose)
+    }
+}

@@ -4,6 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
+use serde::ser::{Serialize, Serializer};
 
 use super::ValueError;
 use crate::brush::ZOOMS;
@@ -43,7 +44,7 @@ macro_rules! number {
         $name:ident($inner:ty) $what:literal, $scale:literal $unit:literal, $range:literal if $good:expr
     ) => {
         $(#[$meta])*
-        #[derive(Clone, Copy, Debug, PartialEq, PartialOrd, serde::Serialize)]
+        #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
         pub struct $name($inner);
 
         impl $name {
@@ -89,6 +90,16 @@ macro_rules! number {
                     text: text.chars().take(40).collect(),
                 })?;
                 Self::in_unit(number)
+            }
+        }
+
+        impl Serialize for $name {
+            fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+                // The digits of an f32 that are fewest are no f64's.
+                match to.is_human_readable() {
+                    true => to.serialize_f64(f64::from(self.0)),
+                    false => self.0.serialize(to),
+                }
             }
         }
 

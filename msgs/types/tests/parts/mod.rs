@@ -5,13 +5,12 @@ use maulstick_types::command::{
     TakeCommand,
 };
 use maulstick_types::control::ControlSample;
-use maulstick_types::edits::Relight;
 use maulstick_types::haptics::ForceReply;
 use maulstick_types::node::{NodeStatus, NodeWork};
 use maulstick_types::paint::{
     DryingStatus, ExportStatus, FrameHolds, HistoryStep, PaintStatus, StepName, ThumbnailReply,
 };
-use maulstick_types::scene::{BrushHandling, BrushMode, Light};
+use maulstick_types::scene::{BrushHandling, BrushMode};
 use maulstick_types::stylus::StylusStatus;
 use maulstick_types::values::{
     BrushName, BrushToml, DeviceName, DeviceToml, MaterialName, WholePath,
@@ -125,17 +124,6 @@ pub(crate) fn thumbnail() -> ThumbnailReply {
         height: 1,
         rgb: vec![1, 2, 3, 4, 5, 6].into(),
         version: 9,
-    }
-}
-
-/// A light of a measured spectrum.
-pub(crate) fn wide_light() -> Relight {
-    Relight {
-        light: Light {
-            spectrum: vec![0.5; 101],
-            ..Light::default()
-        },
-        expose: true,
     }
 }
 

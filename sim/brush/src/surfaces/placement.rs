@@ -3,9 +3,10 @@
 use glam::DVec3;
 use maulstick_num::geometry::{Rigid, canonical, rotation};
 use maulstick_num::sin_cos;
-use maulstick_types::edits::Place;
 use maulstick_types::scene::Surface;
-use maulstick_types::values::ValueError;
+use maulstick_types::values::{ValueError, Zoom, check_reach};
+use maulstick_types::{Edit, Pose};
+use serde_json::json;
 
 /// Zooms that a painter can use.
 pub const ZOOMS: [f64; 2] = [0.1, 20.0];
@@ -13,6 +14,17 @@ pub const ZOOMS: [f64; 2] = [0.1, 20.0];
 pub const FARTHEST_M: f64 = 1.0;
 /// A surface is tilted by this much at most, rad.
 pub const TILT_MOST: f64 = 1.05;
+
+/// The edit that gives a surface this pose and zoom.
+///
+/// # Errors
+/// [`ValueError`] where they are not finite, or out of reach.
+pub fn place(surface: u32, pose: &Pose, zoom: f64) -> Result<Edit, ValueError> {
+    check_reach(pose)?;
+    let zoom = Zoom::new(zoom)?;
+    let fields = json!({ "surface": surface, "pose": pose, "zoom": zoom });
+    Ok(Edit::named("place", &fields))
+}
 
 /// Pose and zoom of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,8 +62,8 @@ impl SurfacePlacement {
     ///
     /// # Errors
     /// [`ValueError`] where it is not finite, or out of reach.
-    pub fn edit(&self, surface: u32) -> Result<Place, ValueError> {
-        Place::new(surface, self.pose.to_pose(), self.zoom)
+    pub fn edit(&self, surface: u32) -> Result<Edit, ValueError> {
+        place(surface, &self.pose.to_pose(), self.zoom)
     }
 
     /// Larger by a factor about a point of the desk. A zoom set otherwise, beyond those of a painter, goes no farther;

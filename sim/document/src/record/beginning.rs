@@ -53,11 +53,13 @@ struct StoredVersion {
 }
 
 /// Formats of messages that this program can execute again, that of those that it records first.
-fn formats() -> [String; 2] {
-    JournalEntry::stored_hashes().map(|entry| {
+fn formats() -> Vec<String> {
+    let stored = JournalEntry::stored_hashes().into_iter();
+    let format = stored.map(|entry| {
         let hashes = [BrushState::schema().hash, entry, BrushDef::schema().hash];
         hashes.map(|hash| format!("{hash:08x}")).join(" ")
-    })
+    });
+    format.collect()
 }
 
 fn checksum(part: &str, value: &str, tiles: &[u8]) -> i64 {
@@ -91,8 +93,8 @@ pub(super) fn write(
     loads.try_for_each(|page| writer.write_load(page))?;
     let painting = writer.with_files(&beginning.painting)?;
     put(TIME, &beginning.time_ms.to_string(), &[])?;
-    let [format, _] = formats();
-    put(FORMAT, &format, &[])?;
+    let own = formats().into_iter().next();
+    put(FORMAT, &own.unwrap_or_default(), &[])?;
     put(PAINTING, &serde_json::to_string(&painting)?, &[])?;
     put(
         SEQUENCER,

@@ -11,7 +11,7 @@ use crate::file::connect::connect;
 /// `application_id` of a painting: "Maul".
 pub const APPLICATION_ID: i32 = 0x4D61_756C;
 /// The schema that this program writes.
-pub const VERSION: i32 = 7;
+pub const VERSION: i32 = 8;
 /// The oldest schema that it reads.
 const OLDEST: i32 = 4;
 
@@ -162,8 +162,9 @@ pub fn is_foreign(path: &Path) -> Result<bool, DocumentError> {
 }
 
 /// Steps from each older schema to the next. The rows of the record of schema 6 are columns, and those of schema 5 stay as
-/// they are. Names of steps and decisions of schema 7 have fields, and those of before stay the words that they are.
-const MIGRATIONS: [&str; (VERSION - OLDEST) as usize] = [RECORD_TABLES, "", ""];
+/// they are. Names of steps and decisions of schema 7 have fields, and those of before stay the words that they are. Edits of
+/// schema 8 have names, and those of before stay numbers.
+const MIGRATIONS: [&str; (VERSION - OLDEST) as usize] = [RECORD_TABLES, "", "", ""];
 
 /// Schema of a painting; rejects one of a newer program or of before the oldest schema.
 ///

@@ -2,7 +2,7 @@
 
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 
-use maulstick_types::edits::Undo;
+use maulstick_painting::edits::Undo;
 use std::sync::Arc;
 
 use maulstick_document::{Checkpoint, Document, DocumentSettings};

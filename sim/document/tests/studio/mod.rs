@@ -6,15 +6,15 @@ use maulstick_brush::BrushFile;
 use maulstick_brush::palette_place::{mirrored, size_m};
 use maulstick_canvas::page::Pager;
 use maulstick_optics::PaintLibrary;
+use maulstick_painting::edits::{
+    Branch, Clean, Dry, Fill, FillPaint, Forget, GoTo, Ground, Keep, LayerRef, Load, NameLayer,
+    Opacity, Redo, ReturnTo, Scrape, StopDrying, Tooth, Undo, Wells, Wet,
+};
 use maulstick_painting::history::{TilePlace, TileRef};
 use maulstick_painting::setup::wells_of;
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::command::{Command, CommandRequest, Outcome};
-use maulstick_types::edits::{
-    Branch, Clean, Dry, Fill, FillPaint, Forget, GoTo, Ground, Keep, LayerRef, Load, NameLayer,
-    Opacity, Redo, ReturnTo, Scrape, StopDrying, Tooth, Undo, Wells, Wet,
-};
 use maulstick_types::scene::{CANVAS, PALETTE};
 use maulstick_types::values::{
     BrushName, FilmThickness, LayerName, MaterialName, OpacityFactor, Share, Ticks, VersionName,

@@ -135,9 +135,9 @@ fn versions(banded: &Banded<'_>, band: usize) -> Vec<u64> {
 mod tests {
     use maulstick_optics::PaintLibrary;
     use maulstick_painting::PaintingSetup;
+    use maulstick_painting::edits::{Fill, FillPaint, Scrape, Undo};
     use maulstick_painting::picture::picture;
     use maulstick_types::Mixture;
-    use maulstick_types::edits::{Fill, FillPaint, Scrape, Undo};
     use maulstick_types::region::Region;
     use maulstick_types::values::FilmThickness;
 

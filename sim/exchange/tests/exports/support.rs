@@ -9,11 +9,11 @@ use maulstick_exchange::{
     write_open_raster, write_stl,
 };
 use maulstick_optics::PaintLibrary;
+use maulstick_painting::edits::{Dry, Fill, FillPaint, Load};
 use maulstick_painting::picture::banded;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::edits::{Dry, Fill, FillPaint, Load};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{BrushName, FilmThickness, LayerName, Share};
 

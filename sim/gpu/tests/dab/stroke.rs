@@ -5,7 +5,7 @@ use maulstick_dab::stroke::Stroker;
 use maulstick_gpu::{Choice, Device, DeviceModel, GpuModel};
 use maulstick_model::interface::PaintModel;
 use maulstick_painting::Painting;
-use maulstick_types::edits::{Clean, Dry};
+use maulstick_painting::edits::{Clean, Dry};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::BrushName;
 

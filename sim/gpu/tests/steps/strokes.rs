@@ -1,9 +1,9 @@
 //! Whole strokes of any model on the device: twice the same, with the books in order, and when the device is lost.
 
 use maulstick_gpu::GpuError;
+use maulstick_painting::edits::{Clean, Load};
 use maulstick_painting::{Painting, Sequencer};
 use maulstick_types::brush::BrushState;
-use maulstick_types::edits::{Clean, Load};
 use maulstick_types::paint::{Decision, Entry};
 use maulstick_types::values::BrushName;
 use maulstick_types::{Flags, Header, Message as _, name_hash};

@@ -2,11 +2,11 @@
 
 use maulstick_gpu::{Choice, Device, DeviceModel, GpuBrushFlow, GpuFlow, Tuning};
 use maulstick_model::interface::PaintModel;
+use maulstick_painting::edits::{Fill, FillPaint};
 use maulstick_painting::{Painting, Sequencer};
 use maulstick_stokes::flow::Effort;
 use maulstick_stokes::grid::Grid;
 use maulstick_stokes_paint::StokesPaint;
-use maulstick_types::edits::{Fill, FillPaint};
 use maulstick_types::paint::Decision;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::FilmThickness;

@@ -1,16 +1,16 @@
 //! The painting: surfaces, brushes, history, accounts and optics, and what needs several of them at once.
 
 mod accounts;
-mod brushes;
+pub(crate) mod brushes;
 mod checkpoint;
-mod layers;
+pub(crate) mod layers;
 mod optics;
 mod record;
 mod restore;
 mod still;
 mod strokes;
-mod surfaces;
-mod undo;
+pub(crate) mod surfaces;
+pub(crate) mod undo;
 
 pub use brushes::handling::UnderBrush;
 pub use checkpoint::Checkpoint;
@@ -28,12 +28,12 @@ use maulstick_canvas::assets::Assets;
 use maulstick_canvas::page::Pager;
 use maulstick_canvas::store::TileStore;
 use maulstick_optics::PaintLibrary;
-use maulstick_types::edits::Edit;
+use maulstick_types::Edit;
 use maulstick_types::scene::Scene;
 
-use crate::apply::{Applied, Apply};
 use crate::brush_colour::Carried;
 use crate::clock::Clock;
+use crate::edits::{self, Applied};
 use crate::history::History;
 use crate::setup::PaintingSetup;
 use accounts::Accounts;
@@ -47,16 +47,16 @@ use undo::versions::Versions;
 /// A painting.
 pub struct Painting {
     /// The desk, as those who follow the painting see it. Its surfaces stand in the order of `surfaces`.
-    scene: Scene,
-    optics: Optics,
-    surfaces: Surfaces,
-    brushes: Brushes,
-    backend: Backend,
-    accounts: Accounts,
-    history: History,
-    versions: Versions,
-    clock: Clock,
-    record: RecordState,
+    pub(crate) scene: Scene,
+    pub(crate) optics: Optics,
+    pub(crate) surfaces: Surfaces,
+    pub(crate) brushes: Brushes,
+    pub(crate) backend: Backend,
+    pub(crate) accounts: Accounts,
+    pub(crate) history: History,
+    pub(crate) versions: Versions,
+    pub(crate) clock: Clock,
+    pub(crate) record: RecordState,
 }
 
 impl Painting {
@@ -103,7 +103,7 @@ impl Painting {
     /// # Errors
     /// [`EditError`] says why it is refused; then the painting is as it was.
     pub fn apply(&mut self, edit: impl Into<Edit>) -> Result<Applied, EditError> {
-        edit.into().apply(self)
+        edits::read(&edit.into())?.apply(self)
     }
 
     /// The desk.

@@ -16,12 +16,10 @@ use maulstick_canvas::relief::Relief;
 use maulstick_model::brush::load::by_slot;
 use maulstick_optics::{Paint, PaintLibrary, Spectrum, Studio, THINNER};
 use maulstick_types::Mixture;
-use maulstick_types::edits::Relight;
 use maulstick_types::scene::{Light, PaintSlot, Scene, Surface, WellKind};
 
 use super::Painting;
 use super::undo::materials;
-use crate::apply::{Applied, Apply};
 use crate::error::paint_error;
 use crate::models::model_called;
 use crate::setup::relief_called;
@@ -238,18 +236,6 @@ pub(crate) fn slot_of(scene: &Scene, paint: &str) -> Option<usize> {
 /// Slot of the thinner, if the scene has one.
 pub(crate) fn thinner_slot(scene: &Scene) -> Option<usize> {
     slot_of(scene, THINNER)
-}
-
-impl Apply for Relight {
-    /// Changes the light. If its spectrum, or its conversion to colour, changes, dry layers are baked anew on demand,
-    /// tile by tile.
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.relight(&self.light)?;
-        if self.expose {
-            painting.expose();
-        }
-        Ok(Applied::Done)
-    }
 }
 
 impl Painting {

@@ -98,9 +98,9 @@ impl Painting {
 
 #[cfg(test)]
 mod tests {
+    use crate::edits::{Dry, Fill, FillPaint, Ground};
     use maulstick_optics::PaintLibrary;
     use maulstick_types::Mixture;
-    use maulstick_types::edits::{Dry, Fill, FillPaint, Ground};
     use maulstick_types::scene::CANVAS;
     use maulstick_types::values::{FilmThickness, LayerName, Share};
 

@@ -1,8 +1,8 @@
 //! Undo ahead of the paint: a stroke that still waits to be painted is dropped, for it would be undone.
 
+use crate::edits::Undo;
 use maulstick_types::brush::{BrushState, solve_flags};
 use maulstick_types::command::{After, Command, CommandRequest, Detail, Outcome};
-use maulstick_types::edits::{Edit, Undo};
 use maulstick_types::paint::{Entry, StepName};
 use maulstick_types::values::BrushName;
 use maulstick_types::{Flags, Header, Origin, name_hash};
@@ -66,9 +66,7 @@ impl Sequencer {
         request: &CommandRequest,
         queued: impl Iterator<Item = (&'a Header, &'a BrushState)>,
     ) -> Option<Cut> {
-        let Command::Edit(Edit::Undo(Undo { brush: of })) = &request.command else {
-            return None;
-        };
+        let Undo { brush: of } = request.command.edit()?;
         let after = request.after.as_ref()?;
         let origin = Origin {
             source: after.brush,
@@ -125,7 +123,7 @@ impl Sequencer {
     fn waits_within(&self, origin: Origin, state: u64) -> bool {
         self.waiting.iter().any(|request| {
             let after = request.after.as_ref();
-            let is_undo = matches!(request.command, Command::Edit(Edit::Undo(_)));
+            let is_undo = matches!(&request.command, Command::Edit(edit) if edit.is::<Undo>());
             let own = |after: &&After| (after.brush, after.epoch) == (origin.source, origin.epoch);
             !is_undo
                 && after

@@ -2,16 +2,16 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_canvas::EditError;
+use maulstick_types::Edit;
 use maulstick_types::brush::{BRUSHES_MOST, BrushState};
 use maulstick_types::command::{Command, CommandRequest, Outcome, TakeCommand};
-use maulstick_types::edits::Edit;
 use maulstick_types::paint::{Decision, Entry};
 use maulstick_types::values::BrushName;
 use maulstick_types::{Header, Mixture, Origin};
 
 use super::Sequencer;
 use super::cut::NOT_PAINTED;
-use crate::apply::{Applied, Apply as _};
+use crate::edits::Applied;
 use crate::painting::Painting;
 use crate::snapshot::SequencerSnapshot;
 
@@ -100,7 +100,7 @@ impl Sequencer {
     /// [`EditError`] where the painting refuses it.
     pub fn edit(&mut self, edit: impl Into<Edit>) -> Result<Applied, EditError> {
         let edit = edit.into();
-        let applied = edit.apply(&mut self.painting)?;
+        let applied = self.painting.apply(edit.clone())?;
         self.accept_own(edit.into());
         Ok(applied)
     }

@@ -6,7 +6,6 @@ use maulstick_types::command::{Command, TakeCommand};
 use maulstick_types::paint::{Decision, Entry};
 
 use super::{Accepted, Record, Sequencer};
-use crate::apply::Apply as _;
 
 impl Sequencer {
     /// Until [`end_repeating`](Self::end_repeating) hands paint nothing, other commands are refused, and no tick passes but
@@ -52,7 +51,7 @@ impl Sequencer {
                 command,
             }) => {
                 match &command {
-                    Command::Edit(edit) => drop(edit.apply(&mut self.painting)?),
+                    Command::Edit(edit) => drop(self.painting.apply(edit.clone())?),
                     Command::Take(TakeCommand::Begin {
                         brush,
                         device,

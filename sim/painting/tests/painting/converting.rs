@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use maulstick_canvas::EditError;
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::tile::TileId;
+use maulstick_painting::edits::{Convert, Dry};
 use maulstick_painting::picture::picture;
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_types::brush::Solve;
-use maulstick_types::edits::{Convert, Dry};
 use maulstick_types::scene::{CANVAS, PALETTE};
 use maulstick_types::values::{ModelName, Share};
 

@@ -1,10 +1,10 @@
 //! An undo ahead of the paint: what waits of the stroke is dropped, and the painting is as if it never was.
 
 use maulstick_brush::BrushFile;
+use maulstick_painting::edits::{Clean, Redo, Undo};
 use maulstick_painting::{PaintingSetup, Sequencer};
 use maulstick_types::brush::BrushState;
 use maulstick_types::command::{After, CommandRequest, Outcome};
-use maulstick_types::edits::{Clean, Redo, Undo};
 use maulstick_types::paint::{Entry, JournalEntry};
 use maulstick_types::values::BrushName;
 use maulstick_types::{Header, name_hash};

@@ -1,9 +1,9 @@
 //! dAb in a painting: colours that drying keeps, and a palette of its own.
 
+use maulstick_painting::edits::Dry;
 use maulstick_painting::picture::{picture, unlit_picture};
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::Solve;
-use maulstick_types::edits::Dry;
 use maulstick_types::scene::{CANVAS, Light, PALETTE};
 use maulstick_types::values::Share;
 

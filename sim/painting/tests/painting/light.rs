@@ -13,9 +13,9 @@ use maulstick_optics::gamut::GamutMapping;
 use maulstick_optics::icc::Profile;
 use maulstick_optics::light::{Facet, Lamp, LampSetup, Spot, lit};
 use maulstick_optics::{PaintLibrary, Under};
+use maulstick_painting::edits::{Dry, LayerRef, Opacity};
 use maulstick_painting::picture::{picture_for, unlit_picture};
 use maulstick_painting::{Painting, PaintingSetup};
-use maulstick_types::edits::{Dry, LayerRef, Opacity};
 use maulstick_types::scene::{CANVAS, Light, PALETTE};
 use maulstick_types::values::{LayerName, OpacityFactor, Share};
 

@@ -2,9 +2,9 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_canvas::EditError;
-use maulstick_painting::{Applied, Apply as _, Painting, PaintingSetup};
+use maulstick_painting::edits::{Dry, LoadFrom, PaintingEdit as _, Scrape, Undo};
+use maulstick_painting::{Applied, Painting, PaintingSetup};
 use maulstick_types::Mixture;
-use maulstick_types::edits::{Dry, LoadFrom, Scrape, Undo};
 use maulstick_types::scene::{CANVAS, PALETTE, WellKind};
 use maulstick_types::values::{BrushName, Distance, ThinnerShare};
 

@@ -4,11 +4,11 @@ use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_marker::{FILM_M, Marker};
 use maulstick_model::interface::{PaintModel, Step, StepReport};
+use maulstick_painting::edits::{Clean, Dry, Handle, Wet};
 use maulstick_painting::models::model_names;
 use maulstick_painting::picture::picture;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::Solve;
-use maulstick_types::edits::{Clean, Dry, Handle, Wet};
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE};
 use maulstick_types::values::{BrushName, Share};
 

@@ -2,9 +2,9 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::{Counts, QUANTUM_M, SLOTS};
+use maulstick_painting::edits::{Fill, FillPaint, Handle, Piles, Size};
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::Solve;
-use maulstick_types::edits::{Fill, FillPaint, Handle, Piles, Size};
 use maulstick_types::name_hash;
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE};
 use maulstick_types::values::{BrushName, FilmThickness, StainThickness};

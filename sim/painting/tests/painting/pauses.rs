@@ -5,7 +5,7 @@ use std::ops::Range;
 use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_painting::Painting;
-use maulstick_types::edits::Undo;
+use maulstick_painting::edits::Undo;
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::CANVAS;
 

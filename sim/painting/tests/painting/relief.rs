@@ -1,9 +1,9 @@
 //! Relief below a brush, as the hand feels it.
 
 use maulstick_brush::BrushFile;
+use maulstick_painting::edits::Dry;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::{BrushRelief, Solve};
-use maulstick_types::edits::Dry;
 use maulstick_types::haptics::heights_um;
 use maulstick_types::scene::CANVAS;
 

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use maulstick_brush::palette_place::{mirrored, size_m};
 use maulstick_canvas::EditError;
+use maulstick_painting::edits::{Dry, PaintingEdit as _, Redo, Scrape, Undo, Wells};
 use maulstick_painting::setup::wells_of;
-use maulstick_painting::{Apply as _, Painting, PaintingSetup};
+use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::Mixture;
-use maulstick_types::edits::{Dry, Redo, Scrape, Undo, Wells};
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::{CANVAS, PALETTE, Surface, Well, WellKind};
 

@@ -1,11 +1,11 @@
 //! What the sequencer owes to clients and brushes.
 
 use maulstick_brush::BrushFile;
+use maulstick_painting::edits::Clean;
 use maulstick_painting::{Effect, PaintingSetup, Sequencer};
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::command::TakeCommand;
 use maulstick_types::command::{After, Command, CommandRequest, Outcome};
-use maulstick_types::edits::Clean;
 use maulstick_types::values::{BrushName, WholePath};
 use maulstick_types::{Flags, Header, Pose};
 

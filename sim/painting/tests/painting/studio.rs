@@ -2,9 +2,9 @@
 
 use maulstick_brush::{BrushFile, BrushModel};
 use maulstick_optics::PaintLibrary;
+use maulstick_painting::edits::{Fill, FillPaint, Load};
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::edits::{Fill, FillPaint, Load};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
 use maulstick_types::values::{BrushName, FilmThickness};

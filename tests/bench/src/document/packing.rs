@@ -3,8 +3,8 @@
 use maulstick_document::pack::{Forget, pack};
 use maulstick_exchange::write_open_exr;
 use maulstick_painting::Painting;
+use maulstick_painting::edits::Dry;
 use maulstick_rig::UserError;
-use maulstick_types::edits::Dry;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{LayerName, Share};
 

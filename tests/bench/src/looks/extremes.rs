@@ -1,6 +1,6 @@
 //! Paint, tools and grounds beyond what a painter takes: all stays finite and no quantum is lost.
 
-use maulstick_types::edits::{Fill, FillPaint};
+use maulstick_painting::edits::{Fill, FillPaint};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::FilmThickness;
 

@@ -3,7 +3,7 @@
 use maulstick_rig::UserError;
 
 use super::easel::{Easel, Map, Stroke, brush, correlation, slope};
-use maulstick_types::edits::{Fill, FillPaint};
+use maulstick_painting::edits::{Fill, FillPaint};
 use maulstick_types::values::FilmThickness;
 
 /// Name, value, unit.

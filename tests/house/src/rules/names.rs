@@ -12,7 +12,7 @@ const GRAPHICS: &str = "sim/gpu";
 /// A model whose name is that of a brush's mode as well, in texts.
 const ALSO_A_MODE: &str = "marker";
 /// Folder of the edits, one file each.
-const EDITS: &str = "msgs/types/src/edits";
+const EDITS: &str = "sim/painting/src/edits";
 /// Folder of the edits' widgets.
 const WIDGETS: &str = "ui/src/panels";
 
@@ -98,6 +98,9 @@ pub(super) fn graphics(tree: &Tree, found: &mut Breaches) {
 /// Edits that files name besides their own and their widgets: each edit once in a file.
 pub(super) fn edits(tree: &Tree, found: &mut Breaches) {
     let files = tree.texts.keys().filter(|path| below(path, EDITS));
+    // What lies beside their folders serves all of them.
+    let depth = EDITS.matches('/').count() + 2;
+    let files = files.filter(|path| path.matches('/').count() == depth);
     let names = files.filter_map(|path| path.rsplit('/').next()?.strip_suffix(".rs"));
     let edits: BTreeSet<String> = names.map(|name| name.replace('_', "")).collect();
     let is_type = |name: &str| name.starts_with(char::is_uppercase);

@@ -3,8 +3,8 @@
 use maulstick_appearance::picture::Picture;
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
+use maulstick_painting::edits::{Dry, Load};
 use maulstick_rig::UserError;
-use maulstick_types::edits::{Dry, Load};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{BrushName, Share};
 

@@ -22,13 +22,13 @@ use maulstick_appearance::picture::Picture;
 use maulstick_brush::BrushFile;
 use maulstick_brush::file::library::LIBRARY;
 use maulstick_optics::PaintLibrary;
+use maulstick_painting::edits::Load;
 use maulstick_painting::paint_error;
 use maulstick_painting::picture::picture;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_rig::UserError;
 use maulstick_session::Offline;
 use maulstick_types::Mixture;
-use maulstick_types::edits::Load;
 use maulstick_types::values::BrushName;
 
 use self::gesture::Hand;

@@ -1,11 +1,20 @@
 //! What an edit has done, for the notification of one whose effect may be out of view.
 
 use maulstick_types::command::{Command, Detail};
-use maulstick_types::edits::Edit;
-use maulstick_ui_kit::language::{layer_name, step};
+use maulstick_ui_kit::language::{layer_name, step, translated};
 
 use crate::settings::brush_load;
 use maulstick_client::request::Request;
+
+/// Edits whose effect may be out of view, by their names.
+const PAST_TENSES: [(&str, &str); 6] = [
+    ("undo", tr_noop!("Undone")),
+    ("redo", tr_noop!("Redone")),
+    ("go_to", tr_noop!("Now")),
+    ("dry", tr_noop!("Dried")),
+    ("load_from", tr_noop!("Loaded")),
+    ("scrape", tr_noop!("Scraped")),
+];
 
 /// A request that is done, and what it was about; `None` for one whose effect is seen.
 #[must_use]
@@ -35,15 +44,8 @@ fn past_tense(request: &Request) -> Option<&'static str> {
     else {
         return None;
     };
-    match edit {
-        Edit::Undo(_) => Some(tr!("Undone")),
-        Edit::Redo(_) => Some(tr!("Redone")),
-        Edit::GoTo(_) => Some(tr!("Now")),
-        Edit::Dry(_) => Some(tr!("Dried")),
-        Edit::LoadFrom(_) => Some(tr!("Loaded")),
-        Edit::Scrape(_) => Some(tr!("Scraped")),
-        _ => None,
-    }
+    let (_, words) = PAST_TENSES.iter().find(|(name, _)| *name == edit.name)?;
+    Some(translated(words))
 }
 
 #[cfg(test)]

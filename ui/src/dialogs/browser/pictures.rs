@@ -204,9 +204,9 @@ mod tests {
     use maulstick_document::rows::shown_number;
     use maulstick_document::{Access, Checkpoint, Document, DocumentSettings, ShownTile};
     use maulstick_optics::PaintLibrary;
+    use maulstick_painting::edits::{Fill, FillPaint};
     use maulstick_painting::{Painting, PaintingSetup, Sequencer};
     use maulstick_types::Mixture;
-    use maulstick_types::edits::{Fill, FillPaint};
     use maulstick_types::scene::CANVAS;
     use maulstick_types::values::FilmThickness;
 

@@ -1,8 +1,8 @@
 //! Requests of rack, keys and presets.
 
+use maulstick_painting::edits::{Clean, Handle, Tune, Undo};
 use maulstick_rig::UserError;
 use maulstick_types::command::Detail;
-use maulstick_types::edits::{Clean, Undo};
 use maulstick_types::values::BrushName;
 
 use super::*;
@@ -120,12 +120,10 @@ fn another_brush_lays_full_paint_and_another_width_what_the_preset_says() {
     assert_eq!(bench.preferences.loading.thinner, 0.7);
     bench.work().next_brush();
     let commands = bench.commands();
-    let handled = commands.iter().find_map(|command| match command {
-        Command::Edit(Edit::Handle(handle)) => Some(BrushHandling::from(handle.clone())),
-        _ => None,
-    });
+    let mut handled = commands.iter().filter_map(Command::edit::<Handle>);
+    let handled = handled.next().map(BrushHandling::from);
     assert_eq!(handled, Some(BrushHandling::normal("main")));
-    let tuned = |command: &Command| matches!(command, Command::Edit(Edit::Tune(_)));
+    let tuned = |command: &Command| command.edit::<Tune>().is_some();
     assert!(commands.iter().any(tuned), "it is as stiff as before");
     assert_eq!(bench.preferences.loading.thinner, 0.0);
     assert_eq!(

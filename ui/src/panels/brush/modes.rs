@@ -1,7 +1,7 @@
 //! Brush modes that the paint model offers.
 
 use eframe::egui::{ComboBox, Ui};
-use maulstick_types::edits::Handle;
+use maulstick_painting::edits::Handle;
 use maulstick_types::scene::{BrushHandling, BrushMode, FLOWS};
 use maulstick_ui_kit::labelled::{self, PendingValue};
 use maulstick_ui_kit::language::translated;

@@ -1,8 +1,8 @@
 //! Controls that load and clean the brush in the hand.
 
 use eframe::egui::{Button, TextEdit, Ui};
+use maulstick_painting::edits::Clean;
 use maulstick_rig::UserError;
-use maulstick_types::edits::Clean;
 use maulstick_types::values::{BrushName, ThinnerShare};
 use maulstick_ui_kit::labelled;
 

@@ -3,10 +3,10 @@
 use eframe::egui::{Key, Modifiers, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use maulstick_painting::edits::{Clean, Handle, Load, Tune};
 use maulstick_types::Mixture;
 use maulstick_types::command::BrushCommand;
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Clean, Edit, Handle, Load, Tune};
 use maulstick_types::scene::{BrushMode, MARKER_FLOW};
 use maulstick_types::values::BrushName;
 
@@ -193,18 +193,9 @@ fn two_paints_side_by_side_and_one_that_there_is_not() {
     harness.key_press(Key::Enter);
     harness.run();
     let commands = harness.state_mut().commands();
-    let [
-        Command::Edit(Edit::Load(Load {
-            mixture: left,
-            beside: Some(right),
-            ..
-        })),
-    ] = &commands[..]
-    else {
-        panic!("{commands:?}")
-    };
-    assert_eq!(left, &Mixture::pure("Bone Black"));
-    assert_eq!(right, &Mixture::pure("Cobalt Blue"));
+    let load: Load = commands[0].edit().expect("a load");
+    assert_eq!(load.mixture, Mixture::pure("Bone Black"));
+    assert_eq!(load.beside, Some(Mixture::pure("Cobalt Blue")));
 }
 
 #[test]
@@ -272,15 +263,16 @@ fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
     let commands = harness.state_mut().commands();
     let [
         Command::Brush(BrushCommand::Define { .. }),
-        Command::Edit(Edit::Tune(_)),
-        Command::Edit(Edit::Handle(_)),
+        Command::Edit(tune),
+        Command::Edit(handle),
     ] = &commands[..]
     else {
         panic!("{commands:?}")
     };
+    assert!(tune.is::<Tune>() && handle.is::<Handle>());
     let then = harness.state().rig.brushes[0].then.clone();
     assert!(
-        matches!(then, Some((Command::Edit(Edit::Load(_)), _))),
+        then.is_some_and(|(command, _)| command.edit::<Load>().is_some()),
         "once it is a round one"
     );
     assert_eq!(harness.state().preferences.loading.paint, "Bone Black");

@@ -1,8 +1,8 @@
 //! An even film of wet paint over the whole canvas.
 
 use eframe::egui::Ui;
+use maulstick_painting::edits::{Fill, FillPaint};
 use maulstick_types::Mixture;
-use maulstick_types::edits::{Fill, FillPaint};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{BrushName, FilmThickness, ValueError};
 use maulstick_ui_kit::rows::{Number, Sliders, below, choice};

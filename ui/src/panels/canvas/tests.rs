@@ -1,9 +1,9 @@
 use eframe::egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use maulstick_painting::edits::{Fill, FillPaint, Ground, Piles, Place, Size, Tooth};
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Fill, FillPaint, Ground, Piles, Place, Size, Tooth};
 use maulstick_types::values::{BrushName, FilmThickness, MaterialName, StainThickness};
 
 use super::*;

@@ -13,7 +13,7 @@ use eframe::egui::{
     Align, Button, Color32, ColorImage, CornerRadius, Key, Layout, Rect, Response, RichText, Sense,
     TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
 };
-use maulstick_types::edits::{Branch, Forget, Keep, ReturnTo};
+use maulstick_painting::edits::{Branch, Forget, Keep, ReturnTo};
 use maulstick_types::scene::NamedVersion;
 use maulstick_types::values::VersionName;
 use maulstick_ui_kit::rows::note;

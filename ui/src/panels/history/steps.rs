@@ -4,7 +4,7 @@ use eframe::egui::{
     Align2, Button, CornerRadius, FontId, Rect, Response, Role, ScrollArea, Sense, Ui, WidgetInfo,
     pos2, vec2,
 };
-use maulstick_types::edits::{GoTo, Redo, Undo};
+use maulstick_painting::edits::{GoTo, Redo, Undo};
 use maulstick_types::paint::HistoryStep;
 use maulstick_ui_kit::language;
 

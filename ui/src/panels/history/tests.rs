@@ -1,8 +1,8 @@
 use eframe::egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use maulstick_painting::edits::{Branch, Forget, GoTo, Keep, Redo, ReturnTo, Undo};
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Branch, Forget, GoTo, Keep, Redo, ReturnTo, Undo};
 use maulstick_types::paint::{HistoryStep, StepName};
 use maulstick_types::values::VersionName;
 

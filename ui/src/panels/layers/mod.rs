@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Align, Button, Key, Layout, TextEdit, Ui, WidgetInfo};
-use maulstick_types::edits::{LayerRef, NameLayer, Opacity};
+use maulstick_painting::edits::{LayerRef, NameLayer, Opacity};
 use maulstick_types::scene::Layer;
 use maulstick_types::values::{LayerName, OpacityFactor, ValueError};
 use maulstick_ui_kit::language::layer_name;

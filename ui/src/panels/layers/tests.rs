@@ -2,9 +2,9 @@ use eframe::egui::accesskit::{Role, Toggled};
 use eframe::egui::{Key, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use maulstick_painting::edits::{Dry, LayerRef, NameLayer, Opacity, StopDrying, Wet};
 use maulstick_types::Region;
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Dry, Edit, LayerRef, NameLayer, Opacity, StopDrying, Wet};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{LayerName, OpacityFactor, Share, Ticks};
 
@@ -208,15 +208,8 @@ fn a_part_is_drawn_and_one_that_is_none_is_told() {
     harness.get_by_label("Dry").click();
     harness.run_steps(4);
     let asked = harness.state_mut().asked();
-    let [
-        Command::Edit(Edit::Dry(Dry {
-            region: Some(region),
-            ..
-        })),
-    ] = &asked[..]
-    else {
-        panic!("{asked:?}");
-    };
+    let dry: Dry = asked[0].edit().expect("a drying");
+    let region = dry.region.expect("of a part");
     let canvas = harness.state().rig.live.canvas().expect("a canvas");
     let size = canvas.cells.map(|cells| f64::from(cells) * canvas.cell_m);
     let expected = Region {

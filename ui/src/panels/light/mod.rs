@@ -11,7 +11,7 @@ use std::path::Path;
 use eframe::egui::{CollapsingHeader, TextEdit, TextureHandle, TextureOptions, Ui};
 use maulstick_appearance::light::changes_colour;
 use maulstick_optics::cie::ILLUMINANTS;
-use maulstick_types::edits::Relight;
+use maulstick_painting::edits::Relight;
 use maulstick_types::scene::{Light, RULES, SAMPLES};
 use maulstick_types::values::ValueError;
 use maulstick_ui_kit::pending::Pending;

@@ -1,8 +1,8 @@
 use eframe::egui::{Key, accesskit::Role, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use maulstick_painting::edits::Relight;
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Edit, Relight};
 
 use super::*;
 use crate::test_support::panel_bench::{Bench, harness, picture, rig};
@@ -13,9 +13,9 @@ fn panel() -> Harness<'static, Bench<LightPanel>> {
 
 /// The lights that were asked for, and whether their exposure is to be chosen.
 fn lights(harness: &mut Harness<'static, Bench<LightPanel>>) -> Vec<(Light, bool)> {
-    let light = |command| match command {
-        Command::Edit(Edit::Relight(Relight { light, expose })) => (light, expose),
-        other => panic!("no light: {other:?}"),
+    let light = |command: Command| {
+        let Relight { light, expose } = command.edit().expect("a light");
+        (light, expose)
     };
     harness.state_mut().asked().into_iter().map(light).collect()
 }

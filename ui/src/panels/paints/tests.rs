@@ -3,9 +3,9 @@
 use eframe::egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use maulstick_painting::edits::{Load, Wells};
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Edit, Load, Wells};
 use maulstick_types::scene::{PALETTE, WellKind};
 use maulstick_types::values::BrushName;
 
@@ -29,10 +29,11 @@ fn write(harness: &mut Harness<'_, Bench>, field: &str, text: &str) {
 /// Names of what a command lays in the palette's wells, from the top.
 fn laid(harness: &mut Harness<'_, Bench>) -> Vec<String> {
     let commands = harness.state_mut().commands();
-    let [Command::Edit(Edit::Wells(Wells { surface, wells }))] = &commands[..] else {
+    let [command] = &commands[..] else {
         panic!("{commands:?}")
     };
-    assert_eq!(*surface, PALETTE);
+    let Wells { surface, wells } = command.edit().expect("wells");
+    assert_eq!(surface, PALETTE);
     let jars: Vec<&WellKind> = wells.iter().rev().take(2).map(|well| &well.kind).collect();
     assert_eq!(jars, [&WellKind::Medium, &WellKind::Cleaner]);
     let paints = wells.iter().filter_map(|well| match &well.kind {

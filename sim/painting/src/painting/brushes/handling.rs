@@ -1,13 +1,8 @@
 //! Handling of brushes: modes, tuning, and what lies under them (Baxter 2004, § 6.7).
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::{CELL_MAX, QUANTUM_M, REFERENCE_CELL_M, UNIT_M};
 use maulstick_model::interface::{Handling, StepReport, Transfer};
-use maulstick_types::edits::{Handle, Tune};
-use maulstick_types::scene::{BrushHandling, BrushMode, PALETTE, Scene};
-
-use crate::apply::{Applied, Apply};
-use crate::painting::Painting;
+use maulstick_types::scene::{BrushMode, PALETTE, Scene};
 
 /// Kinematic viscosity of oil paint as it comes from the tube, m²/s (Baxter 2004, § 5.2).
 const VISCOSITY_M2_S: f64 = 1e-2;
@@ -66,31 +61,5 @@ pub(crate) fn handling_of(scene: &Scene, brush: &str, surface: u32) -> Handling 
         push,
         transfer,
         most,
-    }
-}
-
-impl Apply for Handle {
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.brushes.at(&self.brush)?;
-        let handling = BrushHandling::from(self.clone());
-        let handlings = &mut painting.scene.handlings;
-        handlings.retain(|other| other.brush != handling.brush);
-        if handling != BrushHandling::normal(&handling.brush) {
-            handlings.push(handling);
-        }
-        painting.scene.version += 1;
-        Ok(Applied::Done)
-    }
-}
-
-impl Apply for Tune {
-    /// Makes a brush stiffer or softer; who solves it hears of it by the scene.
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.brushes.at(&self.brush)?;
-        let tunings = &mut painting.scene.tunings;
-        tunings.retain(|other| other.brush != self.brush.as_str());
-        tunings.push(self.clone().into());
-        painting.scene.version += 1;
-        Ok(Applied::Done)
     }
 }

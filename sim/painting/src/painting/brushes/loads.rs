@@ -5,15 +5,11 @@ use std::sync::Arc;
 use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::Counts;
 use maulstick_model::brush::load::Half;
-use maulstick_optics::{THINNER, thinned};
-use maulstick_types::edits::{Clean, Load, LoadFrom};
-use maulstick_types::paint::StepName;
+use maulstick_optics::THINNER;
 use maulstick_types::scene::{Scene, Surface, WellKind};
-use maulstick_types::values::Distance;
 use maulstick_types::{Mixture, mixture::Part};
 
 use super::PaintingBrush;
-use crate::apply::{Applied, Apply};
 use crate::ledger::Ledger;
 use crate::painting::Painting;
 use crate::painting::optics::thinner_slot;
@@ -21,66 +17,6 @@ use crate::painting::strokes::backend::Deferral;
 
 /// What a brush takes up, by the halves of its head: slots and shares.
 type Halves<'a> = [(&'a [(usize, f64)], Half)];
-
-impl Apply for Load {
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let brush = painting.brushes.at(&self.brush)?;
-        let mixtures: Vec<Mixture> = std::iter::once(&self.mixture)
-            .chain(&self.beside)
-            .cloned()
-            .collect();
-        let slots = painting.optics.all_slots(&mut painting.scene, &mixtures)?;
-        painting.begin_step(
-            StepName::Load {
-                paints: named(&mixtures),
-            },
-            Some(brush),
-        );
-        let parts: Vec<_> = match &slots[..] {
-            [both] => vec![(&both[..], Half::Both)],
-            halves => halves
-                .iter()
-                .map(|slots| &slots[..])
-                .zip([Half::Left, Half::Right])
-                .collect(),
-        };
-        let seed = painting.brushes[brush].next_seed();
-        painting.fill(brush, &parts, seed);
-        painting.end_step_of(brush);
-        Ok(Applied::Done)
-    }
-}
-
-impl Apply for LoadFrom {
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.brushes.at(&self.brush)?;
-        let on = painting.surfaces.at(self.surface)?;
-        painting.commit();
-        let at_m = [self.x, self.y].map(Distance::get);
-        let counts = painting.surfaces[on].counts_at(at_m);
-        let mixture = mixture_of(&counts, &painting.scene)
-            .or_else(|| well_at(&painting.scene.surfaces[on], at_m))
-            .ok_or(EditError::NoPaintThere { at_m })?;
-        let mixture = thinned(&mixture, self.thinner);
-        Load {
-            mixture: mixture.clone(),
-            beside: None,
-            brush: self.brush.clone(),
-        }
-        .apply(painting)?;
-        Ok(Applied::Loaded(mixture))
-    }
-}
-
-impl Apply for Clean {
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let brush = painting.brushes.at(&self.brush)?;
-        painting.begin_step(StepName::Clean, Some(brush));
-        painting.brushes[brush].empty(&mut painting.accounts.ledger);
-        painting.end_step_of(brush);
-        Ok(Applied::Done)
-    }
-}
 
 impl PaintingBrush {
     /// Gives what it carries to the cleaner.
@@ -120,7 +56,7 @@ impl PaintingBrush {
 }
 
 /// The paints of mixtures, each once, without their shares.
-fn named(mixtures: &[Mixture]) -> Vec<String> {
+pub(crate) fn named(mixtures: &[Mixture]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for part in mixtures.iter().flat_map(|mixture| &mixture.parts) {
         if !names.contains(&part.paint) {
@@ -131,7 +67,7 @@ fn named(mixtures: &[Mixture]) -> Vec<String> {
 }
 
 /// Mixture of the well at a place, m, which nobody has stirred there.
-fn well_at(surface: &Surface, at_m: [f64; 2]) -> Option<Mixture> {
+pub(crate) fn well_at(surface: &Surface, at_m: [f64; 2]) -> Option<Mixture> {
     let mut wells = surface.wells.iter();
     let well = wells.find(|well| {
         let [x, y] = [0, 1].map(|i| at_m[i] - well.center_m[i]);
@@ -145,7 +81,7 @@ fn well_at(surface: &Surface, at_m: [f64; 2]) -> Option<Mixture> {
 }
 
 /// Mixture of counted paint, shares by volume; `None` if there is none.
-fn mixture_of(counts: &Counts, scene: &Scene) -> Option<Mixture> {
+pub(crate) fn mixture_of(counts: &Counts, scene: &Scene) -> Option<Mixture> {
     let total: u64 = counts.iter().sum();
     let counted = scene.paints.iter().zip(counts);
     let parts = counted

@@ -1,7 +1,7 @@
 //! Brushes: their heads, what they carry, and where they are on their way.
 
 pub(crate) mod handling;
-mod loads;
+pub(crate) mod loads;
 mod snapshot;
 
 use std::collections::BTreeMap;

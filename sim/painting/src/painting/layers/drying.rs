@@ -7,28 +7,19 @@
 
 use std::sync::Arc;
 
+use crate::edits::Dry;
 use maulstick_canvas::EditError;
-use maulstick_types::edits::{Dry, StopDrying};
 use maulstick_types::paint::StepName;
 use maulstick_types::values::Ticks;
 
 use super::next_layer;
-use crate::apply::{Applied, Apply};
 use crate::clock::{Clock, Drying, Round, TICKS_A_SECOND};
+use crate::edits::Applied;
 use crate::painting::Painting;
 use crate::painting::surfaces::{Changed, Part, SurfaceState};
 
 /// Most tiles that dry in a tick.
 const TILES_A_TICK: usize = 32;
-
-impl Apply for StopDrying {
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        match painting.clock.stop(Some(self.surface)) {
-            true => Ok(Applied::Done),
-            false => Err(EditError::NotDrying),
-        }
-    }
-}
 
 impl Painting {
     /// Has the wet paint of a part dry evenly into one new layer over a time.
@@ -36,7 +27,7 @@ impl Painting {
     /// # Errors
     /// [`EditError`] for an unknown surface, a part beside it, where nothing is wet, and where a
     /// drying goes on.
-    pub(super) fn dry_over(&mut self, edit: &Dry, over: Ticks) -> Result<Applied, EditError> {
+    pub(crate) fn dry_over(&mut self, edit: &Dry, over: Ticks) -> Result<Applied, EditError> {
         let (surface, region) = (edit.surface, edit.region.as_ref());
         let (on, part) = self.surfaces.part(surface, region)?;
         if self.clock.dryings.iter().any(|it| it.surface == surface) {

@@ -3,64 +3,12 @@
 mod drying;
 mod wetting;
 
+use crate::edits::LayerRef;
 use maulstick_canvas::EditError;
-use maulstick_types::edits::{Dry, Form as _, LayerRef, NameLayer, Opacity};
-use maulstick_types::paint::StepName;
 use maulstick_types::scene::{Layer, Scene};
 
 use super::Painting;
 use super::surfaces::Changed;
-use crate::apply::{Applied, Apply};
-
-impl Apply for Dry {
-    /// Dries the lower share of the wet paint of a surface, or of a part, into a new layer, at once or over a time.
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        self.check_idle()?;
-        if let Some(over) = self.over {
-            return painting.dry_over(self, over);
-        }
-        painting.close_windows();
-        let (on, part) = painting.surfaces.part(self.surface, self.region.as_ref())?;
-        let number = next_layer(&painting.scene);
-        let dried = painting.surfaces[on].dried(&part, number, self.share.get());
-        if dried.is_empty() {
-            return Err(EditError::NothingWet(self.region.clone()));
-        }
-        painting.clock.stop(Some(self.surface));
-        painting.begin_step(StepName::Dry, None);
-        painting.put_changed(on, dried);
-        let name = self.layer.as_deref().unwrap_or_default();
-        let layer = painting.add_layer(number, name);
-        painting.end_own_step();
-        Ok(Applied::Dried(layer))
-    }
-}
-
-impl Apply for Opacity {
-    /// Makes a dry layer more or less opaque: a factor on its optical thickness, never on its height.
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let place = place_of(&painting.scene, &self.layer)?;
-        painting.begin_step(StepName::LayerOpacity, None);
-        painting.scene.layers[place].opacity = self.opacity.get();
-        painting.layers_changed();
-        painting.end_own_step();
-        Ok(Applied::Done)
-    }
-}
-
-impl Apply for NameLayer {
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let number = self.layer;
-        let place = place_of(&painting.scene, &LayerRef::Number { number })?;
-        painting.begin_step(StepName::LayerName, None);
-        self.name
-            .trim()
-            .clone_into(&mut painting.scene.layers[place].name);
-        painting.scene.version += 1;
-        painting.end_own_step();
-        Ok(Applied::Done)
-    }
-}
 
 impl Painting {
     /// Dries the lower `share` of the wet paint of a surface, within the step that is open, and says which layer it is;
@@ -87,7 +35,7 @@ impl Painting {
     }
 
     /// Adds a layer; without a name it is called by its number.
-    fn add_layer(&mut self, number: u32, name: &str) -> Layer {
+    pub(crate) fn add_layer(&mut self, number: u32, name: &str) -> Layer {
         let name = if name.is_empty() {
             Layer::default_name(number)
         } else {
@@ -111,12 +59,12 @@ impl Painting {
 }
 
 /// Number of the next layer.
-fn next_layer(scene: &Scene) -> u32 {
+pub(crate) fn next_layer(scene: &Scene) -> u32 {
     1 + scene.layers.last().map_or(0, |layer| layer.number)
 }
 
 /// Place of a dry layer in a scene.
-fn place_of(scene: &Scene, which: &LayerRef) -> Result<usize, EditError> {
+pub(crate) fn place_of(scene: &Scene, which: &LayerRef) -> Result<usize, EditError> {
     let layers = &scene.layers;
     let numbered = |number: u32| layers.iter().position(|layer| layer.number == number);
     let found = match which {

@@ -11,49 +11,14 @@ use maulstick_canvas::quantum::{Counts, SLOTS, add};
 use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_convert::{Converted, Converter, Distance, TileGround};
 use maulstick_num::fork_join;
-use maulstick_types::edits::Convert;
-use maulstick_types::paint::{StepName, TILE};
+use maulstick_types::paint::TILE;
 use maulstick_types::scene::WellKind;
 
 use super::part::Changed;
-use crate::apply::{Applied, Apply};
-use crate::models::model_called;
 use crate::painting::Painting;
-use crate::painting::undo::materials;
 
 /// Tiles that are converted at a time, shared by the cores.
 const AT_A_TIME: usize = 64;
-
-impl Apply for Convert {
-    /// Gives a surface another paint model: one step that can be undone. Each cell keeps the volume of each of its layers;
-    /// where the models differ in colour, its paints are fitted to what was seen. What brushes carry stays as it is.
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let on = painting.surfaces.at(self.surface)?;
-        let to = model_called(&self.model)?;
-        let from = painting.surfaces[on].model;
-        if std::ptr::eq(from, to) {
-            return Err(EditError::SameModel(to.name));
-        }
-        painting.close_windows();
-        painting.clock.stop(Some(self.surface));
-        let is_painted = painting.surfaces[on].tiles().next().is_some();
-        if from.colouring != to.colouring && is_painted {
-            painting.take_up_wells()?;
-        }
-        painting.begin_step(StepName::Model, None);
-        let models = painting.model_names();
-        painting.history.name_models(&models);
-        painting.versions.name_models(&models);
-        let (tiles, distance) = painting.converted(on, to.colouring);
-        painting.put_converted(on, tiles);
-        let mut materials = materials(&painting.scene);
-        to.name.clone_into(&mut materials[on].model);
-        painting.set_materials(&materials);
-        painting.end_own_step();
-        let cell_m = painting.surfaces[on].cell_m;
-        Ok(Applied::Converted { distance, cell_m })
-    }
-}
 
 /// Tiles with the same pages, which become one and the same.
 type Pages = Vec<u64>;
@@ -77,7 +42,7 @@ struct Job {
 
 impl Painting {
     /// Gives the paints of the palette's wells slots, as far as there are free ones: conversions may use them.
-    fn take_up_wells(&mut self) -> Result<(), EditError> {
+    pub(crate) fn take_up_wells(&mut self) -> Result<(), EditError> {
         let wells = self.scene.surfaces.iter().flat_map(|own| own.wells.clone());
         for well in wells.collect::<Vec<_>>() {
             if let WellKind::Paint { mixture } = well.kind {
@@ -91,13 +56,17 @@ impl Painting {
     }
 
     /// Models of the surfaces, by their numbers.
-    fn model_names(&self) -> BTreeMap<u32, &'static str> {
+    pub(crate) fn model_names(&self) -> BTreeMap<u32, &'static str> {
         let surfaces = self.surfaces.iter();
         surfaces.map(|own| (own.id, own.model.name)).collect()
     }
 
     /// The tiles of a surface in another colouring, as far as they change, and how near they come to what was seen.
-    fn converted(&self, on: usize, to: maulstick_convert::Colouring) -> (Changed, Distance) {
+    pub(crate) fn converted(
+        &self,
+        on: usize,
+        to: maulstick_convert::Colouring,
+    ) -> (Changed, Distance) {
         let surface = &self.surfaces[on];
         let converter = Converter::new(&self.optics.look, surface.model.colouring, to);
         let is_even = matches!(
@@ -171,7 +140,7 @@ impl Painting {
 
     /// Puts tiles in place whose cells have as much paint as before, within a step: what changed from one paint to another
     /// is booked as given and taken by a mode.
-    fn put_converted(&mut self, on: usize, tiles: Changed) {
+    pub(crate) fn put_converted(&mut self, on: usize, tiles: Changed) {
         let count = |tile: &Tile| {
             let mut counts = tile.counts();
             if let Some(stack) = tile.dry() {

@@ -10,11 +10,9 @@ use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::quantum::{CELL_MAX, Counts, QUANTUM_M, SLOTS};
 use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_types::Mixture;
-use maulstick_types::edits::{Fill, FillPaint};
 use maulstick_types::paint::StepName;
 
 use super::SurfaceState;
-use crate::apply::{Applied, Apply};
 use crate::ledger::Ledger;
 use crate::painting::Painting;
 
@@ -46,33 +44,9 @@ impl Films {
     }
 }
 
-impl Apply for Fill {
-    /// Lays an even film of paint from the tubes, or of the colour that a brush carries on the whole; the brush keeps
-    /// what it has.
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let thickness_m = self.thickness.get();
-        match &self.paint {
-            FillPaint::Mixture { mixture } => {
-                painting.lay_from(self.surface, mixture, thickness_m, Ledger::from_tube)?;
-            }
-            FillPaint::Carried { brush } => {
-                painting.surfaces.at(self.surface)?;
-                let mixture = painting.carried_mixture(brush)?;
-                painting.lay_from(
-                    self.surface,
-                    &mixture,
-                    thickness_m,
-                    Ledger::from_mode_counts,
-                )?;
-            }
-        }
-        Ok(Applied::Done)
-    }
-}
-
 impl Painting {
     /// Lays an even film of wet paint over a whole surface, but for its wells; from where `book` says.
-    fn lay_from(
+    pub(crate) fn lay_from(
         &mut self,
         surface: u32,
         mixture: &Mixture,

@@ -2,73 +2,18 @@
 
 use std::sync::Arc;
 
-use maulstick_appearance::ground::{add_spectrum, check_ground};
 use maulstick_canvas::EditError;
-use maulstick_canvas::assets::SPECTRUM;
-use maulstick_types::edits::{Ground, GroundSource, Piles, Place, Size, Tooth};
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::Surface;
 
-use crate::apply::{Applied, Apply};
+use crate::edits::Applied;
 use crate::history::SurfaceMaterial;
 use crate::models::model_called;
 use crate::painting::Painting;
 use crate::painting::undo::materials;
-use crate::setup::relief_called;
-
-impl Apply for Ground {
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let on = painting.surfaces.at(self.surface)?;
-        let assets = &mut painting.optics.assets;
-        let ground = match &self.ground {
-            GroundSource::Named { name } => name.to_string(),
-            GroundSource::Spectrum { csv } => {
-                format!("{SPECTRUM}{}", add_spectrum(assets, csv)?)
-            }
-        };
-        check_ground(&ground, assets)?;
-        painting.change_material(StepName::Ground, on, |material| material.ground = ground);
-        Ok(Applied::Done)
-    }
-}
-
-impl Apply for Tooth {
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let on = painting.surfaces.at(self.surface)?;
-        let cell_m = painting.surfaces[on].cell_m;
-        relief_called(&self.tooth, self.seed, cell_m, &painting.optics.assets)?;
-        painting.change_material(StepName::Tooth, on, |material| {
-            material.tooth = self.tooth.to_string();
-            material.tooth_seed = self.seed;
-        });
-        Ok(Applied::Done)
-    }
-}
-
-impl Apply for Size {
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.change_surface(self.surface, |own| own.stain_m = self.stain.get())
-    }
-}
-
-impl Apply for Piles {
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.change_surface(self.surface, |own| own.piles_last = self.last)
-    }
-}
-
-impl Apply for Place {
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        let zoom = self.zoom.get();
-        Place::new(self.surface, self.pose.clone(), zoom)?;
-        painting.change_surface(self.surface, |own| {
-            (own.pose, own.zoom) = (self.pose.clone(), zoom);
-        })
-    }
-}
 
 impl Painting {
-    fn change_surface(
+    pub(crate) fn change_surface(
         &mut self,
         id: u32,
         change: impl FnOnce(&mut Surface),
@@ -79,7 +24,7 @@ impl Painting {
         Ok(Applied::Done)
     }
 
-    fn change_material(
+    pub(crate) fn change_material(
         &mut self,
         what: StepName,
         on: usize,

@@ -1,32 +1,10 @@
 //! Scraping: wet paint leaves a surface for the cleaner.
 
-use maulstick_canvas::EditError;
 use maulstick_canvas::quantum::{Counts, SLOTS, add};
 use maulstick_canvas::tile::{Tile, TileId};
-use maulstick_types::edits::Scrape;
-use maulstick_types::paint::StepName;
 
 use super::part::Changed;
-use crate::apply::{Applied, Apply};
 use crate::painting::Painting;
-
-impl Apply for Scrape {
-    /// Wet paint of a part goes to the cleaner, but for that in wells.
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.close_windows();
-        let (on, part) = painting.surfaces.part(self.surface, self.region.as_ref())?;
-        let surface = &painting.surfaces[on];
-        let scraped = surface.scraped(|id| surface.staying(&part, id));
-        if scraped.is_empty() {
-            return Err(EditError::NothingWet(self.region.clone()));
-        }
-        painting.clock.stop(Some(self.surface));
-        painting.begin_step(StepName::Scrape, None);
-        painting.put_scraped(on, scraped);
-        painting.end_own_step();
-        Ok(Applied::Done)
-    }
-}
 
 impl super::SurfaceState {
     /// Its tiles without their wet paint, but for that of the cells that `stay` of a tile has (a tile without stays

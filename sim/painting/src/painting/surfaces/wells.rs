@@ -3,28 +3,18 @@
 use std::sync::Arc;
 
 use maulstick_canvas::EditError;
-use maulstick_types::edits::Wells;
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::{Well, WellKind};
 
-use crate::apply::{Applied, Apply};
 use crate::error::paint_error;
 use crate::painting::Painting;
 use crate::painting::surfaces::well_moves::WellMoves;
 
 /// Wells may reach beyond the edge of their surface by what rounding makes of it, m.
 const EDGE_M: f64 = 1e-6;
-impl Apply for Wells {
-    /// Gives a surface other wells. Those that move take the wet paint on them along; what lies on those that go, and
-    /// where others come, is scraped off.
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.set_wells(self.surface, &self.wells)?;
-        Ok(Applied::Done)
-    }
-}
 
 impl Painting {
-    fn set_wells(&mut self, surface: u32, wells: &[Well]) -> Result<(), EditError> {
+    pub(crate) fn set_wells(&mut self, surface: u32, wells: &[Well]) -> Result<(), EditError> {
         let on = self.surfaces.at(surface)?;
         let mut changed = self.scene.surfaces[on].clone();
         let size = changed.cells.map(|cells| f64::from(cells) * changed.cell_m);

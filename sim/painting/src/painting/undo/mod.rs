@@ -4,12 +4,10 @@ mod steps;
 pub(crate) mod versions;
 
 use maulstick_canvas::EditError;
-use maulstick_types::edits::{GoTo, Redo, Undo};
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::{Layer, Scene};
 
 use super::Painting;
-use crate::apply::{Applied, Apply};
 use crate::history::{Direction, History, OpenStep, Step, SurfaceMaterial, same};
 
 /// Materials of the surfaces of a scene.
@@ -25,24 +23,6 @@ pub(crate) fn materials(scene: &Scene) -> Vec<SurfaceMaterial> {
             model: surface.model.clone(),
         })
         .collect()
-}
-
-impl Apply for Undo {
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.undo(self.brush.as_deref()).map(Applied::Step)
-    }
-}
-
-impl Apply for Redo {
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.redo(self.brush.as_deref()).map(Applied::Step)
-    }
-}
-
-impl Apply for GoTo {
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.go_to(self.step).map(Applied::Step)
-    }
 }
 
 impl Painting {

@@ -6,11 +6,9 @@ use std::sync::Arc;
 use maulstick_canvas::EditError;
 use maulstick_canvas::tile::Tile;
 use maulstick_model::brush::load::BrushLoad;
-use maulstick_types::edits::{Branch, Forget, Keep, ReturnTo};
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::NamedVersion;
 
-use crate::apply::{Applied, Apply};
 use crate::history::{NonTileState, TilePlace, TileRef, same};
 use crate::painting::Painting;
 
@@ -29,32 +27,6 @@ pub struct Named {
 
 /// Name of the current painting among its versions.
 pub const NOW: &str = "now";
-
-impl Apply for Keep {
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.keep(&self.name).map(|()| Applied::Done)
-    }
-}
-
-impl Apply for ReturnTo {
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.return_to(&self.name).map(|()| Applied::Done)
-    }
-}
-
-impl Apply for Branch {
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting
-            .branch(&self.from, &self.name)
-            .map(|()| Applied::Done)
-    }
-}
-
-impl Apply for Forget {
-    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.forget(&self.name).map(|()| Applied::Done)
-    }
-}
 
 /// The versions of a painting.
 #[derive(Clone, Default)]

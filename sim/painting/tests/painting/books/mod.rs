@@ -6,14 +6,14 @@ use maulstick_brush::BrushFile;
 use maulstick_brush::palette_place::{mirrored, size_m};
 use maulstick_canvas::quantum::{CELL_MAX, SLOTS};
 use maulstick_num::fork_join::with_threads;
+use maulstick_painting::edits::{
+    Clean, Convert, Dry, Fill, FillPaint, Handle, LayerRef, Load, Opacity, Piles, Scrape, Size,
+    Wells,
+};
 use maulstick_painting::setup::wells_of;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::Mixture;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
-use maulstick_types::edits::{
-    Clean, Convert, Dry, Fill, FillPaint, Handle, LayerRef, Load, Opacity, Piles, Scrape, Size,
-    Wells,
-};
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE, Well};
 use maulstick_types::values::{
     BrushName, FilmThickness, LayerName, ModelName, OpacityFactor, Share, StainThickness,

@@ -1,0 +1,51 @@
+//! Journal entries of files, also those of earlier versions, by the field tables that these had.
+
+use std::sync::LazyLock;
+
+use super::JournalEntry;
+use crate::wire::codec::{Message as _, decode};
+use crate::wire::field_table::{FieldTable, TableError};
+use crate::wire::header::{DecodeError, HEADER_BYTES, Header};
+
+/// Tables of version 12, whose edits are an enum, and of version 11, whose decisions are words as well.
+static EARLIER: LazyLock<[Result<FieldTable, TableError>; 2]> = LazyLock::new(|| {
+    [
+        &include_bytes!("journal_12.json")[..],
+        include_bytes!("journal_11.json"),
+    ]
+    .map(FieldTable::parse)
+});
+
+impl JournalEntry {
+    /// Hashes of the schemas that [`decode_stored`](Self::decode_stored) reads, its own first.
+    #[must_use]
+    pub fn stored_hashes() -> Vec<u32> {
+        let earlier = EARLIER.iter().flatten().map(FieldTable::hash);
+        std::iter::once(Self::schema().hash)
+            .chain(earlier)
+            .collect()
+    }
+
+    /// Decodes an entry of a file, which may be of an earlier version.
+    ///
+    /// # Errors
+    /// As [`decode`].
+    pub fn decode_stored(bytes: &[u8]) -> Result<(Header, Self), DecodeError> {
+        let header = Header::from_bytes(bytes)?;
+        let mut earlier = EARLIER.iter().flatten();
+        let Some(table) = earlier.find(|table| table.hash() == header.schema) else {
+            return decode(bytes);
+        };
+        let body =
+            translated(table, &bytes[HEADER_BYTES..]).map_err(|error| DecodeError::Body {
+                name: Self::NAME,
+                reason: error.to_string(),
+            })?;
+        Ok((header, Self::decode_body(Self::VERSION, &body)?))
+    }
+}
+
+fn translated(table: &FieldTable, body: &[u8]) -> Result<Vec<u8>, TableError> {
+    let value = table.decode(body)?;
+    FieldTable::of(JournalEntry::schema())?.encode(&value)
+}

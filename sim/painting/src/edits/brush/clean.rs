@@ -1,0 +1,55 @@
+//! Takes all paint off a brush.
+
+use maulstick_canvas::EditError;
+use maulstick_types::EditFields;
+use maulstick_types::paint::StepName;
+use maulstick_types::values::{BrushName, ValueError};
+
+use crate::edits::{Applied, Form, PaintingEdit, StepForm};
+use crate::painting::Painting;
+
+/// Clean a brush
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+pub struct Clean {
+    /// Brush of the rig
+    #[serde(default)]
+    #[cfg_attr(feature = "cli", arg(long, default_value = "main"))]
+    pub brush: BrushName,
+}
+
+impl EditFields for Clean {
+    const NAME: &'static str = "clean";
+}
+
+impl Form for Clean {
+    const STEPS: &'static [StepForm] = &[StepForm::switch("clean", &[], "{ clean = true }")];
+    const ARGUMENTS: Option<&'static str> = Some("brush|clean");
+    #[cfg(feature = "cli")]
+    const COMMAND: Option<crate::edits::CommandForm> =
+        Some(crate::edits::CommandForm::of::<Self>("clean", "brush"));
+
+    fn example() -> Result<Self, ValueError> {
+        Ok(Self {
+            brush: BrushName::main(),
+        })
+    }
+}
+
+impl PaintingEdit for Clean {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let brush = painting.brushes.at(&self.brush)?;
+        painting.begin_step(StepName::Clean, Some(brush));
+        painting.brushes[brush].empty(&mut painting.accounts.ledger);
+        painting.end_step_of(brush);
+        Ok(Applied::Done)
+    }
+
+    fn log_words(&self) -> String {
+        format!("clean {}", self.brush)
+    }
+
+    fn brush_mut(&mut self) -> Option<&mut BrushName> {
+        Some(&mut self.brush)
+    }
+}

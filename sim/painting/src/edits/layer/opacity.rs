@@ -1,0 +1,108 @@
+//! Makes a dry layer more or less opaque.
+
+use std::fmt;
+use std::str::FromStr;
+
+use maulstick_canvas::EditError;
+use maulstick_types::EditFields;
+use maulstick_types::paint::StepName;
+use maulstick_types::values::{LayerName, OpacityFactor, ValueError};
+
+use crate::edits::{Applied, Form, PaintingEdit, StepForm, words};
+use crate::painting::Painting;
+use crate::painting::layers::place_of;
+
+/// A dry layer.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum LayerRef {
+    /// The layer of this number.
+    Number {
+        /// Its number.
+        number: u32,
+    },
+    /// The newest layer of this name, or else the one whose number has these digits.
+    Named {
+        /// Its name.
+        name: LayerName,
+    },
+}
+
+impl FromStr for LayerRef {
+    type Err = ValueError;
+
+    fn from_str(text: &str) -> Result<Self, ValueError> {
+        LayerName::new(text).map(|name| Self::Named { name })
+    }
+}
+
+impl fmt::Display for LayerRef {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number { number } => write!(f, "{number}"),
+            Self::Named { name } if name.bytes().all(|digit| digit.is_ascii_digit()) => {
+                write!(f, "{name}")
+            }
+            Self::Named { name } => write!(f, "called '{name}'"),
+        }
+    }
+}
+
+/// Make a dry layer more or less opaque
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+pub struct Opacity {
+    /// Name or number of the layer
+    #[serde(deserialize_with = "named")]
+    pub layer: LayerRef,
+    /// Factor on its optical thickness, 0 to 1; its height does not change
+    #[cfg_attr(feature = "cli", arg(allow_negative_numbers = true))]
+    pub opacity: OpacityFactor,
+}
+
+fn named<'de, D: serde::Deserializer<'de>>(from: D) -> Result<LayerRef, D::Error> {
+    match from.is_human_readable() {
+        true => <LayerName as serde::Deserialize>::deserialize(from)
+            .map(|name| LayerRef::Named { name }),
+        false => serde::Deserialize::deserialize(from),
+    }
+}
+
+impl EditFields for Opacity {
+    const NAME: &'static str = "opacity";
+}
+
+impl Form for Opacity {
+    const STEPS: &'static [StepForm] = &[StepForm::new(
+        "opacity",
+        &["layer"],
+        "{ opacity = 0.7, layer = \"sky\" }",
+    )];
+    const ARGUMENTS: Option<&'static str> = Some("layer|opacity|sky|0.7");
+    #[cfg(feature = "cli")]
+    const COMMAND: Option<crate::edits::CommandForm> =
+        Some(crate::edits::CommandForm::of::<Self>("opacity", "layer"));
+
+    fn example() -> Result<Self, ValueError> {
+        Ok(Self {
+            layer: "sky".parse()?,
+            opacity: OpacityFactor::new(0.7)?,
+        })
+    }
+}
+
+impl PaintingEdit for Opacity {
+    /// Makes a dry layer more or less opaque: a factor on its optical thickness, never on its height.
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let place = place_of(&painting.scene, &self.layer)?;
+        painting.begin_step(StepName::LayerOpacity, None);
+        painting.scene.layers[place].opacity = self.opacity.get();
+        painting.layers_changed();
+        painting.end_own_step();
+        Ok(Applied::Done)
+    }
+
+    fn log_words(&self) -> String {
+        let opacity = words::percent(self.opacity.get().into());
+        format!("make the layer {} {opacity} opaque", self.layer)
+    }
+}

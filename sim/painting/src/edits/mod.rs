@@ -1,0 +1,87 @@
+//! Edits: all that changes a painting besides its brushes' strokes, one in one file each.
+//!
+//! A file has the struct, whose doc comment is its help, its form as a step of a script and as a command, what it does to
+//! the painting, and its words. On the wire and in the journal it is an [`Edit`] of its name. A number or text that has a
+//! range is a type of [`values`](maulstick_types::values), so what is read is valid.
+//!
+//! A new edit is its file, a line in the list below, and its widget.
+
+mod applied;
+mod form;
+mod read;
+mod registry;
+pub mod words;
+
+pub mod brush;
+pub mod history;
+pub mod layer;
+pub mod surface;
+
+pub use applied::Applied;
+pub use brush::{Clean, Handle, Load, LoadFrom, Tune};
+#[cfg(feature = "cli")]
+pub use form::CommandForm;
+pub use form::{Form, StepForm};
+pub use history::{Branch, Forget, GoTo, Keep, Redo, ReturnTo, Undo};
+pub use layer::{Dry, LayerRef, NameLayer, Opacity, StopDrying, Wet};
+pub use registry::{EditEntry, entries, read};
+pub use surface::{
+    Convert, Exposure, Fill, FillPaint, Ground, GroundSource, LightChange, Piles, Place, Relight,
+    Scrape, Size, Tooth, Wells,
+};
+
+use std::fmt::Debug;
+
+use maulstick_canvas::EditError;
+use maulstick_types::Mixture;
+use maulstick_types::values::{BrushName, ValueError};
+
+use crate::painting::Painting;
+
+/// Hands the list of all edits to a macro.
+#[macro_export]
+macro_rules! for_each_edit {
+    ($with:ident) => {
+        $with! {
+            Load, LoadFrom, Clean, Tune, Handle,
+            Dry, StopDrying, Wet, Opacity, NameLayer,
+            Place, Relight, Ground, Tooth, Size, Piles, Fill, Scrape, Wells, Convert,
+            Undo, Redo, Keep, ReturnTo, Branch, Forget, GoTo
+        }
+    };
+}
+
+/// An edit as the painting carries it out.
+pub trait PaintingEdit: Debug {
+    /// Changes a painting; where it is refused the painting is as it was.
+    ///
+    /// # Errors
+    /// [`EditError`] says why it is refused.
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError>;
+
+    /// What it does, in the words of a log.
+    fn log_words(&self) -> String;
+
+    /// Words that introduce its result on the command line; `None` if it is done without a word.
+    fn reply(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// The brush that a script's edit is for, which is the one in hand.
+    fn brush_mut(&mut self) -> Option<&mut BrushName> {
+        None
+    }
+
+    /// The mixtures of paints that it names.
+    fn mixtures_mut(&mut self) -> Vec<&mut Mixture> {
+        Vec::new()
+    }
+
+    /// Checks that all that a painter wrote has an effect.
+    ///
+    /// # Errors
+    /// [`ValueError::Idle`].
+    fn check_idle(&self) -> Result<(), ValueError> {
+        Ok(())
+    }
+}

@@ -1,0 +1,90 @@
+//! Gives the paint of a surface another model.
+
+use maulstick_canvas::EditError;
+use maulstick_types::EditFields;
+use maulstick_types::paint::StepName;
+use maulstick_types::scene::CANVAS;
+use maulstick_types::values::{ModelName, ValueError};
+
+use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
+use crate::models::model_called;
+use crate::painting::Painting;
+use crate::painting::undo::materials;
+
+/// Convert the canvas to another paint model
+///
+/// Volumes stay as they are, cell by cell. Where the models show paint in other colours, the paints of each cell are
+/// chosen anew from those of the painting, as near as they come.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+pub struct Convert {
+    /// Name of the paint model: impasto, dab, stokes or marker
+    pub model: ModelName,
+    /// Convert the palette instead of the canvas
+    #[serde(default = "read::canvas")]
+    #[cfg_attr(feature = "cli", arg(long = "palette", action = clap::ArgAction::SetTrue, value_parser = read::surface()))]
+    pub surface: u32,
+}
+
+impl EditFields for Convert {
+    const NAME: &'static str = "convert";
+}
+
+impl Form for Convert {
+    const STEPS: &'static [StepForm] = &[StepForm::new(
+        "model",
+        &["surface"],
+        "{ model = \"dab\" }, { model = \"impasto\", surface = 1 }",
+    )];
+    const ARGUMENTS: Option<&'static str> = Some("canvas|convert|dab");
+    #[cfg(feature = "cli")]
+    const COMMAND: Option<crate::edits::CommandForm> =
+        Some(crate::edits::CommandForm::of::<Self>("convert", "canvas"));
+
+    fn example() -> Result<Self, ValueError> {
+        Ok(Self {
+            model: ModelName::new("dab")?,
+            surface: CANVAS,
+        })
+    }
+}
+
+impl PaintingEdit for Convert {
+    /// Gives a surface another paint model: one step that can be undone. Each cell keeps the volume of each of its layers;
+    /// where the models differ in colour, its paints are fitted to what was seen. What brushes carry stays as it is.
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        let on = painting.surfaces.at(self.surface)?;
+        let to = model_called(&self.model)?;
+        let from = painting.surfaces[on].model;
+        if std::ptr::eq(from, to) {
+            return Err(EditError::SameModel(to.name));
+        }
+        painting.close_windows();
+        painting.clock.stop(Some(self.surface));
+        let is_painted = painting.surfaces[on].tiles().next().is_some();
+        if from.colouring != to.colouring && is_painted {
+            painting.take_up_wells()?;
+        }
+        painting.begin_step(StepName::Model, None);
+        let models = painting.model_names();
+        painting.history.name_models(&models);
+        painting.versions.name_models(&models);
+        let (tiles, distance) = painting.converted(on, to.colouring);
+        painting.put_converted(on, tiles);
+        let mut materials = materials(&painting.scene);
+        to.name.clone_into(&mut materials[on].model);
+        painting.set_materials(&materials);
+        painting.end_own_step();
+        let cell_m = painting.surfaces[on].cell_m;
+        Ok(Applied::Converted { distance, cell_m })
+    }
+
+    fn log_words(&self) -> String {
+        let surface = words::surface(self.surface);
+        format!("convert the {surface} to {}", self.model)
+    }
+
+    fn reply(&self) -> Option<&'static str> {
+        Some("converted: ")
+    }
+}
