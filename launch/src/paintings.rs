@@ -82,7 +82,7 @@ pub fn script(name: &str, library: &PaintLibrary) -> Result<Script, UserError> {
     let Some((_, text)) = PAINTINGS.iter().find(|(known, _)| *known == name) else {
         let names = PAINTINGS.map(|(known, _)| known);
         return Err(UserError::usage(format!("there is no painting '{name}'"))
-            .help(maulstick_types::command::advice::choice(name, names)));
+            .help(maulstick_types::nearest::choice(name, names)));
     };
     Script::parse(text, &format!("{name}.toml"), Path::new(""), library)
 }

@@ -230,8 +230,8 @@ impl PaintingOptions {
         if self.record.is_some() {
             config.paint.record.clone_from(&self.record);
         }
-        config.paint.room().map_err(|what| {
-            UserError::usage(what)
+        config.paint.room().map_err(|error| {
+            UserError::usage(error.to_string())
                 .at("--memory, --history, --record")
                 .help("write sizes as 512M or 2G; 64M is the least memory")
         })?;

@@ -274,7 +274,7 @@ fn bad_takes_are_refused_and_damaged_ones_recovered() {
     place.done(&["render", "saved.mcap", "-o", "p.png"]);
     has(
         &fault(&place, &["render", "p.png", "-o", "q.png"], 2),
-        &["no MCAP file"],
+        &["not an MCAP file"],
     );
     let info = place.done(&["take", "info", "demo.mcap", "--json"]);
     let info: serde_json::Value = serde_json::from_slice(&info.stdout).expect("JSON");

@@ -51,7 +51,7 @@ fn a_copy_is_converted_and_the_painting_stays_as_it_is() {
         ),
         (
             convert("take.mcap", "dab", "v.maul"),
-            ["no painting", "take.mcap"],
+            ["not a Maulstick painting", "take.mcap"],
         ),
         (convert("x.maul", "impasto", "y.maul"), ["y.maul", "help:"]),
     ] {

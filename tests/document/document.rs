@@ -290,7 +290,7 @@ fn what_is_no_painting_is_refused_and_stays_as_it_is() {
     ] {
         has(
             &fault(&place, args, 2),
-            &["no painting", "text.maul", "help:"],
+            &["not a Maulstick painting", "text.maul", "help:"],
         );
     }
     assert!(place.bytes("text.maul").starts_with(b"a shopping"));
@@ -305,7 +305,7 @@ fn what_is_no_painting_is_refused_and_stays_as_it_is() {
     );
     has(
         &fault(&place, &["up", "--headless", "."], 2),
-        &["no painting"],
+        &["not a Maulstick painting"],
     );
     place.done(&[
         "render",

@@ -84,11 +84,11 @@ fn a_rig_goes_from_painting_to_painting_and_nothing_is_lost() {
         ),
         (
             &["painting", "open", "list.maul"],
-            &["no painting", "list.maul"],
+            &["not a Maulstick painting", "list.maul"],
         ),
         (&["painting", "open", "newer.maul"], &["format 99", "newer"]),
         (&["painting", "open", "torn.maul"], &["damaged", "recover"]),
-        (&["painting", "open", "."], &["no painting"]),
+        (&["painting", "open", "."], &["not a Maulstick painting"]),
         (&["painting", "new", "b.maul"], &["already", "b.maul"]),
         (
             &["painting", "new", "list.maul"],
@@ -114,7 +114,7 @@ fn a_rig_goes_from_painting_to_painting_and_nothing_is_lost() {
         ),
         (
             &["painting", "save-as", "list.maul", "--replace"],
-            &["no painting"],
+            &["not a Maulstick painting"],
         ),
         (&["painting", "save-as", "no/c.maul"], &["folder"]),
     ] {

@@ -200,7 +200,7 @@ fn a_session_is_painted_again_to_the_same_picture() {
         &["recording", "replay", "t.mcap", "--document", "r.maul"],
         1,
     );
-    has(&taken, &["nothing is written over one"]);
+    has(&taken, &["never written over"]);
     refused(&["recording", "replay", "t.mcap", "--rate", "0"], &["rate"]);
     refused(
         &["recording", "replay", "t.mcap", "--start", "1e6"],

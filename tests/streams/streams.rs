@@ -324,7 +324,7 @@ fn a_recording_holds_what_was_sent_and_is_exported() {
             ),
             &["control/puck/sample"],
         );
-        has(&fault(place, &["recording", "info", csv], 2), &["no MCAP"]);
+        has(&fault(place, &["recording", "info", csv], 2), &["an MCAP"]);
         fault(
             place,
             &["recording", "record", "-o", csv, "--seconds", "1"],

@@ -6,7 +6,7 @@ use std::path::Path;
 use maulstick_optics::{Illuminant, Reflectance};
 use maulstick_rig::UserError;
 use maulstick_rig::table_file::table_text;
-use maulstick_types::command::SPECTRUM_MAX;
+use maulstick_types::limits::SPECTRUM_MAX;
 
 /// The text of a table with such rows; a folder, a device or a huge file is rejected.
 fn text(path: &Path, row: &str) -> Result<String, UserError> {

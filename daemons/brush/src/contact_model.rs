@@ -70,7 +70,7 @@ pub fn law(kind: ForceKind, brush: &mut BrushModel, plane: &Plane) -> ForceLaw {
         (_, Some(press)) => local(&press, plane.normal()),
         // A head in the air, too.
         _ => ForceLaw::Linear {
-            k1_n: brush.feel().k1_n.min(K1_MOST_N),
+            k1_n: brush.stiffness().k1_n.min(K1_MOST_N),
             k2_n: K2_N,
         },
     }

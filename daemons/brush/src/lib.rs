@@ -12,6 +12,43 @@
 //! | [`fluid_force`] | the drag of the paint on it |
 //! | [`relief`] | the relief around the brush that it feels |
 //!
+//! The force that a brush pressed by a pen asks of a device, linear in the depth around where it is:
+//!
+//! ```
+//! use maulstick_brush::{BrushFile, BrushModel};
+//! use maulstick_brush_node::contact_model::{ForceKind, law};
+//! use maulstick_painting::PaintingSetup;
+//! use maulstick_types::Origin;
+//! use maulstick_types::haptics::ForceLaw;
+//! use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
+//!
+//! # fn main() -> Result<(), maulstick_brush::BrushError> {
+//! let mut brush = BrushModel::new(BrushFile::library("round")?, 0.5);
+//! brush.set_scene(&PaintingSetup::default().scene());
+//! let pen = Origin { source: 1, epoch: 1 };
+//! for step in 0..40u32 {
+//!     let sample = StylusSample {
+//!         pose: StylusPose::Contact {
+//!             point_m: [1e-3 * f64::from(step), 0.0, 0.0],
+//!             tilt_rad: DEFAULT_TILT_RAD,
+//!             twist_rad: 0.0,
+//!             pressure: 0.6,
+//!         },
+//!         in_range: true,
+//!         ..StylusSample::away()
+//!     };
+//!     brush.follow(pen, 5_000_000 * u64::from(step), &sample);
+//! }
+//! let canvas = brush.plane().expect("over the canvas").clone();
+//! let ForceLaw::Local { force_n, stiffness_n_m, .. } = law(ForceKind::Local, &mut brush, &canvas) else {
+//!     panic!("the head touches");
+//! };
+//! println!("{:.2} N upward, {:.0} N/m", force_n[2], -stiffness_n_m[2][2]);
+//! assert!(force_n[2] > 0.0 && stiffness_n_m[2][2] < 0.0);
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # Credit
 //!
 //! - A live brush without credit merges: samples within half a cell of the chord are joined, others become sub-solves

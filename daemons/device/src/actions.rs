@@ -120,7 +120,9 @@ impl Actor {
         let thread = std::thread::Builder::new()
             .name("switches".into())
             .spawn(move || worker.run(&edges))
-            .map_err(|error| UserError::failure(format!("no thread for the switches: {error}")))?;
+            .map_err(|error| {
+                UserError::failure(format!("cannot start the thread for the switches: {error}"))
+            })?;
         Ok(Self {
             actions,
             told: 0,
@@ -134,9 +136,10 @@ impl Actor {
     /// Looks at a sample for switches that have gone down or up. It never waits: an edge for which there
     /// is no room is seen again in the next sample.
     pub fn receive(&mut self, sample: &StylusSample) {
-        let near = match sample.in_range {
-            true => u32::MAX,
-            false => !switch::ERASER,
+        let near = if sample.in_range {
+            u32::MAX
+        } else {
+            !switch::ERASER
         };
         self.follow(sample.switches & near);
     }
@@ -150,9 +153,10 @@ impl Actor {
         let changed = switches ^ self.told;
         for place in (0..u32::BITS).filter(|place| changed & 1 << place != 0) {
             let bit = 1 << place;
-            let edge = match self.told & bit == 0 {
-                true => Edge::Pressed,
-                false => Edge::Released,
+            let edge = if self.told & bit == 0 {
+                Edge::Pressed
+            } else {
+                Edge::Released
             };
             let event = match bit {
                 switch::ERASER => SwitchEvent::Eraser(edge),

@@ -17,7 +17,7 @@ pub fn brush_file(section: &BrushSection) -> Result<BrushFile, UserError> {
     let file = if named {
         BrushFile::library(&section.kind).map_err(|error| {
             UserError::usage(error.to_string())
-                .help("`maulstick brush list` shows them; a file of your own is named with its ending: own.toml")
+                .help("`maulstick brush list` lists them; give a file of your own with its extension: own.toml")
         })?
     } else {
         read_brush(path)?

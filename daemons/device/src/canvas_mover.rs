@@ -31,11 +31,11 @@ const ZOOM_S: f64 = 1.0;
 const TURN_S: f64 = 1.5;
 /// Time between two commands while the hand pushes.
 const PERIOD: Duration = Duration::from_millis(33);
-/// A push counts for so long at most, however late it is followed.
-const LONGEST: Duration = Duration::from_millis(100);
+/// Longest time for which a push counts, however late it is followed.
+const LONGEST_PUSH: Duration = Duration::from_millis(100);
 /// Longest wait of a command for its answer.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// A command is asked again after this; so long at most a daemon's end waits for it.
+/// Time after which a command is sent again, and for which a daemon's end waits for it at most.
 const ASK: Duration = Duration::from_millis(300);
 
 /// Placement of a surface after a push of `dt` s.
@@ -87,7 +87,11 @@ impl CanvasMover {
         let thread = std::thread::Builder::new()
             .name("mover".into())
             .spawn(run)
-            .map_err(|error| UserError::failure(format!("no thread for the free hand: {error}")))?;
+            .map_err(|error| {
+                UserError::failure(format!(
+                    "cannot start the thread for the free hand: {error}"
+                ))
+            })?;
         Ok(Self {
             controls: Some(controls),
             stop,
@@ -138,7 +142,11 @@ fn follow(
             let Some(from) = lie.filter(|_| pushes(&control)) else {
                 break;
             };
-            let to = pushed(&from, &control, moved.elapsed().min(LONGEST).as_secs_f64());
+            let to = pushed(
+                &from,
+                &control,
+                moved.elapsed().min(LONGEST_PUSH).as_secs_f64(),
+            );
             moved = Instant::now();
             match to.edit(CANVAS).map_err(UserError::from).and_then(&mut send) {
                 Ok(()) => lie = Some(to),

@@ -97,7 +97,7 @@ impl std::fmt::Display for TouchRejection {
 
 /// A hand keeps still within this of where it began, m.
 const STILL_M: f64 = 1e-3;
-/// It keeps still for so long, s.
+/// Time for which it keeps still, s.
 const STILL_S: f64 = 1.0;
 /// CornerCalibration are at least as far apart, and a hand has moved that has gone so far, m.
 const APART_M: f64 = 5e-3;
@@ -266,9 +266,10 @@ impl CornerCalibration {
         if stay.moved {
             return Progress::Rejected(TouchRejection::Moved);
         }
-        match self.is_apart(stay.mean()) {
-            true => self.find(corner, stay),
-            false => Progress::Rejected(TouchRejection::SamePlace),
+        if self.is_apart(stay.mean()) {
+            self.find(corner, stay)
+        } else {
+            Progress::Rejected(TouchRejection::SamePlace)
         }
     }
 

@@ -20,6 +20,33 @@
 //! | [`pen_stream`] | samples of a pen on the bus |
 //! | [`hid_collections`] | application collections of a HID report descriptor |
 //!
+//! The marks of a seeded performance, written as a take and read again:
+//!
+//! ```
+//! use maulstick_device::Take;
+//! use maulstick_device::demo::{Subject, performance};
+//! use maulstick_device::pressure_curve::given;
+//! use maulstick_types::stylus::StylusPose;
+//!
+//! # fn main() -> Result<(), maulstick_rig::UserError> {
+//! let folder = tempfile::tempdir().expect("a folder");
+//! let path = folder.path().join("marks.mcap");
+//! performance(Subject::Marks, 7).write(&path)?;
+//! let take = Take::read(&path)?;
+//! assert_eq!(take, performance(Subject::Marks, 7), "the same seed, the same hand");
+//!
+//! // A soft curve gives more pressure to a light hand, and the same to one that presses fully.
+//! let soft = [[0.0, 0.0], [0.4, 0.7], [1.0, 1.0]];
+//! for sample in &take.samples {
+//!     if let StylusPose::Contact { pressure, .. } = sample.sample.pose {
+//!         assert!(given(&soft, pressure) >= pressure - 1e-12);
+//!     }
+//! }
+//! println!("{} samples in {:.1} s", take.samples.len(), take.length_ns() as f64 * 1e-9);
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # Notes
 //!
 //! - A device is any program that publishes `StylusSample`; `docs/devices.md` has one in Python.

@@ -8,7 +8,7 @@
 /// Steepest tilt of a sample, rad.
 pub const STEEPEST_RAD: f64 = 85.0 * std::f64::consts::PI / 180.0;
 /// Pressure of a tip that touches without any, a step of the finest pens: pressure 0 is a pen in the air.
-pub const LIGHTEST: f64 = 1.0 / 8192.0;
+pub const LEAST_PRESSURE: f64 = 1.0 / 8192.0;
 
 /// Presence of a pen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +42,7 @@ pub struct Reading {
     pub point_m: [f64; 2],
     /// Hover height, m; 0 if the tablet does not say, and while it touches.
     pub height_m: f64,
-    /// 0 to 1; while it touches at least [`LIGHTEST`], else 0.
+    /// 0 to 1; while it touches at least [`LEAST_PRESSURE`], else 0.
     pub pressure: f64,
     /// By how much its far end leans toward +x and +y, rad, as in
     /// [`StylusPose::Contact`](maulstick_types::stylus::StylusPose::Contact).
@@ -98,7 +98,7 @@ impl Pen {
             self.leave(tell);
         }
         let (pressure, height_m) = match said.presence {
-            Presence::Touching => (said.pressure.clamp(LIGHTEST, 1.0), 0.0),
+            Presence::Touching => (said.pressure.clamp(LEAST_PRESSURE, 1.0), 0.0),
             _ => (0.0, said.height_m),
         };
         let followed = Reading {

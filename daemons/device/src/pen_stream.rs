@@ -13,14 +13,14 @@ use crate::pen::{Pen, Presence, Reading};
 
 /// Interval at which the sample of a silent pen is repeated, ns.
 pub const REPEAT_NS: u64 = 50_000_000;
-/// A pen that hovers in silence for so long is away, where nothing would say so, ns.
+/// Silence after which a hovering pen counts as away, on tablets that do not report it, ns.
 pub const GONE_NS: u64 = 1_000_000_000;
 /// Samples are at least this far apart, ns: reports that were read together did not come together.
 pub const SPACING_NS: u64 = 500_000;
 /// A silence of more than this, ns, is not filled: the machine slept.
 const LONGEST_NS: u64 = 60_000_000_000;
 
-/// What becomes of a reading of a pen on the desk.
+/// Outcome of a pen's reading on the desk.
 pub trait DeskFit {
     /// Its sample.
     fn sample(&mut self, reading: &Reading) -> StylusSample;
@@ -57,7 +57,7 @@ impl PenStream {
         }
     }
 
-    /// Whether the tablet reports that its pen is away.
+    /// True if the tablet reports that its pen is away.
     pub fn set_reports_range(&mut self, reports: bool) {
         self.tells_range = reports;
     }

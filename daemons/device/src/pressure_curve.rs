@@ -27,9 +27,10 @@ fn between(curve: &[[f64; 2]], at: f64, [from, to]: [usize; 2]) -> f64 {
         let (before, after) = (pair[0], pair[1]);
         let run = after[from] - before[from];
         if at <= after[from] {
-            let share = match run > 0.0 {
-                true => ((at - before[from]) / run).clamp(0.0, 1.0),
-                false => 0.0,
+            let share = if run > 0.0 {
+                ((at - before[from]) / run).clamp(0.0, 1.0)
+            } else {
+                0.0
             };
             return (before[to] + share * (after[to] - before[to])).clamp(0.0, 1.0);
         }

@@ -94,7 +94,7 @@ impl std::fmt::Display for CornerFit {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
-            "width by height is {:.1} % of the canvas's, the angle {:.1} degrees",
+            "the ratio of width to height is {:.1} % of the canvas's, the angle {:.1} degrees",
             self.ratio * 100.0,
             self.angle_rad.to_degrees()
         )
@@ -220,7 +220,9 @@ pub fn by_corners(places: &[DVec3; 3], size: DVec2) -> Result<(Similarity, Corne
     }
     let scale = turn.length() / square;
     if !SCALES.contains(&scale) {
-        let what = format!("the canvas is {scale:.3} times as large as what its corners span");
+        let what = format!(
+            "the canvas is {scale:.3} times as large as the area between the touched corners"
+        );
         return Err(UserError::usage(what).help(again));
     }
     let turn = turn.normalize();

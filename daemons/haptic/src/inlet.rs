@@ -1,6 +1,6 @@
 //! Messages about force from the rig, for the servo.
 
-use maulstick_bus::rivals::Once;
+use maulstick_bus::sender_arbiter::Once;
 use maulstick_bus::typed::{Received, Receiver};
 use maulstick_bus::{Bus, BusError, Qos, Queue, Wake};
 use maulstick_haptics::Recipient;

@@ -12,6 +12,35 @@
 //! | [`daemon`] | thread that talks to the rig |
 //! | [`force_state_file`] | force settings and latched fault that survive a daemon restart |
 //!
+//! The simulated device in the servo's place of a real one: read, step, write, a thousand times.
+//!
+//! ```
+//! use glam::DVec3;
+//! use maulstick_device::registration::Registration;
+//! use maulstick_haptic::drivers::simulated::Simulated;
+//! use maulstick_haptic::{Driver as _, MountedDevice};
+//! use maulstick_haptics::{Contact, Sender, Servo};
+//! use maulstick_types::haptics::{ContactModel, ForceLaw};
+//!
+//! const TICK_S: f64 = 1e-3;
+//! let device = Box::new(Simulated::at_rest());
+//! let limits = device.abilities().limits(2.0);
+//! let mut device = MountedDevice::new(device, Registration::IDENTITY, 0);
+//! let mut servo = Servo::new(limits);
+//! // A brush of 25 mm whose canvas the resting hand does not reach.
+//! let law = ForceLaw::Linear { k1_n: 0.8, k2_n: 6.0 };
+//! let model = Contact::new(&ContactModel::bare(law, 0.025)).expect("finite numbers");
+//! for tick in 0..1000 {
+//!     if tick % 15 == 0 {
+//!         servo.receive(model, Sender::Same);
+//!     }
+//!     let reading = device.read(TICK_S).expect("it is never lost").expect("news at each tick");
+//!     let (force, report) = servo.step(&reading.handle, TICK_S);
+//!     device.write(force, report.torque_n_m).expect("it is never lost");
+//!     assert!(force == DVec3::ZERO && !report.contact && report.fault.is_none());
+//! }
+//! ```
+//!
 //! # Rules
 //!
 //! - Drivers know only their own frame, in metres: x right, y up, z toward the user. Pose, scale, lever to the ferrule

@@ -26,6 +26,27 @@
 //! | [`spacemouse_node`] | a 6-DOF mouse on the bus |
 //! | [`daemon`] | the daemon |
 //!
+//! A recording of a tablet, decoded as the tablet itself would be:
+//!
+//! ```
+//! use maulstick_device::pen::Presence;
+//! use maulstick_hid::layout::Layout;
+//! use maulstick_hid::{descriptor, recording};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let text = include_str!("../../../docs/examples/pen.hid");
+//! let tablet = recording::parse(text)?.remove(0);
+//! let layout = Layout::of(&descriptor::read(&tablet.descriptor)?).ok_or("it has no pen")?;
+//! let readings: Vec<_> = tablet.events.iter().filter_map(|event| layout.decode(&event.report)).collect();
+//! let touching: Vec<_> = readings.iter().filter(|pen| pen.presence == Presence::Touching).collect();
+//! let hardest = touching.iter().map(|pen| pen.pressure).fold(0.0, f64::max);
+//! println!("{} of {} reports touch, {hardest:.2} at most", touching.len(), readings.len());
+//! assert_eq!(readings.len(), tablet.events.len());
+//! assert!(touching.iter().all(|pen| pen.point_m[0] <= layout.area_m()[0]) && hardest > 0.1);
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # Notes
 //!
 //! A device is opened .1 s after its node appears or becomes readable (inotify), otherwise once a second. A tablet that

@@ -209,10 +209,7 @@ fn hid_pen(identity: &Identity, bytes: &[u8]) -> Result<Means, UserError> {
     }
     let descriptor = described(identity, bytes)?;
     let layout = Layout::of(&descriptor).ok_or_else(|| {
-        let what = match lies_anywhere(&descriptor, is_pen) {
-            true => "is a pen whose reports do not say where it is".to_owned(),
-            false => format!("is {}, no {}", describe(&descriptor), Kind::Pen.word()),
-        };
+        let what = if lies_anywhere(&descriptor, is_pen) { "is a pen whose reports do not say where it is".to_owned() } else { format!("is {}, no {}", describe(&descriptor), Kind::Pen.word()) };
         UserError::failure(format!("{identity} {what}")).help(
             "choose another device by `address`; if it is a tablet, its reports are in a format of its \
              maker's own, which the kernel may know: take `driver = \"evdev\"`; or record it with \
@@ -364,9 +361,10 @@ fn missing(kind: Kind, address: &Address, all: &[Found]) -> UserError {
         Address::Numbers(vendor, product) => format!("no {vendor:04x}:{product:04x} is plugged in"),
         Address::Path(path) => format!("no HID device is plugged in at {path}"),
     };
-    UserError::failure(what).help(match there.is_empty() {
-        true => "plug it in".to_owned(),
-        false => format!("plug it in; there are {}", there.join(", ")),
+    UserError::failure(what).help(if there.is_empty() {
+        "plug it in".to_owned()
+    } else {
+        format!("plug it in; there are {}", there.join(", "))
     })
 }
 

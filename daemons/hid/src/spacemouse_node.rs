@@ -137,12 +137,11 @@ impl SpaceMouseNode {
     pub fn due_ns(&self) -> Option<u64> {
         let mouse = self.mouse.as_ref()?;
         let again_ns = self.sent_ns + REPEAT_NS;
-        Some(match mouse.is_deflected() {
-            true => {
-                let decay_ns = (self.reported_ns + SILENCE_NS).max(self.sent_ns) + DECAY_STEP_NS;
-                again_ns.min(decay_ns)
-            }
-            false => again_ns,
+        Some(if mouse.is_deflected() {
+            let decay_ns = (self.reported_ns + SILENCE_NS).max(self.sent_ns) + DECAY_STEP_NS;
+            again_ns.min(decay_ns)
+        } else {
+            again_ns
         })
     }
 

@@ -11,7 +11,8 @@ use maulstick_device::registration::canvas_m;
 use maulstick_num::{atan2, sin_cos};
 use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, DeviceSection};
-use maulstick_types::stylus::{DEFAULT_TILT_RAD, FARTHEST_M, StylusPose, StylusSample, switch};
+use maulstick_types::limits::FARTHEST_M;
+use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, switch};
 
 use crate::layout::wrapped;
 use maulstick_device::pen::{End, Presence, Reading, STEEPEST_RAD};

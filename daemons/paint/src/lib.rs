@@ -12,6 +12,36 @@
 //! | [`thumbnails`] | small pictures of the painting and of its versions |
 //! | [`worker`] | a thread whose panic ends the node |
 //!
+//! A picture and its ledger as a running rig writes them; no quantum of the paint is missing.
+//!
+//! ```
+//! use maulstick_appearance::picture::Export;
+//! use maulstick_optics::PaintLibrary;
+//! use maulstick_paint_node::snapshots::write_snapshot;
+//! use maulstick_painting::edits::{Fill, FillPaint};
+//! use maulstick_painting::{Painting, PaintingSetup};
+//! use maulstick_types::scene::CANVAS;
+//! use maulstick_types::values::FilmThickness;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let setup = PaintingSetup { cells: [128, 96], ..PaintingSetup::default() };
+//! let mut painting = Painting::new(&setup, PaintLibrary::measured()?)?;
+//! painting.apply(Fill {
+//!     paint: FillPaint::Mixture { mixture: "Cobalt Blue=0.7,Titanium White=0.3".parse()? },
+//!     thickness: FilmThickness::in_unit(40.0)?,
+//!     surface: CANVAS,
+//! })?;
+//! let folder = tempfile::tempdir()?;
+//! let [picture, ledger] = ["sea.png", "sea.json"].map(|name| folder.path().join(name));
+//! write_snapshot(&mut painting, &picture, Some(&ledger), &Export::default()).map_err(|(_, error)| error)?;
+//!
+//! let ledger: serde_json::Value = serde_json::from_slice(&std::fs::read(&ledger)?)?;
+//! assert_eq!(ledger["quanta_missing"], 0);
+//! assert_eq!(ledger["covered_cells"], 128 * 96);
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # Frames
 //!
 //! Views pull: one query in flight for each surface waits for a change, up to 1.6 s at rest. Colour is computed on a

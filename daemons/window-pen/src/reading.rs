@@ -1,13 +1,13 @@
-//! What a window system says of a pen.
+//! Readings of a pen, as a window system reports them.
 
 use maulstick_device::pen::Reading;
 use maulstick_types::stylus::axes;
 
-/// A tool, told apart from all others of a window system.
+/// Identity of a tool among all those of a window system.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Tool(pub u64);
 
-/// What a tool senses.
+/// Axes that a tool senses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[expect(
     clippy::struct_excessive_bools,
@@ -44,7 +44,7 @@ impl Axes {
 pub struct PenReading {
     /// The tool.
     pub tool: Tool,
-    /// What it senses.
+    /// Axes that it senses.
     pub axes: Axes,
     /// Time of the window system, ms, from any beginning; it wraps.
     pub time_ms: u32,

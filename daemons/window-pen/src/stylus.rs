@@ -9,9 +9,9 @@ use maulstick_device::pen_stream::{DeskFit, GONE_NS, PenStream};
 use maulstick_rig::UserError;
 use maulstick_rig::config::PEN_PRIORITY;
 use maulstick_types::Origin;
+use maulstick_types::limits::FARTHEST_M;
 use maulstick_types::stylus::{
-    DEFAULT_TILT_RAD, FARTHEST_M, StylusInfo, StylusPose, StylusSample, StylusStatus, Trouble,
-    axes, switch,
+    DEFAULT_TILT_RAD, StylusInfo, StylusPose, StylusSample, StylusStatus, Trouble, axes, switch,
 };
 use maulstick_types::wire::topics::Topics;
 
@@ -24,7 +24,7 @@ const SERVE_NS: u64 = 50_000_000;
 /// Samples a second of most pens, which do not say.
 const RATE_HZ: f64 = 200.0;
 
-/// What a touching pen touches.
+/// Target of a touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum TouchTarget {
     Desk,
@@ -59,9 +59,12 @@ struct Desk {
 impl DeskFit for Desk {
     fn sample(&mut self, reading: &Reading) -> StylusSample {
         let side = if self.mirrored { -1.0 } else { 1.0 };
-        let steep = |tilt: f64| match tilt.is_finite() {
-            true => tilt.clamp(-STEEPEST_RAD, STEEPEST_RAD),
-            false => 0.0,
+        let steep = |tilt: f64| {
+            if tilt.is_finite() {
+                tilt.clamp(-STEEPEST_RAD, STEEPEST_RAD)
+            } else {
+                0.0
+            }
         };
         let tilt_rad = reading.tilt_rad.filter(|_| self.axes.tilt);
         let twist_rad = reading
@@ -209,15 +212,16 @@ impl WindowStylus {
             Some(touched) => touched == TouchTarget::Desk,
             None => is_desk || before == Some(TouchTarget::Desk),
         };
-        match on_desk && seen.is_some() {
-            true => Reading {
+        if on_desk && seen.is_some() {
+            Reading {
                 pressure: self.link.given(reading.pressure),
                 ..reading
-            },
-            false => Reading {
+            }
+        } else {
+            Reading {
                 presence: Presence::Away,
                 ..reading
-            },
+            }
         }
     }
 

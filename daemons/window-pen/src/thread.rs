@@ -87,7 +87,7 @@ pub unsafe fn pens_of(
             Box::new(XinputPens::new(u32::try_from(window.window).unwrap_or(0))?)
         }
         _ => {
-            let what = "this window system's pens are not known";
+            let what = "pens of this window system are not supported";
             return Err(UserError::failure(what).help("run it on Wayland or X11"));
         }
     })
@@ -139,7 +139,7 @@ impl PenThread {
     }
 }
 
-/// Reads and sends until `stop` is told.
+/// Reads and sends until `stop` is set.
 fn follow(
     source: &mut dyn Source,
     stop: &EventFd,
@@ -149,9 +149,10 @@ fn follow(
     while stop.read().is_err() {
         let timeout = stylus.due_in_ns().map(Duration::from_nanos);
         source.wait(stop.as_fd(), timeout, &mut readings)?;
-        let sent = match readings.is_empty() {
-            true => stylus.rest(),
-            false => readings.drain(..).try_for_each(|read| stylus.read(&read)),
+        let sent = if readings.is_empty() {
+            stylus.rest()
+        } else {
+            readings.drain(..).try_for_each(|read| stylus.read(&read))
         };
         sent.and_then(|()| stylus.serve())
             .map_err(|error| gone(&error))?;

@@ -50,7 +50,7 @@ pub(crate) unsafe fn foreign_connection(display: WaylandDisplayHandle) -> Connec
     Connection::from_backend(backend)
 }
 
-/// A tool as its events have told so far.
+/// State of a tool by its events so far.
 #[derive(Debug, Default)]
 #[expect(
     clippy::struct_excessive_bools,
@@ -91,15 +91,13 @@ impl KnownTool {
                 (true, false) => Presence::Hovering,
                 (true, true) => Presence::Touching,
             },
-            end: match self.eraser {
-                true => End::Eraser,
-                false => End::Tip,
-            },
+            end: if self.eraser { End::Eraser } else { End::Tip },
             point_m: [0.0; 2],
             height_m: 0.0,
-            pressure: match self.axes.pressure {
-                true => self.pressure,
-                false => 0.5,
+            pressure: if self.axes.pressure {
+                self.pressure
+            } else {
+                0.5
             },
             tilt_rad: self.axes.tilt.then_some(self.tilt_rad),
             twist_rad: self.axes.twist.then_some(self.twist_rad),
@@ -108,7 +106,7 @@ impl KnownTool {
     }
 }
 
-/// What the events of the connection are told to.
+/// Listener to the events of the connection.
 #[derive(Debug, Default)]
 struct Listener {
     /// The window's surface; others' are not its own.
@@ -119,7 +117,7 @@ struct Listener {
     readings: Vec<PenReading>,
 }
 
-/// True if the compositor that `WAYLAND_DISPLAY` names tells of pens.
+/// True if the compositor that `WAYLAND_DISPLAY` names reports pens.
 ///
 /// # Errors
 /// A [`UserError`] where there is none.
@@ -156,8 +154,8 @@ impl WaylandPens {
         let handle = queue.handle();
         let manager = globals.bind::<ZwpTabletManagerV2, _, _>(&handle, 1..=1, ());
         let manager = manager.map_err(|_| {
-            UserError::failure("this compositor tells nothing of pens (zwp_tablet_manager_v2)").help(
-                "the pen paints as a mouse: for its pressure give its tablet to the rig, `maulstick device list` says how",
+            UserError::failure("this compositor does not report pens (zwp_tablet_manager_v2)").help(
+                "the pen paints as a mouse does; to use its pressure, add its tablet to the rig (`maulstick device list` says how)",
             )
         })?;
         let seats = globals.contents().with_list(|list| {
@@ -208,16 +206,17 @@ impl Source for WaylandPens {
         readings: &mut Vec<PenReading>,
     ) -> Result<(), UserError> {
         flush(&self.connection)?;
-        // Where events wait already they are told first.
+        // Events that wait already come first.
         if let Some(guard) = self.queue.prepare_read() {
-            match readable(guard.connection_fd(), stop, timeout)? {
-                true => match guard.read() {
+            if readable(guard.connection_fd(), stop, timeout)? {
+                match guard.read() {
                     Ok(_) => {}
                     // The window's own thread has read them.
                     Err(WaylandError::Io(error)) if error.kind() == ErrorKind::WouldBlock => {}
                     Err(error) => return Err(gone(&error)),
-                },
-                false => drop(guard),
+                }
+            } else {
+                drop(guard)
             }
         }
         self.queue
@@ -281,7 +280,7 @@ impl Dispatch<ZwpTabletToolV2, ()> for Listener {
                 hardware_serial_lo,
             } => {
                 let serial = u64::from(hardware_serial_hi) << 32 | u64::from(hardware_serial_lo);
-                // Pens without one are told apart by the connection.
+                // Pens without one are distinguished by the connection.
                 if serial != 0 {
                     tool.tool = Tool(serial << 1 | u64::from(tool.eraser));
                 }

@@ -20,7 +20,7 @@ pub trait DeskView: Send + Sync {
     fn is_mirrored(&self) -> bool;
 }
 
-/// What a pen finds at a point of a window.
+/// Contents of a point of a window, as a pen finds it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SeenDesk {
     /// The point of the desk, m.
@@ -33,7 +33,7 @@ pub(crate) struct SeenDesk {
     pub takes_strokes: bool,
 }
 
-/// What happened with a pen, for a window whose system moves no pointer with it.
+/// Event of a pen, for a window whose system moves no pointer with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PointerEvent {
     /// It is there, pixels.
@@ -53,9 +53,9 @@ pub struct PenState {
     pub is_near: bool,
     /// Pressure that it senses, 0 to 1, whatever lies below it.
     pub pressure: f64,
-    /// What it senses, bits of [`axes`](maulstick_types::stylus::axes); 0 before one was near.
+    /// Axes that it senses, bits of [`axes`](maulstick_types::stylus::axes); 0 before one was near.
     pub senses: u32,
-    /// What its pointer did since the last call, in order.
+    /// Events of its pointer since the last call, in order.
     pub pointer: Vec<PointerEvent>,
     /// True if the window system moves no pointer with it: the window does by `pointer`.
     pub moves_no_pointer: bool,

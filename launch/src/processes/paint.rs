@@ -46,7 +46,8 @@ pub(super) fn run(options: &PaintOptions) -> Result<i32, UserError> {
     let (topic, feed) = (member.topics.frame(), node.feed());
     let mut frames =
         FrameServer::new(bus, &topic, feed.clone(), &member.wake, origin)?.telling_brushes(topics);
-    let room = member.config.paint.room().map_err(UserError::usage)?;
+    let room = member.config.paint.room();
+    let room = room.map_err(|error| UserError::usage(error.to_string()))?;
     node = node.with_memory(usize::try_from(room.memory).unwrap_or(usize::MAX));
     if let Some(document) = document {
         frames = frames.with_tile_cache(document.tile_cache());

@@ -33,7 +33,9 @@ pub(super) fn run(options: &RecorderOptions) -> Result<i32, UserError> {
     std::fs::create_dir_all(folder).map_err(|error| UserError::writing(folder, &error))?;
     let settings = RecorderSettings {
         division: Division {
-            last: section.last().map_err(UserError::usage)?,
+            last: section
+                .last()
+                .map_err(|error| UserError::usage(error.to_string()))?,
             quota_bytes: section.quota_mb.map(|mb| mb.saturating_mul(1_000_000)),
             ..Division::default()
         },

@@ -11,7 +11,7 @@ use maulstick_painting::edits::{Form, Ground, LightChange, Tooth};
 use maulstick_painting::setup::relief_called;
 use maulstick_rig::UserError;
 use maulstick_rig::config::{BrushSection, is_path};
-use maulstick_types::command::advice::choice;
+use maulstick_types::nearest::choice;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::wire::topics::check_name;
 use serde::Deserialize as _;

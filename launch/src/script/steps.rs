@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::edits::{self, Form as _, StepForm};
 use maulstick_rig::UserError;
-use maulstick_types::command::advice::nearest;
+use maulstick_types::nearest::nearest;
 use maulstick_types::values::ticks_in;
 use toml::de::DeTable;
 

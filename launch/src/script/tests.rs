@@ -205,7 +205,7 @@ fn what_is_out_of_range_says_what_to_choose() {
         ),
         ("{ wet = 0 }", &["\"all\"", "help: for example { wet = 1 }"]),
         ("{ tooth = \"no.png\", width_mm = 0 }", &["day.toml:3"]),
-        ("{ keep = \"\" }", &["not blank"]),
+        ("{ keep = \"\" }", &["blank"]),
         ("{ opacity = 0.5 }", &["layer", "layer = \"sky\""]),
     ] {
         says(read(steps), words);

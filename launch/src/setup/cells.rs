@@ -3,8 +3,8 @@
 use clap::Args;
 use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, RigConfig};
-use maulstick_types::command::CELLS_IN_ALL;
 use maulstick_types::command::slow_canvas::{SLOW_CELL_M, SLOW_CELLS, is_slow};
+use maulstick_types::limits::CELLS_IN_ALL;
 
 /// Side of a cell in pictures, mm. A hand that paints has those of its rig, which are larger, so that a
 /// broad brush keeps up with it.

@@ -4,13 +4,12 @@ use std::fs::File;
 use std::path::Path;
 
 use maulstick_canvas::EditError;
-use maulstick_document::file::database::companion;
 use maulstick_document::{Access, Document, DocumentError, DocumentSettings, Opened, glance};
 use maulstick_painting::{Painting, Sequencer};
 pub use maulstick_recorder::paintings::wrong;
 use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, RigConfig};
-use maulstick_rig::files::{Kind, check_writable};
+use maulstick_rig::files::{Kind, check_writable, companion};
 use maulstick_types::paint::Decision;
 use maulstick_types::scene::{CANVAS, Scene};
 
@@ -70,8 +69,8 @@ fn go_on_by(
     path: &Path,
     restore: fn(Opened) -> Result<Sequencer, EditError>,
 ) -> Result<(Document, Sequencer, u64), UserError> {
-    let room = config.paint.room().map_err(|what| {
-        UserError::usage(what)
+    let room = config.paint.room().map_err(|error| {
+        UserError::usage(error.to_string())
             .at("[paint]")
             .help("write sizes as 512M or 2G")
     })?;

@@ -17,7 +17,7 @@ use crate::performance::refused;
 use crate::picture::{no_picture, open_picture};
 
 /// A spectrum has at most this many bytes.
-const SPECTRUM_MAX: usize = maulstick_types::command::SPECTRUM_MAX;
+const SPECTRUM_MAX: usize = maulstick_types::limits::SPECTRUM_MAX;
 
 /// Source of a ground.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@ use maulstick_types::{Header, Message, Origin};
 
 use crate::bus::{Bus, BusError, Qos, Subscription};
 use crate::inbox::{Queue, Wake};
-use crate::rivals::SILENCE_NS;
+use crate::sender_arbiter::SILENCE_NS;
 use crate::typed::Sender;
 
 /// Sends a cached value, and sends it again once another sender, who has contradicted it, is silent.

@@ -5,7 +5,7 @@ use std::fmt;
 use std::time::Duration;
 
 use crate::inbox::{Counts, Inbox, Queue, Wake};
-use crate::payload::Payload;
+use crate::shared_memory::payload::Payload;
 
 /// Errors of the bus.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

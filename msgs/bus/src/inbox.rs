@@ -50,7 +50,7 @@ impl Wake {
         Self::default()
     }
 
-    /// Rings: the waiting thread, or the next one to wait, goes on.
+    /// Rings: the waiting thread, or the next one to wait, continues.
     pub fn ring(&self) {
         *self.rung() = true;
         self.inner.thread.notify_one();

@@ -2,7 +2,7 @@
 //!
 //! [`Bus`] is the interface of a node: publishers, bounded subscriptions, queries, liveliness tokens and
 //! the rig's clock. [`ZenohBus`] carries it between processes; [`MemoryNet`] carries it inside one
-//! process under a virtual clock, and loses, delays and reorders what a test tells it to. No other
+//! process under a virtual clock, and loses, delays and reorders as a test demands. No other
 //! crate of the rig names zenoh; the benchmarks do, to put a bare zenoh beside this bus.
 //!
 //! | module | holds |
@@ -11,12 +11,49 @@
 //! | [`inbox`] | bounded queues and the wake-up that they share |
 //! | [`typed`] | messages instead of bytes |
 //! | [`credit`] | streams that lose nothing: credit, a ring, re-asking for gaps |
-//! | [`rivals`] | the choice between two senders under one name |
+//! | [`sender_arbiter`] | the choice between two senders under one name |
 //! | [`participants`] | the programs of a rig, and what each sends, receives and answers |
 //! | [`clock`] | the rig's clock |
 //! | [`reason`](mod@reason) | what a library says, without paths of the machine that built it |
 //! | [`rig`] | the rig's folder, and the file by which a foreign program finds it |
 //! | [`sockets`] | the sockets in it, put back where they were removed |
+//!
+//! A program publishes a stylus over a network that loses a fifth of the messages and lets others overtake; the receiver
+//! has each sample once, in order. In a rig a [`ZenohBus`] takes the place of the [`MemoryBus`].
+//!
+//! ```
+//! use maulstick_bus::credit::Stamp;
+//! use maulstick_bus::{Bus, CreditReceiver, CreditSender, Faults, MemoryNet, Wake};
+//! use maulstick_types::stylus::StylusSample;
+//! use maulstick_types::wire::topics::Topics;
+//! use maulstick_types::{Flags, Origin, name_hash};
+//!
+//! # fn main() -> Result<(), maulstick_bus::BusError> {
+//! let net = MemoryNet::new(1, 0, Faults { loss: 0.2, delay_ns: 3_000_000 });
+//! let (bus, topics, wake) = (net.bus(), Topics::new("studio"), Wake::new());
+//! let (topic, me) = (topics.sample("my-pen"), Origin { source: name_hash("my-pen"), epoch: 1 });
+//! let mut pen = CreditSender::<StylusSample>::new(&bus, &topics, &topic, me, &wake)?;
+//! let mut brush = CreditReceiver::<StylusSample>::new(&bus, &topics, &topic, me, &wake)?;
+//!
+//! let mut received = Vec::new();
+//! while received.len() < 50 {
+//!     let now_ns = bus.now_ns();
+//!     if pen.next_seq() < 50 {
+//!         let stamp = Stamp { now_ns, event_ns: now_ns };
+//!         pen.send(Flags::NONE, stamp, &StylusSample::away())?;
+//!     }
+//!     brush.poll(&bus)?;
+//!     while let Some(sample) = brush.pop() {
+//!         received.push(sample.header.seq);
+//!     }
+//!     pen.consumed(me.epoch, received.len() as u64, now_ns);
+//!     pen.serve(now_ns)?;
+//!     net.advance(1_000_000);
+//! }
+//! assert_eq!(received, Vec::from_iter(0..50));
+//! # Ok(())
+//! # }
+//! ```
 //!
 //! # Streams without loss
 //!
@@ -64,12 +101,11 @@ pub mod credit;
 pub mod inbox;
 mod memory;
 pub mod participants;
-mod payload;
-mod pool;
 pub mod reason;
 mod recent;
 pub mod rig;
-pub mod rivals;
+pub mod sender_arbiter;
+mod shared_memory;
 pub mod sockets;
 pub mod typed;
 mod zenoh_bus;
@@ -81,8 +117,8 @@ pub use credit::{CreditReceiver, CreditSender};
 pub use inbox::{Counts, Inbox, Queue, Wake};
 pub use memory::{Faults, MemoryBus, MemoryNet};
 pub use participants::Participant;
-pub use payload::{Lent, Payload};
-pub use pool::clear_shared_memory;
 pub use recent::Recent;
 pub use rig::{RigFolder, RigInfo};
+pub use shared_memory::payload::{Payload, SharedPayload};
+pub use shared_memory::pool::clear_shared_memory;
 pub use zenoh_bus::{Dial, ZenohBus};

@@ -26,7 +26,7 @@ pub struct Faults {
 }
 
 /// A message in flight.
-enum Parcel {
+enum Envelope {
     Message {
         key: String,
         bytes: Vec<u8>,
@@ -65,7 +65,7 @@ struct Net {
     faults: Faults,
     random: Pcg32,
     next_id: u64,
-    parcels: BTreeMap<(u64, u64), Parcel>,
+    envelopes: BTreeMap<(u64, u64), Envelope>,
     listeners: BTreeMap<u64, Listener>,
     servers: BTreeMap<u64, (String, Inbox<Request>)>,
     cached: BTreeMap<String, Vec<u8>>,
@@ -114,23 +114,23 @@ impl Net {
     }
 
     /// Sends what may be lost.
-    fn send(&mut self, parcel: Parcel) {
+    fn send(&mut self, envelope: Envelope) {
         if self.chance() >= self.faults.loss {
-            self.send_surely(parcel);
+            self.send_surely(envelope);
         }
     }
 
     /// Sends what is repaired when it is lost.
-    fn send_surely(&mut self, parcel: Parcel) {
+    fn send_surely(&mut self, envelope: Envelope) {
         let delay = self.chance() * self.faults.delay_ns as f64;
         self.next_id += 1;
-        self.parcels
-            .insert((self.now_ns + delay as u64, self.next_id), parcel);
+        self.envelopes
+            .insert((self.now_ns + delay as u64, self.next_id), envelope);
     }
 
-    fn deliver(&mut self, this: &Arc<Mutex<Net>>, parcel: Parcel) {
-        match parcel {
-            Parcel::Message {
+    fn deliver(&mut self, this: &Arc<Mutex<Net>>, envelope: Envelope) {
+        match envelope {
+            Envelope::Message {
                 key,
                 bytes,
                 present,
@@ -147,7 +147,7 @@ impl Net {
                     }
                 }
             }
-            Parcel::Question {
+            Envelope::Question {
                 key,
                 bytes,
                 answers,
@@ -166,7 +166,7 @@ impl Net {
                         let answer = Box::new(move |answer: Answering<'_>| {
                             let bytes = answer.into_bytes();
                             if let Some(net) = Weak::upgrade(&net) {
-                                lock(&net).send(Parcel::Answer { bytes, answers });
+                                lock(&net).send(Envelope::Answer { bytes, answers });
                             }
                             Ok(())
                         });
@@ -178,8 +178,8 @@ impl Net {
                     }
                 }
             }
-            Parcel::Answer { bytes, answers } => answers.push(Answer::Bytes(bytes.into())),
-            Parcel::End { answers } => answers.push(Answer::Ended),
+            Envelope::Answer { bytes, answers } => answers.push(Answer::Bytes(bytes.into())),
+            Envelope::End { answers } => answers.push(Answer::Ended),
         }
     }
 }
@@ -194,7 +194,7 @@ impl MemoryNet {
                 faults,
                 random: Pcg32::new(seed, 0x6d61_756c),
                 next_id: 0,
-                parcels: BTreeMap::new(),
+                envelopes: BTreeMap::new(),
                 listeners: BTreeMap::new(),
                 servers: BTreeMap::new(),
                 cached: BTreeMap::new(),
@@ -220,13 +220,13 @@ impl MemoryNet {
     pub fn advance(&self, ns: u64) {
         let mut net = lock(&self.net);
         let until = net.now_ns + ns;
-        while let Some((&(due, id), _)) = net.parcels.first_key_value() {
+        while let Some((&(due, id), _)) = net.envelopes.first_key_value() {
             if due > until {
                 break;
             }
             net.now_ns = net.now_ns.max(due);
-            if let Some(parcel) = net.parcels.remove(&(due, id)) {
-                net.deliver(&self.net, parcel);
+            if let Some(envelope) = net.envelopes.remove(&(due, id)) {
+                net.deliver(&self.net, envelope);
             }
         }
         net.now_ns = until;
@@ -250,7 +250,7 @@ impl Drop for Leave {
         net.servers.remove(&self.id);
         if let Some(key) = self.token.take() {
             net.tokens.remove(&key);
-            let gone = Parcel::Message {
+            let gone = Envelope::Message {
                 key,
                 bytes: Vec::new(),
                 present: false,
@@ -275,16 +275,16 @@ impl Publish for MemoryPublisher {
             net.cached.insert(self.key.clone(), bytes.clone());
         }
         let key = self.key.clone();
-        let parcel = Parcel::Message {
+        let envelope = Envelope::Message {
             key,
             bytes,
             present: true,
             kind: Kind::Topics,
         };
         if cached {
-            net.send_surely(parcel);
+            net.send_surely(envelope);
         } else {
-            net.send(parcel);
+            net.send(envelope);
         }
         Ok(())
     }
@@ -375,7 +375,7 @@ impl Bus for MemoryBus {
         let inbox = Inbox::new(Queue::Ring(64), wake);
         let mut net = lock(&self.net);
         let answers = inbox.clone();
-        net.send(Parcel::Question {
+        net.send(Envelope::Question {
             key: key.to_owned(),
             bytes,
             answers,
@@ -385,9 +385,9 @@ impl Bus for MemoryBus {
             net.now_ns + u64::try_from(limit.as_nanos()).unwrap_or(u64::MAX / 2),
             net.next_id,
         );
-        net.parcels.insert(
+        net.envelopes.insert(
             end,
-            Parcel::End {
+            Envelope::End {
                 answers: inbox.clone(),
             },
         );
@@ -401,7 +401,7 @@ impl Bus for MemoryBus {
     fn token(&self, key: &str) -> Result<Token, BusError> {
         let mut net = lock(&self.net);
         net.tokens.insert(key.to_owned());
-        let appeared = Parcel::Message {
+        let appeared = Envelope::Message {
             key: key.to_owned(),
             bytes: Vec::new(),
             present: true,

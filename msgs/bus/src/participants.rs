@@ -68,7 +68,7 @@ impl ZenohBus {
     }
 }
 
-/// What a session is, as it says.
+/// Identity of a session, as it states it.
 #[derive(Deserialize)]
 struct Account {
     metadata: Option<Metadata>,

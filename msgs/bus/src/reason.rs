@@ -1,9 +1,9 @@
-//! What a library says, as a user may read it: its errors and panics name places in source files, by paths of the machine
+//! Messages of a library, as a user may read them: its errors and panics name places in source files, by paths of the machine
 //! that built this program.
 
 use std::fmt::Display;
 
-/// What zenoh puts between a message and its place.
+/// Text that zenoh puts between a message and its place.
 const AT: &str = " at ";
 /// End of the path of a source file, before its line.
 const SOURCE: &str = ".rs:";
@@ -26,7 +26,7 @@ pub fn reason(error: impl Display) -> String {
     kept
 }
 
-/// What is behind the place in a source file that a text begins with, if it does.
+/// Rest of a text that begins with a place in a source file.
 fn behind_place(text: &str) -> Option<&str> {
     let (path, behind) = text.split_once(SOURCE)?;
     let is_path = path.starts_with('/') || !path.contains(char::is_whitespace);

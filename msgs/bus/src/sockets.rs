@@ -33,7 +33,7 @@ pub struct SocketKeeper {
     known: BTreeSet<OsString>,
 }
 
-/// What a look at the sockets found.
+/// Changes that a look at the sockets found.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SocketNews {
     /// Nodes whose removed socket is back.
@@ -70,9 +70,10 @@ impl SocketKeeper {
             .chain(std::mem::take(&mut self.known))
             .filter(|name| !there.contains(name));
         let missing: BTreeSet<OsString> = missing.collect();
-        let listening = match missing.is_empty() {
-            true => BTreeSet::new(),
-            false => listening()?,
+        let listening = if missing.is_empty() {
+            BTreeSet::new()
+        } else {
+            listening()?
         };
         for name in missing {
             let (socket, spare) = (self.folder.join(&name), self.spares.join(&name));

@@ -11,7 +11,7 @@ use maulstick_types::{DecodeError, Flags, Header, Message, Origin, decode, encod
 
 use crate::bus::{Bus, BusError, Publish, Qos, Subscription};
 use crate::inbox::{Queue, Wake};
-use crate::rivals::{Once, Rivals, Verdict};
+use crate::sender_arbiter::{Once, SenderArbiter, Verdict};
 
 pub use command_server::CommandServer;
 
@@ -63,7 +63,7 @@ impl<M: Message> Sender<M> {
     }
 
     /// Sends a message; `event_ns` is the time at which its content was true. One that exceeds its limit is dropped and
-    /// told: no content may end the node that sends it.
+    /// reported: no content may end the node that sends it.
     ///
     /// # Errors
     /// [`BusError::Topic`].
@@ -82,7 +82,7 @@ impl<M: Message> Sender<M> {
     }
 }
 
-/// Bytes of a message of a topic; none for one that exceeds its limit, which is told once.
+/// Bytes of a message of a topic; `None` for one that exceeds its limit, which is reported once.
 pub(crate) fn sendable(
     topic: &str,
     encoded: Result<Vec<u8>, DecodeError>,
@@ -218,10 +218,10 @@ pub struct Receiver<M> {
     subscription: Subscription,
     reader: Reader,
     qos: Qos,
-    /// Who chooses among the senders of a real-time stream.
+    /// Arbiters between the senders of each real-time stream.
     choice: Choice,
     /// By topic and source.
-    streams: BTreeMap<(String, u32), Rivals>,
+    streams: BTreeMap<(String, u32), SenderArbiter>,
     /// Error of a message that decodes, if any.
     fault: fn(&M) -> Option<&'static str>,
 }
@@ -270,14 +270,14 @@ impl<M: Message> Receiver<M> {
             let oldest = self
                 .streams
                 .iter()
-                .min_by_key(|(_, rivals)| rivals.heard_ns());
+                .min_by_key(|(_, arbiter)| arbiter.heard_ns());
             let oldest = oldest.map(|(stream, _)| stream.clone());
             oldest.map(|stream| self.streams.remove(&stream));
         }
-        let begun = || Rivals::new(header, arrived_ns);
-        let rivals = self.streams.entry(stream).or_insert_with(begun);
-        let verdict = rivals.judge(header, arrived_ns, true, None);
-        if verdict == Verdict::SetAside && rivals.is_rival(header, arrived_ns) {
+        let begun = || SenderArbiter::new(header, arrived_ns);
+        let arbiter = self.streams.entry(stream).or_insert_with(begun);
+        let verdict = arbiter.judge(header, arrived_ns, true, None);
+        if verdict == Verdict::SetAside && arbiter.is_rival(header, arrived_ns) {
             self.reader.refuse(key, Reason::Rival);
         }
         verdict != Verdict::SetAside

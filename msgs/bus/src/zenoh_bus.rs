@@ -22,9 +22,9 @@ use crate::bus::{
 };
 use crate::clock::RigClock;
 use crate::inbox::{Inbox, Queue, Wake};
-use crate::payload::Payload;
-use crate::pool::Pool;
 use crate::reason::reason;
+use crate::shared_memory::payload::Payload;
+use crate::shared_memory::pool::Pool;
 
 /// Settings with which a process joins the rig's sockets.
 #[derive(Clone, Debug)]
@@ -41,7 +41,7 @@ pub struct Dial {
 /// The largest message that a receiver accepts, bytes: a full-screen frame and some.
 const MAX_MESSAGE_BYTES: usize = 96 << 20;
 /// A peer that says nothing for this long is gone, ms. A process that died closes its sockets and is gone at once; one
-/// that stood still goes on, and must be believed for so long: zenoh makes a link between two peers that both stay known
+/// that stood still continues, and must count as alive for that time: zenoh makes a link between two peers that both stay known
 /// to a third only once.
 const LEASE_MS: u32 = 20_000;
 
@@ -63,12 +63,13 @@ fn check_files() -> Result<(), BusError> {
     }
     let wanted = LEAST_FILES.min(most);
     let raised = setrlimit(Resource::RLIMIT_NOFILE, wanted, most).map_or(now, |()| wanted);
-    match raised >= LEAST_FILES {
-        true => Ok(()),
-        false => Err(BusError::Files {
+    if raised >= LEAST_FILES {
+        Ok(())
+    } else {
+        Err(BusError::Files {
             limit: raised,
             least: LEAST_FILES,
-        }),
+        })
     }
 }
 
@@ -123,7 +124,7 @@ impl ZenohBus {
         Ok(own)
     }
 
-    /// With a pool of so many bytes, for benchmarks; without one if it shares no memory.
+    /// The same bus with a pool of `bytes`, for benchmarks; without one if it shares no memory.
     #[must_use]
     pub fn lending(mut self, bytes: usize) -> Self {
         self.pool = self.pool.map(|_| Arc::new(Pool::of(bytes)));
@@ -147,12 +148,13 @@ impl ZenohBus {
         let begun = Instant::now();
         let session = zenoh::open(config).wait().map_err(|error| {
             // It has tried again and again until then.
-            match dial.connect.is_empty() || begun.elapsed() < CONNECT {
-                true => open_error(reason(error)),
-                false => BusError::Silent {
+            if dial.connect.is_empty() || begun.elapsed() < CONNECT {
+                open_error(reason(error))
+            } else {
+                BusError::Silent {
                     at: at.clone(),
                     limit_s: CONNECT.as_secs(),
-                },
+                }
             }
         })?;
         if let Some(listen) = &dial.listen {
@@ -194,9 +196,21 @@ enum Memory {
 }
 
 fn config(dial: &Dial, memory: Memory) -> zenoh::Result<zenoh::Config> {
-    let json = |value: &serde_json::Value| value.to_string();
     let mut config = zenoh::Config::default();
-    let settings = [
+    for (key, value) in meeting(dial).into_iter().chain(transport(dial, memory)) {
+        config
+            .insert_json5(key, &value.to_string())
+            .map_err(|error| format!("{key}: {error}"))?;
+    }
+    Ok(config)
+}
+
+/// A setting of zenoh and its value.
+type Setting = (&'static str, serde_json::Value);
+
+/// Settings by which processes of a rig meet.
+fn meeting(dial: &Dial) -> [Setting; 10] {
+    [
         (
             "mode",
             serde_json::json!(if dial.listen.is_some() {
@@ -231,6 +245,12 @@ fn config(dial: &Dial, memory: Memory) -> zenoh::Result<zenoh::Config> {
             "scouting/gossip/autoconnect_strategy",
             serde_json::json!({ "peer": { "to_router": "always", "to_peer": "greater-zid" } }),
         ),
+    ]
+}
+
+/// Settings of the links between them.
+fn transport(dial: &Dial, memory: Memory) -> [Setting; 9] {
+    [
         // By gossip a process hears of what others listen at, over TCP too.
         (
             "transport/link/protocols",
@@ -258,13 +278,7 @@ fn config(dial: &Dial, memory: Memory) -> zenoh::Result<zenoh::Config> {
             "transport/shared_memory/transport_optimization/enabled",
             serde_json::json!(false),
         ),
-    ];
-    for (key, value) in settings {
-        config
-            .insert_json5(key, &json(&value))
-            .map_err(|error| format!("{key}: {error}"))?;
-    }
-    Ok(config)
+    ]
 }
 
 /// The protocols of the requested locators: those of a rig are unix sockets.

@@ -145,7 +145,7 @@ impl Kind {
     /// Sees that a name does not end as that of another kind.
     ///
     /// # Errors
-    /// What is wrong with it, and how it may end.
+    /// A name that ends in the ending of another kind, with the endings that it may have.
     pub fn check_name(self, path: &Path) -> Result<(), Error> {
         let ending = ending(path);
         let known = ENDINGS.iter().find(|(known, _)| *known == ending);
@@ -214,7 +214,7 @@ pub(crate) fn destination(path: &Path, kind: Kind) -> Result<PathBuf, Error> {
     if is_companion(path) || is_companion(&to) {
         return Err(Error::new(
             ErrorKind::InvalidInput,
-            "a name that ends so may belong to a painting: give another",
+            "a file with this extension may belong to a painting: choose another name",
         ));
     }
     let Ok(found) = std::fs::metadata(&to) else {
@@ -227,17 +227,17 @@ pub(crate) fn destination(path: &Path, kind: Kind) -> Result<PathBuf, Error> {
     if !found.is_file() {
         return Err(Error::new(
             ErrorKind::InvalidInput,
-            "a pipe, socket or device stands there: name a file",
+            "there is a pipe, socket or device at this path: name a file",
         ));
     }
     let mut head = [0; HEAD];
-    // What may not be read is not written over either.
+    // A file that may not be read is not written over either.
     let read = read_head(&to, &mut head)?;
     let head = &head[..read];
     if head.starts_with(DATABASE) {
         return Err(Error::new(
             ErrorKind::AlreadyExists,
-            "it is a painting, and nothing is written over one",
+            "this file is a painting, and paintings are never written over",
         ));
     }
     kind.check_name(path)?;
@@ -247,7 +247,7 @@ pub(crate) fn destination(path: &Path, kind: Kind) -> Result<PathBuf, Error> {
     Err(Error::new(
         ErrorKind::AlreadyExists,
         format!(
-            "the file that is there is not {}: `--overwrite` writes over it",
+            "the existing file is not {}: to write over it, give `--overwrite`",
             kind.name()
         ),
     ))

@@ -8,6 +8,29 @@
 //! | [`private`] | files that their user alone may read |
 //! | [`whole`] | files that are whole under their name, or not there at all |
 //!
+//! A table is written while the disk fails: the one before it stays, whole.
+//!
+//! ```
+//! use std::io::{Error, Write as _};
+//!
+//! use maulstick_files::{Kind, write_whole};
+//!
+//! # fn main() -> Result<(), Error> {
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("force.csv");
+//! write_whole(&path, Kind::Forces, |file| writeln!(file, "time_s,force_n"))?;
+//!
+//! let failed = write_whole(&path, Kind::Forces, |file| {
+//!     writeln!(file, "time_s,for")?;
+//!     Err(Error::other("the disk is full"))
+//! });
+//! assert!(failed.is_err());
+//! assert_eq!(std::fs::read_to_string(&path)?, "time_s,force_n\n");
+//! assert!(write_whole(&folder.path().join("force.png"), Kind::Forces, |_| Ok(())).is_err());
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # Open databases
 //!
 //! No file that this process has open as a database may be opened a second time in it: closing any descriptor drops

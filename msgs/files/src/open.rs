@@ -78,7 +78,7 @@ pub fn read_head(path: &Path, head: &mut [u8]) -> Result<usize, Error> {
     if open.contains_key(&FileId::of(path)?) {
         return Err(Error::new(
             ErrorKind::ResourceBusy,
-            "it is the painting that is open here",
+            "this painting is open here already",
         ));
     }
     let mut file = File::open(path)?;

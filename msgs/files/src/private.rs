@@ -44,10 +44,7 @@ pub fn open_private(path: &Path) -> Result<File, Error> {
 
 /// A file of a kind, emptied if it exists.
 pub(crate) fn create(path: &Path, kind: Kind) -> Result<File, Error> {
-    let mode = match kind.is_private() {
-        true => PRIVATE,
-        false => SHARED,
-    };
+    let mode = if kind.is_private() { PRIVATE } else { SHARED };
     let mut options = OpenOptions::new();
     options.write(true).create(true).truncate(true).mode(mode);
     options.open(path)

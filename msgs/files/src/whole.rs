@@ -15,7 +15,7 @@ use crate::private::create;
 /// Files that are being written and have not their name yet.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Files that are being written: they go where this process is told to stop meanwhile, see
+/// Files that are being written: they are removed if this process has to stop meanwhile, see
 /// [`clear_on_signals`].
 #[derive(Debug)]
 pub struct Unfinished(Vec<PathBuf>);
@@ -39,9 +39,10 @@ impl Drop for Unfinished {
 
 /// Removes a file, or a folder with all that is in it; it may not be there.
 fn remove(path: &Path) {
-    match path.is_dir() && !path.is_symlink() {
-        true => std::fs::remove_dir_all(path).ok(),
-        false => std::fs::remove_file(path).ok(),
+    if path.is_dir() && !path.is_symlink() {
+        std::fs::remove_dir_all(path).ok()
+    } else {
+        std::fs::remove_file(path).ok()
     };
 }
 
@@ -131,12 +132,13 @@ pub fn check_folder(path: &Path) -> Result<(), Error> {
         Ok(mut files) => files.next().is_some(),
         Err(_) => path.symlink_metadata().is_ok(),
     };
-    match there {
-        true => Err(Error::new(
+    if there {
+        Err(Error::new(
             ErrorKind::AlreadyExists,
             "it exists already: name a new folder",
-        )),
-        false => Ok(()),
+        ))
+    } else {
+        Ok(())
     }
 }
 

@@ -1,4 +1,4 @@
-//! Who asks for something, for the log of who does it.
+//! Name of the asker of a command, for the log of the node that carries it out.
 
 use std::os::fd::AsFd as _;
 

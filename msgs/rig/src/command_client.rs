@@ -20,7 +20,7 @@ const ASK: Duration = Duration::from_secs(2);
 pub struct Done {
     /// Its index in the painting's journal; 0 of one that is not in it.
     pub journal: u64,
-    /// What it wrote or found.
+    /// File that it wrote, or value that it found.
     pub detail: Detail,
 }
 
@@ -91,61 +91,54 @@ impl CommandClient {
         patience: Duration,
         stop: &dyn Fn() -> bool,
     ) -> Result<Done, UserError> {
-        let command = command.into();
-        // A failure at the end of a take, or of a write, is no wrong usage.
-        let refusal: fn(String) -> UserError = match &command {
-            Command::Take(TakeCommand::Snapshot { .. } | TakeCommand::Mark) => UserError::failure,
-            Command::Take(TakeCommand::Begin { .. })
-            | Command::Edit(_)
-            | Command::File(_)
-            | Command::Brush(_)
-            | Command::Rig(_)
-            | Command::Session(_) => UserError::usage,
-        };
         self.number += 1;
-        let number = self.number;
         let request = CommandRequest {
             client: self.client,
-            number,
+            number: self.number,
             after,
-            command,
+            command: command.into(),
         };
         let give_up = Instant::now() + patience;
         loop {
             let asked = Instant::now();
-            let limit = self.ask.min(patience);
-            match ask::<_, CommandReply>(
-                &*self.bus,
-                &self.topic,
-                Qos::Control,
-                self.me,
-                &request,
-                limit,
-            ) {
-                Ok(CommandReply {
-                    outcome: Outcome::Done { journal, detail },
-                    ..
-                }) => return Ok(Done { journal, detail }),
-                Ok(CommandReply {
-                    outcome: Outcome::Refused { what, advice },
-                    ..
-                }) => {
-                    return Err(refusal(what).at(self.topic.clone()).advise(advice));
+            match self.outcome(&request, self.ask.min(patience))? {
+                Outcome::Done { journal, detail } => return Ok(Done { journal, detail }),
+                Outcome::Refused { what, advice } => {
+                    let refusal = refusal(&request.command, what);
+                    return Err(refusal.at(self.topic.clone()).advise(advice));
                 }
-                Ok(CommandReply {
-                    outcome: Outcome::Waiting,
-                    ..
-                })
-                | Err(BusError::NoAnswer { .. }) => {}
-                Err(error) => return Err(error.into()),
+                Outcome::Waiting => {}
             }
             if Instant::now() >= give_up || stop() {
                 return Err(UserError::failure("the node does not answer")
                     .at(self.topic.clone())
-                    .help("see whether it runs"));
+                    .help("check that it is running"));
             }
             // A node that is not there yet answers at once with nothing.
             std::thread::sleep(Duration::from_millis(20).saturating_sub(asked.elapsed()));
         }
+    }
+
+    /// Outcome of a request within a time; one without an answer waits.
+    fn outcome(&self, request: &CommandRequest, limit: Duration) -> Result<Outcome, UserError> {
+        let (bus, topic) = (&*self.bus, &self.topic);
+        match ask::<_, CommandReply>(bus, topic, Qos::Control, self.me, request, limit) {
+            Ok(reply) => Ok(reply.outcome),
+            Err(BusError::NoAnswer { .. }) => Ok(Outcome::Waiting),
+            Err(error) => Err(error.into()),
+        }
+    }
+}
+
+/// Error of a refused command: a failure at the end of a take, or of a write, is not wrong usage.
+fn refusal(command: &Command, what: String) -> UserError {
+    match command {
+        Command::Take(TakeCommand::Snapshot { .. } | TakeCommand::Mark) => UserError::failure(what),
+        Command::Take(TakeCommand::Begin { .. })
+        | Command::Edit(_)
+        | Command::File(_)
+        | Command::Brush(_)
+        | Command::Rig(_)
+        | Command::Session(_) => UserError::usage(what),
     }
 }

@@ -7,6 +7,7 @@ mod light;
 mod paint;
 mod palette;
 mod record;
+mod wrong;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

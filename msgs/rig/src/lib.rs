@@ -11,13 +11,42 @@
 //! | [`log`] | log lines |
 //! | [`node_handle`] | joining a rig, living in it, leaving it |
 //! | [`program`] | the program of this process, for those that it starts |
-//! | [`pulse`] | the status of a node, by which the launcher sees that it goes on |
+//! | [`pulse`] | the status of a node, by which the launcher sees that it makes progress |
 //! | [`sketches`] | paintings that have no name yet, in the user's state folder |
 //! | [`table_file`] | tables in files that a user names |
 //! | [`whole_path`](mod@whole_path) | paths as messages carry them |
 //! | [`stop`] | the stop flag: a signal, or the launcher's end |
 //!
 //! A crate of its own, so that daemons, window and launcher share settings and conduct without knowing each other.
+//!
+//! A studio with one force-feedback stylus; a mistake is reported with its line and what to do.
+//!
+//! ```
+//! use maulstick_rig::RigConfig;
+//!
+//! # fn main() -> Result<(), maulstick_rig::UserError> {
+//! let text = r#"
+//! [canvas]
+//! width_mm = 400
+//! height_mm = 300
+//!
+//! [[device]]
+//! name = "left"
+//! driver = "openhaptics"
+//! brush = "main"
+//! max_force_n = 2.0
+//! "#;
+//! let rig = RigConfig::parse(text, "rig.toml")?;
+//! assert_eq!(rig.canvas.cells(), [1600, 1200]);
+//! assert_eq!(rig.device[0].max_force_n, 2.0);
+//!
+//! let wrong = text.replace("openhaptics", "openhaptic");
+//! let error = RigConfig::parse(&wrong, "rig.toml").expect_err("no such driver");
+//! assert_eq!(error.place.as_deref(), Some("rig.toml:8"));
+//! println!("{error}");
+//! # Ok(())
+//! # }
+//! ```
 //!
 //! # Progress
 //!

@@ -1,4 +1,4 @@
-//! What a process says: its log, one line an event, whatever the texts in it hold, and what it prints. Nobody waits until
+//! Output of a process: its log, one line an event, whatever the texts in it hold, and its prints. Nobody waits until
 //! the log is read, nor for what is printed where that was asked for.
 
 mod lossy_writer;
@@ -61,7 +61,7 @@ pub fn say(text: &str) {
     }
 }
 
-/// Has the standard output written by a thread of its own: for a command whose work goes on while its terminal stands still.
+/// Has the standard output written by a thread of its own, for a command that must not wait for its terminal.
 pub fn print_beside() {
     if let Ok(output) = LossyWriter::start(io::stdout()) {
         OUTPUT.set(output).ok();

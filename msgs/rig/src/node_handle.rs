@@ -55,7 +55,7 @@ pub struct NodeHandle {
     pub wake: Wake,
     /// Stop flag.
     pub stop: Stop,
-    /// What it has done, for its status.
+    /// Work done so far, for its status.
     pub work: WorkCount,
     session: Arc<ZenohBus>,
     token: Option<Token>,
@@ -155,8 +155,8 @@ impl NodeHandle {
         Ok(Pulse::new(&*self.bus, &self.topics, &self.node, work)?)
     }
 
-    /// Has a thread send the status of a node whose loop may rest, as that of a window does while nobody sees it: it tells
-    /// that the process goes on, until it leaves the rig.
+    /// Has a thread send the status of a node whose loop may rest, as that of a window does while nobody sees it: it shows
+    /// that the process is alive, until it leaves the rig.
     ///
     /// # Errors
     /// A [`UserError`] where the bus is closed, or there is no thread.

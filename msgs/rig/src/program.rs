@@ -12,9 +12,10 @@ const RUNNING: &str = "/proc/self/exe";
 #[must_use]
 pub fn own_program() -> PathBuf {
     let running = PathBuf::from(RUNNING);
-    match running.exists() || running.is_symlink() {
-        true => running,
-        false => std::env::current_exe().unwrap_or_else(|_| "maulstick".into()),
+    if running.exists() || running.is_symlink() {
+        running
+    } else {
+        std::env::current_exe().unwrap_or_else(|_| "maulstick".into())
     }
 }
 

@@ -1,4 +1,4 @@
-//! Pulse of a node: its status, sent by the loop that does its work, by which the launcher sees that it goes on.
+//! Pulse of a node: its status, sent by the loop that does its work, by which the launcher sees that it makes progress.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -8,7 +8,7 @@ use maulstick_types::node::{NodeStatus, NodeWork};
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
-/// What a node has done, as it says itself; clones share it.
+/// Work that a node reports; clones share it.
 #[derive(Clone, Debug, Default)]
 pub struct WorkCount(Arc<Mutex<NodeWork>>);
 

@@ -1,11 +1,16 @@
 //! Sizes in bytes as people write them: 512M, 2G.
 
+/// A text that is not a size.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("'{0}' is not a size such as 512M or 2G")]
+pub struct SizeError(pub String);
+
 /// Reads a size: a number with K, M, G or T (powers of 1024), or plain bytes.
 ///
 /// # Errors
-/// The error, in words.
-pub fn parse_bytes(text: &str) -> Result<u64, String> {
-    let wrong = || format!("'{text}' is not a size such as 512M or 2G");
+/// [`SizeError`].
+pub fn parse_bytes(text: &str) -> Result<u64, SizeError> {
+    let wrong = || SizeError(text.to_owned());
     let trimmed = text
         .trim()
         .trim_end_matches(['b', 'B'])
@@ -19,9 +24,10 @@ pub fn parse_bytes(text: &str) -> Result<u64, String> {
     };
     let number: f64 = number.trim().parse().map_err(|_| wrong())?;
     let bytes = number * (1u64 << shift) as f64;
-    match (0.0..9e18).contains(&bytes) {
-        true => Ok(bytes as u64),
-        false => Err(wrong()),
+    if (0.0..9e18).contains(&bytes) {
+        Ok(bytes as u64)
+    } else {
+        Err(wrong())
     }
 }
 

@@ -1,8 +1,8 @@
 //! Sketches: paintings that have no name yet. Each has a file of its own in the user's state folder until the painter
 //! gives it one elsewhere.
 //!
-//! The newest [`MOST`] stay, and of these as many as take [`MOST_BYTES`] together; the newest stays in any case. Those
-//! beyond *leave*: they are removed when a rig starts, but only once the painter was [told](Sketches::tell) of them. One
+//! The newest [`MOST_SKETCHES`] stay, and of these as many as take [`MOST_BYTES`] together; the newest stays in any case. Those
+//! beyond *leave*: they are removed when a rig starts, but only once the painter has been [notified](Sketches::notify). One
 //! that is opened and painted on is the newest again, and one that is saved under a name is no sketch any more.
 
 use std::collections::BTreeSet;
@@ -16,13 +16,13 @@ use maulstick_files::{COMPANIONS, Kind, companion, first_free, write_whole};
 use crate::user_error::UserError;
 
 /// Sketches that stay.
-pub const MOST: usize = 32;
-/// What they take together at most, bytes.
+pub const MOST_SKETCHES: usize = 32;
+/// Most bytes of all sketches together.
 pub const MOST_BYTES: u64 = 4 << 30;
 
 /// File ending of a painting.
 const PAINTING: &str = "maul";
-/// Names of the sketches of which the painter was told that they leave, a line each.
+/// Names of the sketches of whose removal the painter was notified, a line each.
 const TOLD: &str = "leaving.txt";
 
 /// A sketch that is there.
@@ -32,7 +32,7 @@ pub struct Sketch {
     pub path: PathBuf,
     /// When it was last changed.
     pub changed: SystemTime,
-    /// What it takes with its journal, bytes.
+    /// Bytes of the file and its journal.
     pub bytes: u64,
 }
 
@@ -135,11 +135,12 @@ impl Sketches {
         Ok(())
     }
 
-    /// Tells that these leave: the next start removes those of them that still do. What was told before is forgotten.
+    /// Notes that the painter was notified of these removals: the next start carries out those that are still due. Earlier
+    /// notes are discarded.
     ///
     /// # Errors
     /// A [`UserError`] where that cannot be written.
-    pub fn tell(&self, leaving: &[Sketch]) -> Result<(), UserError> {
+    pub fn notify(&self, leaving: &[Sketch]) -> Result<(), UserError> {
         let path = self.folder.join(TOLD);
         let names = leaving.iter().filter_map(|sketch| name(&sketch.path));
         let text: String = names.flat_map(|name| [name, "\n"]).collect();
@@ -147,9 +148,9 @@ impl Sketches {
             .map_err(|error| UserError::writing(&path, &error))
     }
 
-    /// Those that leave, and of which the painter was told.
+    /// Those that are due for removal, and of which the painter was notified.
     #[must_use]
-    pub fn told(&self) -> Vec<Sketch> {
+    pub fn notified(&self) -> Vec<Sketch> {
         let text = std::fs::read_to_string(self.folder.join(TOLD)).unwrap_or_default();
         let told: BTreeSet<&str> = text.lines().collect();
         let all = self.all();
@@ -169,7 +170,7 @@ pub fn leaving(all: &[Sketch]) -> &[Sketch] {
     let mut bytes = 0;
     let stay = all
         .iter()
-        .take(MOST)
+        .take(MOST_SKETCHES)
         .enumerate()
         .take_while(|(place, one)| {
             bytes += one.bytes;
@@ -186,7 +187,7 @@ mod tests {
 
     use super::*;
 
-    /// A folder with so many sketches, a day between them, the oldest first.
+    /// A folder with `count` sketches, a day between them, the oldest first.
     fn folder(count: usize) -> (tempfile::TempDir, Sketches, Vec<PathBuf>) {
         let folder = tempfile::tempdir().expect("a folder");
         let sketches = Sketches::in_folder(&folder.path().join("state/sketches"));
@@ -226,17 +227,25 @@ mod tests {
 
     #[test]
     fn the_oldest_beyond_the_bound_leave_once_the_painter_was_told() {
-        let (_folder, sketches, paths) = folder(MOST + 2);
+        let (_folder, sketches, paths) = folder(MOST_SKETCHES + 2);
         let all = sketches.all();
         let oldest: Vec<_> = leaving(&all).iter().map(|one| one.path.clone()).collect();
         assert_eq!(oldest, [paths[1].clone(), paths[0].clone()]);
-        assert_eq!(sketches.told(), [], "nobody has seen them");
-        sketches.tell(leaving(&all)).expect("told");
-        let told: Vec<_> = sketches.told().into_iter().map(|one| one.path).collect();
+        assert_eq!(sketches.notified(), [], "nobody has seen them");
+        sketches.notify(leaving(&all)).expect("told");
+        let told: Vec<_> = sketches
+            .notified()
+            .into_iter()
+            .map(|one| one.path)
+            .collect();
         assert_eq!(told, oldest);
-        // One is painted on, so another is the oldest, of which nobody was told.
-        touch(&paths[0], MOST + 3);
-        let told: Vec<_> = sketches.told().into_iter().map(|one| one.path).collect();
+        // One is painted on, so another is the oldest, of which nobody was notified.
+        touch(&paths[0], MOST_SKETCHES + 3);
+        let told: Vec<_> = sketches
+            .notified()
+            .into_iter()
+            .map(|one| one.path)
+            .collect();
         assert_eq!(told, [paths[1].clone()]);
     }
 

@@ -18,7 +18,7 @@ pub fn read_table(path: &Path, most: u64) -> Result<String, UserError> {
     let failed = |error: std::io::Error| UserError::reading(path, &error);
     let file = std::fs::File::open(path).map_err(failed)?;
     let mut bytes = Vec::new();
-    // A device or a pipe may go on without end.
+    // A device or a pipe may have no end.
     file.take(most + 1)
         .read_to_end(&mut bytes)
         .map_err(failed)?;
@@ -43,7 +43,7 @@ pub fn table_text(path: &Path, bytes: &[u8]) -> Result<String, UserError> {
     }
 }
 
-/// What is wrong with a table of this name, as the user sees it.
+/// Error of a table of this name, as the user sees it.
 #[must_use]
 pub fn table_fault(name: &str, error: &TableError) -> UserError {
     UserError::usage(error.what())

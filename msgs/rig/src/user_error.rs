@@ -128,7 +128,7 @@ impl UserError {
         name: &str,
         names: impl IntoIterator<Item = &'a str>,
     ) -> Self {
-        Self::usage(what).help(maulstick_types::command::advice::choice(name, names))
+        Self::usage(what).help(maulstick_types::nearest::choice(name, names))
     }
 }
 
@@ -173,16 +173,16 @@ impl From<BusError> for UserError {
             ))
             .at(at)
             .help(
-                "see that no other process has this name in the rig, and that its folder is yours",
+                "make sure that no other process has this name in the rig, and that its folder is yours",
             ),
             BusError::Silent { at, limit_s } => {
                 let what = format!("the rig runs, but nothing connects within {limit_s} s");
                 Self::failure(what)
                     .at(at)
-                    .help("try again: the machine may be too busy, and `maulstick doctor` says with what; otherwise start the rig anew")
+                    .help("try again: the machine may be too busy (`maulstick doctor` says with what); otherwise restart the rig")
             }
             BusError::Files { least, .. } => Self::failure(error.to_string()).help(format!(
-                "raise the limit before: `ulimit -n {}`",
+                "raise the limit first: `ulimit -n {}`",
                 least.next_power_of_two().max(1024)
             )),
             BusError::Topic { topic, reason } => Self::failure(reason).at(topic).help(
@@ -191,7 +191,7 @@ impl From<BusError> for UserError {
             BusError::NoAnswer { topic, limit_ms } => {
                 Self::failure(format!("no answer within {limit_ms} ms"))
                     .at(topic)
-                    .help("see whether that node runs")
+                    .help("check that this node is running")
             }
             BusError::Message { topic, source } => Self::failure(source.to_string())
                 .at(topic)

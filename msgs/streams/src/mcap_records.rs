@@ -1,7 +1,7 @@
 //! Records of an MCAP file, read within its bounds.
 //!
 //! No length that a file states is believed before it is compared with the bytes at hand, so reading a
-//! damaged file allocates no more than a small multiple of it. Behind a damaged record the search goes on,
+//! damaged file allocates no more than a small multiple of it. Behind a damaged record the search continues,
 //! byte by byte, for the next that can be one: its kind is known, its length fits its kind and the file,
 //! and it ends where another begins.
 
@@ -243,7 +243,7 @@ fn most_of(body: &[u8], data: &[u8]) -> usize {
     by_size.max(stated.unwrap_or(0).min(MOST_STATED))
 }
 
-/// Reads what a decoder gives before it fails, up to so many bytes.
+/// Reads the bytes that a decoder gives before it fails, up to a limit.
 fn read_all(
     decoder: std::io::Result<impl Read>,
     most: usize,

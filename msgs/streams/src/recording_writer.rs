@@ -20,10 +20,10 @@ pub const MESSAGE_ENCODING: &str = "x-maulstick";
 pub const SCHEMA_ENCODING: &str = "x-maulstick-fields+json";
 /// Profile of the files.
 pub const PROFILE: &str = "maulstick";
-/// Records that are compressed together, bytes: so many are read for one message.
+/// Bytes of records that are compressed together, and read together for one message.
 const CHUNK_BYTES: u64 = 256 << 10;
 
-/// How its files are written.
+/// Options of the MCAP writer.
 pub(crate) fn options() -> WriteOptions {
     WriteOptions::new()
         .profile(PROFILE)

@@ -1,4 +1,4 @@
-//! What is left of a damaged recording, as a whole one.
+//! Recovery: the intact part of a damaged recording, as a whole one.
 //!
 //! Messages, files and notes are copied as they are, with the schemas that they have, whichever version wrote them. In a
 //! chunk whose checksum is wrong a message counts if it is valid by itself.
@@ -36,7 +36,7 @@ pub struct DamagedRecording {
     damage: Damage,
 }
 
-/// What could be copied.
+/// Counts of a recovery.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Recovered {
     /// Messages.
@@ -94,11 +94,12 @@ impl DamagedRecording {
                 .add(0, "the file does not begin as an MCAP file does");
         }
         let is_mcap = recording.look().map_err(reading)? || begins;
-        match is_mcap {
-            true => Ok(recording),
-            false => Err(UserError::usage("this is no MCAP file")
+        if is_mcap {
+            Ok(recording)
+        } else {
+            Err(UserError::usage("this is not an MCAP file")
                 .at(path.display().to_string())
-                .help("`maulstick recording record` writes recordings")),
+                .help("`maulstick recording record` writes recordings"))
         }
     }
 

@@ -29,7 +29,7 @@ pub struct Arrived {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Distribution {
     samples: Vec<u64>,
-    /// Each so many times.
+    /// Interval of the samples that are kept: each `every`th.
     every: u64,
     skipped: u64,
     most: u64,
@@ -78,7 +78,7 @@ impl Distribution {
     }
 }
 
-/// What was heard of a stream.
+/// Counts and times of a stream.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Stream {
     /// Hash of its messages' field table.
@@ -148,7 +148,7 @@ impl Stream {
         }
         let mut next_seq = self.next_seq.unwrap_or(header.seq);
         if is_since && !self.has_begun && header.seq > next_seq {
-            // What was heard so far was kept for late joiners: what was sent between was not sent to this one.
+            // Messages so far were cached for late joiners; those between them were not sent to this listener.
             next_seq = header.seq;
             self.sent = Sendings::default();
         }
@@ -198,9 +198,10 @@ impl Stream {
             last_ns,
         } = self.sent;
         let passed_s = last_ns.saturating_sub(first_ns) as f64 * 1e-9;
-        match messages >= 2 && passed_s > 0.0 {
-            true => (messages - 1) as f64 / passed_s,
-            false => 0.0,
+        if messages >= 2 && passed_s > 0.0 {
+            (messages - 1) as f64 / passed_s
+        } else {
+            0.0
         }
     }
 }
@@ -321,7 +322,7 @@ mod tests {
             "{}",
             stream.rate_hz()
         );
-        // Half of them are lost: so many come.
+        // Half of them are lost.
         let half = (0..490).step_by(2).map(|seq| message(seq, [at(seq); 3]));
         let stream = heard(half);
         assert!(

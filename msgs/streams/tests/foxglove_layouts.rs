@@ -29,10 +29,9 @@ fn add_paths(layout: &Json, paths: &mut Vec<String>) {
 /// The schema of the messages of a topic.
 fn schema_of(topic: &str) -> Option<Json> {
     let is_meant = |pattern: &&str| {
-        let parts = pattern.split('/').map(|part| match part.starts_with('<') {
-            true => "*",
-            false => part,
-        });
+        let parts = pattern
+            .split('/')
+            .map(|part| if part.starts_with('<') { "*" } else { part });
         matches(&parts.collect::<Vec<_>>().join("/"), topic)
     };
     let entry = CATALOGUE

@@ -218,7 +218,7 @@ fn other_files_are_refused_with_what_to_do() {
     for content in ["", "a table\n"] {
         std::fs::write(&path, content).expect("written");
         let fault = Recording::open(&path).expect_err("refused");
-        assert_eq!(fault.what, "this is no MCAP file");
+        assert_eq!(fault.what, "this is not an MCAP file");
         assert!(fault.help.is_some());
     }
 }

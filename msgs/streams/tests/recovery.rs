@@ -127,7 +127,7 @@ fn a_file_without_its_beginning_is_mended_and_another_file_is_refused() {
     assert_eq!(recovered(&path).1.messages, MESSAGES);
     std::fs::write(&path, "a table\n".repeat(100)).expect("written");
     let fault = DamagedRecording::open(&path).expect_err("refused");
-    assert_eq!(fault.what, "this is no MCAP file");
+    assert_eq!(fault.what, "this is not an MCAP file");
 }
 
 proptest! {
@@ -144,10 +144,7 @@ proptest! {
         let mut bytes = std::fs::read(&path).expect("read");
         for (place, value) in changes {
             // Lengths stand in the head and at the end of a file.
-            let at = match large {
-                true => bytes.len() - 1 - place.index(2000.min(bytes.len())),
-                false => place.index(bytes.len()),
-            };
+            let at = if large { bytes.len() - 1 - place.index(2000.min(bytes.len())) } else { place.index(bytes.len()) };
             bytes[at] = value;
         }
         std::fs::write(&path, &bytes).expect("written");

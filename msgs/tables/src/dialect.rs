@@ -7,7 +7,7 @@ use crate::number::is_number;
 /// Lines by which a separator is chosen.
 const CHOSEN_BY: usize = 64;
 
-/// What stands between the cells of a line.
+/// Separator of the cells of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Separator {
     /// `;`, as spreadsheets write that use decimal commas.
@@ -54,7 +54,7 @@ impl Separator {
     }
 }
 
-/// How well a separator reads some lines.
+/// Fit of a separator to some lines.
 #[derive(Clone, Copy, Debug, Default)]
 struct Score {
     /// It parts a line into cells.

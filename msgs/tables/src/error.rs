@@ -1,20 +1,22 @@
-//! What is wrong with a table, where, and what to do.
+//! Errors of a table: the fault, its place, advice.
 
 use std::fmt;
 
+/// Most characters of a cell: what is longer is not a number, and hardly a name.
+pub const MOST_CHARACTERS: usize = 1000;
 /// Characters of a cell that an error shows.
 const SHOWN: usize = 40;
 
-/// What is wrong with a table, and where.
+/// A fault of a table and its place.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct TableError {
     /// The line, from 1.
     pub line: usize,
     /// The column, from 1.
     pub column: Option<usize>,
-    /// What stands above that column; empty if nothing does.
+    /// Heading of that column; empty if there is none.
     pub heading: String,
-    /// What is wrong.
+    /// The fault.
     pub fault: Fault,
 }
 
@@ -36,9 +38,10 @@ impl TableError {
         let Some(column) = self.column else {
             return self.fault.to_string();
         };
-        match self.heading.is_empty() {
-            true => format!("column {column}: {}", self.fault),
-            false => format!("column {column} ({}): {}", shown(&self.heading), self.fault),
+        if self.heading.is_empty() {
+            format!("column {column}: {}", self.fault)
+        } else {
+            format!("column {column} ({}): {}", shown(&self.heading), self.fault)
         }
     }
 }
@@ -49,7 +52,7 @@ impl fmt::Display for TableError {
     }
 }
 
-/// What is wrong with a table.
+/// Fault of a table.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Fault {
     /// Bytes that are no text.
@@ -59,10 +62,7 @@ pub enum Fault {
     #[error("a quote is opened and not closed on the line")]
     OpenQuote,
     /// A cell that is longer than any number or name.
-    #[error(
-        "a cell has {characters} characters, more than {}",
-        crate::table::MOST_CHARACTERS
-    )]
+    #[error("a cell has {characters} characters, more than {}", MOST_CHARACTERS)]
     LongCell {
         /// Its length.
         characters: usize,
@@ -90,7 +90,7 @@ pub enum Fault {
         name: String,
     },
     /// A heading above two columns.
-    #[error("'{}' stands above two columns", shown(.name))]
+    #[error("two columns have the heading '{}'", shown(.name))]
     TwiceNamed {
         /// The heading.
         name: String,
@@ -125,7 +125,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// What to do about it.
+    /// Advice.
     #[must_use]
     pub const fn help(&self) -> &'static str {
         match self {

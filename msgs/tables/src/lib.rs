@@ -11,13 +11,33 @@
 //! | comments | lines that begin with `#`; `# key: value` is a note |
 //! | blank lines | part blocks, such as strokes |
 //!
-//! What has two readings, as 1,234 where nothing says which mark is the decimal one, is refused.
+//! A number with two readings, as 1,234 where nothing says which mark is the decimal one, is rejected.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`table`] | tables, their rows and headings |
 //! | [`error`] | what is wrong, where, and what to do |
 //! | [`text`] | bytes as text |
+//!
+//! Measurements as a spreadsheet of a country with decimal commas saves them:
+//!
+//! ```
+//! use maulstick_tables::{Fault, HeadingLine, Table};
+//!
+//! # fn main() -> Result<(), maulstick_tables::TableError> {
+//! let table = Table::parse("depth_m;force_n\n0,001;0,25\n0,002;0,5\n", HeadingLine::First)?;
+//! let [depth, force] = table.columns(["depth_m", "force_n"])?;
+//! let (depth, force) = (depth.expect("a column"), force.expect("a column"));
+//! for row in table.rows() {
+//!     let stiffness_n_m = row.number(force)? / row.number(depth)?;
+//!     assert!((stiffness_n_m - 250.0).abs() < 1e-9);
+//! }
+//! let unclear = Table::parse("0;1,234\n", HeadingLine::Row)?;
+//! let error = unclear.rows().next().expect("a row").number(1).expect_err("1.234 or 1234?");
+//! assert!(matches!(error.fault, Fault::TwoReadings { .. }));
+//! # Ok(())
+//! # }
+//! ```
 
 mod dialect;
 pub mod error;
@@ -26,6 +46,6 @@ pub mod table;
 pub mod text;
 
 pub use dialect::Separator;
-pub use error::{Fault, TableError, shown};
+pub use error::{Fault, MOST_CHARACTERS, TableError, shown};
 pub use table::{HeadingLine, Note, Row, Table};
 pub use text::decode;

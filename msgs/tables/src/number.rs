@@ -9,7 +9,7 @@ pub(crate) struct Marks {
     comma: bool,
 }
 
-/// How a cell is written.
+/// Marks in a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Form {
     /// Without a mark.

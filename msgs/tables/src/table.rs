@@ -1,21 +1,18 @@
 //! Tables, their rows and headings.
 
 use crate::dialect::{Cutter, Separator};
-use crate::error::{Fault, TableError};
+use crate::error::{Fault, MOST_CHARACTERS, TableError};
 use crate::number::{Marks, is_number};
 use crate::text::lines;
 
-/// Most characters of a cell.
-pub const MOST_CHARACTERS: usize = 1000;
-
-/// Whether the first line of a table names its columns.
+/// Role of a table's first line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeadingLine {
-    /// It does.
+    /// It names the columns.
     First,
-    /// It does where none of its cells is a number.
+    /// It names the columns if none of its cells is a number.
     Words,
-    /// It is a row as all others.
+    /// It is a row like the others.
     Row,
 }
 
@@ -105,7 +102,7 @@ impl Table {
         Ok(table)
     }
 
-    /// What stands above each column; empty without a line of headings.
+    /// Heading of each column; empty without a line of headings.
     #[must_use]
     pub fn headings(&self) -> &[String] {
         &self.headings
@@ -131,7 +128,7 @@ impl Table {
         &self.notes
     }
 
-    /// What stands between the cells.
+    /// Separator of the cells.
     #[must_use]
     pub const fn separator(&self) -> Separator {
         self.separator
@@ -341,9 +338,10 @@ impl<'a> Row<'a> {
     pub fn numbers<const N: usize>(&self) -> Result<[f64; N], TableError> {
         let (cells, columns) = (self.len(), N);
         if cells != columns {
-            let fault = match cells > columns {
-                true => Fault::Wide { cells, columns },
-                false => Fault::Narrow { cells, columns },
+            let fault = if cells > columns {
+                Fault::Wide { cells, columns }
+            } else {
+                Fault::Narrow { cells, columns }
             };
             return Err(TableError::new(self.line(), fault));
         }
@@ -361,7 +359,7 @@ impl<'a> Row<'a> {
     }
 }
 
-/// What stands on a line.
+/// Content of a line.
 enum Line<'a> {
     Blank,
     Comment(&'a str),

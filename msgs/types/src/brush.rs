@@ -112,9 +112,10 @@ impl BrushState {
                 0 => flags.with(first),
                 _ => flags,
             };
-            let flags = flags.with(match place + 1 == count {
-                true => last,
-                false => Flags::CONTINUES,
+            let flags = flags.with(if place + 1 == count {
+                last
+            } else {
+                Flags::CONTINUES
             });
             let part = Self {
                 device,

@@ -63,7 +63,7 @@ wire_enum! {
 
 wire_struct! {
     /// Relief around the brush: heights over the plane on [`SIDE`](Self::SIDE)² cells, desk frame. Beyond its edge the
-    /// outermost heights go on.
+    /// outermost heights continue.
     pub struct HeightPatch {
         /// Corner of the first cell, m.
         pub corner_m: [f64; 3],
@@ -219,7 +219,7 @@ message! {
     pub struct ForceRequest [contract of hash 0xf795_6c2b, version 3, at most 256 bytes] {
         /// The change.
         pub order: ForceOrder,
-        /// Who asks, for the log: program, user, terminal; at most [`ForceRequest::ASKER_BYTES`] bytes.
+        /// Asker, for the log: program, user, terminal; at most [`ForceRequest::ASKER_BYTES`] bytes.
         pub asker: String,
     }
 }

@@ -9,8 +9,38 @@
 //! | [`wire`] | header, codec, field tables and their hash, the key expressions of a rig |
 //! | [`stylus`], [`control`], [`haptics`], [`brush`], [`scene`], [`paint`], [`command`], [`window`], [`node`] | the messages |
 //! | [`edit`] | edits of a painting, by name and fields |
-//! | [`values`] | numbers and names that are in range |
+//! | [`values`], [`limits`] | numbers and names that are in range, and the ranges |
+//! | [`nearest`](mod@nearest) | the known name that was probably meant |
 //! | [`pose`], [`region`], [`mixture`] | where something is, a part of a surface, a mixture of paints |
+//!
+//! A pen that touches 20 mm right of the canvas's middle, as bytes of the wire and back:
+//!
+//! ```
+//! use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
+//! use maulstick_types::{Flags, HEADER_BYTES, Origin, decode, encode, name_hash};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let sample = StylusSample {
+//!     pose: StylusPose::Contact {
+//!         point_m: [0.02, 0.0, 0.0],
+//!         tilt_rad: DEFAULT_TILT_RAD,
+//!         twist_rad: 0.0,
+//!         pressure: 0.5,
+//!     },
+//!     in_range: true,
+//!     ..StylusSample::away()
+//! };
+//! let pen = Origin { source: name_hash("my-pen"), epoch: 1 };
+//! let (sampled_ns, sent_ns) = (1_500_000_000, 1_500_400_000);
+//! let bytes = encode(&pen, Flags::FIRST, 0, sampled_ns, sent_ns, &sample)?;
+//!
+//! let (header, read) = decode::<StylusSample>(&bytes)?;
+//! assert_eq!(read, sample);
+//! assert_eq!((header.origin(), header.event_ns), (pen, sampled_ns));
+//! assert!(decode::<StylusSample>(&bytes[..HEADER_BYTES]).is_err(), "the body is missing");
+//! # Ok(())
+//! # }
+//! ```
 //!
 //! # Versions
 //!
@@ -75,7 +105,9 @@ pub mod command;
 pub mod control;
 pub mod edit;
 pub mod haptics;
+pub mod limits;
 pub mod mixture;
+pub mod nearest;
 pub mod node;
 pub mod paint;
 pub mod pose;
@@ -86,9 +118,9 @@ pub mod values;
 pub mod window;
 pub mod wire;
 
-pub use command::advice::nearest;
 pub use edit::{Edit, EditFault, EditFields};
 pub use mixture::{Mixture, MixtureError};
+pub use nearest::nearest;
 pub use paint::frame_view::{FrameTileView, FrameView};
 pub use pose::Pose;
 pub use region::Region;

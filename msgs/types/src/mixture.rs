@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::command::{PAINT_NAME_MAX, PARTS_MAX};
+use crate::limits::{PAINT_NAME_MAX, PARTS_MAX};
 use crate::wire::define::wire_struct;
 
 /// Largest difference from 1 of the sum of shares that counts as rounding.
@@ -69,13 +69,13 @@ pub enum MixtureError {
         sum: f64,
     },
     /// Too many paints.
-    #[error("a mixture of {0} paints: it has at most {PARTS_MAX}")]
+    #[error("a mixture has at most {PARTS_MAX} paints, not {0}")]
     Parts(usize),
     /// The name of a paint is too long.
-    #[error("a paint's name of {0} bytes: it has at most {PAINT_NAME_MAX}")]
+    #[error("a paint's name has at most {PAINT_NAME_MAX} bytes, not {0}")]
     Name(usize),
     /// A paint twice.
-    #[error("'{paint}' stands twice in the mixture")]
+    #[error("'{paint}' is in the mixture twice")]
     Twice {
         /// The paint.
         paint: String,

@@ -1,18 +1,18 @@
-//! Status of a node: whether it goes on, and what it has done.
+//! Status of a node: its progress and its work.
 
 use crate::wire::define::{message, wire_struct};
 
 wire_struct! {
-    /// What a node has done since its start, and what waits; 0 where it counts no such thing.
+    /// Work of a node since its start, and work that waits; 0 where it counts none.
     #[derive(Default)]
     pub struct NodeWork {
         /// Messages, samples or reports that it has consumed.
         pub consumed: u64,
         /// Messages that it has sent of its main stream.
         pub produced: u64,
-        /// What waits to be done by it.
+        /// Messages that wait to be consumed.
         pub waiting: u64,
-        /// What waits until another node has room.
+        /// Messages that wait until another node has room.
         pub held: u64,
         /// Messages that it refused.
         pub refused: u64,
@@ -30,7 +30,7 @@ message! {
         pub process: u32,
         /// Turns of its loop since its start.
         pub turns: u64,
-        /// What it has done.
+        /// Its work.
         pub work: NodeWork,
     }
 }

@@ -49,9 +49,10 @@ impl Region {
     pub fn check(&self) -> Result<(), ValueError> {
         let near = self.corner_m.iter().all(|m| m.abs() <= FARTHEST_M);
         let wide = self.size_m.iter().all(|m| *m > 0.0 && *m <= FARTHEST_M);
-        match near && wide {
-            true => Ok(()),
-            false => Err(ValueError::Region(self.to_string())),
+        if near && wide {
+            Ok(())
+        } else {
+            Err(ValueError::Region(self.to_string()))
         }
     }
 

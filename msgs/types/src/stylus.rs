@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::command::After;
+use crate::limits::FARTHEST_M;
 use crate::pose::Pose;
 use crate::wire::define::{message, wire_enum, wire_struct};
 
@@ -39,10 +40,6 @@ pub mod switch {
 /// Tilt of a pen that does not sense it: 30° toward the lower right, radians about y and x as in
 /// [`StylusPose::Contact`]: atan(tan 30° · cos 45°) and its negative.
 pub const DEFAULT_TILT_RAD: [f64; 2] = [0.387_596_686_655_180_66, -0.387_596_686_655_180_66];
-
-/// Limit on the distance of a sample from the desk's origin along each axis, m: a motion over all of it can still be
-/// followed cell by cell.
-pub const FARTHEST_M: f64 = 10.0;
 
 /// Longest text of a trouble, bytes: a status has no room for more.
 const LONGEST_TEXT: usize = 1024;
@@ -144,9 +141,9 @@ impl StylusStatus {
 /// Reason why there is no device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Trouble<'a> {
-    /// What is wrong.
+    /// The trouble.
     pub what: &'a str,
-    /// What to do about it; may be empty.
+    /// Advice; may be empty.
     pub help: &'a str,
 }
 
@@ -290,7 +287,7 @@ message! {
         pub guidance: f64,
         /// Messages that would move the hand, dropped because their sender is neither the device's brush nor has consent.
         pub refused_senders: u64,
-        /// What to do about the trouble; may be empty.
+        /// Advice about the trouble; may be empty.
         pub help: String,
     }
 }

@@ -64,9 +64,10 @@ fn what_the_first_version_said_is_still_understood() {
             "{name} said\n{words}\nand is read as\n{read}"
         );
         // And what a later version will append is left alone, behind what this one has appended.
-        let own = match entry.version > version {
-            true => vec![0; entry.max_bytes - (bytes.len() - HEADER_BYTES)],
-            false => Vec::new(),
+        let own = if entry.version > version {
+            vec![0; entry.max_bytes - (bytes.len() - HEADER_BYTES)]
+        } else {
+            Vec::new()
         };
         let longer = [&bytes[HEADER_BYTES..], &own, &[1; 16]].concat();
         let read = (entry.show)(u16::MAX, &longer).expect(name);

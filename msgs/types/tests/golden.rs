@@ -451,6 +451,14 @@ fn all() -> String {
             from: 2,
             to: 3,
         }),
+    ]
+    .concat()
+        + &windows_and_nodes()
+}
+
+/// Examples of messages whose order follows no other.
+fn windows_and_nodes() -> String {
+    [
         line(&presented()),
         line(&node_status()),
         line(&PendingOrders { since_ns: 1 }),

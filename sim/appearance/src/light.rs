@@ -19,7 +19,9 @@ pub fn studio_settings(light: &Light) -> Result<StudioSettings, EditError> {
                 name: light.illuminant.clone(),
                 power: Spectrum(power),
             };
-            found.check().map_err(EditError::Dark)?;
+            found
+                .check()
+                .map_err(|dark| EditError::Dark(dark.to_string()))?;
             found
         }
         Err(_) => illuminant_named(&light.illuminant)?,

@@ -176,9 +176,10 @@ impl SolvedHead {
         for ((spine, root), ends) in self.spines.iter().zip(&tuft.roots).zip(&mut room.ends) {
             spine.shape.joints(&root.spine, ends);
         }
-        let sweeps = match anew && tuft.repulsion_n_m > 0.0 {
-            true => SETTLING,
-            false => 1,
+        let sweeps = if anew && tuft.repulsion_n_m > 0.0 {
+            SETTLING
+        } else {
+            1
         };
         for _ in 0..sweeps {
             for (number, (spine, root)) in self.spines.iter_mut().zip(&tuft.roots).enumerate() {
@@ -214,9 +215,10 @@ impl SolvedHead {
         let (core, root) = (&mut self.core, &tuft.core.root);
         let frame = root.frame(brush);
         let way = (frame.translation - core.shape.root).truncate();
-        let yields = match way.length() > MOVED_M {
-            true => -way.normalize(),
-            false => settings.yields,
+        let yields = if way.length() > MOVED_M {
+            -way.normalize()
+        } else {
+            settings.yields
         };
         core.shape.carry(frame.translation, frame.rotation);
         core.shape.joints(&root.spine, &mut core.ends);

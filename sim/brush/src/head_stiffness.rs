@@ -16,7 +16,7 @@ const LEAST_DEPTH: f64 = 0.04;
 /// Least extent of a head along the normal, as a share of its length: for a head pressed flat.
 const LEAST_ALONG: f64 = 0.2;
 /// A bent head feels at most this many times as stiff, or as soft, as at rest.
-const MOST: f64 = 4.0;
+const MOST_STIFFENING: f64 = 4.0;
 
 /// Stiffness of a head, as the hand feels it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +53,7 @@ impl HeadStiffness {
         // The solved force replaces the force at rest as the head is pressed in.
         let share = (depth / LEAST_DEPTH - 1.0).min(1.0);
         let bent = force_n * along / (depth * length_m);
-        let bent = bent.clamp(rest.k1_n / MOST, MOST * rest.k1_n);
+        let bent = bent.clamp(rest.k1_n / MOST_STIFFENING, MOST_STIFFENING * rest.k1_n);
         Self {
             k1_n: rest.k1_n + share * (bent - rest.k1_n),
         }

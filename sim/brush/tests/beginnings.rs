@@ -152,9 +152,10 @@ fn a_stroke_of_constant_pressure_has_a_constant_mark_from_its_beginning() {
                         at_once.excess, at_once.lack, rested.excess, rested.lack
                     );
                     // An upright head that just touches marks with a few hairs, now here, now there.
-                    let share = match lean == 0.0 && pressure < 0.5 {
-                        true => SPARSE,
-                        false => 1.0,
+                    let share = if lean == 0.0 && pressure < 0.5 {
+                        SPARSE
+                    } else {
+                        1.0
                     };
                     worst.excess = worst.excess.max(share * at_once.excess);
                     worst.lack = worst.lack.max(share * at_once.lack);

@@ -60,9 +60,10 @@ fn surface(brush: &BrushFile) -> &Surface {
 /// The greatest difference of two lists of numbers, infinite where one is longer.
 fn apart(one: &[f64], other: &[f64]) -> f64 {
     let differences = one.iter().zip(other).map(|(a, b)| (a - b).abs());
-    match one.len() == other.len() {
-        true => differences.fold(0.0, f64::max),
-        false => f64::INFINITY,
+    if one.len() == other.len() {
+        differences.fold(0.0, f64::max)
+    } else {
+        f64::INFINITY
     }
 }
 

@@ -126,7 +126,7 @@ fn friction_opposes_the_slip_within_its_cone() {
 }
 
 /// The point of a spine is dragged this way and that, in short steps and in long ones: friction is that
-/// of the normal force of its own pose, and a point that goes on touching always has it.
+/// of the normal force of its own pose, and a point that continues touching always has it.
 #[test]
 fn friction_has_the_normal_force_of_its_own_pose() {
     let mu = 0.25;
@@ -396,7 +396,7 @@ fn the_energys_derivatives_agree_with_differences() {
 }
 
 /// A root so deep that no joint can come out: the spine keeps its bend, its contacts and its anchors,
-/// says that it did not converge, and goes on from there at the next pose that can be.
+/// says that it did not converge, and continues from there at the next pose that can be.
 #[test]
 fn what_cannot_be_keeps_the_last_good_state() {
     let length = 0.025;

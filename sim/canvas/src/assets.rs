@@ -52,7 +52,7 @@ enum Decoded {
 
 /// A decoded picture that somebody may still hold.
 #[derive(Clone, Debug, Default)]
-enum Lent {
+enum CachedImage {
     #[default]
     Nothing,
     Colours(Weak<Colours>),
@@ -63,7 +63,7 @@ enum Lent {
 #[derive(Clone)]
 struct Entry {
     bytes: Arc<[u8]>,
-    lent: Arc<Mutex<Lent>>,
+    cached: Arc<Mutex<CachedImage>>,
 }
 
 /// The pictures of one painting.
@@ -80,9 +80,10 @@ pub fn hash_of(bytes: &[u8]) -> String {
 /// Kind of a file of these bytes, as documents name it.
 #[must_use]
 pub fn kind_of(bytes: &[u8]) -> &'static str {
-    match bytes.starts_with(PNG) {
-        true => "picture",
-        false => "spectrum",
+    if bytes.starts_with(PNG) {
+        "picture"
+    } else {
+        "spectrum"
     }
 }
 
@@ -95,16 +96,16 @@ impl Assets {
         let hash = hash_of(&bytes);
         if !self.0.contains_key(&hash) {
             decode(&bytes)?;
-            let lent = Arc::default();
-            self.0.insert(hash.clone(), Entry { bytes, lent });
+            let cached = Arc::default();
+            self.0.insert(hash.clone(), Entry { bytes, cached });
         }
         Ok(hash)
     }
 
     /// Takes a picture or a spectrum in that was in a painting before, by its hash.
     pub fn know(&mut self, hash: String, bytes: Arc<[u8]>) {
-        let lent = Arc::default();
-        self.0.entry(hash).or_insert(Entry { bytes, lent });
+        let cached = Arc::default();
+        self.0.entry(hash).or_insert(Entry { bytes, cached });
     }
 
     /// True if there is a picture of this hash.
@@ -129,9 +130,10 @@ impl Assets {
     fn entry(&self, hash: &str) -> Result<&Entry, EditError> {
         self.0.get(hash).ok_or_else(|| {
             let digits = hash.bytes().all(|c| matches!(c, b'0'..=b'9' | b'a'..=b'f'));
-            match digits && hash.len() == HASH_DIGITS {
-                true => EditError::NoPicture(hash.to_owned()),
-                false => EditError::NoHash(hash.to_owned()),
+            if digits && hash.len() == HASH_DIGITS {
+                EditError::NoPicture(hash.to_owned())
+            } else {
+                EditError::NoHash(hash.to_owned())
             }
         })
     }
@@ -139,19 +141,19 @@ impl Assets {
     /// Decodes a picture, unless somebody still holds what was decoded before.
     fn decoded(&self, hash: &str) -> Result<Decoded, EditError> {
         let entry = self.entry(hash)?;
-        let mut lent = entry.lent.lock().unwrap_or_else(PoisonError::into_inner);
-        let held = match &*lent {
-            Lent::Nothing => None,
-            Lent::Colours(colours) => colours.upgrade().map(Decoded::Colours),
-            Lent::Heights(heights) => heights.upgrade().map(Decoded::Heights),
+        let mut cached = entry.cached.lock().unwrap_or_else(PoisonError::into_inner);
+        let held = match &*cached {
+            CachedImage::Nothing => None,
+            CachedImage::Colours(colours) => colours.upgrade().map(Decoded::Colours),
+            CachedImage::Heights(heights) => heights.upgrade().map(Decoded::Heights),
         };
         if let Some(held) = held {
             return Ok(held);
         }
         let decoded = decode(&entry.bytes)?;
-        *lent = match &decoded {
-            Decoded::Colours(colours) => Lent::Colours(Arc::downgrade(colours)),
-            Decoded::Heights(heights) => Lent::Heights(Arc::downgrade(heights)),
+        *cached = match &decoded {
+            Decoded::Colours(colours) => CachedImage::Colours(Arc::downgrade(colours)),
+            Decoded::Heights(heights) => CachedImage::Heights(Arc::downgrade(heights)),
         };
         Ok(decoded)
     }

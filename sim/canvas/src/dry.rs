@@ -10,7 +10,7 @@ use crate::page::{Evict, Page, Pager};
 use crate::planes::{Planes, TILE_CELLS, plane_counts};
 use crate::quantum::{Counts, SLOTS, add};
 
-/// Layers of a tile at most: where there are so many, paint stays wet. Whatever looks at a tile goes through all of them.
+/// Most dry layers of a tile: beyond them paint stays wet, for whatever looks at a tile goes through all of them.
 pub const DRY_LAYERS_MOST: usize = 4096;
 
 /// Paint of a tile that dried at one time.

@@ -2,8 +2,10 @@
 //! end has its own words for that.
 
 use maulstick_types::brush::BRUSHES_MOST;
-use maulstick_types::command::advice::{Advice, choice};
-use maulstick_types::command::{CELLS_M, Outcome};
+use maulstick_types::command::Outcome;
+use maulstick_types::command::advice::Advice;
+use maulstick_types::limits::CELLS_M;
+use maulstick_types::nearest::choice;
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::LightError;
 use maulstick_types::values::ValueError;

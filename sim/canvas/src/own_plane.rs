@@ -29,7 +29,7 @@ impl ValueType {
     }
 }
 
-/// What tells a plane from the others of its page.
+/// Key of a plane among those of its page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct OwnShape {
     /// Number that its model gives it.

@@ -141,15 +141,8 @@ impl Tile {
         if is_whole && !wet.own().is_empty() {
             return by_reference();
         }
-        let part = |plane: &Arc<[f32]>| -> Arc<[f32]> {
-            let mut lower: Vec<f32> = match share >= 1.0 {
-                true => plane.to_vec(),
-                false => plane.iter().map(|count| (count * share).floor()).collect(),
-            };
-            stays.iter().for_each(|cell| lower[*cell] = 0.0);
-            lower.into()
-        };
-        let lower = painted(wet.iter().map(|(slot, plane)| (*slot, part(plane))));
+        let lower = wet.iter();
+        let lower = painted(lower.map(|(slot, plane)| (*slot, lower_part(plane, share, stays))));
         if lower.is_empty() {
             return None;
         }
@@ -239,6 +232,17 @@ pub struct Version {
     pub number: u64,
     /// The tile.
     pub tile: Option<Arc<Tile>>,
+}
+
+/// The lower share of a plane, in whole quanta; cells that stay have nothing of it.
+fn lower_part(plane: &[f32], share: f32, stays: &[usize]) -> Arc<[f32]> {
+    let mut lower: Vec<f32> = if share >= 1.0 {
+        plane.to_vec()
+    } else {
+        plane.iter().map(|count| (count * share).floor()).collect()
+    };
+    stays.iter().for_each(|cell| lower[*cell] = 0.0);
+    lower.into()
 }
 
 #[cfg(test)]

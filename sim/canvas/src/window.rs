@@ -30,7 +30,7 @@ impl Area {
         self.size.contains(&0)
     }
 
-    /// Its rows from the lowest on, in so many parts.
+    /// Its rows from the lowest on, in `count` parts.
     pub fn parts(&self, count: usize) -> impl Iterator<Item = Self> + use<> {
         let area = *self;
         let row = move |part| area.size[1] * part / count;
@@ -267,7 +267,7 @@ impl Window {
         ([&self.base[..], &self.ride[..]], planes)
     }
 
-    /// The planes in use in at most so many parts, none of which has two more than another.
+    /// The planes in use, shared among at most `count` parts of nearly equal size.
     pub fn planes_in_parts(&mut self, count: usize) -> Vec<Vec<&mut Vec<f32>>> {
         let mut parts = Vec::new();
         for (place, plane) in self.wet.iter_mut().flatten().enumerate() {

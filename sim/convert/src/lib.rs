@@ -18,6 +18,38 @@
 //! | `masstones` | mixtures from which a fit begins that no neighbour helps |
 //! | [`Converter`] | the paint of a tile |
 //!
+//! A tile of yellow over blue paint, seen as films, in the colours of volumes:
+//!
+//! ```
+//! use maulstick_appearance::Appearance;
+//! use maulstick_canvas::planes::TILE_CELLS;
+//! use maulstick_canvas::quantum::QUANTUM_M;
+//! use maulstick_canvas::tile::Tile;
+//! use maulstick_convert::{Colouring, Converter, TileGround};
+//! use maulstick_optics::{PaintLibrary, Studio, Under};
+//!
+//! # fn main() -> Result<(), maulstick_optics::PaintError> {
+//! let library = PaintLibrary::measured()?;
+//! let mut studio = Studio::daylight();
+//! let paints = ["Ultramarine Blue", "Hansa Yellow Opaque", "Titanium White", "Phthalo Green Blue Shade"];
+//! for paint in paints {
+//!     studio.add(library.find(paint)?);
+//! }
+//! let white = vec![0.9; studio.wavelengths()];
+//! let quanta = (60e-6 / QUANTUM_M).round() as f32;
+//! let plane = |share: f32| vec![(share * quanta).round(); TILE_CELLS].into();
+//! let tile = Tile::new([(0, plane(0.2)), (1, plane(0.8))].into_iter(), None);
+//!
+//! let look = Appearance::new(studio);
+//! let ground = TileGround { under: Under::Even(&white), stays: &[] };
+//! let converted = Converter::new(&look, Colouring::Films, Colouring::Volumes).tile(&tile, ground);
+//! let slots: Vec<usize> = converted.wet.iter().map(|(slot, _)| *slot).collect();
+//! println!("{slots:?}, ΔE₀₀ {:.2} in the mean", converted.distance.mean());
+//! assert!(converted.distance.mean() < 5.0, "the green of the films is met");
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # The fit
 //!
 //! Gauss-Newton steps on the simplex, from the shares of the cell before, under a small cost for leaving the layer's

@@ -16,12 +16,31 @@
 //! | [`stroke`] | stroking algorithms: faster, better, along a spline |
 //! | [`layers`], [`emboss`] | colour and relief |
 //!
-//! ```
-//! use maulstick_dab::Dab;
-//! use maulstick_model::interface::PaintModel as _;
+//! A loaded brush over wet paint lays its own and takes up the other; no quantum is made or lost:
 //!
-//! let dab = Dab::default();
-//! assert_eq!((dab.name(), dab.rest_halo()), ("dab", None));
+//! ```
+//! use maulstick_brush::{BrushFile, HeadPose};
+//! use maulstick_dab::Dab;
+//! use maulstick_model::trial::Trial;
+//!
+//! # fn main() -> Result<(), maulstick_brush::BrushError> {
+//! let file = BrushFile::library("round")?.scaled_to(6.0)?;
+//! let mut trial = Trial::new(file, 256, 2.5e-4).expect("a surface");
+//! trial.wet();
+//! let mut load = trial.full();
+//! let poses: Vec<HeadPose> =
+//!     (0..30).map(|step| trial.pose([50.0 + 4.0 * f64::from(step), 128.0], 0.0)).collect();
+//! let lying = |trial: &Trial, slot| -> f64 {
+//!     trial.window.plane(slot).into_iter().flatten().map(|count| f64::from(*count)).sum()
+//! };
+//! let (canvas, brush) = (lying(&trial, 0), load.total() as f64);
+//! trial.steps(&mut Dab::default(), &mut load, &poses);
+//! let [canvas_paint, brush_paint] = [0, 1].map(|slot| lying(&trial, slot));
+//! println!("{brush_paint} quanta laid, {} taken up", canvas - canvas_paint);
+//! assert!(brush_paint > 0.0 && canvas_paint < canvas);
+//! assert_eq!(canvas_paint + brush_paint + load.total() as f64, canvas + brush);
+//! # Ok(())
+//! # }
 //! ```
 //!
 //! # Notes

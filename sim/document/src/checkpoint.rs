@@ -1,12 +1,17 @@
 //! Checkpoints that a painter's thread hands over.
 
 use std::sync::Arc;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use maulstick_painting::sequencer::Record;
 use maulstick_painting::snapshot::SequencerSnapshot;
 use maulstick_painting::{RecordChange, Sequencer};
 
-use crate::record::wall_ms;
+/// Time of the wall clock, ms since 1970.
+pub(crate) fn wall_ms() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH);
+    since.map_or(0, |since| since.as_millis() as u64)
+}
 
 /// Checkpoint of a painting, with its place in the journal and the files that belong to it.
 #[derive(Clone, Debug)]
@@ -21,7 +26,7 @@ pub struct Checkpoint {
     pub record: RecordChange,
     /// True if it holds all of the painting, and not only what changed.
     pub is_whole: bool,
-    /// What was accepted before it and is not handed over yet.
+    /// Records that were accepted before it and are not handed over yet.
     pub records: Vec<Record>,
 }
 

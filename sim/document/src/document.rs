@@ -137,7 +137,7 @@ impl Document {
             .back(Arc::new(DocumentBacking(Arc::clone(&self.shared))), memory);
     }
 
-    /// Relocates the painting, with everything handed over until then, while painting goes on.
+    /// Relocates the painting, with everything handed over until then, while painting continues.
     /// [`poll_relocation`](Self::poll_relocation) returns the result: [`DocumentError::Incomplete`] while its file
     /// [lacks parts](Self::wants_all) of it.
     pub fn relocate(&self, to: &Path, how: Relocate, replace: bool) -> Relocation {
@@ -266,7 +266,7 @@ impl Document {
         self.shared.record_bytes.load(SeqCst)
     }
 
-    /// What was accepted from a serial number on, as much as is in a row of the file; `None` at the end. It reads what is
+    /// Records from a serial number on, as many as are in a row of the file; `None` at the end. It reads what is
     /// written, not what was handed over since.
     ///
     /// # Errors

@@ -9,7 +9,7 @@ use rusqlite::ffi;
 #[derive(Debug, thiserror::Error)]
 pub enum DocumentError {
     /// File that is not a painting.
-    #[error("this is no painting of Maulstick")]
+    #[error("this is not a Maulstick painting")]
     NoPainting,
     /// No file at the path.
     #[error("there is no such file")]
@@ -32,10 +32,10 @@ pub enum DocumentError {
         holder: Option<i32>,
     },
     /// This program itself has it open, maybe by another name.
-    #[error("it is the painting that is open here")]
+    #[error("this painting is open here already")]
     OpenHere,
     /// Name under which SQLite keeps the journal of another painting.
-    #[error("a name that ends so may belong to another painting")]
+    #[error("a file with this extension may belong to another painting")]
     Companion,
     /// The file or its folder cannot be written to.
     #[error("the painting cannot be written to: {0}")]
@@ -47,7 +47,7 @@ pub enum DocumentError {
     #[error("the disk fails: {0}")]
     Disk(String),
     /// No room on the disk to merge the journal of a painting that is to be closed.
-    #[error("the disk of {} has no room to close the painting there", .0.display())]
+    #[error("the disk has no room to close the painting {}", .0.display())]
     Unmerged(PathBuf),
     /// Tables that another program changed, or that are not a painting's.
     #[error("another program changed the painting's tables: {0}")]
@@ -56,16 +56,16 @@ pub enum DocumentError {
     #[error("the painting is damaged: {0}")]
     Damaged(String),
     /// The latest strokes could not be written.
-    #[error("what was painted last is not in the file: {0}")]
+    #[error("the latest strokes are not in the file: {0}")]
     Unwritten(String),
-    /// File that lost a part of the painting, or in which it goes on after that, and that did not get that part again.
+    /// File that lost a part of the painting, or in which it continues after that, and that did not get that part again.
     #[error("{} lacks a part of the painting", .0.display())]
     Incomplete(PathBuf),
     /// The file of an open painting is gone, and no other could be made.
     #[error("{0}")]
     Vanished(String),
     /// File at the path where a new one is to be written.
-    #[error("there is a file of that name already")]
+    #[error("a file of this name exists already")]
     Taken,
     /// Any other error of SQLite or the system.
     #[error("{0}")]
@@ -73,7 +73,7 @@ pub enum DocumentError {
 }
 
 impl DocumentError {
-    /// What to do about it.
+    /// Advice.
     #[must_use]
     pub fn advice(&self) -> Advice {
         let words = match self {

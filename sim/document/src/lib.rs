@@ -46,16 +46,16 @@
 //! - One SQLite file in the hands of one thread. Accepted records are committed every tenth of a second; every second a
 //!   checkpoint writes changed tiles, steps and state in one transaction. Pages that take long go ahead in transactions
 //!   of their own, with the journal written between. After a crash the newest checkpoint is read and later records are
-//!   accepted again; that the painting goes on is a journal entry itself. Who waits for a page is served first, even
+//!   accepted again; that the painting continues is a journal entry itself. Who waits for a page is served first, even
 //!   within a transaction.
 //! - Tiles as they are displayed are kept too, so a picture is there before its paint is read.
 //! - Files come from anywhere: one function opens them and executes nothing of theirs, their schema is compared with
 //!   our own, and a page is bounded by what its paints can hold.
 //! - At each commit, and each second, the thread checks that its files still have their names. Where one is gone or
 //!   replaced, everything goes to a new file beside. While the disk fails no page leaves memory. A journal cut short in
-//!   place has lost its records: the file as last merged goes on under another name and receives the whole painting.
+//!   place has lost its records: the file as last merged continues under another name and receives the whole painting.
 //! - Moving to another file needs no restart: the thread merges its journal, copies or renames between two
-//!   transactions, and goes on there or stays.
+//!   transactions, and continues there or stays.
 //! - Record: each checkpoint moves what it includes from the journal into one row of the table `record`, with its time.
 //!   Opening reads the journal, the beginning and one number of the record; time lapse and log read it row by row.
 

@@ -12,7 +12,7 @@ use crate::file::database::{Access, Database};
 use crate::tables::checksum::page_checksum;
 use crate::tables::planes;
 
-/// What a packed painting forgets.
+/// Parts that a packed painting leaves out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Forget {
     /// Nothing.
@@ -128,7 +128,7 @@ impl Row {
             return Err(damaged("does not match its checksum"));
         }
         let packed = planes::repack(self.ints[2] as u64, &self.data, planes::PACKED_LEVEL);
-        let packed = packed.map_err(|what| damaged(&what))?;
+        let packed = packed.map_err(|defect| damaged(&defect.to_string()))?;
         let sum = page_checksum(self.id, self.ints, &packed);
         Ok((packed.len() < self.data.len()).then_some((packed, sum)))
     }

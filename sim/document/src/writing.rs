@@ -12,14 +12,12 @@ use maulstick_canvas::planes::Planes;
 use maulstick_model::brush::load::BrushLoad;
 use maulstick_painting::Named;
 use maulstick_painting::history::{Step, TileRef};
-use maulstick_painting::sequencer::Record;
 use maulstick_painting::snapshot::PaintingSnapshot;
 use rusqlite::{OptionalExtension as _, params};
 
 use crate::checkpoint::Checkpoint;
 use crate::error::DocumentError;
 use crate::file::database::{DEPTH_MAX, Database};
-use crate::record;
 use crate::tables::checksum::{Checksum, load_checksum, page_checksum, shown_checksum};
 use crate::tables::rows::{
     COPY, StoredNonTileState, StoredStepEffects, packed_changes, packed_tiles, page_ids,
@@ -70,13 +68,13 @@ impl Stored {
     }
 }
 
-/// What a writer believes to be in the file.
+/// Rows that a writer takes to be in the file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Trust {
-    /// What is marked as stored.
+    /// Those that are marked as stored.
     #[default]
     Stored,
-    /// Only what it finds there: the file is another one than that in which it was stored.
+    /// Only those that it finds there: the file is another one than that in which it was stored.
     Nothing,
 }
 
@@ -108,6 +106,11 @@ impl<'a, 'b> Writer<'a, 'b> {
         Self { trust, ..self }
     }
 
+    /// The pages that it wrote.
+    pub(crate) fn stored(self) -> Stored {
+        self.stored
+    }
+
     /// True if a row is in the file that is marked as stored.
     fn has(&self, table: Table, id: u64, is_stored: bool) -> Result<bool, DocumentError> {
         if self.trust == Trust::Stored || !is_stored {
@@ -118,15 +121,13 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(statement.exists(params![id as i64])?)
     }
 
-    /// Writes a checkpoint and deletes rows that it replaces; `records` were accepted before it and are not in the
-    /// journal. If its pages are not written by `until`, only some of them are written, still unreferenced, and false is
-    /// returned.
+    /// Writes a checkpoint and deletes the rows that it replaces. If its pages are not written by `until`, only some of
+    /// them are written, still unreferenced, and false is returned.
     pub(crate) fn checkpoint(
-        mut self,
+        &mut self,
         checkpoint: &Checkpoint,
-        records: &[Record],
         until: Instant,
-    ) -> Result<(Stored, bool), DocumentError> {
+    ) -> Result<bool, DocumentError> {
         if self.trust == Trust::Nothing {
             self.database.connection.execute_batch(CLEARED)?;
         }
@@ -138,7 +139,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         for tile in tiles.chain(steps).chain(named) {
             self.write_tile(tile)?;
             if !self.written.is_empty() && Instant::now() > until {
-                return Ok((self.stored, false));
+                return Ok(false);
             }
         }
         for step in &painting.steps {
@@ -170,8 +171,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         }
         self.write_state(checkpoint)?;
         self.delete_unreferenced(&painting.dead)?;
-        record::advance(&mut self, checkpoint, records)?;
-        Ok((self.stored, true))
+        Ok(true)
     }
 
     pub(crate) fn write_tile(&mut self, tile: &TileRef) -> Result<(), DocumentError> {

@@ -1,4 +1,4 @@
-//! A painting goes on after a take that nobody ends any more.
+//! A painting continues after a take that nobody ends any more.
 
 mod studio;
 

@@ -42,7 +42,7 @@ fn each_goes_on_in_its_document_as_in_memory() {
             document: _open,
             ..
         } = Easel::open(&settings).expect("whole");
-        // What is opened goes on with lifted brushes.
+        // What is opened continues with lifted brushes.
         alone.go_on();
         assert_eq!(kept.painting().model(CANVAS), Some(model));
         assert_eq!(print(&mut kept), print(&mut alone), "{model} opened again");

@@ -1,4 +1,4 @@
-//! A painting goes on in another file, and one in memory alone gets a file.
+//! A painting continues in another file, and one in memory alone gets a file.
 
 mod crash_vfs;
 mod easel;

@@ -106,7 +106,7 @@ impl Session {
         }
         document.close().map_err(|error| error.to_string())?;
         let mut easel = Easel::open(&settings)?;
-        // That it goes on is an entry of its own.
+        // That it continues is an entry of its own.
         let serial = easel.sequencer.serial() - 1;
         let index = easel.sequencer.journal_next() - 1;
         if index < committed {

@@ -372,7 +372,7 @@ fn a_killed_program_leaves_its_record() {
     assert!(count >= 9, "{count} messages");
     assert_eq!(again, stored(&killed));
     assert_eq!(again, stored(&path));
-    // It goes on there.
+    // It continues there.
     let mut easel = Easel::open(&settings(&killed, Access::Paint)).expect("opened");
     strokes(&mut easel, &mut painter, 2);
     easel.close();

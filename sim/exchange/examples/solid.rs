@@ -1,4 +1,4 @@
-//! Times and sizes of solids: strokes of a heavy brush over a canvas of so many cells a side, written as STL and as binary
+//! Times and sizes of solids: strokes of a heavy brush over a square canvas, written as STL and as binary
 //! glTF at a step of one cell.
 //! `cargo run --release -p maulstick-exchange --example solid -- MODEL CELLS FOLDER`.
 

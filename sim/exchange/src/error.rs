@@ -1,4 +1,4 @@
-//! What can be wrong.
+//! Errors of exports.
 
 use std::io;
 
@@ -22,7 +22,7 @@ pub enum ExchangeError {
     OutOfRange {
         /// Which one, with its unit.
         what: &'static str,
-        /// What it was.
+        /// The factor.
         value: f64,
         /// The least.
         least: f64,
@@ -34,7 +34,7 @@ pub enum ExchangeError {
         "{triangles} triangles are too many for the file; choose a larger step, of {step} cells or more"
     )]
     TooManyTriangles {
-        /// How many it would have.
+        /// Triangles that it would have.
         triangles: u64,
         /// The step with which they are few enough to work with.
         step: u32,

@@ -18,7 +18,7 @@ pub struct Raster {
     pub rgb: Vec<[u8; 3]>,
 }
 
-/// What of a picture is taken along one of its sides.
+/// Range of a picture that is taken along one of its sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cut {
     /// Pixels of the picture.
@@ -71,9 +71,10 @@ impl Cut {
             let at = at.clamp(0.0, last as f64);
             let first = (at as usize).min(last.saturating_sub(1));
             let share = at - first as f64;
-            let shares = match share > 0.0 {
-                true => vec![1.0 - share, share],
-                false => vec![1.0],
+            let shares = if share > 0.0 {
+                vec![1.0 - share, share]
+            } else {
+                vec![1.0]
             };
             return Taps { first, shares };
         }
@@ -172,7 +173,7 @@ pub fn colours(image: &Image, cells: [usize; 2]) -> Result<Raster, ImportError> 
     })
 }
 
-/// All of a picture as heights of so many pixels, 0 to 65535, row after row from the top.
+/// All of a picture as heights at `size` pixels, 0 to 65535, row after row from the top.
 ///
 /// # Errors
 /// As [`colours`].

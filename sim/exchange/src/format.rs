@@ -55,7 +55,7 @@ impl Format {
     }
 }
 
-/// What is written of a painting.
+/// Contents of an export.
 #[derive(Clone, Debug)]
 pub struct Order {
     /// The format.
@@ -64,7 +64,7 @@ pub struct Order {
     pub surface: u32,
     /// Bits of a PNG.
     pub depth: Depth,
-    /// How a PNG leaves the working space.
+    /// Conversion of a PNG from the working space.
     pub export: Export,
     /// Thickness of a solid under its lowest place, mm.
     pub base_mm: f64,

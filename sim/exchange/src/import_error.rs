@@ -12,16 +12,16 @@ pub enum ImportError {
     #[error("the file cannot be read: {0}")]
     File(#[source] std::io::Error),
     /// It holds no picture, or one that is damaged.
-    #[error("this is no whole PNG, JPEG, TIFF, OpenEXR or OpenRaster picture: {0}")]
+    #[error("this is not an intact PNG, JPEG, TIFF, OpenEXR or OpenRaster picture: {0}")]
     NotAPicture(String),
     /// It is of a kind of its format that is not read.
     #[error("pictures of this kind are not read: {0}")]
     Unsupported(String),
     /// A pixel is no number: across and down from the upper left one, which is 0, 0.
-    #[error("pixel {0}, {1} from the upper left corner is no number (NaN)")]
+    #[error("pixel {0}, {1} from the upper left corner is not a number (NaN)")]
     NotANumber(usize, usize),
-    /// What a file has beside its pixels takes too much memory: so many MB are allowed.
-    #[error("what the file has beside its pixels takes more than {0} MB")]
+    /// Metadata that take too much memory, with the limit, MB.
+    #[error("the metadata of the file take more than {0} MB")]
     Beside(usize),
     /// It is larger than pictures may be.
     #[error(
@@ -38,13 +38,13 @@ pub enum ImportError {
     #[error("a film of {0} µm cannot be laid; choose 1 to 5000 µm")]
     Thickness(f64),
     /// There is nothing to mix, or too much.
-    #[error("{0} paints cannot be mixed to a picture; choose 1 to 16")]
+    #[error("a picture cannot be mixed from {0} paints; choose 1 to 16")]
     Paints(usize),
     /// The painting refuses.
     #[error(transparent)]
     Refused(EditError),
     /// It cannot be written as a PNG.
-    #[error("the picture cannot be kept: {0}")]
+    #[error("the picture cannot be stored: {0}")]
     Png(#[source] png::EncodingError),
 }
 

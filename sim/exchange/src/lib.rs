@@ -1,7 +1,7 @@
 //! Paintings to and from other programs.
 //!
-//! An export takes a painting and a surface of it, writes to a file from its start, and tells how far
-//! it is. Each needs memory for a few rows of tiles, however large the surface is, but for
+//! An export takes a painting and a surface of it, writes to a file from its start, and reports its
+//! progress. Each needs memory for a few rows of tiles, however large the surface is, but for
 //! [`write_open_raster`], which also holds packed layers, and [`write_glb`], which holds its walls. The same painting gives the same bytes: no
 //! file has a date in it.
 //!
@@ -27,6 +27,45 @@
 //! | [`underpaint`] | a picture as paint |
 //!
 //! Its errors are [`ImportError`].
+//!
+//! A canvas that is half yellow, written as PNG, and as a solid to print:
+//!
+//! ```
+//! use std::io::Cursor;
+//!
+//! use maulstick_appearance::picture::{Depth, Export};
+//! use maulstick_exchange::{SolidSetup, write_lit_png, write_stl};
+//! use maulstick_optics::PaintLibrary;
+//! use maulstick_painting::edits::{Fill, FillPaint};
+//! use maulstick_painting::{Painting, PaintingSetup};
+//! use maulstick_types::scene::CANVAS;
+//! use maulstick_types::values::FilmThickness;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let setup = PaintingSetup { cells: [128, 64], ..PaintingSetup::default() };
+//! let mut painting = Painting::new(&setup, PaintLibrary::measured()?)?;
+//! painting.apply(Fill {
+//!     paint: FillPaint::Mixture { mixture: "Hansa Yellow Opaque".parse()? },
+//!     thickness: FilmThickness::in_unit(60.0)?,
+//!     surface: CANVAS,
+//! })?;
+//!
+//! let mut png = Vec::new();
+//! write_lit_png(&mut painting, CANVAS, (&Export::default(), Depth::Eight), &mut png, &mut |_, _| {})?;
+//! let mut picture = png::Decoder::new(Cursor::new(png)).read_info()?;
+//! let mut pixels = vec![0; picture.output_buffer_size().ok_or("too large")?];
+//! let size = picture.next_frame(&mut pixels)?;
+//! assert_eq!((size.width, size.height), (128, 64));
+//! assert!(pixels[0] > 150 && pixels[2] < 80, "red and little blue make yellow");
+//!
+//! let solid = SolidSetup { base_mm: 2.0, exaggeration: 1.0, step: 4 };
+//! let mut stl = Cursor::new(Vec::new());
+//! let size = write_stl(&mut painting, CANVAS, &solid, &mut stl, &mut |_, _| {})?;
+//! println!("{} triangles, {:?} mm", size.triangles, size.size_mm);
+//! assert!(size.size_mm[2] > 2.0);
+//! # Ok(())
+//! # }
+//! ```
 //!
 //! # Notes
 //!
@@ -64,4 +103,4 @@ pub use solid::{SOLID_TRIANGLES, SolidSetup, SolidSize, solid_step};
 pub use stl::write_stl;
 pub use surface::Progress;
 pub use thumbnail::{HistoryPictures, small_picture};
-pub use underpaint::{Likeness, Support, Underpainting};
+pub use underpaint::{ColourError, Support, Underpainting};

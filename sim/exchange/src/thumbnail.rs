@@ -44,7 +44,7 @@ pub struct HistoryPictures {
     drawn: u64,
 }
 
-/// What the colours of a tile follow from: its place, its wet and its dried paint, the look of the painting, and how
+/// Key of a tile's colours: its place, its wet and its dried paint, the look of the painting, and how
 /// many cells a block has across.
 type TileKey = (TileId, Option<u64>, Option<u64>, i64, usize);
 
@@ -147,12 +147,15 @@ pub(crate) struct Thumbnail {
 }
 
 impl Thumbnail {
-    /// Of a picture of so many pixels across and down, with at most `most` either way.
+    /// Of a picture of this size, across and down, with at most `most` pixels along each side.
     pub(crate) fn new(from: [usize; 2], most: usize) -> Self {
         let longest = from[0].max(from[1]);
-        let size = from.map(|side| match longest > most {
-            true => ((side * most + longest / 2) / longest).max(1),
-            false => side,
+        let size = from.map(|side| {
+            if longest > most {
+                ((side * most + longest / 2) / longest).max(1)
+            } else {
+                side
+            }
         });
         Self {
             from,

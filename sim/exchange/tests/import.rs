@@ -108,9 +108,9 @@ fn a_flat_grey_picture_is_one_grey_film_everywhere() {
     let mut painting = painting([100, 70]);
     let image = read(GrayImage::from_pixel(7, 3, Luma([140])));
     let under = solved(&painting, &image, FILM_M);
-    let likeness = *under.likeness();
-    assert_eq!((likeness.cells, likeness.colours), (7000, 1));
-    assert!(likeness.max < 0.1 && likeness.mean <= likeness.max);
+    let colour_error = *under.colour_error();
+    assert_eq!((colour_error.cells, colour_error.colours), (7000, 1));
+    assert!(colour_error.max < 0.1 && colour_error.mean <= colour_error.max);
     lay(&mut painting, &under, &Wetness::Wet);
     let first = films(&painting, [0, 0]);
     let thick: f64 = first.iter().map(|(_, d)| d).sum();
@@ -118,7 +118,7 @@ fn a_flat_grey_picture_is_one_grey_film_everywhere() {
     assert_eq!(films(&painting, [99, 69]), first);
     assert!(films(&painting, [100, 69]).iter().all(|(_, d)| *d == 0.0));
     let near = off(&painting, [50, 50], [140; 3]);
-    println!("{near:.4}, {likeness:?}");
+    println!("{near:.4}, {colour_error:?}");
     assert!(near < 0.1);
     assert!(
         off(&painting, [50, 50], [142; 3]) > 0.1,
@@ -164,8 +164,8 @@ fn a_mixture_of_the_paints_is_found_again() {
 fn the_books_balance_and_undo_and_redo_give_the_same_tiles() {
     let mut painting = painting([150, 130]);
     let under = solved(&painting, &read(colourful(120)), FILM_M);
-    println!("{:?}", under.likeness());
-    assert!(under.likeness().p95 < 1.0);
+    println!("{:?}", under.colour_error());
+    assert!(under.colour_error().p95 < 1.0);
     let bare = versions(&painting);
     let slots = painting.scene().paints.len();
     lay(&mut painting, &under, &Wetness::Wet);
@@ -234,7 +234,7 @@ fn the_same_picture_gives_the_same_paint() {
     let image = read(colourful(64));
     let [one, two] = [0, 1].map(|_| solved(&painting, &image, FILM_M));
     let tiles = |under: &Underpainting| under.tiles().collect::<Vec<_>>();
-    assert!(tiles(&one) == tiles(&two) && one.likeness() == two.likeness());
+    assert!(tiles(&one) == tiles(&two) && one.colour_error() == two.colour_error());
     let thicker = solved(&painting, &image, 2.0 * FILM_M);
     assert!(tiles(&one) != tiles(&thicker), "a fault would pass");
 }
@@ -295,8 +295,8 @@ fn a_picture_is_a_ground_and_is_painted_over() {
     let mut inverse = colourful(96);
     image::imageops::invert(&mut inverse);
     let under = solved(&painting, &read(inverse), FILM_M);
-    println!("{:?}", under.likeness());
-    assert!(under.likeness().p95 < 3.0);
+    println!("{:?}", under.colour_error());
+    assert!(under.colour_error().p95 < 3.0);
     lay(&mut painting, &under, &Wetness::Wet);
     assert_eq!(painting.report().quanta_missing, 0);
     painting.undo(None).expect("paint");
@@ -401,7 +401,7 @@ fn few_paints_do_what_they_can() {
         let support = Support::of(&painting, CANVAS, paints).expect("a surface");
         *underpaint(&support, &image, FILM_M, &mut |_, _| {})
             .expect("solved")
-            .likeness()
+            .colour_error()
     };
     let (one, two, all) = (of(&two[..1]), of(&two), of(&paints()));
     println!("{one:?}\n{two:?}\n{all:?}");

@@ -1,4 +1,4 @@
-//! How much of each node and of each link between two nodes is solid.
+//! Solid share of each node, and of each link between two nodes.
 
 use crate::grid::Grid;
 use crate::polygon::{Placed, Shape};
@@ -27,7 +27,7 @@ impl ProbeState {
     }
 }
 
-/// How the probe's outline is put on the grid.
+/// Representation of the probe's outline on the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Boundary {
     /// Each cell is all fluid or all probe (Harlow and Welch 1965; Baxter 2004, § 8.8.4).
@@ -88,9 +88,10 @@ impl Solids<'_> {
     }
 
     fn share(&self, place: [f64; 2]) -> Share {
-        let probe = match self.is_near(place) {
-            true => self.probe.share(place, self.cell_m),
-            false => 0.0,
+        let probe = if self.is_near(place) {
+            self.probe.share(place, self.cell_m)
+        } else {
+            0.0
         };
         let hole = self
             .hole

@@ -1,4 +1,4 @@
-//! A sweep as the hand gets it: a thousand times a second, as the solver last told it and filtered.
+//! A sweep as the hand gets it: a thousand times a second, as the solver last gave it, and filtered.
 
 use maulstick_haptics::bartlett_hanning::BartlettHanning;
 
@@ -34,7 +34,7 @@ pub struct HandTick {
     pub time_s: f64,
     /// The probe.
     pub state: ProbeState,
-    /// Drag, force across and torque as the solver last told them, N/m and N·m/m.
+    /// Drag, force across and torque as the solver last gave them, N/m and N·m/m.
     pub raw: [f64; 3],
     /// The same filtered.
     pub filtered: [f64; 3],

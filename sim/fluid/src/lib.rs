@@ -9,6 +9,31 @@
 //! | [`hand`] | a sweep a thousand times a second, raw and filtered |
 //! | [`sweep`] | the sweep along an arc of fig. 8.6-8.8, and the noise of the force along a straight one |
 //!
+//! Drag on a square that is drawn through a fluid at rest grows with its speed:
+//!
+//! ```
+//! use maulstick_fluid_force::sweep::{FLUID, bench};
+//! use maulstick_fluid_force::{Boundary, Flow, ProbeState};
+//!
+//! let drag_n_per_m = |speed_m_s: f64| {
+//!     let state = |time_s: f64| ProbeState {
+//!         place_m: [0.3 + speed_m_s * time_s, 0.5],
+//!         angle_rad: 0.0,
+//!         velocity_m_s: [speed_m_s, 0.0],
+//!         spin_rad_s: 0.0,
+//!     };
+//!     let dt_s = 1.0 / 60.0;
+//!     let mut flow = Flow::new(bench(32, Boundary::Covered, FLUID), state(0.0));
+//!     for step in 1..=30 {
+//!         flow.step(state(f64::from(step) * dt_s), dt_s);
+//!     }
+//!     -flow.wrench().force_n[0]
+//! };
+//! let (slow, fast) = (drag_n_per_m(0.2), drag_n_per_m(0.4));
+//! println!("{slow:.4} N/m at .2 m/s, {fast:.4} N/m at .4 m/s");
+//! assert!(slow > 0.0 && fast > 2.0 * slow, "inertia counts beside viscosity");
+//! ```
+//!
 //! # Choices
 //!
 //! The probe is covered cells, not cut ones: a node is solid by the share of its box that the probe covers, a link

@@ -18,7 +18,7 @@ const ITERATIONS: usize = 2000;
 /// A face with less open than this lets nothing through.
 const LEAST_OPEN: f64 = 1e-6;
 
-/// What a bench consists of.
+/// Grid, vessel, fluid and probe of a bench.
 #[derive(Clone, Debug)]
 pub struct Bench {
     /// The grid.
@@ -29,7 +29,7 @@ pub struct Bench {
     pub fluid: Fluid,
     /// The probe's shape.
     pub shape: Shape,
-    /// How it is put on the grid.
+    /// Its representation on the grid.
     pub boundary: Boundary,
 }
 

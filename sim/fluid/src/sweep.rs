@@ -137,7 +137,7 @@ const WAY_M: f64 = 0.24;
 const WAY_RAD: f64 = 0.36;
 /// Steady speed, m/s; the flow is viscous (Re 1 by the square).
 const SPEED_M_S: f64 = 0.05;
-const SLOW: Fluid = Fluid {
+const SLOW_FLUID: Fluid = Fluid {
     density_kg_m3: 1.0,
     viscosity_m2_s: 0.01,
 };
@@ -159,7 +159,7 @@ pub fn noise(cells: usize, boundary: Boundary) -> Noise {
     };
     let dt_s = WAY_M / STEPS as f64 / SPEED_M_S;
     let first = -(RUN_UP as f64);
-    let mut flow = Flow::new(bench(cells, boundary, SLOW), at(first));
+    let mut flow = Flow::new(bench(cells, boundary, SLOW_FLUID), at(first));
     let mut forces = Vec::new();
     for step in 1..=RUN_UP + STEPS {
         flow.step(at(first + step as f64), dt_s);

@@ -183,7 +183,9 @@ impl Device {
             for adapter in wanted(backends, choice) {
                 match Self::on(&adapter) {
                     Ok(device) => return Ok(device),
-                    Err(refusal) => refusals.push(refusal),
+                    Err(refusal) => {
+                        refusals.push(format!("{}: {refusal}", adapter.get_info().name));
+                    }
                 }
             }
         }
@@ -196,15 +198,14 @@ impl Device {
         Err(GpuError::None(refusals.join("; ")))
     }
 
-    fn on(adapter: &wgpu::Adapter) -> Result<Self, String> {
+    fn on(adapter: &wgpu::Adapter) -> Result<Self, wgpu::RequestDeviceError> {
         let info = adapter.get_info();
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("maulstick"),
             required_limits: limits(&adapter.limits()),
             ..Default::default()
         };
-        let (device, queue) = block_on(adapter.request_device(&descriptor))
-            .map_err(|error| format!("{}: {error}", info.name))?;
+        let (device, queue) = block_on(adapter.request_device(&descriptor))?;
         let (lost, stray) = (Arc::new(Mutex::new(None)), Arc::new(Mutex::new(None)));
         let on_loss = Arc::clone(&lost);
         device.set_device_lost_callback(move |_, reason| keep(&on_loss, reason));

@@ -14,6 +14,37 @@
 //! | `arena` | buffers that are used again |
 //! | `shade_films`, `bake_films` | the stages of films |
 //!
+//! A film of blue paint over white, on the graphics device and on the processor. Without a device the processor computes
+//! both:
+//!
+//! ```
+//! use maulstick_gpu::{Choice, Device, GpuFilms};
+//! use maulstick_optics::backend::TILE_CELLS;
+//! use maulstick_optics::{CpuFilms, FilmBackend, FilmPlanes, PaintLibrary, Studio, Under};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut backend: Box<dyn FilmBackend> = match Device::open(Choice::Forced) {
+//!     Ok(device) => Box::new(GpuFilms::new(device)?),
+//!     Err(missing) => {
+//!         eprintln!("{missing}");
+//!         Box::new(CpuFilms::new())
+//!     }
+//! };
+//! let mut studio = Studio::daylight();
+//! let blue = studio.add(PaintLibrary::measured()?.find("Ultramarine Blue")?);
+//! // From 0 to 80 µm along the tile.
+//! let thickness_m: Vec<f32> = (0..TILE_CELLS).map(|cell| 8e-5 * cell as f32 / TILE_CELLS as f32).collect();
+//! let white = vec![0.9; studio.wavelengths()];
+//! let tile = FilmPlanes { paints: &[(blue, &thickness_m)], opacity: 1.0, under: Under::Even(&white) };
+//! let [red, ..] = backend.shade(&studio, &[tile])?.remove(0);
+//! let [on_cpu, ..] = CpuFilms::new().shade(&studio, &[tile])?.remove(0);
+//! println!("{}: red falls from {:.2} to {:.2}", backend.name(), red[0], red[TILE_CELLS - 1]);
+//! assert!(red[0] > 20.0 * red[TILE_CELLS - 1]);
+//! assert!(red.iter().zip(&on_cpu).all(|(gpu, cpu)| (gpu - cpu).abs() < 1e-5));
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # What a device computes
 //!
 //! Whole steps of `impasto` and `dab`; of `stokes` the flow around the brush; nothing of `marker`. It also computes the

@@ -1,4 +1,4 @@
-//! How far a tip moves.
+//! Extent of a tip's motion.
 
 use glam::DVec3;
 

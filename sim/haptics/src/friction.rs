@@ -49,7 +49,7 @@ pub struct Grip {
     pub normal: DVec3,
     /// Force at which bristles that stick give way, N.
     pub still_n: f64,
-    /// Force at which they go on giving way, N; not more.
+    /// Force at which they continue giving way, N; not more.
     pub moving_n: f64,
     /// Stiffness, N/m.
     pub stiffness_n_m: f64,

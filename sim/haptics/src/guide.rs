@@ -14,7 +14,7 @@
 
 use glam::DVec3;
 use maulstick_types::haptics::GuideModel;
-use maulstick_types::stylus::FARTHEST_M;
+use maulstick_types::limits::FARTHEST_M;
 
 use crate::contact::HandleState;
 
@@ -56,7 +56,7 @@ pub struct Guide {
 pub struct Foot {
     /// Number of its piece.
     piece: usize,
-    /// Share of the piece; the first and the last go on beyond their ends.
+    /// Share of the piece; the first and the last continue beyond their ends.
     along: f64,
 }
 

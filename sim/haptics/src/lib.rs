@@ -18,6 +18,35 @@
 //!
 //! `tools/grid` tries hands, walls, rates and losses by the thousand: whether the servo is stable.
 //!
+//! A hand in a pen grip presses 10 mm into a wall of 300 N/m for a second, is pushed back, and is given no energy:
+//!
+//! ```
+//! use glam::DVec3;
+//! use maulstick_haptics::{Contact, Hand, Limits, Plant, Sender, Servo};
+//! use maulstick_types::haptics::{ContactModel, ForceLaw};
+//!
+//! const TICK_S: f64 = 1e-3;
+//! const HEAD_M: f64 = 0.025;
+//! let wall = ContactModel::bare(ForceLaw::Rigid { stiffness_n_m: 300.0 }, HEAD_M);
+//! let wall = Contact::new(&wall).expect("finite numbers, a unit normal");
+//! let mut servo = Servo::new(Limits::default());
+//! let mut hand = Plant::omni(Hand::PEN_GRIP, DVec3::Z * 0.05);
+//! let mut force = DVec3::ZERO;
+//! for tick in 0..2000 {
+//!     // The hand comes down from 25 mm above the canvas, and wants to be 10 mm below it from .5 s on.
+//!     let share = (f64::from(tick) / 500.0).min(1.0);
+//!     let target = DVec3::Z * (HEAD_M + 0.025 - 0.035 * share);
+//!     if tick % 15 == 0 {
+//!         servo.receive(wall, Sender::Same);
+//!     }
+//!     force = servo.step(&hand.handle(), TICK_S).0;
+//!     hand.advance(force, target, TICK_S);
+//! }
+//! println!("{:.2} N, {:.1} mJ given to the hand", force.z, 1e3 * hand.given_j());
+//! assert!(servo.fault().is_none() && force.z > 0.8);
+//! assert!(hand.given_j() < 0.0, "a hand that presses puts energy into the wall");
+//! ```
+//!
 //! # Guards
 //!
 //! - Force latches at zero, until it is re-armed, for a value that is not finite, a hand that the device drives, or one

@@ -1,7 +1,7 @@
 //! Relief under the brush: heights over a plane, felt through the tip a thousand times a second.
 //!
 //! The heights are coefficients of a uniform cubic B-spline h(x), so height, slope and curvature are continuous, also across
-//! the patch's edge, beyond which the outermost heights go on. The contact force is −∇U of
+//! the patch's edge, beyond which the outermost heights continue. The contact force is −∇U of
 //!
 //! ```text
 //! U = Φ₁(d + h) + Φ₂(d)        f = N₁(d + h)·(n − ∇h) + N₂(d)·n

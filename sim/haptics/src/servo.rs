@@ -89,11 +89,11 @@ pub struct Servo {
 #[derive(Clone, Copy, Debug)]
 struct Last {
     position: DVec3,
-    /// What models and guide asked for, with all that bounds it, without what depends on velocity, N.
+    /// Force that models and guide asked for, with all its bounds, without the part that depends on velocity, N.
     models: DVec3,
-    /// What the models' force was multiplied by.
+    /// Factor on the models' force.
     share: f64,
-    /// What the guide's force was multiplied by.
+    /// Factor on the guide's force.
     guided: f64,
     cap_n: f64,
 }
@@ -198,7 +198,7 @@ impl Servo {
             self.passivity.forgive();
             tick.late = true;
             if dt > self.limits.standstill_s {
-                // Who knows where the hand has gone meanwhile.
+                // The hand may have gone anywhere meanwhile.
                 self.wait();
             }
         }
@@ -304,7 +304,7 @@ impl Servo {
         }
     }
 
-    /// The ramp and the recovery go on by a tick, and models age by all the time that has passed.
+    /// The ramp and the recovery continue by a tick, and models age by all the time that has passed.
     fn age(&mut self, dt: f64, passed_s: f64) {
         self.engaged_s += dt;
         self.guidance.age(&self.limits, dt, passed_s);
@@ -359,7 +359,7 @@ impl Servo {
         }
     }
 
-    /// What the newest model and the paint make the hand feel. Paint is no part of what is conservative, so the observer
+    /// Force of the newest model and of the paint. That of paint is not conservative, so the observer
     /// sees all its work.
     fn evaluate_newest(&self, handle: &HandleState) -> Option<ContactForce> {
         let model = self.model.as_ref()?;
@@ -378,7 +378,7 @@ impl Servo {
         self.stiction.follow(handle.position, grip, dt);
     }
 
-    /// Latches a hand that goes on shaking; without force no device shakes it.
+    /// Latches the fault of a hand that keeps shaking; without force no device shakes it.
     fn watch(&mut self, handle: &HandleState, touch: Touch, dt: f64) {
         let Some(model) = &self.model else {
             return;

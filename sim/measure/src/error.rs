@@ -1,4 +1,4 @@
-//! What is wrong with measurements, where, and what to do.
+//! Errors of measurements: defect, place, advice.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ pub struct Place {
     pub line: Option<usize>,
     /// The column, from 1.
     pub column: Option<usize>,
-    /// What stands above that column.
+    /// Heading of that column.
     pub heading: String,
 }
 
@@ -35,9 +35,9 @@ impl fmt::Display for Place {
 pub struct MeasureError {
     /// Where.
     pub place: Place,
-    /// What is wrong.
+    /// The defect.
     pub what: String,
-    /// What to do.
+    /// Advice.
     pub help: String,
 }
 

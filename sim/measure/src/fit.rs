@@ -1,11 +1,11 @@
 //! The whole fit: wavelength by wavelength, some times over.
 //!
 //! The first pass takes an instrument's usual noise; its residuals say what the noise is, and where
-//! there are drawdowns the mean of the white's S over the spectrum. The next ones go on with both.
+//! there are drawdowns the mean of the white's S over the spectrum. The next passes use both.
 //!
 //! A mistake in a sample's shares or thickness shows at all wavelengths, and least squares would bend
 //! every paint in it. So samples are trusted after Huber (1964, *Robust estimation of a location
-//! parameter*): one whose residual, root mean square over the spectrum, is more than `STANDS_OUT`
+//! parameter*): one whose residual, root mean square over the spectrum, is more than `OUTLIER_RATIO`
 //! times the median's and the noise counts as much less.
 
 use maulstick_num::{exp, ln};
@@ -20,9 +20,9 @@ use crate::influence;
 use crate::links::check_links;
 use crate::measurements::{Ground, Layer, Measurements};
 use crate::notes::paint_called;
+use crate::prior::Prior;
 use crate::residuals::{Residual, residuals};
 use crate::surface::{Surface, internal_ground};
-use crate::usual::Usual;
 use crate::wavelength::{Observation, Unknowns, Wavelength};
 
 /// Noise of a reading that the first pass assumes: a good instrument repeats within it.
@@ -30,21 +30,21 @@ const USUAL_NOISE: f64 = 2e-3;
 
 /// No instrument reads as well as this.
 const LEAST_NOISE: f64 = 5e-5;
-/// A residual so many times what is usual is not only noise.
-const STANDS_OUT: f64 = 4.0;
+/// Ratio of a residual to the usual one beyond which it is not noise alone.
+const OUTLIER_RATIO: f64 = 4.0;
 /// Readings have to reach from here to here, nm.
-const NARROWEST: [f64; 2] = [420.0, 680.0];
+const NARROWEST_RANGE_NM: [f64; 2] = [420.0, 680.0];
 /// Passes after the first.
 const PASSES: usize = 6;
 
-/// What a caller may choose; it goes before the notes of the table.
+/// Choices of a caller, before the notes of the table.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FitOptions {
     /// The reference white, whose S is 1.
     pub white: Option<String>,
     /// k₁ and k₂ of the samples' surface; both 0 where readings are internal reflectances.
     pub surface: Option<SurfaceCorrection>,
-    /// Whether readings leave the gloss k₁ out.
+    /// True if readings leave out the gloss k₁.
     pub specular_excluded: Option<bool>,
 }
 
@@ -58,19 +58,21 @@ pub struct Fit {
     /// Mean of its S per metre, where drawdowns say it. Without them it is taken to be
     /// [`WHITE_S_PER_M`] at each wavelength.
     pub white_s_per_m: Option<f64>,
-    /// How well each sample is reproduced, in the order of the rows.
+    /// Residual of each sample, in the order of the rows.
     pub residuals: Vec<Residual>,
     /// Standard deviation of the readings, as estimated from what the fit leaves.
     pub noise: f64,
-    /// What to know before using the paints.
+    /// Warnings about the paints.
     pub warnings: Vec<String>,
 }
 
 /// Refuses readings that leave most of a colour to guessing.
 fn check_reach<T>(spectrum: &[(f64, T)]) -> Result<(), MeasureError> {
     match spectrum {
-        [(first, _), .., (last, _)] if *first > NARROWEST[0] || *last < NARROWEST[1] => {
-            let what = format!("readings from {first} to {last} nm say too little of colour");
+        [(first, _), .., (last, _)]
+            if *first > NARROWEST_RANGE_NM[0] || *last < NARROWEST_RANGE_NM[1] =>
+        {
+            let what = format!("readings from {first} to {last} nm are too few for a colour");
             let help = "measure from 420 nm or less to 680 nm or more";
             Err(MeasureError::new(what, help))
         }
@@ -220,7 +222,7 @@ fn strange_readings(measured: &Measurements, surface: &Surface) -> Vec<String> {
     warnings
 }
 
-/// The programmes within the visible spectrum, and one beyond each of its ends.
+/// The programs within the visible spectrum, and one beyond each of its ends.
 fn wavelengths(
     measured: &Measurements,
     white: usize,
@@ -229,7 +231,7 @@ fn wavelengths(
     let nm = &measured.wavelengths_nm;
     let first = nm.partition_point(|nm| *nm <= 380.0).saturating_sub(1);
     let last = nm.partition_point(|nm| *nm < 780.0).min(nm.len() - 1);
-    let usual = Usual::measured().map_err(|error| {
+    let usual = Prior::measured().map_err(|error| {
         MeasureError::new(error.to_string(), "the program is broken: build it anew")
     })?;
     let at = |i: usize| {
@@ -272,7 +274,7 @@ fn observation<'a>(
     }
 }
 
-/// Trusts each sample by how far it is off at all wavelengths; tells whether that changed.
+/// Trusts each sample by how far it is off at all wavelengths; returns whether that changed.
 fn trust(spectrum: &mut [(f64, Wavelength<'_>)], found: &[Unknowns], noise: f64) -> bool {
     let samples = spectrum
         .first()
@@ -298,7 +300,7 @@ fn trust(spectrum: &mut [(f64, Wavelength<'_>)], found: &[Unknowns], noise: f64)
     let mut changed = false;
     for (_, one) in spectrum {
         for (row, off) in one.observations.iter_mut().zip(&off) {
-            let trust = (STANDS_OUT * usual / off.max(LEAST_NOISE)).min(1.0);
+            let trust = (OUTLIER_RATIO * usual / off.max(LEAST_NOISE)).min(1.0);
             changed |= (trust - row.trust).abs() > 1e-3;
             row.trust = trust;
         }

@@ -11,14 +11,32 @@
 //! | [`surface`] | what the instrument reads of an internal reflectance |
 //! | [`layer`] | reflectance of a layer with its derivatives |
 //! | [`links`] | whether samples tie each paint to the reference white |
-//! | [`usual`] | what a paint is thought to be before it is measured |
-//! | [`normal`], [`programme`] | normal equations; quadratic programmes |
+//! | [`prior`] | what a paint is thought to be before it is measured |
+//! | [`normal`], [`program`] | normal equations; quadratic programs |
 //! | [`wavelength`] | K and S of all paints at one wavelength |
 //! | [`determined`] | how well readings determine them |
 //! | [`influence`] | which sample does not go with the others |
 //! | [`residuals`] | how well they reproduce the samples |
 //! | [`fit`](mod@fit) | the whole |
 //! | [`paint_file`](mod@paint_file) | the result as a file |
+//!
+//! The example of `docs/measuring.md`: 24 readings of five paints give K and S at each wavelength.
+//!
+//! ```
+//! use maulstick_measure::{FitOptions, fit, paint_file};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let table = include_str!("../../../docs/examples/measurements.csv");
+//! let fitted = fit(table, &FitOptions::default())?;
+//! for paint in &fitted.paints {
+//!     println!("{}: K/S at 560 nm {:.3}", paint.name, paint.k.at(560.0) / paint.s.at(560.0));
+//! }
+//! println!("noise of the readings {:.4}, worst sample ΔE₀₀ {:.2}", fitted.noise, fitted.worst());
+//! assert!(fitted.noise < 2e-3 && fitted.worst() < 0.5);
+//! assert_eq!(maulstick_optics::PaintLibrary::parse(&paint_file(&fitted))?.paints().len(), 5);
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod error;
 pub mod fit;
@@ -28,13 +46,13 @@ mod solving;
 pub mod surface;
 
 pub use solving::{
-    determined, influence, layer, links, normal, programme, residuals, usual, wavelength,
+    determined, influence, layer, links, normal, prior, program, residuals, wavelength,
 };
 
 pub use error::{MeasureError, Place};
 pub use fit::{Fit, FitOptions, fit};
 pub(crate) use input::reading;
 pub use input::{headings, instrument, measurements, notes, table};
-pub use notes::parse_surface;
+pub use notes::{SurfaceError, parse_surface};
 pub use paint_file::paint_file;
 pub use residuals::Residual;

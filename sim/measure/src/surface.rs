@@ -1,4 +1,4 @@
-//! What the instrument reads of a film's internal reflectance.
+//! Reading of the instrument for a film's internal reflectance.
 //!
 //! Saunderson's correction, with or without the gloss: an instrument at 60° or at 45°/0° leaves it
 //! out (Baxter 2004, § 7.5), a sphere with its trap closed reads it.

@@ -74,7 +74,7 @@ fn readings_that_none_can_be() {
         ),
         (
             "x,smaple,1,,,,0.5,0.5,0.5,0.5",
-            "column 2 (kind): 'smaple' is no kind of row",
+            "column 2 (kind): 'smaple' is not a kind of row",
             "'sample'",
         ),
     ] {
@@ -147,12 +147,12 @@ fn drawdowns_that_lack_something() {
         ),
         (
             "thin,black",
-            "column 5 (thickness_um): 'thin' is no thickness",
+            "column 5 (thickness_um): 'thin' is not a thickness",
             "µm",
         ),
         (
             "0,black",
-            "column 5 (thickness_um): '0' is no thickness",
+            "column 5 (thickness_um): '0' is not a thickness",
             "µm",
         ),
         (

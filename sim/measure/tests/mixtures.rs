@@ -3,7 +3,7 @@
 mod support;
 
 use maulstick_measure::normal::NormalEquations;
-use maulstick_measure::programme::{Bound, minimise};
+use maulstick_measure::program::{Bound, minimise};
 use maulstick_measure::{Fit, FitOptions, fit, paint_file};
 use maulstick_optics::colour::{delta_e_2000, lab};
 use maulstick_optics::spectrum::wavelength;

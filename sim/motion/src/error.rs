@@ -29,7 +29,7 @@ pub enum MotionError {
         /// Time since the beginning, s.
         at_s: f64,
     },
-    /// A stroke that would be torn: nothing is painted across so long a pause.
+    /// A stroke that would be torn: nothing is painted across a pause of that length.
     #[error(
         "at {at_s:.3} s two samples of a stroke would lie {apart_s:.2} s apart, and nothing is painted over more than \
          {most_s:.1} s"
@@ -90,7 +90,7 @@ pub enum MotionError {
         most: usize,
     },
     /// An example that says nothing of its spacing.
-    #[error("the example is one stroke, which has no spacing")]
+    #[error("the example is a single stroke, which has no spacing")]
     NoSpacing,
 }
 
@@ -126,13 +126,14 @@ pub(crate) fn within(
     value: f64,
     range: std::ops::RangeInclusive<f64>,
 ) -> Result<(), MotionError> {
-    match range.contains(&value) {
-        true => Ok(()),
-        false => Err(MotionError::OutOfRange {
+    if range.contains(&value) {
+        Ok(())
+    } else {
+        Err(MotionError::OutOfRange {
             what,
             value,
             least: *range.start(),
             most: *range.end(),
-        }),
+        })
     }
 }

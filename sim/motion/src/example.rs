@@ -101,9 +101,10 @@ impl Example {
         let pitch_m = pitch(&paths);
         let extents = paths.iter().map(|path| extent(path)).collect();
         let is_dabs = pitch_m.is_some_and(|pitch| median(extents) < DAB * pitch);
-        let parts = match is_dabs {
-            true => std::iter::once(0..paths.len()).collect(),
-            false => parted(&paths),
+        let parts = if is_dabs {
+            std::iter::once(0..paths.len()).collect()
+        } else {
+            parted(&paths)
         };
         let pass = |part: std::ops::Range<usize>| {
             let (strokes, paths) = (&strokes[part.clone()], &paths[part]);
@@ -171,9 +172,10 @@ fn pitch(paths: &[Vec<DVec2>]) -> Option<f64> {
         return None;
     }
     let half = 0.5 * around;
-    let density = match 4.0 * area * more > 1e-9 * half * half {
-        true => ((half * half + 4.0 * area * more).sqrt() - half) / (2.0 * area),
-        false => more / half,
+    let density = if 4.0 * area * more > 1e-9 * half * half {
+        ((half * half + 4.0 * area * more).sqrt() - half) / (2.0 * area)
+    } else {
+        more / half
     };
     Some(1.0 / density)
 }
@@ -215,9 +217,10 @@ fn parted(paths: &[Vec<DVec2>]) -> Vec<std::ops::Range<usize>> {
             _ => parts.push(number..number + 1),
         }
     }
-    match parts.iter().all(|part| part.len() >= PASS) {
-        true => parts,
-        false => std::iter::once(0..paths.len()).collect(),
+    if parts.iter().all(|part| part.len() >= PASS) {
+        parts
+    } else {
+        std::iter::once(0..paths.len()).collect()
     }
 }
 
@@ -294,6 +297,17 @@ fn dabs(strokes: &[Stroke], paths: &[Vec<DVec2>], pitch_m: f64) -> Pass {
     }
 }
 
+/// Mean spacing of rows; of a single row that of a brush of this width.
+fn spacing_m(rows: &[f64], width_m: f64) -> Result<f64, MotionError> {
+    if !rows.is_empty() {
+        Ok(rows.iter().sum::<f64>() / rows.len() as f64)
+    } else if width_m > 0.0 {
+        Ok(0.75 * width_m)
+    } else {
+        Err(MotionError::NoSpacing)
+    }
+}
+
 fn hatches(strokes: &[Stroke], paths: &[Vec<DVec2>], width_m: f64) -> Result<Pass, MotionError> {
     let frame = Frame::turned(direction(paths));
     let marks: Vec<Mark> = strokes
@@ -314,11 +328,7 @@ fn hatches(strokes: &[Stroke], paths: &[Vec<DVec2>], width_m: f64) -> Result<Pas
             .min_by(f64::total_cmp);
         rows.extend(next);
     }
-    let spacing_m = match rows.is_empty() {
-        false => rows.iter().sum::<f64>() / rows.len() as f64,
-        true if width_m > 0.0 => 0.75 * width_m,
-        true => return Err(MotionError::NoSpacing),
-    };
+    let spacing_m = spacing_m(&rows, width_m)?;
     let is_row = |a: &Mark, b: &Mark| (a.across - b.across).abs() < 0.5 * spacing_m;
     let mut gaps: Vec<f64> = Vec::new();
     for own in &marks {
@@ -332,14 +342,16 @@ fn hatches(strokes: &[Stroke], paths: &[Vec<DVec2>], width_m: f64) -> Result<Pas
     }
     let of = |value: &dyn Fn(&Mark) -> f64| -> Vec<f64> { marks.iter().map(value).collect() };
     let (across, starts, ends) = (of(&|m| m.across), of(&|m| m.along[0]), of(&|m| m.along[1]));
-    let ragged = match gaps.is_empty() {
+    let ragged = if gaps.is_empty() {
         // Where a row has several, their ends are no border.
-        true => [second_differences(&starts), second_differences(&ends)].concat(),
-        false => Vec::new(),
+        [second_differences(&starts), second_differences(&ends)].concat()
+    } else {
+        Vec::new()
     };
-    let spread_m = match gaps.is_empty() {
-        true => noise(&second_differences(&across)),
-        false => noise(&second_differences(&rows)),
+    let spread_m = if gaps.is_empty() {
+        noise(&second_differences(&across))
+    } else {
+        noise(&second_differences(&rows))
     };
     let shortest = marks
         .iter()

@@ -1,4 +1,4 @@
-//! An outline filled by example: the strokes of a motion, laid where they would lie if their hand went on (Baxter 2004,
+//! An outline filled by example: the strokes of a motion, laid as their hand would have continued (Baxter 2004,
 //! § 9.2).
 
 use glam::DVec2;
@@ -10,12 +10,12 @@ use crate::outline::Outline;
 use crate::random::Random;
 use crate::take_sample::{TakeSample, checked, point, shifted};
 
-/// A stroke is laid up to so many times as long as the longest of the example; what is longer becomes several.
+/// Largest length of a stroke, by the longest one of the example; a longer one becomes several.
 const STRETCH: f64 = 1.5;
 /// A shortened stroke takes at least this share of its time.
-const QUICKEST: f64 = 0.25;
+const LEAST_TIME_SHARE: f64 = 0.25;
 /// So many strokes are laid at most.
-const MOST: usize = 20_000;
+const MOST_STROKES: usize = 20_000;
 /// Longest pause between two strokes, s: a painter may have rested.
 const LONGEST_PAUSE_S: f64 = 2.0;
 /// Rows of dabs are half a pitch apart from each other in turn; for as many on an area as on a square grid of pitch 1 they
@@ -28,7 +28,7 @@ const KEPT: [f64; 5] = [1.0, 0.75, 0.5, 0.25, 0.0];
 /// Tolerance of what lies within, m.
 const TOLERANCE_M: f64 = 1e-9;
 
-/// How an outline is filled.
+/// Options of a fill.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fill {
     /// Seed of the variation.
@@ -65,11 +65,11 @@ pub fn filled(
     for pass in &measured.passes {
         let [[u0, u1], [v0, v1]] = outline.bounds(pass.frame);
         let estimate = (u1 - u0) * (v1 - v0) / (pass.spacing_m * per_row_m(pass));
-        if estimate.is_nan() || estimate >= MOST as f64 {
+        if estimate.is_nan() || estimate >= MOST_STROKES as f64 {
             return Err(MotionError::TooMany {
                 count: estimate as usize,
                 spacing_mm: 1e3 * pass.spacing_m,
-                most: MOST,
+                most: MOST_STROKES,
             });
         }
         let slots = match pass.kind {
@@ -257,7 +257,7 @@ fn laid(
     let clearance = fill.clearance_m - TOLERANCE_M;
     let fits = |kept: &f64| warped(*kept).iter().all(|at| outline.holds(*at, clearance));
     let kept = KEPT.into_iter().find(fits).unwrap_or(0.0);
-    let slower = factor.max(QUICKEST);
+    let slower = factor.max(LEAST_TIME_SHARE);
     let begin_ns = own.first().map_or(0, |first| first.time_ns);
     let mut last_ns = None;
     let mut stroke = Vec::with_capacity(own.len());

@@ -28,9 +28,10 @@ pub fn joined(parts: &[&[TakeSample]], pause_s: f64) -> Result<Vec<TakeSample>, 
     for part in parts.iter().filter(|part| !part.is_empty()) {
         append(&mut all, part, pause_s);
     }
-    match all.is_empty() {
-        true => Err(MotionError::NoMotion),
-        false => checked(all),
+    if all.is_empty() {
+        Err(MotionError::NoMotion)
+    } else {
+        checked(all)
     }
 }
 

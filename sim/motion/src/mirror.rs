@@ -7,7 +7,7 @@ use maulstick_types::stylus::{StylusPose, StylusSample};
 use crate::MotionError;
 use crate::take_sample::{TakeSample, checked};
 
-/// What a mirror exchanges.
+/// Axis of a mirror.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mirror {
     /// Left and right: x changes its sign.

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use maulstick_num::sin_cos;
-use maulstick_types::stylus::FARTHEST_M;
+use maulstick_types::limits::FARTHEST_M;
 
 use crate::MotionError;
 
@@ -64,9 +64,10 @@ impl Outline {
             area_m2 += (0.5 * own.iter().map(|[a, b]| a.perp_dot(*b)).sum::<f64>()).abs();
             edges.extend(own);
         }
-        match area_m2 > LEAST_M2 {
-            true => Ok(Self { edges }),
-            false => Err(MotionError::NoArea),
+        if area_m2 > LEAST_M2 {
+            Ok(Self { edges })
+        } else {
+            Err(MotionError::NoArea)
         }
     }
 

@@ -14,7 +14,7 @@ pub const RATES: std::ops::RangeInclusive<f64> = 0.01..=100.0;
 pub enum Pace {
     /// So many times as fast.
     Rate(f64),
-    /// Over so long, s.
+    /// To this length, s.
     Length(f64),
 }
 

@@ -23,7 +23,7 @@ impl TakeSample {
         point(&self.sample, head_m).to_array()
     }
 
-    /// How far the brush is pressed in: of a pen its pressure, of a 6-DOF stylus the share of its head that is below the
+    /// Depth of the press: of a pen its pressure, of a 6-DOF stylus the share of its head that is below the
     /// desk; 0 in the air, at most 1.
     #[must_use]
     pub fn press(&self, head_m: f64) -> f64 {

@@ -379,7 +379,7 @@ mod tests {
         assert_eq!(threads(), 1);
     }
 
-    /// Whether none of the helpers is awake.
+    /// True if none of the helpers is awake.
     fn are_asleep() -> bool {
         let asleep = |helper: &Helper| helper.slot.sleeping.load(Ordering::SeqCst);
         HELPERS.with_borrow(|helpers| helpers.iter().all(asleep))

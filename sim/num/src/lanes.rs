@@ -198,7 +198,7 @@ mod avx {
 
 #[cfg(target_arch = "x86_64")]
 pub use avx::Avx;
-/// What numbers are eight at a time without AVX2.
+/// Eight numbers at a time without AVX2.
 pub type Plain = f32x8;
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ const MOST_THREADS: usize = 2;
 
 /// Computes films of tiles; each plane of a tile has [`TILE_CELLS`] values.
 pub trait FilmBackend: Send {
-    /// What computes: `cpu`, or the name of a graphics adapter.
+    /// Name of the backend: `cpu`, or the name of a graphics adapter.
     fn name(&self) -> &str;
 
     /// Linear sRGB, without gloss, of each tile: [`Studio::shade`].
@@ -49,7 +49,7 @@ pub enum BackendError {
     Films {
         /// Its place in the batch.
         tile: usize,
-        /// What is wrong with it.
+        /// The defect.
         what: String,
     },
     /// The device failed, and will not do better next time.

@@ -44,7 +44,7 @@ const LAB: Matrix = [
     [0.025_904_037_1, 0.782_771_766_2, -0.808_675_766_0],
 ];
 
-/// How colours come into the gamut.
+/// Mapping of colours into the gamut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GamutMapping {
     /// At constant hue, with a smooth onset.
@@ -57,7 +57,7 @@ pub enum GamutMapping {
 /// The way from the working space into the gamut of a display.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gamut {
-    /// How.
+    /// The mapping.
     pub mapping: GamutMapping,
     /// Rows: from linear sRGB, the working space, to linear light of the display.
     pub from_working: [[f32; 3]; 3],
@@ -150,7 +150,7 @@ impl<'a> Ray<'a> {
         times(&self.gamut.from_cones, cones)
     }
 
-    /// How far the channel that is farthest outside is outside; negative inside.
+    /// Distance of the farthest channel from the gamut; negative inside.
     fn outside(&self, share: f32) -> f32 {
         let [r, g, b] = self.at(share).map(|channel| (-channel).max(channel - 1.0));
         r.max(g).max(b)

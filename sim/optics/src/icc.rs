@@ -30,11 +30,11 @@ pub enum ProfileError {
     #[error("this profile is for {0} colours, but pictures are RGB")]
     NotRgb(String),
     /// It leads only from the device.
-    #[error("no way leads to the colours of this profile: {0}")]
+    #[error("colours cannot be converted to this profile: {0}")]
     OneWay(String),
 }
 
-/// How linear light of the gamut becomes the bytes of a picture.
+/// Encoding of the gamut's linear light as the bytes of a picture.
 enum Encoder {
     /// By the transfer function of sRGB.
     Curve(SrgbTable),
@@ -59,7 +59,7 @@ pub struct Profile {
 const DATE: std::ops::Range<usize> = 24..36;
 const NEW_CENTURY: [u8; 12] = [7, 208, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0];
 
-/// Steps of linear light that are told apart before a foreign profile.
+/// Steps of linear light that are distinguished before a foreign profile.
 const STEPS: u32 = 65_535;
 
 impl Profile {

@@ -11,7 +11,7 @@ use crate::surface::SurfaceCorrection;
 /// Cells that are computed together: their sums stay in the first cache.
 const RUN: usize = 64;
 
-/// How wavelengths are chosen.
+/// Choice of the wavelengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RuleKind {
     /// [`SamplingRule::gauss`].
@@ -43,11 +43,11 @@ pub struct StudioSettings {
     pub light: Illuminant,
     /// Whose eye.
     pub observer: Observer,
-    /// How wavelengths are chosen.
+    /// Choice of the wavelengths.
     pub rule: RuleKind,
-    /// How many; [`RuleKind::Reference`] takes all 101.
+    /// Their number; [`RuleKind::Reference`] takes all 101.
     pub samples: usize,
-    /// Whether the eye is adapted to the light's white, so that the perfect diffuser is (1, 1, 1); if
+    /// True if the eye is adapted to the light's white, so that the perfect diffuser is (1, 1, 1); if
     /// not, the light's cast stays.
     pub adapted: bool,
 }
@@ -75,9 +75,10 @@ impl StudioSettings {
     /// From XYZ under this light to linear sRGB.
     #[must_use]
     pub fn to_rgb(&self) -> Matrix {
-        match self.adapted {
-            true => xyz_to_linear_srgb(self.white()),
-            false => linear_srgb_as_it_is(),
+        if self.adapted {
+            xyz_to_linear_srgb(self.white())
+        } else {
+            linear_srgb_as_it_is()
         }
     }
 
@@ -107,7 +108,7 @@ pub struct Studio {
     rgb: Vec<[f32; 3]>,
 }
 
-/// What lies under a film: internal reflectances at the wavelengths of the rule.
+/// Ground of a film: internal reflectances at the wavelengths of the rule.
 #[derive(Clone, Copy, Debug)]
 pub enum Under<'a> {
     /// The same in all cells: a value a wavelength.
@@ -139,7 +140,7 @@ pub struct FilmPlanes<'a> {
     pub paints: &'a [(usize, &'a [f32])],
     /// Factor on the film's optical thickness; its height stays.
     pub opacity: f32,
-    /// What lies under it.
+    /// Its ground.
     pub under: Under<'a>,
 }
 
@@ -251,7 +252,7 @@ impl Studio {
         &self.rule
     }
 
-    /// What the surface of a film does.
+    /// Surface correction.
     #[must_use]
     pub fn surface(&self) -> SurfaceCorrection {
         self.surface

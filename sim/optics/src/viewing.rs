@@ -1,4 +1,4 @@
-//! How a reflectance is looked at: the light, the observer, the wavelengths that are computed.
+//! Viewing conditions of a reflectance: the light, the observer, the wavelengths that are computed.
 
 use crate::colour::{RgbSpace, apply, lab, solve3, srgb_encode};
 use crate::gamut::{Gamut, GamutMapping};
@@ -7,7 +7,7 @@ use crate::paints::Paint;
 use crate::rule::SamplingRule;
 use crate::studio::StudioSettings;
 
-/// How far outside 0 to 1 a channel is still inside the gamut: what rounding makes of white.
+/// Distance beyond 0 to 1 at which a channel still counts as inside the gamut: the rounding of white.
 const GAMUT_EDGE: f64 = 1e-9;
 
 /// A light, an observer, and the rule by which reflectances become XYZ.
@@ -82,7 +82,7 @@ impl Viewing {
 }
 
 impl Seen {
-    /// Whether an sRGB display can show it.
+    /// True if an sRGB display can show it.
     #[must_use]
     pub fn in_gamut(&self) -> bool {
         let inside = -GAMUT_EDGE..=1.0 + GAMUT_EDGE;

@@ -9,7 +9,7 @@ use maulstick_canvas::relief::Relief;
 use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_canvas::relief::tooth_picture::PictureTooth;
 use maulstick_optics::PaintLibrary;
-use maulstick_types::command::CELLS_M;
+use maulstick_types::limits::CELLS_M;
 use maulstick_types::scene::{
     CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind, default_model,
 };

@@ -10,9 +10,9 @@ const PERIOD_NS: u64 = 1_000_000_000;
 #[derive(Debug)]
 pub struct Autosave {
     document: Document,
-    /// Number of the newest tile version that it was told of.
+    /// Number of the newest tile version that it received.
     since: u64,
-    /// How many accepted things are in its newest checkpoint.
+    /// Accepted records in its newest checkpoint.
     serial: u64,
     saved_ns: u64,
 }

@@ -46,14 +46,14 @@ impl Offline {
         depth_share: f64,
         loads: Vec<Mixture>,
     ) -> Result<Self, EditError> {
-        Self::going_on(Sequencer::new(painting), brush, file, depth_share, loads)
+        Self::resume(Sequencer::new(painting), brush, file, depth_share, loads)
     }
 
-    /// As [`new`](Self::new), over a painting that goes on where its sequencer is.
+    /// As [`new`](Self::new), over a painting that continues where its sequencer is.
     ///
     /// # Errors
     /// As [`new`](Self::new).
-    pub fn going_on(
+    pub fn resume(
         mut sequencer: Sequencer,
         brush: &str,
         file: BrushFile,
@@ -152,7 +152,7 @@ impl Offline {
         self.model.soak(scene.wetness(&self.brush));
     }
 
-    /// Lets so many sixtieths of a second go by, in which nobody paints. `each` is told after each second of it where
+    /// Lets `ticks` sixtieths of a second pass without painting. `each` is called after each second of them where
     /// something dries; else nothing happens.
     pub fn wait(&mut self, ticks: u32, mut each: impl FnMut(&mut Sequencer)) {
         let mut left = ticks;
@@ -165,7 +165,7 @@ impl Offline {
         }
     }
 
-    /// Follows one sample of a take that goes on.
+    /// Follows one sample of a take.
     ///
     /// # Errors
     /// [`EditError`] where the painting refuses its state.
@@ -189,7 +189,7 @@ impl Offline {
     }
 
     /// Follows the samples of a take to its end, each with its time, ns. The brush is bent on a thread of its own, ahead of
-    /// the paint. `each` is told after which sample the painting is.
+    /// the paint. `each` gets the number of the sample after which the painting is.
     ///
     /// # Errors
     /// [`EditError`] where the painting refuses a state.
@@ -212,9 +212,10 @@ impl Offline {
         self.samples += count as u64;
         let (model, mut painter) = self.halves();
         let mut bend = move |(number, &(event_ns, sample)): (usize, &(u64, &StylusSample))| {
-            let flags = match number + 1 == count {
-                true => last,
-                false => Flags::NONE,
+            let flags = if number + 1 == count {
+                last
+            } else {
+                Flags::NONE
             };
             let serial = first + number as u64;
             let state = model.state_in_take(player, serial, event_ns, sample, flags);
@@ -286,7 +287,7 @@ fn messages(state: BrushState) -> Vec<(Flags, BrushState)> {
     state.messages(Flags::REPLAY, Flags::NONE, Flags::NONE)
 }
 
-/// What paints the states of the brush in hand.
+/// Painter of the states of the brush in hand.
 struct Painter<'a> {
     sequencer: &'a mut Sequencer,
     brush: &'a str,

@@ -18,11 +18,11 @@ pub struct Logged {
     /// Time of the wall clock, ms since 1970: of a stroke that was not replayed its beginning, of all else when it was
     /// written, a second later at most; `None` if it is not known.
     pub time_ms: Option<u64>,
-    /// What it was.
+    /// The event.
     pub what: LoggedWhat,
 }
 
-/// What was done.
+/// Event of a painting.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LoggedWhat {
     /// A stroke of a brush.
@@ -31,7 +31,7 @@ pub enum LoggedWhat {
     Command {
         /// Its sender; 0 is the program that has the painting.
         client: u64,
-        /// What it did.
+        /// The command.
         command: Command,
     },
     /// A stroke that an undo dropped before all of it was painted.
@@ -67,7 +67,7 @@ pub struct LoggedStroke {
 /// Times of the rig clock, which is the wall clock where the machine's is set, are later than this, ns: 2001-09-09.
 const WALL_NS: u64 = 1_000_000_000_000_000_000;
 
-/// A stroke that may go on.
+/// A stroke that may continue.
 struct OpenStroke {
     /// Epoch of the brush and number of the stroke.
     stroke: (u32, u64),
@@ -161,9 +161,10 @@ impl LogWriter {
             let is_wall = !is_replayed && solve.event_ns > WALL_NS;
             let brush = self.brushes.get(&header.source).cloned();
             self.log.push(Logged {
-                time_ms: match is_wall {
-                    true => Some(solve.event_ns / 1_000_000),
-                    false => time_ms,
+                time_ms: if is_wall {
+                    Some(solve.event_ns / 1_000_000)
+                } else {
+                    time_ms
                 },
                 what: LoggedWhat::Stroke(LoggedStroke {
                     brush: brush.unwrap_or_else(|| format!("{:08x}", header.source)),

@@ -13,7 +13,7 @@ use thiserror::Error;
 /// A brush state by the source and the epoch of its brush, and its number.
 type StateKey = (u32, u32, u64);
 
-/// What keeps a session from being painted again.
+/// Reason why a session cannot be painted again.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum SessionFault {
     /// Entries of the journal are missing.
@@ -32,7 +32,7 @@ pub enum SessionFault {
         /// Its number.
         number: u64,
     },
-    /// The journal went on at an earlier place, or was another painting's.
+    /// The journal jumped to an earlier place, or was another painting's.
     #[error(
         "the rig went on in another painting, or at an earlier place of it (journal {found} after {known})"
     )]
@@ -43,7 +43,7 @@ pub enum SessionFault {
         found: u64,
     },
     /// The session begins behind a place of the journal.
-    #[error("it begins behind place {place} of the painting's journal, at {first}")]
+    #[error("it begins after place {place} of the painting's journal, at {first}")]
     Before {
         /// The place.
         place: u64,
@@ -79,7 +79,7 @@ pub struct RecordedSession {
 }
 
 impl RecordedSession {
-    /// A session that goes on where a sequencer is.
+    /// A session that continues from a sequencer's place.
     #[must_use]
     pub fn after(sequencer: &Sequencer) -> Self {
         Self {

@@ -9,7 +9,7 @@ const SECOND_NS: u64 = 1_000_000_000;
 #[derive(Clone, Debug, Default)]
 pub struct Ticker {
     last_ns: Option<u64>,
-    /// What is no whole tick yet, ns times ticks a second.
+    /// Remainder of a tick, ns times ticks a second.
     rest: u128,
 }
 

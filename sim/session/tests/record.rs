@@ -56,7 +56,7 @@ impl Desk {
         };
         let autosave = Autosave::new(document, &mut sequencer, since);
         let file = BrushFile::library("flat").expect("flat");
-        let offline = Offline::going_on(sequencer, "main", file, 0.5, Vec::new());
+        let offline = Offline::resume(sequencer, "main", file, 0.5, Vec::new());
         Self {
             offline: offline.expect("begun"),
             autosave,

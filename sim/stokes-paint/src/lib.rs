@@ -15,11 +15,31 @@
 //! | [`overhangs`] | how high such paint is shown |
 //! | [`reach`] | how deep a brush lays and takes up |
 //!
-//! ```
-//! use maulstick_model::interface::PaintModel as _;
-//! use maulstick_stokes_paint::StokesPaint;
+//! A loaded brush over wet paint lays its own and takes up the other; no quantum is made or lost:
 //!
-//! assert_eq!(StokesPaint::default().name(), "stokes");
+//! ```
+//! use maulstick_brush::{BrushFile, HeadPose};
+//! use maulstick_stokes_paint::StokesPaint;
+//! use maulstick_model::trial::Trial;
+//!
+//! # fn main() -> Result<(), maulstick_brush::BrushError> {
+//! let file = BrushFile::library("round")?.scaled_to(6.0)?;
+//! let mut trial = Trial::new(file, 128, 2.5e-4).expect("a surface");
+//! trial.wet();
+//! let mut load = trial.full();
+//! let poses: Vec<HeadPose> =
+//!     (0..12).map(|step| trial.pose([50.0 + 1.0 * f64::from(step), 64.0], 0.0)).collect();
+//! let lying = |trial: &Trial, slot| -> f64 {
+//!     trial.window.plane(slot).into_iter().flatten().map(|count| f64::from(*count)).sum()
+//! };
+//! let (canvas, brush) = (lying(&trial, 0), load.total() as f64);
+//! trial.steps(&mut StokesPaint::default(), &mut load, &poses);
+//! let [canvas_paint, brush_paint] = [0, 1].map(|slot| lying(&trial, slot));
+//! println!("{brush_paint} quanta laid, {} taken up", canvas - canvas_paint);
+//! assert!(brush_paint > 0.0 && canvas_paint < canvas);
+//! assert_eq!(canvas_paint + brush_paint + load.total() as f64, canvas + brush);
+//! # Ok(())
+//! # }
 //! ```
 //!
 //! # Notes

@@ -12,7 +12,7 @@ use crate::split;
 use crate::stencil::Span;
 use crate::unified::{Unified, weights};
 
-/// How velocity and pressure are found.
+/// Scheme for velocity and pressure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scheme {
     /// Both at once, with the free surface's natural condition.
@@ -40,7 +40,7 @@ impl Default for Effort {
     }
 }
 
-/// What paint flows as and what pulls at it.
+/// Rheology of the paint, time step and pull.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
     /// Side of a cell, m.
@@ -62,7 +62,7 @@ pub struct Flow {
     pub velocity: [Vec<f32>; 3],
     /// Pressure by density in each cell, m²/s².
     pub pressure: Vec<f32>,
-    /// How they are found.
+    /// The scheme.
     pub scheme: Scheme,
     /// Iterations of a step.
     pub effort: Effort,
@@ -70,12 +70,12 @@ pub struct Flow {
     pub relief: f32,
     /// Norms of the residual in the last step, with that of the first guess.
     pub norms: Vec<f64>,
-    room: Option<Room>,
+    workspace: Option<Workspace>,
 }
 
-/// What is kept from one step to the next so that a step allocates nothing.
+/// Fields that are kept from one step to the next, so that a step allocates nothing.
 #[derive(Clone, Debug)]
-struct Room {
+struct Workspace {
     domain: Arc<Domain>,
     equations: Unified,
     right: Unknowns,
@@ -95,11 +95,11 @@ impl Flow {
             effort: Effort::default(),
             relief: 0.25,
             norms: Vec::new(),
-            room: None,
+            workspace: None,
         }
     }
 
-    /// Paint at rest on another grid, in the same room.
+    /// Paint at rest on another grid, in the same workspace.
     pub fn restart(&mut self, grid: &Grid) {
         self.grid = *grid;
         for field in self.velocity.iter_mut().chain([&mut self.pressure]) {
@@ -109,7 +109,7 @@ impl Flow {
     }
 
     /// One step with cells filled to a fraction, between solids; returns what the equations saw of the window: its layers
-    /// up to the second above the highest paint. Once the caller has dropped it, its room serves the next step.
+    /// up to the second above the highest paint. Once the caller has dropped it, its workspace serves the next step.
     pub fn step(&mut self, fill: &[f32], solids: &Solids, conditions: &Conditions) -> Arc<Domain> {
         let least = match self.scheme {
             Scheme::Unified => LEAST_FILL,
@@ -119,24 +119,24 @@ impl Flow {
         let whole = self.grid;
         self.grid = layers_with_paint(&whole, fill, least);
         self.resize();
-        let mut room = match self.room.take() {
-            Some(mut room) => {
-                if Arc::get_mut(&mut room.domain).is_none() {
-                    room.domain = Arc::new(Domain::clone(&room.domain));
+        let mut workspace = match self.workspace.take() {
+            Some(mut workspace) => {
+                if Arc::get_mut(&mut workspace.domain).is_none() {
+                    workspace.domain = Arc::new(Domain::clone(&workspace.domain));
                 }
-                if let Some(domain) = Arc::get_mut(&mut room.domain) {
+                if let Some(domain) = Arc::get_mut(&mut workspace.domain) {
                     domain.renew(&self.grid, fill, solids, least);
                 }
-                room
+                workspace
             }
-            None => Room::new(Domain::new(&self.grid, fill, solids, least)),
+            None => Workspace::new(Domain::new(&self.grid, fill, solids, least)),
         };
-        if let Some(domain) = Arc::get_mut(&mut room.domain) {
+        if let Some(domain) = Arc::get_mut(&mut workspace.domain) {
             self.drag(domain, solids, conditions);
         }
-        let domain = Arc::clone(&room.domain);
-        self.step_within(&domain, &mut room, fill, solids, conditions);
-        self.room = Some(room);
+        let domain = Arc::clone(&workspace.domain);
+        self.step_within(&domain, &mut workspace, fill, solids, conditions);
+        self.workspace = Some(workspace);
         self.grid = whole;
         self.resize();
         domain
@@ -176,7 +176,7 @@ impl Flow {
     fn step_within(
         &mut self,
         domain: &Domain,
-        room: &mut Room,
+        workspace: &mut Workspace,
         fill: &[f32],
         solids: &Solids,
         conditions: &Conditions,
@@ -194,7 +194,7 @@ impl Flow {
             self.grid.wrap(u);
         }
         match self.scheme {
-            Scheme::Unified => self.unified(domain, room, fill, solids, conditions, tau),
+            Scheme::Unified => self.unified(domain, workspace, fill, solids, conditions, tau),
             Scheme::Split => {
                 let pull = pull.map(|pull| (pull * seconds) as f32);
                 let to_pressure = (cell_m / seconds) as f32;
@@ -210,13 +210,13 @@ impl Flow {
                 flat::rescale(pressure, &domain.wet, to_pressure);
             }
         }
-        self.extrapolate(domain, &mut room.spare);
+        self.extrapolate(domain, &mut workspace.spare);
     }
 
     fn unified(
         &mut self,
         domain: &Domain,
-        room: &mut Room,
+        workspace: &mut Workspace,
         fill: &[f32],
         solids: &Solids,
         conditions: &Conditions,
@@ -228,29 +228,34 @@ impl Flow {
             domain,
             [u, v, w],
             conditions.cell_m,
-            (&mut room.viscosities, &mut room.spare),
+            (&mut workspace.viscosities, &mut workspace.spare),
         );
-        room.equations.renew(domain, tau, &room.viscosities);
+        workspace
+            .equations
+            .renew(domain, tau, &workspace.viscosities);
         let pull = conditions
             .pull
             .map(|pull| (pull * conditions.seconds) as f32);
-        room.equations.right_hand_side(
+        workspace.equations.right_hand_side(
             domain,
             ([u, v, w], pull),
             &solids.velocity,
-            &mut room.right,
+            &mut workspace.right,
         );
         // The equations know the pressure by the velocity that it makes in a step.
         let alpha = f64::from(weights(tau)[0]);
         let to_pressure = (conditions.cell_m / (alpha * conditions.seconds)) as f32;
         flat::rescale(&mut self.pressure, &domain.wet, 1.0 / to_pressure);
-        self.relieve(domain, fill, conditions, &mut room.right[3]);
+        self.relieve(domain, fill, conditions, &mut workspace.right[3]);
         let [u, v, w] = std::mem::take(&mut self.velocity);
         let mut x = [u, v, w, std::mem::take(&mut self.pressure)];
         let Effort { steps, projections } = self.effort;
-        self.norms = room.equations.solve(domain, &room.right, &mut x, steps);
-        room.equations
-            .project(domain, &room.right, &mut x, projections);
+        self.norms = workspace
+            .equations
+            .solve(domain, &workspace.right, &mut x, steps);
+        workspace
+            .equations
+            .project(domain, &workspace.right, &mut x, projections);
         let [u, v, w, p] = x;
         self.velocity = [u, v, w];
         self.pressure = p;
@@ -342,7 +347,7 @@ fn highest(grid: &Grid, fill: &[f32], least: f32) -> usize {
         .map_or(0, |z| z as usize + 1)
 }
 
-impl Room {
+impl Workspace {
     fn new(domain: Domain) -> Self {
         Self {
             equations: Unified::new(&domain),

@@ -36,7 +36,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// A grid of so many cells between no-slip walls.
+    /// A grid of `cells` between no-slip walls.
     #[must_use]
     pub const fn walled(cells: [usize; 3]) -> Self {
         let ends = [Ends::Sides([Side::NoSlip; 2]); 3];

@@ -26,7 +26,7 @@ pub struct Operator {
     cross: [Vec<f32>; 3],
 }
 
-/// What acts on the faces across an axis.
+/// Terms on the faces across an axis.
 struct Face<'a> {
     stencil: &'a Stencil,
     area: &'a [f32],

@@ -211,7 +211,7 @@ impl Residuals {
     }
 }
 
-/// Calls for each of the four fields, on several cores where so many directions are worth it; sums are added up in their
+/// Calls for each of the four fields, on several cores where the number of directions is worth it; sums are added up in their
 /// order.
 fn over(
     (stencils, directions): ([&Stencil; 4], usize),

@@ -1,7 +1,7 @@
 //! Herschel-Bulkley paint: τ = τ_y + K·γ̇ⁿ where it is sheared, solid below its yield stress.
 //!
 //! Yield stress and viscosity are those of impasto's levelling (its `Body`) where n = 1. Below the shear rate at which the
-//! stress would need more than [`STIFFEST`] times the viscosity, paint creeps with that (O'Donovan and Tanner 1984).
+//! stress would need more than [`LARGEST_RELATIVE_VISCOSITY`] times the viscosity, paint creeps with that (O'Donovan and Tanner 1984).
 
 use maulstick_num::{powf, wide};
 
@@ -10,9 +10,9 @@ use crate::grid::others;
 use crate::stencil::Span;
 
 /// Largest viscosity, by that of sheared paint.
-pub const STIFFEST: f64 = 2000.0;
+pub const LARGEST_RELATIVE_VISCOSITY: f64 = 2000.0;
 /// Smallest viscosity of shear-thinning paint, by that at the reference shear rate.
-const THINNEST: f64 = 1e-3;
+const LEAST_RELATIVE_VISCOSITY: f64 = 1e-3;
 
 /// Rheology of a paint, by its density: stresses are in m²/s², viscosities in m²/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +42,7 @@ impl Paint {
     /// Viscosity at a shear rate in 1/s, by that at the reference rate.
     #[must_use]
     pub fn relative(&self, rate: f64) -> f64 {
-        let least = self.yields / (self.viscosity * STIFFEST);
+        let least = self.yields / (self.viscosity * LARGEST_RELATIVE_VISCOSITY);
         let rate = rate.max(least).max(1e-12);
         let thins = if self.index == 1.0 {
             1.0
@@ -50,7 +50,7 @@ impl Paint {
             powf(rate / self.rate, self.index - 1.0)
         };
         let yields = self.yields / (self.viscosity * rate);
-        (thins + yields).clamp(THINNEST, STIFFEST)
+        (thins + yields).clamp(LEAST_RELATIVE_VISCOSITY, LARGEST_RELATIVE_VISCOSITY)
     }
 
     /// Writes the relative viscosity of each cell for velocities in m/s on cells of `cell_m`, by way of a field of room.
@@ -90,13 +90,13 @@ impl Paint {
 wide! {
     /// As [`Paint::relative`] does where n = 1, of squared rates in velocities per cell.
     fn bingham(field: &mut [f32], yields: f64, cell_m: f64) {
-        let least = yields / STIFFEST;
+        let least = yields / LARGEST_RELATIVE_VISCOSITY;
         for value in field {
             let rate = f64::from(*value).sqrt() / cell_m;
             let rate = if rate > least { rate } else { least };
             let rate = if rate > 1e-12 { rate } else { 1e-12 };
             let relative = 1.0 + yields / rate;
-            *value = if relative < STIFFEST { relative } else { STIFFEST } as f32;
+            *value = if relative < LARGEST_RELATIVE_VISCOSITY { relative } else { LARGEST_RELATIVE_VISCOSITY } as f32;
         }
     }
 }
@@ -174,7 +174,7 @@ mod tests {
             index: 0.5,
             rate: 10.0,
         };
-        assert_eq!(paint.relative(0.0), STIFFEST);
+        assert_eq!(paint.relative(0.0), LARGEST_RELATIVE_VISCOSITY);
         // τ = τ_y + K·γ̇ⁿ at the reference rate.
         assert!((paint.relative(10.0) - (1.0 + 0.2)).abs() < 1e-12);
         let fast = paint.relative(1000.0);

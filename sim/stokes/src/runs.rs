@@ -25,7 +25,7 @@ pub struct Runs {
     len: usize,
 }
 
-/// Does the work on each share of a window of so many places, on several cores where that is worth it.
+/// Does the work on each share of a window, on several cores where its number of places is worth it.
 pub(crate) fn share<S: Send>(places: usize, shares: &mut [S], work: impl Fn(&mut S) + Sync) {
     if places < WINDOW_WORTH {
         shares.iter_mut().for_each(work);

@@ -259,7 +259,7 @@ wide! {
     }
 }
 
-/// What a stencil writes are the places of its unknowns, in stretches; elsewhere a field keeps what it has.
+/// A stencil writes the places of its unknowns, in stretches; elsewhere a field keeps its values.
 impl Stencil {
     /// into = A·x; wraps x.
     pub fn apply(&self, grid: &Grid, x: &mut [f32], into: &mut [f32]) {

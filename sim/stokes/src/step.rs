@@ -16,7 +16,7 @@ pub struct Stokes {
     pub volume: Volume,
     /// Its flow.
     pub flow: Flow,
-    /// What does not move: canvas and walls.
+    /// Solids at rest: canvas and walls.
     pub base: Solids,
     /// Base and brush, the open share of each cell, how full it is, and room.
     solids: Solids,
@@ -26,7 +26,7 @@ pub struct Stokes {
 }
 
 impl Stokes {
-    /// An empty window over a flat canvas, for so many paints; a cell holds so many quanta.
+    /// An empty window over a flat canvas, for `paints` paints; a cell holds `capacity` quanta.
     #[must_use]
     pub fn new(grid: &Grid, capacity: u32, paints: usize) -> Self {
         Self {

@@ -27,7 +27,7 @@ pub struct Unified {
     operator: Operator,
     /// Of the three components of the velocity and of the pressure.
     hierarchies: [Multigrid; 4],
-    /// What viscosity answers to volume, by cell.
+    /// Viscous response to a change of volume, by cell.
     bulk: Vec<f32>,
     alpha: f32,
     /// Drag of walls, by α: what a gradient of pressure has to overcome beside mass.
@@ -131,7 +131,7 @@ impl Unified {
         });
     }
 
-    /// Solves A·x = b by so many steps from x; returns the norm of each residual, with that of the first guess.
+    /// Solves A·x = b by `steps` from x; returns the norm of each residual, with that of the first guess.
     pub fn solve(
         &mut self,
         domain: &Domain,
@@ -163,7 +163,7 @@ impl Unified {
         self.hierarchies.each_ref().map(Multigrid::stencil)
     }
 
-    /// Takes what volume is still gained or lost out of a velocity, by so many conjugate gradients.
+    /// Removes the divergence that is left of a velocity, by `iterations` of conjugate gradients.
     pub fn project(&mut self, domain: &Domain, b: &Unknowns, x: &mut Unknowns, iterations: usize) {
         let grid = domain.grid;
         let [u, v, w, p] = x;

@@ -1,6 +1,6 @@
 //! Paint in the cells of a window, counted in quanta, and its transport.
 //!
-//! What goes through a face is a number of quanta that one side loses and the other gains, so none is ever lost. A cell's
+//! The flux through a face is a number of quanta that one side loses and the other gains, so none is ever lost. A cell's
 //! surface is a plane across one axis in part and none in part, weighted by the normal (Noh and Woodward 1976; Yokoi 2007),
 //! which keeps it within a cell or two. Axes follow one another, in an order that turns; a cell's room changes with what
 //! flows through its faces along an axis, so that full cells stay full. What is asked of a cell beyond what it has is
@@ -99,7 +99,7 @@ wide! {
 }
 
 impl Volume {
-    /// An empty window for so many paints.
+    /// An empty window for `paints` paints.
     #[must_use]
     pub fn new(grid: &Grid, capacity: u32, paints: usize) -> Self {
         Self {
@@ -152,7 +152,7 @@ impl Volume {
         self.grid.wrap(&mut self.total);
     }
 
-    /// Moves the paint for so many seconds with velocities in m/s on cells of `cell_m`; returns the number of parts.
+    /// Moves the paint for `seconds` with velocities in m/s on cells of `cell_m`; returns the number of parts.
     pub fn advect(
         &mut self,
         domain: &Domain,

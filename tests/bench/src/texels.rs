@@ -9,6 +9,7 @@ use maulstick_dab::stroke::Stroker;
 use maulstick_gpu::{Device, GpuModel};
 use maulstick_model::interface::PaintModel;
 use maulstick_model::trial::{PATHS, Trial};
+use maulstick_num::fork_join::with_threads;
 use maulstick_rig::UserError;
 
 use crate::report::Report;
@@ -26,7 +27,7 @@ const STROKERS: [(&str, Stroker); 3] = [
     ("spline", Stroker::Spline),
 ];
 
-/// Measures and reports; of a device with upload and read-back of each stroke.
+/// Measures and reports, on one core and on two; on a device with upload and read-back of each stroke.
 pub(crate) fn run(report: &mut Report, gpu: Option<&Device>) -> Result<(), UserError> {
     let fault = |error: BrushError| UserError::failure(error.to_string());
     let mut file = BrushFile::library("round").map_err(fault)?;
@@ -38,16 +39,21 @@ pub(crate) fn run(report: &mut Report, gpu: Option<&Device>) -> Result<(), UserE
         for path in PATHS {
             let poses = trial.heads(path);
             let texels = texels(&mut trial, kind, &poses);
-            let rates = rates(&mut trial, &mut *model(kind, gpu)?, &poses);
+            let mut model = model(kind, gpu)?;
+            let alone = with_threads(1, || rates(&mut trial, &mut *model, &poses));
+            let shared = with_threads(2, || rates(&mut trial, &mut *model, &poses));
             let name = format!("{stroker}.{}", path.name);
-            let of = |count: fn([u64; 2]) -> u64| {
-                let rates = rates.iter();
-                rates.map(move |(cells, seconds)| count([texels, *cells]) as f64 / seconds)
+            let of = |count: fn([u64; 2]) -> u64| -> Vec<(f64, f64)> {
+                let rate = |(cells, seconds): &(u64, f64)| count([texels, *cells]) as f64 / seconds;
+                let pairs = shared.iter().zip(&alone);
+                pairs.map(|(two, one)| (rate(two), rate(one))).collect()
             };
-            let both = [of(|[texels, _]| texels), of(|[_, touched]| touched)];
-            let [texels, touched] = both.map(Iterator::collect);
-            report.median(&format!("texels_per_s.{name}"), "texels/s", texels);
-            report.median(&format!("touched_per_s.{name}"), "cells/s", touched);
+            for (quantity, unit, pairs) in [
+                ("texels_per_s", "texels/s", of(|[texels, _]| texels)),
+                ("touched_per_s", "cells/s", of(|[_, touched]| touched)),
+            ] {
+                report.paired(&format!("{quantity}.{name}"), unit, "on one core", &pairs);
+            }
         }
     }
     Ok(())

@@ -1,7 +1,7 @@
 //! The fluid force in the hand: a stroke to and fro through paint over a wall, and a hand that then holds still.
 //!
 //! The paint is a film that the brush carries along: a damper c to a mass c·τ, whose velocity u goes after the brush's,
-//! f = −c·(v − u), so it keeps ½·c·τ·u² and gives no more back. A solver tells f at its own rate, late and with losses.
+//! f = −c·(v − u), so it keeps ½·c·τ·u² and gives no more back. A solver sends f at its own rate, late and with losses.
 //! Judged is what the hand was given beyond the wall and what the film had kept.
 
 use glam::DVec3;
@@ -22,12 +22,12 @@ use maulstick_haptics::servo::tick::Sender;
 
 /// Stiffness of the wall, N/m.
 const WALL_N_M: f64 = 200.0;
-/// The stroke goes on until then; the hand holds still between the second and the third time, s.
+/// The stroke continues until then; the hand holds still between the second and the third time, s.
 const STROKE_S: f64 = 3.1;
 const STILL_S: f64 = 4.6;
 const END_S: f64 = 5.1;
 
-/// What the solver tells.
+/// Output of the solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Telling {
     /// Force and Jacobian.
@@ -49,7 +49,7 @@ pub struct Film {
     pub rate_hz: f64,
     /// Messages are late by up to this share of their period, and as often are lost.
     pub jitter: f64,
-    /// What the solver tells.
+    /// Output of the solver.
     pub telling: Telling,
 }
 
@@ -60,11 +60,11 @@ pub struct FluidRun {
     pub hand: Hand,
     /// The film.
     pub film: Film,
-    /// Whether the observer looks on.
+    /// Role of the observer.
     pub observer: Observer,
 }
 
-/// Whether the servo's passivity observer looks on.
+/// Role of the servo's passivity observer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Observer {
     /// It does.
@@ -73,7 +73,7 @@ pub enum Observer {
     Blind,
 }
 
-/// How it went.
+/// Result of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct FluidOutcome {
     /// Movement of the tip while the hand holds still, peak to peak, m.
@@ -84,12 +84,12 @@ pub struct FluidOutcome {
     pub taken_j: f64,
     /// True if the observer took energy back.
     pub braked: bool,
-    /// What latched the force at zero, if anything did.
+    /// Fault that latched the force at zero, if any.
     pub fault: Option<Fault>,
 }
 
 impl Film {
-    /// What the solver tells of a brush and a film of these velocities, m/s.
+    /// Output of the solver for a brush and a film of these velocities, m/s.
     pub(super) fn message(&self, velocity: DVec3, carried: DVec3) -> FluidForce {
         let six = |v: DVec3| [v.x, v.y, v.z, 0.0, 0.0, 0.0];
         let force = (velocity - carried) * -self.drag;
@@ -111,7 +111,7 @@ impl Film {
             }),
             jacobian,
             time_to_live_ns: 3 * period_ns,
-            // Who tells its period has its force fade after it.
+            // The force of a solver that states its period fades after it.
             recovery_ns: match self.telling {
                 Telling::Held => 0,
                 Telling::True | Telling::Inward => period_ns,
@@ -137,7 +137,7 @@ impl FluidRun {
     /// Lets the hand go through it all.
     ///
     /// # Errors
-    /// What is wrong with a wall or a force that is refused.
+    /// The defect of a wall or a force that is refused.
     pub fn go(&self) -> Result<FluidOutcome, &'static str> {
         let mut servo = Servo::new(Limits {
             max_force_n: 3.3,

@@ -22,7 +22,7 @@ const FERRULE: DVec3 = DVec3::new(0.0, 0.0, HEAD_M);
 pub(super) struct Ledger {
     contact: Contact,
     correction: DVec3,
-    /// How fast the correction shrinks, N/s.
+    /// Rate at which the correction shrinks, N/s.
     speed: f64,
     /// Share of the stiffness that the servo gives, and whether the head touched at the last tick.
     softness: f64,
@@ -130,7 +130,7 @@ impl Ledger {
         });
         self.net_j += after.given_j() - before.given_j() - self.work(from, to) - guided_j;
         self.most_j = self.most_j.max(self.net_j + kept_j);
-        // What the device's mass keeps it has not given yet.
+        // The energy of the device's mass is not given to the hand yet.
         let with_motion_j = self.net_j + kept_j + after.kinetic_j();
         self.least_j = self.least_j.min(with_motion_j);
         self.rise_j = self.rise_j.max(with_motion_j - self.least_j);

@@ -31,7 +31,7 @@ use maulstick_haptics::servo::tick::Sender;
 
 /// The hands of the grid.
 pub const HANDS: [Hand; 3] = [Hand::FINGERTIP, Hand::PEN_GRIP, Hand::ARM];
-/// What its device bears, N/m.
+/// Largest stiffness of its device, N/m.
 pub const MAX_STIFFNESS_N_M: f64 = 500.0;
 /// Largest force of its device, N.
 pub const MAX_FORCE_N: f64 = 3.3;
@@ -59,7 +59,7 @@ const MOVED_S: f64 = 3.1;
 const STILL_S: [f64; 2] = [3.6, 4.1];
 const END_S: f64 = 4.6;
 
-/// What the plane does while the hand is kicked.
+/// Motion of the plane while the hand is kicked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
     /// It rests.
@@ -132,7 +132,7 @@ impl GuideLine {
     }
 }
 
-/// How the force reaches the motors.
+/// Path of the force to the motors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Path {
     /// The servo beside the device.
@@ -154,15 +154,15 @@ pub struct Run {
     pub rate_hz: f64,
     /// Models are late by up to this share of their period, and as often are lost.
     pub jitter: f64,
-    /// What the plane does.
+    /// Motion of the plane.
     pub motion: Motion,
     /// Guide, sent with the models, if there is one.
     pub guide: Option<GuideLine>,
-    /// How the force reaches the motors.
+    /// Path of the force to the motors.
     pub path: Path,
 }
 
-/// How it went.
+/// Result of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Outcome {
     /// Movement of the tip while the hand holds still, peak to peak, m.
@@ -171,9 +171,9 @@ pub struct Outcome {
     pub net_j: f64,
     /// Steady force along the normal, without the guide's, by stiffness times depth.
     pub share: f64,
-    /// Stiffness that the servo told, N/m.
+    /// Stiffness that the servo reported, N/m.
     pub told_n_m: f64,
-    /// What latched the force at zero, if anything did.
+    /// Fault that latched the force at zero, if any.
     pub fault: Option<Fault>,
 }
 
@@ -284,7 +284,7 @@ impl Run {
 
     /// The servo's bounds.
     fn limits(&self) -> Limits {
-        // What is sent elsewhere shows what it does without those who would stop it.
+        // A force that is sent elsewhere shows its effect without the guards that would stop it.
         let guarded = match self.path {
             Path::Servo | Path::Nothing => Limits::default(),
             Path::Sent => Limits {
@@ -313,7 +313,7 @@ impl Run {
     /// Lets the hand go through it all.
     ///
     /// # Errors
-    /// What is wrong with a wall that makes no contact model.
+    /// The defect of a wall that makes no contact model.
     pub fn go(&self) -> Result<Outcome, &'static str> {
         let limits = self.limits();
         // A hand that is kicked across the wall's friction would hide what the guide gives.
@@ -390,7 +390,7 @@ impl Run {
         (self.stiffness < BOUND_N_M).then(|| (outcome.share - 1.0).abs())
     }
 
-    /// Whether the hand is still, is given no energy, and feels its wall.
+    /// True if the hand is still, is given no energy, and feels its wall.
     #[must_use]
     pub fn is_good(&self, outcome: &Outcome) -> bool {
         let felt = self.force_error(outcome);
@@ -404,9 +404,9 @@ impl Run {
 /// The worst of some runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Worst {
-    /// How many runs.
+    /// Number of runs.
     pub runs: usize,
-    /// How many of them are not good.
+    /// Number of runs that are not good.
     pub fails: usize,
     /// Greatest [`Outcome::wobble_m`], m.
     pub wobble_m: f64,

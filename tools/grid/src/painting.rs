@@ -16,7 +16,7 @@ const DRAG_N_S_M: f64 = 0.8;
 /// Friction, at rest half as much again.
 const FRICTION: f64 = 0.2;
 
-/// All runs, 324, by one path of the force and with a solver that tells something.
+/// All runs, 324, by one path of the force and with a solver that sends forces.
 #[must_use]
 pub fn painting_grid(path: Path, telling: Telling) -> Vec<ReliefRun> {
     let tilted = DVec3::new(1.0, 0.0, 1.0).normalize();
@@ -67,7 +67,7 @@ pub fn painting_grid(path: Path, telling: Telling) -> Vec<ReliefRun> {
     runs
 }
 
-/// Whether the hand is still and feels its wall, is given no energy that it or the film had not put in before, and the force
+/// True if the hand is still and feels its wall, is given no energy that it or the film had not put in before, and the force
 /// stays within `most_n`, N, and `slew_n_s`, N/s.
 #[must_use]
 pub fn is_good(run: &ReliefRun, outcome: &ReliefOutcome, most_n: f64, slew_n_s: f64) -> bool {

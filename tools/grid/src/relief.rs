@@ -35,13 +35,13 @@ const DRAWN_M: f64 = 4e-3;
 const FLANK_M: f64 = 1.3e-3;
 /// It paints along a guide by so much to each side, m.
 const STROKE_M: f64 = 0.03;
-/// It begins so much higher than over bare relief, m, and comes down within so long, s.
+/// Height above bare relief at which it begins, m, and time of its descent, s.
 const ABOVE_M: f64 = 6e-3;
 const DESCENT_S: f64 = 0.3;
 /// Time that an arm that has painted needs beyond the usual to come to rest, s.
 const SETTLE_S: f64 = 1.0;
 
-/// What lies on the plane.
+/// Relief on the plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {
     /// Lumps without order, 4 mm wide, to .8 mm up and down.
@@ -107,7 +107,7 @@ pub enum Tilt {
 pub struct ReliefRun {
     /// Hand, wall, rate and losses.
     pub run: Run,
-    /// What lies on the wall.
+    /// Relief on the wall.
     pub ground: Ground,
     /// Direction of the force that reaches the motors.
     pub tilt: Tilt,
@@ -119,7 +119,7 @@ pub struct ReliefRun {
     pub film: Option<Film>,
 }
 
-/// How it went.
+/// Result of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct ReliefOutcome {
     /// Movement of the tip while the hand holds still, peak to peak, m.
@@ -138,7 +138,7 @@ pub struct ReliefOutcome {
     pub slew_n_s: f64,
     /// True if the observer took energy back.
     pub braked: bool,
-    /// What latched the force at zero, if anything did.
+    /// Fault that latched the force at zero, if any.
     pub fault: Option<Fault>,
 }
 
@@ -218,7 +218,7 @@ impl ReliefRun {
     /// Lets the hand go through it all.
     ///
     /// # Errors
-    /// What is wrong with a wall, a guide or a film that is refused.
+    /// The defect of a wall, a guide or a film that is refused.
     pub fn go(&self) -> Result<ReliefOutcome, &'static str> {
         let mut servo = Servo::new(self.run.limits());
         let mut plant = Plant::omni(self.run.hand, self.target(0.0));
@@ -312,7 +312,7 @@ impl ReliefRun {
         })
     }
 
-    /// Whether the hand is still, is given no energy, and feels its wall. Friction hides what is given, and a wall beyond
+    /// True if the hand is still, is given no energy, and feels its wall. Friction hides what is given, and a wall beyond
     /// 2b/T may be softened.
     #[must_use]
     pub fn is_good(&self, outcome: &ReliefOutcome) -> bool {

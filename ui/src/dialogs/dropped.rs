@@ -8,7 +8,7 @@ use eframe::egui::{Align2, Area, Context, Frame, Id, Order, RichText};
 use maulstick_brush::BrushFile;
 use maulstick_exchange::PictureKind;
 use maulstick_exchange::read_image::kind::HEAD;
-use maulstick_types::command::BRUSH_FILE_MAX;
+use maulstick_types::limits::BRUSH_FILE_MAX;
 use maulstick_ui_kit::language::translated;
 
 use crate::dialogs::paths;

@@ -16,7 +16,7 @@ use crate::dialogs::paths;
 use crate::rig::state::RigState;
 
 /// So many are offered.
-const MOST: usize = 4;
+const MOST_SKETCHES: usize = 4;
 /// Width of the offer, points.
 const WIDTH: f32 = 300.0;
 
@@ -65,7 +65,7 @@ fn found(sketches: &Sketches, open: &std::path::Path) -> Found {
     let all = sketches.all();
     let others = all.iter().filter(|sketch| sketch.path != open);
     Found {
-        newest: others.clone().take(MOST).cloned().collect(),
+        newest: others.clone().take(MOST_SKETCHES).cloned().collect(),
         count: others.count(),
         leaving: leaving(&all).to_vec(),
     }
@@ -73,7 +73,7 @@ fn found(sketches: &Sketches, open: &std::path::Path) -> Found {
 
 /// Writes down which sketches the painter has seen named: the next start removes them.
 fn tell(sketches: &Sketches, leaving: &[Sketch]) {
-    if let Err(fault) = sketches.tell(leaving) {
+    if let Err(fault) = sketches.notify(leaving) {
         tracing::warn!("{}: {}", fault.place.unwrap_or_default(), fault.what);
     }
 }
@@ -185,7 +185,7 @@ mod tests {
 
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable as _;
-    use maulstick_rig::sketches::MOST as STAY;
+    use maulstick_rig::sketches::MOST_SKETCHES as STAY;
     use maulstick_types::command::{Command, RigCommand};
 
     use super::*;
@@ -238,14 +238,14 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let sketches = Sketches::in_folder(folder.path());
         let rig = rig(&sketches, STAY + 1);
-        assert_eq!(sketches.told(), []);
+        assert_eq!(sketches.notified(), []);
         let mut harness = window_of([900.0, 700.0], rig, Default::default());
         until(&mut harness, |harness| {
             harness
                 .query_by_label_contains("At the next start")
                 .is_some()
         });
-        assert_eq!(sketches.told().len(), 1);
+        assert_eq!(sketches.notified().len(), 1);
     }
 
     #[test]
@@ -261,7 +261,7 @@ mod tests {
             offer.follow(&Context::default(), &rig);
             std::thread::yield_now();
         }
-        assert_eq!(sketches.told(), []);
+        assert_eq!(sketches.notified(), []);
         let show = |ui: &mut Ui, offer: &mut SketchOffer| {
             assert_eq!(offer.show(ui.ctx(), &rig), None);
         };
@@ -269,11 +269,11 @@ mod tests {
             .with_size([900.0, 700.0])
             .build_ui_state(show, offer);
         harness.run_steps(2);
-        assert_eq!(sketches.told().len(), 1);
-        let name = stem(&sketches.told()[0]);
+        assert_eq!(sketches.notified().len(), 1);
+        let name = stem(&sketches.notified()[0]);
         harness.get_by_label_contains(&name);
-        sketches.tell(&[]).expect("forgotten");
+        sketches.notify(&[]).expect("forgotten");
         harness.run_steps(2);
-        assert_eq!(sketches.told(), [], "it is told once");
+        assert_eq!(sketches.notified(), [], "it is told once");
     }
 }

@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use eframe::egui_wgpu::wgpu;
 use maulstick_optics::gamut::{FOR_COLOUR, Gamut, GamutMapping, HALVINGS, KNEE};
 use maulstick_optics::light::gloss::ROUGHNESS;
-use maulstick_optics::light::shadow::{LEAST, TAPS};
+use maulstick_optics::light::shadow::{LEAST_DENOMINATOR, TAPS};
 use maulstick_optics::light::{AMBIENT, DIMMING, Lamp, SURFACE, Surroundings, sky};
 
 use crate::render::gpu::{Filterable, Gpu, Pass, UNIFORM, texture_binding};
@@ -235,7 +235,7 @@ impl LightSurface {
                 ("dimming", f64::from(DIMMING)),
                 ("smoothest", f64::from(ROUGHNESS[0])),
                 ("roughest", f64::from(ROUGHNESS[1])),
-                ("least", f64::from(LEAST)),
+                ("least", f64::from(LEAST_DENOMINATOR)),
                 ("knee", f64::from(KNEE)),
                 ("for_colour", f64::from(FOR_COLOUR)),
                 ("halvings", f64::from(HALVINGS)),

@@ -1,7 +1,7 @@
 //! The devices that may move the brush: their claims, their presence, and which of them has it.
 
 use maulstick_bus::Recent;
-use maulstick_bus::rivals::Once;
+use maulstick_bus::sender_arbiter::Once;
 use maulstick_types::stylus::{StylusInfo, axes};
 use maulstick_types::{Flags, Header, Origin};
 

@@ -49,7 +49,7 @@ impl HeldModes {
 
 /// Outcome of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Told {
+enum Answer {
     Done,
     /// The node has said no.
     Refused,
@@ -116,9 +116,10 @@ impl Worker {
     /// Handles the edges one after the other, until no further switch can be pressed.
     pub(super) fn run(&mut self, edges: &Edges<SwitchEvent>) {
         loop {
-            let next = match self.owes() {
-                true => edges.recv_timeout(AGAIN),
-                false => edges.recv().map_err(RecvTimeoutError::from),
+            let next = if self.owes() {
+                edges.recv_timeout(AGAIN)
+            } else {
+                edges.recv().map_err(RecvTimeoutError::from)
             };
             // A press of long ago that is still pending at the end is dropped.
             if self.stop.load(Ordering::SeqCst) {
@@ -171,13 +172,13 @@ impl Worker {
                 return;
             };
             match self.handle(before.clone()) {
-                Told::Done => {
+                Answer::Done => {
                     let restored = |held| Restored { held, before };
                     self.restored = self.asked.take().map(restored);
                     self.before = None;
                 }
-                Told::Refused => self.before = None,
-                Told::Unknown => {}
+                Answer::Refused => self.before = None,
+                Answer::Unknown => {}
             }
             return;
         };
@@ -190,9 +191,9 @@ impl Worker {
             ..BrushHandling::normal(&self.brush)
         };
         match self.handle(wanted.clone()) {
-            Told::Refused if begins => self.before = None,
-            Told::Refused => {}
-            Told::Done | Told::Unknown => self.asked = Some(wanted),
+            Answer::Refused if begins => self.before = None,
+            Answer::Refused => {}
+            Answer::Done | Answer::Unknown => self.asked = Some(wanted),
         }
     }
 
@@ -217,7 +218,7 @@ impl Worker {
         }
     }
 
-    fn handle(&mut self, handling: BrushHandling) -> Told {
+    fn handle(&mut self, handling: BrushHandling) -> Answer {
         let most = (handling.most_m != 0.0).then_some(handling.most_m);
         let fields = json!({
             "brush": handling.brush, "mode": handling.mode, "flow": handling.flow, "most": most,
@@ -247,7 +248,7 @@ impl Worker {
             Ok(edit) => self.send(edit),
             Err(error) => return tracing::warn!("the palette stays where it is: {error}"),
         };
-        if told == Told::Done {
+        if told == Answer::Done {
             self.rest = rest;
             // The next slide asks the scene where the palette is: it has to have come.
             self.look(SHOWN, |scene| {
@@ -275,23 +276,23 @@ impl Worker {
     }
 
     /// Sends a command. A failure is reported.
-    fn send(&mut self, edit: impl Into<Command>) -> Told {
+    fn send(&mut self, edit: impl Into<Command>) -> Answer {
         let stop = Arc::clone(&self.stop);
         let stopped = || stop.load(Ordering::SeqCst);
         let fault = match self.commander.send(edit, None, PATIENCE, &stopped) {
             Ok(_) => {
                 self.unheard = false;
-                return Told::Done;
+                return Answer::Done;
             }
             Err(fault) => fault,
         };
         // None of these commands fails but by its node's word or its silence.
         let told = match fault.code {
-            EXIT_USAGE => Told::Refused,
-            _ => Told::Unknown,
+            EXIT_USAGE => Answer::Refused,
+            _ => Answer::Unknown,
         };
-        // Silence is told once: what is to be restored is asked for again and again.
-        let unheard = told == Told::Unknown;
+        // Silence is reported once: a value to restore is asked for again and again.
+        let unheard = told == Answer::Unknown;
         if !(std::mem::replace(&mut self.unheard, unheard) && unheard) {
             let help = fault.help.map(|help| format!("; {help}"));
             tracing::warn!("a switch: {}{}", fault.what, help.unwrap_or_default());

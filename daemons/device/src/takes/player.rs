@@ -29,16 +29,21 @@ pub enum Rate {
     Max,
 }
 
-impl std::str::FromStr for Rate {
-    type Err = String;
+/// A text that is not a playback rate.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("'{0}' is neither a number above 0 nor 'max'")]
+pub struct RateError(pub String);
 
-    fn from_str(text: &str) -> Result<Self, String> {
+impl std::str::FromStr for Rate {
+    type Err = RateError;
+
+    fn from_str(text: &str) -> Result<Self, RateError> {
         if text == "max" {
             return Ok(Self::Max);
         }
         match text.parse::<f64>() {
             Ok(rate) if rate > 0.0 && rate.is_finite() => Ok(Self::Times(rate)),
-            _ => Err(format!("'{text}' is neither a number above 0 nor 'max'")),
+            _ => Err(RateError(text.to_owned())),
         }
     }
 }
@@ -175,7 +180,7 @@ impl<'a> Player<'a> {
         self.sent == self.settings.take.samples.len() && self.samples.outstanding() == 0
     }
 
-    /// What it has done.
+    /// Work done so far.
     fn work(&self) -> NodeWork {
         NodeWork {
             consumed: self.sent as u64 - self.samples.outstanding(),

@@ -40,7 +40,7 @@ pub fn salvage(path: &Path) -> Result<Salvage, UserError> {
     from_bytes(&bytes).map_err(|refusal| {
         let (what, help) = match refusal {
             Refusal::Foreign => (
-                "this is no MCAP file".into(),
+                "this is not an MCAP file".into(),
                 "`maulstick take import` makes takes from tables of strokes",
             ),
             Refusal::Damaged(damage) => (
@@ -83,7 +83,7 @@ pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Salvage, Refusal> {
         reading.damaged(0, "the file does not begin as an MCAP file does");
     }
     let setup = TakeSetup::read(&found).unwrap_or_else(|damage| {
-        reading.damaged(0, &damage);
+        reading.damaged(0, &damage.to_string());
         None
     });
     // The summary repeats the channels, and a damaged first chunk may have lost them.

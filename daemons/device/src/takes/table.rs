@@ -12,7 +12,8 @@ use std::path::Path;
 use maulstick_brush::model::BRIDGED_NS;
 use maulstick_rig::UserError;
 use maulstick_rig::table_file::{MOST_BYTES, read_table};
-use maulstick_types::stylus::{DEFAULT_TILT_RAD, FARTHEST_M, StylusPose, StylusSample, axes};
+use maulstick_types::limits::FARTHEST_M;
+use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
 
 use crate::take::{Take, TakeSample};
 use columns::Row;
@@ -80,12 +81,17 @@ impl TimeUnit {
     }
 }
 
-impl std::str::FromStr for TimeUnit {
-    type Err = String;
+/// A text that is not a unit of time.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("'{0}' is not a unit of time: s, ms, us or ns")]
+pub struct TimeUnitError(pub String);
 
-    fn from_str(text: &str) -> Result<Self, String> {
+impl std::str::FromStr for TimeUnit {
+    type Err = TimeUnitError;
+
+    fn from_str(text: &str) -> Result<Self, TimeUnitError> {
         let known = Self::ALL.into_iter().find(|unit| unit.name() == text);
-        known.ok_or_else(|| format!("'{text}' is no unit of time: s, ms, us or ns"))
+        known.ok_or_else(|| TimeUnitError(text.to_owned()))
     }
 }
 
@@ -171,7 +177,7 @@ fn time_unit(
     let fits = |unit: &TimeUnit| PEN_PERIODS_S.contains(&seconds(*unit));
     if let (None, Some(unit)) = (given, TimeUnit::ALL.into_iter().find(fits)) {
         notes.push(format!(
-            "t is taken to be in {}: samples of a stroke lie {median} apart (--time-unit s says otherwise)",
+            "the unit of t is taken to be {}: samples of a stroke are {median} apart (to choose another: --time-unit s)",
             unit.name()
         ));
         return Ok(unit);
@@ -199,7 +205,7 @@ fn too_far(row: &Row, rows: &[Row], name: &str, layout: TableLayout) -> UserErro
     ))
     .at(format!("{name}:{}", row.line))
     .help(format!(
-        "raw tablet units? give the tablet's area and unit: --size {}x{} --unit-mm 0.005 (200 a mm) or as it is",
+        "are these raw tablet units? give the tablet's size and unit: --size {}x{} --unit-mm 0.005 (200 per mm), or whatever it is",
         most(1),
         most(2)
     ))
@@ -229,7 +235,7 @@ fn unpainted(rows: &[Row], times_ns: &[u64], layout: TableLayout) -> Vec<String>
     let torn: Vec<usize> = pairs.iter().filter(torn).copied().collect();
     if let Some(first) = torn.first() {
         notes.push(format!(
-            "line {}: the sample before is more than {:.1} s older, as in {} places: nothing is painted between",
+            "line {}: more than {:.1} s have passed since the sample before, as in {} places: nothing is painted between them",
             rows[*first].line,
             BRIDGED_NS as f64 * 1e-9,
             torn.len()

@@ -20,7 +20,7 @@ pub const MESSAGE_ENCODING: &str = "x-maulstick";
 /// Encoding of the schemas: header and field table as JSON, with how they are encoded.
 pub const SCHEMA_ENCODING: &str = "x-maulstick-fields+json";
 
-/// Samples that are compressed together, bytes: so many may be lost where a byte is damaged.
+/// Bytes of samples that are compressed together, and lost together where one is damaged.
 const CHUNK_BYTES: u64 = 64 << 10;
 
 /// The samples of one stylus, in order of time.
@@ -299,7 +299,7 @@ mod tests {
             Take::read(&path)
                 .expect_err("a table")
                 .what
-                .contains("no MCAP")
+                .contains("not an MCAP")
         );
         std::fs::write(&path, "").expect("written");
         assert!(Take::read(&path).is_err());

@@ -43,6 +43,17 @@ pub struct TakeSetup {
     pub files: BTreeMap<String, Vec<u8>>,
 }
 
+/// Damage of an embedded setup.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum SetupError {
+    /// A file that is not whole.
+    #[error("a file that it embeds is damaged")]
+    File,
+    /// No settings under the hash that is stated.
+    #[error("the settings that it embeds are missing, or not what they were")]
+    Settings,
+}
+
 impl TakeSetup {
     /// True if files with this ending can be embedded.
     #[must_use]
@@ -57,11 +68,11 @@ impl TakeSetup {
         name
     }
 
-    /// Reads that of a take from its records; `None` if it has none.
+    /// Reads the setup of a take from its records; `None` if it has none.
     ///
     /// # Errors
-    /// The error, in words.
-    pub(crate) fn read(records: &[Found<'_>]) -> Result<Option<Self>, String> {
+    /// [`SetupError`].
+    pub(crate) fn read(records: &[Found<'_>]) -> Result<Option<Self>, SetupError> {
         let mut setup = Self::default();
         let mut stated = None;
         for found in records {
@@ -82,7 +93,7 @@ impl TakeSetup {
                     stated = Some(metadata);
                 }
                 Some(Ok(_)) => {}
-                Some(Err(_)) | None => return Err("a file that it embeds is damaged".to_owned()),
+                Some(Err(_)) | None => return Err(SetupError::File),
             }
         }
         let Some(stated) = stated else {
@@ -90,9 +101,7 @@ impl TakeSetup {
         };
         let settings = stated.metadata.get(SETTINGS);
         let settings = settings.filter(|name| setup.files.contains_key(*name));
-        setup.settings = settings
-            .ok_or("the settings that it embeds are missing, or not what they were")?
-            .clone();
+        setup.settings = settings.ok_or(SetupError::Settings)?.clone();
         let loads = stated.metadata.iter();
         let loads = loads.filter(|(key, _)| key.starts_with(LOAD));
         setup.loads = loads.map(|(_, load)| load.clone()).collect();

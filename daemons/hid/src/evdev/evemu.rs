@@ -13,7 +13,7 @@
 use super::capabilities::{Axis, Capabilities};
 use super::frame::{self, kind};
 use crate::device_source::Identity;
-use crate::recording::{Event, Recorded, time_ns};
+use crate::reports::recorded::{Event, LineFault, Recorded, RecordingError, start, time_ns};
 
 /// Beginning of such a file.
 pub const MARK: &str = "# EVEMU";
@@ -21,8 +21,8 @@ pub const MARK: &str = "# EVEMU";
 /// Reads the text of a recording.
 ///
 /// # Errors
-/// The number of the line that is wrong, from 1, and what is wrong with it.
-pub fn parse(text: &str) -> Result<Recorded, (usize, String)> {
+/// [`RecordingError`].
+pub fn parse(text: &str) -> Result<Recorded, RecordingError> {
     let mut reader = Reader::default();
     for (number, line) in text.lines().enumerate() {
         // What follows a tab and # says the same in words.
@@ -32,12 +32,18 @@ pub fn parse(text: &str) -> Result<Recorded, (usize, String)> {
         }
         let read = match line.split_once(':') {
             Some((kind, rest)) => reader.line(kind, rest.trim()),
-            None => Err(format!("'{line}' is no line of a recording")),
+            None => Err(LineFault::Line(start(line))),
         };
-        read.map_err(|what| (number + 1, what))?;
+        read.map_err(|fault| RecordingError {
+            line: number + 1,
+            fault,
+        })?;
     }
     if reader.capabilities.axes.is_empty() {
-        return Err((text.lines().count().max(1), "no line A: has an axis".into()));
+        return Err(RecordingError {
+            line: text.lines().count().max(1),
+            fault: LineFault::NoAxis,
+        });
     }
     let mut recorded = reader.recorded;
     recorded.descriptor = reader.capabilities.to_bytes();
@@ -55,7 +61,7 @@ struct Reader {
 }
 
 impl Reader {
-    fn line(&mut self, kind: &str, rest: &str) -> Result<(), String> {
+    fn line(&mut self, kind: &str, rest: &str) -> Result<(), LineFault> {
         match kind {
             "N" => rest.clone_into(&mut self.recorded.identity.name),
             "I" => self.identity(rest)?,
@@ -68,13 +74,13 @@ impl Reader {
         Ok(())
     }
 
-    fn identity(&mut self, rest: &str) -> Result<(), String> {
+    fn identity(&mut self, rest: &str) -> Result<(), LineFault> {
         let mut numbers = rest
             .split_whitespace()
             .map(|word| u16::from_str_radix(word, 16));
         let mut number = || numbers.next().and_then(Result::ok);
         let (Some(bus), Some(vendor), Some(product)) = (number(), number(), number()) else {
-            return Err("bus, vendor and product are three hexadecimal numbers".into());
+            return Err(LineFault::Identity(start(rest)));
         };
         self.recorded.identity = Identity {
             bus,
@@ -85,14 +91,13 @@ impl Reader {
         Ok(())
     }
 
-    fn axis(&mut self, rest: &str) -> Result<(), String> {
-        let wrong = || "an axis is its code, least, most, fuzz, flat and resolution".to_owned();
-        let (code, numbers) = rest.split_once(' ').ok_or_else(wrong)?;
-        let code = u16::from_str_radix(code, 16).map_err(|_| wrong())?;
+    fn axis(&mut self, rest: &str) -> Result<(), LineFault> {
+        let (code, numbers) = rest.split_once(' ').ok_or(LineFault::Axis)?;
+        let code = u16::from_str_radix(code, 16).map_err(|_| LineFault::Axis)?;
         let numbers: Result<Vec<i32>, _> = numbers.split_whitespace().map(str::parse).collect();
-        let numbers = numbers.map_err(|_| wrong())?;
+        let numbers = numbers.map_err(|_| LineFault::Axis)?;
         let [least, most, _, _, rest @ ..] = &numbers[..] else {
-            return Err(wrong());
+            return Err(LineFault::Axis);
         };
         self.capabilities.axes.push(Axis {
             code,
@@ -102,12 +107,12 @@ impl Reader {
         Ok(())
     }
 
-    fn bits(&mut self, rest: &str) -> Result<(), String> {
+    fn bits(&mut self, rest: &str) -> Result<(), LineFault> {
         let bytes: Result<Vec<u8>, _> = rest
             .split_whitespace()
             .map(|word| u8::from_str_radix(word, 16))
             .collect();
-        let bytes = bytes.map_err(|_| "bits are bytes in hexadecimal".to_owned())?;
+        let bytes = bytes.map_err(|_| LineFault::Bits)?;
         let Some((1, bytes)) = bytes.split_first().map(|(first, rest)| (*first, rest)) else {
             return Ok(());
         };
@@ -121,18 +126,17 @@ impl Reader {
         Ok(())
     }
 
-    fn event(&mut self, rest: &str) -> Result<(), String> {
-        let wrong = || "an event is its time, type, code and value".to_owned();
+    fn event(&mut self, rest: &str) -> Result<(), LineFault> {
         let words: Vec<&str> = rest.split_whitespace().collect();
         let [time, kind, code, value, ..] = words[..] else {
-            return Err(wrong());
+            return Err(LineFault::Event);
         };
         let time_ns = time_ns(time)?;
-        let hexadecimal = |word| u16::from_str_radix(word, 16).map_err(|_| wrong());
+        let hexadecimal = |word| u16::from_str_radix(word, 16).map_err(|_| LineFault::Event);
         let event = frame::Event {
             kind: hexadecimal(kind)?,
             code: hexadecimal(code)?,
-            value: value.parse().map_err(|_| wrong())?,
+            value: value.parse().map_err(|_| LineFault::Event)?,
         };
         if event.kind != kind::SYN {
             frame::push(&mut self.frame, event);
@@ -142,7 +146,7 @@ impl Reader {
         }
         let events = &mut self.recorded.events;
         if events.last().is_some_and(|last| time_ns < last.time_ns) {
-            return Err("the event is older than the one before".into());
+            return Err(LineFault::Older);
         }
         let report = std::mem::take(&mut self.frame);
         if !report.is_empty() {

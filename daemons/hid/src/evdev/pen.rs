@@ -181,18 +181,20 @@ impl EvdevPen {
 
     fn reading(&self) -> Reading {
         let pressure = self.pressure.map(|pressure| pressure.share());
-        let touches = match self.has_touch {
-            true => self.is_down(Key::BTN_TOUCH),
-            false => pressure.is_some_and(|pressure| pressure > 0.0),
+        let touches = if self.has_touch {
+            self.is_down(Key::BTN_TOUCH)
+        } else {
+            pressure.is_some_and(|pressure| pressure > 0.0)
         };
         let presence = match (TOOLS.iter().any(|tool| self.is_down(*tool)), touches) {
             (false, _) => Presence::Away,
             (true, false) => Presence::Hovering,
             (true, true) => Presence::Touching,
         };
-        let end = match self.is_down(Key::BTN_TOOL_RUBBER) {
-            true => End::Eraser,
-            false => End::Tip,
+        let end = if self.is_down(Key::BTN_TOOL_RUBBER) {
+            End::Eraser
+        } else {
+            End::Tip
         };
         let height_m = self.distance.map_or(0.0, |distance| {
             distance.share() * distance.length_m().unwrap_or(HIGHEST_M).min(HIGHEST_M)

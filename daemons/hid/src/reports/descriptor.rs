@@ -6,7 +6,7 @@
 //! reads does not count: makers put tens of thousands of fields of their own beside a pen (firmware, heat maps,
 //! certificates), or keys without usages.
 
-use hidreport::{Field, Report as _, ReportDescriptor, Usage};
+use hidreport::{Field, ParserError, Report as _, ReportDescriptor, Usage};
 
 /// A descriptor is no longer than this, bytes: the kernel gives no more.
 pub const LONGEST: usize = 4096;
@@ -44,10 +44,55 @@ pub mod page {
 /// and feature reports there is nothing.
 ///
 /// # Errors
-/// The error, in words.
-pub fn read(bytes: &[u8]) -> Result<ReportDescriptor, String> {
+/// [`DescriptorError`].
+pub fn read(bytes: &[u8]) -> Result<ReportDescriptor, DescriptorError> {
     let needed = needed(bytes)?;
-    ReportDescriptor::try_from(needed.as_slice()).map_err(|error| error.to_string())
+    Ok(ReportDescriptor::try_from(needed.as_slice())?)
+}
+
+/// A descriptor that is not read.
+#[derive(Debug, thiserror::Error)]
+pub enum DescriptorError {
+    /// Of no length that the kernel gives.
+    #[error("it has {0} bytes, not 1 to {LONGEST}")]
+    Length(usize),
+    /// An item that no descriptor has there.
+    #[error("{defect} at byte {at}")]
+    Item {
+        /// What is wrong with it.
+        defect: Defect,
+        /// Its place.
+        at: usize,
+    },
+    /// No report.
+    #[error("it says nothing of a report")]
+    Empty,
+    /// What `hidreport` refuses.
+    #[error(transparent)]
+    Parser(#[from] ParserError),
+}
+
+/// What is wrong with an item of a descriptor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Defect {
+    /// The bytes end within it.
+    #[error("an item is cut off")]
+    Cut,
+    /// No page says what it is about.
+    #[error("a main item comes before any usage page")]
+    NoPage,
+    /// A Pop without a Push.
+    #[error("globals are restored that were not saved")]
+    NotSaved,
+    /// More bits than an input of a device has.
+    #[error("a field is too long")]
+    Long,
+    /// More usages than a collection of a device has.
+    #[error("a collection has too many usages")]
+    Usages,
+    /// More fields, usages or levels than a device has.
+    #[error("it asks for too much")]
+    Greedy,
 }
 
 /// Page and number of a usage.
@@ -123,88 +168,105 @@ pub fn input_bytes(bytes: &[u8], number: u8) -> Option<u64> {
 }
 
 /// The items of a descriptor that are needed to read its inputs.
-fn needed(bytes: &[u8]) -> Result<Vec<u8>, String> {
+fn needed(bytes: &[u8]) -> Result<Vec<u8>, DescriptorError> {
     if bytes.is_empty() || bytes.len() > LONGEST {
-        return Err(format!("it has {} bytes, not 1 to {LONGEST}", bytes.len()));
+        return Err(DescriptorError::Length(bytes.len()));
     }
-    let mut needed = Vec::with_capacity(bytes.len());
-    let (mut globals, mut kept) = (Globals::default(), Vec::new());
-    let mut locals = Locals::default();
-    let (mut depth, mut fields, mut usages) = (0_usize, 0_usize, 0_u64);
+    let mut walk = Walk::default();
     let mut at = 0;
     while at < bytes.len() {
-        let wrong = |what: &str| Err(format!("{what} at byte {at}"));
-        let Some((head, value, next)) = item(bytes, at) else {
-            return wrong("an item is cut off");
-        };
-        let whole = &bytes[at..next];
-        let is_main = matches!(head, 0x80 | 0x90 | 0xA0 | 0xB0 | 0xC0);
-        if is_main && head != 0xC0 && globals.page.is_none() {
-            return wrong("a main item comes before any usage page");
-        }
-        match head {
-            0x04 => globals.page = u16::try_from(value).ok(),
-            0x74 => globals.bits = usize::try_from(value).unwrap_or(usize::MAX),
-            0x94 => globals.count = usize::try_from(value).unwrap_or(usize::MAX),
-            0xA4 => kept.push(globals),
-            0xB4 => match kept.pop() {
-                Some(before) => globals = before,
-                None => return wrong("globals are taken back that were not kept"),
-            },
-            0x08 => {
-                locals.named += 1;
-                if let (5, Ok(page)) = (whole.len(), u16::try_from(value >> 16)) {
-                    locals.pages.push(page);
-                }
-            }
-            0x18 => locals.least = Some(value),
-            0x28 => locals.most = Some(value),
-            // A constant has no usages, whatever stands before it.
-            0x80 if value & 1 == 1 || !locals.is_read(globals.page) => {
-                if globals.bits.saturating_mul(globals.count) > PASSED_BITS {
-                    return wrong("a field is too long");
-                }
-                fields += 1;
-                needed.extend(match value & 1 {
-                    1 => whole,
-                    _ => PASSED_OVER,
-                });
-            }
-            0x80 => {
-                if globals.bits.saturating_mul(globals.count) > BITS {
-                    return wrong("a field is too long");
-                }
-                fields += globals.count;
-                usages += locals.usages();
-                needed.extend(locals.items.iter().chain(whole));
-            }
-            0xA0 => {
-                depth += 1;
-                if locals.usages() > COLLECTION_USAGES {
-                    return wrong("a collection has too many usages");
-                }
-                usages += locals.usages();
-                needed.extend(locals.items.iter().chain(whole));
-            }
-            0xC0 => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-        if depth > DEPTH || kept.len() > DEPTH || fields > FIELDS || usages > USAGES {
-            return wrong("it asks for too much");
-        }
-        match head & 0x0C {
-            _ if is_main => locals = Locals::default(),
-            LOCAL => locals.items.extend(whole),
-            _ => needed.extend(whole),
-        }
-        if head == 0xC0 {
-            needed.extend(whole);
-        }
+        let wrong = |defect| DescriptorError::Item { defect, at };
+        let (head, value, next) = item(bytes, at).ok_or_else(|| wrong(Defect::Cut))?;
+        walk.pass(head, value, &bytes[at..next]).map_err(wrong)?;
         at = next;
     }
-    match needed.is_empty() {
-        true => Err("it says nothing of a report".to_owned()),
-        false => Ok(needed),
+    if walk.needed.is_empty() {
+        return Err(DescriptorError::Empty);
+    }
+    Ok(walk.needed)
+}
+
+/// A walk over the items of a descriptor.
+#[derive(Default)]
+struct Walk {
+    /// The items that are needed so far.
+    needed: Vec<u8>,
+    globals: Globals,
+    saved: Vec<Globals>,
+    locals: Locals,
+    depth: usize,
+    fields: usize,
+    usages: u64,
+}
+
+impl Walk {
+    /// Passes an item: its head without its size, its value, all its bytes.
+    fn pass(&mut self, head: u8, value: u64, whole: &[u8]) -> Result<(), Defect> {
+        let is_main = matches!(head, 0x80 | 0x90 | 0xA0 | 0xB0 | 0xC0);
+        if is_main && head != 0xC0 && self.globals.page.is_none() {
+            return Err(Defect::NoPage);
+        }
+        match head {
+            0x04 => self.globals.page = u16::try_from(value).ok(),
+            0x74 => self.globals.bits = usize::try_from(value).unwrap_or(usize::MAX),
+            0x94 => self.globals.count = usize::try_from(value).unwrap_or(usize::MAX),
+            0xA4 => self.saved.push(self.globals),
+            0xB4 => self.globals = self.saved.pop().ok_or(Defect::NotSaved)?,
+            0x08 => {
+                self.locals.named += 1;
+                if let (5, Ok(page)) = (whole.len(), u16::try_from(value >> 16)) {
+                    self.locals.pages.push(page);
+                }
+            }
+            0x18 => self.locals.least = Some(value),
+            0x28 => self.locals.most = Some(value),
+            0x80 => self.input(value & 1 == 1, whole)?,
+            0xA0 => self.collection(whole)?,
+            0xC0 => self.depth = self.depth.saturating_sub(1),
+            _ => {}
+        }
+        let is_deep = self.depth > DEPTH || self.saved.len() > DEPTH;
+        if is_deep || self.fields > FIELDS || self.usages > USAGES {
+            return Err(Defect::Greedy);
+        }
+        match head & 0x0C {
+            _ if is_main => self.locals = Locals::default(),
+            LOCAL => self.locals.items.extend(whole),
+            _ => self.needed.extend(whole),
+        }
+        if head == 0xC0 {
+            self.needed.extend(whole);
+        }
+        Ok(())
+    }
+
+    /// An input. A constant has no usages, whatever stands before it.
+    fn input(&mut self, is_constant: bool, whole: &[u8]) -> Result<(), Defect> {
+        let bits = self.globals.bits.saturating_mul(self.globals.count);
+        let is_read = !is_constant && self.locals.is_read(self.globals.page);
+        if bits > if is_read { BITS } else { PASSED_BITS } {
+            return Err(Defect::Long);
+        }
+        if is_read {
+            self.fields += self.globals.count;
+            self.usages += self.locals.usages();
+            self.needed.extend(self.locals.items.iter().chain(whole));
+        } else {
+            self.fields += 1;
+            let kept = if is_constant { whole } else { PASSED_OVER };
+            self.needed.extend(kept);
+        }
+        Ok(())
+    }
+
+    fn collection(&mut self, whole: &[u8]) -> Result<(), Defect> {
+        self.depth += 1;
+        if self.locals.usages() > COLLECTION_USAGES {
+            return Err(Defect::Usages);
+        }
+        self.usages += self.locals.usages();
+        self.needed.extend(self.locals.items.iter().chain(whole));
+        Ok(())
     }
 }
 

@@ -24,9 +24,10 @@ pub struct Identity {
 impl fmt::Display for Identity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:04x}:{:04x}", self.vendor, self.product)?;
-        match self.name.is_empty() {
-            true => Ok(()),
-            false => write!(f, " {}", self.name),
+        if self.name.is_empty() {
+            Ok(())
+        } else {
+            write!(f, " {}", self.name)
         }
     }
 }

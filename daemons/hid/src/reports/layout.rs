@@ -291,10 +291,12 @@ impl PenReport {
         let pressure = share(Role::Pressure);
         let touches = is_on(Role::Tip).unwrap_or(pressure > Some(0.0));
         let erases = is_on(Role::Eraser).unwrap_or(false);
-        let presence = match touches || erases {
-            true => Presence::Touching,
-            false if is_on(Role::InRange).unwrap_or(true) => Presence::Hovering,
-            false => Presence::Away,
+        let presence = if touches || erases {
+            Presence::Touching
+        } else if is_on(Role::InRange).unwrap_or(true) {
+            Presence::Hovering
+        } else {
+            Presence::Away
         };
         let switches = self.numbers.iter().filter_map(|(role, number)| match role {
             Role::Switch(bit) if number.count(report) > 0.0 => Some(1 << bit),
@@ -302,9 +304,10 @@ impl PenReport {
         });
         Reading {
             presence,
-            end: match erases || is_on(Role::Invert).unwrap_or(false) {
-                true => End::Eraser,
-                false => End::Tip,
+            end: if erases || is_on(Role::Invert).unwrap_or(false) {
+                End::Eraser
+            } else {
+                End::Tip
             },
             point_m: [
                 share(Role::X).unwrap_or(0.0) * area_m[0],
@@ -348,10 +351,11 @@ impl PenReport {
             .sent(report, Role::Azimuth)?
             .angle(report, 360.0, TAU, 0.0);
         let altitude = self.sent(report, Role::Altitude)?;
-        let altitude = match altitude.is_signed() {
-            true => altitude.angle(report, 90.0, PI, 0.5).abs(),
+        let altitude = if altitude.is_signed() {
+            altitude.angle(report, 90.0, PI, 0.5).abs()
+        } else {
             // Altitudes above the tablet alone.
-            false => altitude.angle(report, 90.0, FRAC_PI_2, 0.0),
+            altitude.angle(report, 90.0, FRAC_PI_2, 0.0)
         };
         let ((sin_up, cos_up), (sin, cos)) = (sin_cos(altitude), sin_cos(azimuth));
         Some([cos, sin].map(|along| {

@@ -5,6 +5,7 @@ pub mod device_source;
 pub mod hidraw;
 pub mod layout;
 mod number;
+pub(crate) mod recorded;
 pub mod recorder;
 pub mod recording;
 pub mod report_stream;

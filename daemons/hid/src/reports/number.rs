@@ -73,9 +73,10 @@ impl Number {
         let Ok(value) = self.field.extract(report) else {
             return self.least;
         };
-        let value = match self.field.is_signed() {
-            true => f64::from(i32::from(value)),
-            false => f64::from(u32::from(value)),
+        let value = if self.field.is_signed() {
+            f64::from(i32::from(value))
+        } else {
+            f64::from(u32::from(value))
         };
         value.clamp(self.least, self.most)
     }

@@ -14,6 +14,8 @@ use std::path::Path;
 
 use maulstick_rig::UserError;
 
+pub use super::recorded::{Event, LineFault, Recorded, RecordingError};
+use super::recorded::{start, time_ns};
 use crate::descriptor::LONGEST;
 use crate::device_source::Identity;
 use crate::evdev::evemu;
@@ -21,30 +23,8 @@ use crate::open::{self, Kind};
 
 /// A report is no longer than this, bytes: the kernel's limit.
 pub const LONGEST_REPORT: usize = 16_384;
-/// A recording spans no more time than this, s.
-const LONGEST_S: u64 = 100_000;
 /// Advice about a line that does not belong to a recording.
 const HELP: &str = "record anew with `maulstick node hid --record` or with `hid-recorder`";
-
-/// A report, and when it came.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Event {
-    /// Since the recording's begin, ns.
-    pub time_ns: u64,
-    /// The report, with its number if the device numbers them.
-    pub report: Vec<u8>,
-}
-
-/// A device of a recording.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Recorded {
-    /// Its identity.
-    pub identity: Identity,
-    /// Its report descriptor.
-    pub descriptor: Vec<u8>,
-    /// Its reports, in order of time.
-    pub events: Vec<Event>,
-}
 
 /// Reads a recording from a file.
 ///
@@ -52,13 +32,14 @@ pub struct Recorded {
 /// A [`UserError`] that names the line.
 pub fn read(path: &Path) -> Result<Vec<Recorded>, UserError> {
     let text = std::fs::read_to_string(path).map_err(|error| UserError::reading(path, &error))?;
-    let parsed = match text.starts_with(evemu::MARK) {
-        true => evemu::parse(&text).map(|device| vec![device]),
-        false => parse(&text),
+    let parsed = if text.starts_with(evemu::MARK) {
+        evemu::parse(&text).map(|device| vec![device])
+    } else {
+        parse(&text)
     };
-    parsed.map_err(|(line, what)| {
-        UserError::usage(what)
-            .at(format!("{}:{line}", path.display()))
+    parsed.map_err(|error| {
+        UserError::usage(error.fault.to_string())
+            .at(format!("{}:{}", path.display(), error.line))
             .help(HELP)
     })
 }
@@ -81,29 +62,26 @@ pub fn playable(kind: Kind, recorded: Vec<Recorded>) -> Result<Recorded, UserErr
 /// Reads the text of a recording: its devices, at least one.
 ///
 /// # Errors
-/// The number of the line that is wrong, from 1, and what is wrong with it.
-pub fn parse(text: &str) -> Result<Vec<Recorded>, (usize, String)> {
+/// [`RecordingError`].
+pub fn parse(text: &str) -> Result<Vec<Recorded>, RecordingError> {
     let mut found: Vec<(u32, Recorded)> = Vec::new();
     let mut now = 0;
     let mut last = 0;
     for (number, line) in text.lines().enumerate() {
         last = number + 1;
-        let wrong = |what: String| (last, what);
+        let wrong = |fault: LineFault| RecordingError { line: last, fault };
         let line = line.trim();
         if line.is_empty() || line.starts_with('#') {
             continue;
         }
         let Some((kind, rest)) = line.split_once(':') else {
-            return Err(wrong(format!(
-                "'{}' is no line of a recording",
-                start(line)
-            )));
+            return Err(wrong(LineFault::Line(start(line))));
         };
         let rest = rest.trim();
         if kind == "D" {
             now = rest
                 .parse()
-                .map_err(|_| wrong(format!("'{}' is no number of a device", start(rest))))?;
+                .map_err(|_| wrong(LineFault::Device(start(rest))))?;
         }
         let at = match found.iter().position(|(known, _)| *known == now) {
             Some(at) => at,
@@ -112,54 +90,50 @@ pub fn parse(text: &str) -> Result<Vec<Recorded>, (usize, String)> {
                 found.len() - 1
             }
         };
-        found[at].1.take(kind, rest).map_err(wrong)?;
+        found[at].1.add_line(kind, rest).map_err(wrong)?;
     }
     let mut devices = Vec::new();
     for (number, device) in found {
         if device.descriptor.is_empty() {
-            return Err((
-                last,
-                format!("device {number} has no line R: with its report descriptor"),
-            ));
+            return Err(RecordingError {
+                line: last,
+                fault: LineFault::NoDescriptor(number),
+            });
         }
         devices.push(device);
     }
-    match devices.is_empty() {
-        true => Err((last.max(1), "there is no device in it".to_owned())),
-        false => Ok(devices),
+    if devices.is_empty() {
+        return Err(RecordingError {
+            line: last.max(1),
+            fault: LineFault::NoDevice,
+        });
     }
+    Ok(devices)
 }
 
 impl Recorded {
-    fn take(&mut self, kind: &str, rest: &str) -> Result<(), String> {
+    fn add_line(&mut self, kind: &str, rest: &str) -> Result<(), LineFault> {
         match kind {
             "D" => {}
             "R" if self.descriptor.is_empty() => self.descriptor = bytes(rest, LONGEST)?,
-            "R" => return Err("the device has two descriptors".to_owned()),
+            "R" => return Err(LineFault::TwoDescriptors),
             "N" => rest.clone_into(&mut self.identity.name),
             "P" => rest.clone_into(&mut self.identity.place),
-            "I" => self.identity.take_numbers(rest)?,
+            "I" => self.identity.set_numbers(rest)?,
             "E" => {
-                let (time, report) = rest
-                    .split_once(' ')
-                    .ok_or("a report is its time, how many bytes it has, and they")?;
+                let (time, report) = rest.split_once(' ').ok_or(LineFault::Report)?;
                 let time_ns = time_ns(time)?;
                 if self
                     .events
                     .last()
                     .is_some_and(|last| time_ns < last.time_ns)
                 {
-                    return Err("the report is older than the one before".to_owned());
+                    return Err(LineFault::Older);
                 }
                 let report = bytes(report, LONGEST_REPORT)?;
                 self.events.push(Event { time_ns, report });
             }
-            other => {
-                return Err(format!(
-                    "'{}:' is none of D:, R:, N:, P:, I:, E:",
-                    start(other)
-                ));
-            }
+            other => return Err(LineFault::Kind(start(other))),
         }
         Ok(())
     }
@@ -200,8 +174,8 @@ impl Event {
 }
 
 impl Identity {
-    fn take_numbers(&mut self, rest: &str) -> Result<(), String> {
-        let wrong = || format!("'{}' is no bus, vendor and product", start(rest));
+    fn set_numbers(&mut self, rest: &str) -> Result<(), LineFault> {
+        let wrong = || LineFault::Identity(start(rest));
         let mut numbers = rest
             .split_whitespace()
             .map(|word| u16::from_str_radix(word, 16).map_err(|_| wrong()));
@@ -209,11 +183,6 @@ impl Identity {
         (self.bus, self.vendor, self.product) = (next()?, next()?, next()?);
         Ok(())
     }
-}
-
-/// Quotation of a wrong line.
-fn start(text: &str) -> String {
-    text.chars().take(24).collect()
 }
 
 fn counted(bytes: &[u8]) -> String {
@@ -225,42 +194,25 @@ fn counted(bytes: &[u8]) -> String {
     text
 }
 
-fn bytes(text: &str, most: usize) -> Result<Vec<u8>, String> {
+fn bytes(text: &str, most: usize) -> Result<Vec<u8>, LineFault> {
     let mut words = text.split_whitespace();
     let count = words.next().and_then(|word| word.parse::<usize>().ok());
     let Some(count) = count.filter(|count| (1..=most).contains(count)) else {
-        return Err(format!("the number of bytes comes first, 1 to {most}"));
+        return Err(LineFault::Count(most));
     };
     let mut found = Vec::with_capacity(count);
     for word in words {
         match u8::from_str_radix(word, 16) {
             Ok(byte) if word.len() <= 2 => found.push(byte),
-            _ => return Err(format!("'{}' is no byte in hexadecimal", start(word))),
+            _ => return Err(LineFault::Byte(start(word))),
         }
     }
-    match found.len() == count {
-        true => Ok(found),
-        false => Err(format!("{count} bytes are said, {} follow", found.len())),
+    if found.len() == count {
+        Ok(found)
+    } else {
+        Err(LineFault::Bytes {
+            announced: count,
+            found: found.len(),
+        })
     }
-}
-
-/// Time of a line, ns.
-pub(crate) fn time_ns(text: &str) -> Result<u64, String> {
-    let wrong = || format!("'{}' is no time in seconds", start(text));
-    let (seconds, micros) = text.split_once('.').ok_or_else(wrong)?;
-    if micros.len() != 6 {
-        return Err(format!(
-            "'{}' is no time in seconds with six digits behind the point",
-            start(text)
-        ));
-    }
-    let number = |digits: &str| {
-        let all = !digits.is_empty() && digits.bytes().all(|digit| digit.is_ascii_digit());
-        digits.parse::<u64>().ok().filter(|_| all).ok_or_else(wrong)
-    };
-    let (seconds, micros) = (number(seconds)?, number(micros)?);
-    if seconds > LONGEST_S || micros >= 1_000_000 {
-        return Err(wrong());
-    }
-    Ok((seconds * 1_000_000 + micros) * 1000)
 }

@@ -105,10 +105,7 @@ impl Wacom {
             // The pen came near: its tool's number, of which bit 3 is that of the eraser.
             flags if flags & 0xFC == 0xC0 => {
                 let tool = u16::from(x0) << 4 | u16::from(x1) >> 4;
-                self.end = Some(match tool & 8 != 0 {
-                    true => End::Eraser,
-                    false => End::Tip,
-                });
+                self.end = Some(if tool & 8 != 0 { End::Eraser } else { End::Tip });
                 return None;
             }
             // It is gone, or is about to go: sensed still, but no more said of.
@@ -168,9 +165,10 @@ impl Wacom {
         else {
             return None;
         };
-        let end = match flags & 0x10 != 0 {
-            true => End::Eraser,
-            false => End::Tip,
+        let end = if flags & 0x10 != 0 {
+            End::Eraser
+        } else {
+            End::Tip
         };
         if flags & 0x20 == 0 {
             return Some(Reading {
@@ -204,9 +202,10 @@ impl Wacom {
         let at = |axis: usize| f64::from(counts[axis].min(self.counts[axis])) / COUNTS_M;
         let tilt = |degrees: f64| degrees.to_radians().clamp(-STEEPEST_RAD, STEEPEST_RAD);
         Reading {
-            presence: match touches {
-                true => Presence::Touching,
-                false => Presence::Hovering,
+            presence: if touches {
+                Presence::Touching
+            } else {
+                Presence::Hovering
             },
             end,
             point_m: [at(0), self.area_m()[1] - at(1)],

@@ -1,6 +1,6 @@
 //! The order in which a pen may say what, as Linux's own tests of tablets have it.
 
-use maulstick_device::pen::{End, LIGHTEST, Pen, Presence, Reading};
+use maulstick_device::pen::{End, LEAST_PRESSURE, Pen, Presence, Reading};
 use proptest::prelude::*;
 
 use Presence::{Away, Hovering, Touching};
@@ -125,5 +125,5 @@ fn a_touch_without_pressure_is_a_touch_and_pressure_without_a_touch_is_none() {
         reading(Touching, End::Tip, 0.0),
     ]);
     assert_eq!(told[0].pressure, 0.0);
-    assert_eq!(told[1].pressure, LIGHTEST);
+    assert_eq!(told[1].pressure, LEAST_PRESSURE);
 }

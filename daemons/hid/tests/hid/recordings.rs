@@ -1,7 +1,9 @@
 //! Recordings as text.
 
 use maulstick_hid::recorder::Recorder;
-use maulstick_hid::recording::{Event, Recorded, parse, read};
+use maulstick_hid::recording::{
+    Event, LONGEST_REPORT, LineFault, Recorded, RecordingError, parse, read,
+};
 use proptest::prelude::*;
 
 use crate::support::{deco_l, identity};
@@ -64,7 +66,7 @@ proptest! {
                 let times: Vec<_> = device.events.iter().map(|event| event.time_ns).collect();
                 prop_assert!(times.is_sorted() && times.iter().all(|at| *at <= 100_001_000_000_000));
             },
-            Err((line, what)) => prop_assert!(line >= 1 && !what.is_empty()),
+            Err(error) => prop_assert!(error.line >= 1),
         }
     }
 }
@@ -73,31 +75,31 @@ proptest! {
 fn a_wrong_line_is_named_by_its_number() {
     let sound = "# two devices\nD: 0\nR: 2 05 0d\nI: 3 056a 0357\nE: 000000.000000 1 07\n";
     let wrong = |line: &str| parse(&format!("{sound}{line}\n")).expect_err("wrong");
-    for (line, word) in [
-        ("hello", "no line of a recording"),
-        ("X: 1", "none of D:, R:"),
-        ("E: 1 2 3", "no time in seconds"),
-        ("E: 1.5 1 ff", "six digits behind the point"),
-        ("E: 000001.000000 3 01 02", "3 bytes are said, 2 follow"),
-        ("E: 000001.000000 1 0g", "no byte in hexadecimal"),
-        ("E: 000001.000000 x", "number of bytes comes first"),
-        ("I: 3 056a", "no bus, vendor and product"),
-        ("R: 1 05", "two descriptors"),
-        ("D: one", "no number of a device"),
+    for (line, fault) in [
+        ("hello", LineFault::Line("hello".into())),
+        ("X: 1", LineFault::Kind("X".into())),
+        ("E: 1 2 3", LineFault::Time("1".into())),
+        ("E: 1.5 1 ff", LineFault::Time("1.5".into())),
+        (
+            "E: 000001.000000 3 01 02",
+            LineFault::Bytes {
+                announced: 3,
+                found: 2,
+            },
+        ),
+        ("E: 000001.000000 1 0g", LineFault::Byte("0g".into())),
+        ("E: 000001.000000 x", LineFault::Count(LONGEST_REPORT)),
+        ("I: 3 056a", LineFault::Identity("3 056a".into())),
+        ("R: 1 05", LineFault::TwoDescriptors),
+        ("D: one", LineFault::Device("one".into())),
     ] {
-        let (number, what) = wrong(line);
-        assert_eq!(number, 6, "{line}");
-        assert!(what.contains(word), "{line}: {what}");
+        assert_eq!(wrong(line), RecordingError { line: 6, fault }, "{line}");
     }
     let late = wrong("E: 000002.000000 1 07\nE: 000001.000000 1 07");
-    assert_eq!((late.0, late.1.contains("older")), (7, true), "{}", late.1);
-    assert!(parse("").expect_err("empty").1.contains("no device"));
-    assert!(
-        parse("N: a pen\n")
-            .expect_err("bare")
-            .1
-            .contains("no line R:")
-    );
+    assert_eq!((late.line, late.fault), (7, LineFault::Older));
+    let fault = |text: &str| parse(text).expect_err("refused").fault;
+    assert_eq!(fault(""), LineFault::NoDevice);
+    assert_eq!(fault("N: a pen\n"), LineFault::NoDescriptor(0));
 }
 
 #[test]

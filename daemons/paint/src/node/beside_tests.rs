@@ -253,7 +253,10 @@ fn a_painting_in_memory_becomes_a_file_and_then_another() {
     rig.refused(save_as(&at("no/a.maul"), false), &["folder"]);
     assert_eq!(rig.node.document_path(), None);
     std::fs::write(at("list.txt"), "a shopping list").expect("written");
-    rig.refused(save_as(&at("list.txt"), true), &["no painting"]);
+    rig.refused(
+        save_as(&at("list.txt"), true),
+        &["not a Maulstick painting"],
+    );
     rig.done(save_as(&at("a.maul"), false));
     assert_eq!(rig.node.document_path(), Some(&*at("a.maul")));
     rig.fill("Pyrrole Red");

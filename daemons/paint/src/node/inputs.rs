@@ -1,7 +1,7 @@
 //! States of the brushes and presence of the nodes, as the paint node receives them.
 
 use maulstick_bus::credit::ReceiverCounts;
-use maulstick_bus::rivals::Once;
+use maulstick_bus::sender_arbiter::Once;
 use maulstick_bus::typed::Received;
 use maulstick_bus::{Bus, BusError, CreditReceiver, Subscription, Wake};
 use maulstick_canvas::EditError;

@@ -76,13 +76,12 @@ impl Valuator {
 
     /// A tilt, rad.
     fn tilt_rad(&self) -> f64 {
-        match PER_RADIAN.contains(&self.per_radian) {
-            true => self.value / f64::from(self.per_radian),
-            false => {
-                let middle = 0.5 * (self.least + self.most);
-                let steepest = STEEPEST_DEGREES.to_radians();
-                (self.value - middle) / (self.most - middle) * steepest
-            }
+        if PER_RADIAN.contains(&self.per_radian) {
+            self.value / f64::from(self.per_radian)
+        } else {
+            let middle = 0.5 * (self.least + self.most);
+            let steepest = STEEPEST_DEGREES.to_radians();
+            (self.value - middle) / (self.most - middle) * steepest
         }
     }
 
@@ -137,7 +136,7 @@ impl XinputDevice {
         })
     }
 
-    /// What it senses.
+    /// Axes that it senses.
     #[must_use]
     pub fn axes(&self) -> Axes {
         Axes {
@@ -196,14 +195,12 @@ impl XinputDevice {
             .filter(|(_, button)| down(**button));
         let [x, y] = [event.event_x, event.event_y].map(|at| f64::from(at) / 65_536.0);
         let reading = Reading {
-            presence: match down(TIP) {
-                true => Presence::Touching,
-                false => Presence::Hovering,
+            presence: if down(TIP) {
+                Presence::Touching
+            } else {
+                Presence::Hovering
             },
-            end: match self.eraser {
-                true => End::Eraser,
-                false => End::Tip,
-            },
+            end: if self.eraser { End::Eraser } else { End::Tip },
             point_m: [0.0; 2],
             height_m: 0.0,
             pressure: self.pressure.share(),
@@ -242,7 +239,7 @@ impl XinputDevice {
         })
     }
 
-    /// Takes the values of those valuators that an event tells of.
+    /// Stores the values of the valuators that an event has.
     fn take_values(&mut self, mask: &[u32], values: &[Fp3232]) {
         let told = (0..32 * mask.len()).filter(|place| mask[place / 32] >> (place % 32) & 1 == 1);
         for (place, value) in told.zip(values) {

@@ -29,7 +29,7 @@ const ALL: u16 = 0;
 /// that is near, 0 for none.
 const SERIALS: &str = "Wacom Serial IDs";
 
-/// True if the X server that `DISPLAY` names tells of pens.
+/// True if the X server that `DISPLAY` names reports pens.
 ///
 /// # Errors
 /// A [`UserError`] where the server is away.
@@ -66,8 +66,8 @@ impl XinputPens {
         let (connection, screen) = x11rb::connect(None).map_err(|error| gone(&error))?;
         if !has_pens(&connection).map_err(|error| gone(&error))? {
             return Err(
-                UserError::failure("this X server tells nothing of pens (XInput 2.2)").help(
-                    "the pen paints as a mouse: for its pressure give its tablet to the rig, `maulstick device list` says how",
+                UserError::failure("this X server does not report pens (XInput 2.2)").help(
+                    "the pen paints as a mouse does; to use its pressure, add its tablet to the rig (`maulstick device list` says how)",
                 ),
             );
         }
@@ -138,7 +138,7 @@ impl XinputPens {
                 | XIEventMask::PROPERTY;
             match self.select(self.window, info.deviceid, mask) {
                 Ok(()) => {}
-                // One that goes just now is told of again.
+                // One that goes at this moment is reported again.
                 Err(ReplyError::X11Error(error)) if error.error_kind == ErrorKind::XinputDevice => {
                     continue;
                 }
@@ -240,7 +240,7 @@ impl std::fmt::Debug for XinputPens {
     }
 }
 
-/// The tool of a device, told apart from all others of the server.
+/// Identity of a device's tool among all those of the server.
 fn tool(device: u16, serial: u32, eraser: bool) -> Tool {
     let number = match serial {
         0 => 1 << 40 | u64::from(device),

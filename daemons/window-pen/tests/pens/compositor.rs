@@ -224,9 +224,10 @@ impl Server {
             Do::Tilt(x, y) => own.tilt(x, y),
             Do::Rotate(degrees) => own.rotation(degrees),
             Do::Button(button, down) => {
-                let state = match down {
-                    true => ButtonState::Pressed,
-                    false => ButtonState::Released,
+                let state = if down {
+                    ButtonState::Pressed
+                } else {
+                    ButtonState::Released
                 };
                 own.button(serial, button, state);
             }

@@ -345,9 +345,10 @@ fn no_gesture_paints_and_presses() {
             _ => None,
         });
         let presses: Vec<bool> = presses.collect();
-        match began_on_desk {
-            true => assert_eq!((painted, &presses[..]), (true, &[][..])),
-            false => assert_eq!((painted, &presses[..]), (false, &[true, false][..])),
+        if began_on_desk {
+            assert_eq!((painted, &presses[..]), (true, &[][..]))
+        } else {
+            assert_eq!((painted, &presses[..]), (false, &[true, false][..]))
         }
         strokes += u32::from(painted);
         clicks += u32::from(!presses.is_empty());

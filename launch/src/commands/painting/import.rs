@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use maulstick_exchange::underpaint::{MOST_PAINTS, underpaint};
-use maulstick_exchange::{Image, ImportError, Likeness, Support, embed};
+use maulstick_exchange::{ColourError, Image, ImportError, Support, embed};
 use maulstick_painting::edits::{Ground, Tooth};
 use maulstick_painting::{Painting, Sequencer, Wetness};
 use maulstick_rig::{RigConfig, UserError};
@@ -116,14 +116,14 @@ impl ImportOptions {
         };
         let painted = painting.underpaint(CANVAS, found.paints(), &wetness, found.tiles());
         painted.map_err(refused)?;
-        let likeness = found.likeness();
+        let colour_error = found.colour_error();
         Ok(format!(
             "underpainted with {} paints; ΔE00 {:.2} in the mean, {:.1} for 95 %, {:.1} at most{}",
             found.paints().len(),
-            likeness.mean,
-            likeness.p95,
-            likeness.max,
-            advice(likeness)
+            colour_error.mean,
+            colour_error.p95,
+            colour_error.max,
+            advice(colour_error)
         ))
     }
 
@@ -156,8 +156,8 @@ impl ImportOptions {
 }
 
 /// What is to be done where the picture is hardly to be recognised.
-fn advice(likeness: &Likeness) -> &'static str {
-    match likeness.mean > FAR {
+fn advice(colour_error: &ColourError) -> &'static str {
+    match colour_error.mean > FAR {
         true => {
             "; these paints do not make its colours: --paint NAME takes others, and `maulstick colour paints` lists them"
         }

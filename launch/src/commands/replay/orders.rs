@@ -4,7 +4,7 @@ use std::future::pending;
 use std::io::{BufRead as _, IsTerminal as _};
 
 use console::{Key, Term};
-use maulstick_device::player::Rate;
+use maulstick_device::player::{Rate, RateError};
 use maulstick_recorder::{Order, RATES, ReplayReport};
 use nix::sys::termios::{SetArg, Termios, tcgetattr, tcsetattr};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
@@ -147,7 +147,8 @@ fn parse(line: &str) -> Result<Order, String> {
 /// # Errors
 /// What is wrong with it.
 pub(super) fn parse_rate(text: &str) -> Result<Rate, String> {
-    match text.parse()? {
+    let rate: Rate = text.parse().map_err(|error: RateError| error.to_string())?;
+    match rate {
         Rate::Times(rate) if !RATES.contains(&rate) => {
             Err(format!("{rate} is no rate from .1 to 100, nor 'max'"))
         }

@@ -226,7 +226,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, UserError> {
     choose_backend(&mut sequencer, &config.paint.backend)?;
     let file = brush_file(&section)?;
     let (name, share) = (&section.name, section.depth_share);
-    let offline = Offline::going_on(sequencer, name, file, share, loads).map_err(refused)?;
+    let offline = Offline::resume(sequencer, name, file, share, loads).map_err(refused)?;
     let bar = progress_bar(script.length_ns()).with_message("painting");
     let mut easel = Easel::new(offline, &mut autosave, bar);
     let painted = easel

@@ -45,7 +45,7 @@ fn said<T>(result: Result<T, UserError>) -> Option<T> {
 /// Removes the sketches that leave and of which the painter was told, and those on which nothing was ever painted. One
 /// that is open in another rig stays.
 fn tidy(sketches: &Sketches) {
-    for sketch in sketches.told() {
+    for sketch in sketches.notified() {
         // Who has it open has it locked.
         if glance(&sketch.path).is_ok() {
             tracing::info!("{} goes: the newer sketches stay", sketch.path.display());

@@ -1,9 +1,9 @@
-//! Losses of a stream as the log tells them: one line a second with their number, however many there are.
+//! Losses of a stream in the log: one line a second with their number, however many there are.
 
 /// Shortest time between two lines, ns.
 const EVERY_NS: u64 = 1_000_000_000;
 
-/// Messages that were lost and not told yet.
+/// Lost messages that are not reported yet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Losses {
     untold: u64,
@@ -16,7 +16,7 @@ impl Losses {
         self.untold = self.untold.saturating_add(messages);
     }
 
-    /// How many are to be told now.
+    /// Losses to report now; `None` while the last report is too recent.
     pub(super) fn due(&mut self, now_ns: u64) -> Option<u64> {
         let is_early = self
             .told_ns

@@ -97,7 +97,7 @@ impl<M: Message> CreditReceiver<M> {
     pub fn poll(&mut self, bus: &dyn Bus) -> Result<(), BusError> {
         let now_ns = bus.now_ns();
         while let Some(arrival) = self.subscription.try_recv() {
-            self.take_in(
+            self.accept(
                 &arrival.key,
                 arrival.arrived_ns,
                 &arrival.bytes,
@@ -105,7 +105,7 @@ impl<M: Message> CreditReceiver<M> {
             );
         }
         self.streams.retain(|_, stream| {
-            !stream.is_idle() || now_ns < stream.rivals.heard_ns().saturating_add(FORGOTTEN_NS)
+            !stream.is_idle() || now_ns < stream.arbiter.heard_ns().saturating_add(FORGOTTEN_NS)
         });
         let keys: Vec<StreamKey> = self.streams.keys().cloned().collect();
         for key in keys {
@@ -173,7 +173,7 @@ impl<M: Message> CreditReceiver<M> {
         self.streams.len()
     }
 
-    fn take_in(&mut self, topic: &str, arrived_ns: u64, bytes: &[u8], delivery: Delivery) {
+    fn accept(&mut self, topic: &str, arrived_ns: u64, bytes: &[u8], delivery: Delivery) {
         let Some((header, message)) = self.reader.read::<M>(topic, bytes) else {
             return;
         };
@@ -187,7 +187,7 @@ impl<M: Message> CreditReceiver<M> {
             header,
             message,
         };
-        let begun = || Stream::begin(&header, arrived_ns);
+        let begun = || Stream::new(&header, arrived_ns);
         let stream = self.streams.entry(key).or_insert_with(begun);
         if delivery == Delivery::AskedFor {
             if stream.fill(received, &mut self.ordered) == Taken::New {
@@ -198,10 +198,11 @@ impl<M: Message> CreditReceiver<M> {
         let (epoch, lost) = (stream.epoch, stream.lost);
         match stream.take(received, &mut self.ordered) {
             Taken::Again => self.again.push(topic.to_owned()),
-            Taken::SetAside if stream.rivals.is_rival(&header, arrived_ns) => {
-                let reason = match epoch == header.epoch {
-                    true => Reason::Leap,
-                    false => Reason::Rival,
+            Taken::SetAside if stream.arbiter.is_rival(&header, arrived_ns) => {
+                let reason = if epoch == header.epoch {
+                    Reason::Leap
+                } else {
+                    Reason::Rival
                 };
                 self.reader.refuse(topic, reason);
             }
@@ -215,7 +216,7 @@ impl<M: Message> CreditReceiver<M> {
         if self.streams.len() < SENDERS {
             return;
         }
-        let heard_ns = |(_, stream): &(&StreamKey, &Stream<M>)| stream.rivals.heard_ns();
+        let heard_ns = |(_, stream): &(&StreamKey, &Stream<M>)| stream.arbiter.heard_ns();
         let oldest = self.streams.iter().min_by_key(heard_ns);
         if let Some(key) = oldest.map(|(key, _)| key.clone()) {
             self.streams.remove(&key);
@@ -266,7 +267,7 @@ impl<M: Message> CreditReceiver<M> {
         }
         let unserved = ended && answers.is_empty() && now_ns < stream.asked_ns + RETRY_NS;
         for message in answers.iter().flat_map(|answer| split_messages(answer)) {
-            self.take_in(&key.0, now_ns, message, Delivery::AskedFor);
+            self.accept(&key.0, now_ns, message, Delivery::AskedFor);
         }
         (answers.len(), unserved)
     }

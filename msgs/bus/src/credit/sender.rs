@@ -12,7 +12,7 @@ use crate::bus::{Bus, BusError, Publish, Qos, Server};
 use crate::inbox::Wake;
 use crate::typed::{Reader, sendable};
 
-/// An answer to a question for a gap has at most so many bytes, or one message.
+/// Most bytes of an answer to a gap request, unless a single message has more.
 const ANSWER_BYTES: usize = 1 << 20;
 
 /// Time of sending a message and time of its content, rig clock, ns.
@@ -77,7 +77,7 @@ impl<M: Message> CreditSender<M> {
         })
     }
 
-    /// Sends a message and returns its number. One that exceeds its limit is dropped and told, and the next one has its
+    /// Sends a message and returns its number. One that exceeds its limit is dropped and reported, and the next one has its
     /// number.
     ///
     /// # Errors

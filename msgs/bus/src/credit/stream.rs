@@ -7,7 +7,7 @@ use maulstick_types::{Flags, Header};
 use super::losses::Losses;
 use super::{RING, WINDOW};
 use crate::bus::Pending;
-use crate::rivals::{Rivals, Verdict};
+use crate::sender_arbiter::{SenderArbiter, Verdict};
 use crate::typed::Received;
 
 /// Messages that a stream keeps at most until they are taken; its sender's ring has the rest.
@@ -35,7 +35,7 @@ pub(super) enum Taken {
 
 /// One sender since its start.
 pub(super) struct Stream<M> {
-    pub rivals: Rivals,
+    pub arbiter: SenderArbiter,
     pub epoch: u32,
     /// Number of the next message to hand on; `None` while the beginning of a replay is sought.
     next: Option<u64>,
@@ -58,15 +58,15 @@ pub(super) struct Stream<M> {
 }
 
 impl<M> Stream<M> {
-    pub(super) fn begin(header: &Header, arrived_ns: u64) -> Self {
-        Self::follow(header, Rivals::new(header, arrived_ns))
+    pub(super) fn new(header: &Header, arrived_ns: u64) -> Self {
+        Self::of(header, SenderArbiter::new(header, arrived_ns))
     }
 
-    fn follow(header: &Header, rivals: Rivals) -> Self {
+    fn of(header: &Header, arbiter: SenderArbiter) -> Self {
         let replay = header.flags.has(Flags::REPLAY);
         let first = header.flags.has(Flags::FIRST);
         Self {
-            rivals,
+            arbiter,
             epoch: header.epoch,
             next: (first || !replay).then_some(header.seq),
             sent_ns: header.sent_ns,
@@ -87,12 +87,12 @@ impl<M> Stream<M> {
         let fits = self.fits(&header);
         let handed_on = self.ready.front().map(|(_, head)| head.header.seq);
         let verdict = self
-            .rivals
+            .arbiter
             .judge(&header, arrived_ns, fits, handed_on.or(self.next));
         match verdict {
             Verdict::Followed => {}
             Verdict::SetAside => return Taken::SetAside,
-            Verdict::TakesOver(before) => self.hand_over(&header, before),
+            Verdict::TakesOver(before) => self.take_over(&header, before),
         }
         if self.next == Some(header.seq.wrapping_add(1)) {
             return Taken::Again;
@@ -139,13 +139,14 @@ impl<M> Stream<M> {
 
     /// Follows another sender. The rest of the previous stream is dropped; a take that was followed before continues
     /// where it was.
-    fn hand_over(&mut self, header: &Header, before: Option<u64>) {
-        let from = match header.epoch == self.epoch {
-            true => before.or(self.next),
-            false => before,
+    fn take_over(&mut self, header: &Header, before: Option<u64>) {
+        let from = if header.epoch == self.epoch {
+            before.or(self.next)
+        } else {
+            before
         };
         let (lost, losses) = (self.lost, self.losses);
-        *self = Self::follow(header, self.rivals.clone());
+        *self = Self::of(header, self.arbiter.clone());
         (self.lost, self.losses) = (lost, losses);
         if self.replay {
             self.next = before.or(self.next);

@@ -158,7 +158,7 @@ fn a_live_gap_that_nobody_can_fill_is_given_up_and_counted() {
     assert_eq!(stream.receiver.counts().lost, 1);
 }
 
-/// A live stream goes on within three looks; one that is replayed waits, for a painting with a hole is another.
+/// A live stream continues within three looks; one that is replayed waits, for a painting with a hole is another.
 #[test]
 fn a_device_that_answers_for_no_gap_is_not_waited_for() {
     for (flags, expected) in [(Flags::NONE, vec![0, 2]), (Flags::REPLAY, vec![0])] {

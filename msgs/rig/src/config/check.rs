@@ -1,12 +1,13 @@
 //! Allowed values of the settings of a rig.
 
-use maulstick_types::command::advice::choice;
+use maulstick_types::nearest::choice;
 use maulstick_types::wire::topics::check_name;
 
 use super::check_driver::check_driver;
+use super::wrong::{Wrong, line_of};
 use super::{
-    ACTIONS, BACKENDS, BRUSH_NODE, BrushSection, DRIVERS, DeviceSection, FORCES, GAMUTS,
-    MOST_PAINT_DRAG, RESERVED, RigConfig,
+    ACTIONS, BACKENDS, BRUSH_NODE, BrushSection, CanvasSection, DRIVERS, DeviceSection, FORCES,
+    GAMUTS, MOST_PAINT_DRAG, RESERVED, RigConfig,
 };
 use crate::user_error::UserError;
 
@@ -20,46 +21,11 @@ impl RigConfig {
         let fault = |what: String, key: &str, value: &str| {
             UserError::usage(what).at(format!("{name}:{}", line_of(text, key, value)))
         };
-        let names = [&self.rig.name]
-            .into_iter()
-            .chain(self.device.iter().map(|device| &device.name))
-            .chain(self.brush.iter().map(|brush| &brush.name));
-        for word in names {
-            check_name(word).map_err(|what| {
-                fault(format!("the name {what}"), "name", word).help("choose another name")
-            })?;
-        }
-        for (place, device) in self.device.iter().enumerate() {
-            let others = self.device[..place].iter().map(|other| &other.name);
-            unique("devices", &device.name, others)
-                .and_then(|()| self.check_device(device))
-                .map_err(|wrong| wrong.fault(text, name))?;
-        }
-        for (place, brush) in self.brush.iter().enumerate() {
-            let others = self.brush[..place].iter().map(|other| &other.name);
-            unique("brushes", &brush.name, others)
-                .and_then(|()| check_brush(brush))
-                .map_err(|wrong| wrong.fault(text, name))?;
-        }
-        let canvas = &self.canvas;
-        for (key, value) in [
-            ("width_mm", canvas.width_mm),
-            ("height_mm", canvas.height_mm),
-        ] {
-            let cells = value / canvas.cell_mm;
-            if !(canvas.cell_mm > 0.0 && (0.5..=65_536.0).contains(&cells)) {
-                return Err(fault(
-                    format!("{key} = {value} with cells of {} mm", canvas.cell_mm),
-                    key,
-                    "",
-                )
-                .help("choose a size of 1 to 65536 cells"));
-            }
-        }
-        if !(0.0..=1000.0).contains(&canvas.stain_um) {
-            let what = format!("stain_um = {}", canvas.stain_um);
-            return Err(fault(what, "stain_um", "").help("choose 0 to 1000 µm"));
-        }
+        self.check_names()
+            .and_then(|()| self.check_devices())
+            .and_then(|()| self.check_brushes())
+            .and_then(|()| check_canvas(&self.canvas))
+            .map_err(|wrong| wrong.fault(text, name))?;
         choose(
             "behaviour of piles",
             &self.palette.piles,
@@ -73,21 +39,57 @@ impl RigConfig {
             .map_err(|(what, help, node)| fault(what, "[node.", &node).help(help))?;
         choose("backend", &self.paint.backend, &BACKENDS)
             .map_err(|(what, help)| fault(what, "[paint]", "").help(help))?;
-        self.paint
-            .room()
-            .map_err(|what| fault(what, "[paint]", "").help("write sizes as 512M or 2G"))?;
+        self.paint.room().map_err(|error| {
+            fault(error.to_string(), "[paint]", "").help("write sizes as 512M or 2G")
+        })?;
         let record = self.record.as_ref();
         record
             .map_or(Ok(()), crate::config::RecordSection::check)
             .map_err(|(key, what, help)| fault(what, key, "").help(help))?;
         let view = &self.view;
         view.check().map_err(|(what, help)| {
-            let (key, value) = match GAMUTS.contains(&view.gamut.as_str()) {
-                true => ("profile", &view.profile),
-                false => ("gamut", &view.gamut),
+            let (key, value) = if GAMUTS.contains(&view.gamut.as_str()) {
+                ("profile", &view.profile)
+            } else {
+                ("gamut", &view.gamut)
             };
             fault(what, key, value).help(help)
         })
+    }
+
+    fn check_names(&self) -> Result<(), Wrong> {
+        let devices = self.device.iter().map(|device| &device.name);
+        let brushes = self.brush.iter().map(|brush| &brush.name);
+        for name in [&self.rig.name].into_iter().chain(devices).chain(brushes) {
+            check_name(name).map_err(|error| Wrong {
+                what: format!("the name {error}"),
+                key: "name",
+                value: name.clone(),
+                help: "choose another name".into(),
+            })?;
+        }
+        Ok(())
+    }
+
+    fn check_devices(&self) -> Result<(), Wrong> {
+        for (place, device) in self.device.iter().enumerate() {
+            let others = self.device[..place].iter().map(|other| &other.name);
+            unique("devices", &device.name, others)?;
+            self.check_device(device)?;
+            check_placement(device)?;
+            check_hand(device)?;
+            check_driver(device)?;
+        }
+        Ok(())
+    }
+
+    fn check_brushes(&self) -> Result<(), Wrong> {
+        for (place, brush) in self.brush.iter().enumerate() {
+            let others = self.brush[..place].iter().map(|other| &other.name);
+            unique("brushes", &brush.name, others)?;
+            check_brush(brush)?;
+        }
+        Ok(())
     }
 
     /// Settings are those of a node of this rig, or of all whose names begin with one word.
@@ -120,7 +122,7 @@ impl RigConfig {
                 key: "name",
                 value: name.clone(),
                 help: format!(
-                    "a device is not called {} or {BRUSH_NODE}…",
+                    "a device cannot be called {} or {BRUSH_NODE}…",
                     RESERVED.join(", ")
                 ),
             });
@@ -140,54 +142,92 @@ impl RigConfig {
             let told = unknown("brush", &device.brush, names);
             return Err(wrong(told, "brush", &device.brush));
         }
-        if !device.position_m.iter().all(|value| value.is_finite()) {
-            let help = "write three plain numbers, in metres";
-            return Err(Wrong::value(name, "position_m", device.position_m, help));
-        }
-        let unit = 1.0 - UNIT_TOLERANCE..=1.0 + UNIT_TOLERANCE;
-        if !unit.contains(&length(&device.orientation)) {
-            let help = "write a quaternion x, y, z, w of length 1; no turn is [0, 0, 0, 1]";
-            return Err(Wrong::value(name, "orientation", device.orientation, help));
-        }
-        if !(device.max_force_n.is_finite() && device.max_force_n >= 0.0) {
-            let help = "choose 0 or more newtons; the device's own limit holds too";
-            return Err(Wrong::value(name, "max_force_n", device.max_force_n, help));
-        }
-        if !(0.0..=MOST_PAINT_DRAG).contains(&device.paint_drag) {
-            let help = "choose 0 to 10 times the paint's own drag; 1 is its true size";
-            return Err(Wrong::value(name, "paint_drag", device.paint_drag, help));
-        }
-        if !(0.0..=1.0).contains(&device.relief) {
-            let help = "choose 0, a flat canvas, to 1, relief of its true height";
-            return Err(Wrong::value(name, "relief", device.relief, help));
-        }
-        if let Some(scale) = device.scale
-            && !(SCALES[0]..=SCALES[1]).contains(&scale)
-        {
-            let help = "choose 0.05 to 20 desk lengths per device length";
-            return Err(Wrong::value(name, "scale", scale, help));
-        }
-        if !device.ferrule_m.iter().all(|value| value.abs() <= 0.5) {
-            let help = "write three numbers in metres, none beyond half a metre";
-            return Err(Wrong::value(name, "ferrule_m", device.ferrule_m, help));
-        }
-        if let Some(corners) = device.corners_m
-            && !are_corners(&corners)
-        {
-            let help = "three places in metres, not on one line, as a calibration writes them";
-            return Err(Wrong::value(name, "corners_m", corners, help));
-        }
-        if !is_curve(&device.pressure_curve) {
-            let help = "points [sensed, given] that rise from [0, 0] to [1, 1], at most 32";
-            let curve = &device.pressure_curve;
-            return Err(Wrong::value(name, "pressure_curve", curve, help));
-        }
         for action in device.switches.iter().flatten() {
             choose("action of a switch", action, &ACTIONS)
                 .map_err(|told| wrong(told, "switches", action))?;
         }
-        check_driver(device)
+        Ok(())
     }
+}
+
+fn check_canvas(canvas: &CanvasSection) -> Result<(), Wrong> {
+    for (key, value) in [
+        ("width_mm", canvas.width_mm),
+        ("height_mm", canvas.height_mm),
+    ] {
+        let cells = value / canvas.cell_mm;
+        if !(canvas.cell_mm > 0.0 && (0.5..=65_536.0).contains(&cells)) {
+            return Err(Wrong {
+                what: format!("{key} = {value} with cells of {} mm", canvas.cell_mm),
+                key,
+                value: String::new(),
+                help: "choose a size of 1 to 65536 cells".into(),
+            });
+        }
+    }
+    if (0.0..=1000.0).contains(&canvas.stain_um) {
+        return Ok(());
+    }
+    Err(Wrong {
+        what: format!("stain_um = {}", canvas.stain_um),
+        key: "stain_um",
+        value: String::new(),
+        help: "choose 0 to 1000 µm".into(),
+    })
+}
+
+/// Checks where a device stands on the desk, and what of it is the ferrule.
+fn check_placement(device: &DeviceSection) -> Result<(), Wrong> {
+    let name = &device.name;
+    if !device.position_m.iter().all(|value| value.is_finite()) {
+        let help = "write three plain numbers, in metres";
+        return Err(Wrong::value(name, "position_m", device.position_m, help));
+    }
+    let unit = 1.0 - UNIT_TOLERANCE..=1.0 + UNIT_TOLERANCE;
+    if !unit.contains(&length(&device.orientation)) {
+        let help = "write a quaternion x, y, z, w of length 1; no turn is [0, 0, 0, 1]";
+        return Err(Wrong::value(name, "orientation", device.orientation, help));
+    }
+    if let Some(scale) = device.scale
+        && !(SCALES[0]..=SCALES[1]).contains(&scale)
+    {
+        let help = "choose 0.05 to 20 desk lengths per device length";
+        return Err(Wrong::value(name, "scale", scale, help));
+    }
+    if !device.ferrule_m.iter().all(|value| value.abs() <= 0.5) {
+        let help = "write three numbers in metres, none beyond half a metre";
+        return Err(Wrong::value(name, "ferrule_m", device.ferrule_m, help));
+    }
+    if let Some(corners) = device.corners_m
+        && !are_corners(&corners)
+    {
+        let help = "three places in metres, not on one line, as a calibration writes them";
+        return Err(Wrong::value(name, "corners_m", corners, help));
+    }
+    Ok(())
+}
+
+/// Checks what a device gives to the hand and takes from it.
+fn check_hand(device: &DeviceSection) -> Result<(), Wrong> {
+    let name = &device.name;
+    if !(device.max_force_n.is_finite() && device.max_force_n >= 0.0) {
+        let help = "choose 0 or more newtons; the device's own limit holds too";
+        return Err(Wrong::value(name, "max_force_n", device.max_force_n, help));
+    }
+    if !(0.0..=MOST_PAINT_DRAG).contains(&device.paint_drag) {
+        let help = "choose 0 to 10 times the paint's own drag; 1 is its true size";
+        return Err(Wrong::value(name, "paint_drag", device.paint_drag, help));
+    }
+    if !(0.0..=1.0).contains(&device.relief) {
+        let help = "choose 0, a flat canvas, to 1, relief of its true height";
+        return Err(Wrong::value(name, "relief", device.relief, help));
+    }
+    if !is_curve(&device.pressure_curve) {
+        let help = "points [sensed, given] that rise from [0, 0] to [1, 1], at most 32";
+        let curve = &device.pressure_curve;
+        return Err(Wrong::value(name, "pressure_curve", curve, help));
+    }
+    Ok(())
 }
 
 /// Desk lengths per device length.
@@ -212,32 +252,6 @@ fn is_curve(points: &[[f64; 2]]) -> bool {
         && points.first() == Some(&[0.0, 0.0])
         && points.last() == Some(&[1.0, 1.0])
         && points.windows(2).all(rises)
-}
-
-/// A wrong value: what is wrong, the key and value by which its line is found, what to do.
-pub(super) struct Wrong {
-    pub(super) what: String,
-    pub(super) key: &'static str,
-    pub(super) value: String,
-    pub(super) help: String,
-}
-
-impl Wrong {
-    fn fault(self, text: &str, name: &str) -> UserError {
-        UserError::usage(self.what)
-            .at(format!("{name}:{}", line_of(text, self.key, &self.value)))
-            .help(self.help)
-    }
-
-    /// The value of `key` in the section called `owner`.
-    fn value(owner: &str, key: &'static str, value: impl std::fmt::Debug, help: &str) -> Self {
-        Self {
-            what: format!("{key} = {value:?} of '{owner}'"),
-            key,
-            value: String::new(),
-            help: help.into(),
-        }
-    }
 }
 
 fn unique<'a>(
@@ -295,22 +309,6 @@ pub(super) fn choose(
     } else {
         Err(unknown(kind, name, names.iter().copied()))
     }
-}
-
-/// The line, from 1, on which `key` and `value` first stand together: one that begins with the key, or else any.
-fn line_of(text: &str, key: &str, value: &str) -> usize {
-    let is_key = |line: &str| {
-        let rest = line.trim_start().strip_prefix(key);
-        rest.is_some_and(|rest| {
-            !rest.starts_with(|next: char| next.is_alphanumeric() || next == '_')
-        })
-    };
-    let begins = text
-        .lines()
-        .position(|line| is_key(line) && line.contains(value));
-    let holds = |line: &str| line.contains(key) && line.contains(value);
-    let place = begins.or_else(|| text.lines().position(holds));
-    place.map_or(1, |place| place + 1)
 }
 
 #[cfg(test)]

@@ -1,24 +1,32 @@
 //! Keys of a `[[device]]` that its driver would ignore.
 
-use super::check::Wrong;
 use super::device::{DeviceSection, LIBRARY_DRIVERS, PEN_DRIVERS};
+use super::wrong::Wrong;
 
-/// Refuses what the driver of a device would ignore.
+/// Rejects keys that the driver of a device would ignore.
 pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
+    for (key, is_ignored, help) in keys(device) {
+        if is_ignored {
+            return Err(Wrong {
+                what: format!(
+                    "{key} of '{}' does nothing: its driver is {}",
+                    device.name, device.driver
+                ),
+                key,
+                value: String::new(),
+                help: help.into(),
+            });
+        }
+    }
+    check_library(device)?;
+    check_clutch(device)
+}
+
+/// Keys that some drivers ignore: true where the device has one in vain, and advice.
+fn keys(device: &DeviceSection) -> [(&'static str, bool, &'static str); 10] {
     let driver = device.driver.as_str();
-    let wrong = |key: &'static str, help: &str| {
-        Err(Wrong {
-            what: format!(
-                "{key} of '{}' does nothing: its driver is {driver}",
-                device.name
-            ),
-            key,
-            value: String::new(),
-            help: help.into(),
-        })
-    };
     let usual = DeviceSection::new(&device.name, driver, &device.brush);
-    let ignored = [
+    [
         (
             "hand",
             device.hand.is_some() && driver != "simulated",
@@ -70,12 +78,11 @@ pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
             device.relief != usual.relief && device.is_hid(),
             "take it out: this device gives no force",
         ),
-    ];
-    for (key, is_ignored, help) in ignored {
-        if is_ignored {
-            return wrong(key, help);
-        }
-    }
+    ]
+}
+
+/// Rejects the relative path of a library: the system would look for it elsewhere.
+fn check_library(device: &DeviceSection) -> Result<(), Wrong> {
     if let Some(library) = &device.library
         && !library.is_absolute()
         && library.file_name() != Some(library.as_os_str())
@@ -88,13 +95,18 @@ pub(super) fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
                 .into(),
         });
     }
+    Ok(())
+}
+
+/// Rejects a clutch of a device that lets go of the desk by itself.
+fn check_clutch(device: &DeviceSection) -> Result<(), Wrong> {
     let mut actions = device.switches.iter().flatten();
     if device.is_hid() && actions.any(|action| action == "clutch") {
-        let help = "choose another action: who lifts a pen, or lets go of a 6-DOF mouse, has let go of the desk";
+        let help = "choose another action: lifting a pen, or letting go of a 6-DOF mouse, is a clutch already";
         return Err(Wrong {
             what: format!(
-                "the switch 'clutch' of '{}' does nothing: its driver is {driver}",
-                device.name
+                "the switch 'clutch' of '{}' does nothing: its driver is {}",
+                device.name, device.driver
             ),
             key: "switches",
             value: "clutch".into(),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use maulstick_types::scene::default_model;
 use serde::{Deserialize, Serialize};
 
-use crate::size::parse_bytes;
+use crate::size::{SizeError, parse_bytes};
 
 /// Backends of paint and colour.
 pub const BACKENDS: [&str; 3] = ["auto", "cpu", "gpu"];
@@ -46,15 +46,26 @@ pub struct PaintingRoom {
     pub record: Option<u64>,
 }
 
+/// Sizes that a painting cannot have.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RoomError {
+    /// A text that is not a size.
+    #[error(transparent)]
+    Size(#[from] SizeError),
+    /// Less memory than a painting takes.
+    #[error("a memory of {0} is less than 64M")]
+    Memory(String),
+}
+
 impl PaintSection {
-    /// Room in memory, and of history and record if that is set.
+    /// Bounds of memory, and of history and record where they are set.
     ///
     /// # Errors
-    /// The error, in words.
-    pub fn room(&self) -> Result<PaintingRoom, String> {
+    /// [`RoomError`].
+    pub fn room(&self) -> Result<PaintingRoom, RoomError> {
         let memory = parse_bytes(&self.memory)?;
         if memory < MEMORY_MIN {
-            return Err(format!("a memory of {} is less than 64M", self.memory));
+            return Err(RoomError::Memory(self.memory.clone()));
         }
         let bytes = |size: &Option<String>| size.as_deref().map(parse_bytes).transpose();
         Ok(PaintingRoom {

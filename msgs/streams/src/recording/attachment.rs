@@ -92,9 +92,10 @@ impl Attachment {
         let mut crc = [0; 4];
         file.read_exact_at(&mut crc, end)?;
         let crc = u32::from_le_bytes(crc);
-        match crc == 0 || crc == hasher.finalize() {
-            true => Ok(()),
-            false => Err(damaged()),
+        if crc == 0 || crc == hasher.finalize() {
+            Ok(())
+        } else {
+            Err(damaged())
         }
     }
 }

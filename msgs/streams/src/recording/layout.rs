@@ -44,16 +44,16 @@ impl Stretch {
 /// Layout of a recording.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Layout {
-    /// What has its messages, in order of time.
+    /// Chunks and messages, in order of time.
     pub(super) stretches: Vec<Stretch>,
     pub(super) topics: BTreeMap<u16, Topic>,
     /// Topics whose messages are not those of the bus.
     pub(super) foreign: BTreeMap<u16, ForeignChannel>,
-    /// What it says of itself, by name.
+    /// Notes about the recording, by name.
     pub(super) notes: BTreeMap<String, BTreeMap<String, String>>,
     /// Files that it holds, by name.
     pub(super) attachments: BTreeMap<String, Attachment>,
-    /// What is wrong with it, if anything is.
+    /// Damage, if there is any.
     pub(super) damage: Option<String>,
 }
 
@@ -140,7 +140,7 @@ impl Layout {
             match record.opcode {
                 op::CHUNK => {
                     let unpacked = unpack(record.body);
-                    let mut times_ns = NEVER;
+                    let mut times_ns = NO_TIMES;
                     for own in records(&unpacked.bytes, 0).filter(|own| own.whole) {
                         channels.add(&own);
                         times_ns = with(times_ns, &own);
@@ -176,7 +176,7 @@ impl Layout {
             _ => self.stretches.push(Stretch {
                 at,
                 bytes,
-                times_ns: with(NEVER, record),
+                times_ns: with(NO_TIMES, record),
                 is_chunk: false,
             }),
         }
@@ -279,7 +279,7 @@ impl Channels {
 }
 
 /// Times of no message.
-const NEVER: [u64; 2] = [u64::MAX, 0];
+const NO_TIMES: [u64; 2] = [u64::MAX, 0];
 
 /// Times with that of a record, if it is a message.
 fn with([first, last]: [u64; 2], record: &Found<'_>) -> [u64; 2] {
@@ -289,7 +289,7 @@ fn with([first, last]: [u64; 2], record: &Found<'_>) -> [u64; 2] {
     }
 }
 
-/// What is left of a range of bytes beside the parts of it that are known.
+/// Rest of a range of bytes beside the parts of it that are known.
 fn gaps(mut known: Vec<[u64; 2]>, [from, to]: [u64; 2]) -> Vec<[u64; 2]> {
     known.sort_unstable();
     known.push([to, to]);

@@ -46,7 +46,7 @@ pub struct Topic {
     pub name: String,
     /// Name and version of its messages, where they are known.
     pub message: Option<String>,
-    /// How its messages are decoded, or why they cannot be.
+    /// Field table of its messages, or the reason why they cannot be decoded.
     pub table: Result<FieldTable, TableError>,
 }
 
@@ -102,7 +102,7 @@ impl Topic {
         self.table.as_ref().is_ok_and(|table| table.has(path))
     }
 
-    /// What a message holds.
+    /// Decodes a message.
     ///
     /// # Errors
     /// [`TableError`].
@@ -122,7 +122,7 @@ impl Recording {
         let file = File::open(path).map_err(reading)?;
         let length = file.metadata().map_err(reading)?.len();
         if read_at(&file, length, 0, MAGIC.len() as u64).map_err(reading)? != MAGIC {
-            return Err(UserError::usage("this is no MCAP file")
+            return Err(UserError::usage("this is not an MCAP file")
                 .at(path.display().to_string())
                 .help("`maulstick recording record` writes recordings"));
         }
@@ -140,7 +140,7 @@ impl Recording {
         &self.path
     }
 
-    /// What it says of itself, by name.
+    /// Notes about the recording, by name.
     #[must_use]
     pub fn notes(&self) -> &BTreeMap<String, BTreeMap<String, String>> {
         &self.layout.notes
@@ -177,7 +177,7 @@ impl Recording {
         }
     }
 
-    /// What is wrong with it, if anything is known.
+    /// Damage, if any is known.
     #[must_use]
     pub fn damage(&self) -> Option<&str> {
         self.layout.damage.as_deref()
@@ -235,9 +235,10 @@ impl Recording {
     pub fn foreign(&mut self) -> Result<Vec<ForeignTopic>, UserError> {
         let mut counts = BTreeMap::<u16, (u64, u64, [u64; 2])>::new();
         let channels = self.layout.foreign.clone();
-        let stretches = match channels.is_empty() {
-            true => Vec::new(),
-            false => self.layout.stretches.clone(),
+        let stretches = if channels.is_empty() {
+            Vec::new()
+        } else {
+            self.layout.stretches.clone()
         };
         for stretch in &stretches {
             self.records_of(stretch, &mut |record| {
@@ -260,9 +261,10 @@ impl Recording {
                 encoding: channel.encoding,
                 messages,
                 bytes,
-                rate_hz: match messages >= 2 && passed_s > 0.0 {
-                    true => (messages - 1) as f64 / passed_s,
-                    false => 0.0,
+                rate_hz: if messages >= 2 && passed_s > 0.0 {
+                    (messages - 1) as f64 / passed_s
+                } else {
+                    0.0
                 },
             }
         };

@@ -55,10 +55,11 @@ pub(crate) fn write(path: &Path, ends: bool) {
             writer.flush().expect("flushed");
         }
     }
-    match ends {
-        true => writer.finish().expect("finished"),
+    if ends {
+        writer.finish().expect("finished")
+    } else {
         // As a killed process leaves it: what was flushed, and no end.
-        false => std::mem::forget(writer),
+        std::mem::forget(writer)
     }
 }
 

@@ -1,4 +1,4 @@
-//! What a command wrote or found.
+//! Results of commands.
 
 use std::fmt;
 
@@ -6,10 +6,10 @@ use crate::mixture::Mixture;
 use crate::paint::StepName;
 use crate::scene::Layer;
 use crate::wire::define::wire_enum;
-use crate::wire::worded::Worded;
+use crate::wire::worded::{Worded, words_alternative};
 
 wire_enum! {
-    /// What a command wrote or found. A window says it in its own words; logs and command lines as `Display` does.
+    /// Result of a command. A window has its own words for it; logs and command lines use `Display`.
     pub enum Detail {
         /// Nothing to report.
         Nothing,
@@ -73,10 +73,5 @@ impl Worded for Detail {
         Self::say(words)
     }
 
-    fn words(&self) -> Option<&str> {
-        match self {
-            Self::Words { words } => Some(words),
-            _ => None,
-        }
-    }
+    words_alternative!();
 }

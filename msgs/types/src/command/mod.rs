@@ -12,8 +12,9 @@ use crate::command::advice::Advice;
 pub use crate::command::detail::Detail;
 pub use crate::command::session::SessionCommand;
 use crate::edit::Edit;
+use crate::limits::{CELLS, CELLS_IN_ALL, CELLS_M, STAINS_M};
 use crate::mixture::Mixture;
-use crate::scene::{CANVAS, STAINS_M};
+use crate::scene::CANVAS;
 use crate::values::{
     BrushName, BrushToml, DeviceName, DeviceToml, MaterialName, ValueError, WholePath,
 };
@@ -23,39 +24,6 @@ use crate::wire::define::{message, wire_enum, wire_struct};
 pub const PAINT_NODE: &str = "paint";
 /// Name of the launcher, which carries out commands to the rig as a whole.
 pub const RIG_NODE: &str = "rig";
-
-/// A path of a command has at most this many bytes; Linux takes no longer ones.
-pub const PATH_MAX: usize = 4096;
-/// A mixture of a command has at most this many parts.
-pub const PARTS_MAX: usize = 64;
-/// The name of a paint has at most this many bytes.
-pub const PAINT_NAME_MAX: usize = 128;
-/// The name of a layer has at most this many bytes.
-pub const LAYER_NAME_MAX: usize = 128;
-/// The name of a version has at most this many bytes.
-pub const VERSION_NAME_MAX: usize = 128;
-/// How thick a film of paint can be laid, m.
-pub const FILM_M: std::ops::RangeInclusive<f64> = 1e-6..=5e-3;
-/// A brush file has at most this many bytes.
-pub const BRUSH_FILE_MAX: usize = 1_000_000;
-/// The name of a device has at most this many bytes.
-pub const DEVICE_NAME_MAX: usize = 128;
-/// The settings of a device have at most this many bytes.
-pub const DEVICE_MAX: usize = 1 << 16;
-/// A spectrum of a command has at most this many bytes.
-pub const SPECTRUM_MAX: usize = 1 << 18;
-/// How long a drying may take, in sixtieths of a second: up to a year.
-pub const DRYING_TICKS: std::ops::RangeInclusive<u32> = 1..=60 * 60 * 60 * 24 * 365;
-/// Sides of a cell, m.
-pub const CELLS_M: std::ops::RangeInclusive<f64> = 1e-5..=1e-2;
-/// Cells of a canvas either way: half of one is rounded up.
-pub const CELLS: std::ops::RangeInclusive<f64> = 0.5..=65_536.0;
-/// Cells of a new canvas in all, at most: twice what can be shown in comfort on a large machine.
-pub const CELLS_IN_ALL: f64 = 1_073_741_824.0;
-/// A surface has at most this many wells.
-pub const WELLS_MAX: usize = 64;
-/// Factors on the stiffness of a brush.
-pub const STIFFNESS: std::ops::RangeInclusive<f64> = 0.05..=20.0;
 
 wire_struct! {
     /// A place in a brush's stream: a command with it enters the journal right after that state.
@@ -70,7 +38,7 @@ wire_struct! {
 }
 
 wire_struct! {
-    /// What a new painting is painted on.
+    /// Canvas of a new painting.
     #[serde(try_from = "CanvasFields")]
     pub struct NewCanvas {
         /// Width, m.
@@ -143,14 +111,15 @@ impl NewCanvas {
         if width * height > CELLS_IN_ALL {
             return Err(ValueError::Cells(width * height));
         }
-        match STAINS_M.contains(&self.stain_m) {
-            true => Ok(()),
-            false => Err(ValueError::Range {
+        if STAINS_M.contains(&self.stain_m) {
+            Ok(())
+        } else {
+            Err(ValueError::Range {
                 what: "stain",
                 value: self.stain_m * 1e6,
                 unit: " µm",
                 range: "0 to 1000",
-            }),
+            })
         }
     }
 }
@@ -175,7 +144,7 @@ wire_struct! {
         pub step: u32,
         /// Profile of a PNG: `srgb`, `display-p3`; that of the rig if empty.
         pub profile: String,
-        /// How colours of a PNG come into its gamut: `soft`, `clamp`; as in the rig if empty.
+        /// Mapping of a PNG's colours into its gamut: `soft`, `clamp`; as in the rig if empty.
         pub gamut: String,
     }
 }
@@ -185,9 +154,10 @@ wire_struct! {
 /// # Errors
 /// [`ValueError::Bits`].
 pub fn png_bits(bits: u32) -> Result<u32, ValueError> {
-    match [8, 16].contains(&bits) {
-        true => Ok(bits),
-        false => Err(ValueError::Bits(bits)),
+    if [8, 16].contains(&bits) {
+        Ok(bits)
+    } else {
+        Err(ValueError::Bits(bits))
     }
 }
 
@@ -215,11 +185,11 @@ impl ExportOrder {
 }
 
 wire_struct! {
-    /// The painting, with its history, in another file, in which it goes on.
+    /// The painting, with its history, in another file, in which it continues.
     pub struct SaveAs {
         /// The whole path of the file.
         pub path: WholePath,
-        /// Whether a painting that is there already may go.
+        /// True if a painting at that path may be replaced.
         pub replace: bool,
     }
 }
@@ -236,7 +206,7 @@ wire_enum! {
         File(FileCommand),
         /// The node of a brush.
         Brush(BrushCommand),
-        /// The launcher: the rig goes on in another painting.
+        /// The launcher: the rig continues in another painting.
         Rig(RigCommand),
         /// The paint node: a recorded session is painted again.
         Session(SessionCommand),
@@ -244,7 +214,7 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// What takes its place in the journal besides edits.
+    /// Commands that have a place in the journal besides edits.
     pub enum TakeCommand {
         /// Announces a take: only announced takes paint. Each new stroke takes the next load in
         /// turn; without loads the brush keeps what it has.
@@ -257,7 +227,7 @@ wire_enum! {
             device_epoch: u32,
             /// The loads.
             loads: Vec<Mixture>,
-            /// Whether it begins again, after a crash: what was painted of it is undone first.
+            /// True if it begins again after a crash: its strokes so far are undone first.
             again: bool,
         },
         /// Ends nothing and changes nothing: its reply says that the place it names is reached.
@@ -273,15 +243,15 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// What the paint node does with files while it is painted on.
+    /// Commands about files, which the paint node carries out beside the painting.
     pub enum FileCommand {
         /// Writes the painting for other programs.
         Export(ExportOrder),
-        /// Ends the export that goes on: its file is not written.
+        /// Cancels the running export: its file is not written.
         StopExport,
         /// Puts the painting into another file.
         SaveAs(SaveAs),
-        /// Writes a copy of the painting, with its history; painting goes on where it was.
+        /// Writes a copy of the painting, with its history; painting continues where it was.
         Copy {
             /// The whole path of the copy, which is not there yet.
             path: WholePath,
@@ -290,7 +260,7 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// What a brush's own node does.
+    /// Commands to a brush node.
     pub enum BrushCommand {
         /// Gives a brush another file.
         Define {
@@ -303,22 +273,22 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// What the launcher does.
+    /// Commands to the launcher.
     pub enum RigCommand {
         /// Goes on in another painting.
         Open {
             /// The whole path of a painting that there is.
             path: WholePath,
-            /// Whether what was painted in memory alone may go.
+            /// True if a painting that is in memory alone may be discarded.
             forget: bool,
         },
-        /// Begins another painting and goes on in it.
+        /// Begins another painting and continues in it.
         New {
             /// The whole path of its file, which is not there yet; in memory alone if absent.
             path: Option<WholePath>,
-            /// What it is painted on.
+            /// Its canvas.
             canvas: NewCanvas,
-            /// Whether what was painted in memory alone may go.
+            /// True if a painting that is in memory alone may be discarded.
             forget: bool,
         },
         /// As [`FileCommand::SaveAs`], so that the rig starts with that file again.
@@ -381,7 +351,7 @@ message! {
         pub number: u64,
         /// Where it takes its place in the journal; at once if absent.
         pub after: Option<After>,
-        /// What it does.
+        /// The command.
         pub command: Command,
     }
 }
@@ -397,13 +367,13 @@ impl CommandRequest {
 }
 
 wire_enum! {
-    /// What became of a command.
+    /// Outcome of a command.
     pub enum Outcome {
         /// It is done.
         Done {
             /// Its index in the journal.
             journal: u64,
-            /// What it wrote or found.
+            /// Its result.
             #[serde(deserialize_with = "crate::wire::worded::read")]
             detail: Detail,
         },
@@ -411,9 +381,9 @@ wire_enum! {
         Waiting,
         /// It was not done.
         Refused {
-            /// What is wrong.
+            /// The reason.
             what: String,
-            /// What to do about it; each front end has its own words for it.
+            /// Advice; each front end has its own words for it.
             advice: Advice,
         },
     }
@@ -444,7 +414,7 @@ message! {
     pub struct CommandReply [version 3, at most 65536 bytes] {
         /// The command's number.
         pub number: u64,
-        /// What became of it.
+        /// Its outcome.
         pub outcome: Outcome,
     }
 }

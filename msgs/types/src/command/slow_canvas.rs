@@ -7,7 +7,7 @@ pub const SLOW_CELL_M: f64 = 6.25e-5;
 /// A canvas of more cells takes long to draw.
 pub const SLOW_CELLS: f64 = 100e6;
 
-/// True if painting on so many cells with sides of `cell_m`, m, is slow.
+/// True if painting on this number of cells with sides of `cell_m`, m, is slow.
 #[must_use]
 pub fn is_slow(cell_m: f64, cells: f64) -> bool {
     cell_m < SLOW_CELL_M * (1.0 - 1e-9) || cells > SLOW_CELLS

@@ -3,18 +3,18 @@
 use std::fmt;
 
 use crate::wire::define::wire_enum;
-use crate::wire::worded::Worded;
+use crate::wire::worded::{Worded, words_alternative};
 
 wire_enum! {
-    /// A decision of the paint node itself. A window says it in its own words; the log of a painting as `Display` does.
+    /// A decision of the paint node itself. A window has its own words for it; the log of a painting uses `Display`.
     #[derive(Eq)]
     pub enum Decision {
-        /// What computes the paint.
+        /// Backend that computes the paint.
         Backend {
             /// `cpu`, or `gpu` and the adapter's name.
             name: String,
         },
-        /// What computes the paint from now on, for the backend before has failed.
+        /// Backend that computes the paint from now on, because the one before has failed.
         Fallback {
             /// As that of `Backend`.
             name: String,
@@ -26,7 +26,7 @@ wire_enum! {
             /// Error of the backend.
             why: String,
         },
-        /// The painting goes on after its program ended: what its brushes did last is not joined to what they do next.
+        /// The painting continues after its program ended: its brushes' last contacts are not joined to their next ones.
         Resumed,
         /// Painting falls behind, and a lighter paint model is proposed.
         LighterModel {
@@ -78,12 +78,7 @@ impl Worded for Decision {
         }
     }
 
-    fn words(&self) -> Option<&str> {
-        match self {
-            Self::Words { words } => Some(words),
-            _ => None,
-        }
-    }
+    words_alternative!();
 }
 
 #[cfg(test)]

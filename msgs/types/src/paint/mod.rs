@@ -65,7 +65,7 @@ wire_enum! {
             client: u64,
             /// Its number.
             number: u64,
-            /// What it does.
+            /// The command.
             command: Command,
         },
         /// A sixtieth of a second of flowing or drying.
@@ -190,7 +190,7 @@ message! {
 }
 
 wire_struct! {
-    /// A drying that goes on.
+    /// A running drying.
     pub struct DryingStatus {
         /// Share of its time that went by, 0 to 1.
         pub share: f32,
@@ -202,7 +202,7 @@ wire_struct! {
 }
 
 wire_struct! {
-    /// An export that goes on.
+    /// A running export.
     pub struct ExportStatus {
         /// Its file.
         pub path: String,
@@ -218,7 +218,7 @@ wire_struct! {
     pub struct HistoryStep {
         /// Its number.
         pub id: u64,
-        /// What it was.
+        /// Its name.
         #[serde(deserialize_with = "crate::wire::worded::read")]
         pub what: StepName,
         /// True if it is done, false if it was undone.
@@ -273,7 +273,7 @@ message! {
         pub take: bool,
         /// Layer that dries on the canvas.
         pub drying: Option<DryingStatus>,
-        /// The export that goes on.
+        /// The running export.
         pub export: Option<ExportStatus>,
         /// Backend of the paint: `cpu`, or `gpu` and the adapter's name.
         pub backend: String,

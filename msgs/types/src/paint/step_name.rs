@@ -3,10 +3,10 @@
 use std::fmt;
 
 use crate::wire::define::wire_enum;
-use crate::wire::worded::Worded;
+use crate::wire::worded::{Worded, words_alternative};
 
 wire_enum! {
-    /// Name of a step of the history. A window says it in its own words; logs and command lines as `Display` does.
+    /// Name of a step of the history. A window has its own words for it; logs and command lines use `Display`.
     #[derive(Eq)]
     pub enum StepName {
         /// A stroke of a brush.
@@ -61,10 +61,10 @@ wire_enum! {
         },
         /// Several steps that were merged.
         Merged {
-            /// How many.
+            /// Their number.
             count: u64,
         },
-        /// What is before the first step.
+        /// State before the first step.
         Beginning,
         /// A stroke that was dropped before it was painted.
         Unpainted,
@@ -214,12 +214,7 @@ impl Worded for StepName {
         Self::Words { words }
     }
 
-    fn words(&self) -> Option<&str> {
-        match self {
-            Self::Words { words } => Some(words),
-            _ => None,
-        }
-    }
+    words_alternative!();
 }
 
 #[cfg(test)]

@@ -1,37 +1,29 @@
-//! What lies on the desk: surfaces, paints, light. The paint node owns it.
+//! The desk: surfaces, paints, light. The paint node owns it.
 
 mod fault;
+mod light;
 
 use crate::mixture::Mixture;
+use crate::nearest::choice;
 use crate::pose::Pose;
 use crate::values::ValueError;
 use crate::wire::define::{message, wire_enum, wire_struct};
+
+pub use light::{ILLUMINANT_NAME_MAX, INTENSITY, Light, LightError, RULES, SAMPLES};
 
 /// The canvas.
 pub const CANVAS: u32 = 0;
 /// The palette.
 pub const PALETTE: u32 = 1;
-/// Factors on the light's strength and on what the eye makes of it.
-pub const INTENSITY: std::ops::RangeInclusive<f64> = 0.0..=100.0;
-/// Names of the sampling rules.
-pub const RULES: [&str; 3] = ["gauss", "fitted", "reference"];
-/// Wavelengths of the rules `gauss` and `fitted`.
-pub const SAMPLES: std::ops::RangeInclusive<u32> = 4..=16;
-/// Flow of a marker for which nothing is said: 4 µm along a millimetre.
+/// Default flow of a marker: 4 µm along a millimetre.
 pub const MARKER_FLOW: f64 = 4e-3;
-/// Flows of a marker.
-pub const FLOWS: std::ops::RangeInclusive<f64> = 1e-6..=0.1;
-/// Thickness that stays however hard it is brushed, m.
-pub const STAINS_M: std::ops::RangeInclusive<f64> = 0.0..=1e-3;
-/// The name of an illuminant has at most this many bytes.
-pub const ILLUMINANT_NAME_MAX: usize = 128;
 
 wire_enum! {
-    /// What a round region of the palette does.
+    /// Function of a round region of the palette.
     pub enum WellKind {
         /// Holds a mixture that never runs out.
         Paint {
-            /// What it holds.
+            /// Its mixture.
             mixture: Mixture,
         },
         /// Takes all paint off the brush.
@@ -48,7 +40,7 @@ wire_struct! {
         pub center_m: [f64; 2],
         /// Radius, m.
         pub radius_m: f64,
-        /// What it does.
+        /// Its function.
         pub kind: WellKind,
     }
 }
@@ -78,7 +70,7 @@ wire_struct! {
         /// Thickness of paint that stays however hard it is brushed, m: little on a canvas that is
         /// heavily sized (Baxter 2004, § 6.4.1).
         pub stain_m: f64,
-        /// Whether paint that brushes take up from it stays there all the same (Baxter 2004, § 6.7).
+        /// True if paint that brushes take up from it is not used up (Baxter 2004, § 6.7).
         pub piles_last: bool,
         /// Name of the model of its paint.
         #[serde(default = "default_model")]
@@ -99,7 +91,7 @@ pub fn default_stain_m() -> f64 {
 }
 
 wire_enum! {
-    /// What a brush does (Baxter 2004, § 6.8).
+    /// Mode of a brush (Baxter 2004, § 6.8).
     pub enum BrushMode {
         /// It pushes paint, leaves some and takes some up.
         Normal,
@@ -119,11 +111,11 @@ wire_enum! {
 }
 
 wire_struct! {
-    /// How a brush is used.
+    /// Use of a brush.
     pub struct BrushHandling {
         /// Name of the brush.
         pub brush: String,
-        /// What it does.
+        /// Its mode.
         pub mode: BrushMode,
         /// Flow of the marker: thickness that it leaves along a metre of its way, m/m.
         pub flow: f64,
@@ -162,7 +154,7 @@ impl std::str::FromStr for BrushMode {
             ValueError::Unknown {
                 what: "mode",
                 name: name.chars().take(40).collect(),
-                choice: crate::command::advice::choice(name, names),
+                choice: choice(name, names),
             }
         })
     }
@@ -192,35 +184,6 @@ wire_struct! {
         pub tint: [f32; 3],
         /// Hash of the paint file.
         pub file_hash: u32,
-    }
-}
-
-wire_struct! {
-    /// The lamp, and how its light becomes colour.
-    pub struct Light {
-        /// Toward the lamp, canvas frame; of any length.
-        pub direction: [f64; 3],
-        /// Factor on the light's strength.
-        pub intensity: f64,
-        /// Name of the spectrum.
-        pub illuminant: String,
-        /// The spectrum itself where it is none of the CIE's: relative power at 101 wavelengths,
-        /// 380 to 780 nm; empty for one that is known by its name.
-        pub spectrum: Vec<f64>,
-        /// Factor of the eye, or camera, that looks at it.
-        pub exposure: f64,
-        /// Factor on the slopes of the relief.
-        pub relief: f64,
-        /// Tangent of half the angle under which the lamp is seen: how soft shadows are.
-        pub softness: f64,
-        /// Year of the CIE observer: 1931 or 1964.
-        pub observer: u32,
-        /// Sampling rule: `gauss`, `fitted` or `reference`.
-        pub rule: String,
-        /// Wavelengths of the rule, 4 to 16; `reference` has 101.
-        pub samples: u32,
-        /// Whether the eye is adapted to the light's white; if not, its cast stays.
-        pub adapted: bool,
     }
 }
 
@@ -257,13 +220,13 @@ wire_struct! {
         pub name: String,
         /// The version that it was painted from; empty where that was none.
         pub parent: String,
-        /// Whether the painter goes on from here.
+        /// True if the painter continues from here.
         pub here: bool,
     }
 }
 
 wire_struct! {
-    /// How a brush was changed while painting.
+    /// Changes of a brush while painting.
     pub struct Tuning {
         /// Name of the brush.
         pub brush: String,
@@ -271,107 +234,6 @@ wire_struct! {
         pub stiffness: f64,
         /// From 0, as in its file, to 1, soaked: a soaked head is half as stiff.
         pub wetness: f64,
-    }
-}
-
-impl Default for Light {
-    /// Average daylight from the upper left.
-    fn default() -> Self {
-        Self {
-            direction: [-0.5, 0.5, 0.7],
-            intensity: 1.0,
-            illuminant: "D65".to_owned(),
-            spectrum: Vec::new(),
-            exposure: 1.0,
-            relief: 1.0,
-            softness: 0.3,
-            observer: 1931,
-            rule: "fitted".to_owned(),
-            samples: 16,
-            adapted: true,
-        }
-    }
-}
-
-/// A light that cannot be.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum LightError {
-    /// A number out of range.
-    #[error("the {name} is {value}: choose {least} to {most}")]
-    Range {
-        /// The quantity.
-        name: &'static str,
-        /// The number.
-        value: f64,
-        /// The least that it can be.
-        least: f64,
-        /// The most.
-        most: f64,
-    },
-    /// A lamp below the canvas, or of no direction.
-    #[error("the light must come from above the canvas: give x, y, z with z > 0")]
-    Below,
-    /// The name of a spectrum that is too long.
-    #[error("an illuminant's name of {0} bytes: it has at most {ILLUMINANT_NAME_MAX}")]
-    Name(usize),
-    /// Powers that are no spectrum.
-    #[error("this is no spectrum: give 101 powers of 0 or more, not all of them 0")]
-    Spectrum,
-    /// An observer that the CIE does not have.
-    #[error("there is no CIE observer of {0}: take 1931 or 1964")]
-    Observer(u32),
-    /// An unknown sampling rule.
-    #[error("there is no such sampling rule: choose one of {}", RULES.join(", "))]
-    Rule,
-    /// Too few or too many wavelengths.
-    #[error("a rule of {0} samples: take 4 to 16")]
-    Samples(u32),
-}
-
-impl Light {
-    /// Checks that it shines, in bounds.
-    ///
-    /// # Errors
-    /// [`LightError`].
-    pub fn check(&self) -> Result<(), LightError> {
-        let bounded = [
-            ("intensity", self.intensity, INTENSITY),
-            ("exposure", self.exposure, INTENSITY),
-            ("relief strength", self.relief, 0.0..=10.0),
-            ("softness of shadows", self.softness, 0.0..=1.0),
-        ];
-        for (name, value, range) in bounded {
-            if !range.contains(&value) {
-                return Err(LightError::Range {
-                    name,
-                    value,
-                    least: *range.start(),
-                    most: *range.end(),
-                });
-            }
-        }
-        let length: f64 = self.direction.iter().map(|v| v * v).sum();
-        if !(1e-6..=1e6).contains(&length) || self.direction[2] <= 0.0 {
-            return Err(LightError::Below);
-        }
-        if self.illuminant.len() > ILLUMINANT_NAME_MAX {
-            return Err(LightError::Name(self.illuminant.len()));
-        }
-        let power = &self.spectrum;
-        let good = power.iter().all(|v| (0.0..=1e9).contains(v)) && power.iter().any(|v| *v > 0.0);
-        if !power.is_empty() && (power.len() != 101 || !good) {
-            return Err(LightError::Spectrum);
-        }
-        if ![1931, 1964].contains(&self.observer) {
-            return Err(LightError::Observer(self.observer));
-        }
-        if !RULES.contains(&self.rule.as_str()) {
-            return Err(LightError::Rule);
-        }
-        if self.rule != "reference" && !SAMPLES.contains(&self.samples) {
-            return Err(LightError::Samples(self.samples));
-        }
-        Ok(())
     }
 }
 
@@ -396,7 +258,7 @@ message! {
         pub light: Light,
         /// Brushes that are not as in their files.
         pub tunings: Vec<Tuning>,
-        /// What has dried, the oldest first.
+        /// Dry layers, the oldest first.
         pub layers: Vec<Layer>,
         /// The versions that were kept, by name.
         pub versions: Vec<NamedVersion>,
@@ -415,7 +277,7 @@ impl Scene {
             .map_or(1.0, Tuning::factor)
     }
 
-    /// How soaked the brush called `brush` is, 0 to 1.
+    /// Wetness of the brush called `brush`, 0 to 1.
     #[must_use]
     pub fn wetness(&self, brush: &str) -> f64 {
         let mut tunings = self.tunings.iter();

@@ -20,7 +20,7 @@ pub use texts::{
 };
 pub use ticks::{TICKS_A_SECOND, Ticks, ticks_in};
 
-use crate::stylus::FARTHEST_M;
+use crate::limits::FARTHEST_M;
 
 /// A value that a command cannot have.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -56,7 +56,7 @@ pub enum ValueError {
         text: String,
     },
     /// A blank name, or one with control characters.
-    #[error("a {what} is not blank and holds no line breaks")]
+    #[error("a {what} must not be blank or contain line breaks")]
     Unreadable {
         /// Its purpose.
         what: &'static str,
@@ -64,14 +64,14 @@ pub enum ValueError {
     /// A brush's name that no topic can carry.
     #[error("the brush's name {fault}")]
     Brush {
-        /// What is wrong with it.
+        /// The defect.
         fault: String,
     },
     /// A relative path, or one with a NUL.
-    #[error("a path begins at the root, for each program has a folder of its own")]
+    #[error("give the whole path from the root, for each program has a folder of its own")]
     NotWhole,
     /// A duration that cannot be read.
-    #[error("'{0}' is no time such as 90s, 20min or 2h, up to 365d")]
+    #[error("'{0}' is not a time such as 90s, 20min or 2h, up to 365d")]
     Time(String),
     /// A region that is empty, not finite or cannot be read.
     #[error("the region {0} is not X,Y,WxH in mm such as 10,20,60x40, or is empty")]
@@ -92,10 +92,10 @@ pub enum ValueError {
     )]
     Pose,
     /// A palette of too many wells.
-    #[error("a palette of {0} wells: it has at most 64")]
+    #[error("a palette has at most 64 wells, not {0}")]
     Wells(usize),
     /// A well that is not round, or out of reach.
-    #[error("a well with a radius of {0} mm: it is above 0, the middle within the surface")]
+    #[error("a well of radius {0} mm: choose a radius above 0, and a middle within the surface")]
     Well(f64),
     /// A mixture that is none.
     #[error(transparent)]
@@ -118,11 +118,11 @@ pub enum ValueError {
     #[error("a PNG of {0} bits per channel: choose 8 or 16")]
     Bits(u32),
     /// An option without effect.
-    #[error("{option} does nothing with {with}: leave it out")]
+    #[error("{option} has no effect with {with}: leave it out")]
     Idle {
         /// The option.
         option: &'static str,
-        /// What it stands beside.
+        /// Option beside which it has no effect.
         with: String,
     },
     /// A light out of range.

@@ -8,8 +8,7 @@ use serde::ser::{Serialize, Serializer};
 
 use super::ValueError;
 use crate::brush::ZOOMS;
-use crate::command::{FILM_M, STIFFNESS};
-use crate::scene::{FLOWS, STAINS_M};
+use crate::limits::{FILM_M, FLOWS, STAINS_M, STIFFNESS};
 use crate::wire::schema::{TypeTable, Wire};
 
 /// Reads a number, whole or not.
@@ -54,16 +53,13 @@ macro_rules! number {
             /// [`ValueError::Range`].
             pub fn new(value: $inner) -> Result<Self, ValueError> {
                 let good: fn(&$inner) -> bool = $good;
-                match good(&value) {
-                    true => Ok(Self(value)),
-                    false => Err(ValueError::Range {
+                if good(&value) { Ok(Self(value)) } else { Err(ValueError::Range {
                         what: $what,
                         // Without the noise of the last digits.
                         value: (f64::from(value) / $scale * 1e6).round() * 1e-6,
                         unit: $unit,
                         range: $range,
-                    }),
-                }
+                    }) }
             }
 
             /// A number in a painter's unit.
@@ -105,10 +101,7 @@ macro_rules! number {
 
         impl<'de> Deserialize<'de> for $name {
             fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-                let value = match from.is_human_readable() {
-                    true => Self::in_unit(from.deserialize_any(Number)?),
-                    false => Self::new(<$inner>::deserialize(from)?),
-                };
+                let value = if from.is_human_readable() { Self::in_unit(from.deserialize_any(Number)?) } else { Self::new(<$inner>::deserialize(from)?) };
                 value.map_err(D::Error::custom)
             }
         }
@@ -156,7 +149,7 @@ number! {
     Stiffness(f64) "stiffness", 1.0 "", "0.05 to 20" if |factor| STIFFNESS.contains(factor)
 }
 number! {
-    /// How soaked a brush is, from 0, as in its file, to 1.
+    /// Wetness of a brush, from 0, as in its file, to 1, soaked.
     Wetness(f64) "wetness", 1.0 "", "0 to 1" if |wetness| (0.0..=1.0).contains(wetness)
 }
 number! {
@@ -195,7 +188,7 @@ impl Default for Share {
 }
 
 impl FilmThickness {
-    /// The thickness of a film for which nothing is said, 50 µm.
+    /// Default thickness of a film, 50 µm.
     pub const USUAL: Self = Self(50.0 * 1e-6);
 }
 

@@ -7,7 +7,7 @@ use std::str::FromStr;
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
 
 use super::ValueError;
-use crate::command::{
+use crate::limits::{
     BRUSH_FILE_MAX, DEVICE_MAX, DEVICE_NAME_MAX, LAYER_NAME_MAX, PAINT_NAME_MAX, PATH_MAX,
     SPECTRUM_MAX, VERSION_NAME_MAX,
 };
@@ -29,12 +29,13 @@ impl Visitor<'_> for Word {
     }
 
     fn visit_i64<E: Error>(self, number: i64) -> Result<String, E> {
-        match number >= 0 {
-            true => Ok(number.to_string()),
-            false => Err(E::invalid_value(
+        if number >= 0 {
+            Ok(number.to_string())
+        } else {
+            Err(E::invalid_value(
                 serde::de::Unexpected::Signed(number),
                 &self,
-            )),
+            ))
         }
     }
 }
@@ -121,10 +122,7 @@ macro_rules! text {
 
         impl<'de> Deserialize<'de> for $name {
             fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-                let text = match from.is_human_readable() {
-                    true => from.deserialize_any(Word)?,
-                    false => String::deserialize(from)?,
-                };
+                let text = if from.is_human_readable() { from.deserialize_any(Word)? } else { String::deserialize(from)? };
                 Self::new(text).map_err(D::Error::custom)
             }
         }
@@ -141,17 +139,19 @@ macro_rules! text {
 
 fn bounded(what: &'static str, text: &str, most: usize) -> Result<(), ValueError> {
     let bytes = text.len();
-    match bytes > most {
-        true => Err(ValueError::Length { what, bytes, most }),
-        false => Ok(()),
+    if bytes > most {
+        Err(ValueError::Length { what, bytes, most })
+    } else {
+        Ok(())
     }
 }
 
 fn readable(what: &'static str, text: &str, most: usize) -> Result<(), ValueError> {
     bounded(what, text, most)?;
-    match text.trim().is_empty() || text.contains(char::is_control) {
-        true => Err(ValueError::Unreadable { what }),
-        false => Ok(()),
+    if text.trim().is_empty() || text.contains(char::is_control) {
+        Err(ValueError::Unreadable { what })
+    } else {
+        Ok(())
     }
 }
 
@@ -198,15 +198,12 @@ text! {
     /// A path that begins at the root.
     WholePath: |path| {
         bounded("path", path, PATH_MAX)?;
-        match path.starts_with('/') && !path.contains('\0') {
-            true => Ok(()),
-            false => Err(ValueError::NotWhole),
-        }
+        if path.starts_with('/') && !path.contains('\0') { Ok(()) } else { Err(ValueError::NotWhole) }
     }
 }
 
 impl BrushName {
-    /// The name of a rig's first brush for which nothing is said.
+    /// Default name of a rig's first brush.
     #[must_use]
     pub fn main() -> Self {
         Self("main".to_owned())

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
 
 use super::ValueError;
-use crate::command::DRYING_TICKS;
+use crate::limits::DRYING_TICKS;
 use crate::wire::schema::{TypeTable, Wire};
 
 /// Ticks of the painting's clock in a second.
@@ -32,9 +32,10 @@ impl Ticks {
     /// # Errors
     /// [`ValueError::Time`].
     pub fn new(ticks: u32) -> Result<Self, ValueError> {
-        match DRYING_TICKS.contains(&ticks) {
-            true => Ok(Self(ticks)),
-            false => Err(ValueError::Time(format!("{ticks}/{TICKS_A_SECOND}s"))),
+        if DRYING_TICKS.contains(&ticks) {
+            Ok(Self(ticks))
+        } else {
+            Err(ValueError::Time(format!("{ticks}/{TICKS_A_SECOND}s")))
         }
     }
 
@@ -58,9 +59,10 @@ pub fn ticks_in(text: &str) -> Result<u32, ValueError> {
     let count: f64 = digits.trim().parse().map_err(|_| wrong())?;
     let ticks = (count * seconds * f64::from(TICKS_A_SECOND)).round();
     let range = f64::from(*DRYING_TICKS.start())..=f64::from(*DRYING_TICKS.end());
-    match range.contains(&ticks) {
-        true => Ok(ticks as u32),
-        false => Err(wrong()),
+    if range.contains(&ticks) {
+        Ok(ticks as u32)
+    } else {
+        Err(wrong())
     }
 }
 
@@ -89,9 +91,10 @@ impl Visitor<'_> for Time {
 
 impl<'de> Deserialize<'de> for Ticks {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        match from.is_human_readable() {
-            true => from.deserialize_any(Time),
-            false => Self::new(u32::deserialize(from)?).map_err(D::Error::custom),
+        if from.is_human_readable() {
+            from.deserialize_any(Time)
+        } else {
+            Self::new(u32::deserialize(from)?).map_err(D::Error::custom)
         }
     }
 }

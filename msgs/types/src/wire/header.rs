@@ -48,7 +48,7 @@ impl Flags {
     }
 }
 
-/// Sender of a message: a number of its own, and one drawn at random at each start. Streams are told apart by
+/// Sender of a message: a number of its own, and one drawn at random at each start. Streams are distinguished by
 /// their topics: two devices may have chosen the same number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Origin {

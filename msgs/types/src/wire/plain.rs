@@ -20,9 +20,10 @@ pub fn plain(text: &str) -> Cow<'_, str> {
     }
     let mut line = String::with_capacity(text.len() + 8);
     for c in text.chars() {
-        match acts(c) {
-            true => write!(line, "{}", c.escape_default()).unwrap_or_default(),
-            false => line.push(c),
+        if acts(c) {
+            write!(line, "{}", c.escape_default()).unwrap_or_default()
+        } else {
+            line.push(c)
         }
     }
     Cow::Owned(line)

@@ -6,18 +6,22 @@ pub struct Topics {
     prefix: String,
 }
 
+/// A name that no topic can carry.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("'{0}' is not 1 to 32 letters, digits, '_' or '-'")]
+pub struct NameError(pub String);
+
 /// Checks the name of a rig, device, brush or node: 1 to 32 letters, digits, `_` and `-`.
 ///
 /// # Errors
-/// The error, in words.
-pub fn check_name(name: &str) -> Result<(), String> {
+/// [`NameError`].
+pub fn check_name(name: &str) -> Result<(), NameError> {
     let fits = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-    if name.is_empty() || name.len() > 32 || !name.chars().all(fits) {
-        return Err(format!(
-            "'{name}' is not 1 to 32 letters, digits, '_' or '-'"
-        ));
+    if (1..=32).contains(&name.len()) && name.chars().all(fits) {
+        Ok(())
+    } else {
+        Err(NameError(name.to_owned()))
     }
-    Ok(())
 }
 
 macro_rules! topics {
@@ -78,7 +82,7 @@ topics! {
     paint_status() = "paint/status";
     /// Frames that the window has completed: [`Presented`](crate::window::Presented).
     presented() = "ui/presented";
-    /// What a window has asked for and is not done: [`PendingOrders`](crate::window::PendingOrders).
+    /// Orders of a window that are not done yet: [`PendingOrders`](crate::window::PendingOrders).
     pending_orders() = "ui/pending";
     /// Commands, a query: [`CommandRequest`](crate::command::CommandRequest).
     command(node) = "command/{node}";

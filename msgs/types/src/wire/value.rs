@@ -63,9 +63,12 @@ impl Value {
     }
 
     fn add_columns(&self, path: String, paths: &mut Vec<String>) {
-        let below = |name: &str| match path.is_empty() {
-            true => name.to_owned(),
-            false => format!("{path}.{name}"),
+        let below = |name: &str| {
+            if path.is_empty() {
+                name.to_owned()
+            } else {
+                format!("{path}.{name}")
+            }
         };
         match self {
             Self::Fields(fields) | Self::Variant(_, fields) => {

@@ -11,6 +11,19 @@ pub trait Worded: Sized {
     fn words(&self) -> Option<&str>;
 }
 
+/// [`Worded::words`] of an enum whose alternative is called `Words`.
+macro_rules! words_alternative {
+    () => {
+        fn words(&self) -> Option<&str> {
+            match self {
+                Self::Words { words } => Some(words),
+                _ => None,
+            }
+        }
+    };
+}
+pub(crate) use words_alternative;
+
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum TypedOrWords<T> {

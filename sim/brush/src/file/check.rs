@@ -117,13 +117,16 @@ fn tuples(tuples: &[[f64; 3]]) -> Result<(), BrushError> {
     }
     for pair in tuples.windows(2) {
         let [[x0, y0, m0], [x1, y1, m1]] = [pair[0], pair[1]];
-        let rising = |field: &str, value: f64, holds: bool, range: String| match holds {
-            true => Ok(()),
-            false => Err(BrushError::Range {
-                field: field.to_owned(),
-                value,
-                range,
-            }),
+        let rising = |field: &str, value: f64, holds: bool, range: String| {
+            if holds {
+                Ok(())
+            } else {
+                Err(BrushError::Range {
+                    field: field.to_owned(),
+                    value,
+                    range,
+                })
+            }
         };
         rising(
             "force.hermite (depth)",

@@ -36,18 +36,18 @@ pub mod check;
 pub mod library;
 pub mod sections;
 
-use maulstick_types::command::BRUSH_FILE_MAX;
+use maulstick_types::limits::BRUSH_FILE_MAX;
 use serde::{Deserialize, Serialize};
 
 use self::check::within;
 use self::sections::{Contact, Force, Head, Load, Spines, Strips, Surface};
 
-/// A ferrule thinner than so many strips is a line.
+/// Thickness of a ferrule, in widths of a strip, below which it is a line.
 const THIN: f64 = 1.5;
-/// Strips narrower than so many cells cannot be told apart.
+/// Width of a strip, cells, below which strips merge on the canvas.
 const MOST_CELLS_WIDE: f64 = 2.0;
 /// The fewest strips of a thinned head.
-const FEWEST: usize = 24;
+const FEWEST_STRIPS: usize = 24;
 /// A width beyond by less than this share is not beyond.
 const ROUNDING: f64 = 1e-6;
 
@@ -194,7 +194,7 @@ impl BrushFile {
         Ok(brush)
     }
 
-    /// True if its strips stand in a line: its ferrule is thinner than so many strips are wide.
+    /// True if its strips stand in a line: its ferrule is hardly thicker than a strip is wide.
     #[must_use]
     pub fn is_line(&self) -> bool {
         2e3 * self.half_thickness_m(0.0) < THIN * self.strips.width_mm
@@ -209,7 +209,7 @@ impl BrushFile {
         let times = self.strips.count as f64 / strips.count.max(1) as f64;
         strips.width_mm *= times;
         strips.stands_for *= times;
-        (strips.count >= FEWEST && !brush.is_line()).then_some(brush)
+        (strips.count >= FEWEST_STRIPS && !brush.is_line()).then_some(brush)
     }
 
     /// The brush with as many strips as cells of `cell_m` can tell apart: halved as long as they are narrower than
@@ -220,7 +220,7 @@ impl BrushFile {
         self.halved_while(|brush| brush.strips.width_mm * 1e-3 <= most)
     }
 
-    /// The brush halved to no fewer than so many strips.
+    /// The brush with its strips halved as often as `strips` of them are left.
     #[must_use]
     pub fn thinned_to(&self, strips: usize) -> Self {
         self.halved_while(|brush| brush.strips.count >= strips)
@@ -258,9 +258,10 @@ impl BrushFile {
     #[must_use]
     pub fn half_thickness_m(&self, s: f64) -> f64 {
         let head = &self.head;
-        let profile = match head.thickness_profile.is_empty() {
-            true => &head.profile,
-            false => &head.thickness_profile,
+        let profile = if head.thickness_profile.is_empty() {
+            &head.profile
+        } else {
+            &head.thickness_profile
         };
         0.5e-3 * head.thickness_mm.unwrap_or(head.width_mm) * share_at(profile, s)
     }
@@ -273,23 +274,25 @@ impl BrushFile {
             sections::Outline::Flat => place[0],
             sections::Outline::Round => (place[0] * place[0] + place[1] * place[1]).sqrt(),
         };
-        match self.head.tip.is_empty() {
-            true => 1.0,
-            false => share_at(&self.head.tip, across),
+        if self.head.tip.is_empty() {
+            1.0
+        } else {
+            share_at(&self.head.tip, across)
         }
     }
 
     /// Stiffness at a place along the head, by that at the ferrule.
     #[must_use]
     pub fn stiffness_share(&self, s: f64) -> f64 {
-        match self.spines.stiffness_profile.is_empty() {
-            true => 1.0,
-            false => share_at(&self.spines.stiffness_profile, s),
+        if self.spines.stiffness_profile.is_empty() {
+            1.0
+        } else {
+            share_at(&self.spines.stiffness_profile, s)
         }
     }
 }
 
-/// The share at a place of a curve, which goes on level beyond its ends.
+/// The share at a place of a curve, which continues level beyond its ends.
 fn share_at(curve: &[[f64; 2]], place: f64) -> f64 {
     let after = curve
         .iter()

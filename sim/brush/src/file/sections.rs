@@ -88,7 +88,7 @@ pub enum Layout {
 pub struct Chain {
     /// Root in the brush frame, mm.
     pub root_mm: [f64; 3],
-    /// Its segments at rest, from the ferrule to the point: each goes on by this much, mm.
+    /// Its segments at rest, from the ferrule to the point: each continues by this much, mm.
     pub segments_mm: Vec<[f64; 3]>,
     /// Stiffness of the joint at the beginning of each segment, N·mm/rad.
     pub stiffness_n_mm: Vec<f64>,

@@ -63,12 +63,13 @@ impl HandlePath {
                 let turn = (end.rotation - from.pose.rotation) * second
                     - (from.pose.rotation - start) * first;
                 let gone = end.translation - from.pose.translation;
-                match h2 > PAUSE * h1 {
-                    true => (
+                if h2 > PAUSE * h1 {
+                    (
                         limited(place, gone),
                         limited_turn(turn, end.rotation - from.pose.rotation),
-                    ),
-                    false => (without_a_leap(place, gone), turn),
+                    )
+                } else {
+                    (without_a_leap(place, gone), turn)
                 }
             },
         );
@@ -242,7 +243,7 @@ mod tests {
         let farthest = farthest.fold(0.0, f64::max);
         assert!(farthest < 0.011, "{farthest} m");
         assert!(path.length_m() < 0.02, "{} m", path.length_m());
-        // A hand of 1.5 m/s that turns round within a frame goes on by what the parabola says.
+        // A hand of 1.5 m/s that turns round within a frame continues by what the parabola says.
         let turn = HandlePath::new(Some(&at(-0.024, 0)), &at(0.0, 16), &at(0.0, 32), 0.02);
         let [quarter, half] = [0.25, 0.5].map(|s| turn.at(s).translation.x);
         assert!((quarter - 0.00225).abs() < 1e-12 && (half - 0.003).abs() < 1e-12);

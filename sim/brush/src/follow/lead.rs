@@ -11,7 +11,7 @@ use maulstick_num::exp;
 /// Way along which the share 1 − 1/e of what is left is taken back, m.
 const BACK_M: f64 = 1e-3;
 /// Largest change of the lead along a path, in lengths of the path.
-const FASTEST: f64 = 4.0;
+const STEEPEST_LEAD: f64 = 4.0;
 
 /// Offset of a pen's handle from its point, m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -38,6 +38,6 @@ impl Lead {
         self.rest += beside * (exp(-way_m / BACK_M) - 1.0);
         self.rest = self.rest.clamp_length_max(0.5 * length_m);
         let lacking = self.rest - tabled - self.shift;
-        self.shift += lacking.clamp_length_max(FASTEST * way_m);
+        self.shift += lacking.clamp_length_max(STEEPEST_LEAD * way_m);
     }
 }

@@ -382,9 +382,10 @@ impl BrushModel {
             converged = self.bend(tracked, &brush, plane);
         }
         let contacts = tracked.head.contacts();
-        let stroke = match contacts.is_empty() {
-            true => 0,
-            false => self.strokes.touch(at.event_ns),
+        let stroke = if contacts.is_empty() {
+            0
+        } else {
+            self.strokes.touch(at.event_ns)
         };
         tracked.stroke = tracked.stroke.max(stroke);
         let in_surface = Rigid {

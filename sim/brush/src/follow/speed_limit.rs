@@ -41,7 +41,7 @@ mod tests {
 
     const MS: u64 = 1_000_000;
 
-    /// Samples of so many that are let pass, each `way_m` and `time_ns` after the one before.
+    /// Number of samples that pass, of those that are `way_m` and `time_ns` apart.
     fn passing(count: u32, way_m: f64, time_ns: u64) -> u32 {
         let mut limit = SpeedLimit::default();
         let mut passing = 0;

@@ -150,9 +150,10 @@ impl Bones {
         match short {
             Some(i) => Err(GltfError::NoLength {
                 bone: self.names[spine[i]].clone(),
-                why: match i + 1 == segments.len() {
-                    true => "export with the add-on, which sets 'length_m', or tie the point to it",
-                    false => "move the bone that follows it away from its head",
+                why: if i + 1 == segments.len() {
+                    "export with the add-on, which sets 'length_m', or tie the point to it"
+                } else {
+                    "move the bone that follows it away from its head"
                 },
             }),
             None => Ok(segments),

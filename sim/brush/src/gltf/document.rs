@@ -73,12 +73,13 @@ impl Document {
             other => return Err(list.fault(format!("has numbers of type {other:?}"))),
         };
         let numbers: Vec<f64> = self.components(accessor, &list)?.map(read).collect();
-        match numbers.iter().all(|number| number.is_finite()) {
-            true => Ok(numbers),
-            false => Err(GltfError::NotFinite {
+        if numbers.iter().all(|number| number.is_finite()) {
+            Ok(numbers)
+        } else {
+            Err(GltfError::NotFinite {
                 what: list.what,
                 node: list.node,
-            }),
+            })
         }
     }
 
@@ -181,9 +182,10 @@ fn whole(bytes: &[u8]) -> Result<(), GltfError> {
         });
     }
     // The reader subtracts the header from it.
-    match wants < HEADER {
-        true => Err(GltfError::NotGltf(format!("its length is {wants}"))),
-        false => Ok(()),
+    if wants < HEADER {
+        Err(GltfError::NotGltf(format!("its length is {wants}")))
+    } else {
+        Ok(())
     }
 }
 

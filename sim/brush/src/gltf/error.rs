@@ -6,7 +6,7 @@ use crate::file::BrushError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GltfError {
     /// The bytes are no glTF 2.0, or break its rules.
-    #[error("this is no glTF 2.0 file that can be read ({0}); export it as glTF Binary (.glb)")]
+    #[error("this is not a readable glTF 2.0 file ({0}); export it as glTF Binary (.glb)")]
     NotGltf(String),
     /// The file ends too early.
     #[error("the file is cut short: {what} has {has} of {wants} bytes; export or copy it again")]
@@ -45,7 +45,7 @@ pub enum GltfError {
         node: String,
     },
     /// A node is its own ancestor, or has two parents.
-    #[error("the nodes are no tree: '{node}' {why}; export it again")]
+    #[error("the nodes are not a tree: '{node}' {why}; export it again")]
     NoTree {
         /// The node.
         node: String,
@@ -163,7 +163,7 @@ pub enum GltfError {
         range: String,
     },
     /// A custom property that is nearly one of ours.
-    #[error("'{key}' of '{node}' is no property of a brush; did you mean '{nearest}'{place}?")]
+    #[error("'{key}' of '{node}' is not a property of a brush; did you mean '{nearest}'{place}?")]
     Misspelt {
         /// Object or bone.
         node: String,

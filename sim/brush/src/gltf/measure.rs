@@ -53,9 +53,12 @@ pub(super) fn measure(
         .map(|stencil| stencil.iter().map(|(v, share)| vertices[*v] * *share).sum())
         .collect();
     let fine = below(&fine);
-    let smooth = |axis: usize, control: f64| match fine[axis] > 0.0 {
-        true => 2.0 * fine[axis],
-        false => 2.0 * control,
+    let smooth = |axis: usize, control: f64| {
+        if fine[axis] > 0.0 {
+            2.0 * fine[axis]
+        } else {
+            2.0 * control
+        }
     };
     Some(Measured {
         across_mm: [smooth(0, width), smooth(1, thickness)],
@@ -76,12 +79,13 @@ fn cut(vertices: &[DVec3], faces: &[Vec<usize>], z: f64) -> Vec<DVec3> {
     sides
         .map(|(a, b)| (vertices[a], vertices[b]))
         .filter(|(a, b)| a.z.min(b.z) <= z + NEAR_MM && a.z.max(b.z) >= z - NEAR_MM)
-        .flat_map(|(a, b)| match (b.z - a.z).abs() > NEAR_MM {
-            true => {
+        .flat_map(|(a, b)| {
+            if (b.z - a.z).abs() > NEAR_MM {
                 let at = a.lerp(b, ((z - a.z) / (b.z - a.z)).clamp(0.0, 1.0));
                 [at, at]
+            } else {
+                [a, b]
             }
-            false => [a, b],
         })
         .collect()
 }
@@ -117,9 +121,10 @@ fn outline(cuts: &[Vec<DVec3>]) -> Outline {
         let out = |p: &DVec3| (p.x / x) * (p.x / x) + (p.y / y) * (p.y / y);
         points.iter().map(out).reduce(f64::max)
     });
-    match corner.is_some_and(|corner| corner > CORNERED) {
-        true => Outline::Flat,
-        false => Outline::Round,
+    if corner.is_some_and(|corner| corner > CORNERED) {
+        Outline::Flat
+    } else {
+        Outline::Round
     }
 }
 

@@ -116,9 +116,10 @@ impl Placed {
 /// Weights of which the sum is 1; empty without weights.
 fn normalised(weights: &[(usize, f64)]) -> Vec<(usize, f64)> {
     let sum: f64 = weights.iter().map(|(_, weight)| weight).sum();
-    match sum > 1e-6 {
-        true => weights.iter().map(|(joint, w)| (*joint, w / sum)).collect(),
-        false => Vec::new(),
+    if sum > 1e-6 {
+        weights.iter().map(|(joint, w)| (*joint, w / sum)).collect()
+    } else {
+        Vec::new()
     }
 }
 
@@ -223,8 +224,9 @@ impl Reader<'_> {
 }
 
 fn most(what: &'static str, count: usize, most: usize) -> Result<(), GltfError> {
-    match count <= most {
-        true => Ok(()),
-        false => Err(GltfError::TooMany { what, count, most }),
+    if count <= most {
+        Ok(())
+    } else {
+        Err(GltfError::TooMany { what, count, most })
     }
 }

@@ -267,12 +267,13 @@ fn contact(like: Contact, properties: &Properties) -> Contact {
 }
 
 fn size(what: &'static str, mm: f64, range: RangeInclusive<f64>) -> Result<(), GltfError> {
-    match range.contains(&mm) {
-        true => Ok(()),
-        false => Err(GltfError::Size {
+    if range.contains(&mm) {
+        Ok(())
+    } else {
+        Err(GltfError::Size {
             what,
             mm,
             range: format!("{} to {}", range.start(), range.end()),
-        }),
+        })
     }
 }

@@ -106,9 +106,10 @@ fn quality(
     let corner = |i: usize| {
         let to = (at[(i + 1) % 4] - at[i]).normalize_or_zero();
         let from = (at[i] - at[(i + 3) % 4]).normalize_or_zero();
-        match from.cross(to).dot(up) > 0.0 {
-            true => 1.0 - from.dot(to).abs(),
-            false => 0.0,
+        if from.cross(to).dot(up) > 0.0 {
+            1.0 - from.dot(to).abs()
+        } else {
+            0.0
         }
     };
     let worst = (0..4).map(corner).fold(1.0, f64::min);

@@ -217,7 +217,7 @@ impl Head {
         &self.roots
     }
 
-    /// By strip, the nearest of the first so many: of a thinned head that one stands for it.
+    /// By strip, the nearest of those that a thinned head keeps, which stands for it.
     #[must_use]
     pub fn nearest_of_first(&self, strips: usize) -> Vec<usize> {
         let first = &self.roots[..strips.min(self.strips)];

@@ -1,4 +1,4 @@
-//! Block matrices, quadratic programmes and subdivision surfaces.
+//! Block matrices, quadratic programs and subdivision surfaces.
 
 pub mod blocks;
 pub mod qp;

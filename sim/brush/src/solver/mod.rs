@@ -290,12 +290,13 @@ impl Solver {
         self.constraints_before.clear();
         self.constraints_before.extend_from_slice(constraints);
         self.begin(spine, shape);
-        let solution = match is_within_reach(spine, shape, constraints) {
-            true => self.attempt(problem, shape, constraints),
-            false => Solution {
+        let solution = if is_within_reach(spine, shape, constraints) {
+            self.attempt(problem, shape, constraints)
+        } else {
+            Solution {
                 residual: f64::INFINITY,
                 ..Solution::default()
-            },
+            }
         };
         let finite = shape.directions.iter().all(|d| d.is_finite());
         if !solution.usable(spine) || !finite {

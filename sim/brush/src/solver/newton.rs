@@ -29,9 +29,10 @@ impl Solver {
             .factor
             .factor(&self.model.hessian, spine.joints());
         let length = spine.length_m();
-        let spring = match convex {
-            true => 0.0,
-            false => CONSTRAINT_STIFFNESS * spine.stiffest() / (length * length),
+        let spring = if convex {
+            0.0
+        } else {
+            CONSTRAINT_STIFFNESS * spine.stiffest() / (length * length)
         };
         for constraint in 0..constraints.len() {
             let binds = self.multipliers[constraint] > 0.0;
@@ -71,9 +72,12 @@ impl Solver {
         self.candidates.push(candidate);
         let constraint = &constraints[candidate.constraint];
         let segments = self.model.tangents.iter().zip(&spine.lengths_m).enumerate();
-        let row = segments.map(|(j, (tangents, length))| match j <= constraint.joint {
-            true => tangents.of(constraint.half_space.normal) * *length,
-            false => DVec2::ZERO,
+        let row = segments.map(|(j, (tangents, length))| {
+            if j <= constraint.joint {
+                tangents.of(constraint.half_space.normal) * *length
+            } else {
+                DVec2::ZERO
+            }
         });
         self.program.rows.extend(row);
     }

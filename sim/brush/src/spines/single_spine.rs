@@ -74,8 +74,8 @@ fn two() -> f64 {
 }
 
 /// Lengths, stiffness and the like must be of a size that floating point can square.
-const SMALLEST: f64 = 1e-12;
-const LARGEST: f64 = 1e9;
+const SMALLEST_VALUE: f64 = 1e-12;
+const LARGEST_VALUE: f64 = 1e9;
 
 impl SpineFile {
     /// Reads a spine file.
@@ -107,7 +107,7 @@ impl SpineFile {
         )?;
         each("lengths_m", &self.lengths_m, positive)?;
         each("stiffness_nm_per_rad", &self.stiffness_nm_per_rad, positive)?;
-        let friction = |field: &str, value: f64| within(field, value, 0.0..=LARGEST);
+        let friction = |field: &str, value: f64| within(field, value, 0.0..=LARGEST_VALUE);
         match &self.damping_nm {
             Each::All(value) => friction("damping_nm", *value)?,
             Each::List(values) => {
@@ -154,13 +154,13 @@ impl SpineFile {
 }
 
 fn positive(field: &str, value: f64) -> Result<(), BrushError> {
-    if (SMALLEST..=LARGEST).contains(&value) {
+    if (SMALLEST_VALUE..=LARGEST_VALUE).contains(&value) {
         return Ok(());
     }
     Err(BrushError::Range {
         field: field.to_owned(),
         value,
-        range: format!("above 0 ({SMALLEST:e} to {LARGEST:e})"),
+        range: format!("above 0 ({SMALLEST_VALUE:e} to {LARGEST_VALUE:e})"),
     })
 }
 
@@ -294,8 +294,8 @@ fn pose(row: Row<'_>, places: &[usize; COLUMNS.len()]) -> Result<TrialPose, Pose
         return Err(wrong(what, "a rotation is a unit quaternion, w last"));
     }
     let far = [x, y, z].into_iter().map(f64::abs).fold(0.0, f64::max);
-    if far > LARGEST {
-        let what = format!("x,y,z: {far} m is farther than {LARGEST} m");
+    if far > LARGEST_VALUE {
+        let what = format!("x,y,z: {far} m is farther than {LARGEST_VALUE} m");
         return Err(wrong(what, "lengths are in metres"));
     }
     Ok(TrialPose {

@@ -31,9 +31,10 @@ impl SpineRoot {
         Self {
             origin: root,
             lean,
-            spine: match straight {
-                true => spine,
-                false => spine.resting(&directions),
+            spine: if straight {
+                spine
+            } else {
+                spine.resting(&directions)
             },
         }
     }

@@ -76,7 +76,7 @@ pub struct Obstacle {
 }
 
 impl Obstacle {
-    /// The surface z = 0, which goes on beside its edge.
+    /// The surface z = 0, which continues beside its edge.
     #[must_use]
     pub fn ground() -> Self {
         Self {
@@ -149,9 +149,10 @@ impl Desk {
             let upright = place.vector(DVec3::Z).z > 1.0 - 1e-9;
             plane.id == surface.id || (upright && place.translation.z.abs() < EVEN_M)
         };
-        let own = match self.planes.iter().all(|plane| same(&plane)) {
-            true => Obstacle::ground(),
-            false => Obstacle::of(surface, surface),
+        let own = if self.planes.iter().all(|plane| same(&plane)) {
+            Obstacle::ground()
+        } else {
+            Obstacle::of(surface, surface)
         };
         let others = self.planes.iter().filter(|plane| !same(plane));
         let others = others

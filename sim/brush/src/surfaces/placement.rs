@@ -103,9 +103,10 @@ impl SurfacePlacement {
     pub fn tilted(&self, about: DVec3, angle: f64) -> Self {
         let tilted = self.turned(about, DVec3::X, angle);
         let least = sin_cos(TILT_MOST).1;
-        match tilted.pose.vector(DVec3::Z).z >= least {
-            true => tilted,
-            false => *self,
+        if tilted.pose.vector(DVec3::Z).z >= least {
+            tilted
+        } else {
+            *self
         }
     }
 }

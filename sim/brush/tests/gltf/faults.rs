@@ -46,11 +46,11 @@ fn a_file_that_is_none() {
         b"\x89PNG\r\n\x1a\n",
         b"{\"asset\": {}}",
     ] {
-        says(&refused(bytes), &["no glTF 2.0 file", ".glb"]);
+        says(&refused(bytes), &["not a readable glTF 2.0 file", ".glb"]);
     }
     let mut old = Model::round().glb();
     old[4] = 1;
-    says(&refused(&old), &["no glTF 2.0", "version"]);
+    says(&refused(&old), &["not a readable glTF 2.0", "version"]);
     let needs = |name: &str| error_of(|json, _| json["extensionsRequired"] = json!([name]));
     says(
         &needs("KHR_draco_mesh_compression"),
@@ -73,7 +73,10 @@ fn a_file_that_is_cut_short() {
     says(&missing, &["cut short", "buffer 0"]);
     let mut short = whole.clone();
     short[8..12].copy_from_slice(&4u32.to_le_bytes());
-    says(&refused(&short), &["no glTF 2.0", "length is 4"]);
+    says(
+        &refused(&short),
+        &["not a readable glTF 2.0", "length is 4"],
+    );
 }
 
 #[test]
@@ -133,16 +136,16 @@ fn nodes_that_are_no_tree() {
         json["nodes"][0]["children"] = json!([1]);
         json["nodes"][5]["children"] = json!([2]);
     });
-    says(&cycle, &["no tree", "'ferrule' is its own ancestor"]);
+    says(&cycle, &["not a tree", "'ferrule' is its own ancestor"]);
     let own = error_of(|json, _| json["nodes"][5]["children"] = json!([5]));
-    says(&own, &["no tree", "spine0.2", "two parents"]);
+    says(&own, &["not a tree", "spine0.2", "two parents"]);
     let shared = error_of(|json, _| json["nodes"][5]["children"] = json!([6]));
-    says(&shared, &["no tree", "spine1.0", "two parents"]);
+    says(&shared, &["not a tree", "spine1.0", "two parents"]);
     let alone = error_of(|json, _| {
         json["nodes"][0]["children"] = json!([1]);
         json["nodes"][2]["children"] = json!([2]);
     });
-    says(&alone, &["no tree"]);
+    says(&alone, &["not a tree"]);
 }
 
 #[test]
@@ -292,7 +295,7 @@ fn lists_that_cannot_be_read() {
     let attributes = json!({ "POSITION": 5, "JOINTS_0": 1, "WEIGHTS_0": 2 });
     says(
         &primitive("attributes", attributes),
-        &["no glTF 2.0", "no accessor 5"],
+        &["not a readable glTF 2.0", "no accessor 5"],
     );
     let corner = error_of(|json, bytes| {
         let view = json["bufferViews"][3]["byteOffset"].as_u64().expect("it") as usize;

@@ -9,13 +9,30 @@ pub trait Backing: Send + Sync {
     /// Reads a page whose [`Content`] has the type `kind`: the box holds that type.
     ///
     /// # Errors
-    /// The defect, in words.
-    fn read(&self, id: u64, kind: TypeId) -> Result<Box<dyn Any>, String>;
+    /// [`PageError`].
+    fn read(&self, id: u64, kind: TypeId) -> Result<Box<dyn Any>, PageError>;
 
     /// False while what it stores may not be read back, as where its disk fails: then no page leaves memory.
     fn is_at_hand(&self) -> bool {
         true
     }
+}
+
+/// A page without content.
+#[derive(Debug, thiserror::Error)]
+pub enum PageError {
+    /// It was never stored, and left memory.
+    #[error("page {0} has no document")]
+    Unbacked(u64),
+    /// It is of a kind that is not stored.
+    #[error("page {0} is of a kind that no document holds")]
+    Kind(u64),
+    /// It is stored as something else.
+    #[error("page {0} holds something else")]
+    Other(u64),
+    /// Its storage does not give it.
+    #[error(transparent)]
+    Storage(Box<dyn std::error::Error + Send + Sync>),
 }
 
 /// Content of a page.
@@ -28,9 +45,9 @@ pub trait Content: Send + Sync + Sized + 'static {
 
 impl dyn Backing {
     /// Reads a page of a kind that is known.
-    pub(super) fn fetch<T: Content>(&self, id: u64) -> Result<T, String> {
+    pub(super) fn fetch<T: Content>(&self, id: u64) -> Result<T, PageError> {
         let read = self.read(id, TypeId::of::<T>())?.downcast();
-        let content = read.map_err(|_| format!("page {id} holds something else"))?;
+        let content = read.map_err(|_| PageError::Other(id))?;
         Ok(*content)
     }
 }

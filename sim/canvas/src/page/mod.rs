@@ -11,7 +11,7 @@ use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
-use backing::{Backing, Content};
+use backing::{Backing, Content, PageError};
 
 /// Something that can leave memory.
 pub(crate) trait Evict: Send + Sync {
@@ -368,11 +368,11 @@ impl<T: Content> Page<T> {
         let pager = &self.0.pager;
         let read = match pager.backing.get() {
             Some(backing) => backing.fetch(self.0.id),
-            None => Err(format!("page {} has no document", self.0.id)),
+            None => Err(PageError::Unbacked(self.0.id)),
         };
         pager.fetched.fetch_add(1, Relaxed);
-        let read = Arc::new(read.unwrap_or_else(|what| {
-            pager.fault.set(what).ok();
+        let read = Arc::new(read.unwrap_or_else(|error| {
+            pager.fault.set(error.to_string()).ok();
             T::nothing()
         }));
         self.keep(read)

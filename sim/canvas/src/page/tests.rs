@@ -9,9 +9,9 @@ use crate::planes::{Planes, TILE_CELLS};
 struct Numbers;
 
 impl Backing for Numbers {
-    fn read(&self, id: u64, _: TypeId) -> Result<Box<dyn Any>, String> {
+    fn read(&self, id: u64, _: TypeId) -> Result<Box<dyn Any>, PageError> {
         match id {
-            13 => Err("page 13 is damaged".to_owned()),
+            13 => Err(PageError::Storage("page 13 is damaged".into())),
             _ => Ok(Box::new(plane(id))),
         }
     }
@@ -46,8 +46,8 @@ fn stored_pages_leave_when_memory_gets_short_and_come_back() {
 struct Failing;
 
 impl Backing for Failing {
-    fn read(&self, _: u64, _: TypeId) -> Result<Box<dyn Any>, String> {
-        Err("the disk fails".to_owned())
+    fn read(&self, _: u64, _: TypeId) -> Result<Box<dyn Any>, PageError> {
+        Err(PageError::Storage("the disk fails".into()))
     }
 
     fn is_at_hand(&self) -> bool {

@@ -16,7 +16,7 @@ pub fn reach(cell_m: f64) -> usize {
     (REACH_M / cell_m).ceil() as usize
 }
 
-/// The ride over `base`, rows of `width` cells, both in cells; exact where the planes go on by
+/// The ride over `base`, rows of `width` cells, both in cells; exact where the planes continue by
 /// [`reach`] cells on all sides.
 #[must_use]
 pub fn ride(base: &[f32], width: usize, cells_per_m: f64) -> Vec<f32> {

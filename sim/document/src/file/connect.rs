@@ -38,7 +38,7 @@ mod tests {
     use super::*;
     use crate::file::database::{Access, Database};
 
-    /// What keeps a file from having anything executed: name, setting, and how it has to be.
+    /// Settings that keep a file from having anything executed: name, setting, required value.
     const SETTINGS: [(&str, DbConfig, bool); 4] = [
         ("DEFENSIVE", DbConfig::SQLITE_DBCONFIG_DEFENSIVE, true),
         (

@@ -1,16 +1,16 @@
 //! The file, opened for one program alone, and its pages, loads and shown tiles read one by one.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use maulstick_canvas::planes::Planes;
-pub use maulstick_files::companion;
-use maulstick_files::{FileId, OpenDatabase, is_companion, read_head};
+use maulstick_files::{FileId, OpenDatabase, companion, is_companion, read_head};
 use maulstick_model::brush::load::BrushLoad;
 use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags, OptionalExtension as _, params};
 
 use crate::error::DocumentError;
 use crate::file::connect::connect;
+use crate::file::path::{length, resolved};
 use crate::file::probe::Probe;
 use crate::tables::checksum::{load_checksum, page_checksum, shown_checksum};
 use crate::tables::{loads, planes, schema};
@@ -45,11 +45,6 @@ pub struct Database {
     was_unclosed: bool,
 }
 
-/// Real path of a file: the target of a link, beside which SQLite puts its journal.
-pub(crate) fn resolved(path: &Path) -> PathBuf {
-    std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
-}
-
 /// Checks that the journal of a closed painting is merged into its file, as it must be before the file is renamed.
 ///
 /// # Errors
@@ -59,11 +54,6 @@ pub(crate) fn merged(path: &Path) -> Result<(), DocumentError> {
         Some(1..) => Err(DocumentError::Unmerged(path.to_owned())),
         _ => Ok(()),
     }
-}
-
-/// Bytes of a file; `None` if there is none.
-pub(crate) fn length(path: &Path) -> Option<u64> {
-    std::fs::metadata(path).ok().map(|about| about.len())
 }
 
 /// True if a painting is to be created there.
@@ -96,9 +86,10 @@ pub(crate) fn is_new(path: &Path) -> Result<bool, DocumentError> {
     let whole = read_head(path, &mut head)? == head.len();
     match whole {
         true if head.starts_with(MAGIC) && head[WRITE_VERSION] == ROLLBACK => {
-            match schema::is_foreign(path)? {
-                true => Err(DocumentError::NoPainting),
-                false => Ok(false),
+            if schema::is_foreign(path)? {
+                Err(DocumentError::NoPainting)
+            } else {
+                Ok(false)
             }
         }
         true if head.starts_with(MAGIC) => Ok(false),
@@ -147,9 +138,10 @@ impl Database {
     ) -> Result<(Self, bool), DocumentError> {
         let new = is_new(path)?;
         if new && access == Access::Read {
-            return Err(match path.exists() {
-                true => DocumentError::NoPainting,
-                false => DocumentError::Missing,
+            return Err(if path.exists() {
+                DocumentError::NoPainting
+            } else {
+                DocumentError::Missing
             });
         }
         let flags = OpenFlags::SQLITE_OPEN_READ_WRITE
@@ -263,9 +255,10 @@ impl Database {
     /// # Errors
     /// The error of SQLite.
     pub fn close_unchanged(self) -> Result<(), DocumentError> {
-        match self.was_unclosed {
-            true => self.connection.close().map_err(|(_, error)| error.into()),
-            false => self.close(),
+        if self.was_unclosed {
+            self.connection.close().map_err(|(_, error)| error.into())
+        } else {
+            self.close()
         }
     }
 
@@ -359,7 +352,8 @@ impl Database {
             0 => None,
             base => Some(self.planes_at(base as u64, left - 1)?),
         };
-        planes::decode(slots as u64, &data, base.as_ref()).map_err(|what| damaged(&what))
+        planes::decode(slots as u64, &data, base.as_ref())
+            .map_err(|defect| damaged(&defect.to_string()))
     }
 
     /// Load of a brush.
@@ -378,7 +372,7 @@ impl Database {
         if load_checksum(id, &data) != sum {
             return Err(damaged("does not match its checksum"));
         }
-        loads::decode(&data).map_err(|what| damaged(&what))
+        loads::decode(&data).map_err(|defect| damaged(&defect.to_string()))
     }
 
     /// Checks that it has the tables of this version: what was not locked is not migrated.
@@ -387,9 +381,10 @@ impl Database {
     /// [`DocumentError::NoPainting`] if not, [`DocumentError::Altered`], or the error of SQLite.
     pub(crate) fn is_of_this_version(&self) -> Result<(), DocumentError> {
         schema::check(&self.connection)?;
-        match schema::has_record(&self.connection)? {
-            true => Ok(()),
-            false => Err(DocumentError::NoPainting),
+        if schema::has_record(&self.connection)? {
+            Ok(())
+        } else {
+            Err(DocumentError::NoPainting)
         }
     }
 

@@ -2,6 +2,7 @@
 
 pub(crate) mod connect;
 pub mod database;
+pub(crate) mod path;
 pub(crate) mod probe;
 pub mod relocate;
 pub(crate) mod watch;

@@ -1,4 +1,4 @@
-//! Whether a disk still gives the bytes of a painting.
+//! Probe of the disk: does it still give the bytes of a painting?
 //!
 //! Where the system reports an error on reading, SQLite says that the database is malformed
 //! (`SQLITE_IOERR_CORRUPTFS` in `vdbe.c`), as of a file with wrong bytes. A painting on a disk that fails is not damaged.
@@ -7,8 +7,10 @@ use std::fs::File;
 use std::os::unix::fs::FileExt as _;
 use std::path::{Path, PathBuf};
 
+use maulstick_files::companion;
+
 use crate::error::DocumentError;
-use crate::file::database::{companion, resolved};
+use crate::file::path::resolved;
 
 /// Bytes that are read at once.
 const PIECE: usize = 1 << 20;

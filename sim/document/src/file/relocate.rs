@@ -1,24 +1,25 @@
-//! Relocation of a painting: its file is copied or renamed, and painting goes on at the new path.
+//! Relocation of a painting: its file is copied or renamed, and painting continues at the new path.
 
 use std::fs::File;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 
-use maulstick_files::{FileId, first_free};
+use maulstick_files::{FileId, companion, first_free};
 
 use crate::error::DocumentError;
-use crate::file::database::{Access, Database, companion, is_new, merged, resolved};
+use crate::file::database::{Access, Database, is_new, merged};
+use crate::file::path::resolved;
 use crate::opening;
 
 /// Way to relocate a painting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relocate {
-    /// The old file stays as it is at that moment; painting goes on in the copy.
+    /// The old file stays as it is at that moment; painting continues in the copy.
     Copy,
     /// The file gets the new name.
     Rename,
-    /// A copy is written; painting goes on where it was.
+    /// A copy is written; painting continues where it was.
     Leave,
 }
 
@@ -146,14 +147,13 @@ pub(crate) fn copied_without_journal(
         Ok(is_whole)
     });
     let is_whole = checked.unwrap_or(false);
-    match is_whole {
-        true => rename(&part, to, replace)?,
-        false => {
-            std::fs::remove_file(&part)?;
-            // Begun anew there, it must not be mixed with what it replaces.
-            if replace && to.exists() {
-                std::fs::remove_file(to)?;
-            }
+    if is_whole {
+        rename(&part, to, replace)?
+    } else {
+        std::fs::remove_file(&part)?;
+        // Begun anew there, it must not be mixed with what it replaces.
+        if replace && to.exists() {
+            std::fs::remove_file(to)?;
         }
     }
     sync_folder(to)?;

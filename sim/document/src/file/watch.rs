@@ -6,9 +6,9 @@ use std::io::{ErrorKind, Read as _};
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
 
-use maulstick_files::FileId;
+use maulstick_files::{FileId, companion};
 
-use crate::file::database::{companion, length, resolved};
+use crate::file::path::{length, resolved};
 
 /// The files of an open painting by device and inode.
 #[derive(Debug)]

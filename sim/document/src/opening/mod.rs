@@ -1,6 +1,7 @@
 //! Opening of a painting: its state, tiles, history and versions read from its file.
 
 mod shown;
+pub(crate) mod stored_files;
 pub(crate) mod stored_pages;
 
 use std::collections::{BTreeMap, HashMap};
@@ -29,6 +30,8 @@ use crate::tables::checksum::Checksum;
 use crate::tables::rows::{COPY, StoredNonTileState, StoredStepEffects, place_of, step_name};
 use crate::tables::schema::Table;
 pub use shown::shown_tiles;
+use stored_files::file;
+pub use stored_files::text;
 use stored_pages::StoredPages;
 
 /// Step of the tile version numbers at each opening: the newest versions before a crash are in no file, and a number
@@ -276,19 +279,6 @@ pub(crate) fn next_page(database: &Database) -> Result<u64, DocumentError> {
 const HIGHEST_ID: &str = "SELECT max((SELECT coalesce(max(id), 0) FROM page), \
      (SELECT coalesce(max(id), 0) FROM load), (SELECT coalesce(max(id), 0) FROM dry))";
 
-/// File by its hash.
-pub(crate) fn file(database: &Database, hash: &str) -> Result<Vec<u8>, DocumentError> {
-    let data: Vec<u8> = database.connection.query_row(
-        "SELECT data FROM file WHERE hash = ?1",
-        params![hash],
-        |row| row.get(0),
-    )?;
-    match maulstick_canvas::assets::hash_of(&data) == hash {
-        true => Ok(data),
-        false => Err(damaged(format!("file {hash} does not match its hash"))),
-    }
-}
-
 /// Pictures and spectra of grounds and teeth.
 fn pictures(database: &Database) -> Result<Assets, DocumentError> {
     let query = "SELECT hash FROM file WHERE kind IN ('picture', 'spectrum') ORDER BY hash";
@@ -301,14 +291,6 @@ fn pictures(database: &Database) -> Result<Assets, DocumentError> {
         embedded.know(hash, bytes.into());
     }
     Ok(embedded)
-}
-
-/// Text file by its hash.
-///
-/// # Errors
-/// [`DocumentError::Damaged`] if it is missing, or is not what its hash says.
-pub fn text(database: &Database, hash: &str) -> Result<String, DocumentError> {
-    String::from_utf8(file(database, hash)?).map_err(damaged)
 }
 
 /// Records accepted since the last checkpoint.

@@ -4,7 +4,7 @@
 //! joints another, each as the difference to the solve before, and the bytes of a table are sorted by significance: so a row is
 //! a third smaller after compression. What is no state, or would not come back byte for byte, is kept as it is.
 //!
-//! Rows of before have groups of messages ([`super::transposed`]) in their place. A row of columns begins with 4 bytes that no
+//! Rows of before have groups of messages ([`super::byte_transpose`]) in their place. A row of columns begins with 4 bytes that no
 //! group begins with; then come the columns, each its length in 4 bytes and its bytes.
 
 use maulstick_types::brush::{BrushState, Contact, Solve};
@@ -45,7 +45,7 @@ struct Columns {
 /// Bytes of a value of each column.
 const WIDTHS: [usize; 6] = [1, 1, 8 * OF_STATE, 8 * OF_SOLVE, 4, 8];
 
-/// What the next state and solve are differences to.
+/// Values to which the next state and solve are differences.
 #[derive(Default)]
 struct Before {
     state: [u64; OF_STATE],
@@ -128,9 +128,10 @@ pub(super) fn in_order(row: &[u8]) -> Result<Option<Vec<u8>>, DocumentError> {
             _ => return Err(torn()),
         }
     }
-    match reading.is_at_its_end() && rest.is_empty() {
-        true => Ok(Some(messages)),
-        false => Err(torn()),
+    if reading.is_at_its_end() && rest.is_empty() {
+        Ok(Some(messages))
+    } else {
+        Err(torn())
     }
 }
 

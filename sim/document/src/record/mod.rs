@@ -1,22 +1,21 @@
 //! The record of a painting: all that was accepted since its beginning, so that it can be executed again.
 //!
-//! What a checkpoint includes goes from the journal to the record in the transaction that writes the checkpoint. Opening
+//! The entries that a checkpoint includes move from the journal to the record in the transaction that writes it. Opening
 //! reads the journal and the beginning, and none of the record's messages, so a long record costs no time; it is read row by row
 //! by who executes it again.
 
 pub(crate) mod beginning;
+mod byte_transpose;
 mod columns;
 mod rewind;
-mod transposed;
 
 use std::path::Path;
-use std::time::{SystemTime, UNIX_EPOCH};
 
 use maulstick_painting::RecordChange;
 use maulstick_painting::sequencer::Record;
 use rusqlite::{OptionalExtension as _, Row, params};
 
-use crate::checkpoint::Checkpoint;
+use crate::checkpoint::{Checkpoint, wall_ms};
 use crate::error::DocumentError;
 use crate::file::database::{Access, Database};
 use crate::journal;
@@ -49,12 +48,6 @@ pub struct RecordStats {
     pub begun_ms: u64,
     /// Time of its newest row, ms since 1970.
     pub newest_ms: u64,
-}
-
-/// Time of the wall clock, ms since 1970.
-pub(crate) fn wall_ms() -> u64 {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH);
-    since.map_or(0, |since| since.as_millis() as u64)
 }
 
 /// Brings the record up to a checkpoint: `records` are the messages before it that are not in the journal. What the
@@ -246,9 +239,10 @@ pub(crate) fn check(database: &Database) -> Result<(), DocumentError> {
 }
 
 fn checked(expected: i64, sum: i64) -> Result<(), DocumentError> {
-    match expected == sum {
-        true => Ok(()),
-        false => Err(damaged("does not match its checksum")),
+    if expected == sum {
+        Ok(())
+    } else {
+        Err(damaged("does not match its checksum"))
     }
 }
 
@@ -283,7 +277,7 @@ pub(crate) fn row_from(
             let row = journal::unpacked(&data)?;
             let messages = match columns::in_order(&row)? {
                 Some(messages) => messages,
-                None => transposed::in_order(&row)?,
+                None => byte_transpose::in_order(&row)?,
             };
             found = Some((ints[0] as u64, Some(ints[2] as u64), messages));
         }

@@ -7,6 +7,8 @@ use maulstick_canvas::quantum::SLOTS;
 use maulstick_model::brush::load::BrushLoad;
 use maulstick_model::brush::traits::{STRIPS_MOST, TEXELS_PER_STRIP};
 
+use super::defect::Defect;
+
 /// A head has at most this many texels: those of as many strips as a brush may have.
 const TEXELS_MAX: usize = STRIPS_MOST * TEXELS_PER_STRIP;
 
@@ -36,17 +38,16 @@ pub fn encode(load: &BrushLoad, level: i32) -> std::io::Result<Vec<u8>> {
 /// Reads a load.
 ///
 /// # Errors
-/// The defect of the bytes, in words.
-pub fn decode(bytes: &[u8]) -> Result<BrushLoad, String> {
+/// [`Defect`].
+pub fn decode(bytes: &[u8]) -> Result<BrushLoad, Defect> {
     let most = 4 * (4 + (2 * SLOTS + 1) * (TEXELS_MAX + 1));
-    let bytes = zstd::bulk::decompress(bytes, most).map_err(|error| error.to_string())?;
+    let bytes = zstd::bulk::decompress(bytes, most)?;
     let four = |bytes: &[u8]| u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
     let words: Vec<u32> = bytes.chunks_exact(4).map(four).collect();
-    let wrong = || "its planes do not fit".to_owned();
-    let (head, mut rest) = words.split_at_checked(4).ok_or_else(wrong)?;
+    let (head, mut rest) = words.split_at_checked(4).ok_or(Defect::Load)?;
     let texels = head[0] as usize;
-    let mut take = |count: usize| -> Result<Vec<u32>, String> {
-        let (taken, left) = rest.split_at_checked(count).ok_or_else(wrong)?;
+    let mut take = |count: usize| -> Result<Vec<u32>, Defect> {
+        let (taken, left) = rest.split_at_checked(count).ok_or(Defect::Load)?;
         rest = left;
         Ok(taken.to_vec())
     };
@@ -57,7 +58,7 @@ pub fn decode(bytes: &[u8]) -> Result<BrushLoad, String> {
         planes.push((slot, [take(texels)?, take(texels)?]));
     }
     let steps = u64::from(head[2]) | u64::from(head[3]) << 32;
-    BrushLoad::of_planes(steps, films, planes).ok_or_else(wrong)
+    BrushLoad::of_planes(steps, films, planes).ok_or(Defect::Load)
 }
 
 #[cfg(test)]
@@ -71,7 +72,7 @@ mod tests {
         load.count_films();
         (0..9).for_each(|_| load.count_step());
         let bytes = encode(&load, 1).expect("bytes");
-        assert_eq!(decode(&bytes), Ok(load));
+        assert_eq!(decode(&bytes).expect("whole"), load);
         assert!(decode(&bytes[..bytes.len() - 9]).is_err());
         assert!(decode(&zstd::bulk::compress(&[1; 100], 1).expect("bytes")).is_err());
     }

@@ -15,6 +15,8 @@ use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::quantum::{CELL_MAX, SLOTS};
 use maulstick_types::paint::TILE;
 
+use super::defect::Defect;
+
 // A mask has a bit for each slot.
 const _: () = assert!(SLOTS == u64::BITS as usize);
 
@@ -61,15 +63,15 @@ fn counts_bytes(mask: u64) -> usize {
 }
 
 /// Bytes of what is compressed, as its head says: no more than the paints of the mask can have.
-fn unpacked_bytes(mask: u64, bytes: &[u8]) -> Result<usize, String> {
+fn unpacked_bytes(mask: u64, bytes: &[u8]) -> Result<usize, Defect> {
     let least = counts_bytes(mask);
     let most = least + own::most(mask);
-    let told = zstd::zstd_safe::get_frame_content_size(bytes);
-    let told = told.map_err(|_| "it is not compressed".to_owned())?;
-    match told.and_then(|told| usize::try_from(told).ok()) {
-        Some(told) if (least..=most).contains(&told) => Ok(told),
-        Some(told) => Err(format!("{told} bytes instead of {least} to {most}")),
-        None => Err("it does not say its size".to_owned()),
+    let size = zstd::zstd_safe::get_frame_content_size(bytes);
+    let size = size.map_err(|_| Defect::Uncompressed)?;
+    match size.and_then(|size| usize::try_from(size).ok()) {
+        Some(bytes) if (least..=most).contains(&bytes) => Ok(bytes),
+        Some(bytes) => Err(Defect::Size { bytes, least, most }),
+        None => Err(Defect::NoSize),
     }
 }
 
@@ -102,35 +104,33 @@ pub fn encode(planes: &Planes, base: Option<&Planes>, level: i32) -> std::io::Re
 /// Recompresses planes of the slots of `mask` at another level of zstd.
 ///
 /// # Errors
-/// The defect of the bytes, in words.
-pub fn repack(mask: u64, bytes: &[u8], level: i32) -> Result<Vec<u8>, String> {
+/// [`Defect`].
+pub fn repack(mask: u64, bytes: &[u8], level: i32) -> Result<Vec<u8>, Defect> {
     let most = unpacked_bytes(mask, bytes)?;
-    let shuffled = zstd::bulk::decompress(bytes, most);
-    let packed = shuffled.and_then(|shuffled| zstd::bulk::compress(&shuffled, level));
-    packed.map_err(|error| error.to_string())
+    let shuffled = zstd::bulk::decompress(bytes, most)?;
+    Ok(zstd::bulk::compress(&shuffled, level)?)
 }
 
 /// Reads planes of the slots of `mask`.
 ///
 /// # Errors
-/// The defect of the bytes, in words.
-pub fn decode(mask: u64, bytes: &[u8], base: Option<&Planes>) -> Result<Planes, String> {
+/// [`Defect`].
+pub fn decode(mask: u64, bytes: &[u8], base: Option<&Planes>) -> Result<Planes, Defect> {
     let slots: Vec<usize> = (0..SLOTS).filter(|slot| mask >> slot & 1 == 1).collect();
-    let words = |error: std::io::Error| error.to_string();
     let length = counts_bytes(mask);
     let is_all = unpacked_bytes(mask, bytes)? == length;
     let (all, mut rest) = if is_all {
-        let all = zstd::bulk::decompress(bytes, length).map_err(words)?;
+        let all = zstd::bulk::decompress(bytes, length)?;
         (all, None)
     } else {
         // Planes of the model's own are read one by one, so that the first that is wrong ends it.
-        let mut stream = zstd::stream::read::Decoder::with_buffer(bytes).map_err(words)?;
+        let mut stream = zstd::stream::read::Decoder::with_buffer(bytes)?;
         let mut all = vec![0; length];
-        stream.read_exact(&mut all).map_err(words)?;
+        stream.read_exact(&mut all)?;
         (all, Some(stream))
     };
     if all.len() != length || all[0] != u8::from(rest.is_some()) {
-        return Err("its planes are other ones than it says".to_owned());
+        return Err(Defect::Planes);
     }
     let shuffled = &all[1..];
     let mut planes = Planes::new();
@@ -149,7 +149,7 @@ pub fn decode(mask: u64, bytes: &[u8], base: Option<&Planes>) -> Result<Planes, 
             .iter()
             .any(|count| !(0..=CELL_MAX as i32).contains(count))
         {
-            return Err(format!("slot {slot} has a count above a cell's maximum"));
+            return Err(Defect::Count(*slot));
         }
         let plane: Arc<[f32]> = now.iter().map(|count| *count as f32).collect();
         planes.push((*slot, plane));
@@ -220,14 +220,14 @@ mod tests {
         fn planes_come_back_whatever_their_base(now in planes(), base in planes(), with in any::<bool>()) {
             let base = with.then_some(&base);
             let bytes = encode(&now, base, LEVEL).expect("bytes");
-            prop_assert_eq!(decode(mask(&now), &bytes, base), Ok(now.clone()));
+            prop_assert_eq!(&decode(mask(&now), &bytes, base).expect("whole"), &now);
             if let Some(last) = now.len().checked_sub(1) {
                 let fewer = Planes::from_iter(now[..last].iter().cloned());
                 let other = decode(mask(&fewer), &bytes, base);
                 prop_assert!(other.is_err(), "a wrong mask is seen");
             }
             let packed = repack(mask(&now), &bytes, PACKED_LEVEL).expect("whole");
-            prop_assert_eq!(decode(mask(&now), &packed, base), Ok(now.clone()));
+            prop_assert_eq!(&decode(mask(&now), &packed, base).expect("whole"), &now);
         }
 
         #[test]
@@ -256,9 +256,9 @@ mod tests {
         assert_eq!(whole.own().len(), 40);
         let long = with_own_of(0..2000, 7);
         let error = decode(1, &long, None).expect_err("more than layers of a paint");
-        assert!(error.contains("bytes instead of"), "{error}");
+        assert!(matches!(error, Defect::Size { .. }), "{error}");
         let empty = decode(1, &with_own_of(layers(40), 0), None).expect_err("nothing in it");
-        assert!(empty.contains("holds nothing"), "{empty}");
+        assert!(matches!(empty, Defect::Empty), "{empty}");
     }
 
     #[test]

@@ -13,7 +13,7 @@ pub const APPLICATION_ID: i32 = 0x4D61_756C;
 /// The schema that this program writes.
 pub const VERSION: i32 = 8;
 /// The oldest schema that it reads.
-const OLDEST: i32 = 4;
+const OLDEST_VERSION: i32 = 4;
 
 /// Every row begins with its table's number, so that rows can be sorted even if the schema is lost, and ends with a
 /// checksum of its other columns.
@@ -164,7 +164,7 @@ pub fn is_foreign(path: &Path) -> Result<bool, DocumentError> {
 /// Steps from each older schema to the next. The rows of the record of schema 6 are columns, and those of schema 5 stay as
 /// they are. Names of steps and decisions of schema 7 have fields, and those of before stay the words that they are. Edits of
 /// schema 8 have names, and those of before stay numbers.
-const MIGRATIONS: [&str; (VERSION - OLDEST) as usize] = [RECORD_TABLES, "", "", ""];
+const MIGRATIONS: [&str; (VERSION - OLDEST_VERSION) as usize] = [RECORD_TABLES, "", "", ""];
 
 /// Schema of a painting; rejects one of a newer program or of before the oldest schema.
 ///
@@ -177,7 +177,7 @@ pub fn version(connection: &Connection) -> Result<i32, DocumentError> {
     if application != APPLICATION_ID || version < 1 {
         return Err(DocumentError::NoPainting);
     }
-    if version < OLDEST {
+    if version < OLDEST_VERSION {
         return Err(DocumentError::Older(version));
     }
     if version > VERSION {
@@ -192,7 +192,7 @@ pub fn version(connection: &Connection) -> Result<i32, DocumentError> {
 /// An object of a schema: its type, name, table and statement.
 type Object = [String; 4];
 
-/// Objects of a schema, at most so many.
+/// Most objects of a schema.
 fn objects(connection: &Connection, most: usize) -> Result<BTreeSet<Object>, DocumentError> {
     // SQLite's own statistics are no statement of anybody.
     let query = "SELECT type, name, tbl_name, coalesce(sql, '') FROM sqlite_schema \
@@ -213,7 +213,7 @@ pub fn check(connection: &Connection) -> Result<(), DocumentError> {
     own.execute_batch(TABLES)?;
     for change in MIGRATIONS
         .iter()
-        .take((version(connection)? - OLDEST) as usize)
+        .take((version(connection)? - OLDEST_VERSION) as usize)
     {
         own.execute_batch(change)?;
     }
@@ -238,7 +238,7 @@ pub fn check(connection: &Connection) -> Result<(), DocumentError> {
 /// # Errors
 /// As [`version`].
 pub fn has_record(connection: &Connection) -> Result<bool, DocumentError> {
-    Ok(version(connection)? > OLDEST)
+    Ok(version(connection)? > OLDEST_VERSION)
 }
 
 /// Migrates an older painting to the schema of this program.
@@ -250,9 +250,9 @@ pub fn migrate(connection: &Connection) -> Result<(), DocumentError> {
     for (place, change) in MIGRATIONS
         .iter()
         .enumerate()
-        .skip((version - OLDEST) as usize)
+        .skip((version - OLDEST_VERSION) as usize)
     {
-        let to = OLDEST + 1 + place as i32;
+        let to = OLDEST_VERSION + 1 + place as i32;
         let change = format!("BEGIN IMMEDIATE; {change}; PRAGMA user_version = {to}; COMMIT;");
         connection.execute_batch(&change)?;
     }

@@ -1,4 +1,4 @@
-//! Failures of the disk: painting goes on in memory, it is told, and what failed is tried again.
+//! Failures of the disk: painting continues in memory, the failure is reported, and the operation is tried again.
 
 use std::sync::atomic::Ordering::SeqCst;
 use std::time::{Duration, Instant};
@@ -16,7 +16,7 @@ pub(super) struct Retry {
 }
 
 impl Retry {
-    /// True if the last failure, if there was one, is so long ago.
+    /// True if there was no failure within this time.
     pub(super) fn has_waited(&self, delay: Duration) -> bool {
         self.failed.is_none_or(|when| when.elapsed() >= delay)
     }
@@ -55,7 +55,7 @@ impl DocumentThread {
         }
     }
 
-    /// Notes that it fails: it is told and tried again.
+    /// Notes a failure: it is reported, and the operation tried again.
     pub(super) fn note_failure(&mut self, part: Part, error: &DocumentError) {
         self.shared.fails.store(true, SeqCst);
         let mut queues = self.shared.lock();

@@ -25,9 +25,9 @@ use crate::file::relocate::RelocateRequest;
 use crate::file::watch::FileWatch;
 use crate::journal;
 use crate::record;
-use crate::writing::{ShownTile, Trust, Writer};
+use crate::writing::{ShownTile, Stored, Trust, Writer};
 use failures::{Part, Retry};
-use queues::{EndGuard, Life, Shared};
+use queues::{EndGuard, Life, Queues, Shared};
 use reading::yield_to_readers;
 
 /// Longest time until an accepted record is in the file.
@@ -63,16 +63,8 @@ pub(crate) struct DocumentThread {
     /// Pages of the painting as it is that were not read yet: they are, while there is nothing else to do, so that a disk that
     /// fails later is painted on.
     to_read_ahead: Vec<Page<Planes>>,
-    merged: Merged,
-}
-
-/// Whether a file can be read without its journal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Merged {
-    /// Its first checkpoint is still to be merged into it.
-    Not,
-    /// Its first checkpoint is merged.
-    First,
+    /// True once the first checkpoint of the file is merged into it, so that it can be read without its journal.
+    is_merged: bool,
 }
 
 /// Next work of the thread.
@@ -87,6 +79,19 @@ enum Work {
     /// Check of the files alone.
     CheckFiles,
     Close,
+}
+
+/// Rows that the writer of a checkpoint takes to be in the file; `None` if the checkpoint is superfluous.
+fn trust_for(checkpoint: &Checkpoint, queues: &mut Queues) -> Option<Trust> {
+    if !queues.wants_all {
+        Some(Trust::Stored)
+    } else if checkpoint.is_whole {
+        Some(Trust::Nothing)
+    } else {
+        // It was handed over before: its contents are in the whole one, which comes next.
+        queues.writing = false;
+        None
+    }
 }
 
 impl DocumentThread {
@@ -112,7 +117,7 @@ impl DocumentThread {
             file: Retry::default(),
             reading: Retry::default(),
             to_read_ahead: Vec::new(),
-            merged: Merged::Not,
+            is_merged: false,
         }
     }
 
@@ -169,23 +174,27 @@ impl DocumentThread {
         if broken.is_some() || !self.writes {
             // A reader changes nothing, and the journal of a damaged file may hold rows to recover.
             self.database.close_unchanged()?;
-            return match left {
-                true => Err(DocumentError::Damaged(broken.unwrap_or(fault))),
-                false => Ok(()),
+            return if left {
+                Err(DocumentError::Damaged(broken.unwrap_or(fault)))
+            } else {
+                Ok(())
             };
         }
         self.database.close()?;
-        match left && !fault.is_empty() {
-            true => Err(DocumentError::Unwritten(fault)),
-            // What the file lacks was in memory alone.
-            false if wants_all => Err(DocumentError::Incomplete(self.path)),
-            false => Ok(()),
+        if left && !fault.is_empty() {
+            Err(DocumentError::Unwritten(fault))
+        } else if wants_all {
+            // The parts that the file lacks were in memory alone.
+            Err(DocumentError::Incomplete(self.path))
+        } else {
+            Ok(())
         }
     }
 
     /// Waits for the most urgent work.
     fn next(&mut self) -> Work {
-        let mut queues = self.shared.lock();
+        let shared = Arc::clone(&self.shared);
+        let mut queues = shared.lock();
         loop {
             let closing = queues.life == Life::Closing;
             let may_retry = closing || self.reading.has_waited(REREAD_DELAY);
@@ -197,46 +206,8 @@ impl DocumentThread {
                 return Work::Fetch;
             }
             let may_write = self.writes && queues.broken.is_none();
-            let hurry = closing || !queues.flushes.is_empty() || !queues.relocations.is_empty();
-            let due = hurry || self.last_commit.elapsed() >= COMMIT_PERIOD;
-            // A file that lacks a part of the painting gets all of it, and before that nothing else.
-            let is_whole = !queues.wants_all;
-            let commits = may_write
-                && is_whole
-                && due
-                && self.journal.is_due(hurry)
-                && !queues.records.is_empty();
-            // A checkpoint includes the records, but needs more room on the disk than they do.
-            if commits && self.checkpoint.failed.is_some() {
-                return Work::Commit(std::mem::take(&mut queues.records));
-            }
-            if may_write
-                && self.checkpoint.is_due(hurry)
-                && let Some(checkpoint) = queues.checkpoint.take()
-            {
-                queues.writing = true;
-                return Work::Checkpoint(Box::new(checkpoint));
-            }
-            // New records come all the time while somebody paints: one commit is enough. A file that lacks a part of the
-            // painting takes none, and is not relocated: that is said at once.
-            if may_write
-                && (queues.records.is_empty() || self.committed_for_relocation || !is_whole)
-                && let Some(request) = queues.relocations.pop()
-            {
-                return Work::Relocate(request);
-            }
-            if commits {
-                self.committed_for_relocation = !queues.relocations.is_empty();
-                return Work::Commit(std::mem::take(&mut queues.records));
-            }
-            if may_write && is_whole && self.checkpoint.failed.is_none() {
-                // Displayed tiles of a later checkpoint wait for that.
-                let saved = self.saved_version;
-                let ready = queues.shown.extract_if(.., |_, tile| tile.version <= saved);
-                let tiles: Vec<ShownTile> = ready.take(SHOWN_BATCH).map(|(_, tile)| tile).collect();
-                if !tiles.is_empty() {
-                    return Work::Shown(tiles);
-                }
+            if may_write && let Some(work) = self.next_write(&mut queues, closing) {
+                return work;
             }
             // A painting that is only read is not relocated.
             queues.relocations.clear();
@@ -253,15 +224,18 @@ impl DocumentThread {
             {
                 return Work::Read(page);
             }
-            let waits =
-                may_write && is_whole && self.journal.is_due(false) && !queues.records.is_empty();
-            let wait = match waits {
-                true => COMMIT_PERIOD.saturating_sub(self.last_commit.elapsed()),
-                false if !queues.failed_fetches.is_empty() => REREAD_DELAY,
-                false => RETRY_DELAY,
+            let waits = may_write
+                && !queues.wants_all
+                && self.journal.is_due(false)
+                && !queues.records.is_empty();
+            let wait = if waits {
+                COMMIT_PERIOD.saturating_sub(self.last_commit.elapsed())
+            } else if queues.failed_fetches.is_empty() {
+                RETRY_DELAY
+            } else {
+                REREAD_DELAY
             };
-            let waited = self
-                .shared
+            let waited = shared
                 .wake
                 .wait_timeout(queues, wait.max(Duration::from_millis(1)));
             let timed_out;
@@ -270,6 +244,44 @@ impl DocumentThread {
                 return Work::CheckFiles;
             }
         }
+    }
+
+    /// The most urgent write, if any is due.
+    fn next_write(&mut self, queues: &mut Queues, closing: bool) -> Option<Work> {
+        let hurry = closing || !queues.flushes.is_empty() || !queues.relocations.is_empty();
+        let due = hurry || self.last_commit.elapsed() >= COMMIT_PERIOD;
+        // A file that lacks a part of the painting gets all of it, and before that nothing else.
+        let is_whole = !queues.wants_all;
+        let commits = is_whole && due && self.journal.is_due(hurry) && !queues.records.is_empty();
+        // A checkpoint includes the records, but needs more room on the disk than they do.
+        if commits && self.checkpoint.failed.is_some() {
+            return Some(Work::Commit(std::mem::take(&mut queues.records)));
+        }
+        if self.checkpoint.is_due(hurry)
+            && let Some(checkpoint) = queues.checkpoint.take()
+        {
+            queues.writing = true;
+            return Some(Work::Checkpoint(Box::new(checkpoint)));
+        }
+        // New records come all the time while somebody paints: one commit is enough. A file that lacks a part of the
+        // painting takes none, and is not relocated: that is said at once.
+        if (queues.records.is_empty() || self.committed_for_relocation || !is_whole)
+            && let Some(request) = queues.relocations.pop()
+        {
+            return Some(Work::Relocate(request));
+        }
+        if commits {
+            self.committed_for_relocation = !queues.relocations.is_empty();
+            return Some(Work::Commit(std::mem::take(&mut queues.records)));
+        }
+        if !is_whole || self.checkpoint.failed.is_some() {
+            return None;
+        }
+        // Displayed tiles of a later checkpoint wait for that.
+        let saved = self.saved_version;
+        let ready = queues.shown.extract_if(.., |_, tile| tile.version <= saved);
+        let tiles: Vec<ShownTile> = ready.take(SHOWN_BATCH).map(|(_, tile)| tile).collect();
+        (!tiles.is_empty()).then_some(Work::Shown(tiles))
     }
 
     /// Runs `write` in a transaction, which is rolled back if it fails.
@@ -304,17 +316,8 @@ impl DocumentThread {
 
     fn write_checkpoint(&mut self, mut checkpoint: Checkpoint) {
         let shared = Arc::clone(&self.shared);
-        let trust = {
-            let mut queues = shared.lock();
-            match queues.wants_all {
-                false => Trust::Stored,
-                true if checkpoint.is_whole => Trust::Nothing,
-                true => {
-                    // It was handed over before; what it holds is in the whole one, which comes next.
-                    queues.writing = false;
-                    return;
-                }
-            }
+        let Some(trust) = trust_for(&checkpoint, &mut shared.lock()) else {
+            return;
         };
         let serial = checkpoint.sequencer.serial;
         let mut overtaken = Vec::new();
@@ -331,12 +334,7 @@ impl DocumentThread {
                 COMMIT_PERIOD
             };
             let until = Instant::now() + longest;
-            let written = self.transaction(|database| {
-                let mut yield_hook = |database: &Database| yield_to_readers(&shared, database);
-                let writer = Writer::new(database, &mut yield_hook).trusting(trust);
-                writer.checkpoint(&checkpoint, &overtaken, until)
-            });
-            match written {
+            match self.write_pages(&checkpoint, trust, &overtaken, until) {
                 // Records accepted meanwhile do not wait for the remaining pages.
                 Ok((stored, false)) => {
                     stored.mark();
@@ -365,7 +363,7 @@ impl DocumentThread {
                     .committed
                     .fetch_max(checkpoint.sequencer.next, SeqCst);
                 drop((queues, checkpoint));
-                if std::mem::replace(&mut self.merged, Merged::First) == Merged::Not {
+                if !std::mem::replace(&mut self.is_merged, true) {
                     self.database.merge_journal();
                     self.watch.note_merged();
                 }
@@ -379,6 +377,27 @@ impl DocumentThread {
                 self.note_failure(Part::Checkpoint, &error);
             }
         }
+    }
+
+    /// Writes a checkpoint, with `records` that were accepted before it, in a transaction. If its pages take longer than
+    /// `until`, only some of them are written, and false is returned.
+    fn write_pages(
+        &self,
+        checkpoint: &Checkpoint,
+        trust: Trust,
+        records: &[Record],
+        until: Instant,
+    ) -> Result<(Stored, bool), DocumentError> {
+        let shared = Arc::clone(&self.shared);
+        self.transaction(|database| {
+            let mut yield_hook = |database: &Database| yield_to_readers(&shared, database);
+            let mut writer = Writer::new(database, &mut yield_hook).trusting(trust);
+            let is_whole = writer.checkpoint(checkpoint, until)?;
+            if is_whole {
+                record::advance(&mut writer, checkpoint, records)?;
+            }
+            Ok((writer.stored(), is_whole))
+        })
     }
 
     fn commit(&mut self, records: Vec<Record>) {

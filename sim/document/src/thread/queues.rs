@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::SeqCst};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 use std::time::Instant;
 
-use maulstick_canvas::page::backing::Backing;
+use maulstick_canvas::page::backing::{Backing, PageError};
 use maulstick_canvas::planes::Planes;
 use maulstick_model::brush::load::BrushLoad;
 use maulstick_painting::sequencer::Record;
@@ -24,8 +24,8 @@ const SHOWN_MAX: usize = 4096;
 
 /// Page that a reader waits for.
 pub(crate) enum Fetch {
-    Planes(u64, mpsc::Sender<Result<Planes, String>>),
-    Load(u64, mpsc::Sender<Result<BrushLoad, String>>),
+    Planes(u64, mpsc::Sender<Result<Planes, DocumentError>>),
+    Load(u64, mpsc::Sender<Result<BrushLoad, DocumentError>>),
     Shown([i64; 3], mpsc::Sender<Option<Vec<u8>>>),
     /// Messages of the record from a serial number on.
     Records(u64, mpsc::Sender<Result<Option<RecordRow>, DocumentError>>),
@@ -76,7 +76,7 @@ pub(crate) struct Queues {
 /// Subject of a notice about the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NoticeKind {
-    /// The painting goes on in another file.
+    /// The painting continues in another file.
     Moved,
     /// The file has a second name, a hard link.
     Linked,
@@ -155,14 +155,14 @@ pub(crate) const CLOSED: &str = "the document was closed";
 pub(crate) const PANICKED: &str = "internal error: the document's thread panicked";
 
 impl Backing for DocumentBacking {
-    fn read(&self, id: u64, kind: TypeId) -> Result<Box<dyn Any>, String> {
+    fn read(&self, id: u64, kind: TypeId) -> Result<Box<dyn Any>, PageError> {
         if kind == TypeId::of::<Planes>() {
             return self.page(|answer| Fetch::Planes(id, answer));
         }
         if kind == TypeId::of::<BrushLoad>() {
             return self.page(|answer| Fetch::Load(id, answer));
         }
-        Err(format!("page {id} is of a kind that no document holds"))
+        Err(PageError::Kind(id))
     }
 
     fn is_at_hand(&self) -> bool {
@@ -173,13 +173,16 @@ impl Backing for DocumentBacking {
 impl DocumentBacking {
     fn page<T: 'static>(
         &self,
-        fetch: impl FnOnce(mpsc::Sender<Result<T, String>>) -> Fetch,
-    ) -> Result<Box<dyn Any>, String> {
-        let read = self
-            .0
-            .request(fetch)
-            .unwrap_or_else(|| Err(CLOSED.to_owned()))?;
-        Ok(Box::new(read))
+        fetch: impl FnOnce(mpsc::Sender<Result<T, DocumentError>>) -> Fetch,
+    ) -> Result<Box<dyn Any>, PageError> {
+        let read = self.0.request(fetch);
+        let read = read.unwrap_or_else(|| Err(DocumentError::Other(CLOSED.to_owned())));
+        match read {
+            Ok(content) => Ok(Box::new(content)),
+            // The page's own words are enough for who needs it.
+            Err(DocumentError::Damaged(what)) => Err(PageError::Storage(what.into())),
+            Err(error) => Err(PageError::Storage(error.into())),
+        }
     }
 }
 

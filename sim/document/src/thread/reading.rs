@@ -25,7 +25,7 @@ fn thread_cpu() -> Duration {
 }
 
 impl DocumentThread {
-    /// Reads the pages that readers wait for, and tells a fault of the disk.
+    /// Reads the pages that readers wait for, and reports a fault of the disk.
     pub(super) fn read_pages(&mut self) {
         let served = serve_fetches(&self.shared, &self.database);
         // Those that failed before may still wait while others are read.
@@ -39,7 +39,7 @@ impl DocumentThread {
 }
 
 impl DocumentThread {
-    /// Reads a page that nobody waits for, as long as half of the memory is free. What is wrong with it is told to who needs it.
+    /// Reads a page that nobody waits for, as long as half of the memory is free. An error is left to the reader that needs the page.
     pub(super) fn read_ahead(&mut self, page: &Page<Planes>) {
         let counts = page.pager().counts();
         if counts.resident >= counts.bound / 2 {
@@ -54,8 +54,8 @@ impl DocumentThread {
     }
 }
 
-/// Makes a painting unreliable in memory: a page of it is not intact, or is not given by the disk for too long.
-fn broken(shared: &Shared, error: &DocumentError) -> String {
+/// Notes that the painting in memory is unreliable: a page of it is not intact, or the disk did not give it in time.
+fn note_broken(shared: &Shared, error: &DocumentError) {
     let what = match error {
         DocumentError::Damaged(what) => what.clone(),
         error => error.to_string(),
@@ -63,8 +63,7 @@ fn broken(shared: &Shared, error: &DocumentError) -> String {
     shared.fails.store(true, SeqCst);
     let mut queues = shared.lock();
     queues.fault = Some((error.to_string(), error.advice()));
-    queues.broken = Some(what.clone());
-    what
+    queues.broken = Some(what);
 }
 
 /// Content of a page, or an answer that says why there is none; `None` where it is to be tried again.
@@ -72,7 +71,7 @@ fn answered<T>(
     shared: &Shared,
     read: Result<T, DocumentError>,
     until: Instant,
-    answer: &Sender<Result<T, String>>,
+    answer: &Sender<Result<T, DocumentError>>,
     failure: &mut Option<DocumentError>,
 ) -> Option<()> {
     let waits = Instant::now() < until && shared.lock().life == Life::Open;
@@ -81,9 +80,9 @@ fn answered<T>(
             *failure = Some(error);
             return None;
         }
-        read => read.map_err(|error| broken(shared, &error)),
+        read => read.inspect_err(|error| note_broken(shared, error)),
     };
-    // Who asked may have given up.
+    // The reader may have given up.
     answer.send(read).ok();
     Some(())
 }
@@ -92,9 +91,10 @@ fn answered<T>(
 /// depends on it any more, and the file, which may be long, is not read through again.
 fn judged(shared: &Shared, database: &Database, error: DocumentError) -> DocumentError {
     let is_broken = shared.lock().broken.is_some();
-    match is_broken {
-        true => error,
-        false => database.judged(error),
+    if is_broken {
+        error
+    } else {
+        database.judged(error)
     }
 }
 

@@ -8,6 +8,14 @@ use crate::file::database::{Access, Database, is_new};
 use crate::file::relocate::{self, Relocate, RelocateRequest};
 use crate::file::watch::{FileState, FileWatch};
 
+/// The file at a path; SQLite would create a blank one where there is none.
+fn open(path: &Path) -> Result<Database, DocumentError> {
+    if is_new(path)? {
+        return Err(DocumentError::Missing);
+    }
+    Database::open(path, Access::Paint, None).map(|(database, _)| database)
+}
+
 impl DocumentThread {
     /// Relocates the painting and continues there, or at its old path if that fails.
     ///
@@ -25,18 +33,13 @@ impl DocumentThread {
             request.answer.send(copied).ok();
             return Ok(self);
         }
-        let open = |path: &Path| match is_new(path)? {
-            // SQLite would create a blank one.
-            true => Err(DocumentError::Missing),
-            false => Database::open(path, Access::Paint, None).map(|(database, _)| database),
-        };
         if let FileState::Gone(_) = state {
             let rescued = relocate::rescue(&self.database, &request.to, request.replace)
                 .and_then(|()| self.continue_in(&request.to));
             request.answer.send(rescued).ok();
             return Ok(self);
         }
-        // What fails now would fail when it is closed, and then it could not be opened again.
+        // An error now would come when it is closed, and then it could not be opened again.
         match self.database.try_merge_journal() {
             // It is closed with its journal then, and refused.
             Ok(()) | Err(DocumentError::Full) => {}
@@ -78,7 +81,7 @@ impl DocumentThread {
     }
 
     /// The answer where the file lacks a part of the painting; `None` if it has all of it. Such a painting is not relocated. But
-    /// one that was cut short, and got no other file beside it, goes on at the new path, and wants all of the painting there.
+    /// one that was cut short, and got no other file beside it, continues at the new path, and wants all of the painting there.
     fn answer_of_a_part(
         &mut self,
         state: &FileState,

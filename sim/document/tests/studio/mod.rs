@@ -152,9 +152,10 @@ impl Painter {
         let dice = &mut self.dice;
         let file = brush(48);
         let palette = dice.below(5) == 0;
-        let (surface, middle) = match palette {
-            true => (PALETTE, [20.0, dice.between(20.0, 230.0)]),
-            false => (CANVAS, [dice.between(3.0, 34.0), dice.between(3.0, 22.0)]),
+        let (surface, middle) = if palette {
+            (PALETTE, [20.0, dice.between(20.0, 230.0)])
+        } else {
+            (CANVAS, [dice.between(3.0, 34.0), dice.between(3.0, 22.0)])
         };
         let count = 2 + dice.below(3);
         let joints = file.spines.all_joints();

@@ -13,7 +13,7 @@ pub struct GifFilm<W: Write> {
     size: [usize; 2],
     /// The newest frame, sRGB.
     shown: Vec<[u8; 3]>,
-    /// What of it is new, until its time is known.
+    /// Changed part of the newest frame, until its time is known.
     waiting: Option<Frame<'static>>,
 }
 
@@ -25,7 +25,7 @@ fn failed(error: gif::EncodingError) -> Error {
 }
 
 impl<W: Write> GifFilm<W> {
-    /// A film of frames of so many pixels across and down, which begins again at its end.
+    /// A film of frames of `size` pixels, across and down, which begins again at its end.
     ///
     /// # Errors
     /// The error of `to`, or for more than 65,535 pixels either way.

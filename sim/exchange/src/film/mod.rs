@@ -19,7 +19,7 @@ use maulstick_types::scene::CANVAS;
 
 use reduction::Reduction;
 
-/// What all cells of a canvas look like by: the print of its look, its lamp, names of ground and tooth, and its seed.
+/// Values on which the look of all cells depends: print of the look, lamp, names of ground and tooth, seed.
 type Look = (i64, Lamp, [String; 2], u64);
 
 /// A canvas that is drawn small again and again; only rows of tiles that have changed are drawn anew.
@@ -41,7 +41,7 @@ struct DrawnBand {
     light: Vec<[f32; 3]>,
 }
 
-/// Size of a canvas of so many cells in the frames of a film, pixels: `width` across, with the proportions of the
+/// Size of a canvas in the frames of a film, pixels: `width` across, with the proportions of the
 /// canvas, and never larger than it. Encoders of video take even sizes alone.
 #[must_use]
 pub fn frame_size(cells: [usize; 2], width: usize, is_even: bool) -> [usize; 2] {
@@ -49,14 +49,15 @@ pub fn frame_size(cells: [usize; 2], width: usize, is_even: bool) -> [usize; 2] 
     let width = width.clamp(1, across);
     let height = (cells[1] * width + across / 2) / across;
     let size = [width, height.max(1)];
-    match is_even {
-        true => size.map(|side| (side & !1).max(2)),
-        false => size,
+    if is_even {
+        size.map(|side| (side & !1).max(2))
+    } else {
+        size
     }
 }
 
 impl Film {
-    /// A film of a canvas of so many cells, in frames of so many pixels across and down.
+    /// A film of a canvas of `cells`, in frames of `size` pixels, across and down.
     #[must_use]
     pub fn new(cells: [usize; 2], size: [usize; 2]) -> Self {
         Self {

@@ -19,7 +19,7 @@ pub(super) struct Reduction {
 }
 
 impl Reduction {
-    /// From so many cells to so many pixels, across and down.
+    /// A reduction from cells to pixels, across and down.
     pub(super) fn new(cells: [usize; 2], size: [usize; 2]) -> Self {
         let decode = |value: u32| srgb_decode(f64::from(value) / 65_535.0) as f32;
         Self {

@@ -7,7 +7,7 @@ use maulstick_types::scene::PaintSlot;
 /// Letters of a paint's name at most: a channel's name has 255 bytes.
 const NAME_MAX: usize = 200;
 
-/// What a channel holds.
+/// Content of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Source {
     /// Red, green or blue.

@@ -104,7 +104,7 @@ pub fn write_open_exr(
 fn header(size: [usize; 2], cell_m: f64, channels: &[(String, Source)]) -> Header {
     let text = |text: &str| Text::from_slice_unchecked(text.as_bytes());
     let list = channels.iter().map(|(name, source)| {
-        // What a program that packs with loss is to keep the ratios of.
+        // Channels whose ratios a program that packs with loss should keep.
         let linear = !matches!(source, Source::Colour(_));
         ChannelDescription::new(text(name), SampleType::F32, linear)
     });

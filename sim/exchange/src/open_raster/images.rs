@@ -16,12 +16,12 @@ use maulstick_types::scene::Layer;
 const RGBA: usize = 4;
 const RGB: usize = 3;
 
-/// What a picture shows.
+/// Content of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shows {
     /// The bare ground.
     Ground,
-    /// What dried last of the painting up to the dry layer of this number.
+    /// The last layer to dry, of the painting up to the dry layer of this number.
     Dry(u32),
     /// The wet paint.
     Wet,
@@ -39,7 +39,7 @@ pub(super) struct Image {
 }
 
 impl Image {
-    /// How its pixels are written.
+    /// Encoding of its pixels.
     pub(super) fn colour(&self) -> png::ColorType {
         match self.shows {
             Shows::Merged => png::ColorType::Rgb,

@@ -144,7 +144,7 @@ fn add<W: Write + Seek>(
     Ok(())
 }
 
-/// What lies over what, from the top.
+/// The stack of layers, from the top.
 fn stack([width, height]: [usize; 2], cell_m: f64, images: &[Image]) -> String {
     let density = (INCH_M / cell_m).round();
     let mut xml = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");

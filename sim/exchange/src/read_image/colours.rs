@@ -13,7 +13,7 @@ pub(super) const MOST_PROFILE: usize = 32 << 20;
 pub struct UnusedMark {
     /// The mark, as its format calls it.
     pub mark: &'static str,
-    /// What is wrong with it.
+    /// The defect.
     pub reason: String,
 }
 
@@ -42,7 +42,7 @@ impl Range {
     };
 }
 
-/// How the colours of a picture become those of sRGB in linear light.
+/// Conversion of a picture's colours to linear sRGB.
 pub(super) struct Colours {
     profile: Option<Incoming>,
     /// Light of each number, 0 to 65,535; of what a profile makes of it where there is one.
@@ -61,7 +61,7 @@ impl Colours {
         }
     }
 
-    /// By a profile, for a picture of so many colour channels: 1 or 3.
+    /// Colours by a profile, for a picture of 1 or 3 colour channels.
     pub(super) fn of_profile(icc: &[u8], channels: usize) -> Result<Self, UnusedMark> {
         let unused = |reason: String| UnusedMark {
             mark: "colour profile",
@@ -137,8 +137,8 @@ impl Colours {
 
 /// Infinity, as brightest highlights have it, as a number that a matrix can take.
 fn bounded(light: f32) -> f32 {
-    const MOST: f32 = 65_504.0;
-    light.clamp(-MOST, MOST)
+    const LARGEST_HALF: f32 = 65_504.0;
+    light.clamp(-LARGEST_HALF, LARGEST_HALF)
 }
 
 fn table(transfer: Transfer, range: Range) -> Vec<f32> {

@@ -19,7 +19,7 @@ use crate::import_error::ImportError;
 /// Bytes of a number.
 const NUMBER: usize = size_of::<f32>();
 
-/// What is seen of a layer.
+/// Visible part of a layer.
 #[derive(Clone, Copy)]
 struct Frame {
     /// Pixels across and down.
@@ -31,6 +31,21 @@ struct Frame {
 }
 
 impl Frame {
+    /// The frame of a layer. Another part of the layer than this, and beyond, may be in the file.
+    fn of(layer: &Header) -> Self {
+        let window = layer.shared_attributes.display_window;
+        let first = |i: usize| {
+            let [at, from] = [layer.own_attributes.layer_position, window.position]
+                .map(|place| [place.0, place.1][i]);
+            i64::from(at) - i64::from(from)
+        };
+        Self {
+            size: [window.size.0, window.size.1],
+            first: [first(0), first(1)],
+            channels: if has(layer, "A") { 4 } else { 3 },
+        }
+    }
+
     /// All of it, clear or black.
     fn blank(&self) -> Vec<f32> {
         vec![0.0; self.size[0] * self.size[1] * self.channels]
@@ -57,72 +72,47 @@ fn has(layer: &Header, name: &str) -> bool {
 
 pub(super) fn read(source: impl BufRead + Seek, most_bytes: u64) -> Result<Picture, ImportError> {
     let file = exr::block::read(source, false).map_err(wrong)?;
-    let first = |names: &[&str]| {
-        let mut all = file.headers().iter().filter(|layer| !layer.deep);
-        all.find(|layer| names.iter().all(|name| has(layer, name)))
-    };
-    let (layer, is_grey) = match (first(&["R", "G", "B"]), first(&["Y"])) {
-        (Some(layer), _) => (layer, false),
-        // Chroma, at half the size, would be missing.
-        (None, Some(layer)) if !has(layer, "RY") => (layer, true),
-        _ => {
-            let what = "it has no channels R, G and B, nor grey ones of Y alone".to_owned();
-            return Err(ImportError::Unsupported(what));
-        }
-    };
-    let window = layer.shared_attributes.display_window;
-    // Another part of the layer than what is seen, and beyond, may be in the file.
-    let frame = Frame {
-        size: [window.size.0, window.size.1],
-        first: [0, 1].map(|i| {
-            let [at, from] = [layer.own_attributes.layer_position, window.position]
-                .map(|place| [place.0, place.1][i]);
-            i64::from(at) - i64::from(from)
-        }),
-        channels: if has(layer, "A") { 4 } else { 3 },
-    };
+    let (layer, is_grey) = coloured(file.headers())?;
+    let frame = Frame::of(layer);
     let whole = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
     let size = frame.size.map(whole);
     check_size(size, frame.channels * NUMBER, most_bytes)?;
     let stored = [layer.layer_size.0, layer.layer_size.1].map(whole);
     check_size(stored, frame.channels * NUMBER, most_bytes)?;
     let (colours, unused) = marked(layer);
-    let values = match is_grey {
-        false => {
-            let channels = layers().no_deep_data().largest_resolution_level();
-            let image = channels
-                .rgba_channels(
-                    move |_, _| frame.blank(),
-                    move |into: &mut Vec<f32>, at, (r, g, b, a): (f32, f32, f32, f32)| {
-                        frame.put(into, at, &[r, g, b, a]);
-                    },
-                )
-                .first_valid_layer()
-                .all_attributes()
-                .non_parallel()
-                .from_chunks(file)
-                .map_err(wrong)?;
-            image.layer_data.channel_data.pixels
-        }
-        true => {
-            let channels = layers().no_deep_data().largest_resolution_level();
-            let image = channels
-                .specific_channels()
-                .required("Y")
-                .optional("A", 1.0f32)
-                .collect_pixels(
-                    move |_, _| frame.blank(),
-                    move |into: &mut Vec<f32>, at, (grey, a): (f32, f32)| {
-                        frame.put(into, at, &[grey, grey, grey, a]);
-                    },
-                )
-                .first_valid_layer()
-                .all_attributes()
-                .non_parallel()
-                .from_chunks(file)
-                .map_err(wrong)?;
-            image.layer_data.channel_data.pixels
-        }
+    let values = if is_grey {
+        let channels = layers().no_deep_data().largest_resolution_level();
+        let image = channels
+            .specific_channels()
+            .required("Y")
+            .optional("A", 1.0f32)
+            .collect_pixels(
+                move |_, _| frame.blank(),
+                move |into: &mut Vec<f32>, at, (grey, a): (f32, f32)| {
+                    frame.put(into, at, &[grey, grey, grey, a]);
+                },
+            )
+            .first_valid_layer()
+            .all_attributes()
+            .non_parallel()
+            .from_chunks(file)
+            .map_err(wrong)?;
+        image.layer_data.channel_data.pixels
+    } else {
+        let channels = layers().no_deep_data().largest_resolution_level();
+        let image = channels
+            .rgba_channels(
+                move |_, _| frame.blank(),
+                move |into: &mut Vec<f32>, at, (r, g, b, a): (f32, f32, f32, f32)| {
+                    frame.put(into, at, &[r, g, b, a]);
+                },
+            )
+            .first_valid_layer()
+            .all_attributes()
+            .non_parallel()
+            .from_chunks(file)
+            .map_err(wrong)?;
+        image.layer_data.channel_data.pixels
     };
     Ok(Picture {
         pixels: Numbers::Floats(values).into_image(size, frame.channels)?,
@@ -131,6 +121,23 @@ pub(super) fn read(source: impl BufRead + Seek, most_bytes: u64) -> Result<Pictu
         unused,
         turned: Orientation::NoTransforms,
     })
+}
+
+/// The first layer with colours, and whether they are grey.
+fn coloured(layers: &[Header]) -> Result<(&Header, bool), ImportError> {
+    let first = |names: &[&str]| {
+        let mut all = layers.iter().filter(|layer| !layer.deep);
+        all.find(|layer| names.iter().all(|name| has(layer, name)))
+    };
+    match (first(&["R", "G", "B"]), first(&["Y"])) {
+        (Some(layer), _) => Ok((layer, false)),
+        // Chroma, at half the size, would be missing.
+        (None, Some(layer)) if !has(layer, "RY") => Ok((layer, true)),
+        _ => {
+            let what = "it has no channels R, G and B, nor grey ones of Y alone".to_owned();
+            Err(ImportError::Unsupported(what))
+        }
+    }
 }
 
 /// Colours by the attribute *chromaticities*; without it those of sRGB.

@@ -74,7 +74,7 @@ impl Image {
         Self::decode(BufReader::new(File::open(path).map_err(ImportError::File)?))
     }
 
-    /// The same for which a decoder takes at most so many bytes.
+    /// The same with a limit on the bytes that a decoder takes.
     ///
     /// # Errors
     /// As [`open`](Self::open), and where it would take more.
@@ -257,9 +257,10 @@ impl Image {
     pub fn heights(&self, row: usize, into: &mut Vec<[f32; 1]>) {
         let (channels, has_alpha) = self.channels();
         let samples = self.samples(row);
-        let (samples, shares) = match has_alpha {
-            true => self.parted(samples, channels),
-            false => (samples, Vec::new()),
+        let (samples, shares) = if has_alpha {
+            self.parted(samples, channels)
+        } else {
+            (samples, Vec::new())
         };
         let values: Vec<f32> = match samples {
             Samples::Floats(row) => row.iter().map(|v| v.clamp(0.0, 1.0)).collect(),

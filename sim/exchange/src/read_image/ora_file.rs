@@ -34,7 +34,7 @@ pub(super) fn read(source: impl BufRead + Seek, most_bytes: u64) -> Result<Pictu
 
 fn wrong(error: ZipError) -> ImportError {
     match error {
-        // What is packed wrongly is an error of its reader, too.
+        // Wrong compression is an error of its reader, too.
         ZipError::Io(error)
             if !matches!(
                 error.kind(),

@@ -6,7 +6,7 @@ use image::{DynamicImage, ImageBuffer, ImageError, Pixel};
 use super::colours::{Colours, UnusedMark};
 use crate::import_error::{ImportError, MOST_SIDE};
 
-/// What opacity is to colours.
+/// Relation of colours to opacity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Alpha {
     /// Colours are as if the pixel were opaque.
@@ -15,13 +15,13 @@ pub(super) enum Alpha {
     Associated,
 }
 
-/// What a file holds.
+/// Pixels of a file.
 pub(super) struct Picture {
     pub(super) pixels: DynamicImage,
     pub(super) alpha: Alpha,
     pub(super) colours: Colours,
     pub(super) unused: Option<UnusedMark>,
-    /// How it is to be turned to be seen as it was taken.
+    /// Orientation in which it was taken.
     pub(super) turned: Orientation,
 }
 
@@ -92,9 +92,10 @@ pub(super) fn check_size(
         return Err(ImportError::NotAPicture("it has no pixels".to_owned()));
     }
     let bytes = u64::from(width) * u64::from(height) * bytes_per_pixel as u64;
-    match bytes > most_bytes {
-        true => Err(ImportError::Memory(width, height)),
-        false => Ok(()),
+    if bytes > most_bytes {
+        Err(ImportError::Memory(width, height))
+    } else {
+        Ok(())
     }
 }
 

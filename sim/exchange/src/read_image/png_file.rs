@@ -14,7 +14,7 @@ use crate::import_error::ImportError;
 
 /// Bytes of the signature.
 const SIGNATURE: u64 = 8;
-/// gAMA and cHRM count so many for 1.
+/// Value of gAMA and cHRM that stands for 1.
 const SCALE: f64 = 100_000.0;
 
 pub(super) fn read(
@@ -72,10 +72,7 @@ pub(super) fn read(
 }
 
 fn colour_channels(pixels: &DynamicImage) -> usize {
-    match pixels.color().has_color() {
-        true => 3,
-        false => 1,
-    }
+    if pixels.color().has_color() { 3 } else { 1 }
 }
 
 /// Chunks that say something of colours.
@@ -196,7 +193,7 @@ fn gamma(info: &Info<'_>, marks: &[[u8; 4]]) -> Option<Result<Colours, UnusedMar
 
 fn wrong(error: DecodingError) -> ImportError {
     match error {
-        // What stands wrongly in a chunk is an error of its reader, too.
+        // Wrong content of a chunk is an error of its reader, too.
         DecodingError::IoError(error)
             if !matches!(
                 error.kind(),

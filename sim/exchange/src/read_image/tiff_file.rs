@@ -48,29 +48,29 @@ pub(super) fn read(
     let extra = decoder.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples);
     let extra = extra.map_err(of_size)?.and_then(|all| all.first().copied());
     let is_palette = photometric == Photometric::RGBPalette.to_u16();
-    let kind = match is_palette {
-        true => ColorType::RGB(16),
-        false => decoder.colortype().map_err(of_size)?,
+    let kind = if is_palette {
+        ColorType::RGB(16)
+    } else {
+        decoder.colortype().map_err(of_size)?
     };
     let is_grey = matches!(kind, ColorType::Gray(_) | ColorType::Multiband { .. });
     let (colours, unused) = marked(&mut decoder, if is_grey { 1 } else { 3 });
-    let Samples { numbers, channels } = match is_palette {
-        true => tiff_palette::read(decoder, size, most_bytes)?,
-        false => {
-            let samples = samples(&mut decoder, size, most_bytes)?;
-            match kind {
-                ColorType::Multiband { .. } => {
-                    let is_opacity = matches!(extra, Some(ASSOCIATED | UNASSOCIATED));
-                    first_of(samples, if is_opacity { 2 } else { 1 })
-                }
-                ColorType::CMYK(_) => of_inks(samples)?,
-                ColorType::YCbCr(_) => of_luma(samples, luma_shares(&mut decoder))?,
-                ColorType::Gray(bits) if bits < 8 => spread(samples, bits),
-                ColorType::Gray(_) | ColorType::RGB(_) | ColorType::RGBA(_) => samples,
-                other => {
-                    let what = format!("it has colours of the kind {other:?}");
-                    return Err(ImportError::Unsupported(what));
-                }
+    let Samples { numbers, channels } = if is_palette {
+        tiff_palette::read(decoder, size, most_bytes)?
+    } else {
+        let samples = samples(&mut decoder, size, most_bytes)?;
+        match kind {
+            ColorType::Multiband { .. } => {
+                let is_opacity = matches!(extra, Some(ASSOCIATED | UNASSOCIATED));
+                first_of(samples, if is_opacity { 2 } else { 1 })
+            }
+            ColorType::CMYK(_) => of_inks(samples)?,
+            ColorType::YCbCr(_) => of_luma(samples, luma_shares(&mut decoder))?,
+            ColorType::Gray(bits) if bits < 8 => spread(samples, bits),
+            ColorType::Gray(_) | ColorType::RGB(_) | ColorType::RGBA(_) => samples,
+            other => {
+                let what = format!("it has colours of the kind {other:?}");
+                return Err(ImportError::Unsupported(what));
             }
         }
     };
@@ -265,7 +265,7 @@ fn of_luma(
     })
 }
 
-/// The colours of a picture of so many colour channels, and the mark that should have said them if that
+/// The colours of a picture with this number of colour channels, and the mark that should have given them if that
 /// cannot be used.
 fn marked<R: BufRead + Seek>(
     decoder: &mut Decoder<R>,

@@ -56,9 +56,10 @@ pub(super) fn read<R: BufRead + Seek>(
     };
     let each = map.len() / 3;
     // Old programs wrote colours of 8 bits.
-    let scale = match map.iter().all(|value| *value < 256) {
-        true => 257,
-        false => 1,
+    let scale = if map.iter().all(|value| *value < 256) {
+        257
+    } else {
+        1
     };
     let colour = |index: u16| {
         let index = usize::from(index);

@@ -161,12 +161,15 @@ impl<'a> Solid<'a> {
         steps: &mut Steps<'_>,
     ) -> Result<Self, ExchangeError> {
         let grid = Grid::new(banded.cells(), setup.step as usize);
-        let check = |triangles: u64| match triangles <= max_triangles {
-            true => Ok(()),
-            false => Err(ExchangeError::TooManyTriangles {
-                triangles,
-                step: coarser(banded, setup),
-            }),
+        let check = |triangles: u64| {
+            if triangles <= max_triangles {
+                Ok(())
+            } else {
+                Err(ExchangeError::TooManyTriangles {
+                    triangles,
+                    step: coarser(banded, setup),
+                })
+            }
         };
         check(grid.triangles())?;
         let mut solid = Self {

@@ -6,7 +6,7 @@
 //! an edge joins their lowest bottoms, another their highest tops. Pieces and gaps that the other column lacks are capped on
 //! the way to it, at a cusp. No two of these edges cross.
 
-/// How far the cusp is from its column to the other: short of that, or cusps from opposite sides would touch.
+/// Place of the cusp between its column and the next: short of that, or cusps from opposite sides would touch.
 pub(super) const CUSP: f64 = 127.0 / 128.0;
 /// The same in walls: short of that, or it would be where the cusp of the surface beside the wall is.
 pub(super) const WALL_CUSP: f64 = 63.0 / 64.0;

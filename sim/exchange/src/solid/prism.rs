@@ -110,9 +110,10 @@ fn boundary_loops(columns: &[PlacedColumn<'_>; 3], sides: &[Side<'_>; 3]) -> Vec
         let mut join = |[own, other]: [usize; 2]| {
             let (own, other) = (firsts[from] + own, firsts[to] + other);
             // Half-edges run forth along tops, back along bottoms.
-            match (own - firsts[from]).is_multiple_of(2) {
-                true => next[own] = (other, None),
-                false => next[other] = (own, None),
+            if (own - firsts[from]).is_multiple_of(2) {
+                next[own] = (other, None)
+            } else {
+                next[other] = (own, None)
             }
         };
         if counts[from] == 1 && counts[to] == 1 {
@@ -127,9 +128,10 @@ fn boundary_loops(columns: &[PlacedColumn<'_>; 3], sides: &[Side<'_>; 3]) -> Vec
             let is_next = cap.is_second != reversed;
             let low = firsts[if is_next { to } else { from }] + cap.end;
             let is_piece = !cap.end.is_multiple_of(2);
-            match is_next == is_piece {
-                true => next[low] = (low + 1, Some(corner)),
-                false => next[low + 1] = (low, Some(corner)),
+            if is_next == is_piece {
+                next[low] = (low + 1, Some(corner))
+            } else {
+                next[low + 1] = (low, Some(corner))
             }
         }
     }

@@ -375,9 +375,10 @@ fn ragged_paint_on_linen_wet_and_dry_is_closed_and_whole() {
         move |[x, y, layer]: [usize; 3]| {
             let part = |at: usize| (at * 7 + seed) % 23;
             let hash = (x / 3 * 73 + y / 2 * 151 + layer * 211 + seed * 37) % 101;
-            match part(x) < 14 && hash < 45 {
-                true => 0.02 * hash as f32 + 0.1,
-                false => 0.0,
+            if part(x) < 14 && hash < 45 {
+                0.02 * hash as f32 + 0.1
+            } else {
+                0.0
             }
         }
     };

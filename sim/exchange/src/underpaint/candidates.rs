@@ -6,7 +6,7 @@ use maulstick_num::exp;
 use super::films::{Films, MOST_PAINTS, Shares};
 
 /// Bound on ln of a ratio of shares: one part in 1100.
-const FARTHEST: f64 = 7.0;
+const LARGEST_LN_RATIO: f64 = 7.0;
 /// Places of a pair, and each way of three paints.
 const PAIR_GRID: i32 = 14;
 const TRIPLE_GRID: i32 = 8;
@@ -41,7 +41,9 @@ impl Candidates {
                 lab: films.lab(&shares, ground).map(|v| v as f32),
             });
         };
-        let on = |grid: i32, i: i32| 2.0 * FARTHEST * f64::from(i) / f64::from(grid) - FARTHEST;
+        let on = |grid: i32, i: i32| {
+            2.0 * LARGEST_LN_RATIO * f64::from(i) / f64::from(grid) - LARGEST_LN_RATIO
+        };
         for a in 0..count {
             add([a; 3], [0.0, f64::NEG_INFINITY, f64::NEG_INFINITY]);
             for b in a + 1..count {

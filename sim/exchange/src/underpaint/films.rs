@@ -58,7 +58,7 @@ impl Films {
         sum
     }
 
-    /// What the eye sees of an internal reflectance, gloss included, and its slope.
+    /// Visible colour of an internal reflectance, gloss included, and its slope.
     fn seen(&self, r: f64) -> [f64; 2] {
         let (open, inside) = ((1.0 - self.k1) * (1.0 - self.k2), 1.0 / (1.0 - self.k2 * r));
         [self.k1 + open * r * inside, open * inside * inside]

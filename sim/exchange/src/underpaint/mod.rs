@@ -24,17 +24,17 @@ use maulstick_types::paint::TILE;
 
 pub use self::films::MOST_PAINTS;
 use self::films::{Films, Shares};
-use self::search::{Search, Sought, shared};
+use self::search::{Search, TargetColour, shared};
 use crate::fit_to::{Raster, colours};
 use crate::import_error::ImportError;
 use crate::read_image::Image;
 
-/// What of a channel of the ground counts.
+/// Significant part of a ground's channel.
 const GROUND_BITS: u8 = 0xf8;
-/// How thick films may be, m.
+/// Thickness of films, m.
 const FILM_M: std::ops::RangeInclusive<f64> = 1e-6..=5e-3;
 
-/// What is painted on, and with what: all that the search needs, so that painting can go on meanwhile.
+/// Ground and paints of an underpainting: all that the search needs, so that painting can continue meanwhile.
 #[derive(Clone, Debug)]
 pub struct Support {
     look: Arc<Appearance>,
@@ -72,16 +72,16 @@ impl Support {
     }
 }
 
-/// How near a picture's colours were come, ΔE₀₀ over the cells.
+/// Colour error of an underpainting, ΔE₀₀ over the cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Likeness {
+pub struct ColourError {
     /// Cells.
     pub cells: u64,
     /// Different colours that were solved.
     pub colours: u64,
     /// Mean.
     pub mean: f64,
-    /// What 95 % of the cells are within.
+    /// 95th percentile.
     pub p95: f64,
     /// The farthest.
     pub max: f64,
@@ -91,7 +91,7 @@ pub struct Likeness {
 #[derive(Clone, Debug)]
 pub struct Underpainting {
     paints: Vec<String>,
-    likeness: Likeness,
+    colour_error: ColourError,
     raster: Raster,
     ground: Grounds,
     /// Keys of the colours, rising, and the quanta of each paint for each.
@@ -99,7 +99,7 @@ pub struct Underpainting {
     quanta: Vec<Vec<u32>>,
 }
 
-/// The colours of a ground as far as they are told apart.
+/// The colours of a ground, as far as they are distinguished.
 #[derive(Clone, Debug)]
 struct Grounds {
     bare: Arc<BlankSurface>,
@@ -202,9 +202,9 @@ pub fn underpaint(
     let whole = (thickness_m / QUANTUM_M).round() as u32;
     let films = Films::new(studio, &support.paints, f64::from(whole) * QUANTUM_M);
     let search = Search::new(&films, studio, wide(ground.bare.ground.mean()));
-    let sought: Vec<Sought> = keys
+    let sought: Vec<TargetColour> = keys
         .iter()
-        .map(|key| Sought {
+        .map(|key| TargetColour {
             rgb: colour(*key),
             ground: *key >> 24,
         })
@@ -233,7 +233,7 @@ pub fn underpaint(
             .iter()
             .map(|paint| support.paints[*paint].name.clone())
             .collect(),
-        likeness: likeness(&counts, &reached),
+        colour_error: colour_error(&counts, &reached),
         raster,
         ground,
         keys,
@@ -241,7 +241,7 @@ pub fn underpaint(
     })
 }
 
-/// How many cells there are of each key.
+/// Number of cells of each key.
 fn distinct(ground: &Grounds, raster: &Raster) -> BTreeMap<u64, u64> {
     let mut counts = BTreeMap::new();
     for id in ground.tiles() {
@@ -254,7 +254,7 @@ fn distinct(ground: &Grounds, raster: &Raster) -> BTreeMap<u64, u64> {
     counts
 }
 
-fn likeness(counts: &BTreeMap<u64, u64>, reached: &[f64]) -> Likeness {
+fn colour_error(counts: &BTreeMap<u64, u64>, reached: &[f64]) -> ColourError {
     let mut off: Vec<(f64, u64)> = reached
         .iter()
         .copied()
@@ -268,7 +268,7 @@ fn likeness(counts: &BTreeMap<u64, u64>, reached: &[f64]) -> Likeness {
         below += of_them;
         20 * below >= 19 * cells
     });
-    Likeness {
+    ColourError {
         cells,
         colours: off.len() as u64,
         mean: sum / cells.max(1) as f64,
@@ -284,10 +284,10 @@ impl Underpainting {
         &self.paints
     }
 
-    /// How near the picture's colours were come.
+    /// Colour error.
     #[must_use]
-    pub fn likeness(&self) -> &Likeness {
-        &self.likeness
+    pub fn colour_error(&self) -> &ColourError {
+        &self.colour_error
     }
 
     /// The paint of each tile, for [`Painting::underpaint`] with [`paints`](Self::paints).

@@ -51,7 +51,7 @@ impl Target {
         self.lab
     }
 
-    /// How far a colour is from it, in lightness, chroma and hue.
+    /// Difference of a colour from it, in lightness, chroma and hue.
     fn off(&self, lab: [f64; 3]) -> [f64; 3] {
         apply(&self.metric, [0, 1, 2].map(|i| lab[i] - self.lab[i]))
     }
@@ -61,7 +61,7 @@ impl Target {
 struct Place {
     shares: Shares,
     far: f64,
-    /// How far the colour is, and its slopes by the amount of each paint.
+    /// Distance of the colour, and its slopes by the amount of each paint.
     off: [f64; 3],
     slopes: [[f64; 3]; MOST_PAINTS],
 }
@@ -116,9 +116,10 @@ impl Place {
                 }
                 let slope = self.slopes[i];
                 let scale = dot(slope, slope) + 1e-12;
-                next[i] = match free[i] {
-                    true => self.shares[i] - dot(slope, pull) / scale,
-                    false => 0.0,
+                next[i] = if free[i] {
+                    self.shares[i] - dot(slope, pull) / scale
+                } else {
+                    0.0
                 };
                 if next[i] < 0.0 {
                     (free[i], fixed) = (false, true);

@@ -42,11 +42,11 @@ const INSIDE: f32 = 0.02;
 const DUSK: f32 = 0.1;
 /// Below the first, a colour becomes the nearest that is reached; above the second, what the corners
 /// around it became.
-const FAR: [f64; 2] = [0.5, 4.0];
+const FAR_DELTA_E: [f64; 2] = [0.5, 4.0];
 
 /// A colour that is sought, encoded sRGB, over one of the grounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Sought {
+pub(crate) struct TargetColour {
     pub(crate) rgb: [u8; 3],
     /// Number of the ground.
     pub(crate) ground: u64,
@@ -173,7 +173,7 @@ impl<'a> Search<'a> {
     /// The shares of each colour; `under` are the reflectances of the grounds by their number.
     pub(crate) fn all(
         &self,
-        sought: &[Sought],
+        sought: &[TargetColour],
         under: &(dyn Fn(u64) -> Vec<f64> + Sync),
         progress: &mut dyn FnMut(u64, u64),
     ) -> Vec<Shares> {
@@ -226,9 +226,10 @@ impl<'a> Search<'a> {
         {
             let [near, far] = [shares, grey].map(|shares| self.films.lab(&shares, &self.mean));
             let between = [0, 1, 2].map(|i| near[i] + light * (far[i] - near[i]));
-            shares = match light < 1.0 {
-                true => refine(self.films, grey, &self.mean, &Target::new(between)).shares,
-                false => grey,
+            shares = if light < 1.0 {
+                refine(self.films, grey, &self.mean, &Target::new(between)).shares
+            } else {
+                grey
             };
         }
         Corner {
@@ -238,7 +239,7 @@ impl<'a> Search<'a> {
     }
 
     /// 1 for colours at least as light as the darkest grey, 0 for those darker by [`DUSK`]: toward grey
-    /// these would lose the little that tells them apart.
+    /// these would lose the little by which they differ.
     fn lightness_left(&self, linear: [f64; 3]) -> f64 {
         let [lightness, ..] = self.gamut.lab(linear.map(|channel| channel as f32));
         let darkest = self.greys.map_or(0.0, |[darkest, _]| darkest);
@@ -298,7 +299,8 @@ impl<'a> Search<'a> {
         let start = start.map(|share| share / sum);
         let target = self.target(self.linear(rgb));
         let nearest = refine(self.films, start, under, &target);
-        let far = ((nearest.off - FAR[0]) / (FAR[1] - FAR[0])).clamp(0.0, 1.0);
+        let far =
+            ((nearest.off - FAR_DELTA_E[0]) / (FAR_DELTA_E[1] - FAR_DELTA_E[0])).clamp(0.0, 1.0);
         if far == 0.0 || moved == [0.0; 3] {
             return nearest.shares;
         }
@@ -309,8 +311,8 @@ impl<'a> Search<'a> {
         refine(self.films, start, under, &Target::new(between)).shares
     }
 
-    /// How far a mixture over a ground is from a colour, ΔE₀₀.
-    pub(crate) fn off(&self, sought: &Sought, under: &[f64], shares: &Shares) -> f64 {
+    /// Distance of a mixture over a ground from a colour, ΔE₀₀.
+    pub(crate) fn off(&self, sought: &TargetColour, under: &[f64], shares: &Shares) -> f64 {
         let target = self.target(self.linear(sought.rgb));
         delta_e_2000(self.films.lab(shares, under), target.lab())
     }
@@ -330,9 +332,9 @@ mod tests {
         // From blue over violet to magenta, and from green to a lighter one.
         let violet = (0..=255u8).map(|v| [v, 0, 255]);
         let green = (0..=255u8).map(|v| [v / 2, 255, v / 2]);
-        let sought: Vec<Sought> = violet
+        let sought: Vec<TargetColour> = violet
             .chain(green)
-            .map(|rgb| Sought { rgb, ground: 0 })
+            .map(|rgb| TargetColour { rgb, ground: 0 })
             .collect();
         let found = search.all(&sought, &|_| mean.clone(), &mut |_, _| {});
         let labs: Vec<[f64; 3]> = found.iter().map(|s| films.lab(s, &mean)).collect();

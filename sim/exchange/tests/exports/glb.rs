@@ -194,9 +194,10 @@ fn power(base: f32, exponent: f64) -> f32 {
 
 /// sRGB level of a linear channel, 0 to 255 (IEC 61966-2-1).
 fn srgb_level(linear: f32) -> f32 {
-    let encoded = match linear <= 0.003_130_8 {
-        true => 12.92 * linear,
-        false => 1.055 * power(linear, 1.0 / 2.4) - 0.055,
+    let encoded = if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * power(linear, 1.0 / 2.4) - 0.055
     };
     255.0 * encoded
 }

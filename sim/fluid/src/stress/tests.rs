@@ -125,9 +125,12 @@ fn a_solid_that_turns_with_its_fluid_feels_no_viscous_force() {
     let turning = Formula {
         cells: [9, 9, 9],
         cell_m: 0.01,
-        medium: |cell| match cell.iter().all(|i| (3..6).contains(i)) {
-            true => Medium::Probe,
-            false => Medium::Fluid,
+        medium: |cell| {
+            if cell.iter().all(|i| (3..6).contains(i)) {
+                Medium::Probe
+            } else {
+                Medium::Fluid
+            }
         },
         pressure: |_| 0.0,
         // Ω about the middle at 45 mm.

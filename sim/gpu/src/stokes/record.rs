@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use maulstick_stokes::domain::LEAST_FILL;
 use maulstick_stokes::flow::Conditions;
-use maulstick_stokes::rheology::STIFFEST;
+use maulstick_stokes::rheology::LARGEST_RELATIVE_VISCOSITY;
 use maulstick_stokes::unified::weights;
 
 use super::plan::{Level, MOST_LEVELS, Plan, sides};
@@ -99,7 +99,7 @@ impl WindowRecord {
             yields: yields as f32,
             thins: (paint.index - 1.0) as f32,
             per_rate: (1.0 / paint.rate) as f32,
-            least_rate: (yields / STIFFEST) as f32,
+            least_rate: (yields / LARGEST_RELATIVE_VISCOSITY) as f32,
             resists: u32::from(resists),
             capacity: plan.paints.capacity as f32,
             courant: (seconds / cell_m) as f32 / plan.paints.parts as f32,

@@ -146,7 +146,7 @@ fn record(hand: usize, kind: Kind, stiffness: f64) -> Went {
     })
 }
 
-/// A recording that is felt again: of its models so many a second come, late by up to a share of their period and as often
+/// A recording that is felt again: its models come at a given rate, late by up to a share of their period and as often
 /// lost.
 fn replay(
     recorded: &Went,

@@ -27,7 +27,7 @@ struct Press {
     stiffness: f64,
     /// Ticks from the reading to the force.
     delay: usize,
-    /// The force is set anew only every so many ticks, as if it crossed a network.
+    /// Ticks between two settings of the force, as if it crossed a network.
     hold: usize,
 }
 

@@ -31,7 +31,7 @@ const STILL_S: f64 = 3.1;
 const END_S: f64 = 4.1;
 /// Encoders that read every place.
 const NO_STEP_M: f64 = 1e-12;
-/// Viscous friction told to the observer so that it sees nothing, N·s/m.
+/// Viscous friction given to the observer so that it sees nothing, N·s/m.
 const BLIND: f64 = 1e9;
 
 /// A hand that is drawn across a ridge of .9 mm, 4 mm to each side, and holds still on its flank.
@@ -46,7 +46,7 @@ struct Crossing {
     told_damping: f64,
     /// Step of the encoders, m.
     step_m: f64,
-    /// The force reaches the motors so many periods late.
+    /// Delay of the force to the motors, periods.
     late: usize,
 }
 

@@ -63,7 +63,7 @@ pub(super) fn curvature(heights: &Heights, cell_m: f64) -> f64 {
     (straight + twists.fold(0.0, f64::max)) / (cell_m * cell_m)
 }
 
-/// The cells beside one; beyond the edge the outermost goes on.
+/// The cells beside one; beyond the edge the outermost continues.
 fn beside(i: usize) -> [usize; 2] {
     [i.saturating_sub(1), (i + 1).min(SIDE - 1)]
 }

@@ -228,7 +228,7 @@ fn round_a_closed_way_relief_gives_nothing() {
     }
 }
 
-/// From cell to cell the force goes on without a kink; the seeded fault, heights between four cells, has them.
+/// From cell to cell the force continues without a kink; the seeded fault, heights between four cells, has them.
 #[test]
 fn no_force_jumps_or_bends_sharply_between_cells() {
     let relief = relief(&rough(500, 5));

@@ -7,7 +7,7 @@ pub(super) const CALM_TICKS: u32 = 4;
 /// Whether force has begun.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Engagement {
-    /// Little has been asked for in so many ticks running.
+    /// Consecutive ticks in which little was asked for.
     Waiting(u32),
     /// It has.
     Begun,

@@ -7,7 +7,7 @@ pub enum Fault {
     NotANumber,
     /// The hand was faster than any hand is, with force on it.
     TooFast,
-    /// It went on shaking, however soft the force was made.
+    /// It kept shaking, however soft the force was made.
     Oscillation,
     /// The force state of an earlier servo could not be read.
     UnknownState,

@@ -25,7 +25,7 @@ pub(super) struct Guidance {
     share: f64,
     active: Option<Active>,
     arrived: Option<Guide>,
-    /// What the force still keeps of what was asked for before, N.
+    /// Part of the previous force that is still to fade, N.
     correction: DVec3,
     engagement: Engagement,
     engaged_s: f64,
@@ -39,7 +39,7 @@ struct Active {
     guide: Guide,
     foot: Foot,
     age_s: f64,
-    /// What it asked for at the last tick, and the hand's place then.
+    /// Force that it asked for at the last tick, and the hand's place then.
     asked: Pull,
     position: DVec3,
 }
@@ -51,7 +51,7 @@ pub(super) struct Guiding {
     pub(super) force: DVec3,
     /// Part that depends on position alone, N.
     pub(super) conservative: DVec3,
-    /// What the guide's force was multiplied by.
+    /// Factor on the guide's force.
     pub(super) share: f64,
 }
 
@@ -119,7 +119,7 @@ impl Guidance {
         self.fading(limits) > 0.0
     }
 
-    /// What is left of the guide past its time to live; 0 without one.
+    /// Share that is left of the guide past its time to live; 0 without one.
     fn fading(&self, limits: &Limits) -> f64 {
         self.active.map_or(0.0, |active| {
             let overdue_s = (active.age_s - active.guide.time_to_live_s).max(0.0);
@@ -127,7 +127,7 @@ impl Guidance {
         })
     }
 
-    /// What the guide of the last tick asks for at the hand's place now, N, before its share.
+    /// Force that the guide of the last tick asks for at the hand's place now, N, before its factor.
     pub(super) fn asked(&self, handle: &HandleState, limits: &Limits) -> DVec3 {
         let Some(active) = &self.active else {
             return DVec3::ZERO;
@@ -137,7 +137,7 @@ impl Guidance {
         pull.conservative * self.share + self.correction
     }
 
-    /// The ramp and the correction go on by a tick, and the guide ages by all the time that has passed.
+    /// The ramp and the correction continue by a tick, and the guide ages by all the time that has passed.
     pub(super) fn age(&mut self, limits: &Limits, dt: f64, passed_s: f64) {
         self.engaged_s += dt;
         if let Some(active) = &mut self.active {
@@ -199,7 +199,7 @@ impl Guidance {
             true => Touch::Contact,
             false => Touch::Air,
         };
-        // What a hand that was let go feels again, it feels from the path on, as in a wall.
+        // A hand that was let go feels the guide again from the path on, as it would feel a wall.
         let speed = handle.velocity.length() / limits.max_speed_m_s;
         self.fast_hand.follow(speed, touch);
         // Without force no device shakes it.

@@ -1,4 +1,4 @@
-//! What a force may be, whatever the models say.
+//! Bounds of the force, whatever the models ask for.
 
 use crate::guide::GuideBounds;
 

@@ -15,7 +15,7 @@ use super::limits::Limits;
 const WARM: f64 = 0.7;
 /// Below this they have cooled.
 const COOL: f64 = 0.5;
-/// How fast the largest force falls and comes back, by itself, 1/s.
+/// Relative rate at which the largest force falls and comes back, 1/s.
 const RATE: f64 = 1.0;
 
 /// Steady temperature at the continuous force.
@@ -95,7 +95,7 @@ impl MotorThermal {
 mod tests {
     use super::*;
 
-    /// The largest force after so many seconds at a temperature.
+    /// The largest force after some seconds at a temperature.
     fn after(thermal: &mut MotorThermal, temperature: f64, seconds: u32) -> f64 {
         thermal.measure(temperature);
         (0..1000 * seconds).fold(0.0, |_, _| thermal.cap_n(3.0, 0.88, 1e-3))

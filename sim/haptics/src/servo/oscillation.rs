@@ -20,7 +20,7 @@ const AWAY_S: f64 = 0.1;
 const SOFTER: f64 = 0.7;
 /// Stiffness at least, by that asked for: shaking at this is a fault.
 const SOFTEST: f64 = 0.15;
-/// How fast stiffness comes back to a hand that is away, 1/s.
+/// Rate at which stiffness comes back to a hand that is away, 1/s.
 const RECOVERY: f64 = 0.02;
 
 /// Detector of an oscillating hand.
@@ -56,7 +56,7 @@ impl Default for Oscillation {
 
 impl Oscillation {
     /// The hand is at a place along the normal, m, `dt` s later; a turn counts from `turn_m` back.
-    /// Whether it shakes at the softest.
+    /// True if it shakes at the softest.
     pub fn watch(&mut self, place: f64, turn_m: f64, in_contact: Touch, dt: f64) -> bool {
         self.since_turn_s += dt;
         self.away_s = match in_contact {

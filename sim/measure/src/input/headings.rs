@@ -1,4 +1,4 @@
-//! What the columns of a table of measurements hold.
+//! Columns of a table of measurements.
 
 use crate::error::MeasureError;
 use crate::table::Table;
@@ -19,6 +19,17 @@ pub struct Headings {
     pub paints: Vec<(usize, String)>,
     /// Columns of readings with their wavelengths, nm, rising.
     pub wavelengths: Vec<(usize, f64)>,
+}
+
+/// Checks that a heading can name a paint; otherwise what is wrong, and advice.
+fn check_paint(heading: &str) -> Result<(), (String, &'static str)> {
+    let help = "choose another name for the paint";
+    check_paint_name(heading).map_err(|error| (error.to_string(), help))?;
+    if heading.starts_with('#') || heading.eq_ignore_ascii_case("paint") {
+        let help = "choose another name, without a leading #";
+        return Err((format!("'{heading}' cannot name a paint"), help));
+    }
+    Ok(())
 }
 
 impl Headings {
@@ -48,7 +59,10 @@ impl Headings {
                 .any(|other| other.to_lowercase() == lower)
             {
                 let help = "keep one of the two columns";
-                return Err(fault(format!("'{heading}' stands above two columns"), help));
+                return Err(fault(
+                    format!("two columns have the heading '{heading}'"),
+                    help,
+                ));
             }
             if let Some(place) = RESERVED.iter().position(|name| *name == lower) {
                 found.reserved[place] = Some(column);
@@ -56,14 +70,7 @@ impl Headings {
             }
             let number = table.number(lower.trim_end_matches("nm").trim_end());
             let Ok(nm) = number else {
-                let named = check_paint_name(heading);
-                if let Err(what) = named {
-                    return Err(fault(what, "choose another name for the paint"));
-                }
-                if heading.starts_with('#') || lower == "paint" {
-                    let help = "choose another name, without a leading #";
-                    return Err(fault(format!("'{heading}' cannot name a paint"), help));
-                }
+                check_paint(heading).map_err(|(what, help)| fault(what, help))?;
                 found.paints.push((column, heading.clone()));
                 continue;
             };
@@ -104,7 +111,7 @@ impl Headings {
         self.reserved[place]
     }
 
-    /// What to know about the grid: it ends early, or it skips a wavelength.
+    /// Warnings about the grid: it ends early, or it skips a wavelength.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
@@ -163,7 +170,7 @@ mod tests {
         );
         assert_eq!(
             error("White,white,500"),
-            "line 1, column 2 (white): 'white' stands above two columns"
+            "line 1, column 2 (white): two columns have the heading 'white'"
         );
         assert_eq!(
             error("White,,500"),

@@ -27,17 +27,47 @@ pub(crate) fn to_reflectances(
     headings: &Headings,
     standard: f64,
 ) -> Result<(), MeasureError> {
-    let raw = |kind: Kind| {
-        matches!(
-            kind,
-            Kind::Standard | Kind::FilteredStandard | Kind::Dark | Kind::FilteredDark
-        )
-    };
-    if !readings.iter().any(|reading| raw(reading.kind)) {
+    if !readings.iter().any(|reading| is_raw(reading.kind)) {
         return Ok(());
     }
+    let light = light(readings, table, headings)?;
+    let line = readings
+        .iter()
+        .find(|reading| matches!(reading.kind, Kind::Standard | Kind::FilteredStandard))
+        .map_or(1, |reading| reading.line);
+    for ((column, nm), value) in headings.wavelengths.iter().zip(&light) {
+        if *value <= 0.0 {
+            let help = "delete this wavelength's column: the lamp or the instrument ends before it";
+            let what = format!("the standard reads 0 at {nm} nm");
+            return Err(table.fault(line, *column, what, help));
+        }
+    }
+    for reading in readings.iter_mut() {
+        if matches!(reading.kind, Kind::Sample | Kind::Ground) {
+            for (value, light) in reading.values.iter_mut().zip(&light) {
+                *value *= standard / light;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// True for the readings of raw spectra that are no samples.
+fn is_raw(kind: Kind) -> bool {
+    matches!(
+        kind,
+        Kind::Standard | Kind::FilteredStandard | Kind::Dark | Kind::FilteredDark
+    )
+}
+
+/// Reading of the standard at each wavelength, without the filter.
+fn light(
+    readings: &[Reading],
+    table: &Table,
+    headings: &Headings,
+) -> Result<Vec<f64>, MeasureError> {
     let plain = mean(readings, Kind::Standard);
-    let light = match (plain, mean(readings, Kind::FilteredStandard)) {
+    Ok(match (plain, mean(readings, Kind::FilteredStandard)) {
         (Some((_, plain)), None) => plain,
         (Some((line, _)), Some(_)) => {
             let help = "delete the rows of kind standard, or those of kind standard+filter";
@@ -58,33 +88,14 @@ pub(crate) fn to_reflectances(
         (None, None) => {
             let line = readings
                 .iter()
-                .find(|reading| raw(reading.kind))
+                .find(|reading| is_raw(reading.kind))
                 .map_or(1, |reading| reading.line);
             let help = "add a row of kind standard or standard+filter";
             return Err(
                 MeasureError::new("raw spectra, but none of the standard", help).line(line),
             );
         }
-    };
-    let line = readings
-        .iter()
-        .find(|reading| matches!(reading.kind, Kind::Standard | Kind::FilteredStandard))
-        .map_or(1, |reading| reading.line);
-    for ((column, nm), value) in headings.wavelengths.iter().zip(&light) {
-        if *value <= 0.0 {
-            let help = "delete this wavelength's column: the lamp or the instrument ends before it";
-            let what = format!("the standard reads 0 at {nm} nm");
-            return Err(table.fault(line, *column, what, help));
-        }
-    }
-    for reading in readings.iter_mut() {
-        if matches!(reading.kind, Kind::Sample | Kind::Ground) {
-            for (value, light) in reading.values.iter_mut().zip(&light) {
-                *value *= standard / light;
-            }
-        }
-    }
-    Ok(())
+    })
 }
 
 /// Attenuation of the filter at each wavelength, 0 to 1.

@@ -1,7 +1,7 @@
 //! Samples of a table of measurements: what they are made of, and what the instrument read of them.
 
 use maulstick_tables::{Fault, Row, shown};
-use maulstick_types::command::advice::{choice, nearest};
+use maulstick_types::nearest::{choice, nearest};
 
 use crate::error::MeasureError;
 use crate::headings::Headings;
@@ -11,10 +11,10 @@ use crate::reading::{Kind, Reading};
 use crate::table::Table;
 
 /// Reflectances above this are taken for a mistake.
-pub const GREATEST: f64 = 1.2;
+pub const GREATEST_READING: f64 = 1.2;
 /// Shares of a sample sum to 1 within this.
 pub const SHARE_TOLERANCE: f64 = 2e-3;
-/// What a reading of the ground called `white` is taken to be where it was not measured: opacity
+/// Reading of the ground called `white` where it was not measured: opacity
 /// charts are made to it (ISO 6504-3).
 pub const CHART_WHITE: f64 = 0.8;
 
@@ -31,7 +31,7 @@ pub struct Measurements {
     pub heading_line: usize,
     /// The samples, in the order of their rows.
     pub samples: Vec<Sample>,
-    /// What the notes say.
+    /// Its notes.
     pub notes: Notes,
     /// Guesses that were made.
     pub warnings: Vec<String>,
@@ -46,13 +46,13 @@ pub struct Sample {
     pub line: usize,
     /// Share of each paint; they sum to 1.
     pub shares: Vec<f64>,
-    /// How thick it is, and over what.
+    /// Its thickness and ground.
     pub layer: Layer,
     /// Reflectance at each wavelength, as the instrument reads it.
     pub readings: Vec<f64>,
 }
 
-/// How thick a sample is, and over what.
+/// Thickness and ground of a sample.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Layer {
     /// Hides what is below.
@@ -61,12 +61,12 @@ pub enum Layer {
     Film {
         /// Thickness, m.
         thickness_m: f64,
-        /// What it lies on.
+        /// Its ground.
         ground: Ground,
     },
 }
 
-/// What a drawdown lies on.
+/// Ground of a drawdown.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ground {
     /// Something that reflects nothing.
@@ -182,7 +182,7 @@ fn reading(table: &Table, headings: &Headings, row: Row<'_>) -> Result<Reading, 
         let known = KINDS.iter().find(|(name, _)| *name == given);
         let Some((_, found)) = known else {
             let help = choice(&given, KINDS.map(|(name, _)| name));
-            let what = format!("'{}' is no kind of row", shown(row.cell(column)));
+            let what = format!("'{}' is not a kind of row", shown(row.cell(column)));
             return Err(table.fault(row.line(), column, what, &help));
         };
         kind = *found;
@@ -218,8 +218,9 @@ fn check_range(table: &Table, headings: &Headings, reading: &Reading) -> Result<
         return Ok(());
     }
     for ((column, nm), value) in headings.wavelengths.iter().zip(&reading.values) {
-        if *value > GREATEST {
-            let what = format!("a reflectance of {value:.4} at {nm} nm is above {GREATEST}");
+        if *value > GREATEST_READING {
+            let what =
+                format!("a reflectance of {value:.4} at {nm} nm is above {GREATEST_READING}");
             let help = if *value > 2.0 {
                 "are these per cent? divide by 100; are they raw spectra? add the rows of the standard"
             } else {
@@ -313,7 +314,7 @@ fn layer(
         .ok()
         .filter(|um| (0.1..=1e5).contains(um))
         .ok_or_else(|| {
-            let what = format!("'{text}' is no thickness");
+            let what = format!("'{text}' is not a thickness");
             table.fault(row.line(), column, what, "give it in µm, 0.1 to 100000")
         })?;
     let ground = ground(table, headings, (row.line(), over), grounds, warnings)?;
@@ -357,7 +358,7 @@ fn ground(
         return Ok(Ground::Read(vec![CHART_WHITE; wavelengths]));
     }
     match table.number(text).ok() {
-        Some(r) if (0.0..=GREATEST).contains(&r) => Ok(Ground::Read(vec![r; wavelengths])),
+        Some(r) if (0.0..=GREATEST_READING).contains(&r) => Ok(Ground::Read(vec![r; wavelengths])),
         Some(r) => {
             let help = "a ground reflects 0 to 1; are these per cent? divide by 100";
             Err(table.fault(line, column, format!("no ground reflects {r}"), help))

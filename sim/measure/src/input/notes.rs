@@ -1,11 +1,11 @@
-//! What the notes of a table say: the white, the surface, colour indices, who measured.
+//! Notes of a table: the white, the surface, colour indices, the source.
 
 use std::collections::BTreeMap;
 
 use maulstick_optics::surface::SurfaceCorrection;
+use maulstick_tables::MOST_CHARACTERS;
 use maulstick_tables::Note;
-use maulstick_tables::table::MOST_CHARACTERS;
-use maulstick_types::command::advice::choice;
+use maulstick_types::nearest::choice;
 
 use crate::error::MeasureError;
 use crate::headings::Headings;
@@ -47,8 +47,9 @@ impl Notes {
             match note.key.as_str() {
                 "reference white" => found.white = Some((note.line, note.value.clone())),
                 "surface" => {
-                    let surface = parse_surface(&note.value).map_err(|what| {
-                        fault(what, "write `# surface: 0.03, 0.65` or `# surface: none`")
+                    let surface = parse_surface(&note.value).map_err(|error| {
+                        let help = "write `# surface: 0.03, 0.65` or `# surface: none`";
+                        fault(error.to_string(), help)
                     })?;
                     found.surface = Some(surface);
                 }
@@ -68,7 +69,7 @@ impl Notes {
                 "standard reflectance" => {
                     let value = note.value.parse().ok();
                     found.standard = value.filter(|r| *r > 0.0 && *r <= 1.2).ok_or_else(|| {
-                        let what = format!("'{}' is no reflectance of a standard", note.value);
+                        let what = format!("'{}' is not a reflectance of a standard", note.value);
                         fault(what, "write `# standard reflectance: 0.99`")
                     })?;
                 }
@@ -122,11 +123,16 @@ fn cell(text: &str) -> Result<String, MeasureError> {
     Ok(text.replace(',', ";").replace('"', "'"))
 }
 
+/// A text that is not a surface correction.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("'{0}' is not a pair K1,K2 with K1 below 0.5 and K2 below 0.95")]
+pub struct SurfaceError(pub String);
+
 /// Reads `K1, K2` or `none`.
 ///
 /// # Errors
-/// What is wrong, in words.
-pub fn parse_surface(text: &str) -> Result<SurfaceCorrection, String> {
+/// [`SurfaceError`].
+pub fn parse_surface(text: &str) -> Result<SurfaceCorrection, SurfaceError> {
     if text.trim().eq_ignore_ascii_case("none") {
         return Ok(SurfaceCorrection { k1: 0.0, k2: 0.0 });
     }
@@ -138,9 +144,7 @@ pub fn parse_surface(text: &str) -> Result<SurfaceCorrection, String> {
         [k1, k2] if (0.0..0.5).contains(k1) && (0.0..0.95).contains(k2) => {
             Ok(SurfaceCorrection { k1: *k1, k2: *k2 })
         }
-        _ => Err(format!(
-            "'{text}' is no pair K1,K2 with K1 below 0.5 and K2 below 0.95"
-        )),
+        _ => Err(SurfaceError(text.to_owned())),
     }
 }
 

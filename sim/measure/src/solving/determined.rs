@@ -1,4 +1,4 @@
-//! How well the readings determine each paint.
+//! Determinacy: are the readings enough for each paint?
 //!
 //! The inverse of the normal equations is the covariance of ln K, ln S and of the unit. What counts
 //! to a painter is not K or S but the colour of mixtures: a paint is well determined where its

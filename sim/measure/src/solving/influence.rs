@@ -1,7 +1,7 @@
 //! Influence of each sample: the fit with one left out.
 //!
 //! Least squares bend to a wrong row, most where few others speak, so that its own residual is small and
-//! those of its neighbours are large. What tells is how much the sum of squares falls when a row is left
+//! those of its neighbours are large. The criterion is how much the sum of squares falls when a row is left
 //! out (Cook 1977, *Detection of influential observation in linear regression*; the likelihood-ratio test
 //! of a row whose mean is shifted). A row is suspect where that fall, per reading, is many times the variance
 //! that the fit without it leaves. The worst is taken out, and the rest are tried again.
@@ -24,19 +24,19 @@ const WAVELENGTHS: usize = 16;
 /// Rows that are tried by a fit without them.
 const TRIED: usize = 40;
 /// Most rows that are accused, and most as a share of all.
-const MOST: usize = 5;
+const MOST_SUSPECTS: usize = 5;
 const MOST_SHARE: f64 = 0.1;
 /// Steps of Gauss and Newton at most.
 const STEPS: usize = 20;
 /// A step multiplies K and S by at most this.
-const FARTHEST: f64 = 2.0;
+const LARGEST_FACTOR: f64 = 2.0;
 
 /// A row that does not go with the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Suspect {
     /// Its place among the samples.
     pub sample: usize,
-    /// How many times less the others are off, root mean square, when it is left out.
+    /// Ratio of the other samples' residuals, root mean square, with it and without it.
     pub gain: f64,
 }
 
@@ -52,7 +52,7 @@ pub fn suspects(spectrum: &[(f64, Wavelength<'_>)], found: &[Unknowns]) -> Vec<S
         .map(|((_, one), at)| LeaveOneOut::of(one, at))
         .collect();
     let samples = fits.first().map_or(0, |fit| fit.one.observations.len());
-    let most = MOST.min((MOST_SHARE * samples as f64).ceil() as usize);
+    let most = MOST_SUSPECTS.min((MOST_SHARE * samples as f64).ceil() as usize);
     let mut suspects = Vec::new();
     while suspects.len() < most {
         let Some(worst) = worst(&fits, samples) else {
@@ -165,7 +165,7 @@ impl<'a> LeaveOneOut<'a> {
 fn least_squares(one: &Wavelength<'_>, mut at: Unknowns) -> (Unknowns, f64) {
     let free = one.free();
     let mut cost = one.cost(&at);
-    let mut reach = ln(FARTHEST);
+    let mut reach = ln(LARGEST_FACTOR);
     for _ in 0..STEPS {
         let equations = one.linearised(&at);
         let Some(covariance) = equations.inverse(&free) else {

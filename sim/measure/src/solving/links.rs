@@ -1,4 +1,4 @@
-//! Whether samples tie every paint to the reference white.
+//! Links: do samples tie every paint to the reference white?
 //!
 //! K and S are ratios (Baxter 2004, § 7.6): paints that share a sample are tied to each other, and
 //! drawdowns of known thickness are tied by the metre. A group of paints that nothing ties to the

@@ -1,11 +1,11 @@
-//! K and S at a wavelength: the equations, their quadratic programmes, and how well readings determine them.
+//! K and S at a wavelength: the equations, their quadratic programs, and how well readings determine them.
 
 pub mod determined;
 pub mod influence;
 pub mod layer;
 pub mod links;
 pub mod normal;
-pub mod programme;
+pub mod prior;
+pub mod program;
 pub mod residuals;
-pub mod usual;
 pub mod wavelength;

@@ -32,7 +32,7 @@ impl NormalEquations {
         }
     }
 
-    /// P⁻¹ over the unknowns that `free` tells, 0 in the rows and columns of the others; `None`
+    /// P⁻¹ over the unknowns that `free` marks, 0 in the rows and columns of the others; `None`
     /// where P is singular to f64. Cholesky.
     #[must_use]
     pub fn inverse(&self, free: &[bool]) -> Option<Vec<f64>> {

@@ -1,4 +1,4 @@
-//! How well the fitted paints reproduce what was measured.
+//! Residuals: readings less those of the fitted paints.
 
 use maulstick_optics::colour::{delta_e_2000, lab};
 use maulstick_optics::spectrum::{SAMPLES, Spectrum, resample};
@@ -8,7 +8,7 @@ use crate::influence::Suspect;
 use crate::measurements::{Ground, Layer, Measurements, Sample};
 use crate::surface::{Surface, internal_ground};
 
-/// What a fit leaves of a sample.
+/// Residual of a sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Residual {
     /// The sample.

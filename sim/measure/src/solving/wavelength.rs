@@ -1,14 +1,14 @@
 //! K and S of all paints at one wavelength.
 //!
 //! Baxter 2004, § 7.6: for each opaque sample ΣK·c − Q·ΣS·c = 0 with Q = (1−R)²/2R, the S of one
-//! white being 1 and no K or S below 0, is a quadratic programme. Two things are done to it. Its rows
+//! white being 1 and no K or S below 0, is a quadratic program. Two things are done to it. Its rows
 //! are weighted so that an error of the reading counts the same in a dark and in a light sample: a row
-//! is worth |d reading/dQ| / ΣS·c, and since that holds S, the programme is solved some times over.
-//! From there Gauss and Newton's method goes on in ln K and ln S, a bounded programme a step, with the
+//! is worth |d reading/dQ| / ΣS·c, and since that holds S, the program is solved some times over.
+//! From there Gauss and Newton's method continues in ln K and ln S, a bounded program a step, with the
 //! reading itself as the model: this is exact where Q is not linear in the noise of R, and takes
 //! drawdowns in, whose reflectance is no ratio of K and S.
 //!
-//! What readings do not determine is drawn to a paint like the measured ones: ln K and ln S have the
+//! Unknowns that readings do not determine are drawn to a paint like the measured ones: ln K and ln S have the
 //! standard deviation [`PRIOR_SD`] about them. Where readings speak, that has no weight.
 //!
 //! Drawdowns have a length. κ = u·ΣK·c·d, with d in units of 1/S of the paint files' white, so that
@@ -18,10 +18,10 @@ use maulstick_num::{exp, ln};
 
 use crate::layer::{Slopes, film_over, opaque};
 use crate::normal::NormalEquations;
-use crate::programme::{Bound, minimise};
+use crate::program::{Bound, minimise};
 use crate::surface::Surface;
 
-/// How far ln K and ln S of an unknown paint are thought to lie from those of a usual one.
+/// Standard deviation of ln K and ln S of an unknown paint about the prior.
 pub const PRIOR_SD: f64 = 1.5;
 /// The same for the S per metre of an unknown white.
 pub const UNIT_SD: f64 = 0.5;
@@ -30,7 +30,7 @@ const REWEIGHTINGS: usize = 4;
 /// Steps of Gauss and Newton at most.
 const STEPS: usize = 60;
 /// A step multiplies K and S by at most this.
-const FARTHEST: f64 = 4.0;
+const LARGEST_FACTOR: f64 = 4.0;
 
 /// K and S of each paint, relative to the white's S, and that S.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,9 +51,9 @@ pub struct Observation<'a> {
     /// d·[`maulstick_optics::paints::WHITE_S_PER_M`] and the ground's internal reflectance; `None` for
     /// what hides its ground.
     pub film: Option<(f64, f64)>,
-    /// What the instrument reads.
+    /// Reading of the instrument.
     pub reading: f64,
-    /// How many times less than others its sample is thought to be off, squared: 1, or less for a
+    /// Squared ratio of the other samples' deviation to this one's: 1, or less for a
     /// sample that stands out.
     pub trust: f64,
 }
@@ -63,7 +63,7 @@ pub struct Observation<'a> {
 pub struct Wavelength<'a> {
     /// The readings.
     pub observations: Vec<Observation<'a>>,
-    /// What K, S and unit are thought to be before.
+    /// Prior of K, S and unit.
     pub prior: Unknowns,
     /// Place of the reference white.
     pub white: usize,
@@ -142,7 +142,7 @@ impl Wavelength<'_> {
         free
     }
 
-    /// The programme of eq. 7.7, solved and weighted anew some times.
+    /// The program of eq. 7.7, solved and weighted anew some times.
     ///
     /// Unknowns are K and S as multiples of what they are thought to be before.
     #[must_use]
@@ -173,7 +173,7 @@ impl Wavelength<'_> {
             let Some(x) = minimise(&equations, &bounds) else {
                 break;
             };
-            // What vanishes could not come back in logarithms.
+            // A value of 0 could not come back in logarithms.
             for j in 0..n {
                 found.k[j] = self.prior.k[j] * x[j].max(1e-4);
                 found.s[j] = self.prior.s[j] * x[n + j].max(1e-3);
@@ -188,7 +188,7 @@ impl Wavelength<'_> {
     pub fn refine(&self, mut found: Unknowns) -> Unknowns {
         let free = self.free();
         let mut cost = self.cost(&found);
-        let mut reach = ln(FARTHEST);
+        let mut reach = ln(LARGEST_FACTOR);
         for _ in 0..STEPS {
             let bounds: Vec<Bound> = free
                 .iter()
@@ -208,7 +208,7 @@ impl Wavelength<'_> {
             let far = step.iter().fold(0.0f64, |far, by| far.max(by.abs()));
             if cost_there <= cost {
                 (found, cost) = (there, cost_there);
-                reach = (2.0 * reach).min(ln(FARTHEST));
+                reach = (2.0 * reach).min(ln(LARGEST_FACTOR));
             } else {
                 reach = 0.25 * far;
             }

@@ -1,4 +1,4 @@
-//! How the numbers of a picture stand for light where no ICC profile says so: a transfer function, and
+//! Meaning of a picture's numbers where no ICC profile gives it: a transfer function, and
 //! the chromaticities of primaries and white.
 //!
 //! Codes and formulas are those of ITU-T H.273 (07/2024), tables 2 and 3, which PNG's chunk cICP gives;
@@ -32,7 +32,7 @@ pub enum Transfer {
     Bt709,
     /// SMPTE ST 240.
     Smpte240,
-    /// A logarithm over so many decades, with nothing below.
+    /// A logarithm over a number of decades, 0 below.
     Logarithm(f64),
     /// SMPTE ST 428-1, of digital cinema.
     Smpte428,
@@ -66,9 +66,12 @@ impl Transfer {
     /// Light of a number; beyond 1 where the picture has more light than a diffuse white.
     #[must_use]
     pub fn decode(self, value: f64) -> f64 {
-        let toe = |end: f64, slope: f64, above: f64| match value < slope * end {
-            true => value / slope,
-            false => powf((value + above - 1.0) / above, 1.0 / 0.45),
+        let toe = |end: f64, slope: f64, above: f64| {
+            if value < slope * end {
+                value / slope
+            } else {
+                powf((value + above - 1.0) / above, 1.0 / 0.45)
+            }
         };
         match self {
             Self::Linear => value,
@@ -76,10 +79,13 @@ impl Transfer {
             Self::Srgb => srgb_decode(value),
             Self::Bt709 => toe(0.018_053_968_510_807, 4.5, 1.099_296_826_809_442),
             Self::Smpte240 => toe(0.022_821_585_529_445, 4.0, 1.111_572_195_921_731),
-            Self::Logarithm(decades) => match value > 0.0 {
-                true => powf(10.0, decades * (value - 1.0)),
-                false => 0.0,
-            },
+            Self::Logarithm(decades) => {
+                if value > 0.0 {
+                    powf(10.0, decades * (value - 1.0))
+                } else {
+                    0.0
+                }
+            }
             Self::Smpte428 => powf(value.max(0.0), 2.6) * 52.37 / 48.0,
             Self::Quantiser => quantised(value) * 10_000.0 / DIFFUSE_WHITE,
             Self::HybridLogGamma => hybrid(value) / hybrid(HLG_WHITE),
@@ -103,9 +109,10 @@ fn hybrid(value: f64) -> f64 {
     const A: f64 = 0.178_832_77;
     const B: f64 = 1.0 - 4.0 * A;
     const C: f64 = 0.559_910_73;
-    match value <= 0.5 {
-        true => value * value / 3.0,
-        false => (exp((value - C) / A) + B) / 12.0,
+    if value <= 0.5 {
+        value * value / 3.0
+    } else {
+        (exp((value - C) / A) + B) / 12.0
     }
 }
 

@@ -94,13 +94,15 @@ pub fn delta_e_2000_near(here: [f64; 3]) -> Matrix {
     let stretch = 1.0 + 0.5 * (1.0 - seventh((a * a + b * b).sqrt()));
     let chroma = (a * stretch * a * stretch + b * b).sqrt();
     // Around grey chroma and hue count alike, whatever the hue.
-    let (cosine, sine) = match chroma > 0.0 {
-        true => (a * stretch / chroma, b / chroma),
-        false => (1.0, 0.0),
+    let (cosine, sine) = if chroma > 0.0 {
+        (a * stretch / chroma, b / chroma)
+    } else {
+        (1.0, 0.0)
     };
-    let hue = match chroma > 0.0 {
-        true => atan2(sine, cosine).to_degrees().rem_euclid(360.0),
-        false => 0.0,
+    let hue = if chroma > 0.0 {
+        atan2(sine, cosine).to_degrees().rem_euclid(360.0)
+    } else {
+        0.0
     };
     let [sl, sc, sh, rt] = scales([l, chroma, hue]);
     let along = [0.0, cosine * stretch / sc, sine / sc];

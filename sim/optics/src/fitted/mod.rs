@@ -32,7 +32,7 @@ use weights::non_negative;
 /// Rounds of weighing the worst samples more, so that none stands out.
 const ROUNDS: usize = 3;
 /// A sample this many times as wrong as the mean counts √2 times as much in the next round.
-const OUTLIER: f64 = 3.0;
+const OUTLIER_RATIO: f64 = 3.0;
 
 /// A reflectance of the palette: what it should look like, and how errors in it look.
 struct Target {
@@ -143,7 +143,7 @@ fn weigh(targets: &mut [Target], rule: &SamplingRule, chosen: &[usize]) {
         })
         .collect();
     let mean = errors.iter().sum::<f64>() / errors.len().max(1) as f64;
-    let limit = OUTLIER * mean.max(1e-12);
+    let limit = OUTLIER_RATIO * mean.max(1e-12);
     for (target, error) in targets.iter_mut().zip(&errors) {
         let off = error / limit;
         target.weight *= (1.0 + off * off).sqrt();

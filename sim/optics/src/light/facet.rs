@@ -1,4 +1,4 @@
-//! How the surface lies at a cell and what it sees from there: all that light needs of the relief.
+//! Facets: normal of the surface at a cell, and its view from there: all that light needs of the relief.
 
 use super::shadow::Shadows;
 use super::sky::Sky;
@@ -27,12 +27,12 @@ impl Facet {
     };
 }
 
-/// What hides lamp and sky over cells of one size.
+/// Occlusion of lamp and sky over cells of one size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surroundings {
     /// The way to the lamp.
     pub shadows: Shadows,
-    /// What is around.
+    /// The sky and its horizon.
     pub sky: Sky,
     relief: f32,
 }
@@ -48,7 +48,7 @@ impl Surroundings {
         }
     }
 
-    /// How many cells beyond a changed one its light may change: columns and rows to the lower and to
+    /// Reach of a changed cell's light, cells: columns and rows to the lower and to
     /// the higher side.
     #[must_use]
     pub fn reach(&self) -> [[u32; 2]; 2] {

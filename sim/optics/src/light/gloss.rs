@@ -99,8 +99,8 @@ mod tests {
         }
     }
 
-    /// What facets that reflect all light send to all sides of a lamp at the elevation of sine `lamp_z`,
-    /// those that go on to other facets included: ∫ P·G·max(l·b, 0)/(l_z·b_z) d²s, which is 1 for the G
+    /// Light that facets which reflect everything send to all sides, of a lamp at the elevation of sine `lamp_z`,
+    /// those that reach other facets included: ∫ P·G·max(l·b, 0)/(l_z·b_z) d²s, which is 1 for the G
     /// that belongs to P (Heitz 2014, eq. 88, the weak white furnace).
     fn furnace(alpha: f32, lamp_z: f32, unmasked: impl Fn(f32, f32) -> f32) -> f64 {
         let across = (1.0 - lamp_z * lamp_z).sqrt();

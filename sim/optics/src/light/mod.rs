@@ -50,18 +50,18 @@ pub const DIMMING: f32 = 0.5;
 pub const SURFACE: f32 = SurfaceCorrection::STANDARD.k1 as f32;
 /// The lowest lamp, as the z of its direction: below it a flat surface would hardly be lit, and
 /// everything relative to it would have no bound.
-pub const LOWEST: f64 = 0.1;
-/// How much of the height of a low lamp its own radius may be, so that it never sets for a flat surface.
+pub const LOWEST_LAMP: f64 = 0.1;
+/// Largest radius of a low lamp by its height, so that it never sets for a flat surface.
 const SET: f64 = 0.95;
 /// Least albedo of the light itself by which colours are divided.
-const DARKEST: f64 = 1e-3;
+const LEAST_ALBEDO: f64 = 1e-3;
 /// The brightest that [`starting_exposure`] lets a ground be.
 pub const BARE: f64 = 0.98;
 
-/// What a lamp is made of.
+/// Parameters of a lamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LampSetup {
-    /// Toward it, of any length, in the frame of the surface. A lamp lower than [`LOWEST`] is raised
+    /// Toward it, of any length, in the frame of the surface. A lamp lower than [`LOWEST_LAMP`] is raised
     /// to it; a direction that is none means straight above.
     pub toward: [f64; 3],
     /// Factor on the light's strength, 0 or more.
@@ -111,7 +111,7 @@ pub struct Lamp {
     pub softness: f32,
     /// w, its colour.
     pub colour: [f32; 3],
-    /// What makes an albedo of an unlit colour.
+    /// Factor from an unlit colour to an albedo.
     pub albedo: [f32; 3],
 }
 
@@ -119,9 +119,12 @@ impl Lamp {
     /// A lamp; numbers of `setup` that are not finite are those of the default.
     #[must_use]
     pub fn new(setup: &LampSetup) -> Self {
-        let or = |value: f64, default: f64| match value.is_finite() {
-            true => value.max(0.0),
-            false => default,
+        let or = |value: f64, default: f64| {
+            if value.is_finite() {
+                value.max(0.0)
+            } else {
+                default
+            }
         };
         let default = LampSetup::default();
         let l = raised(setup.toward);
@@ -150,7 +153,7 @@ impl Lamp {
             graze: ((1.0 - l[2] * l[2]) / (l[2] * l[2])) as f32,
             softness: softness as f32,
             colour: setup.colour.map(|v| v as f32),
-            albedo: setup.colour.map(|v| (1.0 / v.max(DARKEST)) as f32),
+            albedo: setup.colour.map(|v| (1.0 / v.max(LEAST_ALBEDO)) as f32),
         }
     }
 }
@@ -166,14 +169,14 @@ fn raised(toward: [f64; 3]) -> [f64; 3] {
         return [0.0, 0.0, 1.0];
     }
     let across = (l[0] * l[0] + l[1] * l[1]).sqrt();
-    if l[2] >= LOWEST {
+    if l[2] >= LOWEST_LAMP {
         return l;
     }
     if across < 1e-9 {
         return [0.0, 0.0, 1.0];
     }
-    let scale = (1.0 - LOWEST * LOWEST).sqrt() / across;
-    [l[0] * scale, l[1] * scale, LOWEST]
+    let scale = (1.0 - LOWEST_LAMP * LOWEST_LAMP).sqrt() / across;
+    [l[0] * scale, l[1] * scale, LOWEST_LAMP]
 }
 
 /// A point of a surface.
@@ -183,7 +186,7 @@ pub struct Spot {
     pub unlit: [f32; 3],
     /// g, 0 to 1.
     pub gloss: f32,
-    /// How it lies, and what it sees.
+    /// Its facet.
     pub facet: Facet,
 }
 
@@ -194,7 +197,7 @@ pub fn normal(slope: [f32; 2]) -> [f32; 3] {
     [-slope[0] / length, -slope[1] / length, 1.0 / length]
 }
 
-/// What `lamp` makes of a point.
+/// Colour of a point under `lamp`.
 #[must_use]
 pub fn lit(spot: &Spot, lamp: &Lamp) -> [f32; 3] {
     let Facet {

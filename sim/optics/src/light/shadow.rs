@@ -30,9 +30,9 @@ pub const REACH: u32 = 24;
 /// Share of the way that fades.
 const FADING: f64 = 0.375;
 /// The sharpest lamp.
-const SHARPEST: f64 = 1e-3;
+const LEAST_SOFTNESS: f64 = 1e-3;
 /// Least denominator of tan α: what stands at a right angle to the lamp or lower hides nothing.
-pub const LEAST: f32 = 1e-6;
+pub const LEAST_DENOMINATOR: f32 = 1e-6;
 
 /// A place on the way to the lamp, relative to a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -45,7 +45,7 @@ pub struct Tap {
     pub run: [f32; 2],
 }
 
-/// How a lamp's shadows fall.
+/// Direction and length of a lamp's shadows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shadows {
     /// The way to it, from the nearest place.
@@ -80,7 +80,7 @@ impl Shadows {
             let first = if double { single + 2 * (k - single) } else { k } + 1;
             let far = first as f64 + if double { 0.5 } else { 0.0 };
             let faded = (far / lines as f64 - (1.0 - FADING)).max(0.0) / FADING;
-            // What rounding adds to a whole number would reach for one cell more.
+            // Rounding above a whole number would reach one cell farther.
             let exactly = |v: f64| (v * 1e6).round() * 1e-6;
             let crossed = |line: usize| [x, y].map(|v| exactly(v / major * line as f64));
             let [low, high, weight] = if double {
@@ -104,11 +104,11 @@ impl Shadows {
             taps: std::array::from_fn(tap),
             toward: [across as f32, z as f32],
             rise: lamp.relief / cell_m,
-            sharpness: (1.0 / f64::from(lamp.softness).max(SHARPEST)) as f32,
+            sharpness: (1.0 / f64::from(lamp.softness).max(LEAST_SOFTNESS)) as f32,
         }
     }
 
-    /// How many cells beyond a changed one its shadow may change: columns and rows to the lower and to
+    /// Reach of a changed cell's shadow, cells: columns and rows to the lower and to
     /// the higher side.
     #[must_use]
     pub fn reach(&self) -> [[u32; 2]; 2] {
@@ -123,7 +123,7 @@ impl Shadows {
     }
 
     /// V of the cells of row `y` from column `x` on, as many as `seen` takes. Beyond the border the
-    /// relief goes on at the border's height.
+    /// relief continues at the border's height.
     pub fn row(&self, field: &HeightField<'_>, [x, y]: [usize; 2], seen: &mut [f32]) {
         let width = field.cells[0];
         let row = |dy: i32| field.row(y as i64 + i64::from(dy));
@@ -161,7 +161,7 @@ impl Shadows {
         let rise = (low - own + (high - low) * tap.weight) * self.rise;
         let above = rise * self.toward[0] - tap.run[1];
         let ahead = rise * self.toward[1] + tap.run[0];
-        above / ahead.max(LEAST) * self.sharpness
+        above / ahead.max(LEAST_DENOMINATOR) * self.sharpness
     }
 }
 

@@ -25,12 +25,12 @@ pub const DIRECTIONS: usize = 8;
 pub const RINGS: usize = 5;
 /// All of them.
 pub const TAPS: usize = DIRECTIONS * RINGS;
-/// How far occlusion reaches, m: twice the height of thick impasto.
+/// Reach of occlusion, m: twice the height of thick impasto.
 pub const REACH_M: f64 = 2e-3;
 /// The same in cells, at most.
 pub const REACH: u32 = 16;
 /// Share of its elevation by which the farthest place counts.
-const FARTHEST: f64 = 0.3;
+const FARTHEST_SHARE: f64 = 0.3;
 
 /// A place around a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -76,7 +76,7 @@ impl Sky {
             let cell = [x, y].map(|v| (v * (far * longer).min(farthest.max(longer))).round());
             let run = (cell[0] * cell[0] + cell[1] * cell[1]).sqrt();
             let share = ring as f64 / (RINGS - 1) as f64;
-            let near = 1.0 - (1.0 - FARTHEST) * share * share * share * share;
+            let near = 1.0 - (1.0 - FARTHEST_SHARE) * share * share * share * share;
             Tap {
                 cell: cell.map(|v| v as i32),
                 steepness: (f64::from(relief) * near / (run * cell_m)) as f32,
@@ -88,7 +88,7 @@ impl Sky {
         }
     }
 
-    /// How many cells beyond a changed one it may change the light, to every side.
+    /// Reach of a changed cell, cells to every side.
     #[must_use]
     pub fn reach(&self) -> u32 {
         let cells = self.taps.iter().flatten().flat_map(|tap| tap.cell);
@@ -96,7 +96,7 @@ impl Sky {
     }
 
     /// v of the cells of row `y` from column `x` on, as many as `open` takes, whose unit normals are
-    /// `normals`. Beyond the border the relief goes on at the border's height.
+    /// `normals`. Beyond the border the relief continues at the border's height.
     pub fn row(
         &self,
         field: &HeightField<'_>,
@@ -145,7 +145,7 @@ impl Sky {
     }
 }
 
-/// What comes to a facet from one direction over a horizon of the elevation with tangent `tangent`:
+/// Light on a facet from one direction over a horizon of the elevation with tangent `tangent`:
 /// n_φ·(π/4 − η/2 − sin η·cos η/2) + n_z·cos²η/2. The arc cosine is Abramowitz and Stegun's 4.4.45,
 /// to 7e-5.
 #[inline]
@@ -159,7 +159,7 @@ pub fn above(tangent: f32, along: f32, up: f32) -> f32 {
     0.5 * (along * (from_zenith - sine * cosine) + up * square)
 }
 
-/// What a place that sees the share `open` of the light receives with what its surroundings of this
+/// Light on a place that sees the share `open` of it, with what its surroundings of this
 /// albedo throw back, 0 to 1 each:
 ///
 /// ```text

@@ -217,7 +217,7 @@ fn lamps_that_are_none_still_shine() {
         intensity: -1.0,
         ..Default::default()
     });
-    assert_eq!((low.toward[2], low.intensity), (LOWEST as f32, 0.0));
+    assert_eq!((low.toward[2], low.intensity), (LOWEST_LAMP as f32, 0.0));
     assert!((low.toward[0] * low.toward[0] + 0.01 - 1.0).abs() < 1e-6);
 }
 

@@ -8,7 +8,7 @@ use crate::viewing::{Seen, Viewing};
 /// colour is nearest to sRGB's primaries (dominant wavelengths, IEC 61966-2-1).
 pub const THREE_NM: [f64; 3] = [612.0, 549.0, 465.0];
 
-/// How paints are mixed.
+/// Way of mixing paints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
     /// K-M at all 101 samples.

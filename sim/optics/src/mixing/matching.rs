@@ -19,12 +19,12 @@ use crate::viewing::{Seen, Viewing};
 /// Most paints among which triples are sought.
 const MOST_IN_TRIPLES: usize = 40;
 /// Bound on ln of a ratio of shares: one part in 1100.
-const FARTHEST: f64 = 7.0;
+const LARGEST_LN_RATIO: f64 = 7.0;
 /// Places on which a pair is tried first; between them a colour turns but once.
 const PAIR_GRID: i32 = 28;
 /// Places each way on which three paints are tried first.
 const TRIPLE_GRID: i32 = 8;
-/// What rounding of the shares may cost, ΔE₀₀: a quarter of what an eye just tells apart.
+/// Largest cost of rounding the shares, ΔE₀₀: a quarter of the least difference that an eye sees.
 const ROUNDING: f64 = 0.25;
 /// Most digits of a share.
 const DIGITS: u32 = 4;
@@ -123,9 +123,9 @@ impl<'a> Table<'a> {
         for b in 1..self.paints.len() {
             for a in 0..b {
                 let at = |u: f64| self.delta_e([a, b], shares_of([0.0, u]));
-                let step = 2.0 * FARTHEST / f64::from(PAIR_GRID);
+                let step = 2.0 * LARGEST_LN_RATIO / f64::from(PAIR_GRID);
                 let (start, _) = (0..=PAIR_GRID)
-                    .map(|i| step * f64::from(i) - FARTHEST)
+                    .map(|i| step * f64::from(i) - LARGEST_LN_RATIO)
                     .map(|u| (u, at(u)))
                     .fold((0.0, f64::INFINITY), nearer);
                 let (u, delta_e) = golden_section([start - step, start + step], 16, at);
@@ -173,11 +173,11 @@ impl<'a> Table<'a> {
     fn triple(&self, paints: [usize; 3]) -> ([f64; 3], f64) {
         let shares = |[u, v]: [f64; 2]| shares_of([0.0, u, v]);
         let at = |place: [f64; 2]| {
-            let outside = place.map(|x| (x.abs() - FARTHEST).max(0.0));
+            let outside = place.map(|x| (x.abs() - LARGEST_LN_RATIO).max(0.0));
             self.delta_e(paints, shares(place)) + outside[0] + outside[1]
         };
-        let step = 2.0 * FARTHEST / f64::from(TRIPLE_GRID);
-        let on_grid = |i: i32| step * f64::from(i) - FARTHEST;
+        let step = 2.0 * LARGEST_LN_RATIO / f64::from(TRIPLE_GRID);
+        let on_grid = |i: i32| step * f64::from(i) - LARGEST_LN_RATIO;
         let places = (0..=TRIPLE_GRID)
             .flat_map(|i| (0..=TRIPLE_GRID).map(move |j| [on_grid(i), on_grid(j)]));
         let (start, _) = places
@@ -237,7 +237,7 @@ fn nearer<T>(best: (T, f64), other: (T, f64)) -> (T, f64) {
 
 /// Shares of the sum 1, of the logarithms of their ratios.
 fn shares_of<const N: usize>(logs: [f64; N]) -> [f64; N] {
-    let parts = logs.map(|log| exp(log.clamp(-2.0 * FARTHEST, 2.0 * FARTHEST)));
+    let parts = logs.map(|log| exp(log.clamp(-2.0 * LARGEST_LN_RATIO, 2.0 * LARGEST_LN_RATIO)));
     let whole: f64 = parts.iter().sum();
     parts.map(|part| part / whole)
 }
@@ -364,7 +364,7 @@ mod tests {
             let mut best = f64::INFINITY;
             for i in 0..=200 {
                 for j in 0..=200 {
-                    let [u, v] = [i, j].map(|x| f64::from(x) * 0.07 - FARTHEST);
+                    let [u, v] = [i, j].map(|x| f64::from(x) * 0.07 - LARGEST_LN_RATIO);
                     best = best.min(table.delta_e([0, 1, 2], shares_of([0.0, u, v])));
                 }
             }

@@ -1,4 +1,4 @@
-//! What mixed paints reflect: an opaque layer, or a film over a ground.
+//! Reflectance of mixed paints: an opaque layer, or a film over a ground.
 //!
 //! Mixing is linear in absorption and scattering (Duncan 1940; Baxter 2004, eq. 7.6), not in
 //! reflectance: that is why yellow and blue paint make green.
@@ -20,7 +20,7 @@ pub struct Blend {
     pub s: Spectrum,
 }
 
-/// How the paint lies.
+/// Form of the paint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Layer {
     /// So thick that nothing below it shows.

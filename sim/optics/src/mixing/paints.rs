@@ -17,7 +17,7 @@ pub struct Paint {
     pub name: String,
     /// Colour index of its pigments.
     pub colour_index: String,
-    /// Who measured it.
+    /// Source of the measurement.
     pub source: String,
     /// Absorption, per metre.
     pub k: Spectrum,
@@ -40,20 +40,20 @@ impl Paint {
         }
     }
 
-    /// Whether it is the thinner.
+    /// True if it is the thinner.
     #[must_use]
     pub fn is_thinner(&self) -> bool {
         self.name == THINNER
     }
 }
 
-/// Why paints cannot be had.
+/// Error of a paint library or a mixture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PaintError {
     /// No such paint; the nearest name is proposed.
     #[error("there is no paint called '{name}'{}", meant(.nearest.as_deref()))]
     Unknown {
-        /// What was asked for.
+        /// The name.
         name: String,
         /// The nearest name, if one is near.
         nearest: Option<String>,
@@ -66,7 +66,7 @@ pub enum PaintError {
     File {
         /// The line, from 1.
         line: usize,
-        /// What is wrong.
+        /// The defect.
         what: String,
     },
 }
@@ -78,33 +78,41 @@ fn meant(nearest: Option<&str>) -> String {
 /// Largest K or S relative to titanium white's S: a black of which 0.02 µm hide.
 const MOST: f64 = 1e6;
 /// The name of a paint has at most this many bytes.
-const NAME_MAX: usize = maulstick_types::command::PAINT_NAME_MAX;
+const NAME_MAX: usize = maulstick_types::limits::PAINT_NAME_MAX;
 
-/// Whether a paint may have this name: mixtures are written with it.
+/// A name that no paint may have.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PaintNameError {
+    /// Nothing but blanks.
+    #[error("a paint has no name")]
+    Blank,
+    /// Too many bytes.
+    #[error("a paint's name has {0} bytes, more than {NAME_MAX}")]
+    Long(usize),
+    /// A character with which mixtures are written, or a control character.
+    #[error("the name '{0}' has one of = , \" in it, with which mixtures are written")]
+    Character(String),
+    /// The thinner's.
+    #[error("'{THINNER}' is the medium that every palette has; choose another name for the paint")]
+    Thinner,
+}
+
+/// Checks that a paint may have this name: mixtures are written with it.
 ///
 /// # Errors
-/// What is wrong, in words.
-pub fn check_paint_name(name: &str) -> Result<(), String> {
+/// [`PaintNameError`].
+pub fn check_paint_name(name: &str) -> Result<(), PaintNameError> {
     if name.trim().is_empty() {
-        return Err("a paint has no name".into());
+        Err(PaintNameError::Blank)
+    } else if name.len() > NAME_MAX {
+        Err(PaintNameError::Long(name.len()))
+    } else if name.contains(['=', ',', '"']) || name.contains(char::is_control) {
+        Err(PaintNameError::Character(name.to_owned()))
+    } else if name.eq_ignore_ascii_case(THINNER) {
+        Err(PaintNameError::Thinner)
+    } else {
+        Ok(())
     }
-    if name.len() > NAME_MAX {
-        return Err(format!(
-            "a paint's name of {} bytes is over {NAME_MAX}",
-            name.len()
-        ));
-    }
-    if name.contains(['=', ',', '"']) || name.contains(char::is_control) {
-        return Err(format!(
-            "the name '{name}' has one of = , \" in it, as mixtures are written with"
-        ));
-    }
-    if name.eq_ignore_ascii_case(THINNER) {
-        return Err(format!(
-            "'{THINNER}' is the medium that every palette has; call the paint otherwise"
-        ));
-    }
-    Ok(())
 }
 
 impl From<maulstick_tables::TableError> for PaintError {
@@ -132,6 +140,23 @@ fn check_header(row: Row<'_>) -> Result<(), PaintError> {
         }
     }
     Ok(())
+}
+
+/// K or S of a row, per metre.
+fn spectrum(row: Row<'_>) -> Result<Spectrum, PaintError> {
+    let mut values = [0.0; SAMPLES];
+    for (column, value) in (NAMED..).zip(&mut values) {
+        let number = row.number(column)?;
+        if !(0.0..=MOST).contains(&number) {
+            let cell = shown(row.cell(column));
+            return Err(PaintError::File {
+                line: row.line(),
+                what: format!("column {}: {cell} is not 0 to {MOST:.0}", column + 1),
+            });
+        }
+        *value = number * WHITE_S_PER_M;
+    }
+    Ok(Spectrum(values))
 }
 
 /// The paints to choose from.
@@ -177,16 +202,7 @@ impl PaintLibrary {
             if cells != columns {
                 return Err(fault(format!("{cells} columns instead of {columns}")));
             }
-            let mut values = [0.0; SAMPLES];
-            for (column, value) in (NAMED..).zip(&mut values) {
-                let number = row.number(column)?;
-                if !(0.0..=MOST).contains(&number) {
-                    let cell = shown(row.cell(column));
-                    let what = format!("column {}: {cell} is not 0 to {MOST:.0}", column + 1);
-                    return Err(fault(what));
-                }
-                *value = number * WHITE_S_PER_M;
-            }
+            let values = spectrum(row)?;
             let [name, colour_index, source, quantity] =
                 [0, 1, 2, 3].map(|column| row.cell(column));
             let place = match quantity {
@@ -198,11 +214,11 @@ impl PaintLibrary {
                 }
             };
             if !found.contains_key(name) {
-                check_paint_name(name).map_err(fault)?;
+                check_paint_name(name).map_err(|error| fault(error.to_string()))?;
                 order.push((name.into(), colour_index.into(), source.into()));
             }
             let rows = found.entry(name.to_owned()).or_default();
-            if rows[place].replace(Spectrum(values)).is_some() {
+            if rows[place].replace(values).is_some() {
                 return Err(fault(format!("a second row of {quantity} of '{name}'")));
             }
         }

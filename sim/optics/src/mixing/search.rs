@@ -23,9 +23,10 @@ pub fn golden_section(
             at_right = f(right);
         }
     }
-    match at_left < at_right {
-        true => (left, at_left),
-        false => (right, at_right),
+    if at_left < at_right {
+        (left, at_left)
+    } else {
+        (right, at_right)
     }
 }
 

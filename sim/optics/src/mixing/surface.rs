@@ -1,4 +1,4 @@
-//! What the surface of a film does to light that enters and leaves it (Saunderson 1942).
+//! Surface correction: reflection of light that enters and leaves a film (Saunderson 1942).
 //!
 //! Kubelka-Munk films compose internal reflectances; the surface is applied once, at the outermost
 //! film. Its own reflection k₁ belongs to the gloss, which adds it when the picture is lit.
@@ -22,13 +22,13 @@ impl SurfaceCorrection {
     /// The constants with which the paints were measured (Berns 2016).
     pub const STANDARD: Self = Self { k1: 0.03, k2: 0.65 };
 
-    /// What leaves a film of internal reflectance `r`, without the gloss k₁.
+    /// Reflectance outside a film of internal reflectance `r`, without the gloss k₁.
     #[must_use]
     pub fn leaving(&self, r: f64) -> f64 {
         (1.0 - self.k1) * (1.0 - self.k2) * r / (1.0 - self.k2 * r)
     }
 
-    /// What a spectrometer reads: gloss and what leaves.
+    /// Reading of a spectrometer: gloss and [`leaving`](Self::leaving).
     #[must_use]
     pub fn measured(&self, r: f64) -> f64 {
         self.k1 + self.leaving(r)

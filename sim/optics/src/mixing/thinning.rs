@@ -17,12 +17,13 @@ pub fn thinned(mixture: &Mixture, share: ThinnerShare) -> Mixture {
     let mut thinner = share;
     for part in &mixture.parts {
         let left = part.share * (1.0 - share);
-        match part.paint == THINNER {
-            true => thinner += left,
-            false => parts.push(Part {
+        if part.paint == THINNER {
+            thinner += left
+        } else {
+            parts.push(Part {
                 paint: part.paint.clone(),
                 share: left,
-            }),
+            })
         }
     }
     parts.push(Part {

@@ -27,6 +27,19 @@ pub struct Illuminant {
 /// A light has power at this many of the samples or more: the most that a rule takes.
 const NARROWEST: usize = 16;
 
+/// A light by which no colours are seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum DarkError {
+    /// Too few wavelengths.
+    #[error(
+        "the light has power at {0} of the 101 wavelengths from 380 to 780 nm, 4 nm apart; colours take {NARROWEST}"
+    )]
+    Narrow(usize),
+    /// A response that it does not excite.
+    #[error("the light leaves one of X, Y and Z dark, so no colour is seen by it")]
+    Response,
+}
+
 /// Names of the illuminants that come with the crate.
 pub const ILLUMINANTS: [&str; 6] = ["A", "D50", "D65", "FL2", "FL8", "FL11"];
 
@@ -92,19 +105,19 @@ impl Illuminant {
         };
         match light.check() {
             Ok(()) => Ok(light),
-            Err(what) => Err(TableError {
+            Err(dark) => Err(TableError {
                 line: text.lines().count().max(1),
-                what,
+                what: dark.to_string(),
             }),
         }
     }
 
-    /// Whether colours can be seen by it: it has power at as many wavelengths as a rule takes, and
+    /// Checks that colours can be seen by it: it has power at as many wavelengths as a rule takes, and
     /// excites each of the three responses of either observer.
     ///
     /// # Errors
-    /// What is wrong, in few words.
-    pub fn check(&self) -> Result<(), String> {
+    /// [`DarkError`].
+    pub fn check(&self) -> Result<(), DarkError> {
         let most = self.power.0.iter().copied().fold(0.0, f64::max);
         let shining = self
             .power
@@ -113,17 +126,12 @@ impl Illuminant {
             .filter(|power| **power > 1e-6 * most)
             .count();
         if !(most > 0.0 && most.is_finite()) || shining < NARROWEST {
-            return Err(format!(
-                "the light has power at {shining} of the 101 wavelengths from 380 to 780 nm, 4 nm \
-                 apart; colours take {NARROWEST}"
-            ));
+            return Err(DarkError::Narrow(shining));
         }
         for observer in [Observer::Cie1931, Observer::Cie1964] {
             let white = self.xyz(observer, &Spectrum::flat(1.0));
             if !white.iter().all(|value| (1e-4..1e4).contains(value)) {
-                return Err(
-                    "the light leaves one of X, Y and Z dark, so no colour is seen by it".into(),
-                );
+                return Err(DarkError::Response);
             }
         }
         Ok(())

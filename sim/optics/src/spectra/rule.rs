@@ -75,7 +75,7 @@ impl SamplingRule {
         self.wavelengths_nm.len()
     }
 
-    /// Whether there is none.
+    /// True if there are none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.wavelengths_nm.is_empty()

@@ -12,13 +12,13 @@ use maulstick_tables::{HeadingLine, Table, shown};
 use crate::spectrum::{Spectrum, bin, resample};
 use crate::surface::SurfaceCorrection;
 
-/// What is wrong with a table, and where.
+/// A defect of a table and its place.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {what}")]
 pub struct TableError {
     /// The line, from 1.
     pub line: usize,
-    /// What is wrong, with the column.
+    /// The defect, with the column.
     pub what: String,
 }
 
@@ -34,7 +34,7 @@ impl From<maulstick_tables::TableError> for TableError {
 /// Instruments read nothing as a little less than nothing, by this share of the greatest reading at most.
 const DARK: f64 = 0.01;
 /// They read a white that is as white as their standard as more than 1, by this at most.
-const WHITER: f64 = 0.05;
+const MOST_ABOVE_WHITE: f64 = 0.05;
 
 /// A spectrum covers this at least, nm: beyond its ends it is held.
 const COVERED: [f64; 2] = [420.0, 680.0];
@@ -56,12 +56,12 @@ impl Spectrum {
     }
 }
 
-/// What a surface reflects, as an instrument reads it.
+/// Reflectance of a surface, as an instrument reads it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reflectance {
     /// The readings, 0 to 1.
     pub reading: Spectrum,
-    /// Whether the gloss of the surface went past the instrument.
+    /// True if the instrument leaves out the gloss of the surface.
     pub specular_excluded: bool,
     /// Number of readings that were beyond 0 to 1, by no more than instruments err, and were taken as 0 or 1.
     pub limited: usize,
@@ -91,8 +91,11 @@ impl Reflectance {
         let mut rows = rows(&table)?;
         let mut limited = 0;
         for row in &mut rows {
-            let is_limited =
-                row.within([-DARK, 1.0 + WHITER], [0.0, 1.0], "a reflectance of 0 to 1")?;
+            let is_limited = row.within(
+                [-DARK, 1.0 + MOST_ABOVE_WHITE],
+                [0.0, 1.0],
+                "a reflectance of 0 to 1",
+            )?;
             limited += usize::from(is_limited);
         }
         Ok(Self {

@@ -1,7 +1,7 @@
 //! Reflectances that have a given colour (Jakob and Hanika 2019, "A Low-Dimensional Function Space for
 //! Efficient Spectral Upsampling").
 //!
-//! What leaves a printed surface is modelled as (1 − k₁)·S(c₀·u² + c₁·u + c₂), S the sigmoid
+//! Light that leaves a printed surface is modelled as (1 − k₁)·S(c₀·u² + c₁·u + c₂), S the sigmoid
 //! ½ + x/(2√(1 + x²)), u the wavelength from −1 at 380 nm to 1 at 780 nm. With the surface's own
 //! reflection k₁ that is what the eye sees, and XYZ is linear in S; the internal reflectance under the
 //! surface is S/((1 − k₂) + k₂·S). The three coefficients are found by damped Gauss-Newton steps in
@@ -14,9 +14,9 @@ use crate::surface::SurfaceCorrection;
 /// Steps at most; a colour inside of the gamut takes about eight.
 const STEPS: usize = 60;
 /// A colour as near as this is reached, ΔE*ab.
-const NEAR: f64 = 0.01;
+const NEAR_DELTA_E: f64 = 0.01;
 /// Bound on a coefficient: there the sigmoid is 1 but for a millionth.
-const FARTHEST: f64 = 500.0;
+const LARGEST_COEFFICIENT: f64 = 500.0;
 /// Damping with which the steps begin, and with which they are given up.
 const DAMPING: [f64; 2] = [1e-3, 1e9];
 /// Lightness of the grey from which the search begins, as a share of white.
@@ -90,7 +90,7 @@ impl Upsampler {
         let mut damping = DAMPING[0];
         for _ in 0..STEPS {
             let error = square(off);
-            if error < NEAR * NEAR || damping > DAMPING[1] {
+            if error < NEAR_DELTA_E * NEAR_DELTA_E || damping > DAMPING[1] {
                 break;
             }
             let column = |i: usize| jacobian.map(|row| row[i]);
@@ -100,7 +100,8 @@ impl Upsampler {
                 normal[i][i] = normal[i][i] * (1.0 + damping) + 1e-12;
             }
             let step = solve3(&normal, [0, 1, 2].map(|i| dot(column(i), off)));
-            let next = [0, 1, 2].map(|i| (at[i] - step[i]).clamp(-FARTHEST, FARTHEST));
+            let next = [0, 1, 2]
+                .map(|i| (at[i] - step[i]).clamp(-LARGEST_COEFFICIENT, LARGEST_COEFFICIENT));
             let (next_off, next_jacobian) = self.off(next, target);
             // A step that is no number is not smaller.
             if square(next_off) < error {
@@ -113,7 +114,7 @@ impl Upsampler {
         Smooth(at.map(|c| c as f32))
     }
 
-    /// How far the colour of coefficients is from the target in CIELAB, and its slopes.
+    /// Difference of the coefficients' colour from the target in CIELAB, and its slopes.
     fn off(&self, c: [f64; 3], target: [f64; 3]) -> ([f64; 3], Matrix) {
         let mut xyz = [0.0; 3];
         let mut slopes = [[0.0; 3]; 3];

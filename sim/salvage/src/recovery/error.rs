@@ -15,11 +15,11 @@ pub enum SalvageError {
 }
 
 impl SalvageError {
-    /// What to do about it.
+    /// Advice.
     #[must_use]
     pub fn advice(&self) -> Advice {
         match self {
-            Self::Lost(_) => Advice::say("take the newest copy of it that is whole"),
+            Self::Lost(_) => Advice::say("use the newest intact copy of it"),
             Self::Document(error) => error.advice(),
         }
     }

@@ -135,9 +135,10 @@ impl IntactRows {
                 let rows = self.tiles.entry(key).or_default();
                 let tile = [row.int(1), row.int(2), row.int(3)];
                 let newest = rows.current.is_none_or(|[version, ..]| version < tile[0]);
-                match is_current && newest {
-                    true => rows.older.extend(rows.current.replace(tile)),
-                    false => rows.older.push(tile),
+                if is_current && newest {
+                    rows.older.extend(rows.current.replace(tile))
+                } else {
+                    rows.older.push(tile)
                 }
             }
             Table::Step if is_current || self.damaged_steps.contains(&key) => {

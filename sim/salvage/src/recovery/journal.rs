@@ -39,13 +39,12 @@ pub(super) fn write(
             sequencer.next = sequencer.next.max(index);
         }
         let count = last.saturating_sub(first.max(next)).saturating_add(1);
-        match is_broken {
-            true => report.lost_records += count,
-            false => {
-                row.write(database)?;
-                report.records += count;
-                next = last + 1;
-            }
+        if is_broken {
+            report.lost_records += count
+        } else {
+            row.write(database)?;
+            report.records += count;
+            next = last + 1;
         }
     }
     Ok(())

@@ -31,10 +31,11 @@ mod versions;
 
 use std::path::{Path, PathBuf};
 
-use maulstick_document::file::database::{Database, companion, lock_holder};
+use maulstick_document::file::database::{Database, lock_holder};
 use maulstick_document::pack::{Forget, replay_journal};
 use maulstick_document::tables::schema::{APPLICATION_ID, Table, VERSION};
 use maulstick_document::{Access, DocumentError};
+use maulstick_files::companion;
 use maulstick_painting::snapshot::{PaintingSnapshot, SequencerSnapshot};
 
 use crate::sqlite::{Scan, Value};

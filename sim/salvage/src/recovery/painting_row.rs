@@ -61,9 +61,10 @@ impl PaintingRow {
             )
         });
         let found = Self { table, values };
-        match fit && found.checksum() == sum {
-            true => RowKind::Intact(found),
-            false => damaged,
+        if fit && found.checksum() == sum {
+            RowKind::Intact(found)
+        } else {
+            damaged
         }
     }
 

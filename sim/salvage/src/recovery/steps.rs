@@ -92,15 +92,14 @@ impl Steps {
                 .map_or(place(id).is_none(), |copy| copy.int(4) != 0);
             let step = best.and_then(StepRow::decode);
             let step = step.filter(|step| step.has_sources(sources));
-            match is_done {
-                true => {
-                    let is_open = snapshot
-                        .open_steps
-                        .iter()
-                        .any(|open| open.step as i64 == id);
-                    drop(steps.done.insert((is_open, id), step));
-                }
-                false => steps.undone.push((id, step)),
+            if is_done {
+                let is_open = snapshot
+                    .open_steps
+                    .iter()
+                    .any(|open| open.step as i64 == id);
+                drop(steps.done.insert((is_open, id), step));
+            } else {
+                steps.undone.push((id, step))
             }
         }
         // Steps that the state does not list were undone later, the newest step first.

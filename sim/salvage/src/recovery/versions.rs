@@ -63,10 +63,8 @@ pub(super) fn write(
         String::new()
     };
     if let Some(line) = snapshot.line.take() {
-        let line = match names.contains(line.as_str()) {
-            true => line,
-            false => parent_of(&line),
-        };
+        let is_there = names.contains(line.as_str());
+        let line = if is_there { line } else { parent_of(&line) };
         snapshot.line = (!line.is_empty()).then_some(line);
     }
     for (name, (row, state)) in intact {
@@ -111,8 +109,9 @@ fn state(
     let before = state.ledger.clone();
     let there = ledger::paint(inventory, ids, state.loads.values());
     ledger::balance(&mut state.ledger, &there);
-    Ok(Some(match changed || state.ledger != before {
-        true => serde_json::to_string(&state)?,
-        false => row.text(2).to_owned(),
+    Ok(Some(if changed || state.ledger != before {
+        serde_json::to_string(&state)?
+    } else {
+        row.text(2).to_owned()
     }))
 }

@@ -1,7 +1,7 @@
 //! Rows of a damaged SQLite file, read without SQLite.
 //!
 //! Every page that is a leaf of a table gives its rows, whatever became of the pages above it: neither the header nor the
-//! schema nor an interior page is needed. A row does not name its table, so the caller tells rows apart by their values.
+//! schema nor an interior page is needed. A row does not name its table, so the caller distinguishes rows by their values.
 //! Rows of freed pages, which the database had already deleted, are read as well, and so may be older copies of a row.
 //!
 //! Values are as SQLite stores them: an `INTEGER PRIMARY KEY` is NULL among the values and is the rowid; a whole number in

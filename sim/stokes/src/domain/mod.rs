@@ -1,4 +1,4 @@
-//! What the equations see of a window: which cells and faces take part, and how much of each.
+//! Domain of the equations: the cells and faces of a window that take part, and how much of each.
 //!
 //! A cell is filled to a fraction; the average over cells beside a face or around an edge is how much of the face's or
 //! edge's volume is paint (Batty and Bridson 2008; Larionov, Batty and Bridson 2017). An edge at which one of the four
@@ -24,7 +24,7 @@ const LEAST_MASS: f32 = 0.05;
 /// Smallest distance of a velocity from a wall, in cells.
 const LEAST_DISTANCE: f32 = 0.1;
 /// Distance where no solid is near, cells.
-const FAR: f32 = 64.0;
+const FAR_CELLS: f32 = 64.0;
 /// Distance at which a face belongs to a solid.
 const TOUCHES: f32 = 1e-4;
 
@@ -45,7 +45,7 @@ impl Solids {
     #[must_use]
     pub fn walls(grid: &Grid) -> Self {
         Self {
-            distance: vec![FAR; grid.len()],
+            distance: vec![FAR_CELLS; grid.len()],
             velocity: std::array::from_fn(|_| grid.field()),
             resistance: None,
         }
@@ -154,7 +154,7 @@ impl Domain {
         domain
     }
 
-    /// What transport needs of the window: its cells and faces, without edges.
+    /// The cells and faces of the window, without edges: enough for transport.
     #[must_use]
     pub fn for_transport(grid: &Grid, fill: &[f32], solids: &Solids, least: f32) -> Self {
         let mut domain = Self::empty(grid);

@@ -8,7 +8,7 @@
 mod transfer;
 
 use maulstick_num::wide;
-use transfer::{Along, Layers, Room, all_layers, can_halve, gather, halved, spread};
+use transfer::{Along, Layers, Workspace, all_layers, can_halve, gather, halved, spread};
 
 use crate::grid::Grid;
 use crate::stencil::Stencil;
@@ -30,11 +30,11 @@ struct Level {
     /// Solution and right-hand side, on all but the first level.
     x: Vec<f32>,
     b: Vec<f32>,
-    /// Room, 0 where there are no unknowns.
+    /// Workspace, 0 where there are no unknowns.
     spare: Vec<f32>,
     /// Layers with unknowns.
     layers: Layers,
-    /// What brings this level to the next; none on the coarsest.
+    /// Transfer of this level to the next; `None` on the coarsest.
     down: Option<Down>,
 }
 
@@ -85,9 +85,9 @@ impl Down {
         &self.grids[2]
     }
 
-    fn room(&mut self) -> Room<'_> {
+    fn workspace(&mut self) -> Workspace<'_> {
         let [by_z, by_y] = &mut self.fields;
-        Room {
+        Workspace {
             grids: &self.grids,
             by_z,
             by_y,
@@ -111,7 +111,7 @@ impl Down {
                 links,
                 &mut into.links[axis],
                 &layers,
-                &mut self.room(),
+                &mut self.workspace(),
             );
         }
         let mut lost = std::mem::take(&mut self.scale);
@@ -121,14 +121,14 @@ impl Down {
             (grid, &lost),
             &mut into.mass,
             &layers,
-            &mut self.room(),
+            &mut self.workspace(),
         );
         self.scale = lost;
         for (from, into) in [
             (&fine.active, &mut into.active),
             (&fine.known, &mut into.known),
         ] {
-            gather(children, (grid, from), into, &layers, &mut self.room());
+            gather(children, (grid, from), into, &layers, &mut self.workspace());
             into.iter_mut()
                 .for_each(|value| *value = if *value > 0.0 { 1.0 } else { 0.0 });
         }
@@ -137,7 +137,7 @@ impl Down {
         scale.fill(0.0);
         let layers = all_layers(grid);
         let known = (grid, scale.as_mut_slice(), fine.active.as_slice());
-        spread(along, &into.known, known, &layers, &mut self.room());
+        spread(along, &into.known, known, &layers, &mut self.workspace());
         for scale in &mut scale {
             *scale = if *scale > 0.0 { 1.0 / *scale } else { 0.0 };
         }
@@ -336,7 +336,7 @@ impl Multigrid {
         descend(&mut self.levels, &self.omegas, b, x);
     }
 
-    /// Solves A·x = b by so many preconditioned conjugate gradients from x, which is 0 where there are no unknowns;
+    /// Solves A·x = b by `iterations` of preconditioned conjugate gradients from x, which is 0 where there are no unknowns;
     /// returns the norm of each residual, with that of the first guess.
     pub fn solve(&mut self, b: &[f32], x: &mut [f32], iterations: usize) -> Vec<f64> {
         let grid = self.levels[0].grid;
@@ -380,7 +380,7 @@ impl Multigrid {
     }
 
     /// Solves A·x = b in f64 down to a part of the norm of b: rounds of conjugate gradients in f32 on what is left, at
-    /// most so many. Returns the part that is left.
+    /// most this number. Returns the part that is left.
     pub fn refine(&mut self, b: &[f64], x: &mut [f64], part: f64, rounds: usize) -> f64 {
         let grid = self.levels[0].grid;
         let squares = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>().sqrt();
@@ -482,14 +482,15 @@ fn descend(levels: &mut [Level], omegas: &[f32], b: &[f32], x: &mut [f32]) {
         (&grid, spare),
         &mut coarse_b,
         &next.layers,
-        &mut down.room(),
+        &mut down.workspace(),
     );
     descend(coarser, omegas, &coarse_b, &mut coarse_x);
     let coarse = *down.coarse();
     coarse.wrap(&mut coarse_x);
     let scale = std::mem::take(&mut down.scale);
     let into = (&grid, &mut *x, scale.as_slice());
-    spread(down.along, &coarse_x, into, &level.layers, &mut down.room());
+    let (along, mut workspace) = (down.along, down.workspace());
+    spread(along, &coarse_x, into, &level.layers, &mut workspace);
     down.scale = scale;
     if let Some(next) = coarser.first_mut() {
         (next.x, next.b) = (coarse_x, coarse_b);

@@ -170,8 +170,8 @@ fn padded<'a, const N: usize>(
     (&mut into[..len], rows.map(|row| &row[..len]))
 }
 
-/// Room between two grids: by z the field of the grid that is halved along z alone, by y along y and z.
-pub(crate) struct Room<'a> {
+/// Workspace between two grids: by z the field of the grid that is halved along z alone, by y along y and z.
+pub(crate) struct Workspace<'a> {
     pub(crate) grids: &'a [Grid; 3],
     pub(crate) by_z: &'a mut [f32],
     pub(crate) by_y: &'a mut [f32],
@@ -184,15 +184,15 @@ pub(crate) fn gather(
     (fine, from): (&Grid, &[f32]),
     into: &mut [f32],
     [rows, planes]: &Layers,
-    room: &mut Room<'_>,
+    workspace: &mut Workspace<'_>,
 ) {
-    let [z_grid, y_grid, coarse] = room.grids;
+    let [z_grid, y_grid, coarse] = workspace.grids;
     let (width, plane) = (fine.stride(1), fine.stride(2));
     let is_halved = |axis: usize| fine.cells[axis] != coarse.cells[axis];
     if rows.is_empty() {
         return;
     }
-    // What the rows need of the fine ones.
+    // The fine rows that these need.
     let fine_rows = if is_halved(1) {
         2 * rows.start - 2..(2 * rows.end).min(fine.cells[1] + 3)
     } else {
@@ -205,14 +205,14 @@ pub(crate) fn gather(
                 four(z, fine.cells[2]).map(|z| &from[z * plane + flat.start..z * plane + flat.end]);
             let start = z * z_grid.stride(2);
             weigh(
-                &mut room.by_z[start + flat.start..start + flat.end],
+                &mut workspace.by_z[start + flat.start..start + flat.end],
                 weights[2],
                 a,
                 b,
                 c,
                 d,
             );
-            &room.by_z[start..]
+            &workspace.by_z[start..]
         } else {
             &from[z * plane..]
         };
@@ -221,7 +221,7 @@ pub(crate) fn gather(
             let start = y * y_grid.stride(1) + z * y_grid.stride(2);
             let row = if is_halved(1) {
                 let four = four(y, fine.cells[1]).map(row);
-                let (into, [a, b, c, d]) = padded(width, &mut room.by_y[start..], four);
+                let (into, [a, b, c, d]) = padded(width, &mut workspace.by_y[start..], four);
                 weigh(into, weights[1], a, b, c, d);
                 &into[..width]
             } else {
@@ -244,9 +244,9 @@ pub(crate) fn spread(
     from: &[f32],
     (fine, into, scale): (&Grid, &mut [f32], &[f32]),
     [rows, planes]: &Layers,
-    room: &mut Room<'_>,
+    workspace: &mut Workspace<'_>,
 ) {
-    let [z_grid, y_grid, coarse] = room.grids;
+    let [z_grid, y_grid, coarse] = workspace.grids;
     let width = fine.stride(1);
     let is_halved = |axis: usize| fine.cells[axis] != coarse.cells[axis];
     if rows.is_empty() || planes.is_empty() {
@@ -270,18 +270,18 @@ pub(crate) fn spread(
             let start = y * coarse.stride(1) + z * coarse.stride(2);
             let row = &from[start..];
             let start = y * y_grid.stride(1) + z * y_grid.stride(2);
-            let into = &mut room.by_y[start..];
+            let into = &mut workspace.by_y[start..];
             if is_halved(0) {
                 mix_row(into, weights, row, (width - 1) / 2);
             } else {
                 into[..width].copy_from_slice(&row[..width]);
             }
         }
-        let source = &room.by_y[z * y_grid.stride(2)..];
+        let source = &workspace.by_y[z * y_grid.stride(2)..];
         for y in rows.clone() {
             let row = |y: usize| &source[y * width..];
             let start = y * width + z * z_grid.stride(2);
-            let into = &mut room.by_z[start..];
+            let into = &mut workspace.by_z[start..];
             if is_halved(1) {
                 let ([a, b], weights) = along[1].beside(y);
                 let (into, [a, b]) = padded(width, into, [row(a), row(b)]);
@@ -300,7 +300,7 @@ pub(crate) fn spread(
         };
         let layer = |z: usize| {
             let start = z * z_grid.stride(2);
-            &room.by_z[start + flat.start..start + flat.end]
+            &workspace.by_z[start + flat.start..start + flat.end]
         };
         let own = z * fine.stride(2) + flat.start..z * fine.stride(2) + flat.end;
         add_mixed(

@@ -10,7 +10,7 @@ use crate::stencil::Span;
 
 /// Gradient of fill below which a cell has no surface.
 const LEAST_GRADIENT: f32 = 1e-3;
-/// What shares of a cell that two faces take add up to at most, so that rounding never makes them more than the cell.
+/// Largest sum of the shares of a cell that two faces take, so that rounding never makes them more than the cell.
 const BELOW_ONE: f32 = 1.0 - 4.0 * f32::EPSILON;
 
 /// Room for sweeps.
@@ -85,7 +85,7 @@ impl Sweep {
         let capacity = self.capacity as f32;
         let (free, area) = (&domain.free[axis], &domain.area[axis]);
         let len = grid.len();
-        // What came too fast for the other axes to take away leaves no less room than a solid does.
+        // Paint that came too fast for the other axes leaves no less room than a solid does.
         fill_flat(&mut self.fill[..len], &*total, room, LEAST_ROOM * capacity);
         take(&mut self.taken[..len], &self.fill, open);
         let (fill, taken) = (&self.fill, &self.taken);
@@ -277,14 +277,18 @@ wide! {
 }
 
 /// Most quanta that go through a face at once.
-const MOST: f32 = 4_194_304.0;
+const MOST_FLUX: f32 = 4_194_304.0;
 
-/// The whole part of a number that is not negative, at most [`MOST`]: a cast would be done number by number.
+/// The whole part of a number that is not negative, at most [`MOST_FLUX`]: a cast would be done number by number.
 #[inline(always)]
 fn whole(number: f32) -> i32 {
     /// From here on to twice that, each number is one more than the one before it.
     const WHOLE: f32 = 8_388_608.0;
-    let number = if number < MOST { number } else { MOST };
+    let number = if number < MOST_FLUX {
+        number
+    } else {
+        MOST_FLUX
+    };
     let nearest = number + WHOLE;
     let over = if nearest - WHOLE > number { 1 } else { 0 };
     nearest.to_bits().wrapping_sub(WHOLE.to_bits()) as i32 - over
@@ -321,6 +325,6 @@ mod tests {
         ] {
             assert_eq!(whole(number), number as i32, "{number}");
         }
-        assert_eq!([whole(1e20), whole(f32::NAN)], [MOST as i32; 2]);
+        assert_eq!([whole(1e20), whole(f32::NAN)], [MOST_FLUX as i32; 2]);
     }
 }

@@ -125,7 +125,7 @@ fn near_pen(compositor: &Compositor) -> Result<(ZwpTabletToolV2, DisplayHandle),
 /// The tablet of the example.
 fn recorded() -> Result<Recorded, UserError> {
     let text = include_str!("../../../../docs/examples/pen.hid");
-    let mut devices = recording::parse(text).map_err(|(_, what)| fault(what))?;
+    let mut devices = recording::parse(text).map_err(|error| fault(error.to_string()))?;
     devices.pop().ok_or_else(|| fault("no tablet"))
 }
 

@@ -19,7 +19,7 @@ use std::ops::RangeInclusive;
 use eframe::egui::{Button, ComboBox, Rect, RichText, Sense, Ui, vec2};
 use maulstick_brush::BrushFile;
 use maulstick_painting::edits::Tune;
-use maulstick_types::command::STIFFNESS;
+use maulstick_types::limits::STIFFNESS;
 use maulstick_types::scene::{BrushHandling, Tuning};
 use maulstick_ui_kit::labelled::{self, PendingValue};
 use maulstick_ui_kit::language::known;

@@ -2,7 +2,8 @@
 
 use eframe::egui::{ComboBox, Ui};
 use maulstick_painting::edits::Handle;
-use maulstick_types::scene::{BrushHandling, BrushMode, FLOWS};
+use maulstick_types::limits::FLOWS;
+use maulstick_types::scene::{BrushHandling, BrushMode};
 use maulstick_ui_kit::labelled::{self, PendingValue};
 use maulstick_ui_kit::language::translated;
 

@@ -4,7 +4,7 @@ use eframe::egui::{DragValue, ProgressBar, TextEdit, Ui};
 use maulstick_painting::clock::TICKS_A_SECOND;
 use maulstick_painting::edits::{Dry, StopDrying, Wet};
 use maulstick_types::Region;
-use maulstick_types::command::DRYING_TICKS;
+use maulstick_types::limits::DRYING_TICKS;
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{LayerName, Share, Ticks, ValueError};

@@ -5,7 +5,7 @@ use eframe::egui::{
     Color32, Pos2, Rect, Sense, Stroke, TextureId, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use maulstick_num::{acos, atan2};
-use maulstick_optics::light::LOWEST;
+use maulstick_optics::light::LOWEST_LAMP;
 use maulstick_ui_kit::arrow_keys::arrow_steps;
 
 /// Side of the pad, points.
@@ -56,11 +56,11 @@ pub(super) fn show(ui: &mut Ui, ball: TextureId, direction: [f64; 3]) -> Option<
 /// The direction of a place on the disc of radius 1, whose rim is the horizon; no lower than a lamp goes.
 fn of_disc([x, y]: [f64; 2]) -> [f64; 3] {
     let across = (x * x + y * y).sqrt();
-    let most = (1.0 - LOWEST * LOWEST).sqrt();
+    let most = (1.0 - LOWEST_LAMP * LOWEST_LAMP).sqrt();
     let shrink = if across > most { most / across } else { 1.0 };
     let tidy = |v: f64| (v * 1e3).round() * 1e-3;
     let [x, y] = [tidy(x * shrink), tidy(y * shrink)];
-    let up = (1.0 - x * x - y * y).max(LOWEST * LOWEST).sqrt();
+    let up = (1.0 - x * x - y * y).max(LOWEST_LAMP * LOWEST_LAMP).sqrt();
     [x, y, up]
 }
 
@@ -119,7 +119,7 @@ mod tests {
             assert!((to_pad(place, direction) - at).length() < 0.1, "{at:?}");
         }
         let low = from_pad(place, pos2(500.0, 96.0));
-        assert!(low[2] >= LOWEST && low[0] > 0.9, "{low:?}");
+        assert!(low[2] >= LOWEST_LAMP && low[0] > 0.9, "{low:?}");
         assert!(
             to_pad(place, [0.5, 0.5, 0.5]).y < place.center().y,
             "up is up: a fault would pass"

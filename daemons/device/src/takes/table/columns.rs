@@ -16,12 +16,12 @@ const PRESSURE: usize = 3;
 const TILTS: [usize; 2] = [4, 5];
 const STROKE: usize = 7;
 /// Steepest tilt that a brush is held at, degrees.
-const STEEPEST: f64 = 85.0;
+const STEEPEST_TILT_DEG: f64 = 85.0;
 /// Steepest tilt of a pen, degrees.
 const FLAT: f64 = 90.0;
 /// Rounding of a number in a table.
 const ROUNDING: f64 = 1e-3;
-/// What each line of a table without headings is.
+/// Columns of a table without headings.
 const LINE: &str = "each line is: t x y pressure [tilt_x tilt_y [twist]]";
 
 /// A sample as it stands in the table.
@@ -76,9 +76,10 @@ pub(super) fn rows(text: &str, name: &str, notes: &mut Vec<String>) -> Result<Ve
     for row in table.rows() {
         if table.headings().is_empty() && row.len() != columns {
             let cells = row.len();
-            let what = match cells < columns {
-                true => Fault::Narrow { cells, columns },
-                false => Fault::Wide { cells, columns },
+            let what = if cells < columns {
+                Fault::Narrow { cells, columns }
+            } else {
+                Fault::Wide { cells, columns }
             };
             return Err(fault(TableError::new(row.line(), what)));
         }
@@ -123,7 +124,8 @@ fn places(
     let places = table.columns(COLUMNS).map_err(&fault)?;
     let count = table.rows().next().map_or(0, |row| row.len());
     if table.headings().is_empty() && count > NEEDED && ![NEEDED + 2, NUMBERS].contains(&count) {
-        let what = format!("{count} columns without headings: what the last is, is not told");
+        let what =
+            format!("{count} columns without headings: the meaning of the last one is not known");
         return Err(UserError::usage(what)
             .at(format!("{name}:{}", table.first_line()))
             .help("name the columns in a first line, as in: t,x,y,pressure,stroke"));
@@ -156,7 +158,11 @@ impl Limits {
     fn within(&mut self, column: usize, number: f64) -> Result<f64, (f64, f64)> {
         let (used, given, count) = match column {
             PRESSURE => ((0.0, 1.0), (0.0, 1.0), &mut self.pressures),
-            _ if TILTS.contains(&column) => ((-STEEPEST, STEEPEST), (-FLAT, FLAT), &mut self.tilts),
+            _ if TILTS.contains(&column) => (
+                (-STEEPEST_TILT_DEG, STEEPEST_TILT_DEG),
+                (-FLAT, FLAT),
+                &mut self.tilts,
+            ),
             _ => return Ok(number),
         };
         if !(given.0 - ROUNDING..=given.1 + ROUNDING).contains(&number) {
@@ -176,7 +182,9 @@ impl Limits {
         });
         let tilts = (self.tilts > 0).then(|| {
             let count = self.tilts;
-            format!("{count} tilts are steeper than {STEEPEST}°: taken as {STEEPEST}°")
+            format!(
+                "{count} tilts are steeper than {STEEPEST_TILT_DEG}°: taken as {STEEPEST_TILT_DEG}°"
+            )
         });
         pressures.into_iter().chain(tilts).collect()
     }

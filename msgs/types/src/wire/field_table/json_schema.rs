@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value as Json, json};
 
-use super::{DEEPEST, Definition, FieldTable, Type, TypedField, is_plain};
+use super::{DEEPEST_NESTING, Definition, FieldTable, Type, TypedField, is_plain};
 
 /// Most definitions that a schema spells out: it has no references, and a hostile table may nest without end.
 const MOST_DEFINITIONS: usize = 4096;
@@ -13,7 +13,7 @@ impl FieldTable {
     #[must_use]
     pub fn json_schema(&self) -> Json {
         let message = Type::Defined(self.message);
-        let schema = self.schema_of(&message, DEEPEST, &mut { MOST_DEFINITIONS });
+        let schema = self.schema_of(&message, DEEPEST_NESTING, &mut { MOST_DEFINITIONS });
         schema.unwrap_or_else(|| object(Map::new(), Vec::new()))
     }
 

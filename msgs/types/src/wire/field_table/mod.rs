@@ -14,7 +14,7 @@ use super::value::{Fields, Value};
 mod json_schema;
 
 /// Deepest nesting of a value: a table may refer to itself.
-const DEEPEST: usize = 32;
+const DEEPEST_NESTING: usize = 32;
 
 /// Why a table or a body cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -233,7 +233,7 @@ impl FieldTable {
 /// The type that a text names.
 fn type_of(text: &str, places: &BTreeMap<&str, usize>, depth: usize) -> Result<Type, TableError> {
     let unknown = || TableError::Type(text.chars().take(80).collect());
-    if depth > DEEPEST {
+    if depth > DEEPEST_NESTING {
         return Err(unknown());
     }
     let inner = |text: &str| Ok(Box::new(type_of(text, places, depth + 1)?));
@@ -335,7 +335,7 @@ impl<'a> Reader<'a> {
     }
 
     fn fields(&mut self, fields: &[TypedField]) -> Result<Fields, TableError> {
-        if self.path.len() > DEEPEST {
+        if self.path.len() > DEEPEST_NESTING {
             return Err(TableError::Invalid {
                 field: self.field(),
                 what: "nested too deeply".into(),
@@ -385,10 +385,13 @@ impl<'a> Reader<'a> {
                 self.several(of, length)?
             }
             Type::Array(of, count) => self.several(of, *count)?,
-            Type::Optional(of) => match self.flag()? {
-                true => self.value(of)?,
-                false => Value::Absent,
-            },
+            Type::Optional(of) => {
+                if self.flag()? {
+                    self.value(of)?
+                } else {
+                    Value::Absent
+                }
+            }
             Type::Defined(place) => match &self.definitions[*place] {
                 Definition::Struct(fields) => Value::Fields(self.fields(fields)?),
                 Definition::Enum(variants) => {
@@ -398,9 +401,10 @@ impl<'a> Reader<'a> {
                         field: self.field(),
                         what: format!("alternative {tag} of {}", variants.len()),
                     })?;
-                    match is_plain(variants) {
-                        true => Value::Text(name.to_string()),
-                        false => Value::Variant(Arc::clone(name), self.fields(fields)?),
+                    if is_plain(variants) {
+                        Value::Text(name.to_string())
+                    } else {
+                        Value::Variant(Arc::clone(name), self.fields(fields)?)
                     }
                 }
             },

@@ -8,7 +8,7 @@ use crate::head_stiffness::{AT_ONCE_M, HeadStiffness, Press, tuned, tuples};
 impl BrushModel {
     /// Force on the hand from the head as it is bent now.
     #[must_use]
-    pub fn feel(&self) -> HeadStiffness {
+    pub fn stiffness(&self) -> HeadStiffness {
         let length = self.file.length_m();
         match &self.tracked {
             Some(tracked) => HeadStiffness::bent(

@@ -18,9 +18,10 @@ impl BrushModel {
         if !matches!(sample.pose, StylusPose::Contact { .. }) {
             return;
         }
-        match sample.in_air() {
-            true => self.hover(brush, plane),
-            false => self.lower(brush),
+        if sample.in_air() {
+            self.hover(brush, plane)
+        } else {
+            self.lower(brush)
         }
     }
 

@@ -18,7 +18,7 @@ use crate::mark::point_of;
 
 /// Way of the point after which the direction of a stroke is known, m.
 const KNOWN_M: f64 = 1e-3;
-/// Way that tells a direction after [`TELLS_NS`], m.
+/// Way that gives a direction after [`TELLS_NS`], m.
 const TELLING_M: f64 = 0.2e-3;
 /// See [`TELLING_M`], ns.
 const TELLS_NS: u64 = 50_000_000;
@@ -42,7 +42,7 @@ pub(super) struct Waiting {
     begins: Begins,
 }
 
-/// How a brush comes to a contact.
+/// Approach of a brush to a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Begins {
     /// From the air.
@@ -68,17 +68,19 @@ impl Waiting {
         }
         let tells = way.length() >= TELLING_M && waited_ns >= TELLS_NS;
         let rests = waited_ns >= RESTS_NS || self.samples.len() >= MOST_WAITING;
-        match tells || rests {
-            true => Some(self.told(way)),
-            false => None,
+        if tells || rests {
+            Some(self.told(way))
+        } else {
+            None
         }
     }
 
     /// Direction of a way that ends before it is known.
     fn told(&self, way: DVec2) -> DVec2 {
-        match way.length() >= TELLING_M {
-            true => way.normalize_or_zero(),
-            false => DVec2::ZERO,
+        if way.length() >= TELLING_M {
+            way.normalize_or_zero()
+        } else {
+            DVec2::ZERO
         }
     }
 
@@ -99,7 +101,7 @@ impl Waiting {
 }
 
 impl BrushModel {
-    /// Sets down a pen that still waits, where no sample will tell its direction any more; the brush goes on from there.
+    /// Sets down a pen that still waits, when no sample will give its direction any more; the brush continues from there.
     /// Empty where none waits.
     #[must_use]
     pub fn finish(&mut self) -> Vec<Solve> {
@@ -173,7 +175,7 @@ impl BrushModel {
         Some(solve)
     }
 
-    /// Sets down a brush that has waited, toward `here` if it goes on pressed, and goes the way of the samples that
+    /// Sets down a brush that has waited, toward `here` if it continues pressed, and goes the way of the samples that
     /// waited, with a preview at the last of them.
     pub(super) fn set_down(
         &mut self,
@@ -193,9 +195,10 @@ impl BrushModel {
                 waits.told(point_of(&last.pose) - point_of(&first.pose))
             }
         };
-        let mut landing = match toward == DVec2::ZERO {
-            true => self.land(tracked, first, false, plane),
-            false => self.land_along(tracked, first, toward, plane),
+        let mut landing = if toward == DVec2::ZERO {
+            self.land(tracked, first, false, plane)
+        } else {
+            self.land_along(tracked, first, toward, plane)
         };
         if waits.begins == Begins::Anew {
             landing.flags |= solve_flags::RESTARTED;

@@ -220,7 +220,7 @@ proptest! {
             if !in_range {
                 prop_assert!(solves.last().is_some_and(|solve| solve.contacts.is_empty()));
             }
-            let feel = model.feel().k1_n;
+            let feel = model.stiffness().k1_n;
             prop_assert!(feel.is_finite() && feel > 0.0);
         }
         // Whatever was before, a brush that is lifted and put down again bends as it should.

@@ -9,6 +9,8 @@ use maulstick_canvas::layered::MOST_LAYERS;
 use maulstick_canvas::own_plane::{OwnPlane, OwnShape, ValueType};
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
 
+use crate::tables::defect::Defect;
+
 /// Bytes before those of a plane.
 const HEAD: usize = 6;
 /// Bytes of all planes of a page, at most.
@@ -64,18 +66,17 @@ fn head(from: &mut impl Read) -> std::io::Result<Option<[u8; HEAD]>> {
 /// Reads what [`append`] wrote.
 ///
 /// # Errors
-/// The defect of the bytes, in words.
-pub(super) fn read(from: &mut impl Read, base: Option<&Planes>) -> Result<Vec<OwnPlane>, String> {
-    let torn = || "a plane of the model's own is torn".to_owned();
+/// [`Defect`].
+pub(super) fn read(from: &mut impl Read, base: Option<&Planes>) -> Result<Vec<OwnPlane>, Defect> {
     let mut planes: Vec<OwnPlane> = Vec::new();
-    while let Some(head) = head(from).map_err(|_| torn())? {
+    while let Some(head) = head(from).map_err(|_| Defect::Torn)? {
         let [kind, size, per_cell] =
             [0, 2, 4].map(|at| u16::from_le_bytes([head[at], head[at + 1]]));
         let values = match size {
             1 => ValueType::U8,
             2 => ValueType::U16,
             4 => ValueType::F32,
-            _ => return Err(torn()),
+            _ => return Err(Defect::Torn),
         };
         let shape = OwnShape {
             kind,
@@ -84,14 +85,14 @@ pub(super) fn read(from: &mut impl Read, base: Option<&Planes>) -> Result<Vec<Ow
         };
         let rises = planes.last().is_none_or(|last| last.shape < shape);
         if !rises || per_cell == 0 || shape.tile_bytes() > OTHERS_MOST {
-            return Err(torn());
+            return Err(Defect::Torn);
         }
         let mut own = vec![0; shape.tile_bytes()];
-        from.read_exact(&mut own).map_err(|_| torn())?;
+        from.read_exact(&mut own).map_err(|_| Defect::Torn)?;
         let own = changed(&own, older(base, &shape), u8::wrapping_add);
         // None is written: a file that has one may have any number of them in a few bytes.
         if own.iter().all(|byte| *byte == 0) {
-            return Err("a plane of the model's own holds nothing".to_owned());
+            return Err(Defect::Empty);
         }
         planes.push(OwnPlane {
             shape,

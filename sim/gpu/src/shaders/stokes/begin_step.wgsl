@@ -1,6 +1,6 @@
 // The beginning of a step: bristles drag, solids and air have their velocities, and each cell its viscosity.
 
-const STIFFEST = 2000.0;
+const LARGEST_RELATIVE_VISCOSITY = 2000.0;
 const THINNEST = 1e-3;
 
 @compute @workgroup_size(256)
@@ -71,7 +71,7 @@ fn find_viscosity(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invoca
     if window.thins != 0.0 {
         relative = pow(rate * window.per_rate, window.thins);
     }
-    relative = clamp(relative + window.yields / rate, THINNEST, STIFFEST);
+    relative = clamp(relative + window.yields / rate, THINNEST, LARGEST_RELATIVE_VISCOSITY);
     fields[field(VISCOSITY) + spot.place] = relative;
 }
 

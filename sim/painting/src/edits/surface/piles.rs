@@ -2,7 +2,7 @@
 
 use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
-use maulstick_types::command::advice::choice;
+use maulstick_types::nearest::choice;
 use maulstick_types::scene::PALETTE;
 use maulstick_types::values::ValueError;
 use serde::de::{Deserialize, Deserializer};

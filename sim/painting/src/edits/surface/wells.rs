@@ -2,9 +2,8 @@
 
 use maulstick_canvas::EditError;
 use maulstick_types::EditFields;
-use maulstick_types::command::WELLS_MAX;
+use maulstick_types::limits::{FARTHEST_M, WELLS_MAX};
 use maulstick_types::scene::{PALETTE, Well, WellKind};
-use maulstick_types::stylus::FARTHEST_M;
 use maulstick_types::values::ValueError;
 use serde::de::{Deserialize, Deserializer, Error};
 

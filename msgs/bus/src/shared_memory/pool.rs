@@ -86,7 +86,7 @@ fn open(sizes: &[usize]) -> State {
 }
 
 impl Pool {
-    /// A pool of so many bytes.
+    /// A pool of `bytes`.
     pub(crate) fn of(bytes: usize) -> Self {
         Self {
             sizes: vec![bytes],

@@ -44,7 +44,7 @@ pub enum Verdict {
 
 /// The senders of one stream.
 #[derive(Clone, Debug)]
-pub struct Rivals {
+pub struct SenderArbiter {
     followed: Sender,
     others: Vec<Sender>,
 }
@@ -67,7 +67,7 @@ impl Sender {
         }
     }
 
-    fn hear(&mut self, header: &Header, arrived_ns: u64) {
+    fn note(&mut self, header: &Header, arrived_ns: u64) {
         if self.is_silent(arrived_ns) {
             self.since_ns = arrived_ns;
         }
@@ -85,7 +85,7 @@ impl Sender {
     }
 }
 
-impl Rivals {
+impl SenderArbiter {
     /// Follows the sender of the first message.
     #[must_use]
     pub fn new(first: &Header, arrived_ns: u64) -> Self {
@@ -112,7 +112,7 @@ impl Rivals {
     ) -> Verdict {
         let same = header.epoch == self.followed.epoch;
         if same && fits {
-            self.followed.hear(header, arrived_ns);
+            self.followed.note(header, arrived_ns);
             return Verdict::Followed;
         }
         let place = self.place(header, arrived_ns);
@@ -137,7 +137,7 @@ impl Rivals {
     fn place(&mut self, header: &Header, arrived_ns: u64) -> usize {
         let known = |other: &Sender| other.epoch == header.epoch;
         if let Some(place) = self.others.iter().position(known) {
-            self.others[place].hear(header, arrived_ns);
+            self.others[place].note(header, arrived_ns);
             return place;
         }
         if self.others.len() == REMEMBERED {

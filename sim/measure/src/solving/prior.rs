@@ -1,4 +1,4 @@
-//! What a paint is thought to be before it is measured: like the measured ones.
+//! Prior of a paint before it is measured: the mean of the measured ones.
 
 use maulstick_num::{exp, ln};
 use maulstick_optics::paints::WHITE_S_PER_M;
@@ -10,11 +10,11 @@ const WHITE: &str = "Titanium White";
 
 /// Medians of the measured paints, whites' own for the white.
 #[derive(Clone, Debug)]
-pub struct Usual {
+pub struct Prior {
     library: PaintLibrary,
 }
 
-impl Usual {
+impl Prior {
     /// Those of the paints that come with the optics.
     ///
     /// # Errors

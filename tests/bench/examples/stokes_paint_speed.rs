@@ -1,5 +1,5 @@
 //! Speed of the paint model `stokes` with its flow on the graphics device, beside the processor:
-//! `cargo run --release -p maulstick-gpu --example stokes_paint_speed [WIDTH_MM...]`.
+//! `cargo run --release -p maulstick-bench --example stokes_paint_speed [WIDTH_MM...]`.
 
 use std::error::Error;
 use std::time::Instant;

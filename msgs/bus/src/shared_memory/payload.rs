@@ -11,18 +11,18 @@ pub enum Payload {
     /// Copied.
     Own(Vec<u8>),
     /// In its sender's memory.
-    Shared(Lent),
+    Shared(SharedPayload),
 }
 
 /// A piece of another process's pool.
 #[derive(Clone)]
-pub struct Lent(ZShm);
+pub struct SharedPayload(ZShm);
 
 impl Payload {
     /// Bytes received: in place if its sender shares them.
     pub(crate) fn of(bytes: &zenoh::bytes::ZBytes) -> Self {
         match bytes.as_shm() {
-            Some(shared) => Self::Shared(Lent(shared.to_owned())),
+            Some(shared) => Self::Shared(SharedPayload(shared.to_owned())),
             None => Self::Own(bytes.to_bytes().into_owned()),
         }
     }
@@ -40,7 +40,7 @@ impl Deref for Payload {
     fn deref(&self) -> &[u8] {
         match self {
             Self::Own(bytes) => bytes,
-            Self::Shared(Lent(bytes)) => bytes,
+            Self::Shared(SharedPayload(bytes)) => bytes,
         }
     }
 }
@@ -68,8 +68,8 @@ impl fmt::Debug for Payload {
     }
 }
 
-impl fmt::Debug for Lent {
+impl fmt::Debug for SharedPayload {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Lent").field(&self.0.len()).finish()
+        f.debug_tuple("SharedPayload").field(&self.0.len()).finish()
     }
 }

@@ -20,14 +20,14 @@ fn header(epoch: u32, flags: Flags, sent_ms: u64) -> Header {
 
 /// Two senders at 100 Hz; hears them in turn.
 struct Two {
-    rivals: Rivals,
+    arbiter: SenderArbiter,
     now_ms: u64,
 }
 
 impl Two {
     fn new() -> Self {
         Self {
-            rivals: Rivals::new(&header(1, Flags::FIRST, 0), 0),
+            arbiter: SenderArbiter::new(&header(1, Flags::FIRST, 0), 0),
             now_ms: 0,
         }
     }
@@ -47,7 +47,7 @@ impl Two {
 
     fn hear(&mut self, epoch: u32, flags: Flags, sent_ms: u64) -> Verdict {
         let header = header(epoch, flags, sent_ms);
-        self.rivals.judge(&header, self.now_ms * MS, true, Some(7))
+        self.arbiter.judge(&header, self.now_ms * MS, true, Some(7))
     }
 }
 
@@ -80,9 +80,12 @@ fn a_first_message_is_followed_at_once_and_a_late_one_never() {
     two.now_ms = 5000;
     let late = two.hear(1, Flags::NONE, 990);
     assert_eq!(late, Verdict::SetAside);
-    assert!(!two.rivals.is_rival(&header(1, Flags::NONE, 990), 5000 * MS));
     assert!(
-        two.rivals
+        !two.arbiter
+            .is_rival(&header(1, Flags::NONE, 990), 5000 * MS)
+    );
+    assert!(
+        two.arbiter
             .is_rival(&header(1, Flags::NONE, 4990), 5000 * MS)
     );
 }
@@ -92,7 +95,7 @@ fn a_clock_that_is_ahead_wins_nothing() {
     let mut two = Two::new();
     let ahead = header(2, Flags::FIRST, u64::MAX / MS);
     two.run(&[1], 1000);
-    let verdict = two.rivals.judge(&ahead, 1000 * MS, true, None);
+    let verdict = two.arbiter.judge(&ahead, 1000 * MS, true, None);
     assert_eq!(verdict, Verdict::TakesOver(None));
     assert_eq!(two.run(&[1], 600), [Verdict::Followed]);
 }
@@ -104,7 +107,7 @@ fn what_is_remembered_is_bounded() {
         two.run(&[1], 10);
         two.hear(epoch, Flags::NONE, two.now_ms);
     }
-    assert_eq!(two.rivals.others.len(), REMEMBERED);
+    assert_eq!(two.arbiter.others.len(), REMEMBERED);
     assert_eq!(two.run(&[1], 10), [Verdict::Followed]);
     let mut once = Once::default();
     assert!(once.say("a") && !once.say("a"));

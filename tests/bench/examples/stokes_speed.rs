@@ -1,5 +1,5 @@
 //! The flow of Stokes Paint on the device: how fast it is, and how far from the processor's.
-//! `cargo run --release -p maulstick-gpu --example stokes_speed -- [SIZE...]`, sizes such as 128x128x64.
+//! `cargo run --release -p maulstick-bench --example stokes_speed -- [SIZE...]`, sizes such as 128x128x64.
 
 use std::error::Error;
 use std::time::{Duration, Instant};

@@ -1,4 +1,4 @@
-//! Quadratic programmes with fixed and bounded unknowns, by Clarabel's interior-point method
+//! Quadratic programs with fixed and bounded unknowns, by Clarabel's interior-point method
 //! (Goulart and Chen 2024, *Clarabel: An interior-point solver for conic programs with quadratic
 //! objectives*).
 
@@ -8,7 +8,7 @@ use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver as _, SolverStat
 
 use crate::normal::NormalEquations;
 
-/// What an unknown may be.
+/// Bound of an unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
     /// This.
@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_programme_with_every_kind_of_bound() {
+    fn a_program_with_every_kind_of_bound() {
         // (x+y−3)² + (y+1)² + (z/10−.2)² + (w−9)² + (v+x−5)²: unbounded, y would be −1 and w 9.
         let mut equations = NormalEquations::new(5);
         equations.add(&[(0, 1.0), (1, 1.0)], 3.0);

@@ -1,6 +1,6 @@
-//! Speed of dAb on the graphics device along the paths of `texels_per_s` in `sim/dab/examples` (Baxter 2004, table 4.2), what its
+//! Speed of dAb on the graphics device along the paths of `maulstick bench paint --model dab` (Baxter 2004, table 4.2), what its
 //! steps move beside the time of a copy of as many bytes, and how far its counts are from the processor's:
-//! `cargo run --release -p maulstick-gpu --example dab_speed [ROUNDS [PART OF A NAME]]`.
+//! `cargo run --release -p maulstick-bench --example dab_speed [ROUNDS [PART OF A NAME]]`.
 
 use std::time::Instant;
 

@@ -16,9 +16,10 @@ fn first(messages: &[u8]) -> Result<usize, DocumentError> {
     let head = messages.first_chunk::<HEAD>();
     let [.., a, b, c, d] = *head.ok_or_else(|| damaged("is torn"))?;
     let bytes = HEAD + u32::from_le_bytes([a, b, c, d]) as usize;
-    match bytes <= messages.len() {
-        true => Ok(bytes),
-        false => Err(damaged("is torn")),
+    if bytes <= messages.len() {
+        Ok(bytes)
+    } else {
+        Err(damaged("is torn"))
     }
 }
 

@@ -1,0 +1,142 @@
+//! The lamp of a scene.
+
+use crate::wire::define::wire_struct;
+
+/// Factors on the light's strength and on what the eye makes of it.
+pub const INTENSITY: std::ops::RangeInclusive<f64> = 0.0..=100.0;
+/// Names of the sampling rules.
+pub const RULES: [&str; 3] = ["gauss", "fitted", "reference"];
+/// Wavelengths of the rules `gauss` and `fitted`.
+pub const SAMPLES: std::ops::RangeInclusive<u32> = 4..=16;
+/// The name of an illuminant has at most this many bytes.
+pub const ILLUMINANT_NAME_MAX: usize = 128;
+
+wire_struct! {
+    /// The lamp, and how its light becomes colour.
+    pub struct Light {
+        /// Toward the lamp, canvas frame; of any length.
+        pub direction: [f64; 3],
+        /// Factor on the light's strength.
+        pub intensity: f64,
+        /// Name of the spectrum.
+        pub illuminant: String,
+        /// The spectrum itself where it is none of the CIE's: relative power at 101 wavelengths,
+        /// 380 to 780 nm; empty for one that is known by its name.
+        pub spectrum: Vec<f64>,
+        /// Factor of the eye, or camera, that looks at it.
+        pub exposure: f64,
+        /// Factor on the slopes of the relief.
+        pub relief: f64,
+        /// Tangent of half the angle under which the lamp is seen: how soft shadows are.
+        pub softness: f64,
+        /// Year of the CIE observer: 1931 or 1964.
+        pub observer: u32,
+        /// Sampling rule: `gauss`, `fitted` or `reference`.
+        pub rule: String,
+        /// Wavelengths of the rule, 4 to 16; `reference` has 101.
+        pub samples: u32,
+        /// True if the eye is adapted to the light's white; otherwise its cast stays.
+        pub adapted: bool,
+    }
+}
+
+impl Default for Light {
+    /// Average daylight from the upper left.
+    fn default() -> Self {
+        Self {
+            direction: [-0.5, 0.5, 0.7],
+            intensity: 1.0,
+            illuminant: "D65".to_owned(),
+            spectrum: Vec::new(),
+            exposure: 1.0,
+            relief: 1.0,
+            softness: 0.3,
+            observer: 1931,
+            rule: "fitted".to_owned(),
+            samples: 16,
+            adapted: true,
+        }
+    }
+}
+
+/// A light that cannot be.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LightError {
+    /// A number out of range.
+    #[error("the {name} is {value}: choose {least} to {most}")]
+    Range {
+        /// The quantity.
+        name: &'static str,
+        /// The number.
+        value: f64,
+        /// The least that it can be.
+        least: f64,
+        /// The most.
+        most: f64,
+    },
+    /// A lamp below the canvas, or of no direction.
+    #[error("the light must come from above the canvas: give x, y, z with z > 0")]
+    Below,
+    /// The name of a spectrum that is too long.
+    #[error("an illuminant's name has at most {ILLUMINANT_NAME_MAX} bytes, not {0}")]
+    Name(usize),
+    /// Powers that are no spectrum.
+    #[error("this is not a spectrum: give 101 powers of 0 or more, not all of them 0")]
+    Spectrum,
+    /// An observer that the CIE does not have.
+    #[error("there is no CIE observer of {0}: choose 1931 or 1964")]
+    Observer(u32),
+    /// An unknown sampling rule.
+    #[error("there is no such sampling rule: choose one of {}", RULES.join(", "))]
+    Rule,
+    /// Too few or too many wavelengths.
+    #[error("a sampling rule has 4 to 16 wavelengths, not {0}")]
+    Samples(u32),
+}
+
+impl Light {
+    /// Checks that it shines, in bounds.
+    ///
+    /// # Errors
+    /// [`LightError`].
+    pub fn check(&self) -> Result<(), LightError> {
+        let bounded = [
+            ("intensity", self.intensity, INTENSITY),
+            ("exposure", self.exposure, INTENSITY),
+            ("relief strength", self.relief, 0.0..=10.0),
+            ("softness of shadows", self.softness, 0.0..=1.0),
+        ];
+        for (name, value, range) in bounded {
+            if !range.contains(&value) {
+                return Err(LightError::Range {
+                    name,
+                    value,
+                    least: *range.start(),
+                    most: *range.end(),
+                });
+            }
+        }
+        let length: f64 = self.direction.iter().map(|v| v * v).sum();
+        if !(1e-6..=1e6).contains(&length) || self.direction[2] <= 0.0 {
+            return Err(LightError::Below);
+        }
+        if self.illuminant.len() > ILLUMINANT_NAME_MAX {
+            return Err(LightError::Name(self.illuminant.len()));
+        }
+        let power = &self.spectrum;
+        let good = power.iter().all(|v| (0.0..=1e9).contains(v)) && power.iter().any(|v| *v > 0.0);
+        if !power.is_empty() && (power.len() != 101 || !good) {
+            return Err(LightError::Spectrum);
+        }
+        if ![1931, 1964].contains(&self.observer) {
+            return Err(LightError::Observer(self.observer));
+        }
+        if !RULES.contains(&self.rule.as_str()) {
+            return Err(LightError::Rule);
+        }
+        if self.rule != "reference" && !SAMPLES.contains(&self.samples) {
+            return Err(LightError::Samples(self.samples));
+        }
+        Ok(())
+    }
+}
