@@ -43,10 +43,11 @@ const fn command(
 const BENCH: &str = "maulstick-bench";
 const FIGURES: &str = "maulstick-figures";
 const FIT: &str = "maulstick-fit";
+const MOTIONS: &str = "maulstick-motions";
 const RECOVER: &str = "maulstick-recover";
 
 /// Commands of the programs in `tools/`; a test of each program compares its own with them.
-pub const COMMANDS: [BesideCommand; 8] = [
+pub const COMMANDS: [BesideCommand; 17] = [
     command(
         BENCH,
         &["bench"],
@@ -81,6 +82,35 @@ pub const COMMANDS: [BesideCommand; 8] = [
         FIT,
         &["colour", "fit"],
         "Fit paints to measured reflectances",
+    ),
+    command(MOTIONS, &["take", "strokes"], "List the strokes of a take"),
+    command(
+        MOTIONS,
+        &["take", "cut"],
+        "Cut a part out of a take, by times or by strokes",
+    ),
+    command(
+        MOTIONS,
+        &["take", "join"],
+        "Join takes; the brush is lifted between them",
+    ),
+    command(
+        MOTIONS,
+        &["take", "scale"],
+        "Scale a motion on the surface; pressures and heights above it stay",
+    ),
+    command(MOTIONS, &["take", "rotate"], "Turn a motion on the surface"),
+    command(MOTIONS, &["take", "move"], "Move a motion on the surface"),
+    command(
+        MOTIONS,
+        &["take", "retime"],
+        "Make a motion faster or slower",
+    ),
+    command(MOTIONS, &["take", "mirror"], "Mirror a motion"),
+    command(
+        MOTIONS,
+        &["take", "fill"],
+        "Fill an outline with the strokes of an example",
     ),
     command(
         RECOVER,

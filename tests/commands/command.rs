@@ -2,7 +2,6 @@
 
 mod beside;
 mod inputs;
-mod motions;
 mod rigs;
 #[path = "../support/mod.rs"]
 mod support;

@@ -3,16 +3,18 @@
 //! | module | commands |
 //! | --- | --- |
 //! | [`edit`] | edits, wherever they are grouped: `brush load`, `layer dry`, `painting undo` |
-//! | [`brush`], `canvas`, `colour`, [`device`], `completions` | those of these names, besides edits; `canvas light` lies in `colour` |
-//! | [`painting`], `rig` | paintings in files; `new`, `open`, `save-as`, `snapshot` of a running rig, `endpoint`, `schema` |
-//! | `takes`, [`motion`] | takes that are made, imported, painted, and `demo`; takes that are cut, joined, placed, filled |
-//! | `streams`, [`replay`] | `topic`, `node list`, `recording` |
+//! | [`brush`], `canvas`, `colour`, [`demo`], [`device`], `completions` | those of these names, besides edits |
+//! | [`painting`] | paintings in files; `new`, `open`, `save-as`, `snapshot` of a running rig |
+//! | `rig` | `node list`, `endpoint`, `schema` |
+//! | `takes` | takes that are made, imported, painted |
+//! | `streams`, [`replay`] | `topic`, `recording` |
 //! | [`table`] | tables as text, for all of them |
 
 pub mod brush;
 pub mod canvas;
 pub mod colour;
 pub mod completions;
+pub mod demo;
 pub mod device;
 pub mod edit;
 pub mod motion;
@@ -23,12 +25,12 @@ mod streams;
 pub mod table;
 mod takes;
 
-pub use colour::light;
 pub use device::force_order;
-pub use rig::{begin, client, endpoint, open, save_as, schema, snapshot};
+pub use painting::{begin, open, save_as, snapshot};
+pub use rig::{client, endpoint, nodes, schema};
 pub(crate) use streams::recorder_words::LogFormat;
-pub use streams::{nodes, recording, topic};
-pub use takes::{demo, render, take};
+pub use streams::{recording, topic};
+pub use takes::{render, take};
 
 use std::io::ErrorKind;
 use std::path::Path;

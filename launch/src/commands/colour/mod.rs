@@ -1,6 +1,5 @@
-//! Commands of colour: paints, mixtures, measurements, light.
+//! Commands of colour: paints, mixtures, matches.
 
-pub mod light;
 pub mod matching;
 pub mod mix;
 pub mod paints;

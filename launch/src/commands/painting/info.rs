@@ -4,9 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use maulstick_document::{Document, DocumentError, DocumentStats, Opened, RecordStats};
+use maulstick_painting::Painting;
+use maulstick_painting::ledger::LedgerReport;
 use maulstick_rig::UserError;
 use maulstick_rig::size::show_bytes;
 use maulstick_session::{LoggedWhat, painting_log};
+use maulstick_types::scene::{Layer, Surface};
 use serde_json::{Value, json};
 
 use super::wall_time::{utc, utc_seconds};
@@ -33,7 +36,7 @@ pub struct InfoOptions {
 /// A [`UserError`] where it cannot be read, or is damaged.
 pub(super) fn run(options: &InfoOptions) -> Result<i32, UserError> {
     let path = &options.file;
-    let stats = DocumentStats::read(path).map_err(|error| wrong(path, &error))?;
+    let mut stats = DocumentStats::read(path).map_err(|error| wrong(path, &error))?;
     if options.check {
         let bar = progress_bar(0).with_message("reading");
         let checked = stats.check(path, &mut progress(&bar));
@@ -45,117 +48,142 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, UserError> {
         opened.check().map_err(|error| wrong(path, &error))?;
     }
     let pending = opened.pending();
-    let record = stats
-        .record
-        .map(|stats| RecordInfo::read(stats, &document, &opened));
+    let record = stats.record.take();
+    let record = record.map(|stats| RecordInfo::read(stats, &document, &opened));
     let mut sequencer = opened.sequencer().map_err(refused)?;
     let journal = sequencer.journal_next();
-    let painting = sequencer.painting_mut();
-    let ledger = painting.report();
+    let ledger = sequencer.painting_mut().report();
     if let Some(what) = document.pager().fault() {
         return Err(wrong(path, &DocumentError::Damaged(what.to_owned())));
     }
-    let scene = painting.scene();
-    let canvas = &scene.surfaces[0];
-    let size_cm = canvas
-        .cells
-        .map(|cells| f64::from(cells) * canvas.cell_m * 100.0);
-    let [ground, tooth] = [&canvas.ground, &canvas.tooth].map(|name| short(name));
-    let per_mm = 1e-3 / canvas.cell_m;
-    let (undo, redo) = painting.history_depth();
-    let names: Vec<&str> = scene.paints.iter().map(|slot| slot.name.as_str()).collect();
-    let versions: Vec<_> = painting
-        .named()
-        .map(|version| version.name.as_str())
-        .collect();
+    let info = Info {
+        stats,
+        record,
+        pending,
+        journal,
+        ledger,
+        painting: sequencer.painting(),
+    };
     if options.json {
-        let layers: Vec<_> = scene
-            .layers
-            .iter()
-            .map(|layer| json!({"number": layer.number, "name": layer.name, "opacity": layer.opacity}))
-            .collect();
-        print_json(&json!({
-            "file": path.display().to_string(),
-            "format": stats.format,
-            "bytes": stats.bytes,
+        print_json(&info.as_json(options))?;
+    } else {
+        info.show(options)?;
+    }
+    Ok(0)
+}
+
+/// What a painting holds.
+struct Info<'a> {
+    stats: DocumentStats,
+    record: Option<RecordInfo>,
+    /// Records of the journal that were done again.
+    pending: usize,
+    journal: u64,
+    ledger: LedgerReport,
+    painting: &'a Painting,
+}
+
+impl Info<'_> {
+    fn versions(&self) -> Vec<&str> {
+        let named = self.painting.named();
+        named.map(|version| version.name.as_str()).collect()
+    }
+
+    fn as_json(&self, options: &InfoOptions) -> Value {
+        let scene = self.painting.scene();
+        let canvas = &scene.surfaces[0];
+        let layer = |layer: &Layer| json!({"number": layer.number, "name": layer.name, "opacity": layer.opacity});
+        let (undo, redo) = self.painting.history_depth();
+        let record = self.record.as_ref();
+        json!({
+            "file": options.file.display().to_string(),
+            "format": self.stats.format,
+            "bytes": self.stats.bytes,
             "cells": canvas.cells,
-            "size_cm": size_cm,
-            "cells_per_mm": per_mm,
+            "size_cm": size_cm(canvas),
+            "cells_per_mm": 1e-3 / canvas.cell_m,
             "ground": canvas.ground,
             "tooth": canvas.tooth,
             "model": canvas.model,
-            "paints": names,
-            "layers": layers,
+            "paints": scene.paints.iter().map(|slot| &slot.name).collect::<Vec<_>>(),
+            "layers": scene.layers.iter().map(layer).collect::<Vec<_>>(),
             "undo": undo,
             "redo": redo,
-            "merged": painting.history().merged(),
-            "versions": versions,
-            "journal": journal,
-            "pending": pending,
-            "record": record.as_ref().map(|record| record.as_json(painting.record_quota())),
-            "tables": stats.tables,
+            "merged": self.painting.history().merged(),
+            "versions": self.versions(),
+            "journal": self.journal,
+            "pending": self.pending,
+            "record": record.map(|record| record.as_json(self.painting.record_quota())),
+            "tables": self.stats.tables,
             "checked": options.check,
-            "ledger": ledger,
-        }))?;
-        return Ok(0);
+            "ledger": self.ledger,
+        })
     }
-    say!(
-        "size      {:.1} × {:.1} cm, {} × {} cells, {per_mm} a mm",
-        size_cm[0],
-        size_cm[1],
-        canvas.cells[0],
-        canvas.cells[1]
-    );
-    say!("ground    {ground}, {tooth} tooth");
-    say!("model     {}", canvas.model);
-    say!(
-        "paints    {}",
-        if names.is_empty() {
-            "none yet".to_owned()
-        } else {
-            names.join(", ")
+
+    fn show(&self, options: &InfoOptions) -> Result<(), UserError> {
+        let scene = self.painting.scene();
+        let canvas = &scene.surfaces[0];
+        let ([width, height], [across, up]) = (size_cm(canvas), canvas.cells);
+        let per_mm = 1e-3 / canvas.cell_m;
+        say!("size      {width:.1} × {height:.1} cm, {across} × {up} cells, {per_mm} a mm");
+        let [ground, tooth] = [&canvas.ground, &canvas.tooth].map(|name| short(name));
+        say!("ground    {ground}, {tooth} tooth");
+        say!("model     {}", canvas.model);
+        let paints: Vec<_> = scene.paints.iter().map(|slot| slot.name.as_str()).collect();
+        say!("paints    {}", list(&paints, "none yet"));
+        for Layer {
+            number,
+            name,
+            opacity,
+        } in &scene.layers
+        {
+            say!("layer     {number} {name}, opacity {opacity}");
         }
-    );
-    for layer in &scene.layers {
-        say!(
-            "layer     {} {}, opacity {}",
-            layer.number,
-            layer.name,
-            layer.opacity
-        );
-    }
-    let merged = match painting.history().merged() {
-        0 | 1 => String::new(),
-        merged => format!(", the oldest of them {merged} in one"),
-    };
-    say!("history   {undo} steps to undo, {redo} to redo{merged}");
-    say!(
-        "versions  {}",
-        if versions.is_empty() {
-            "none".to_owned()
-        } else {
-            versions.join(", ")
+        let merged = match self.painting.history().merged() {
+            0 | 1 => String::new(),
+            merged => format!(", the oldest of them {merged} in one"),
+        };
+        let (undo, redo) = self.painting.history_depth();
+        say!("history   {undo} steps to undo, {redo} to redo{merged}");
+        say!("versions  {}", list(&self.versions(), "none"));
+        match &self.record {
+            Some(record) => say!("record    {}", record.words()),
+            None => say!("record    none: no time lapse can be made of it"),
         }
-    );
-    match &record {
-        Some(record) => say!("record    {}", record.words()),
-        None => say!("record    none: no time lapse can be made of it"),
+        let DocumentStats {
+            bytes,
+            format,
+            tables,
+            ..
+        } = &self.stats;
+        say!("file      {}, format {format}", show_bytes(*bytes));
+        for (table, bytes) in tables {
+            say!("          {table:<8} {}", show_bytes(*bytes));
+        }
+        let pending = self.pending;
+        if pending > 0 {
+            say!(
+                "          it was not closed: {pending} things were done again after its last moment"
+            );
+        }
+        if options.check {
+            say!("          every tile is whole");
+        }
+        Ok(())
     }
-    say!(
-        "file      {}, format {}",
-        show_bytes(stats.bytes),
-        stats.format
-    );
-    for (table, bytes) in &stats.tables {
-        say!("          {table:<8} {}", show_bytes(*bytes));
+}
+
+/// Width and height of a surface, cm.
+fn size_cm(surface: &Surface) -> [f64; 2] {
+    (surface.cells).map(|cells| f64::from(cells) * surface.cell_m * 100.0)
+}
+
+/// Names in a row, or the word where there are none.
+fn list(names: &[&str], none: &str) -> String {
+    if names.is_empty() {
+        return none.to_owned();
     }
-    if pending > 0 {
-        say!("          it was not closed: {pending} things were done again after its last moment");
-    }
-    if options.check {
-        say!("          every tile is whole");
-    }
-    Ok(0)
+    names.join(", ")
 }
 
 /// The record of a painting, and how much was done in it.

@@ -1,14 +1,17 @@
 //! `maulstick painting`: paintings in files and in a running rig.
 
+pub mod begin;
 mod compare;
 mod convert;
 mod export;
-mod film_file;
 mod import;
 mod info;
 mod log;
 mod log_words;
+pub mod open;
 mod pack;
+pub mod save_as;
+pub mod snapshot;
 mod timelapse;
 mod versions;
 mod wall_time;
@@ -19,7 +22,6 @@ use clap::Subcommand;
 use maulstick_rig::UserError;
 
 use crate::commands::edit::{self, EditCommand};
-use crate::commands::{begin, open, save_as, snapshot};
 
 /// Subcommands of `maulstick painting`.
 #[derive(Subcommand, Clone, Debug)]

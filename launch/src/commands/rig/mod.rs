@@ -1,10 +1,7 @@
-//! Commands of a rig: clients, paintings opened and saved, snapshots, messages.
+//! Commands of a rig: its clients, processes and messages.
 
-pub mod begin;
 pub mod client;
 pub mod endpoint;
-pub mod open;
-pub mod save_as;
+pub mod nodes;
 pub mod schema;
 mod schema_c;
-pub mod snapshot;

@@ -3,8 +3,8 @@
 use clap::Args;
 use maulstick_rig::UserError;
 use maulstick_types::wire::schema::{ENCODING, Field, Shape, header_fields};
-use maulstick_types::{CATALOGUE, STYLUS_CONTRACT};
-use serde_json::json;
+use maulstick_types::{CATALOGUE, CatalogueEntry, STYLUS_CONTRACT};
+use serde_json::{Value, json};
 
 use super::schema_c;
 use crate::commands::{print_json, print_text, say};
@@ -47,21 +47,7 @@ pub fn run(options: &SchemaOptions) -> Result<i32, UserError> {
         return Ok(0);
     }
     if options.json {
-        let messages: Vec<_> = entries
-            .iter()
-            .map(|entry| {
-                let schema = (entry.schema)();
-                json!({
-                    "name": entry.name,
-                    "version": entry.version,
-                    "hash": schema.hash,
-                    "max_bytes": entry.max_bytes,
-                    "contract": entry.in_contract.then_some(STYLUS_CONTRACT),
-                    "topics": entry.topics,
-                    "types": schema.types,
-                })
-            })
-            .collect();
+        let messages: Vec<_> = entries.iter().map(|entry| as_json(entry)).collect();
         print_json(&json!({
             "header": header_fields(),
             "encoding": ENCODING,
@@ -69,30 +55,46 @@ pub fn run(options: &SchemaOptions) -> Result<i32, UserError> {
         }))?;
         return Ok(0);
     }
-    for entry in entries {
-        let schema = (entry.schema)();
-        say!(
-            "{}  version {}{}, hash {:#010x}, at most {} bytes, on {}",
-            entry.name,
-            entry.version,
-            match entry.in_contract {
-                true => format!(" of {STYLUS_CONTRACT}"),
-                false => String::new(),
-            },
-            schema.hash,
-            entry.max_bytes,
-            entry.topics.join(", ")
-        );
-        let fields = |fields: &[Field]| {
-            let line = |field: &Field| format!("    {:<18} {}\n", field.name, field.ty);
-            print_text(&fields.iter().map(line).collect::<String>())
-        };
-        match schema.types.get(entry.name) {
-            Some(Shape::Struct(members)) => fields(members)?,
-            Some(Shape::Enum(variants)) => variants.iter().try_for_each(|v| fields(&v.fields))?,
-            None => {}
-        }
-        print_text("\n")?;
-    }
+    entries.into_iter().try_for_each(show)?;
     Ok(0)
+}
+
+fn as_json(entry: &CatalogueEntry) -> Value {
+    let schema = (entry.schema)();
+    json!({
+        "name": entry.name,
+        "version": entry.version,
+        "hash": schema.hash,
+        "max_bytes": entry.max_bytes,
+        "contract": entry.in_contract.then_some(STYLUS_CONTRACT),
+        "topics": entry.topics,
+        "types": schema.types,
+    })
+}
+
+fn show(entry: &CatalogueEntry) -> Result<(), UserError> {
+    let schema = (entry.schema)();
+    let contract = if entry.in_contract {
+        format!(" of {STYLUS_CONTRACT}")
+    } else {
+        String::new()
+    };
+    say!(
+        "{}  version {}{contract}, hash {:#010x}, at most {} bytes, on {}",
+        entry.name,
+        entry.version,
+        schema.hash,
+        entry.max_bytes,
+        entry.topics.join(", ")
+    );
+    let fields = |fields: &[Field]| {
+        let line = |field: &Field| format!("    {:<18} {}\n", field.name, field.ty);
+        print_text(&fields.iter().map(line).collect::<String>())
+    };
+    match schema.types.get(entry.name) {
+        Some(Shape::Struct(members)) => fields(members)?,
+        Some(Shape::Enum(variants)) => variants.iter().try_for_each(|v| fields(&v.fields))?,
+        None => {}
+    }
+    print_text("\n")
 }

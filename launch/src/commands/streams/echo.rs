@@ -122,15 +122,7 @@ impl<'a> Printer<'a> {
             return print_text(&line.json(fields));
         }
         if self.options.csv {
-            let columns = self.columns.get_or_insert_default();
-            if columns.is_empty() {
-                *columns = match fields.is_empty() {
-                    true => value.columns(),
-                    false => fields.clone(),
-                };
-                print_text(&head(columns))?;
-            }
-            return print_text(&line.row(columns));
+            return self.print_row(&line);
         }
         let mut text = format!("{}  {} {}\n", received.topic, table.name(), header.seq);
         let mut add = |name: &str, value: Option<&Value>| {
@@ -143,5 +135,20 @@ impl<'a> Printer<'a> {
             _ => fields.iter().for_each(|path| add(path, value.at(path))),
         }
         print_text(&text)
+    }
+
+    /// Prints a row of the table, the first with its head.
+    fn print_row(&mut self, line: &MessageLine<'_>) -> Result<(), UserError> {
+        let columns = self.columns.get_or_insert_default();
+        if columns.is_empty() {
+            let fields = &self.options.field;
+            *columns = if fields.is_empty() {
+                line.value.columns()
+            } else {
+                fields.clone()
+            };
+            print_text(&head(columns))?;
+        }
+        print_text(&line.row(columns))
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`echo`], [`measure`], [`nodes`] | contents, rates and senders of live streams |
+//! | [`echo`], [`measure`] | contents and rates of live streams |
 //! | [`graph`] | the processes of a rig, and what they send each other, as a picture |
 //! | [`record`], [`recorder_words`] | recordings, made and kept within bounds; their events in words |
 //! | [`recording`], [`foxglove_export`] | recordings, looked at and written for Foxglove |
@@ -16,7 +16,6 @@ mod foxglove_export;
 mod graph;
 mod measure;
 mod message_lines;
-pub mod nodes;
 mod record;
 pub(crate) mod recorder_words;
 pub mod recording;

@@ -134,21 +134,7 @@ fn info(path: &std::path::Path, as_json: bool) -> Result<i32, UserError> {
         .collect();
     let message = |topic: &str| known.get(topic).copied().unwrap_or("unknown");
     if as_json {
-        let streams: Vec<_> = traffic
-            .streams()
-            .map(|(topic, origin, stream)| {
-                json!({
-                    "topic": topic,
-                    "source": origin.source,
-                    "epoch": origin.epoch,
-                    "message": message(topic),
-                    "messages": stream.messages,
-                    "bytes": stream.bytes,
-                    "rate_hz": stream.rate_hz(),
-                    "lost": stream.lost,
-                })
-            })
-            .collect();
+        let streams = streams(&traffic, message);
         print_json(&json!({
             "seconds": seconds,
             "notes": recording.notes(),
@@ -166,7 +152,46 @@ fn info(path: &std::path::Path, as_json: bool) -> Result<i32, UserError> {
     if let Some(damage) = recording.damage() {
         say!("damaged: {damage}; what is shown can be read, and `maulstick take recover` mends it");
     }
-    let rows = totals(&traffic).into_iter().map(|(topic, total)| {
+    let rows: Vec<_> = rows(&traffic, message)
+        .chain(foreign.iter().map(foreign_row))
+        .collect();
+    let head = [
+        "topic", "message", "senders", "messages", "a second", "kB", "lost",
+    ];
+    print_text(&table(head, &rows))?;
+    if rows.is_empty() {
+        say!("it has no messages");
+    } else if !foreign.is_empty() {
+        say!(
+            "topics of another program have their encoding in brackets: Maulstick lists them, and reads them not"
+        );
+    }
+    Ok(0)
+}
+
+/// Streams of a recording as JSON; `message` names the messages of a topic.
+fn streams<'a>(traffic: &Traffic, message: impl Fn(&str) -> &'a str) -> Vec<serde_json::Value> {
+    let stream = traffic.streams().map(|(topic, origin, stream)| {
+        json!({
+            "topic": topic,
+            "source": origin.source,
+            "epoch": origin.epoch,
+            "message": message(topic),
+            "messages": stream.messages,
+            "bytes": stream.bytes,
+            "rate_hz": stream.rate_hz(),
+            "lost": stream.lost,
+        })
+    });
+    stream.collect()
+}
+
+/// Rows of the topics of a recording.
+fn rows<'a>(
+    traffic: &Traffic,
+    message: impl Fn(&str) -> &'a str,
+) -> impl Iterator<Item = [String; 7]> {
+    totals(traffic).into_iter().map(move |(topic, total)| {
         [
             topic.to_owned(),
             message(topic).to_owned(),
@@ -176,22 +201,7 @@ fn info(path: &std::path::Path, as_json: bool) -> Result<i32, UserError> {
             format!("{:.1}", total.bytes as f64 * 1e-3),
             total.lost.to_string(),
         ]
-    });
-    let rows: Vec<_> = rows.chain(foreign.iter().map(foreign_row)).collect();
-    let head = [
-        "topic", "message", "senders", "messages", "a second", "kB", "lost",
-    ];
-    print_text(&table(head, &rows))?;
-    match (rows.is_empty(), foreign.is_empty()) {
-        (true, _) => say!("it has no messages"),
-        (false, false) => {
-            say!(
-                "topics of another program have their encoding in brackets: Maulstick lists them, and reads them not"
-            );
-        }
-        (false, true) => {}
-    }
-    Ok(0)
+    })
 }
 
 fn foreign_entry(topic: &ForeignTopic) -> serde_json::Value {
@@ -251,87 +261,33 @@ fn totals(traffic: &Traffic) -> BTreeMap<&str, TopicTotal> {
 fn export(options: &ExportOptions) -> Result<i32, UserError> {
     let mut recording = Recording::open(&options.recording)?;
     let place = options.recording.display().to_string();
-    let kind = match options.format {
-        Form::Csv | Form::Json => Kind::Messages,
-        Form::Foxglove if options.field.is_empty() => Kind::Take,
-        Form::Foxglove => {
-            return Err(
-                UserError::usage("messages for Foxglove have all of their fields")
-                    .help("leave out --field, or choose --format csv or json"),
-            );
-        }
-    };
-    let output = UsedFile::new("the export", &options.output).of(kind);
+    let output = UsedFile::new("the export", &options.output).of(options.kind()?);
     check_outputs(
         &[output],
         &[UsedFile::new("the recording", &options.recording)],
     )?;
-    let chosen = recording.topics().iter();
-    let chosen = chosen.filter(|(_, topic)| matches(&options.topic, &topic.name));
-    let is_one = chosen.clone().count() == 1;
-    // Among others, messages that nobody can read are passed by.
-    let (topics, unread): (BTreeMap<u16, Topic>, _) = chosen
-        .map(|(channel, topic)| (*channel, topic.clone()))
-        .partition(|(_, topic)| is_one || topic.table.is_ok());
-    for topic in unread.values() {
-        say!(
-            "without {}: nothing here tells how its messages are read",
-            topic.name
-        );
-    }
-    if topics.is_empty() {
-        let foreign = recording.foreign()?;
-        if let Some(topic) = foreign
-            .iter()
-            .find(|own| matches(&options.topic, &own.name))
-        {
-            let what = format!(
-                "the messages of {} are those of another program, encoded as '{}'",
-                topic.name, topic.encoding
-            );
-            let help = format!(
-                "Maulstick exports what it has recorded, whose encoding is {MESSAGE_ENCODING}"
-            );
-            return Err(UserError::usage(what).at(place).help(help));
-        }
-        let names: BTreeSet<&str> = recording
-            .topics()
-            .values()
-            .map(|topic| topic.name.as_str())
-            .collect();
-        let what = format!("the recording has no topic '{}'", options.topic);
-        return Err(UserError::unknown(what, &options.topic, names).at(place));
-    }
-    let [first, last] = recording.times_ns().unwrap_or_default();
-    let after = |seconds: f64| first.saturating_add((seconds * 1e9) as u64);
-    let end = options.end.unwrap_or(f64::INFINITY);
-    let range = [after(options.start), after(end)];
-    let is_range = options.start >= 0.0 && end >= options.start;
-    if !is_range || range[0] > last {
-        let long = last.saturating_sub(first) as f64 * 1e-9;
-        let what = format!("nothing was recorded from {} s to {end} s", options.start);
-        return Err(UserError::usage(what)
-            .at(place)
-            .help(format!("the recording is {long:.3} s long")));
-    }
+    let topics = options
+        .topics(&mut recording)
+        .map_err(|fault| fault.at(&place))?;
+    let range = options
+        .range(&recording)
+        .map_err(|fault| fault.at(&place))?;
     if options.format == Form::Foxglove {
         let count = foxglove_export::write(&mut recording, &topics, range, &options.output)?;
         say!("{count} messages in {}", options.output.display());
         return Ok(0);
     }
-    if let Some(path) = options
-        .field
-        .iter()
-        .find(|path| !topics.values().any(|own| own.has(path)))
-    {
+    let is_known = |path: &&String| topics.values().any(|own| own.has(path));
+    if let Some(path) = options.field.iter().find(|path| !is_known(path)) {
         let what = format!("the messages of {} have no field '{path}'", options.topic);
         let columns = columns(&mut recording, &topics, range)?;
         let names = columns.iter().map(String::as_str);
         return Err(UserError::unknown(what, path, names).at(place));
     }
-    let columns = match options.field.is_empty() {
-        true => columns(&mut recording, &topics, range)?,
-        false => options.field.clone(),
+    let columns = if options.field.is_empty() {
+        columns(&mut recording, &topics, range)?
+    } else {
+        options.field.clone()
     };
     let mut lines = Lines {
         options,
@@ -343,34 +299,79 @@ fn export(options: &ExportOptions) -> Result<i32, UserError> {
         columns,
         messages: 0,
     };
-    let mut wrong = None;
-    let written = write_whole(&options.output, Kind::Messages, |file| {
-        file.write_all(std::mem::take(&mut lines.text).as_bytes())?;
-        let mut done = Ok(());
-        let read = recording.messages(range, &mut |message| {
-            if let Err(fault) = lines.add(&message) {
-                wrong = Some(fault.at(&place));
-                return false;
-            }
-            done = file.write_all(std::mem::take(&mut lines.text).as_bytes());
-            done.is_ok()
-        });
-        wrong = wrong.take().or(read.err());
-        match wrong.is_some() {
-            true => Err(std::io::ErrorKind::InvalidData.into()),
-            false => done,
-        }
-    });
-    if let Some(fault) = wrong {
-        return Err(fault);
-    }
-    written.map_err(|error| UserError::writing(&options.output, &error))?;
-    say!(
-        "{} messages in {}",
-        lines.messages,
-        options.output.display()
-    );
+    lines.write(&mut recording, range)?;
+    let path = options.output.display();
+    say!("{} messages in {path}", lines.messages);
     Ok(0)
+}
+
+impl ExportOptions {
+    /// Kind of the file that is written.
+    fn kind(&self) -> Result<Kind, UserError> {
+        match self.format {
+            Form::Csv | Form::Json => Ok(Kind::Messages),
+            Form::Foxglove if self.field.is_empty() => Ok(Kind::Take),
+            Form::Foxglove => Err(UserError::usage(
+                "messages for Foxglove have all of their fields",
+            )
+            .help("leave out --field, or choose --format csv or json")),
+        }
+    }
+
+    /// The topics that are exported. Among others, messages that nobody can read are passed by.
+    fn topics(&self, recording: &mut Recording) -> Result<BTreeMap<u16, Topic>, UserError> {
+        let chosen = recording.topics().iter();
+        let chosen = chosen.filter(|(_, topic)| matches(&self.topic, &topic.name));
+        let is_one = chosen.clone().count() == 1;
+        let (topics, unread): (BTreeMap<u16, Topic>, _) = chosen
+            .map(|(channel, topic)| (*channel, topic.clone()))
+            .partition(|(_, topic)| is_one || topic.table.is_ok());
+        for topic in unread.values() {
+            say!(
+                "without {}: nothing here tells how its messages are read",
+                topic.name
+            );
+        }
+        if topics.is_empty() {
+            return Err(self.no_topic(recording)?);
+        }
+        Ok(topics)
+    }
+
+    /// The error where no topic is exported.
+    fn no_topic(&self, recording: &mut Recording) -> Result<UserError, UserError> {
+        let foreign = recording.foreign()?;
+        let mut own = foreign.iter();
+        if let Some(topic) = own.find(|own| matches(&self.topic, &own.name)) {
+            let what = format!(
+                "the messages of {} are those of another program, encoded as '{}'",
+                topic.name, topic.encoding
+            );
+            let help = format!(
+                "Maulstick exports what it has recorded, whose encoding is {MESSAGE_ENCODING}"
+            );
+            return Ok(UserError::usage(what).help(help));
+        }
+        let topics = recording.topics().values();
+        let names: BTreeSet<&str> = topics.map(|topic| topic.name.as_str()).collect();
+        let what = format!("the recording has no topic '{}'", self.topic);
+        Ok(UserError::unknown(what, &self.topic, names))
+    }
+
+    /// First and last time that are exported, ns.
+    fn range(&self, recording: &Recording) -> Result<[u64; 2], UserError> {
+        let [first, last] = recording.times_ns().unwrap_or_default();
+        let after = |seconds: f64| first.saturating_add((seconds * 1e9) as u64);
+        let end = self.end.unwrap_or(f64::INFINITY);
+        let range = [after(self.start), after(end)];
+        let is_range = self.start >= 0.0 && end >= self.start;
+        if is_range && range[0] <= last {
+            return Ok(range);
+        }
+        let long = last.saturating_sub(first) as f64 * 1e-9;
+        let what = format!("nothing was recorded from {} s to {end} s", self.start);
+        Err(UserError::usage(what).help(format!("the recording is {long:.3} s long")))
+    }
 }
 
 /// What a message holds.
@@ -415,6 +416,33 @@ struct Lines<'a> {
 }
 
 impl Lines<'_> {
+    /// Writes the messages of a range of times.
+    fn write(&mut self, recording: &mut Recording, range: [u64; 2]) -> Result<(), UserError> {
+        let (path, mut wrong) = (&self.options.output, None);
+        let place = self.options.recording.display().to_string();
+        let written = write_whole(path, Kind::Messages, |file| {
+            file.write_all(std::mem::take(&mut self.text).as_bytes())?;
+            let mut done = Ok(());
+            let read = recording.messages(range, &mut |message| {
+                if let Err(fault) = self.add(&message) {
+                    wrong = Some(fault.at(&place));
+                    return false;
+                }
+                done = file.write_all(std::mem::take(&mut self.text).as_bytes());
+                done.is_ok()
+            });
+            wrong = wrong.take().or(read.err());
+            if wrong.is_some() {
+                return Err(std::io::ErrorKind::InvalidData.into());
+            }
+            done
+        });
+        match wrong {
+            Some(fault) => Err(fault),
+            None => written.map_err(|error| UserError::writing(path, &error)),
+        }
+    }
+
     /// Adds a message of one of the topics.
     fn add(&mut self, message: &RecordedMessage) -> Result<(), UserError> {
         let Some(topic) = self.topics.get(&message.channel) else {

@@ -1,6 +1,5 @@
 //! Commands of takes: performances made, imported and painted.
 
-pub mod demo;
 mod from;
 mod import;
 mod painting_record;

@@ -3,14 +3,18 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use maulstick_appearance::picture::Export;
 use maulstick_brush::speed_limit::FASTEST_M_S;
 use maulstick_device::{Take, use_kit};
+use maulstick_document::Document;
+use maulstick_optics::PaintLibrary;
 use maulstick_paint_node::snapshots::write_snapshot;
 use maulstick_painting::{Painting, Sequencer};
 use maulstick_recorder::session_file::SessionFile;
 use maulstick_rig::files::{Kind, ending};
 use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::{Autosave, Offline};
+use maulstick_types::Mixture;
 
 use super::render_session::render_session;
 use crate::backend::choose_backend;
@@ -187,73 +191,112 @@ pub fn run(options: &RenderOptions) -> Result<i32, UserError> {
     };
     let loads = options.painting.kit.mixtures(&embedded, &library)?;
     let unloaded = loads.is_empty() && options.script.is_none();
-    let script = match (&options.script, take) {
-        (Some(path), _) => Script::read(path, &library)?,
-        (None, Some((path, take))) => Script {
-            steps: vec![(path.display().to_string(), Act::Take(take, loads.clone()))],
+    let script = options.steps(take, &loads, &library)?;
+    options.take_size(&script, &mut config)?;
+    let mut written = outputs.clone();
+    written.extend(options.document.iter().map(|path| UsedFile::painting(path)));
+    check_apart(&written, &script.files)?;
+    check_outputs(&outputs, &inputs)?;
+    let (autosave, mut sequencer) = options.sequencer(&config, library, begun)?;
+    choose_backend(&mut sequencer, &config.paint.backend)?;
+    let file = brush_file(&section)?;
+    let (name, share) = (&section.name, section.depth_share);
+    let offline = Offline::resume(sequencer, name, file, share, loads).map_err(refused)?;
+    let too_fast = options.paint(offline, autosave, script, &export)?;
+    if unloaded {
+        eprintln!("the brush carried no paint: `--load \"Ultramarine Blue\"` gives it some");
+    }
+    tell_haste(too_fast);
+    Ok(0)
+}
+
+impl RenderOptions {
+    /// The steps of the script, or the take as the only one.
+    fn steps(
+        &self,
+        take: Option<(&PathBuf, Take)>,
+        loads: &[Mixture],
+        library: &PaintLibrary,
+    ) -> Result<Script, UserError> {
+        if let Some(path) = &self.script {
+            return Script::read(path, library);
+        }
+        let act = |(path, take): (&PathBuf, Take)| {
+            (path.display().to_string(), Act::Take(take, loads.to_vec()))
+        };
+        Ok(Script {
+            steps: take.map(act).into_iter().collect(),
             ..Script::default()
-        },
-        (None, None) => Script::default(),
-    };
-    if let Some(size_mm) = script.canvas_mm {
-        if options.painting.kit.size.is_some() {
+        })
+    }
+
+    /// Puts the size that a script asks for into the settings.
+    fn take_size(&self, script: &Script, config: &mut RigConfig) -> Result<(), UserError> {
+        let Some(size_mm) = script.canvas_mm else {
+            return Ok(());
+        };
+        if self.painting.kit.size.is_some() {
             return Err(
                 UserError::usage("--size does nothing beside a script's 'canvas_mm'")
                     .help("leave one of them out"),
             );
         }
         [config.canvas.width_mm, config.canvas.height_mm] = size_mm;
+        Ok(())
     }
-    let mut written = outputs.clone();
-    written.extend(options.document.iter().map(|path| UsedFile::painting(path)));
-    check_apart(&written, &script.files)?;
-    check_outputs(&outputs, &inputs)?;
-    let (mut autosave, mut sequencer) = match &options.document {
-        Some(path) => {
-            let (document, mut sequencer, since) = match begun {
-                Some(begun) => begun,
-                None => go_on(&config, path)?,
-            };
-            let autosave = Autosave::new(document, &mut sequencer, since);
-            (Some(autosave), sequencer)
-        }
-        None => {
-            let setup = painting_setup(&config, &library)?;
+
+    /// The painting that is painted in, and what saves it where it is in a file.
+    fn sequencer(
+        &self,
+        config: &RigConfig,
+        library: PaintLibrary,
+        begun: Option<(Document, Sequencer, u64)>,
+    ) -> Result<(Option<Autosave>, Sequencer), UserError> {
+        let Some(path) = &self.document else {
+            let setup = painting_setup(config, &library)?;
             let painting = Painting::new(&setup, library).map_err(refused)?;
-            (None, Sequencer::new(painting))
+            return Ok((None, Sequencer::new(painting)));
+        };
+        let (document, mut sequencer, since) = match begun {
+            Some(begun) => begun,
+            None => go_on(config, path)?,
+        };
+        let autosave = Autosave::new(document, &mut sequencer, since);
+        Ok((Some(autosave), sequencer))
+    }
+
+    /// Paints and writes the picture; returns how many samples were faster than a hand.
+    fn paint(
+        &self,
+        offline: Offline,
+        mut autosave: Option<Autosave>,
+        script: Script,
+        export: &Export,
+    ) -> Result<u64, UserError> {
+        let bar = progress_bar(script.length_ns()).with_message("painting");
+        let mut easel = Easel::new(offline, &mut autosave, bar);
+        let painted = easel.follow_script(script);
+        let mut offline = easel.offline;
+        let mut close = |offline: &mut Offline| match (autosave.take(), &self.document) {
+            (Some(autosave), Some(path)) => autosave
+                .close(offline.sequencer_mut())
+                .map_err(|error| wrong(path, &error)),
+            _ => Ok(()),
+        };
+        if let Err(fault) = painted {
+            // The strokes painted before it are saved.
+            close(&mut offline)?;
+            let is_script = self.script.is_some();
+            return Err(if is_script {
+                fault.worded(advice::words)
+            } else {
+                fault
+            });
         }
-    };
-    choose_backend(&mut sequencer, &config.paint.backend)?;
-    let file = brush_file(&section)?;
-    let (name, share) = (&section.name, section.depth_share);
-    let offline = Offline::resume(sequencer, name, file, share, loads).map_err(refused)?;
-    let bar = progress_bar(script.length_ns()).with_message("painting");
-    let mut easel = Easel::new(offline, &mut autosave, bar);
-    let painted = easel
-        .follow_script(script)
-        .map_err(|fault| match options.script {
-            Some(_) => fault.worded(advice::words),
-            None => fault,
-        });
-    let mut offline = easel.offline;
-    let mut close = |offline: &mut Offline| match (autosave.take(), &options.document) {
-        (Some(autosave), Some(path)) => autosave
-            .close(offline.sequencer_mut())
-            .map_err(|error| wrong(path, &error)),
-        _ => Ok(()),
-    };
-    if let Err(fault) = painted {
-        // The strokes painted before it are saved.
+        let ledger = self.painting.ledger.as_deref();
+        write_snapshot(offline.painting_mut(), &self.output, ledger, export)
+            .map_err(|(path, error)| UserError::writing(&path, &error))?;
         close(&mut offline)?;
-        return Err(fault);
+        Ok(offline.too_fast())
     }
-    let ledger = options.painting.ledger.as_deref();
-    write_snapshot(offline.painting_mut(), &options.output, ledger, &export)
-        .map_err(|(path, error)| UserError::writing(&path, &error))?;
-    close(&mut offline)?;
-    if unloaded {
-        eprintln!("the brush carried no paint: `--load \"Ultramarine Blue\"` gives it some");
-    }
-    tell_haste(offline.too_fast());
-    Ok(0)
 }

@@ -1,4 +1,4 @@
-//! `maulstick take`: takes made, painted, looked at, changed, and the intact part of a damaged one.
+//! `maulstick take`: takes made, painted, looked at, and the intact part of a damaged one.
 
 use std::collections::BTreeMap;
 use std::io::Error;
@@ -22,7 +22,6 @@ use super::from::{self, FromOptions};
 use super::import::{self, ImportOptions};
 use super::render::{self, RenderOptions};
 use crate::cells::picture_settings;
-use crate::commands::motion::{self, MotionCommand};
 use crate::commands::{print_json, say, write_take};
 use crate::document::wrong;
 use crate::kit::kit_of;
@@ -65,9 +64,6 @@ pub enum TakeCommand {
         #[arg(short, long, value_name = "TAKE")]
         output: PathBuf,
     },
-    /// A change of its motions
-    #[command(flatten)]
-    Motion(MotionCommand),
 }
 
 /// Options of `maulstick take embed`.
@@ -173,7 +169,6 @@ pub fn run(command: &TakeCommand) -> Result<i32, UserError> {
     match command {
         TakeCommand::Render(options) => render::run(options),
         TakeCommand::Import(options) => import::run(options),
-        TakeCommand::Motion(command) => motion::run(command),
         TakeCommand::Embed(options) => embed(options),
         TakeCommand::From(options) => from::run(options),
         TakeCommand::Info { take, json } => {

@@ -1,10 +1,11 @@
 //! `maulstick canvas`: the canvas of a running rig and the light over it.
 
+mod light;
+
 use clap::Subcommand;
 use maulstick_rig::UserError;
 
-use super::edit::{self, EditCommand};
-use super::light;
+use crate::commands::edit::{self, EditCommand};
 
 /// Commands of `maulstick canvas`.
 #[derive(Clone, Debug, Subcommand)]

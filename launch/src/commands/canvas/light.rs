@@ -39,7 +39,7 @@ impl LightOptions {
 ///
 /// # Errors
 /// A [`UserError`] for an invalid light, or if no rig runs.
-pub fn run(options: &LightOptions) -> Result<i32, UserError> {
+pub(super) fn run(options: &LightOptions) -> Result<i32, UserError> {
     // An invalid change is refused even if no rig runs.
     let change = &options.change;
     changed(change, &Light::default())?;

@@ -12,14 +12,16 @@ use maulstick_motion::{
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 
-use super::recorded::read_motion;
-use super::{HeadOptions, TakeFiles, parse_place, refused};
-use crate::commands::write_take;
-use crate::outputs::{UsedFile, check_outputs};
+use crate::recorded::read_motion;
+use maulstick::commands::motion::{HeadOptions, parse_place, refused};
+
+use crate::TakeFiles;
+use maulstick::commands::write_take;
+use maulstick::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick take cut`.
 #[derive(Args, Clone, Debug)]
-pub struct CutOptions {
+pub(crate) struct CutOptions {
     #[command(flatten)]
     files: TakeFiles,
     /// Stylus of a recording whose motion is cut, such as pen [default: the only one of a take]
@@ -38,7 +40,7 @@ pub struct CutOptions {
 
 /// Options of `maulstick take join`.
 #[derive(Args, Clone, Debug)]
-pub struct JoinOptions {
+pub(crate) struct JoinOptions {
     /// Takes, in order, which are not changed
     #[arg(required = true, num_args = 2..)]
     takes: Vec<PathBuf>,
@@ -62,7 +64,7 @@ struct AboutOptions {
 
 /// Options of `maulstick take scale`.
 #[derive(Args, Clone, Debug)]
-pub struct ScaleOptions {
+pub(crate) struct ScaleOptions {
     #[command(flatten)]
     files: TakeFiles,
     /// Factor, .01 to 100
@@ -74,7 +76,7 @@ pub struct ScaleOptions {
 
 /// Options of `maulstick take rotate`.
 #[derive(Args, Clone, Debug)]
-pub struct RotateOptions {
+pub(crate) struct RotateOptions {
     #[command(flatten)]
     files: TakeFiles,
     /// Angle, degrees, counter-clockwise
@@ -86,7 +88,7 @@ pub struct RotateOptions {
 
 /// Options of `maulstick take move`.
 #[derive(Args, Clone, Debug)]
-pub struct MoveOptions {
+pub(crate) struct MoveOptions {
     #[command(flatten)]
     files: TakeFiles,
     /// To the right and up, mm
@@ -96,7 +98,7 @@ pub struct MoveOptions {
 
 /// Options of `maulstick take retime`.
 #[derive(Args, Clone, Debug)]
-pub struct RetimeOptions {
+pub(crate) struct RetimeOptions {
     #[command(flatten)]
     files: TakeFiles,
     /// Rate, .01 to 100: 2 is twice as fast
@@ -128,7 +130,7 @@ enum MirrorAxis {
 
 /// Options of `maulstick take mirror`.
 #[derive(Args, Clone, Debug)]
-pub struct MirrorOptions {
+pub(crate) struct MirrorOptions {
     #[command(flatten)]
     files: TakeFiles,
     /// Exchange left and right (x), or above and below (y)
@@ -186,7 +188,7 @@ impl AboutOptions {
     }
 }
 
-pub(super) fn cut(options: &CutOptions) -> Result<i32, UserError> {
+pub(crate) fn cut(options: &CutOptions) -> Result<i32, UserError> {
     let ns = |name: &str, seconds: f64| match seconds >= 0.0 && seconds.is_finite() {
         true => Ok((seconds * 1e9).round() as u64),
         false => Err(
@@ -233,7 +235,7 @@ pub(super) fn cut(options: &CutOptions) -> Result<i32, UserError> {
         })
 }
 
-pub(super) fn join(options: &JoinOptions) -> Result<i32, UserError> {
+pub(crate) fn join(options: &JoinOptions) -> Result<i32, UserError> {
     let named = |path: &PathBuf| UsedFile::new("a take that stays as it is", path);
     let inputs: Vec<UsedFile> = options.takes.iter().map(named).collect();
     check_outputs(
@@ -303,21 +305,21 @@ fn in_turn(each: &[(Vec<String>, usize)]) -> Vec<String> {
     each.iter().flat_map(of).collect()
 }
 
-pub(super) fn scale(options: &ScaleOptions) -> Result<i32, UserError> {
+pub(crate) fn scale(options: &ScaleOptions) -> Result<i32, UserError> {
     options.files.change(|samples, head_m| {
         let about = options.about.point(samples, head_m);
         Placement::scaled(about, options.by).motion(samples, head_m)
     })
 }
 
-pub(super) fn rotate(options: &RotateOptions) -> Result<i32, UserError> {
+pub(crate) fn rotate(options: &RotateOptions) -> Result<i32, UserError> {
     options.files.change(|samples, head_m| {
         let about = options.about.point(samples, head_m);
         Placement::turned(about, options.by.to_radians()).motion(samples, head_m)
     })
 }
 
-pub(super) fn shift(options: &MoveOptions) -> Result<i32, UserError> {
+pub(crate) fn shift(options: &MoveOptions) -> Result<i32, UserError> {
     let by = options.by.map(|mm| 1e-3 * mm);
     let place = Placement::moved(by);
     options
@@ -325,7 +327,7 @@ pub(super) fn shift(options: &MoveOptions) -> Result<i32, UserError> {
         .change(|samples, head_m| place.motion(samples, head_m))
 }
 
-pub(super) fn retime(options: &RetimeOptions) -> Result<i32, UserError> {
+pub(crate) fn retime(options: &RetimeOptions) -> Result<i32, UserError> {
     let pace = match (options.rate, options.seconds) {
         (_, Some(seconds)) => Pace::Length(seconds),
         (rate, None) => Pace::Rate(rate.unwrap_or(1.0)),
@@ -333,7 +335,7 @@ pub(super) fn retime(options: &RetimeOptions) -> Result<i32, UserError> {
     options.files.change(|samples, _| retimed(samples, pace))
 }
 
-pub(super) fn mirror(options: &MirrorOptions) -> Result<i32, UserError> {
+pub(crate) fn mirror(options: &MirrorOptions) -> Result<i32, UserError> {
     let axis = match options.axis {
         MirrorAxis::X => Mirror::X,
         MirrorAxis::Y => Mirror::Y,

@@ -1,13 +1,33 @@
 //! `maulstick take`: takes changed, and an outline filled by example.
 
-use maulstick_device::Take;
-use serde_json::Value;
+#[path = "../../../tests/support/place.rs"]
+mod place;
 
-use super::support::{COARSE, Place, assert_same, fault, has};
+use clap::{FromArgMatches as _, Subcommand as _};
+use maulstick::commands::take::{self, TakeCommand};
+use maulstick_device::Take;
+use place::{COARSE, Place, fault, has};
+use serde_json::Value;
 
 /// A leaf of 60 mm about the middle of the desk.
 const LEAF: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 100 100">
 <path d="M20 50 C 35 25 65 25 80 50 C 65 75 35 75 20 50 Z"/></svg>"#;
+
+/// Carries out a command of `maulstick take` itself.
+fn carry_out(place: &Place, words: &[&str]) {
+    let is_file = |word: &str| word.contains('.') && !word.starts_with(char::is_numeric);
+    let whole = words.iter().map(|word| {
+        if is_file(word) {
+            place.path(word).display().to_string()
+        } else {
+            (*word).to_owned()
+        }
+    });
+    let program = TakeCommand::augment_subcommands(clap::Command::new("take"));
+    let matches = program.get_matches_from(std::iter::once("take".to_owned()).chain(whole));
+    let command = TakeCommand::from_arg_matches(&matches).expect("read");
+    take::run(&command).expect("carried out");
+}
 
 /// Strokes of a take as `take strokes` lists them.
 fn listed(place: &Place, take: &str) -> Vec<Value> {
@@ -103,8 +123,8 @@ fn what_a_take_is_painted_with_stays_and_its_strokes_keep_their_loads() {
         "--load",
         "Cobalt Blue",
     ];
-    let embed = ["take", "embed", "bare.mcap", "-o", "hand.mcap"];
-    place.done(&[&embed[..], &kit, &COARSE].concat());
+    let embed = ["embed", "bare.mcap", "-o", "hand.mcap"];
+    carry_out(&place, &[&embed[..], &kit, &COARSE].concat());
     let loads = |take: &str| {
         let take = Take::read(&place.path(take)).expect("a take");
         take.setup.expect("a setup").loads
@@ -132,7 +152,6 @@ fn what_a_take_is_painted_with_stays_and_its_strokes_keep_their_loads() {
     place.done(&["take", "join", "later.mcap", "first.mcap", "-o", "all.mcap"]);
     assert_eq!(loads("all.mcap"), [cobalt, bone.clone(), bone]);
     let other = [
-        "take",
         "embed",
         "first.mcap",
         "--brush",
@@ -140,7 +159,7 @@ fn what_a_take_is_painted_with_stays_and_its_strokes_keep_their_loads() {
         "-o",
         "other.mcap",
     ];
-    place.done(&other);
+    carry_out(&place, &other);
     let said = fault(
         &place,
         &["take", "join", "later.mcap", "other.mcap", "-o", "no.mcap"],
@@ -186,11 +205,8 @@ fn an_outline_is_filled_by_example_always_alike_by_its_seed() {
     with(&[]);
     with(&["-o", "again.mcap"]);
     with(&["-o", "other.mcap", "--seed", "2"]);
-    assert_same(
-        &place.bytes("leaf-fill.mcap"),
-        &place.bytes("again.mcap"),
-        "one seed",
-    );
+    let is_same = place.bytes("leaf-fill.mcap") == place.bytes("again.mcap");
+    assert!(is_same, "one seed, two takes");
     assert_ne!(place.bytes("leaf-fill.mcap"), place.bytes("other.mcap"));
     let strokes = listed(&place, "leaf-fill.mcap");
     assert!(strokes.len() > 5, "{strokes:?}");
@@ -202,7 +218,8 @@ fn an_outline_is_filled_by_example_always_alike_by_its_seed() {
         );
     }
     let load = ["--load", "Cobalt Blue", COARSE[0], COARSE[1]];
-    place.done(&[&["render", "leaf-fill.mcap", "-o", "leaf.png"][..], &load].concat());
+    let render = ["render", "leaf-fill.mcap", "-o", "leaf.png"];
+    carry_out(&place, &[&render[..], &load].concat());
     let wide = [&fill[..], &["--inset-mm", "40", "-o", "no.mcap"]].concat();
     has(&fault(&place, &wide, 2), &["no room", "--inset-mm"]);
     assert!(!place.path("no.mcap").exists());

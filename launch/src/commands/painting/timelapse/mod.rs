@@ -1,5 +1,7 @@
 //! `maulstick painting timelapse`: a film of how a painting was painted, of its record.
 
+mod film_file;
+
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -13,7 +15,7 @@ use maulstick_rig::UserError;
 use maulstick_rig::config::BACKENDS;
 use maulstick_session::{Reexecution, TilePrints, WorkClock, tile_prints};
 
-use super::film_file::{FilmFile, FilmKind};
+use self::film_file::{FilmFile, FilmKind};
 use crate::backend::choose_backend;
 use crate::commands::{progress_bar, say};
 use crate::document::{read, wrong};

@@ -9,14 +9,14 @@ use maulstick_motion::{Stroke, strokes};
 use maulstick_rig::UserError;
 use serde_json::json;
 
-use super::HeadOptions;
-use super::recorded::read_motion;
-use crate::commands::table::table;
-use crate::commands::{print_json, print_text, say};
+use crate::recorded::read_motion;
+use maulstick::commands::motion::HeadOptions;
+use maulstick::commands::table::table;
+use maulstick::commands::{print_json, print_text, say};
 
 /// Options of `maulstick take strokes`.
 #[derive(Args, Clone, Debug)]
-pub struct InfoOptions {
+pub(crate) struct InfoOptions {
     /// Take, or recording
     take: PathBuf,
     /// Stylus of a recording, such as pen
@@ -57,7 +57,7 @@ impl Measures {
     }
 }
 
-pub(super) fn run(options: &InfoOptions) -> Result<i32, UserError> {
+pub(crate) fn run(options: &InfoOptions) -> Result<i32, UserError> {
     let take = read_motion(&options.take, options.device.as_deref())?;
     let head_m = options.head.length_m(&take, &options.take)?;
     let strokes = strokes(&take.samples, head_m);

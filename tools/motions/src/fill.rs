@@ -8,14 +8,14 @@ use maulstick_motion::{Fill, filled, strokes};
 use maulstick_rig::UserError;
 use maulstick_rig::files::Kind;
 
-use super::outline_file::read_outline;
-use super::{HeadOptions, refused};
-use crate::commands::{say, write_take};
-use crate::outputs::{UsedFile, check_outputs};
+use crate::outline_file::read_outline;
+use maulstick::commands::motion::{HeadOptions, refused};
+use maulstick::commands::{say, write_take};
+use maulstick::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick take fill`.
 #[derive(Args, Clone, Debug)]
-pub struct FillOptions {
+pub(crate) struct FillOptions {
     /// Take that shows how: some strokes beside each other, or dabs
     #[arg(long, value_name = "TAKE")]
     example: PathBuf,
@@ -46,7 +46,7 @@ impl FillOptions {
     }
 }
 
-pub(super) fn run(options: &FillOptions) -> Result<i32, UserError> {
+pub(crate) fn run(options: &FillOptions) -> Result<i32, UserError> {
     let output = options.output();
     check_outputs(
         &[UsedFile::new("the take", &output).of(Kind::Take)],

@@ -10,7 +10,7 @@ use maulstick_tables::{HeadingLine, Separator, Table, TableError, decode};
 use usvg::tiny_skia_path::PathSegment;
 use usvg::{Group, Node, Options, Tree};
 
-use super::refused;
+use maulstick::commands::motion::refused;
 
 /// Length of a CSS pixel, m: 96 an inch.
 const PIXEL_M: f64 = 0.0254 / 96.0;
@@ -28,7 +28,7 @@ type Contours = Vec<Vec<[f64; 2]>>;
 ///
 /// # Errors
 /// A [`UserError`] for a file that cannot be read or encloses nothing.
-pub(super) fn read_outline(path: &Path, head_m: f64) -> Result<Outline, UserError> {
+pub(crate) fn read_outline(path: &Path, head_m: f64) -> Result<Outline, UserError> {
     let bytes = std::fs::read(path).map_err(|error| UserError::reading(path, &error))?;
     let contours = match bytes.starts_with(MCAP) {
         true => of_take(&Take::read(path)?, head_m),

@@ -12,7 +12,7 @@ use maulstick_types::stylus::StylusSample;
 ///
 /// # Errors
 /// A [`UserError`] for a file that cannot be read, or has no samples of that device.
-pub(super) fn read_motion(path: &Path, device: Option<&str>) -> Result<Take, UserError> {
+pub(crate) fn read_motion(path: &Path, device: Option<&str>) -> Result<Take, UserError> {
     let Some(device) = device else {
         return Take::read(path);
     };
