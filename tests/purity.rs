@@ -88,9 +88,11 @@ fn paint_knows_no_brush_a_model_no_light_and_light_no_brush() {
     };
     for (name, unknown) in [
         ("canvas", ["brush", "optics", "impasto", "appearance"]),
-        ("impasto", ["optics", "appearance", "painting", "document"]),
+        ("model", ["optics", "appearance", "painting", "document"]),
+        ("impasto", ["dab", "stokes", "painting", "document"]),
         ("dab", ["impasto", "marker", "painting", "document"]),
-        ("convert", ["impasto", "marker", "painting", "document"]),
+        ("convert", ["impasto", "dab", "stokes", "painting"]),
+        ("gpu", ["impasto", "dab", "stokes", "painting"]),
         ("appearance", ["brush", "impasto", "painting", "document"]),
     ] {
         for other in unknown {

@@ -22,7 +22,9 @@ pub(crate) fn check_all(folder: &str, prefixes: &[&str]) -> Result<(), Box<dyn E
     println!("cargo::rerun-if-changed={folder}");
     let mut text = String::new();
     for name in prefixes {
-        text += &std::fs::read_to_string(Path::new(folder).join(name))?;
+        let path = Path::new(folder).join(name);
+        println!("cargo::rerun-if-changed={}", path.display());
+        text += &std::fs::read_to_string(path)?;
     }
     for entry in std::fs::read_dir(folder)? {
         let path = entry?.path();

@@ -12,7 +12,6 @@
 //! | [`destination`] | the display or file that colours go to: profile and gamut |
 //! | [`viewing`] | options of light, observer and rule |
 //! | [`swatch`] | colours in the terminal |
-//! | [`attached`] | attached devices, as the system lists them |
 //! | [`backend`] | backend of the paint's steps |
 //! | [`cells`] | the side of the cells that pictures are painted with |
 //! | [`doctor`] | what of this machine keeps a rig from painting well |
@@ -24,6 +23,7 @@
 //! | [`memory`] | memory that a command allocates at once |
 //! | [`picture`] | pictures that a command reads |
 //! | [`outputs`] | files that are written; none replaces one that is read |
+//! | [`runtime`] | the tokio runtime of commands that wait for many things at once |
 //! | [`script`] | a day at the easel, a step after the other |
 //! | [`paintings`] | the bundled paintings |
 //! | [`panics`] | panics as errors that a user can read |
@@ -45,12 +45,19 @@
 //!   32 within 4 GiB stay; others are removed at a start, after the window has named them. Without a window, or with a
 //!   take, a painting is in memory.
 //!
+//! # Tasks and threads
+//!
+//! `up`, the recorder and `recording replay` wait on a tokio runtime for processes, signals, messages, orders and times at
+//! once. What blocks (a painting that is checked or saved, loads, the keys of a terminal, a recording that is read ahead)
+//! is on the runtime's threads for that. The supervisor itself stays on the main thread: the kernel kills a node when the
+//! thread that started it ends. Threads of this crate's own are:
+//!
+//! - `bridge`, and `viewer` for each viewer of `topic bridge`: sockets that block;
+//! - one that `doctor` tries a real-time priority with, which the thread would keep.
+//!
 //! # Recordings
 //!
-//! - The recorder is a member that no node waits for; with `[record]` it runs in every rig and ends last. A recording
-//!   of a session holds a copy of the painting's file, taken once the paint's credit covers what was on its way, or
-//!   half a second later. Where the journal breaks off (another paint node, a lost entry or state), another file
-//!   begins.
+//! - `maulstick-recorder` records and replays; with `[record]` a recorder runs in every rig and ends last.
 //! - `take from` makes a take of a session, or of a painting's own record: a copy of the painting taken back to its
 //!   beginning.
 //! - `recording replay --rate max` sends as the brushes have credit; with `--at` it puts a motion down live under the name
@@ -58,7 +65,6 @@
 //! - `topic bridge` serves JSON of what is watched only. `topic graph` reads zenoh's administration space.
 
 pub mod advice;
-pub mod attached;
 pub mod beside;
 pub mod cli;
 pub mod commands;
@@ -69,6 +75,7 @@ pub mod paintings;
 pub mod panics;
 pub mod performance;
 pub mod processes;
+pub mod runtime;
 pub mod script;
 mod setup;
 pub mod up;

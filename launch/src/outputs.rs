@@ -3,12 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use maulstick_optics::Illuminant;
-use maulstick_rig::UserError;
 use maulstick_rig::config::{RigConfig, is_path};
 use maulstick_rig::files::{FileId, Kind, check_writable, gives_way, is_companion};
+use maulstick_rig::{UserError, whole_path};
 use maulstick_types::values::WholePath;
-
-use crate::commands::open::whole;
 
 /// A file that a command reads or writes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -120,7 +118,7 @@ impl Relayed {
     /// # Errors
     /// A [`UserError`] where the path cannot be told as text, or the current folder is gone.
     pub fn new(path: &Path, kind: Kind) -> Result<Self, UserError> {
-        let to = PathBuf::from(whole(path)?.as_str());
+        let to = PathBuf::from(whole_path(path)?.as_str());
         let written = match gives_way(&to, kind) {
             true => to.clone(),
             false => {
@@ -136,7 +134,7 @@ impl Relayed {
     /// # Errors
     /// A [`UserError`] where it cannot be told as text.
     pub fn asked(&self) -> Result<WholePath, UserError> {
-        whole(&self.written)
+        whole_path(&self.written)
     }
 
     /// Gives the file its name once the node has written it, and that name in what the node said.

@@ -6,8 +6,8 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use indicatif::ProgressBar;
 use maulstick_brush::BrushFile;
+use maulstick_models::{MODELS, ModelEntry, model_called, model_names};
 use maulstick_optics::PaintLibrary;
-use maulstick_painting::models::{MODELS, model_called, model_names};
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_rig::UserError;
 use maulstick_session::Offline;
@@ -34,8 +34,8 @@ const DEPTH_SHARE: f64 = 0.5;
 pub struct Board {
     /// Side of a cell, mm.
     pub cell_mm: f64,
-    /// Name of the paint model.
-    pub model: &'static str,
+    /// The paint model.
+    pub model: &'static ModelEntry,
 }
 
 impl Board {
@@ -44,7 +44,7 @@ impl Board {
     pub fn new(cell_mm: f64) -> Self {
         Self {
             cell_mm,
-            model: MODELS[0].name,
+            model: &MODELS[0],
         }
     }
 }
@@ -69,7 +69,7 @@ impl BoardOptions {
         let Some(model) = &self.model else {
             return Ok(board);
         };
-        let model = model_called(model).map_err(refused)?.name;
+        let model = model_called(model).map_err(refused)?;
         Ok(Board { model, ..board })
     }
 }
@@ -104,7 +104,7 @@ pub fn paint(
     let setup = PaintingSetup {
         cells: size_mm.map(|mm| (mm / board.cell_mm).round() as u32),
         cell_m: 1e-3 * board.cell_mm,
-        model: board.model.to_owned(),
+        model: board.model.name.to_owned(),
         // Strokes that go over the canvas's edge come to a clean board.
         wells: Vec::new(),
         ..PaintingSetup::default()

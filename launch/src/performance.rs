@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use maulstick_brush::BrushFile;
 use maulstick_canvas::EditError;
+use maulstick_models::{AUTO, AutoRole, auto_model, model_called};
 use maulstick_optics::{Illuminant, PaintError, PaintLibrary};
-use maulstick_painting::models::{AUTO, AUTO_MODELS, model_called};
 use maulstick_painting::{PaintingSetup, paint_error};
 use maulstick_rig::UserError;
 use maulstick_rig::config::{BACKENDS, BrushSection, LightSection, RigConfig};
@@ -311,7 +311,7 @@ fn wells(config: &RigConfig, library: &PaintLibrary) -> Vec<String> {
 /// The name of the canvas's paint model: `auto` begins with one that it may propose to change later.
 fn canvas_model(name: &str) -> Result<String, UserError> {
     match name {
-        AUTO => Ok(AUTO_MODELS[0].to_owned()),
+        AUTO => Ok(auto_model(AutoRole::First).name.to_owned()),
         name => model(name, "model of [paint], or --model"),
     }
 }

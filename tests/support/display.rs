@@ -34,7 +34,7 @@ pub const BACKSPACE: u32 = 0xff08;
 /// Where a new painting of the default size lies in a window of the default size.
 pub fn desk_view() -> View {
     let scene = PaintingSetup::default().scene();
-    let size = Preferences::default().size;
+    let size = Preferences::default().window.size;
     let area = Rect::from_min_size(Pos2::ZERO, size.into());
     let (canvas, palette) = (&scene.surfaces[0], scene.surfaces.get(1));
     View::of(area, canvas, palette, Side::Left, rack::WIDTH).expect("a view")

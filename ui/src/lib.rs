@@ -24,8 +24,8 @@
 //! each node so that nobody waits), and what is drawn from the first. A panel reads one, writes the other, and is
 //! tested with neither bus nor window.
 //!
-//! Devices are changed in one way, that of `maulstick device`. A painting is left only once its paint node has sent a
-//! status that is newer than the request.
+//! Devices are changed by the functions that `maulstick device` calls, sessions recorded and played by those of
+//! `maulstick recording`. A painting is left only once its paint node has sent a status that is newer than the request.
 //!
 //! # Order and input
 //!

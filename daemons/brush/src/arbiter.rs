@@ -50,7 +50,7 @@ impl Device {
 
 impl Arbiter {
     /// A sample came; whether its device moves the brush.
-    pub fn hear(
+    pub fn admit(
         &mut self,
         name: &str,
         priority: i32,
@@ -106,34 +106,37 @@ mod tests {
     const MOUSE: (&str, i32) = ("mouse", -100);
     const PEN: (&str, i32) = ("pen", 10);
 
-    fn hear(
+    fn admit(
         arbiter: &mut Arbiter,
         (name, priority): (&str, i32),
         range: Range,
         stroke: Stroke,
         ms: u64,
     ) -> bool {
-        arbiter.hear(name, priority, range, stroke, ms * 1_000_000)
+        arbiter.admit(name, priority, range, stroke, ms * 1_000_000)
     }
 
     #[test]
     fn the_highest_priority_in_range_paints() {
         let mut arbiter = Arbiter::default();
-        assert!(hear(&mut arbiter, MOUSE, Near, None, 0));
-        assert!(!hear(&mut arbiter, PEN, Away, None, 1), "out of range");
-        assert!(hear(&mut arbiter, PEN, Near, None, 2));
-        assert!(!hear(&mut arbiter, MOUSE, Near, None, 3));
-        hear(&mut arbiter, PEN, Away, None, 4);
-        assert!(hear(&mut arbiter, MOUSE, Near, None, 5), "the pen has left");
+        assert!(admit(&mut arbiter, MOUSE, Near, None, 0));
+        assert!(!admit(&mut arbiter, PEN, Away, None, 1), "out of range");
+        assert!(admit(&mut arbiter, PEN, Near, None, 2));
+        assert!(!admit(&mut arbiter, MOUSE, Near, None, 3));
+        admit(&mut arbiter, PEN, Away, None, 4);
+        assert!(
+            admit(&mut arbiter, MOUSE, Near, None, 5),
+            "the pen has left"
+        );
     }
 
     #[test]
     fn nobody_takes_over_in_a_stroke() {
         let mut arbiter = Arbiter::default();
-        assert!(hear(&mut arbiter, MOUSE, Near, None, 0));
-        assert!(!hear(&mut arbiter, PEN, Near, GoesOn, 1));
-        assert!(hear(&mut arbiter, MOUSE, Near, GoesOn, 2));
-        let after = hear(&mut arbiter, MOUSE, Near, None, 3);
+        assert!(admit(&mut arbiter, MOUSE, Near, None, 0));
+        assert!(!admit(&mut arbiter, PEN, Near, GoesOn, 1));
+        assert!(admit(&mut arbiter, MOUSE, Near, GoesOn, 2));
+        let after = admit(&mut arbiter, MOUSE, Near, None, 3);
         assert!(!after, "the stroke is over");
     }
 
@@ -141,16 +144,16 @@ mod tests {
     fn a_mouse_at_rest_keeps_the_brush_until_another_device_is_in_range() {
         let mut arbiter = Arbiter::default();
         let later = 2 * SILENCE_NS / 1_000_000;
-        assert!(hear(&mut arbiter, MOUSE, Near, None, 0));
-        assert!(!hear(&mut arbiter, PEN, Away, None, later));
-        assert!(hear(&mut arbiter, PEN, Near, None, later + 1));
+        assert!(admit(&mut arbiter, MOUSE, Near, None, 0));
+        assert!(!admit(&mut arbiter, PEN, Away, None, later));
+        assert!(admit(&mut arbiter, PEN, Near, None, later + 1));
     }
 
     #[test]
     fn a_silent_device_loses_the_brush() {
         let mut arbiter = Arbiter::default();
-        assert!(hear(&mut arbiter, PEN, Near, None, 0));
-        assert!(hear(
+        assert!(admit(&mut arbiter, PEN, Near, None, 0));
+        assert!(admit(
             &mut arbiter,
             MOUSE,
             Near,
@@ -158,8 +161,8 @@ mod tests {
             SILENCE_NS / 1_000_000
         ));
         let mut arbiter = Arbiter::default();
-        assert!(hear(&mut arbiter, PEN, Near, None, 0));
-        let lifts = hear(&mut arbiter, MOUSE, Away, GoesOn, LOST_NS / 1_000_000);
+        assert!(admit(&mut arbiter, PEN, Near, None, 0));
+        let lifts = admit(&mut arbiter, MOUSE, Away, GoesOn, LOST_NS / 1_000_000);
         assert!(lifts, "it lifts the brush");
     }
 
@@ -167,10 +170,10 @@ mod tests {
     #[test]
     fn a_stroke_outlasts_a_late_frame_whatever_rests_out_of_range() {
         let mut arbiter = Arbiter::default();
-        assert!(hear(&mut arbiter, MOUSE, Near, None, 0));
+        assert!(admit(&mut arbiter, MOUSE, Near, None, 0));
         for ms in (100..4900).step_by(100) {
-            assert!(!hear(&mut arbiter, PEN, Away, GoesOn, ms), "{ms} ms");
+            assert!(!admit(&mut arbiter, PEN, Away, GoesOn, ms), "{ms} ms");
         }
-        assert!(hear(&mut arbiter, MOUSE, Near, GoesOn, 4900));
+        assert!(admit(&mut arbiter, MOUSE, Near, GoesOn, 4900));
     }
 }

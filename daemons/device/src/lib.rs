@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | [`take`] | recorded samples as MCAP files |
 //! | [`salvage`](mod@salvage) | reading of takes, whole or damaged |
-//! | [`take_setup`] | settings and files that a take embeds |
+//! | [`take_setup`], [`use_kit`] | settings and files that a take embeds, and their use |
 //! | [`table`] | tables of strokes, imported as takes |
 //! | [`demo`], [`mark_sheet`] | performances made from a seed |
 //! | [`player`] | a device that plays a take |
@@ -76,4 +76,4 @@ pub(crate) use performance::strokes;
 pub use performance::{demo, mark_sheet};
 pub use take::{Take, TakeSample};
 pub use take_setup::TakeSetup;
-pub use takes::{player, salvage, table, take, take_setup};
+pub use takes::{held_brush, player, salvage, table, take, take_setup, use_kit};

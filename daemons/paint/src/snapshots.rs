@@ -66,7 +66,7 @@ impl Snapshots {
     }
 
     /// Begins the next one where none is being written, and says whose has failed since the last call.
-    pub fn turn(&mut self) -> Option<(Asker, Outcome)> {
+    pub fn poll(&mut self) -> Option<(Asker, Outcome)> {
         let failed = match self.writing.take_if(|(_, thread)| thread.is_finished()) {
             Some((asker, thread)) => match thread.join() {
                 Ok(Ok(())) => None,

@@ -125,8 +125,8 @@ impl Thumbnails {
         })
     }
 
-    /// ReplyCache who can be answered, and has the next picture drawn.
-    pub fn turn(&mut self, bus: &dyn Bus, painting: &mut Painting) {
+    /// Answers requests whose picture is there, and has the next picture drawn.
+    pub fn poll(&mut self, bus: &dyn Bus, painting: &mut Painting) {
         while let Some(request) = self.server.try_recv() {
             let read = self
                 .reader

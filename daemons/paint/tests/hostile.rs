@@ -26,7 +26,7 @@ fn what_is_out_of_range_is_answered_in_short_with_the_reason() {
     let place = Place::new(CANVAS, Pose::IDENTITY, 1.0).expect("in reach");
     let empty = Region {
         corner_m: [0.0; 2],
-        size_m: [0.0, f64::NAN],
+        size_m: [0.0, 1.0],
     };
     let hostile = [
         (

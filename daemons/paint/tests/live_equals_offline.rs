@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::{Bus, Faults, MemoryNet};
+use maulstick_models::model_names;
 use maulstick_painting::edits::Load;
-use maulstick_painting::models::model_names;
 use maulstick_painting::picture::picture;
 use maulstick_session::Offline;
 use maulstick_types::command::Command;

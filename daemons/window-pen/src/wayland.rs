@@ -74,6 +74,56 @@ struct KnownTool {
 }
 
 impl KnownTool {
+    /// Follows an event that concerns the tool alone.
+    fn follow(&mut self, event: zwp_tablet_tool_v2::Event) {
+        use zwp_tablet_tool_v2::{ButtonState, Capability, Event, Type};
+        match event {
+            Event::Type { tool_type } => {
+                self.eraser = tool_type.into_result().is_ok_and(|own| own == Type::Eraser);
+            }
+            Event::Capability { capability } => match capability.into_result() {
+                Ok(Capability::Pressure) => self.axes.pressure = true,
+                Ok(Capability::Tilt) => self.axes.tilt = true,
+                Ok(Capability::Rotation) => self.axes.twist = true,
+                _ => {}
+            },
+            Event::HardwareSerial {
+                hardware_serial_hi,
+                hardware_serial_lo,
+            } => {
+                let serial = u64::from(hardware_serial_hi) << 32 | u64::from(hardware_serial_lo);
+                // Pens without one are told apart by the connection.
+                if serial != 0 {
+                    self.tool = Tool(serial << 1 | u64::from(self.eraser));
+                }
+            }
+            Event::ProximityOut => {
+                self.has_left = self.is_near;
+                (self.is_near, self.is_down) = (false, false);
+            }
+            Event::Down { .. } => self.is_down = true,
+            Event::Up => self.is_down = false,
+            Event::Motion { x, y } => self.point_px = [x, y],
+            Event::Pressure { pressure } => self.pressure = f64::from(pressure) / PRESSURE,
+            Event::Tilt { tilt_x, tilt_y } => {
+                // Theirs leans toward the hand with y.
+                self.tilt_rad = [tilt_x.to_radians(), -tilt_y.to_radians()];
+            }
+            // Theirs turns clockwise, seen from above.
+            Event::Rotation { degrees } => self.twist_rad = -degrees.to_radians(),
+            Event::Button { button, state, .. } => {
+                if let Some(place) = BUTTONS.iter().position(|own| *own == button) {
+                    let bit = 1 << place;
+                    match state.into_result() {
+                        Ok(ButtonState::Pressed) => self.switches |= bit,
+                        _ => self.switches &= !bit,
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
     fn read(&self) -> PenReading {
         PenReading {
             tool: self.tool,
@@ -247,7 +297,7 @@ impl Dispatch<ZwpTabletToolV2, ()> for Listener {
         _: &Connection,
         _: &QueueHandle<Self>,
     ) {
-        use zwp_tablet_tool_v2::{ButtonState, Capability, Event, Type};
+        use zwp_tablet_tool_v2::Event;
         let id = proxy.id().protocol_id();
         let near = match &event {
             Event::ProximityIn { surface, .. } => listener.is_own(&surface.id()),
@@ -266,53 +316,11 @@ impl Dispatch<ZwpTabletToolV2, ()> for Listener {
             }
         });
         match event {
-            Event::Type { tool_type } => {
-                tool.eraser = tool_type.into_result().is_ok_and(|own| own == Type::Eraser);
-            }
-            Event::Capability { capability } => match capability.into_result() {
-                Ok(Capability::Pressure) => tool.axes.pressure = true,
-                Ok(Capability::Tilt) => tool.axes.tilt = true,
-                Ok(Capability::Rotation) => tool.axes.twist = true,
-                _ => {}
-            },
-            Event::HardwareSerial {
-                hardware_serial_hi,
-                hardware_serial_lo,
-            } => {
-                let serial = u64::from(hardware_serial_hi) << 32 | u64::from(hardware_serial_lo);
-                // Pens without one are distinguished by the connection.
-                if serial != 0 {
-                    tool.tool = Tool(serial << 1 | u64::from(tool.eraser));
-                }
-            }
             Event::ProximityIn { serial, .. } => {
                 tool.is_near = near;
                 if near {
                     // The window draws brush and pointer itself.
                     proxy.set_cursor(serial, None, 0, 0);
-                }
-            }
-            Event::ProximityOut => {
-                tool.has_left = tool.is_near;
-                (tool.is_near, tool.is_down) = (false, false);
-            }
-            Event::Down { .. } => tool.is_down = true,
-            Event::Up => tool.is_down = false,
-            Event::Motion { x, y } => tool.point_px = [x, y],
-            Event::Pressure { pressure } => tool.pressure = f64::from(pressure) / PRESSURE,
-            Event::Tilt { tilt_x, tilt_y } => {
-                // Theirs leans toward the hand with y.
-                tool.tilt_rad = [tilt_x.to_radians(), -tilt_y.to_radians()];
-            }
-            // Theirs turns clockwise, seen from above.
-            Event::Rotation { degrees } => tool.twist_rad = -degrees.to_radians(),
-            Event::Button { button, state, .. } => {
-                if let Some(place) = BUTTONS.iter().position(|own| *own == button) {
-                    let bit = 1 << place;
-                    match state.into_result() {
-                        Ok(ButtonState::Pressed) => tool.switches |= bit,
-                        _ => tool.switches &= !bit,
-                    }
                 }
             }
             Event::Frame { time } => {
@@ -329,7 +337,7 @@ impl Dispatch<ZwpTabletToolV2, ()> for Listener {
                 listener.tools.remove(&id);
                 proxy.destroy();
             }
-            _ => {}
+            event => tool.follow(event),
         }
     }
 }

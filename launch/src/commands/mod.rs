@@ -28,10 +28,7 @@ mod takes;
 pub use device::force_order;
 pub use painting::{begin, open, save_as, snapshot};
 pub use rig::{client, endpoint, nodes, schema};
-pub(crate) use streams::listener::Listener;
-pub(crate) use streams::recorder::{
-    Division, RecorderSettings, Ring, Voice, record as record_files,
-};
+pub(crate) use streams::recorder_words::LogFormat;
 pub use streams::{recording, topic};
 pub use takes::{render, take};
 

@@ -3,13 +3,12 @@
 use std::path::Path;
 
 use clap::Args;
-use maulstick_device::Take;
+use maulstick_device::{Take, held_brush};
 use maulstick_motion::MotionError;
-use maulstick_rig::{RigConfig, UserError};
+use maulstick_rig::UserError;
 use maulstick_types::stylus::StylusPose;
 
-use crate::kit::use_kit;
-use crate::performance::brush_file;
+use crate::performance::of_a_brush;
 
 /// Length of the head of a 6-DOF stylus.
 #[derive(Args, Clone, Copy, Debug)]
@@ -32,24 +31,22 @@ pub struct HeldHead {
 impl HeadOptions {
     /// The head that a take is painted with: the one that it embeds, or that of a new rig.
     pub fn of(self, take: &Take, path: &Path) -> Result<HeldHead, UserError> {
-        let mut config = RigConfig::default();
-        let folder = tempfile::tempdir().map_err(|error| UserError::failure(error.to_string()))?;
-        use_kit(take, path, folder.path(), &mut config)?;
-        let file = brush_file(&config.brush[0])?;
-        let length_m = match self.head_mm {
-            Some(mm) if (1.0..=500.0).contains(&mm) => 1e-3 * mm,
-            Some(mm) => {
-                return Err(
-                    UserError::usage(format!("--head-mm {mm} is not within 1 and 500"))
-                        .help("measure from the ferrule to the point"),
-                );
-            }
-            None => file.length_m(),
-        };
+        let file = held_brush(take, path).map_err(of_a_brush)?;
+        let length_m = self.given_m()?.unwrap_or_else(|| file.length_m());
         Ok(HeldHead {
             length_m,
             width_m: 1e-3 * file.head.width_mm,
         })
+    }
+
+    /// The length that is given, m.
+    pub(crate) fn given_m(self) -> Result<Option<f64>, UserError> {
+        let is_wrong = |mm: &f64| !(1.0..=500.0).contains(mm);
+        if let Some(mm) = self.head_mm.filter(is_wrong) {
+            let what = format!("--head-mm {mm} is not within 1 and 500");
+            return Err(UserError::usage(what).help("measure from the ferrule to the point"));
+        }
+        Ok(self.head_mm.map(|mm| 1e-3 * mm))
     }
 
     /// As [`of`](Self::of), its length; 0 where only pens are in the take, whose points are their own.

@@ -14,7 +14,9 @@ use nix::sys::resource::{Resource, getrlimit};
 use nix::sys::statvfs::statvfs;
 use nix::unistd::geteuid;
 
-use crate::attached::{Attached, Permission, Places, events, hid, permission, serial};
+use maulstick_device_setup::attached::{
+    Attached, Permission, Places, events, hid, permission, serial,
+};
 
 /// Where the kernel tells of its clocks.
 pub(super) const CLOCK: &str = "/sys/devices/system/clocksource/clocksource0";

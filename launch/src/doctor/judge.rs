@@ -4,7 +4,7 @@ use maulstick_haptic::servo::servo_thread::PRIORITY;
 use serde::Serialize;
 
 use super::facts::{CLOCK, Clock, Disk, Display, Facts, Graphics, RealTime};
-use crate::attached::{Attached, Permission};
+use maulstick_device_setup::attached::{Attached, Permission};
 
 const MB: u64 = 1 << 20;
 /// Memory that has to be locked for pictures to reach the window without the socket, bytes; and that has to be free.

@@ -11,7 +11,7 @@ use serde_json::json;
 use super::facts::{Clock, Disk, Display, Facts, Governor, Graphics, RealTime, clock, governors};
 use super::in_words;
 use super::judge::{Finding, State, judge};
-use crate::attached::{Attached, Permission};
+use maulstick_device_setup::attached::{Attached, Permission};
 
 const GB: u64 = 1 << 30;
 

@@ -6,12 +6,12 @@ use std::time::Duration;
 
 use maulstick_document::{Document, DocumentError};
 use maulstick_gpu::{Choice, Device, GpuFilms};
+use maulstick_models::AUTO;
 use maulstick_num::fork_join::with_cores_beyond;
 use maulstick_optics::backend::{CpuFilms, FilmBackend};
 use maulstick_paint_node::frames::FrameServer;
 use maulstick_paint_node::worker::WorkerPanicked;
 use maulstick_paint_node::{PaintNode, Worker};
-use maulstick_painting::models::AUTO;
 use maulstick_painting::{Painting, Sequencer};
 use maulstick_rig::config::RigConfig;
 use maulstick_rig::{NodeHandle, UserError};

@@ -2,18 +2,15 @@
 
 use std::time::Duration;
 
+use maulstick_recorder::{Division, Listener, Recorder, RecorderSettings, Ring};
 use maulstick_rig::UserError;
-use maulstick_rig::files::create_private;
 use nix::sys::signal::Signal;
+use tokio::runtime::Handle;
 
 use super::{NodeOptions, RECORDER};
-use crate::commands::client::Target;
-use crate::commands::{Division, Listener, RecorderSettings, Ring, Voice, record_files};
+use crate::commands::LogFormat;
+use crate::runtime::block_on;
 
-/// Topics that are recorded.
-const ALL: &str = "**";
-/// Most messages a second of each topic that are written as JSON too.
-const JSON_HZ: u32 = 20;
 /// Wait at the end of the rig for a copy of the painting: the launcher waits little longer.
 const LAST_WAIT: Duration = Duration::from_millis(300);
 
@@ -35,9 +32,6 @@ pub(super) fn run(options: &RecorderOptions) -> Result<i32, UserError> {
     let folder = &section.folder;
     std::fs::create_dir_all(folder).map_err(|error| UserError::writing(folder, &error))?;
     let settings = RecorderSettings {
-        target: Target::named(rig_name(member.topics.prefix())),
-        topic: ALL.to_owned(),
-        lasts: None,
         division: Division {
             last: section
                 .last()
@@ -45,18 +39,22 @@ pub(super) fn run(options: &RecorderOptions) -> Result<i32, UserError> {
             quota_bytes: section.quota_mb.map(|mb| mb.saturating_mul(1_000_000)),
             ..Division::default()
         },
-        json_hz: JSON_HZ,
         longest_wait: LAST_WAIT,
-        voice: Voice::Log,
+        ..RecorderSettings::default()
     };
-    let rig = settings.target.rig();
+    let rig = rig_name(member.topics.prefix());
     let ring = Ring::dated(folder, rig, &jiff::Zoned::now(), settings.division)?;
-    let mut listener = Listener::over(member, ALL)?;
-    listener.pulse = Some(listener.member.pulse()?);
+    let mut listener = Listener::over(member, &settings.topic)?;
+    let pulse = listener.member.pulse()?;
     listener.member.ready()?;
-    record_files(&settings, &mut listener, ring, create_private)?;
-    listener.member.leave();
-    Ok(0)
+    block_on(async {
+        let runtime = Handle::current();
+        let mut recorder = Recorder::over(&runtime, listener, pulse, settings, ring);
+        while let Some(event) = recorder.events.recv().await {
+            LogFormat::Log.show(&event)?;
+        }
+        recorder.ended().await.map(|()| 0)
+    })
 }
 
 /// Name of the rig whose topics begin with `prefix`.

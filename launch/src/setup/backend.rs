@@ -1,6 +1,7 @@
 //! Backend of the paint's steps: as `[paint] backend` or `--backend` say.
 
-use maulstick_gpu::{Choice, Device, DeviceModel};
+use maulstick_gpu::{Choice, Device};
+use maulstick_models::model_called;
 use maulstick_painting::Sequencer;
 use maulstick_rig::UserError;
 use maulstick_types::paint::Decision;
@@ -21,7 +22,7 @@ pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), Us
         _ => Choice::Auto,
     };
     let name = sequencer.painting().model(CANVAS).unwrap_or_default();
-    let Some(model) = DeviceModel::of(name) else {
+    let Some(make) = model_called(name).ok().and_then(|entry| entry.make_on) else {
         return match choice {
             Choice::Auto => Ok(()),
             Choice::Forced => Err(UserError::usage(format!(
@@ -31,10 +32,10 @@ pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), Us
             .help("leave the choice to the rig: backend = \"auto\"")),
         };
     };
-    let made = Device::open(choice).and_then(|gpu| model.make(gpu, choice));
+    let made = Device::open(choice).and_then(|gpu| make(gpu, choice));
     match (made, choice) {
-        (Ok(model), _) => {
-            sequencer.painting_mut().set_model(model);
+        (Ok(made), _) => {
+            sequencer.painting_mut().set_model(made.model);
             let name = sequencer.painting().backend();
             tracing::info!("paint is computed by {name}");
             sequencer.decide(Decision::Backend { name });

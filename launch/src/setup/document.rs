@@ -6,38 +6,14 @@ use std::path::Path;
 use maulstick_canvas::EditError;
 use maulstick_document::{Access, Document, DocumentError, DocumentSettings, Opened, glance};
 use maulstick_painting::{Painting, Sequencer};
+pub use maulstick_recorder::paintings::wrong;
 use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, RigConfig};
 use maulstick_rig::files::{Kind, check_writable, companion};
-use maulstick_rig::user_error::EXIT_FAILURE;
 use maulstick_types::paint::Decision;
 use maulstick_types::scene::{CANVAS, Scene};
 
 use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
-
-/// Error of a document, as the user sees it.
-#[must_use]
-pub fn wrong(path: &Path, error: &DocumentError) -> UserError {
-    let fault = UserError::usage(error.to_string())
-        .at(path.display().to_string())
-        .advise(error.advice());
-    let failure = matches!(
-        error,
-        DocumentError::Full
-            | DocumentError::Disk(_)
-            | DocumentError::Incomplete(_)
-            | DocumentError::ReadOnly(_)
-            | DocumentError::InUse { .. }
-            | DocumentError::Unwritten(_)
-    );
-    match failure {
-        true => UserError {
-            code: EXIT_FAILURE,
-            ..fault
-        },
-        false => fault,
-    }
-}
 
 /// A painting that is read: nothing is written.
 ///

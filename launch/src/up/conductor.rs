@@ -14,6 +14,7 @@ use maulstick_rig::config::RigConfig;
 use maulstick_types::command::TakeCommand;
 use maulstick_types::stylus::{TakeEnd, TakeStatus};
 use maulstick_types::wire::topics::Topics;
+use tokio::task::spawn_blocking;
 
 use crate::outputs::Relayed;
 use crate::processes::{PLAYER, Program};
@@ -44,6 +45,7 @@ pub struct Conductor {
     /// The performance.
     pub performance: Performance,
     statuses: Receiver<TakeStatus>,
+    wake: Wake,
     epoch: Option<u32>,
     forgotten: Option<u32>,
     /// True if the strokes of it that were painted are to be undone first.
@@ -79,6 +81,7 @@ impl Conductor {
         Ok(Self {
             performance,
             statuses,
+            wake: wake.clone(),
             epoch: None,
             forgotten: None,
             again: false,
@@ -178,14 +181,13 @@ impl Conductor {
         let stop = Arc::clone(&given_up);
         let mut commander = CommandClient::new(Arc::clone(bus), topics);
         let after = Some(end.after.clone());
-        std::thread::Builder::new()
-            .name("snapshot".into())
-            .spawn(move || {
-                let stop = || stop.load(Ordering::SeqCst);
-                let sent = commander.send(command, after, SNAPSHOT, &stop);
-                to_conductor.send(sent.map(|_| ())).ok();
-            })
-            .map_err(|error| UserError::failure(error.to_string()))?;
+        let wake = self.wake.clone();
+        spawn_blocking(move || {
+            let stop = || stop.load(Ordering::SeqCst);
+            let sent = commander.send(command, after, SNAPSHOT, &stop);
+            to_conductor.send(sent.map(drop)).ok();
+            wake.ring();
+        });
         self.writing = Some(Writing { outcome, given_up });
         Ok(false)
     }

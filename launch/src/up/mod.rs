@@ -4,39 +4,39 @@
 //! | --- | --- |
 //! | [`bar_terminal`] | the terminal of the bar while a take is played |
 //! | [`plan`] | which processes a rig has |
-//! | [`child`] | one process: started, watched, stopped |
+//! | [`processes`] | the processes: started, awaited, signalled |
 //! | [`supervisor`] | all of them: tokens, restarts, the table, the end |
 //! | [`conductor`] | a take that is played from its start to its picture |
 
 mod bar_terminal;
-pub mod child;
 pub mod conductor;
 pub mod plan;
+mod processes;
 pub mod supervisor;
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use maulstick_bus::RigFolder;
-use maulstick_device::Take;
 use maulstick_device::player::Rate;
+use maulstick_device::{Take, use_kit};
 use maulstick_document::scene;
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::config::{DEFAULT, DeviceSection, RigConfig, is_path};
 use maulstick_rig::files::Kind;
 use maulstick_rig::log::log_to_stderr;
-use maulstick_rig::{Sketches, UserError, user_devices};
+use maulstick_rig::{UserError, user_devices};
 use maulstick_types::Mixture;
 
 use crate::cells::{check_memory, check_speed, picture_settings};
 use crate::destination::{VIEW, export};
 use crate::document::{Presence, measure, presence, wrong};
-use crate::kit::use_kit;
 use crate::outputs::{Relayed, UsedFile, check_outputs, named_by};
 use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
+use crate::runtime::{EndSignals, block_on};
 use crate::up::conductor::Performance;
-use crate::up::plan::{Hands, Window};
-use crate::up::supervisor::{Supervisor, sketch};
+use crate::up::plan::{Hands, NodeSpec, Window};
+use crate::up::supervisor::{Start, Supervisor, sketch};
 
 /// Folder of the files embedded in the played take, in the rig's folder.
 const KIT: &str = "kit";
@@ -94,6 +94,100 @@ pub struct UpOptions {
 }
 
 impl UpOptions {
+    /// Checks that a ledger has a picture, and a picture a take.
+    fn check_ledger(&self) -> Result<(), UserError> {
+        if self.painting.ledger.is_none() || self.snapshot.is_some() {
+            return Ok(());
+        }
+        Err(if self.play.is_none() {
+            UserError::usage("--ledger needs --play TAKE")
+                .help("`maulstick snapshot --ledger FILE` asks a running rig")
+        } else {
+            UserError::usage("--ledger needs --snapshot PNG")
+                .help("the ledger is written with the picture at the end of the take")
+        })
+    }
+
+    /// The settings, without the setup of a take.
+    fn config(&self) -> Result<RigConfig, UserError> {
+        let mut config = match &self.rig {
+            Some(path) => RigConfig::read(path)?,
+            None if self.play.is_some() => picture_settings(),
+            None => with_own_devices(unattended(RigConfig::default())),
+        };
+        if let Some(name) = &self.name {
+            config.rig.name.clone_from(name);
+        }
+        for library in &self.allow_library {
+            config.allowed_libraries.push(absolute(library)?);
+        }
+        if let Some(file) = &self.file {
+            config.paint.document = Some(absolute(file)?);
+        }
+        Ok(config)
+    }
+
+    /// Checks the painting that is opened or begun: whether its file is there, and whether this machine can hold it.
+    fn check_painting(
+        &self,
+        config: &mut RigConfig,
+        is_played: bool,
+    ) -> Result<Option<Presence>, UserError> {
+        let presence = match &config.paint.document {
+            Some(path) => Some(presence(path, &self.painting)?),
+            None => None,
+        };
+        if let Some(path) = &config.paint.document
+            && let Some(scene) = scene(path).map_err(|error| wrong(path, &error))?
+        {
+            measure(&mut config.canvas, &scene);
+        }
+        if !is_played && presence != Some(Presence::There) {
+            check_speed(&config.canvas, self.slow.into())?;
+        }
+        if presence.is_none() {
+            check_memory(&config.canvas)?;
+        }
+        Ok(presence)
+    }
+
+    /// The take that is played, and its output.
+    fn performance(
+        &self,
+        (path, take): (&Path, &Take),
+        config: &RigConfig,
+        brush: String,
+        loads: &[Mixture],
+    ) -> Result<Performance, UserError> {
+        self.check_files(path, config)?;
+        let relayed = |path: Option<&PathBuf>, kind: Kind| {
+            path.map(|path| Relayed::new(path, kind)).transpose()
+        };
+        Ok(Performance {
+            take: absolute(path)?,
+            rate: self.rate,
+            brush,
+            loads: loads.iter().map(ToString::to_string).collect(),
+            snapshot: relayed(self.snapshot.as_ref(), Kind::Png)?,
+            ledger: relayed(self.painting.ledger.as_ref(), Kind::Ledger)?,
+            length_ns: take.length_ns(),
+        })
+    }
+
+    fn nodes(&self, config: &RigConfig, is_played: bool) -> Vec<NodeSpec> {
+        let window = if self.headless {
+            Window::Headless
+        } else {
+            Window::Shown
+        };
+        let hands = if is_played {
+            Hands::Take
+        } else {
+            Hands::Devices
+        };
+        plan::nodes(config, window, hands)
+    }
+
     /// Checks that the file written at the end of the take is none that the rig uses.
     fn check_files(&self, take: &Path, config: &RigConfig) -> Result<(), UserError> {
         let outputs: Vec<_> = UsedFile::written("the picture", self.snapshot.as_ref(), Kind::Png)
@@ -124,29 +218,9 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
         crate::commands::print_text(DEFAULT)?;
         return Ok(0);
     }
-    if options.play.is_none() && options.painting.ledger.is_some() {
-        return Err(UserError::usage("--ledger needs --play TAKE")
-            .help("`maulstick snapshot --ledger FILE` asks a running rig"));
-    }
-    if options.snapshot.is_none() && options.painting.ledger.is_some() {
-        return Err(UserError::usage("--ledger needs --snapshot PNG")
-            .help("the ledger is written with the picture at the end of the take"));
-    }
+    options.check_ledger()?;
     log_to_stderr("info");
-    let mut config = match &options.rig {
-        Some(path) => RigConfig::read(path)?,
-        None if options.play.is_some() => picture_settings(),
-        None => with_own_devices(unattended(RigConfig::default())),
-    };
-    if let Some(name) = &options.name {
-        config.rig.name.clone_from(name);
-    }
-    for library in &options.allow_library {
-        config.allowed_libraries.push(absolute(library)?);
-    }
-    if let Some(file) = &options.file {
-        config.paint.document = Some(absolute(file)?);
-    }
+    let mut config = options.config()?;
     let folder = RigFolder::create(&config.rig.name)?;
     let take = match &options.play {
         None => None,
@@ -157,28 +231,15 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
         Some((path, take)) => use_kit(take, path, &folder.path().join(KIT), &mut config)?,
     };
     let section = options.painting.apply(&mut config)?;
-    let sketches = match (options.headless, &take) {
-        (false, None) => sketches(),
-        _ => None,
+    let sketches = if options.headless || take.is_some() {
+        None
+    } else {
+        sketch::of_user()
     };
     if config.paint.document.is_none() {
         config.paint.document = sketches.as_ref().and_then(sketch::begin);
     }
-    let presence = match &config.paint.document {
-        Some(path) => Some(presence(path, &options.painting)?),
-        None => None,
-    };
-    if let Some(path) = &config.paint.document
-        && let Some(scene) = scene(path).map_err(|error| wrong(path, &error))?
-    {
-        measure(&mut config.canvas, &scene);
-    }
-    if take.is_none() && presence != Some(Presence::There) {
-        check_speed(&config.canvas, options.slow.into())?;
-    }
-    if presence.is_none() {
-        check_memory(&config.canvas)?;
-    }
+    let presence = options.check_painting(&mut config, take.is_some())?;
     let library = library_from(config.paint.paints.as_deref())?;
     let loads = options.painting.kit.mixtures(&embedded, &library)?;
     painting_setup(&config, &library)?
@@ -187,21 +248,32 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
     let performance = match &take {
         None => None,
         Some((path, take)) => {
-            options.check_files(path, &config)?;
-            let relayed = |path: Option<&PathBuf>, kind: Kind| {
-                path.map(|path| Relayed::new(path, kind)).transpose()
-            };
-            Some(Performance {
-                take: absolute(path)?,
-                rate: options.rate,
-                brush: section.name,
-                loads: loads.iter().map(ToString::to_string).collect(),
-                snapshot: relayed(options.snapshot.as_ref(), Kind::Png)?,
-                ledger: relayed(options.painting.ledger.as_ref(), Kind::Ledger)?,
-                length_ns: take.length_ns(),
-            })
+            Some(options.performance((path, take), &config, section.name, &loads)?)
         }
     };
+    make_absolute(&mut config)?;
+    export(&config.view, VIEW)?;
+    let nodes = options.nodes(&config, performance.is_some());
+    let start = Start {
+        nodes,
+        performance,
+        // In a painting that goes on the brushes carry what they carried.
+        first_load: match (loads.into_iter().next(), presence) {
+            (None, Some(Presence::There)) => None,
+            (Some(load), _) => Some(load),
+            (None, _) => Some(first_load(&library)),
+        },
+        config,
+        sketches,
+    };
+    block_on(async {
+        let signals = EndSignals::watch()?;
+        Supervisor::start(folder, start)?.run(signals).await
+    })
+}
+
+/// Makes the paths of settings absolute, after a look at the takes among them.
+fn make_absolute(config: &mut RigConfig) -> Result<(), UserError> {
     for device in &mut config.device {
         if let Some(hand) = &mut device.hand {
             Take::read(hand)?;
@@ -228,38 +300,7 @@ pub fn run(options: &UpOptions) -> Result<i32, UserError> {
     if let Some(path) = config.view.file() {
         config.view.profile = absolute(path)?.display().to_string();
     }
-    export(&config.view, VIEW)?;
-    let window = match options.headless {
-        true => Window::Headless,
-        false => Window::Shown,
-    };
-    let hands = match performance {
-        Some(_) => Hands::Take,
-        None => Hands::Devices,
-    };
-    let nodes = plan::nodes(&config, window, hands);
-    // In a painting that goes on the brushes carry what they carried.
-    let first_load = match (loads.into_iter().next(), presence) {
-        (None, Some(Presence::There)) => None,
-        (Some(load), _) => Some(load),
-        (None, _) => Some(first_load(&library)),
-    };
-    let supervisor = Supervisor::start(folder, &config, nodes, performance, first_load)?;
-    supervisor.with_sketches(sketches).run()
-}
-
-/// The sketches of this user, tidied up; none where the system has no room for them, which is told.
-fn sketches() -> Option<Sketches> {
-    let warn = |fault: &UserError| {
-        let place = fault.place.as_deref().unwrap_or("sketches");
-        tracing::warn!(
-            "{place}: {}: a painting without a name is in memory alone",
-            fault.what
-        );
-    };
-    let sketches = Sketches::of_user().inspect_err(warn).ok()?;
-    sketch::tidy(&sketches);
-    Some(sketches)
+    Ok(())
 }
 
 /// Settings without the simulated devices that no hand moves: a painter who attached none has the mouse.

@@ -1,12 +1,32 @@
-//! All processes of the rig: their tokens, their restarts, the table, the end.
+//! The supervisor: all processes of the rig, from their start to its end.
+//!
+//! One task waits for signals, ends of processes, messages and the next time at once, and hands what happens to its parts;
+//! they return actions, which it carries out.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`crew`], [`node`] | the nodes as a state machine: restarts, time limits |
+//! | [`switch`] | another painting, as a state machine |
+//! | [`watchdog`] | nodes that make no progress |
+//! | [`turns`] | times in which the launcher stood still itself |
+//! | [`carry_out`] | actions of these, carried out |
+//! | [`requests`], [`orders`] | what is asked of the rig as a whole, and the server of it |
+//! | [`checks`] | checks of another painting, beside all else |
+//! | [`settings`], [`sketch`] | the settings and the painting's file |
+//! | [`folder`] | the rig's folder and its sockets |
+//! | [`loads`], [`shown`] | loads of new brushes; the table and the bar |
 
-mod devices;
+mod carry_out;
+mod checks;
+mod crew;
 mod folder;
 mod loads;
+mod node;
 mod orders;
+mod requests;
+mod settings;
 mod shown;
 pub(super) mod sketch;
-mod starts;
 mod switch;
 mod turns;
 mod watchdog;
@@ -14,89 +34,82 @@ mod watchdog;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use indicatif::ProgressBar;
 use maulstick_bus::sockets::SocketKeeper;
-use maulstick_bus::{Bus, Dial, RigClock, RigFolder, Subscription, Wake, ZenohBus};
-use maulstick_rig::node_handle::{CONFIG_FILE, HUB};
+use maulstick_bus::typed::Receiver;
+use maulstick_bus::{Bus, Dial, Qos, Queue, RigClock, RigFolder, Subscription, Wake, ZenohBus};
+use maulstick_rig::node_handle::HUB;
 use maulstick_rig::user_error::EXIT_FAILURE;
 use maulstick_rig::{RigConfig, Sketches, Stop, UserError};
 use maulstick_types::Mixture;
+use maulstick_types::node::NodeStatus;
 use maulstick_types::wire::topics::Topics;
 
-use crate::EXIT_INTERRUPTED;
-use crate::up::child::{Ended, Failures, Node, State};
+use crate::runtime::{EndSignals, exit_code};
 use crate::up::conductor::{Conductor, Performance};
-use crate::up::plan::{NodeSpec, Role};
+use crate::up::plan::{Hands, NodeSpec, Role};
+use crate::up::processes::{Ended, Processes};
+use checks::Checks;
+use crew::Crew;
 use folder::FolderWatch;
+use loads::Loads;
 use orders::Orders;
-use starts::FailedStarts;
-use switch::Switch;
+use settings::Settings;
+use shown::Shown;
+use switch::{CLOSE_TIME, Switch};
 use turns::Turns;
 use watchdog::Watchdog;
 
 /// Time in which all nodes end when asked; paint that is being written to a file has that of the switch.
 const GRACE: Duration = Duration::from_millis(1200);
-/// Interval at which children are checked.
-const TICK: Duration = Duration::from_millis(20);
-/// Pause before a node is started again.
-const RESTART_PAUSE: Duration = Duration::from_millis(200);
+/// Longest time between two looks at the progress of nodes, the folder, and time limits.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// What a rig is started with.
+#[derive(Debug)]
+pub struct Start {
+    /// Its settings.
+    pub config: RigConfig,
+    /// Its nodes.
+    pub nodes: Vec<NodeSpec>,
+    /// A take that is played.
+    pub performance: Option<Performance>,
+    /// Load of the brushes, unless they carry what they carried.
+    pub first_load: Option<Mixture>,
+    /// The sketches, if a painting for which nobody names a file is one.
+    pub sketches: Option<Sketches>,
+}
 
 /// A running rig.
 pub struct Supervisor {
-    folder: RigFolder,
-    config: RigConfig,
+    link: Link,
+    settings: Settings,
+    processes: Processes,
+    crew: Crew,
+    watchdog: Watchdog,
+    turns: Turns,
+    folder_watch: FolderWatch,
+    orders: Orders,
+    switch: Switch,
+    checks: Checks,
+    conductor: Option<Conductor>,
+    loads: Loads,
+    shown: Shown,
+}
+
+/// The rig's bus, and what of it concerns all nodes.
+struct Link {
     session: Arc<ZenohBus>,
     bus: Arc<dyn Bus>,
     topics: Topics,
     wake: Wake,
-    stop: Stop,
     tokens: Subscription,
-    nodes: Vec<Node>,
-    failures: Failures,
-    failed_starts: FailedStarts,
-    due: Vec<(String, Instant)>,
-    started: Vec<(String, Instant)>,
-    conductor: Option<Conductor>,
-    first_load: Option<Mixture>,
-    bar: Option<ProgressBar>,
-    shown: bool,
-    /// Paint starts with clean brushes: the painter's are to be loaded.
-    unloaded: bool,
-    orders: Orders,
-    /// A switch to another painting in progress.
-    switch: Option<Switch>,
-    turns: Turns,
-    watchdog: Watchdog,
-    folder_watch: FolderWatch,
-    /// The sketches, where paintings without a file of their own are such.
-    sketches: Option<Sketches>,
+    statuses: Receiver<NodeStatus>,
+    /// Set at the end of the rig, for work beside it.
+    stop: Stop,
 }
 
-/// A node whose token is gone for so long is taken for frozen.
-const FROZEN: Duration = Duration::from_secs(5);
-
-/// Reason for the end of the rig.
-enum End {
-    /// With this exit code.
-    Code(i32),
-    /// With a fault.
-    Fault(UserError),
-}
-
-impl Supervisor {
-    /// Opens the hub and starts the nodes.
-    ///
-    /// # Errors
-    /// A [`UserError`] where the folder, the bus or a process cannot be used.
-    pub fn start(
-        folder: RigFolder,
-        config: &RigConfig,
-        specs: Vec<NodeSpec>,
-        performance: Option<Performance>,
-        first_load: Option<Mixture>,
-    ) -> Result<Self, UserError> {
-        maulstick_bus::clear_shared_memory();
-        let clock = RigClock::start();
+impl Link {
+    fn open(folder: &RigFolder, clock: RigClock) -> Result<Self, UserError> {
         let dial = Dial {
             name: HUB.into(),
             listen: Some(folder.locator(HUB)),
@@ -104,323 +117,194 @@ impl Supervisor {
         };
         let session = Arc::new(ZenohBus::open(&dial, clock)?);
         let bus: Arc<dyn Bus> = Arc::clone(&session) as Arc<dyn Bus>;
-        let topics = Topics::new(folder.rig());
-        let wake = Wake::new();
-        let stop =
-            Stop::on_signals(&wake).map_err(|error| UserError::failure(error.to_string()))?;
-        let tokens = bus.watch(&topics.node("*"), &wake)?;
-        let path = folder.path().join(CONFIG_FILE);
-        std::fs::write(&path, config.to_toml()?)
-            .map_err(|error| UserError::writing(&path, &error))?;
-        folder.announce(HUB, clock)?;
-        let orders = Orders::new(&*bus, &topics, &wake)?;
-        let watchdog = Watchdog::new(&*bus, &topics)?;
-        let sockets = SocketKeeper::new(folder.path());
-        let conductor = match performance {
-            Some(performance) => Some(Conductor::new(&*bus, &topics, performance, &wake)?),
-            None => None,
-        };
-        let mut supervisor = Self {
-            nodes: specs.into_iter().map(Node::new).collect(),
-            folder,
-            config: config.clone(),
+        let (topics, wake) = (Topics::new(folder.rig()), Wake::new());
+        let (status, queue) = (topics.node_status("*"), Queue::Ring(256));
+        Ok(Self {
+            tokens: bus.watch(&topics.node("*"), &wake)?,
+            // They are looked at in each turn, and wake nobody.
+            statuses: Receiver::new(&*bus, &status, Qos::Background, queue, &Wake::new())?,
             session,
             bus,
             topics,
             wake,
-            stop,
-            tokens,
-            failures: Failures::default(),
-            failed_starts: FailedStarts::default(),
-            due: Vec::new(),
-            started: Vec::new(),
-            conductor,
-            first_load,
-            bar: None,
-            shown: false,
-            unloaded: true,
-            orders,
-            switch: None,
-            turns: Turns::default(),
-            watchdog,
-            folder_watch: FolderWatch::new(sockets),
-            sketches: None,
+            stop: Stop::default(),
+        })
+    }
+}
+
+impl Supervisor {
+    /// Opens the hub and starts the nodes. It has to run on the main thread: that one lives as long as the nodes.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the folder, the bus or a process cannot be used.
+    pub fn start(folder: RigFolder, start: Start) -> Result<Self, UserError> {
+        maulstick_bus::clear_shared_memory();
+        let clock = RigClock::start();
+        let link = Link::open(&folder, clock)?;
+        let sockets = SocketKeeper::new(folder.path());
+        let settings = Settings {
+            folder,
+            config: start.config,
+            sketches: start.sketches,
         };
-        for place in 0..supervisor.nodes.len() {
-            supervisor.try_start(place)?;
+        settings.write()?;
+        settings.folder.announce(HUB, clock)?;
+        let (bus, topics, wake) = (&*link.bus, &link.topics, &link.wake);
+        let conductor = start
+            .performance
+            .map(|performance| Conductor::new(bus, topics, performance, wake));
+        let mut supervisor = Self {
+            orders: Orders::new(bus, topics, wake)?,
+            checks: Checks::new(wake),
+            conductor: conductor.transpose()?,
+            link,
+            settings,
+            processes: Processes::new()?,
+            crew: Crew::new(start.nodes),
+            watchdog: Watchdog::default(),
+            turns: Turns::default(),
+            folder_watch: FolderWatch::new(sockets),
+            switch: Switch::default(),
+            loads: Loads {
+                first: start.first_load,
+                are_due: true,
+            },
+            shown: Shown::default(),
+        };
+        let nodes = supervisor.crew.nodes.iter();
+        let names: Vec<String> = nodes.map(|node| node.spec.name.clone()).collect();
+        for name in names {
+            supervisor.try_start(&name, Instant::now())?;
         }
         Ok(supervisor)
-    }
-
-    /// Gives a painting for which nobody names a file one of a sketch.
-    #[must_use]
-    pub fn with_sketches(mut self, sketches: Option<Sketches>) -> Self {
-        self.sketches = sketches;
-        self
-    }
-
-    /// Starts a node, now or when the system allows it.
-    fn start_node(&mut self, place: usize) -> Result<(), UserError> {
-        self.try_start(place)
-            .or_else(|fault| self.put_off(place, fault))
-    }
-
-    fn try_start(&mut self, place: usize) -> Result<(), UserError> {
-        // It dials the sockets of the others once.
-        self.folder_watch.hasten();
-        self.watch_folder();
-        let node = &mut self.nodes[place];
-        node.start(self.folder.path())?;
-        let name = node.spec.name.clone();
-        self.failed_starts.forget(&name);
-        self.started.retain(|(other, _)| *other != name);
-        self.started.push((name, Instant::now()));
-        Ok(())
     }
 
     /// Keeps the rig running until it is told to stop, and returns the exit code.
     ///
     /// # Errors
     /// A [`UserError`] where a node that the rig cannot do without does not stay up.
-    pub fn run(&mut self) -> Result<i32, UserError> {
+    pub async fn run(mut self, mut signals: EndSignals) -> Result<i32, UserError> {
         let end = loop {
-            if self.stop.requested() {
-                break End::Code(self.stop.exit_code(EXIT_INTERRUPTED));
-            }
-            match self.turn() {
+            let now = Instant::now();
+            let due = self.crew.next_due();
+            let rest = due.map_or(LOOK, |due| due.saturating_duration_since(now).min(LOOK));
+            let happened = tokio::select! {
+                signal = signals.next() => break Ok(exit_code(signal)),
+                (name, ended) = self.processes.ended() => self.process_ended(&name, ended),
+                () = self.link.wake.ringing() => Ok(None),
+                () = tokio::time::sleep(rest) => Ok(None),
+            };
+            match happened.and_then(|end| match end {
+                None => self.turn(),
+                end => Ok(end),
+            }) {
                 Ok(None) => {}
-                Ok(Some(code)) => break End::Code(code),
-                Err(fault) => break End::Fault(fault),
+                Ok(Some(code)) => break Ok(code),
+                Err(fault) => break Err(fault),
             }
-            self.wake.wait(TICK);
         };
-        if let Some(bar) = self.bar.take() {
-            bar.finish_and_clear();
-        }
-        let is_kept = self.stop_all();
+        self.shown.end();
+        self.link.stop.request();
+        let is_kept = self.stop_all().await;
         // Of a node that was killed nobody else would.
         maulstick_bus::clear_shared_memory();
-        self.folder.withdraw();
-        self.session.close();
-        self.end_sketch();
+        self.settings.folder.withdraw();
+        self.link.session.close();
+        self.settings.end_sketch();
         match end {
             // Paint itself said why.
-            End::Code(0) if !is_kept => Ok(EXIT_FAILURE),
-            End::Code(code) => Ok(code),
-            End::Fault(fault) => Err(fault),
+            Ok(0) if !is_kept => Ok(EXIT_FAILURE),
+            end => end,
         }
     }
 
     /// One look at everything; an exit code where the rig is to end.
     fn turn(&mut self) -> Result<Option<i32>, UserError> {
-        self.begin_turn();
-        self.watch_tokens();
-        if let Some(code) = self.watch_children()? {
-            return Ok(Some(code));
-        }
-        self.end_frozen();
-        self.end_hanging();
-        self.watch_folder();
-        self.restart_due()?;
-        self.watch_starts()?;
-        self.show_when_ready();
-        self.load_when_ready();
-        self.take_orders();
-        self.go_on_switching()?;
-        self.conduct()
-    }
-
-    fn watch_tokens(&mut self) {
-        while let Some(arrival) = self.tokens.try_recv() {
-            let Some(name) = self
-                .topics
-                .relative(&arrival.key)
-                .and_then(|key| key.strip_prefix("node/"))
-            else {
-                continue;
-            };
-            let node = self.nodes.iter_mut().find(|node| node.spec.name == name);
-            let Some(node) = node else {
-                continue;
-            };
-            node.missed = (!arrival.present).then(Instant::now);
-            if node.state == State::Starting && arrival.present {
-                node.state = State::Running;
-            }
-        }
-    }
-
-    fn watch_children(&mut self) -> Result<Option<i32>, UserError> {
-        let ended: Vec<(String, Ended)> = self
-            .nodes
-            .iter_mut()
-            .filter_map(|node| node.ended().map(|ended| (node.spec.name.clone(), ended)))
-            .collect();
-        for (name, ended) in ended {
-            // One node's end may have taken others out of the rig.
-            let Some(place) = self.nodes.iter().position(|node| node.spec.name == name) else {
-                continue;
-            };
-            let role = self.nodes[place].spec.role;
-            if self.nodes[place].leaving_since.is_some() || self.is_opening(role) {
-                self.has_left(place, ended)?;
-                continue;
-            }
-            self.give_saving_up(role);
-            match ended {
-                Ended::Well if self.may_end(role) => {
-                    self.nodes[place].state = State::Ended;
-                    if role == Role::Window {
-                        return Ok(Some(0));
-                    }
-                }
-                Ended::Refused(code) if role == Role::Player => return Ok(Some(code)),
-                Ended::Refused(_) => {
-                    self.nodes[place].state = State::Failed;
-                    if !role.is_spare() {
-                        return Err(self.failed(&name));
-                    }
-                    tracing::error!("node '{name}' failed and is not started again");
-                }
-                // A node that somebody stopped is missed like one that crashed.
-                Ended::Well | Ended::Badly => {
-                    let again = self.nodes[place].fail(&mut self.failures);
-                    if !again {
-                        if role.is_spare() {
-                            tracing::error!("node '{name}' failed and is not started again");
-                            continue;
-                        }
-                        return Err(self.failed(&name));
-                    }
-                    let how = if ended == Ended::Well {
-                        "ended"
-                    } else {
-                        "failed"
-                    };
-                    tracing::warn!("node '{name}' {how} and is started again");
-                    self.due.push((name, Instant::now() + RESTART_PAUSE));
-                    self.replay_after(role);
-                }
-            }
-        }
-        Ok(None)
-    }
-
-    /// True if the rig can do without a node that ended with success.
-    fn may_end(&self, role: Role) -> bool {
-        match role {
-            Role::Paint | Role::Brush | Role::Recorder => false,
-            // While its take is conducted it stays, even after the take's end.
-            Role::Player => self.conductor.is_none(),
-            Role::Device | Role::Window => true,
-        }
-    }
-
-    fn failed(&self, name: &str) -> UserError {
-        UserError::failure(format!("node '{name}' does not stay up"))
-            .at(self.topics.node(name))
-            .help("its own messages above say why; three failures in ten seconds are the limit")
-    }
-
-    /// A take whose brush or paint died is played again from its start; what was painted of it goes.
-    fn replay_after(&mut self, role: Role) {
-        let Some(conductor) = &mut self.conductor else {
-            return;
-        };
-        if role == Role::Window || role.is_spare() {
-            return;
-        }
-        conductor.begin_again();
-        self.give_saving_up(Role::Paint);
-        let again = |role: Role| matches!(role, Role::Paint | Role::Brush | Role::Player);
-        for node in self.nodes.iter_mut().filter(|node| again(node.spec.role)) {
-            if node.pid().is_some() {
-                node.kill();
-                node.state = State::Restarting;
-                self.due.push((node.spec.name.clone(), Instant::now()));
-            }
-        }
-        self.due
-            .retain(|(name, _)| name != crate::processes::PLAYER);
-        self.nodes.retain(|node| node.spec.role != Role::Player);
-    }
-
-    fn restart_due(&mut self) -> Result<(), UserError> {
         let now = Instant::now();
-        let due: Vec<String> = self
-            .due
-            .iter()
-            .filter(|(_, when)| *when <= now)
-            .map(|(name, _)| name.clone())
-            .collect();
-        self.due.retain(|(name, _)| !due.contains(name));
-        for name in due {
-            if let Some(place) = self.nodes.iter().position(|node| node.spec.name == name) {
-                self.nodes[place].restarts += 1;
-                // A painting in a document comes back with what its brushes carry.
-                let forgets = self.config.paint.document.is_none();
-                self.unloaded |= forgets && self.nodes[place].spec.role == Role::Paint;
-                self.start_node(place)?;
-            }
+        if let Some(lost) = self.turns.begin(now) {
+            self.watchdog.postpone(lost);
+            self.crew.postpone(lost);
+            self.switch.postpone(lost);
         }
-        Ok(())
+        self.take_tokens(now);
+        self.look(now)?;
+        if self.crew.is_ready() {
+            self.come_up();
+        }
+        self.take_requests(now);
+        self.follow_switch(now)?;
+        self.conduct(now)
     }
 
-    /// Kills nodes whose token is gone while their process is not: they are frozen, and started again
-    /// as those that crash. Who is asked to leave has as long; paint, which still writes, has longer.
-    fn end_frozen(&mut self) {
-        for node in &mut self.nodes {
-            let long = node
-                .leaving_since
-                .is_some_and(|since| since.elapsed() > FROZEN);
-            if long && node.spec.role != Role::Paint {
-                node.strike();
+    fn take_tokens(&mut self, now: Instant) {
+        while let Some(arrival) = self.link.tokens.try_recv() {
+            let key = self.link.topics.relative(&arrival.key);
+            if let Some(name) = key.and_then(|key| key.strip_prefix("node/")) {
+                self.crew.token(name, arrival.present, now);
             }
         }
-        let running = self
-            .nodes
-            .iter_mut()
-            .filter(|node| node.state == State::Running);
-        for node in running {
-            let long = node.missed.is_some_and(|since| since.elapsed() > FROZEN);
-            if long && node.pid().is_some() {
-                tracing::warn!("node '{}' does not answer and is ended", node.spec.name);
-                node.missed = None;
-                node.strike();
-            }
+        while let Some(status) = self.link.statuses.try_recv() {
+            let name = self.link.topics.middle(&status.key).unwrap_or_default();
+            self.watchdog.hear(name, &status.message, now);
         }
     }
 
-    /// True if no node is still starting; a device that failed for good delays nothing.
-    fn ready(&self) -> bool {
-        self.nodes
-            .iter()
-            .all(|node| !matches!(node.state, State::Starting | State::Restarting))
+    /// Carries out what time alone asks for.
+    fn look(&mut self, now: Instant) -> Result<(), UserError> {
+        let config = &self.settings.config;
+        let mut actions = self.crew.look(now, config, self.switch.opened());
+        // A painting on its way to another file may hold paint up.
+        let spared = self.switch.is_busy().then_some(Role::Paint);
+        actions.extend(self.watchdog.look(&self.crew.nodes, spared, now));
+        let folder = &self.settings.folder;
+        for name in self.folder_watch.watch(folder, &self.crew.nodes, now) {
+            actions.extend(self.crew.renew(&name, now));
+        }
+        self.carry_out(actions, now)
+    }
+
+    /// All nodes are there: the table is shown, and new brushes loaded. A take that is played brings its own loads.
+    fn come_up(&mut self) {
+        let take = self.conductor.as_ref();
+        let take_ns = take.map(|conductor| conductor.performance.length_ns);
+        self.shown.show(&self.crew, &self.settings, take_ns);
+        if self.loads.are_due && self.conductor.is_none() {
+            let Link {
+                bus, topics, stop, ..
+            } = &self.link;
+            self.loads.send(bus, topics, &self.settings.config, stop);
+        }
+        self.loads.are_due = false;
+    }
+
+    /// Where the motion of the brushes comes from.
+    fn hands(&self) -> Hands {
+        match self.conductor {
+            Some(_) => Hands::Take,
+            None => Hands::Devices,
+        }
     }
 
     /// Starts the player when all others are ready; has the picture written at the take's end.
-    fn conduct(&mut self) -> Result<Option<i32>, UserError> {
-        let ready = self.ready();
+    fn conduct(&mut self, now: Instant) -> Result<Option<i32>, UserError> {
         let Some(conductor) = &mut self.conductor else {
             return Ok(None);
         };
-        if !self.nodes.iter().any(|node| node.spec.role == Role::Player) {
-            if ready {
-                let spec = conductor.player(&self.config);
-                self.nodes.push(Node::new(spec));
-                self.start_node(self.nodes.len() - 1)?;
+        if self.crew.of_role(Role::Player).is_none() {
+            if self.crew.is_ready() {
+                let spec = conductor.player(&self.settings.config);
+                let name = spec.name.clone();
+                self.crew.put(spec);
+                self.start_node(&name, now)?;
             }
             return Ok(None);
         }
-        let position_ns = conductor.follow();
-        if let Some(bar) = &self.bar {
-            bar.set_position(position_ns / 1_000_000);
-        }
-        if !conductor.snapshot(&self.bus, &self.topics)? {
+        self.shown.position(conductor.follow());
+        if !conductor.snapshot(&self.link.bus, &self.link.topics)? {
             return Ok(None);
         }
-        let window = self.nodes.iter().any(|node| node.spec.role == Role::Window);
-        if window && conductor.performance.snapshot.is_none() {
+        let has_window = self.crew.of_role(Role::Window).is_some();
+        if has_window && conductor.performance.snapshot.is_none() {
             // The painter looks at what was painted; the window's end is the rig's.
             self.conductor = None;
             return Ok(None);
@@ -430,40 +314,62 @@ impl Supervisor {
 
     /// Asks all nodes to end, and ends those that do not; false where paint says that it could not keep
     /// the painting.
-    fn stop_all(&mut self) -> bool {
-        let for_paint = self.closing_time();
-        if for_paint > GRACE {
+    async fn stop_all(&mut self) -> bool {
+        let for_paint = if self.switch.is_saving() {
             tracing::info!("the rig ends when the painting is in its file");
-        }
+            CLOSE_TIME
+        } else {
+            GRACE
+        };
         // The recorder ends last: it has what the others still send.
-        let is_kept = self.stop_those(|role| role != Role::Recorder, for_paint);
-        self.stop_those(|_| true, GRACE) && is_kept
+        let is_kept = self
+            .stop_those(|role| role != Role::Recorder, for_paint)
+            .await;
+        self.stop_those(|_| true, GRACE).await && is_kept
     }
 
-    /// Asks the nodes of some roles to end, and ends those that do not; false where paint ended badly.
-    fn stop_those(&mut self, is_meant: fn(Role) -> bool, for_paint: Duration) -> bool {
-        let meant = |node: &&mut Node| is_meant(node.spec.role);
-        let nodes = self.nodes.iter_mut().filter(meant);
-        nodes.for_each(Node::terminate);
-        let asked = Instant::now();
+    /// Asks the nodes of some roles to end, and kills those that do not; false where paint ended badly.
+    async fn stop_those(&mut self, is_meant: fn(Role) -> bool, for_paint: Duration) -> bool {
+        let nodes = self
+            .crew
+            .nodes
+            .iter()
+            .filter(|node| is_meant(node.spec.role));
+        let nodes: Vec<(String, Role)> = nodes
+            .map(|node| (node.spec.name.clone(), node.spec.role))
+            .collect();
+        for (name, _) in &nodes {
+            self.processes.terminate(name);
+        }
+        let asked = tokio::time::Instant::now();
         let mut is_kept = true;
         loop {
-            let mut waits = false;
-            for node in self.nodes.iter_mut().filter(meant) {
-                let failed = matches!(node.ended(), Some(Ended::Refused(_) | Ended::Badly));
-                is_kept &= !(failed && node.spec.role == Role::Paint);
-                let grace = match node.spec.role {
-                    Role::Paint => for_paint,
-                    _ => GRACE,
-                };
-                waits |= node.pid().is_some() && asked.elapsed() < grace;
+            let running = nodes.iter().filter(|(name, _)| self.processes.runs(name));
+            let graces = running.map(|(_, role)| match role {
+                Role::Paint => for_paint,
+                _ => GRACE,
+            });
+            let Some(grace) = graces.max() else {
+                return is_kept;
+            };
+            tokio::select! {
+                (name, ended) = self.processes.ended() => {
+                    let is_paint = nodes.contains(&(name, Role::Paint));
+                    is_kept &= !(is_paint && ended != Ended::Well);
+                }
+                () = tokio::time::sleep_until(asked + grace) => break,
             }
-            if !waits {
-                break;
-            }
-            self.wake.wait(Duration::from_millis(5));
         }
-        self.nodes.iter_mut().filter(meant).for_each(Node::kill);
+        for (name, _) in &nodes {
+            self.processes.kill(name);
+        }
+        let dead = async {
+            while nodes.iter().any(|(name, _)| self.processes.runs(name)) {
+                self.processes.ended().await;
+            }
+        };
+        // One that waits for a disk dies after that.
+        tokio::time::timeout(GRACE, dead).await.ok();
         is_kept
     }
 }

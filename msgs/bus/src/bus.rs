@@ -112,7 +112,7 @@ pub trait Publish: Send {
 pub struct Subscription {
     /// The queue.
     pub inbox: Inbox<Arrival>,
-    pub(crate) _keep: Box<dyn Any + Send>,
+    pub(crate) _keep: Box<dyn Any + Send + Sync>,
 }
 
 impl Subscription {
@@ -203,7 +203,7 @@ impl Request {
 /// Queries on a key expression, until dropped.
 pub struct Server {
     pub(crate) inbox: Inbox<Request>,
-    pub(crate) _keep: Box<dyn Any + Send>,
+    pub(crate) _keep: Box<dyn Any + Send + Sync>,
 }
 
 impl Server {
@@ -265,7 +265,7 @@ impl Pending {
 
 /// Kept for as long as a node lives; dropped, or with its process, it disappears for all.
 pub struct Token {
-    pub(crate) _keep: Box<dyn Any + Send>,
+    pub(crate) _keep: Box<dyn Any + Send + Sync>,
 }
 
 /// A transport with the rig's clock.

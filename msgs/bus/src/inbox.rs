@@ -5,8 +5,10 @@
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
+
+use tokio::sync::Notify;
 
 /// Messages that a subscription keeps while its thread is busy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,10 +30,17 @@ pub struct Counts {
     pub dropped: u64,
 }
 
-/// Wakes one thread for many inboxes.
+/// Wakes one thread, or one task, for many inboxes.
 #[derive(Clone, Debug, Default)]
 pub struct Wake {
-    inner: Arc<(Mutex<bool>, Condvar)>,
+    inner: Arc<WakeInner>,
+}
+
+#[derive(Debug, Default)]
+struct WakeInner {
+    rung: Mutex<bool>,
+    thread: Condvar,
+    task: Notify,
 }
 
 impl Wake {
@@ -43,19 +52,33 @@ impl Wake {
 
     /// Rings: the waiting thread, or the next one to wait, continues.
     pub fn ring(&self) {
-        let (rung, condition) = &*self.inner;
-        *rung.lock().unwrap_or_else(PoisonError::into_inner) = true;
-        condition.notify_one();
+        *self.rung() = true;
+        self.inner.thread.notify_one();
+        self.inner.task.notify_one();
+    }
+
+    /// Waits until rung. Dropped before that, it leaves a ring to the next one that waits.
+    pub async fn ringing(&self) {
+        while !std::mem::take(&mut *self.rung()) {
+            self.inner.task.notified().await;
+        }
     }
 
     /// Waits until rung or until `limit` has passed; whether it was rung.
     pub fn wait(&self, limit: Duration) -> bool {
-        let (rung, condition) = &*self.inner;
-        let guard = rung.lock().unwrap_or_else(PoisonError::into_inner);
-        let (mut guard, _) = condition
-            .wait_timeout_while(guard, limit, |rung| !*rung)
+        let (mut guard, _) = self
+            .inner
+            .thread
+            .wait_timeout_while(self.rung(), limit, |rung| !*rung)
             .unwrap_or_else(PoisonError::into_inner);
         std::mem::take(&mut *guard)
+    }
+
+    fn rung(&self) -> MutexGuard<'_, bool> {
+        self.inner
+            .rung
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -181,5 +204,19 @@ mod tests {
         wake.ring();
         assert!(wake.wait(Duration::ZERO));
         assert!(!wake.wait(Duration::ZERO));
+    }
+
+    #[tokio::test]
+    async fn a_ring_before_the_wait_of_a_task_is_not_lost_and_rings_once() {
+        let wake = Wake::new();
+        wake.ring();
+        wake.ringing().await;
+        tokio::select! {
+            biased;
+            () = wake.ringing() => panic!("it was rung once"),
+            () = tokio::task::yield_now() => {}
+        }
+        let other = wake.clone();
+        tokio::join!(wake.ringing(), async { other.ring() });
     }
 }

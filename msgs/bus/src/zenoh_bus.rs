@@ -369,7 +369,7 @@ impl Bus for ZenohBus {
             .session
             .declare_subscriber(key.to_owned())
             .callback(move |sample| arrive(&to, clock, &sample));
-        let keep: Box<dyn std::any::Any + Send> = if qos == Qos::Cached {
+        let keep: Box<dyn std::any::Any + Send + Sync> = if qos == Qos::Cached {
             let subscriber = builder
                 .history(
                     HistoryConfig::default()

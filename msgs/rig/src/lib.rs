@@ -14,6 +14,7 @@
 //! | [`pulse`] | the status of a node, by which the launcher sees that it makes progress |
 //! | [`sketches`] | paintings that have no name yet, in the user's state folder |
 //! | [`table_file`] | tables in files that a user names |
+//! | [`whole_path`](mod@whole_path) | paths as messages carry them |
 //! | [`stop`] | the stop flag: a signal, or the launcher's end |
 //!
 //! A crate of its own, so that daemons, window and launcher share settings and conduct without knowing each other.
@@ -76,6 +77,7 @@ pub mod stop;
 pub mod table_file;
 pub mod user_devices;
 pub mod user_error;
+pub mod whole_path;
 
 pub use asker::asker;
 pub use config::RigConfig;
@@ -84,3 +86,4 @@ pub use node_handle::{NodeArgs, NodeHandle};
 pub use sketches::Sketches;
 pub use stop::Stop;
 pub use user_error::UserError;
+pub use whole_path::whole_path;

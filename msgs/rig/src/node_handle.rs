@@ -1,6 +1,6 @@
 //! Joining a rig, living in it, leaving it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -62,40 +62,48 @@ pub struct NodeHandle {
 }
 
 impl NodeHandle {
-    /// Joins a running rig.
+    /// Joins a running rig as one of its processes: signals, and the end of its launcher, stop it.
     ///
     /// # Errors
     /// A [`UserError`] where the rig does not run or cannot be reached.
     pub fn join(args: &NodeArgs) -> Result<Self, UserError> {
-        let (folder, info) = RigFolder::join_at(&args.folder)?;
+        let mut member = Self::guest(&args.folder, &args.node)?;
+        let system = |error: std::io::Error| UserError::failure(error.to_string());
+        member.stop = Stop::on_signals(&member.wake).map_err(system)?;
+        if args.guarded {
+            member.stop.on_launcher_end(&member.wake).map_err(system)?;
+        }
+        Ok(member)
+    }
+
+    /// Joins a running rig for a part of a process: only [`Stop::request`] stops it.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the rig does not run or cannot be reached.
+    pub fn guest(folder: &Path, node: &str) -> Result<Self, UserError> {
+        let (folder, info) = RigFolder::join_at(folder)?;
         let config = RigConfig::read(&folder.path().join(CONFIG_FILE))?;
         let dial = Dial {
-            name: args.node.clone(),
-            listen: Some(folder.locator(&args.node)),
+            name: node.to_owned(),
+            listen: Some(folder.locator(node)),
             connect: vec![info.endpoint.clone()],
         };
         let clock = RigClock::with_offset(info.clock_offset_ns);
-        let open = if SHARING.contains(&args.node.as_str()) {
+        let open = if SHARING.contains(&node) {
             ZenohBus::open_sharing
         } else {
             ZenohBus::open
         };
         let session = Arc::new(open(&dial, clock)?);
-        let wake = Wake::new();
-        let system = |error: std::io::Error| UserError::failure(error.to_string());
-        let stop = Stop::on_signals(&wake).map_err(system)?;
-        if args.guarded {
-            stop.on_launcher_end(&wake).map_err(system)?;
-        }
         Ok(Self {
-            node: args.node.clone(),
+            node: node.to_owned(),
             bus: Arc::clone(&session) as Arc<dyn Bus>,
             topics: Topics::new(&info.rig),
             folder: folder.path().to_owned(),
             config,
             clock,
-            wake,
-            stop,
+            wake: Wake::new(),
+            stop: Stop::default(),
             work: WorkCount::default(),
             session,
             token: None,

@@ -17,7 +17,8 @@ use maulstick_optics::light::HeightField;
 use maulstick_optics::light::shadow::REACH;
 use maulstick_types::paint::TILE;
 
-use crate::appearance::{Appearance, Bakery};
+use crate::appearance::Appearance;
+use crate::bakery::Bakery;
 use crate::blank_surface::BlankSurface;
 use crate::display::DisplayTile;
 
@@ -242,7 +243,14 @@ impl<'a> Banded<'a> {
         let ground = self.bare.ground.tile(id);
         let baked = self.bare.baked(tile).map(|stack| {
             let mut alone = CpuFilms::with_threads(NonZero::<usize>::MIN);
-            bakery.planes((self.look, &mut alone), 0, id, (stack, ground.under()))
+            let under = ground.under();
+            bakery.planes(
+                (self.look, &mut alone),
+                self.bare.shown,
+                0,
+                id,
+                (stack, under),
+            )
         });
         let under = baked
             .as_deref()

@@ -10,6 +10,7 @@ use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_optics::{FilmPlanes, Studio, Under};
 use maulstick_types::paint::TILE;
 
+use crate::colouring::Colouring;
 use crate::display::WetFilms;
 use crate::ground::Ground;
 use crate::heap::{HeapCells, WELL_M};
@@ -148,14 +149,15 @@ impl BlankSurface {
     /// The wet films of a tile on it that the optics shade; empty where nothing was painted.
     #[must_use]
     pub fn films(&self, tile: Option<&Tile>) -> WetFilms {
-        let tile = tile.filter(|_| !self.shown.has_own_colours());
-        tile.map(|tile| self.shown.films(tile)).unwrap_or_default()
+        let tile = tile.filter(|_| self.shown.colouring() == Colouring::Films);
+        let films = tile.map(|tile| WetFilms(self.shown.films(&tile.wet())));
+        films.unwrap_or_default()
     }
 
     /// The dry layers of a tile on it that the optics bake.
     #[must_use]
     pub fn baked<'a>(&self, tile: Option<&'a Tile>) -> Option<&'a Arc<DryStack>> {
-        let tile = tile.filter(|_| !self.shown.has_own_colours());
+        let tile = tile.filter(|_| self.shown.colouring() == Colouring::Films);
         tile.and_then(Tile::dry)
     }
 

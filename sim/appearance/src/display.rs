@@ -11,9 +11,10 @@ use maulstick_optics::light::gloss::{merged_gloss, roughness};
 use maulstick_optics::{FilmPlanes, Studio, Under};
 use maulstick_types::paint::TILE;
 
-use crate::appearance::{Appearance, thickness};
+use crate::appearance::Appearance;
 use crate::blank_surface::BlankSurface;
-use crate::show_paint::Seen;
+use crate::colouring::Colouring;
+use crate::show_paint::{Films, Seen, counted_films};
 
 /// A tile as it is shown, before light.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,13 +31,14 @@ pub struct DisplayTile {
 
 /// Thickness of each wet paint of a tile, m, by slot.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct WetFilms(Vec<(usize, Vec<f32>)>);
+pub struct WetFilms(pub(crate) Films);
 
 impl WetFilms {
-    /// The wet films of a tile; empty where nothing was painted.
+    /// The wet films of a tile by its counts; empty where nothing was painted.
     #[must_use]
     pub fn of(tile: Option<&Tile>) -> Self {
-        Self(tile.map(|tile| thickness(&tile.wet())).unwrap_or_default())
+        let films = tile.map(|tile| counted_films(&tile.wet()));
+        Self(films.unwrap_or_default())
     }
 
     /// The planes by slot, as the optics take them.
@@ -63,14 +65,8 @@ impl WetFilms {
     }
 }
 
-/// Height of a tile's counted paint, wet and dry, m.
-pub(crate) fn painted_height(tile: &Tile) -> Vec<f32> {
-    let dry = tile.dry().map(|stack| &**stack);
-    height(&thickness(&tile.wet()), dry)
-}
-
 /// Height of wet films and of what has dried under them, m.
-fn height(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>) -> Vec<f32> {
+pub(crate) fn height(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>) -> Vec<f32> {
     let mut height: Vec<f32> = match dry {
         Some(stack) => stack
             .height()
@@ -160,7 +156,8 @@ impl DisplayTile {
         (films, rgb): (&WetFilms, [Vec<f32>; 3]),
         look: &Appearance,
     ) -> Self {
-        let own = bare.shown.has_own_colours().then(|| WetFilms::of(tile));
+        let is_shaded = bare.shown.colouring() == Colouring::Films;
+        let own = (!is_shaded).then(|| WetFilms::of(tile));
         let mut shown = Self::of(tile, (own.as_ref().unwrap_or(films), rgb), look.thinner);
         if let Some(tile) = tile {
             let seen = Seen {

@@ -8,7 +8,7 @@
 //! | [`light`], [`lamp`] | the scene's light as input of the optics, and its lamp over a surface |
 //! | [`ground`], [`blank_surface`] | what lies under the paint, and a surface without any |
 //! | [`heap`] | the shape of paint in a well |
-//! | [`show_paint`] | what the planes of a paint model mean to the optics |
+//! | [`show_paint`], [`colouring`] | what the planes of a paint model mean to the optics, and how counts become colours |
 //! | [`display`] | a tile as it is shown before light: colour, gloss, height |
 //! | [`bands`] | a surface row of tiles by row of tiles |
 //! | [`picture`] | surfaces under light as pixels |
@@ -51,8 +51,10 @@
 //!   drew what.
 
 mod appearance;
+mod bakery;
 pub mod bands;
 pub mod blank_surface;
+pub mod colouring;
 pub mod display;
 pub mod ground;
 pub mod heap;
@@ -61,4 +63,5 @@ pub mod light;
 pub mod picture;
 pub mod show_paint;
 
-pub use appearance::{Appearance, Bakery};
+pub use appearance::Appearance;
+pub use bakery::Bakery;

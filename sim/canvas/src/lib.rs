@@ -8,7 +8,7 @@
 //! | [`quantum`] | the unit in which paint is counted |
 //! | [`planes`], [`own_plane`] | planes of counts, and those that a paint model keeps of its own |
 //! | [`tile`], [`store`] | tiles, the tiles of a surface with their versions |
-//! | [`dry`], [`rewet`], [`wet_over`] | what has dried, layer over layer, what stayed wet over it, and what becomes wet again |
+//! | [`dry`], [`rewet`] | what has dried, layer over layer, and what becomes wet again |
 //! | [`page`] | pages in memory, and the document behind them |
 //! | [`relief`] | what catches paint: tooth, made or from a picture, and the ride of a bristle over it |
 //! | [`window`] | leased tiles as contiguous planes, on which kernels work |
@@ -69,7 +69,6 @@
 pub mod assets;
 pub mod dry;
 mod error;
-pub mod layered;
 pub mod own_plane;
 pub mod page;
 pub mod planes;
@@ -78,7 +77,6 @@ pub mod relief;
 pub mod rewet;
 pub mod store;
 pub mod tile;
-pub mod wet_over;
 pub mod window;
 
 pub use error::EditError;

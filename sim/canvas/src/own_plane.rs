@@ -6,6 +6,11 @@ use std::sync::Arc;
 
 use crate::planes::TILE_CELLS;
 
+/// Planes that a model keeps for each paint, at most: a layer of it each.
+pub const LAYERS_MOST: usize = 512;
+/// Kinds from here on are notes about the paint of their page.
+const NOTES: u16 = 0xFF00;
+
 /// Type of the values of a plane, little-endian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ValueType {
@@ -41,6 +46,12 @@ pub struct OwnShape {
 }
 
 impl OwnShape {
+    /// True of a note about the paint of its page, which goes with the last of that paint.
+    #[must_use]
+    pub fn is_note(&self) -> bool {
+        self.kind >= NOTES
+    }
+
     /// Bytes of a cell.
     #[must_use]
     pub fn cell_bytes(&self) -> usize {

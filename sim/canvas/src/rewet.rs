@@ -7,7 +7,6 @@ use crate::page::Page;
 use crate::planes::{Planes, TILE_CELLS, painted};
 use crate::quantum::{CELL_MAX, SLOTS};
 use crate::tile::Tile;
-use crate::wet_over::is_wet_over;
 
 /// A tile whose newest layers are wet again.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,7 +76,7 @@ impl Wet {
         let own = layer
             .own()
             .iter()
-            .filter(|plane| !(bare && is_wet_over(plane)));
+            .filter(|plane| !(bare && plane.shape.is_note()));
         any.then(|| rest.with_own(own.cloned()))
     }
 }

@@ -4,12 +4,10 @@ use std::sync::Arc;
 
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::quantum::QUANTUM_M;
-use maulstick_dab::volume::{OPAQUE, UNIT};
 
 use crate::cell::{CellColour, FilmCell, VolumeCell};
-use crate::colouring::Colouring;
 use crate::fit::{Fitter, Found, Wanted, whole};
-use crate::shown::{Kind, Shown};
+use crate::shown::{Kind, Paints, Shown};
 use crate::tile::Converter;
 
 /// Distance, ΔE₀₀, from which a fit is tried from elsewhere, too.
@@ -103,7 +101,9 @@ impl<'a> CellFit<'a> {
             Shown::Volumes(rgb) => {
                 let values = rgb.iter().map(|plane| f64::from(plane[cell]));
                 asked.under.extend(values);
-                asked.hides = kind.hides(cell, asked.all as f32).into();
+                if let Paints::Volumes(volumes) = &self.converter.to {
+                    asked.hides = kind.hides(volumes.of, cell, asked.all as f32).into();
+                }
             }
         }
         if self.asked != self.last || self.counts.is_empty() {
@@ -123,8 +123,8 @@ impl<'a> CellFit<'a> {
         self.own.extend(asked.counts.iter().map(share));
         let palette = &self.converter.palette;
         self.over = 0.0;
-        match self.converter.to {
-            Colouring::Films => {
+        match &self.converter.to {
+            Paints::Films => {
                 let film = FilmCell {
                     palette,
                     under: &asked.under,
@@ -132,26 +132,26 @@ impl<'a> CellFit<'a> {
                 };
                 self.shares(&film, asked.colour);
             }
-            Colouring::Volumes => {
+            Paints::Volumes(volumes) => {
                 let under = [0, 1, 2].map(|channel| asked.under[channel]);
                 let most = match kind {
                     Kind::Wet => asked.hides,
                     Kind::Dry { .. } => asked.opacity.min(1.0),
                 };
                 let hides = match asked.hides < most {
-                    true => self.blended(&asked, under, most),
+                    true => self.blended(&asked, (&volumes.encoded, under), most),
                     false => asked.hides,
                 };
                 let volume = VolumeCell {
                     palette,
-                    encoded: &palette.encoded,
+                    encoded: &volumes.encoded,
                     under,
                     hides,
                 };
                 self.shares(&volume, asked.colour);
                 if hides > asked.hides {
                     let part = (hides / asked.opacity).min(1.0);
-                    let stays = f64::from(OPAQUE * UNIT) - asked.all as f64 / part;
+                    let stays = f64::from(volumes.of.opaque) - asked.all as f64 / part;
                     self.over = stays.max(0.0) as f32;
                 }
             }
@@ -162,9 +162,14 @@ impl<'a> CellFit<'a> {
 
     /// Share of what is below that a dry layer is to replace, between what its volume hides and `most`: what lies below
     /// counts as one of its paints.
-    fn blended(&mut self, asked: &Asked, under: [f64; 3], most: f64) -> f64 {
+    fn blended(
+        &mut self,
+        asked: &Asked,
+        (paints, under): (&[[f64; 3]], [f64; 3]),
+        most: f64,
+    ) -> f64 {
         let palette = &self.converter.palette;
-        let encoded: Vec<[f64; 3]> = palette.encoded.iter().copied().chain([under]).collect();
+        let encoded: Vec<[f64; 3]> = paints.iter().copied().chain([under]).collect();
         let volume = VolumeCell {
             palette,
             encoded: &encoded,

@@ -1,14 +1,13 @@
 //! Conversion between paint models that show the same counts in different colours.
 //!
 //! Every model counts its paint by slot, so a conversion moves no volume: each cell keeps the quanta of each of its layers,
-//! and its thinner. Only the colours differ. Kubelka-Munk films ([`Colouring::Films`]) mix yellow and blue to green, dAb's
-//! volumes ([`Colouring::Volumes`]) to grey; a thick dark glaze is nearly black as a film and has its tint as a volume. So
+//! and its thinner. Only the colours differ. Kubelka-Munk films mix yellow and blue to green, volumes to grey
+//! ([`Colouring`](maulstick_appearance::colouring::Colouring)); a thick dark glaze is nearly black as a film and has its tint as a volume. So
 //! the paints of each layer are chosen anew, from the bottom up: those of the same volume that are nearest in ΔE₀₀ to what
 //! was seen of the layer over all below it.
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`Colouring`] | how counts become colours |
 //! | `palette` | the paints that a fit may use, as numbers |
 //! | `shown` | layers of a tile laid over each other in either colouring |
 //! | `cell` | colour of a layer of one cell, and its slopes by the shares of the paints |
@@ -60,7 +59,6 @@
 
 mod cell;
 mod cell_fit;
-mod colouring;
 mod fit;
 mod masstones;
 mod palette;
@@ -68,5 +66,4 @@ mod program;
 mod shown;
 mod tile;
 
-pub use colouring::Colouring;
 pub use tile::{Converted, Converter, Distance, FAR, Farthest, TileGround};

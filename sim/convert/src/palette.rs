@@ -1,7 +1,6 @@
 //! The paints that a fit may use, as numbers.
 
 use maulstick_appearance::Appearance;
-use maulstick_dab::layers::colours;
 use maulstick_optics::colour::{Matrix, apply, inverse, lab};
 
 /// Paints of a painting that have a colour, under its light.
@@ -14,10 +13,6 @@ pub(crate) struct Palette<'a> {
     pub(crate) ks: Vec<Vec<[f64; 2]>>,
     /// Weights of the wavelengths in X, Y and Z.
     pub(crate) weights: Vec<[f64; 3]>,
-    /// Encoded colours as volumes, in the order of `slots`.
-    pub(crate) encoded: Vec<[f64; 3]>,
-    /// Encoded colours as volumes by slot; none of the thinner.
-    pub(crate) by_slot: Vec<Option<[f32; 3]>>,
     /// XYZ of the perfect diffuser.
     pub(crate) white: [f64; 3],
     to_xyz: Matrix,
@@ -36,15 +31,11 @@ impl<'a> Palette<'a> {
             let paint = |slot: &usize| studio.paint(*slot)[sample].map(f64::from);
             slots.iter().map(paint).collect()
         };
-        let by_slot = colours(look);
-        let encoded = slots.iter().map(|slot| by_slot[*slot].unwrap_or_default());
         let white = studio.white();
         Self {
             look,
             ks: (0..studio.wavelengths()).map(row).collect(),
             weights: studio.rule().weights.clone(),
-            encoded: encoded.map(|rgb| rgb.map(f64::from)).collect(),
-            by_slot,
             white,
             to_xyz: inverse(studio.to_rgb()),
             gloss: white.map(|value| studio.surface().k1 * value),

@@ -1,13 +1,12 @@
 //! Layers of a tile laid over each other, in either colouring.
 
+use maulstick_appearance::colouring::{Colouring, EncodedTile, VolumeColours};
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::quantum::QUANTUM_M;
-use maulstick_dab::layers::{dry_share, hides, lay};
 use maulstick_optics::colour::srgb_decode;
 use maulstick_optics::{FilmPlanes, Under};
 
 use crate::cell::encoded;
-use crate::colouring::Colouring;
 use crate::palette::Palette;
 
 /// Layer of a tile, as it lies over what is below.
@@ -34,13 +33,57 @@ impl Kind {
     }
 
     /// Share that so many quanta replace as a volume in a cell.
-    pub(crate) fn hides(&self, cell: usize, quanta: f32) -> f32 {
+    pub(crate) fn hides(&self, volumes: &VolumeColours, cell: usize, quanta: f32) -> f32 {
         match self {
-            Self::Wet => hides(quanta),
+            Self::Wet => (volumes.hides)(quanta),
             Self::Dry { opacity, over } => {
                 let stays = over.as_ref().map_or(0.0, |over| over[cell]);
-                (dry_share(quanta, stays) * opacity).min(1.0)
+                ((volumes.dry_share)(quanta, stays) * opacity).min(1.0)
             }
+        }
+    }
+}
+
+/// Colours of the paints by one of the colourings.
+#[derive(Debug)]
+pub(crate) enum Paints {
+    /// Those of the optics.
+    Films,
+    /// Those of a model whose paint mixes by volume.
+    Volumes(VolumePaints),
+}
+
+/// Encoded colours of paints that mix by volume.
+#[derive(Debug)]
+pub(crate) struct VolumePaints {
+    /// Their model's.
+    pub(crate) of: &'static VolumeColours,
+    /// By slot; none of the thinner.
+    by_slot: Vec<Option<[f32; 3]>>,
+    /// In the order of the palette.
+    pub(crate) encoded: Vec<[f64; 3]>,
+}
+
+impl Paints {
+    pub(crate) fn of(colouring: Colouring, palette: &Palette<'_>) -> Self {
+        let Colouring::Volumes(of) = colouring else {
+            return Self::Films;
+        };
+        let by_slot = (of.colours)(palette.look);
+        let slots = palette.slots.iter();
+        let encoded = slots.map(|slot| by_slot[*slot].unwrap_or_default());
+        Self::Volumes(VolumePaints {
+            of,
+            encoded: encoded.map(|rgb| rgb.map(f64::from)).collect(),
+            by_slot,
+        })
+    }
+
+    /// Wet quanta that are noted over dried planes.
+    pub(crate) fn wet_over(&self, dried: &Planes) -> Option<Vec<f32>> {
+        match self {
+            Self::Films => None,
+            Self::Volumes(volumes) => (volumes.of.wet_over)(dried),
         }
     }
 }
@@ -51,21 +94,21 @@ pub(crate) enum Shown {
     /// Internal reflectances, a plane a wavelength.
     Films(Vec<f32>),
     /// Encoded red, green and blue.
-    Volumes([Vec<f32>; 3]),
+    Volumes(EncodedTile),
 }
 
 impl Shown {
     /// The ground alone.
-    pub(crate) fn ground(colouring: Colouring, palette: &Palette<'_>, ground: Under<'_>) -> Self {
-        match colouring {
-            Colouring::Films => Self::Films(match ground {
+    pub(crate) fn ground(paints: &Paints, palette: &Palette<'_>, ground: Under<'_>) -> Self {
+        match paints {
+            Paints::Films => Self::Films(match ground {
                 Under::Planes(planes) => planes.to_vec(),
                 Under::Even(values) => {
                     let plane = |value: &f32| std::iter::repeat_n(*value, TILE_CELLS);
                     values.iter().flat_map(plane).collect()
                 }
             }),
-            Colouring::Volumes => {
+            Paints::Volumes(..) => {
                 let mut rgb = [const { Vec::new() }; 3];
                 rgb.iter_mut()
                     .for_each(|plane| plane.resize(TILE_CELLS, 0.0f32));
@@ -95,7 +138,13 @@ impl Shown {
     }
 
     /// Lays a layer over it.
-    pub(crate) fn lay(&mut self, palette: &Palette<'_>, planes: &Planes, kind: &Kind) {
+    pub(crate) fn lay(
+        &mut self,
+        paints: &Paints,
+        palette: &Palette<'_>,
+        planes: &Planes,
+        kind: &Kind,
+    ) {
         match self {
             Self::Films(under) => {
                 let films: Vec<(usize, Vec<f32>)> = planes
@@ -115,8 +164,10 @@ impl Shown {
                 *under = palette.look.studio.bake(&film, TILE_CELLS);
             }
             Self::Volumes(rgb) => {
-                let share = |cell: usize, volume: f32| kind.hides(cell, volume);
-                lay(rgb, planes, &palette.by_slot, share);
+                if let Paints::Volumes(VolumePaints { of, by_slot, .. }) = paints {
+                    let share = |cell: usize, volume: f32| kind.hides(of, cell, volume);
+                    (of.lay)(rgb, planes, by_slot, &share);
+                }
             }
         }
     }

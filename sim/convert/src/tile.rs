@@ -3,19 +3,18 @@
 use std::sync::Arc;
 
 use maulstick_appearance::Appearance;
+use maulstick_appearance::colouring::Colouring;
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::quantum::{CELL_MAX, QUANTUM_M};
 use maulstick_canvas::tile::Tile;
-use maulstick_canvas::wet_over::{noted, wet_over};
 use maulstick_optics::Under;
 use maulstick_optics::colour::delta_e_2000;
 use maulstick_types::paint::TILE;
 
 use crate::cell_fit::CellFit;
-use crate::colouring::Colouring;
 use crate::masstones::Masstones;
 use crate::palette::Palette;
-use crate::shown::{Kind, Shown};
+use crate::shown::{Kind, Paints, Shown};
 
 /// Ground of a tile, and its cells that are left alone.
 #[derive(Clone, Copy, Debug)]
@@ -106,8 +105,10 @@ pub struct Converted {
 #[derive(Debug)]
 pub struct Converter<'a> {
     pub(crate) palette: Palette<'a>,
-    from: Colouring,
-    pub(crate) to: Colouring,
+    /// True if both colourings are the same.
+    is_same: bool,
+    from: Paints,
+    pub(crate) to: Paints,
     pub(crate) masstones: Option<Masstones>,
 }
 
@@ -118,9 +119,10 @@ impl<'a> Converter<'a> {
         let palette = Palette::new(look);
         let masstones = (from != to && to == Colouring::Films).then(|| Masstones::new(&palette));
         Self {
+            is_same: from == to,
+            from: Paints::of(from, &palette),
+            to: Paints::of(to, &palette),
             palette,
-            from,
-            to,
             masstones,
         }
     }
@@ -132,30 +134,35 @@ impl<'a> Converter<'a> {
         let stack = tile.dry();
         let layers: Vec<_> = stack.into_iter().flat_map(|stack| stack.layers()).collect();
         let mut converted = Converted::default();
-        if self.from == self.to {
+        if self.is_same {
             converted.wet = plain(&tile.wet());
             let dry = layers.iter().map(|layer| plain(&layer.planes.get()));
             converted.dry = dry.collect();
             return converted;
         }
         let palette = &self.palette;
-        let mut before = Shown::ground(self.from, palette, ground.under);
-        let mut after = Shown::ground(self.to, palette, ground.under);
+        let mut before = Shown::ground(&self.from, palette, ground.under);
+        let mut after = Shown::ground(&self.to, palette, ground.under);
         for layer in layers.iter().rev() {
             let planes = layer.planes.get();
             let opacity = palette.look.opacity(layer.number);
             let dry = |over: Option<Vec<f32>>| Kind::Dry { opacity, over };
-            before.lay(palette, &planes, &dry(wet_over(&planes)));
+            before.lay(
+                &self.from,
+                palette,
+                &planes,
+                &dry(self.from.wet_over(&planes)),
+            );
             let fitted = self.layer(&planes, &before, &after, &dry(None), ground.stays);
-            after.lay(palette, &fitted, &dry(wet_over(&fitted)));
+            after.lay(&self.to, palette, &fitted, &dry(self.to.wet_over(&fitted)));
             converted.dry.push(fitted);
         }
         converted.dry.reverse();
         let wet = tile.wet();
         if !wet.is_empty() {
-            before.lay(palette, &wet, &Kind::Wet);
+            before.lay(&self.from, palette, &wet, &Kind::Wet);
             converted.wet = self.layer(&wet, &before, &after, &Kind::Wet, ground.stays);
-            after.lay(palette, &converted.wet, &Kind::Wet);
+            after.lay(&self.to, palette, &converted.wet, &Kind::Wet);
         }
         converted.distance = self.distance(tile, &before, &after);
         converted
@@ -242,9 +249,11 @@ impl<'a> Converter<'a> {
         by_slot.sort_by_key(|(slot, _)| *slot);
         by_slot.retain(|(_, plane)| plane.iter().any(|count| *count != 0.0));
         let fitted: Planes = by_slot.into_iter().collect();
-        match over.iter().any(|over| *over > 0.0) {
-            true => noted(fitted, &over),
-            false => fitted,
+        match &self.to {
+            Paints::Volumes(volumes) if over.iter().any(|over| *over > 0.0) => {
+                (volumes.of.noted)(fitted, &over)
+            }
+            _ => fitted,
         }
     }
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use maulstick_appearance::Appearance;
 use maulstick_appearance::Bakery;
 use maulstick_appearance::blank_surface::BlankSurface;
+use maulstick_appearance::colouring::Colouring;
 use maulstick_appearance::display::DisplayTile;
 use maulstick_appearance::ground::Ground;
 use maulstick_appearance::show_paint::{Counted, ShowPaint};
@@ -16,8 +17,9 @@ use maulstick_canvas::planes::{Planes, TILE_CELLS};
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::relief::Relief;
 use maulstick_canvas::tile::{Tile, TileId};
-use maulstick_convert::{Colouring, Converted, Converter, Distance, FAR, TileGround};
+use maulstick_convert::{Converted, Converter, Distance, FAR, TileGround};
 use maulstick_dab::Layers;
+use maulstick_dab::layers::VOLUMES;
 use maulstick_optics::colour::{apply, delta_e_2000, inverse, lab};
 use maulstick_optics::{CpuFilms, PaintLibrary, Studio, StudioSettings, THINNER};
 
@@ -38,7 +40,7 @@ const PAINTS: [&str; 12] = [
 ];
 const THIN: usize = 11;
 const ID: TileId = TileId { x: 0, y: 0 };
-static VOLUMES: Layers = Layers { emboss: 0.0 };
+const VOLUME_MIX: Colouring = Colouring::Volumes(&VOLUMES);
 
 struct Easel {
     look: Appearance,
@@ -71,7 +73,7 @@ impl Easel {
     fn seen(&self, tile: &Tile, colouring: Colouring) -> Vec<[f64; 3]> {
         let shown: &'static dyn ShowPaint = match colouring {
             Colouring::Films => &Counted,
-            Colouring::Volumes => &VOLUMES,
+            Colouring::Volumes(_) => &Layers { emboss: 0.0 },
         };
         let bare = BlankSurface {
             ground: self.ground.clone(),
@@ -84,7 +86,13 @@ impl Easel {
         let films = bare.films(Some(tile));
         let mut backend = CpuFilms::new();
         let baked = bare.baked(Some(tile)).map(|stack| {
-            Bakery::default().planes((&self.look, &mut backend), 0, ID, (stack, ground.under()))
+            Bakery::default().planes(
+                (&self.look, &mut backend),
+                shown,
+                0,
+                ID,
+                (stack, ground.under()),
+            )
         });
         let under = match &baked {
             Some(planes) => maulstick_optics::Under::Planes(planes),
@@ -221,8 +229,8 @@ fn volumes(tile: &Tile) -> (Vec<Vec<u64>>, Option<Vec<f32>>) {
 }
 
 const WAYS: [(Colouring, Colouring); 2] = [
-    (Colouring::Films, Colouring::Volumes),
-    (Colouring::Volumes, Colouring::Films),
+    (Colouring::Films, VOLUME_MIX),
+    (VOLUME_MIX, Colouring::Films),
 ];
 
 #[test]
@@ -267,10 +275,10 @@ fn a_wet_veil_comes_as_near_as_its_volume_lets_it() {
             true => tile(film, Vec::new()),
             false => tile(Planes::new(), vec![film]),
         };
-        let other = tile_of(easel.converted(&tile, Colouring::Films, Colouring::Volumes));
+        let other = tile_of(easel.converted(&tile, Colouring::Films, VOLUME_MIX));
         let before = easel.seen(&tile, Colouring::Films);
-        let [mean, ..] = distances(&before, &easel.seen(&other, Colouring::Volumes));
-        let [plain, ..] = distances(&before, &easel.seen(&tile, Colouring::Volumes));
+        let [mean, ..] = distances(&before, &easel.seen(&other, VOLUME_MIX));
+        let [plain, ..] = distances(&before, &easel.seen(&tile, VOLUME_MIX));
         (mean, plain)
     };
     let ((wet, plain), (dry, _)) = (veil(true), veil(false));
@@ -283,12 +291,12 @@ fn there_and_back_is_as_it_was() {
     for ground in ["gesso", "black"] {
         let easel = Easel::new(ground);
         for Subject { name, tile, .. } in subjects() {
-            let there = tile_of(easel.converted(&tile, Colouring::Volumes, Colouring::Films));
-            let back = tile_of(easel.converted(&there, Colouring::Films, Colouring::Volumes));
+            let there = tile_of(easel.converted(&tile, VOLUME_MIX, Colouring::Films));
+            let back = tile_of(easel.converted(&there, Colouring::Films, VOLUME_MIX));
             assert!(volumes(&back) == volumes(&tile), "{name}");
-            let before = easel.seen(&tile, Colouring::Volumes);
-            let [mean, most, worst] = distances(&before, &easel.seen(&back, Colouring::Volumes));
-            let [fault, ..] = distances(&before, &easel.seen(&there, Colouring::Volumes));
+            let before = easel.seen(&tile, VOLUME_MIX);
+            let [mean, most, worst] = distances(&before, &easel.seen(&back, VOLUME_MIX));
+            let [fault, ..] = distances(&before, &easel.seen(&there, VOLUME_MIX));
             println!(
                 "{ground}, {name}: {mean:.2} mean, {most:.2} 95 %, {worst:.2} worst, one way only {fault:.2}"
             );
@@ -318,7 +326,7 @@ fn cells_of_wells_and_tiles_of_the_same_colouring_keep_each_count() {
         let found = planes.iter().find(|(own, _)| *own == slot);
         found.map_or(0.0, |(_, plane)| plane[cell])
     };
-    let converter = Converter::new(&easel.look, Colouring::Volumes, Colouring::Films);
+    let converter = Converter::new(&easel.look, VOLUME_MIX, Colouring::Films);
     let converted = converter.tile(&tile, ground);
     let wet = tile.wet();
     let changed = |cell: usize| {
@@ -353,7 +361,7 @@ fn common_mixtures_are_met_and_what_is_out_of_gamut_is_told() {
             &[(0, 1.0)][..],
         ] {
             let subject = even(parts, um);
-            let converted = easel.converted(&subject, Colouring::Volumes, Colouring::Films);
+            let converted = easel.converted(&subject, VOLUME_MIX, Colouring::Films);
             let off = converted.distance.worst;
             println!("{um} µm of {parts:?}: {off:.2}");
             assert!(off < NEAR, "{off}");
@@ -361,10 +369,10 @@ fn common_mixtures_are_met_and_what_is_out_of_gamut_is_told() {
     }
     // Thick phthalo is nearly black as a film: no volume is as dark and as green.
     let subject = even(&[(7, 0.7), (10, 0.3)], 200.0);
-    let converted = easel.converted(&subject, Colouring::Volumes, Colouring::Films);
+    let converted = easel.converted(&subject, VOLUME_MIX, Colouring::Films);
     let other = tile_of(converted.clone());
     let [one, two] = [
-        easel.seen(&subject, Colouring::Volumes),
+        easel.seen(&subject, VOLUME_MIX),
         easel.seen(&other, Colouring::Films),
     ];
     let off = delta_e_2000(one[0], two[0]);

@@ -191,6 +191,7 @@ fn accepted(message: &[u8]) -> Result<Accepted, DocumentError> {
 #[cfg(test)]
 mod tests {
     use maulstick_painting::edits::Undo;
+    use maulstick_types::Edit;
     use maulstick_types::paint::{Decision, Entry};
 
     use super::*;
@@ -242,5 +243,23 @@ mod tests {
         bytes[16..20].copy_from_slice(&0x1234_5678u32.to_le_bytes());
         let other = zstd::bulk::compress(&bytes, 1).expect("packed");
         assert!(read(5, &other).is_err());
+    }
+
+    #[test]
+    fn an_edit_of_a_newer_program_is_damage_as_an_unknown_entry_is() {
+        for (name, is_known) in [("redo", true), ("varnish", false)] {
+            let edit = Edit::named(name, &serde_json::json!({}));
+            let record = Record {
+                serial: 5,
+                index: 7,
+                what: Accepted::Entry(Entry::Command {
+                    client: 1,
+                    number: 2,
+                    command: edit.into(),
+                }),
+            };
+            let written = write(&[record]).expect("written");
+            assert_eq!(read(5, &written).is_ok(), is_known, "{name}");
+        }
     }
 }

@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use easel::Easel;
 use maulstick_document::{Access, Checkpoint, Document, DocumentSettings};
+use maulstick_models::model_names;
 use maulstick_painting::edits::{Redo, Undo};
-use maulstick_painting::models::model_names;
 use maulstick_types::scene::CANVAS;
 use studio::{Painter, equip, print, sequencer, sequencer_of};
 

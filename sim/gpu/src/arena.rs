@@ -4,7 +4,7 @@ use crate::device::{Device, GpuError};
 
 /// A buffer of the device.
 #[derive(Debug)]
-pub(crate) struct Arena {
+pub struct Arena {
     name: &'static str,
     usage: wgpu::BufferUsages,
     buffer: Option<wgpu::Buffer>,
@@ -12,7 +12,7 @@ pub(crate) struct Arena {
 
 impl Arena {
     /// An empty one.
-    pub(crate) fn new(name: &'static str, usage: wgpu::BufferUsages) -> Self {
+    pub fn new(name: &'static str, usage: wgpu::BufferUsages) -> Self {
         Self {
             name,
             usage,
@@ -21,7 +21,7 @@ impl Arena {
     }
 
     /// The buffer, of at least `bytes`; what it held may be gone.
-    pub(crate) fn of(&mut self, gpu: &Device, bytes: u64) -> &wgpu::Buffer {
+    pub fn of(&mut self, gpu: &Device, bytes: u64) -> &wgpu::Buffer {
         let large_enough = |buffer: &wgpu::Buffer| buffer.size() >= bytes;
         if !self.buffer.as_ref().is_some_and(large_enough) {
             // What is too small goes first, so that there is room.
@@ -38,11 +38,7 @@ impl Arena {
     }
 
     /// The buffer with `parts` in it, one after the other.
-    pub(crate) fn filled(
-        &mut self,
-        gpu: &Device,
-        parts: &[&[u8]],
-    ) -> Result<&wgpu::Buffer, GpuError> {
+    pub fn filled(&mut self, gpu: &Device, parts: &[&[u8]]) -> Result<&wgpu::Buffer, GpuError> {
         let bytes: usize = parts.iter().map(|part| part.len()).sum();
         let buffer = self.of(gpu, bytes as u64);
         let Some(size) = wgpu::BufferSize::new(bytes as u64) else {
@@ -63,7 +59,7 @@ impl Arena {
 }
 
 /// Reads the first `bytes` of a buffer that can be mapped, once the device is done.
-pub(crate) fn read<T>(
+pub fn read<T>(
     gpu: &Device,
     buffer: &wgpu::Buffer,
     bytes: u64,

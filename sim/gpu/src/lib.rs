@@ -1,17 +1,15 @@
-//! The graphics device: stages of the simulation in WGSL, each with a twin in Rust.
+//! The graphics device, and what paint models need to run on it: stages of the simulation in WGSL, each with a twin in Rust.
+//! It knows no model: the twin of a model lies in the model's folder, in its module `device`.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`device`] | the device, its faults as values |
-//! | [`models`] | the paint models that it computes |
 //! | [`films`] | Kubelka-Munk films of many tiles at once |
-//! | [`impasto`] | the paint model `impasto` |
-//! | [`dab`] | the paint model `dab` |
-//! | `steps` | what their steps share |
-//! | [`stokes`] | flow and transport of Stokes Paint, and the flow in the paint model `stokes` |
+//! | [`steps`] | steps of a brush on the device, whatever the model |
+//! | [`on_device`] | models as the registry makes them |
+//! | [`arena`] | buffers that are used again |
 //! | `stage` | a compute shader and its pipelines |
 //! | `batch` | tiles as the shaders take them |
-//! | `arena` | buffers that are used again |
 //! | `shade_films`, `bake_films` | the stages of films |
 //!
 //! A film of blue paint over white, on the graphics device and on the processor. Without a device the processor computes
@@ -47,10 +45,9 @@
 //!
 //! # What a device computes
 //!
-//! Whole steps of `impasto` and `dab`; of `stokes` the flow around the brush; nothing of `marker`. It also computes the
-//! films of all models but `dab`, which has colours of its own. Surfaces with wells, the sampler and the vacuum cleaner
-//! stay with the processor. Exports use the processor alone, for the same bytes everywhere; a device promises the same
-//! bytes for one adapter and driver, and which backend paints is journalled.
+//! Steps of the models that have a twin on it, and the films of all models whose colours are films. Surfaces with wells,
+//! the sampler and the vacuum cleaner stay with the processor. Exports use the processor alone, for the same bytes
+//! everywhere; a device promises the same bytes for one adapter and driver, and which backend paints is journalled.
 //!
 //! # Steps
 //!
@@ -63,41 +60,17 @@
 //! - What does not depend on the model is in `steps`; a model is a list of stages and a planner that turns a step into
 //!   dispatches, beside the processor's model. Tests hold every stage beside its twin, and whole strokes beside the
 //!   processor's.
-//! - `impasto`: an indirect dispatch skips the rest where nothing is touched; what is asked of one donor is summed in
-//!   integers before it is truncated, so the books balance to zero.
-//! - `dab`: the processor knows which blends a step has, and sends a record for each; the head is drawn once a drawing,
-//!   and a dispatch blends it at each place. Thresholds are the processor's in fixed point and quotients are rounded as
-//!   it rounds them, so on the same drawing both leave the same counts. Reservoirs are filled in f32.
-//!
-//! # Flow
-//!
-//! - The unified solver in f32: always the same dispatches over one buffer, sums reduced in a fixed order, quotients
-//!   kept on the device and guarded against division by zero, nothing read back within a step. The smoother is a
-//!   Chebyshev polynomial of damped Jacobi steps, symmetric and without order; one workgroup a component does all
-//!   levels of 2048 cells and fewer.
-//! - Fields have the processor's layout; whoever writes beside a periodic side writes the copy too. An image of a
-//!   search direction that cancels is made orthogonal again by dispatches that otherwise return at once. Distances and
-//!   velocities of solids come from the processor.
-//! - `auto` gives the device windows of 16,384 cells and more, below which its 300 dispatches take longer than a core
-//!   does; `gpu` gives it all. Windows that do not fit are `GpuError::Window`. `GpuFlow::restart` takes another window
-//!   into the same buffers, cleared, so no window sees one before it.
 
-mod arena;
+pub mod arena;
 mod bake_films;
 mod batch;
-pub mod dab;
 pub mod device;
 pub mod films;
-pub mod impasto;
-pub mod models;
+pub mod on_device;
 mod shade_films;
 mod stage;
-mod steps;
-pub mod stokes;
+pub mod steps;
 
 pub use device::{AdapterReport, Choice, Device, GpuError, adapters};
 pub use films::GpuFilms;
-pub use models::DeviceModel;
-pub use steps::model::{GpuModel, MakeModel};
-pub use steps::traffic::Traffic;
-pub use stokes::{FlowState, GpuBrushFlow, GpuFlow, Paints, Tuning};
+pub use on_device::{MakeModel, OnDevice};

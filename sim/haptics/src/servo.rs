@@ -16,6 +16,7 @@
 //! | `active` | a contact model and its age |
 //! | `engagement` | force that begins where little is asked for |
 //! | `guidance` | the guide of the hand, beside the contact models |
+//! | `models` | the contact models, and the correction between them |
 //! | `orders` | what painter and device say: switches, strength, heat |
 //! | `torque` | torque of the brush about its ferrule |
 //! | [`passivity`] | the energy that sampling gives, taken back |
@@ -28,6 +29,7 @@ pub mod fast_hand;
 pub mod fault;
 mod guidance;
 pub mod limits;
+mod models;
 pub mod motor_thermal;
 mod orders;
 pub mod oscillation;
@@ -38,42 +40,32 @@ mod torque;
 
 use glam::DVec3;
 
-use self::active::Active;
 use self::engagement::Engagement;
 use self::fast_hand::FastHand;
 use self::fault::Fault;
 use self::guidance::Guidance;
 use self::limits::Limits;
+use self::models::Models;
 use self::motor_thermal::MotorThermal;
+use self::orders::Orders;
 use self::oscillation::{Oscillation, Touch};
 use self::passivity::Passivity;
 use self::persistent::ServoMemory;
-use self::tick::{Sender, Switch, Tick};
+use self::tick::{Sender, Tick};
 use self::torque::Torque;
 use crate::contact::{Contact, ContactForce, HandleState};
-use crate::fluid::{Fluid, FluidStage};
-use crate::friction::{Stiction, ramp};
+use crate::fluid::Fluid;
 use crate::guide::Guide;
 
 /// The servo's state.
 #[derive(Clone, Copy, Debug)]
 pub struct Servo {
     limits: Limits,
-    switch: Switch,
-    permitted: Switch,
-    strength: f64,
-    model: Option<Active>,
-    /// Received since the last step.
-    arrived: Option<Contact>,
-    fluid: FluidStage,
-    stiction: Stiction,
+    orders: Orders,
+    models: Models,
     torque: Torque,
-    /// What the force still keeps of the models before, N.
-    correction: DVec3,
-    /// How fast the correction shrinks, N/s.
-    correction_speed: f64,
     engagement: Engagement,
-    engaged_s: f64,
+    /// Time without contact or guide, s.
     idle_s: f64,
     thermal: MotorThermal,
     passivity: Passivity,
@@ -110,18 +102,10 @@ impl Servo {
     pub fn after(limits: Limits, memory: ServoMemory) -> Self {
         Self {
             limits,
-            switch: Switch::On,
-            permitted: Switch::On,
-            strength: 1.0,
-            model: None,
-            arrived: None,
-            fluid: FluidStage::default(),
-            stiction: Stiction::default(),
+            orders: Orders::default(),
+            models: Models::default(),
             torque: Torque::default(),
-            correction: DVec3::ZERO,
-            correction_speed: 0.0,
-            engagement: Engagement::ANEW,
-            engaged_s: 0.0,
+            engagement: Engagement::NEW,
             idle_s: 0.0,
             thermal: memory.thermal,
             passivity: Passivity::default(),
@@ -139,7 +123,7 @@ impl Servo {
         if sender == Sender::Another {
             self.engage_anew();
         }
-        self.arrived = Some(contact);
+        self.models.receive(contact);
     }
 
     /// A new guide has arrived; the next step evaluates it.
@@ -149,17 +133,13 @@ impl Servo {
 
     /// A new force of paint has arrived; it acts where the head touches.
     pub fn receive_fluid(&mut self, fluid: Fluid) {
-        self.fluid.receive(fluid, self.limits.fade_s);
+        self.models.receive_fluid(fluid, self.limits.fade_s);
     }
 
     /// Discards models and correction; the force engages anew.
     fn engage_anew(&mut self) {
-        self.engagement = Engagement::ANEW;
-        self.model = None;
-        self.arrived = None;
-        self.fluid = FluidStage::default();
-        self.stiction = Stiction::default();
-        self.correction = DVec3::ZERO;
+        self.engagement.wait_anew();
+        self.models.discard();
         self.last = None;
         self.passivity.forgive();
     }
@@ -189,25 +169,16 @@ impl Servo {
         if self.fault.is_some() {
             return self.nothing(tick);
         }
-        if dt > self.limits.longest_tick_s || dt < 0.0 {
-            self.force = DVec3::ZERO;
-            self.torque = Torque::default();
-            self.engaged_s = 0.0;
-            self.guidance.ramp_anew();
-            self.last = None;
-            self.passivity.forgive();
-            tick.late = true;
-            if dt > self.limits.standstill_s {
-                // The hand may have gone anywhere meanwhile.
-                self.wait();
-            }
+        tick.late = dt > self.limits.longest_tick_s || dt < 0.0;
+        if tick.late {
+            self.stand_still(dt);
         }
         let passed_s = dt.max(0.0);
         let dt = passed_s.min(self.limits.longest_tick_s);
         self.observe(handle, dt);
         self.age(dt, passed_s);
-        self.take_in(handle, dt);
-        let contact_force = self.evaluate_newest(handle);
+        self.models.replace(handle, &self.limits, dt);
+        let contact_force = self.models.evaluate(handle, &self.limits);
         tick.contact = contact_force.is_some_and(|force| force.depth_m > 0.0);
         let touch = if tick.contact {
             Touch::Contact
@@ -223,14 +194,40 @@ impl Servo {
         }
         tick.guided = self.guidance.is_alive(&self.limits);
         self.rest(touch, dt);
-        let off = [self.switch, self.permitted].contains(&Switch::Off);
-        tick.resting = off || self.idle_s >= self.limits.idle_s;
+        tick.resting = self.orders.are_off() || self.idle_s >= self.limits.idle_s;
         if self.fault.is_some() || tick.resting {
             return self.nothing(tick);
         }
         tick.cap_n = cap_n;
         self.hold(handle, contact_force.as_ref(), dt);
         let wanted = self.wanted(handle, contact_force, dt, &mut tick);
+        self.give(wanted, dt, &mut tick);
+        // Last of all: whatever went wrong above, no such number reaches the motors.
+        if !self.force.is_finite() {
+            self.fault = Some(Fault::NotANumber);
+            return self.nothing(tick);
+        }
+        let lever = contact_force.map_or(DVec3::ZERO, |contact| contact.lever);
+        tick.torque_n_m = self.torque.follow(lever, self.force, &self.limits, dt);
+        (self.force, tick)
+    }
+
+    /// No force over a tick that was too long, and the ramp anew.
+    fn stand_still(&mut self, dt: f64) {
+        self.force = DVec3::ZERO;
+        self.torque = Torque::default();
+        self.engagement.ramp_anew();
+        self.guidance.ramp_anew();
+        self.last = None;
+        self.passivity.forgive();
+        if dt > self.limits.standstill_s {
+            // Who knows where the hand has gone meanwhile.
+            self.wait();
+        }
+    }
+
+    /// Brings the force towards the wanted one, N, within the bounds of its size and of its change.
+    fn give(&mut self, wanted: DVec3, dt: f64, tick: &mut Tick) {
         let size = wanted.length();
         tick.clamped = size > tick.cap_n;
         let limited = if tick.clamped {
@@ -246,21 +243,13 @@ impl Servo {
             change
         };
         self.force += change;
-        // Last of all: whatever went wrong above, no such number reaches the motors.
-        if !self.force.is_finite() {
-            self.fault = Some(Fault::NotANumber);
-            return self.nothing(tick);
-        }
-        let lever = contact_force.map_or(DVec3::ZERO, |contact| contact.lever);
-        tick.torque_n_m = self.torque.follow(lever, self.force, &self.limits, dt);
-        (self.force, tick)
     }
 
     /// No force, and why.
     fn nothing(&mut self, tick: Tick) -> (DVec3, Tick) {
         self.force = DVec3::ZERO;
         self.torque = Torque::default();
-        self.stiction = Stiction::default();
+        self.models.release();
         self.last = None;
         self.passivity.forgive();
         let fault = self.fault;
@@ -290,8 +279,8 @@ impl Servo {
         };
         let mut here = self.guidance.asked(handle, &self.limits) * last.guided;
         let mut is_free = true;
-        if let Some(contact_force) = self.evaluate_newest(handle) {
-            here += (contact_force.conservative + self.correction) * last.share;
+        if let Some(contact_force) = self.models.evaluate(handle, &self.limits) {
+            here += (contact_force.conservative + self.models.correction()) * last.share;
             is_free = contact_force.depth_m <= 0.0;
         }
         let here = here.clamp_length_max(last.cap_n);
@@ -306,86 +295,31 @@ impl Servo {
 
     /// The ramp and the recovery continue by a tick, and models age by all the time that has passed.
     fn age(&mut self, dt: f64, passed_s: f64) {
-        self.engaged_s += dt;
+        self.engagement.age(dt);
         self.guidance.age(&self.limits, dt, passed_s);
-        self.fluid.age(passed_s);
-        if let Some(model) = &mut self.model {
-            model.age_s += passed_s;
-        }
-        if self
-            .model
-            .is_some_and(|model| model.left(&self.limits) <= 0.0)
-        {
+        if self.models.age(&self.limits, dt, passed_s) {
             // Nothing of it is felt any more: a hand that has gone deep meanwhile is not to be pushed out as
             // models come again.
-            self.engagement = Engagement::ANEW;
-            self.correction = DVec3::ZERO;
+            self.engagement.wait_anew();
         }
-        let (size, shrunk) = (self.correction.length(), self.correction_speed * dt);
-        if size > shrunk {
-            self.correction *= (size - shrunk) / size;
-        } else {
-            self.correction = DVec3::ZERO;
-            self.correction_speed = 0.0;
-        }
-    }
-
-    /// Evaluates the model that has arrived, if one has, in the place of the one before.
-    fn take_in(&mut self, handle: &HandleState, dt: f64) {
-        let Some(contact) = self.arrived.take() else {
-            return;
-        };
-        let has_force = |model: &&Active| model.left(&self.limits) > 0.0;
-        let most = self.limits.max_stiffness_n_m;
-        let force = |contact: &Contact| {
-            let felt = contact.evaluate_stuck(handle, &self.stiction, most);
-            felt.force
-        };
-        let before = self
-            .model
-            .as_ref()
-            .filter(has_force)
-            .map(|model| (force(&model.contact) + self.correction) * model.left(&self.limits));
-        let now = force(&contact);
-        self.model = Some(Active { contact, age_s: dt });
-        if let Some(before) = before
-            && contact.recovery_s > 0.0
-            && before != now + self.correction
-        {
-            self.correction = before - now;
-            // An earlier, larger jump still ends in its own time.
-            let speed = self.correction.length() / contact.recovery_s;
-            self.correction_speed = self.correction_speed.max(speed);
-        }
-    }
-
-    /// Force of the newest model and of the paint. That of paint is not conservative, so the observer
-    /// sees all its work.
-    fn evaluate_newest(&self, handle: &HandleState) -> Option<ContactForce> {
-        let model = self.model.as_ref()?;
-        let most = self.limits.max_stiffness_n_m;
-        let mut felt = model.contact.evaluate_stuck(handle, &self.stiction, most);
-        let fluid = self.fluid.force(handle.velocity, self.limits.fade_s);
-        felt.force += fluid * ramp(felt.depth_m);
-        Some(felt)
     }
 
     /// Bristles that touch stick, and give way to a hand that pulls; until force begins nothing holds it.
     fn hold(&mut self, handle: &HandleState, contact_force: Option<&ContactForce>, dt: f64) {
-        let begun = self.engagement == Engagement::Begun;
-        let touching = contact_force.filter(|felt| begun && felt.depth_m > 0.0);
-        let grip = touching.map(|felt| &felt.grip);
-        self.stiction.follow(handle.position, grip, dt);
+        let has_begun = self.engagement.has_begun();
+        let touch = contact_force.filter(|felt| has_begun && felt.depth_m > 0.0);
+        self.models.hold(handle, touch, dt);
     }
 
     /// Latches the fault of a hand that keeps shaking; without force no device shakes it.
     fn watch(&mut self, handle: &HandleState, touch: Touch, dt: f64) {
-        let Some(model) = &self.model else {
+        let Some(model) = self.models.active() else {
             return;
         };
-        let touch = match self.force == DVec3::ZERO {
-            true => Touch::Air,
-            false => touch,
+        let touch = if self.force == DVec3::ZERO {
+            Touch::Air
+        } else {
+            touch
         };
         let place = handle.position.dot(model.contact.normal());
         if self
@@ -403,7 +337,7 @@ impl Servo {
             return;
         }
         if self.idle_s >= self.limits.idle_s {
-            self.engaged_s = 0.0;
+            self.engagement.ramp_anew();
             self.guidance.ramp_anew();
         }
         self.idle_s = 0.0;
@@ -418,7 +352,7 @@ impl Servo {
         tick: &mut Tick,
     ) -> DVec3 {
         let contact = self.contact(contact_force, tick);
-        let guiding = self.guidance.give(&self.limits, self.strength);
+        let guiding = self.guidance.give(&self.limits, self.orders.strength());
         if contact.is_none() && guiding.share == 0.0 {
             self.last = None;
             return DVec3::ZERO;
@@ -443,28 +377,30 @@ impl Servo {
         contact_force: Option<ContactForce>,
         tick: &mut Tick,
     ) -> Option<(DVec3, DVec3, f64)> {
-        tick.waiting = self.engagement != Engagement::Begun;
-        let (Some(model), Some(contact_force)) = (&self.model, contact_force) else {
+        tick.waiting = !self.engagement.has_begun();
+        let (Some(model), Some(contact_force)) = (self.models.active(), contact_force) else {
             return None;
         };
         tick.stale = model.overdue_s() > 0.0;
-        let softer = self.strength * self.oscillation.softness() * self.fast_hand.softness();
+        let softer =
+            self.orders.strength() * self.oscillation.softness() * self.fast_hand.softness();
         tick.asked_n_m = contact_force.asked_n_m;
         tick.stiffness_n_m = contact_force.stiffness_n_m * softer;
         // A model that is past its time says nothing of the canvas.
-        let asked_n = match tick.stale {
-            true => f64::NAN,
-            false => (contact_force.force + self.correction).length(),
+        let correction = self.models.correction();
+        let asked_n = if tick.stale {
+            f64::NAN
+        } else {
+            (contact_force.force + correction).length()
         };
         if self.engagement.waits(asked_n, self.limits.engage_n) {
-            self.engaged_s = 0.0;
             return None;
         }
-        let ramp = (self.engaged_s / self.limits.engage_s).min(1.0);
+        let ramp = self.engagement.ramp(self.limits.engage_s);
         let share = model.left(&self.limits) * ramp * softer;
         Some((
-            (contact_force.force + self.correction) * share,
-            (contact_force.conservative + self.correction) * share,
+            (contact_force.force + correction) * share,
+            (contact_force.conservative + correction) * share,
             share,
         ))
     }

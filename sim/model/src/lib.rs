@@ -12,6 +12,7 @@
 //! | [`footprint`] | the cells that a head touches in a step, and how deep |
 //! | [`transfer`] | how much goes between brush and canvas along a way |
 //! | [`modes`] | the sampler and the vacuum cleaner |
+//! | [`rheology`] | what the hand feels of wet paint |
 //! | [`trial`] | a brush on a bare surface, to measure a model by itself |
 //!
 //! A full round brush and its load, as a model finds it:
@@ -52,7 +53,8 @@
 //!
 //! # What a model brings
 //!
-//! Its step, what paint does at rest, and how its paint is shown (`ShowPaint` in `maulstick-appearance`). Paint is in
+//! Its step, what paint does at rest, its rheology, and how its paint is shown (`ShowPaint` in `maulstick-appearance`); its
+//! entry (`maulstick-model-entry`) has them all. Paint is in
 //! counts by slot, on which wells, fills, drying, rewetting and the ledger work, and in planes of its own. A step
 //! depends on the cells around the brush alone, never on what else its window holds. Ways of using a brush (`Handling`)
 //! are parameters of the step and travel in the scene; what a mode creates or destroys is an account of the ledger. A
@@ -63,5 +65,6 @@ pub mod footprint;
 pub mod interface;
 pub mod modes;
 pub mod path;
+pub mod rheology;
 pub mod transfer;
 pub mod trial;

@@ -8,7 +8,6 @@
 //! | --- | --- |
 //! | [`Painting`] | surfaces, brushes, what is done to them |
 //! | [`sequencer`] | the order of states and commands |
-//! | [`models`] | the paint models that a surface can have |
 //! | [`setup`] | the scene of a new painting |
 //! | [`ledger`], [`history`] | the books, undo |
 //! | [`beginning`] | where the record of what was accepted begins |
@@ -71,8 +70,7 @@
 //!
 //! # Surfaces and brushes
 //!
-//! - `models` lists the paint models that a surface can have; `models` of `maulstick-gpu` those that a device computes. A
-//!   lighter model is proposed, never chosen, after three late strokes, where the setting `model` is `auto`.
+//! - `maulstick-models` lists the paint models that a surface can have. A lighter model is proposed, never chosen, after three late strokes, where the setting `model` is `auto`.
 //! - Wells are refilled before each step of a brush in them: what was pushed in goes to the cleaner's account, what was
 //!   taken comes from the tubes'. A paint takes a slot when a brush first touches it. The jar of medium is a well of
 //!   thinner that is emptied after each step. A moved well takes its wet paint along: each cell gets that of one cell
@@ -93,7 +91,6 @@ pub mod edits;
 mod error;
 pub mod history;
 pub mod ledger;
-pub mod models;
 mod painting;
 pub mod picture;
 pub mod sequencer;

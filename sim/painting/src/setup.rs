@@ -10,13 +10,11 @@ use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_canvas::relief::tooth_picture::PictureTooth;
 use maulstick_optics::PaintLibrary;
 use maulstick_types::limits::CELLS_M;
-use maulstick_types::scene::{
-    CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind, default_model,
-};
+use maulstick_types::scene::{CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind};
 use maulstick_types::{Mixture, Pose};
 
 use crate::error::paint_error;
-use crate::models::model_called;
+use maulstick_models::{MODELS, model_called};
 
 /// Paints in the wells of a new palette.
 pub const PALETTE_PAINTS: [&str; 10] = [
@@ -62,7 +60,7 @@ pub struct PaintingSetup {
     pub light: Light,
     /// Exposure factor; `None` for the one at which the bare canvas does not clip.
     pub exposure: Option<f64>,
-    /// Name of the canvas's paint model, one of [`MODELS`](crate::models::MODELS).
+    /// Name of the canvas's paint model, one of [`MODELS`].
     pub model: String,
     /// The palette's.
     pub palette_model: String,
@@ -86,8 +84,8 @@ impl Default for PaintingSetup {
                 .collect(),
             light: Light::default(),
             exposure: None,
-            model: default_model(),
-            palette_model: default_model(),
+            model: MODELS[0].name.to_owned(),
+            palette_model: MODELS[0].name.to_owned(),
             embedded: Assets::default(),
         }
     }

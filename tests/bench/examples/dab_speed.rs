@@ -8,8 +8,9 @@ use maulstick_brush::{BrushFile, HeadPose};
 use maulstick_dab::Dab;
 use maulstick_dab::stroke::Stroker;
 use maulstick_dab::volume::UNIT;
-use maulstick_gpu::impasto::measure::Measured;
-use maulstick_gpu::{Choice, Device, GpuError, GpuModel};
+use maulstick_gpu::steps::model::GpuModel;
+use maulstick_gpu::{Choice, Device, GpuError};
+use maulstick_impasto::device::measure::Measured;
 use maulstick_model::brush::load::BrushLoad;
 use maulstick_model::interface::PaintModel;
 use maulstick_model::trial::{PATHS, Trial};
@@ -153,7 +154,7 @@ fn run(rounds: usize, only: &str) -> Result<(), GpuError> {
             let poses = trial.heads(path);
             let mut stroke = Stroke {
                 trial: &mut trial,
-                model: GpuModel::dab_stroking(gpu.clone(), stroker)?,
+                model: maulstick_dab::device::stroking(gpu.clone(), stroker)?,
                 poses,
             };
             let (cells, _) = stroke.whole();

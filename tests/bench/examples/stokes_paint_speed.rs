@@ -5,7 +5,7 @@ use std::error::Error;
 use std::time::Instant;
 
 use maulstick_brush::{BrushFile, HeadPose};
-use maulstick_gpu::{Choice, Device, DeviceModel};
+use maulstick_gpu::{Choice, Device};
 use maulstick_model::interface::PaintModel;
 use maulstick_model::trial::Trial;
 use maulstick_num::fork_join::with_threads;
@@ -46,13 +46,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let gpu = Device::open(Choice::Forced)?;
     let kind = if gpu.is_cpu() { " (emulated)" } else { "" };
     println!("adapter: {}{kind}", gpu.name());
-    let flow = DeviceModel::of("stokes").ok_or("no device computes it")?;
+    let make = maulstick_stokes_paint::ENTRY
+        .make_on
+        .ok_or("no device computes it")?;
     for width in widths {
         let file = BrushFile::library("round")?.scaled_to(width)?;
         let rate = |threads: usize, model: &mut dyn PaintModel| {
             with_threads(threads, || steps(&file, model)).ok_or("too large a surface")
         };
-        let mut device = flow.make(gpu.clone(), Choice::Forced)?;
+        let mut device = make(gpu.clone(), Choice::Forced)?.model;
         let (alone, quanta) = rate(1, &mut StokesPaint::default())?;
         let (shared, _) = rate(2, &mut StokesPaint::default())?;
         let (on_device, same) = rate(1, device.as_mut())?;

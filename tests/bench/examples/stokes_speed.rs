@@ -4,12 +4,13 @@
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-use maulstick_gpu::{Choice, Device, GpuFlow, Paints, Tuning};
+use maulstick_gpu::{Choice, Device};
 use maulstick_stokes::body::{Rod, voxelise};
 use maulstick_stokes::domain::Solids;
 use maulstick_stokes::flow::{Conditions, Effort, Flow};
 use maulstick_stokes::grid::Grid;
 use maulstick_stokes::rheology::Paint;
+use maulstick_stokes_paint::device::{GpuFlow, Paints, Tuning};
 
 /// Sizes where none is asked for: the benchmark's, and the plan's for a discrete processor.
 const SIZES: [[usize; 3]; 2] = [[32, 32, 16], [128, 128, 64]];

@@ -7,7 +7,7 @@ use maulstick_canvas::relief::Relief;
 use maulstick_canvas::store::TileStore;
 use maulstick_canvas::window::{Area, Window};
 use maulstick_gpu::Device;
-use maulstick_gpu::impasto::measure::Measured;
+use maulstick_impasto::device::measure::Measured;
 use maulstick_impasto::stages::advection::{Advection, Axis, STAIN};
 use maulstick_impasto::stages::velocity::Faces;
 use maulstick_rig::UserError;

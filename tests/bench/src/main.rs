@@ -56,7 +56,7 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser};
-use maulstick_painting::models::model_names;
+use maulstick_models::model_names;
 use maulstick_rig::UserError;
 
 use crate::measurements::Measurements;

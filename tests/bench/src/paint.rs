@@ -6,7 +6,9 @@ use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
 
 use maulstick_brush::BrushFile;
-use maulstick_gpu::{Choice, Device, DeviceModel, Traffic};
+use maulstick_gpu::steps::traffic::Traffic;
+use maulstick_gpu::{Choice, Device};
+use maulstick_models::model_called;
 use maulstick_num::fork_join::with_threads;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::edits::{Fill, FillPaint, Load};
@@ -87,21 +89,13 @@ impl Round {
         let mut painting = Painting::new(&setup, library).map_err(fault)?;
         let mut traffic = None;
         if let Some(gpu) = &means.gpu {
-            match DeviceModel::of(&means.model) {
-                Some(DeviceModel::Steps(make)) => {
-                    let model = make(gpu.clone()).map_err(fault)?;
-                    traffic = Some(model.traffic());
-                    painting.set_model(Box::new(model));
-                }
-                Some(flow) => {
-                    let model = flow.make(gpu.clone(), Choice::Forced).map_err(fault)?;
-                    painting.set_model(model);
-                }
-                None => {
-                    let what = format!("no GPU computes the paint model '{}'", means.model);
-                    return Err(UserError::usage(what));
-                }
-            }
+            let Some(make) = model_called(&means.model).map_err(fault)?.make_on else {
+                let what = format!("no GPU computes the paint model '{}'", means.model);
+                return Err(UserError::usage(what));
+            };
+            let made = make(gpu.clone(), Choice::Forced).map_err(fault)?;
+            traffic = made.traffic;
+            painting.set_model(made.model);
         }
         let mut sequencer = Sequencer::new(painting);
         sequencer

@@ -6,7 +6,7 @@ use std::time::Instant;
 use maulstick_brush::{BrushError, BrushFile, HeadPose};
 use maulstick_dab::Dab;
 use maulstick_dab::stroke::Stroker;
-use maulstick_gpu::{Device, GpuModel};
+use maulstick_gpu::Device;
 use maulstick_model::interface::PaintModel;
 use maulstick_model::trial::{PATHS, Trial};
 use maulstick_num::fork_join::with_threads;
@@ -65,7 +65,7 @@ fn model(stroker: Stroker, gpu: Option<&Device>) -> Result<Box<dyn PaintModel>, 
         return Ok(Box::new(Dab::stroking(stroker)));
     };
     let fault = |error| UserError::failure(format!("the graphics device: {error}"));
-    let model = GpuModel::dab_stroking(gpu.clone(), stroker).map_err(fault)?;
+    let model = maulstick_dab::device::stroking(gpu.clone(), stroker).map_err(fault)?;
     Ok(Box::new(model))
 }
 

@@ -33,10 +33,7 @@ fn check(name: &str, texts: &[(&str, &str)], fault: &str) {
     assert!(complaints.is_empty(), "\n{}", complaints.join("\n"));
 }
 
-const REGISTRY: (&str, &str) = (
-    "sim/painting/src/models.rs",
-    "const A: E = E {\nname: \"dab\",\n};",
-);
+const REGISTRY: (&str, &str) = ("sim/models/dab/src/entry.rs", "const A: &str = \"dab\";");
 
 macro_rules! rules {
     ($($test:ident $name:literal $texts:expr => $fault:literal;)*) => {
@@ -75,13 +72,15 @@ rules! {
     ] => "a: impl A";
     models "models" [
         REGISTRY,
-        ("sim/dab/src/lib.rs", "const A: &str = \"dab\";"),
+        ("sim/models/dab/src/lib.rs", "const A: &str = \"dab\";"),
         ("sim/a/src/lib.rs", "use maulstick_dab::Dab; const A: &str = \"a dab of paint\";"),
-        ("sim/b/src/lib.rs", "fn f(name: &str) -> bool { name == \"dab\" }"),
-    ] => "sim/a/src/lib.rs + sim/b/src/lib.rs";
+        ("sim/b/dab/lib.rs", "fn f(name: &str) -> bool { name == \"dab\" }"),
+    ] => "sim/a/src/lib.rs + sim/b/dab/lib.rs";
     graphics "graphics" [
-        REGISTRY, ("sim/gpu/src/shaders/dab/a.wgsl", ""), ("sim/gpu/src/b.rs", "fn f() { Gpu::dab(); }"),
-    ] => "sim/gpu/src/b.rs + sim/gpu/src/shaders/dab";
+        REGISTRY, ("sim/gpu/src/b.rs", "fn f() { Gpu::dab(); }"),
+        ("sim/gpu/Cargo.toml", "[package]\nname = \"g\"\n[dependencies]\nd = \"1\""),
+        ("sim/models/dab/Cargo.toml", "[package]\nname = \"d\""),
+    ] => "sim/gpu/src/b.rs + sim/gpu";
     edits "edits" [
         ("sim/painting/src/edits/layer/go_to.rs", "use crate::Edit; fn f() { Edit::GoTo }"),
         ("sim/painting/src/edits/form.rs", "pub trait Form {}"),

@@ -22,7 +22,7 @@ use maulstick_types::haptics::{ContactModel, ForceLaw, GuideModel};
 use self::link::Link;
 use maulstick_haptics::contact::Contact;
 use maulstick_haptics::extent::Extent;
-use maulstick_haptics::guide::Guide;
+use maulstick_haptics::guide::{Guide, GuideBounds};
 use maulstick_haptics::plant::{Hand, Plant};
 use maulstick_haptics::servo::Servo;
 use maulstick_haptics::servo::fault::Fault;
@@ -95,9 +95,9 @@ impl GuideLine {
         let limits = Limits::default();
         Self {
             normal,
-            stiffness: limits.guide_stiffness_n_m,
+            stiffness: limits.guide.stiffness_n_m,
             damping,
-            most_n: limits.guide_n,
+            most_n: limits.guide.force_n,
         }
     }
 
@@ -302,8 +302,11 @@ impl Run {
         };
         match self.guide {
             Some(guide) => Limits {
-                guide_n: guide.most_n,
-                guide_stiffness_n_m: guide.stiffness,
+                guide: GuideBounds {
+                    force_n: guide.most_n,
+                    stiffness_n_m: guide.stiffness,
+                    ..limits.guide
+                },
                 ..limits
             },
             None => limits,

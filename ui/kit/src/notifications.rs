@@ -14,7 +14,7 @@ const WIDTH: f32 = 360.0;
 
 /// Severity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Weight {
+pub enum Severity {
     /// Something was done.
     Note,
     /// Something was not done.
@@ -25,12 +25,12 @@ pub enum Weight {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notification {
     /// Severity.
-    pub weight: Weight,
+    pub severity: Severity,
     /// The message.
     pub what: String,
     /// Advice; empty if there is none.
     pub help: String,
-    /// The value that it tells; the next one takes its place.
+    /// Name of the value that it shows; the next one takes its place.
     topic: Option<&'static str>,
     /// Time of its end by the window's clock, s; `None` before it was first shown.
     until_s: Option<f64>,
@@ -39,52 +39,52 @@ pub struct Notification {
 /// The current notifications.
 #[derive(Debug, Default)]
 pub struct Notifications {
-    told: Vec<Notification>,
+    shown: Vec<Notification>,
 }
 
 impl Notifications {
-    /// Tells that something was done.
+    /// Notifies that something was done.
     pub fn note(&mut self, what: impl Into<String>) {
-        self.tell(Weight::Note, what.into(), String::new());
+        self.push(Severity::Note, what.into(), String::new());
     }
 
-    /// Tells a value that keys change, in the place of the one before.
+    /// Notifies of a value that keys change, in the place of the one before.
     pub fn value(&mut self, topic: &'static str, what: impl Into<String>) {
-        self.told.retain(|toast| toast.topic != Some(topic));
+        self.shown.retain(|toast| toast.topic != Some(topic));
         self.note(what);
-        if let Some(newest) = self.told.last_mut() {
+        if let Some(newest) = self.shown.last_mut() {
             newest.topic = Some(topic);
         }
     }
 
-    /// Tells that something was not done, and what to do.
+    /// Notifies that something was not done, and what to do.
     pub fn fault(&mut self, what: impl Into<String>, help: impl Into<String>) {
-        self.tell(Weight::Fault, what.into(), help.into());
+        self.push(Severity::Fault, what.into(), help.into());
     }
 
-    /// Tells of a fault of the rig.
+    /// Notifies of an error.
     pub fn of(&mut self, fault: &UserError) {
         self.fault(fault.what.clone(), fault.help.clone().unwrap_or_default());
     }
 
     /// Removes a notification whose cause is over.
     pub fn over(&mut self, what: &str) {
-        self.told.retain(|toast| toast.what != what);
+        self.shown.retain(|toast| toast.what != what);
     }
 
     /// The notifications, the oldest first.
-    pub fn told(&self) -> &[Notification] {
-        &self.told
+    pub fn shown(&self) -> &[Notification] {
+        &self.shown
     }
 
     /// A repeated notification restarts its time, and is not shown twice.
-    fn tell(&mut self, weight: Weight, what: String, help: String) {
-        self.told.retain(|toast| toast.what != what);
-        if self.told.len() >= MOST {
-            self.told.remove(0);
+    fn push(&mut self, severity: Severity, what: String, help: String) {
+        self.shown.retain(|toast| toast.what != what);
+        if self.shown.len() >= MOST {
+            self.shown.remove(0);
         }
-        self.told.push(Notification {
-            weight,
+        self.shown.push(Notification {
+            severity,
             what,
             help,
             topic: None,
@@ -95,17 +95,17 @@ impl Notifications {
     /// Shows the notifications at the upper edge; a click removes one.
     pub fn show(&mut self, context: &Context) {
         let now = context.input(|input| input.time);
-        for toast in &mut self.told {
-            let stays = match toast.weight {
-                Weight::Note => NOTE_S,
-                Weight::Fault => FAULT_S,
+        for toast in &mut self.shown {
+            let stays = match toast.severity {
+                Severity::Note => NOTE_S,
+                Severity::Fault => FAULT_S,
             };
             toast.until_s.get_or_insert(now + stays);
         }
-        self.told
+        self.shown
             .retain(|toast| toast.until_s.is_none_or(|until| now < until));
         let Some(first) = self
-            .told
+            .shown
             .iter()
             .filter_map(|toast| toast.until_s)
             .reduce(f64::min)
@@ -114,16 +114,19 @@ impl Notifications {
         };
         context.request_repaint_after_secs((first - now) as f32);
         let mut gone = None;
-        let faults = self.told.iter().any(|toast| toast.weight == Weight::Fault);
+        let faults = self
+            .shown
+            .iter()
+            .any(|toast| toast.severity == Severity::Fault);
         Area::new(Id::unique("toasts"))
             .order(Order::Foreground)
             .interactable(faults)
             .anchor(Align2::CENTER_TOP, [0.0, 12.0])
             .show(context, |ui| {
-                for (place, toast) in self.told.iter().enumerate() {
-                    let sign = match toast.weight {
-                        Weight::Note => ui.visuals().widgets.noninteractive.bg_stroke.color,
-                        Weight::Fault => Color32::from_rgb(214, 112, 48),
+                for (place, toast) in self.shown.iter().enumerate() {
+                    let sign = match toast.severity {
+                        Severity::Note => ui.visuals().widgets.noninteractive.bg_stroke.color,
+                        Severity::Fault => Color32::from_rgb(214, 112, 48),
                     };
                     let frame = Frame::popup(ui.style()).stroke(egui::Stroke::new(1.5, sign));
                     let shown = frame.show(ui, |ui| {
@@ -140,7 +143,7 @@ impl Notifications {
                 }
             });
         if let Some(place) = gone {
-            self.told.remove(place);
+            self.shown.remove(place);
         }
     }
 }
@@ -159,7 +162,7 @@ mod tests {
             notifications.note(what);
         }
         let told: Vec<&str> = notifications
-            .told()
+            .shown()
             .iter()
             .map(|t| t.what.as_str())
             .collect();
@@ -173,7 +176,7 @@ mod tests {
         notifications.note("saved");
         notifications.value("pressure", "50 %");
         notifications.value("width", "12 mm");
-        let told = notifications.told().iter().map(|toast| &*toast.what);
+        let told = notifications.shown().iter().map(|toast| &*toast.what);
         assert_eq!(told.collect::<Vec<_>>(), ["saved", "50 %", "12 mm"]);
     }
 
@@ -191,6 +194,6 @@ mod tests {
         harness.get_by_label("plug it in");
         harness.run_steps(FAULT_S as usize + 2);
         assert!(harness.query_by_label("the arm is gone").is_none());
-        assert!(harness.state().told().is_empty());
+        assert!(harness.state().shown().is_empty());
     }
 }

@@ -24,20 +24,24 @@ const ARROW: Color32 = Color32::from_rgb(230, 120, 40);
 impl App {
     /// Path of the pointer over the desk since the last frame.
     pub(super) fn pointer(&mut self, context: &Context) -> Vec<Pointer> {
-        let (Some(scene), Some(view)) = (&self.rig.live.scene, &self.view) else {
+        let (Some(scene), Some(view)) = (&self.studio.rig.live.scene, &self.desk.view) else {
             return Vec::new();
         };
         // Two fingers move the canvas.
         let fingers = context.input(|input| input.multi_touch().is_some());
-        let pen = self.pen.has_pointer(self.bus.now_ns());
-        if fingers || pen || self.navigation.holds() || self.overlay.motions.is_placing() {
-            self.pointer_path.lift();
+        let pen = self.hands.pen.has_pointer(self.connection.bus.now_ns());
+        if fingers || pen || self.hands.navigation.holds() || self.overlay.motions.is_placing() {
+            self.hands.pointer_path.lift();
             return Vec::new();
         }
         let on_desk = |at: egui::Pos2| view.area.contains(at) && !is_panel(context, at);
         let input = context.input(Clone::clone);
-        let keys = &self.preferences.keys;
-        let places = self.pointer_path.follow(&input, keys, on_desk).into_iter();
+        let keys = &self.studio.preferences.keys;
+        let places = self
+            .hands
+            .pointer_path
+            .follow(&input, keys, on_desk)
+            .into_iter();
         let pointer = |(at, pressed): (egui::Pos2, bool)| Pointer {
             at: view.to_desk(at, &scene.surfaces).to_array(),
             pressed,
@@ -48,15 +52,15 @@ impl App {
 
     /// Does what concerns the desk.
     pub(super) fn act(&mut self, act: Action, context: &Context) {
-        let (Some(canvas), Some(view)) = (self.rig.live.canvas(), &self.view) else {
+        let (Some(canvas), Some(view)) = (self.studio.rig.live.canvas(), &self.desk.view) else {
             return;
         };
-        self.navigation.forget();
+        self.hands.navigation.forget();
         match act {
-            Action::Fit => place(&mut self.requests, &view.fitted(canvas), CANVAS),
+            Action::Fit => place(&mut self.studio.requests, &view.fitted(canvas), CANVAS),
             Action::Hundred => {
                 let lie = view.hundred(canvas, context.pixels_per_point());
-                place(&mut self.requests, &lie, CANVAS);
+                place(&mut self.studio.requests, &lie, CANVAS);
             }
             Action::Palette => self.slide(),
             Action::LoadFrom => self.load_from(context),
@@ -66,7 +70,10 @@ impl App {
 
     /// The point of the desk at the pointer.
     fn pointed_at(&self, context: &Context) -> Option<DVec3> {
-        let (scene, view) = (self.rig.live.scene.as_ref()?, self.view.as_ref()?);
+        let (scene, view) = (
+            self.studio.rig.live.scene.as_ref()?,
+            self.desk.view.as_ref()?,
+        );
         let at = context.input(|input| input.pointer.latest_pos())?;
         let is_on_desk = view.area.contains(at) && !is_panel(context, at);
         is_on_desk.then(|| view.to_desk(at, &scene.surfaces))
@@ -74,28 +81,28 @@ impl App {
 
     /// Loads the brush in the hand with the mixture under it.
     fn load_from(&mut self, context: &Context) {
-        let name = self.rig.brush_name();
+        let name = self.studio.rig.brush_name();
         // The mouse's newest sample comes back a frame later: it is where its pointer is.
-        let pointer = match self.tracker.is_led_by_mouse(name) {
+        let pointer = match self.connection.tracker.is_led_by_mouse(name) {
             true => self.pointed_at(context),
             false => None,
         };
-        let aim = pointer.or(self.tracker.aim(name).map(|(at, _)| at));
+        let aim = pointer.or(self.connection.tracker.aim(name).map(|(at, _)| at));
         let under = aim.and_then(|at| {
-            let plane = self.rig.desk.as_ref()?.under(at)?;
+            let plane = self.studio.rig.desk.as_ref()?.under(at)?;
             let plane = plane.holds(at).then_some(plane)?;
             let at = plane.to_desk.inverse().point(at) / plane.zoom;
             Some((plane.id, [at.x, at.y].map(Distance::new)))
         });
         match (under, BrushName::new(name)) {
-            (Some((surface, [Ok(x), Ok(y)])), Ok(brush)) => self.requests.send(LoadFrom {
+            (Some((surface, [Ok(x), Ok(y)])), Ok(brush)) => self.studio.requests.send(LoadFrom {
                 x,
                 y,
                 surface,
-                thinner: self.preferences.loading.share(),
+                thinner: self.studio.preferences.brushes.loading.share(),
                 brush,
             }),
-            _ => self.notifications.fault(
+            _ => self.studio.notifications.fault(
                 tr!("The brush is over neither the canvas nor the palette."),
                 tr!("Move it over the mixture that it is to take up."),
             ),
@@ -104,26 +111,29 @@ impl App {
 
     /// Slides the palette over the canvas, or back beside it.
     pub(super) fn slide(&mut self) {
-        let (Some(canvas), Some(palette)) = (self.rig.live.canvas(), self.rig.live.palette())
-        else {
+        let (Some(canvas), Some(palette)) = (
+            self.studio.rig.live.canvas(),
+            self.studio.rig.live.palette(),
+        ) else {
             return;
         };
-        let side = side(&self.preferences);
+        let side = side(&self.studio.preferences);
         let pose = match is_out(canvas, palette, side) {
             true => beside(canvas, palette, side),
             false => over(canvas, palette),
         };
         if let Ok(edit) = Place::new(PALETTE, pose, palette.zoom) {
-            self.requests.send(edit);
+            self.studio.requests.send(edit);
         }
     }
 
     /// Carries out navigation, the cleaning key and the palette gesture.
     pub(super) fn follow(&mut self, context: &Context, now_ns: u64) {
-        let Some(view) = &self.view else {
+        let Some(view) = &self.desk.view else {
             return;
         };
         let surfaces = self
+            .studio
             .rig
             .live
             .scene
@@ -132,19 +142,19 @@ impl App {
         let around = Around {
             view,
             surfaces: surfaces.unwrap_or_default(),
-            free: self.mouse.is_free(now_ns) && !self.pen.has_pointer(now_ns),
+            free: self.hands.mouse.is_free(now_ns) && !self.hands.pen.has_pointer(now_ns),
             // The wheel and the buttons are those of a motion that follows the pointer.
             over_panel: over_panel(context) || self.overlay.motions.is_placing(),
-            keys: &self.preferences.keys,
+            keys: &self.studio.preferences.keys,
         };
-        let navigation = &mut self.navigation;
+        let navigation = &mut self.hands.navigation;
         context.input(|input| navigation.follow(input, &around));
-        let brush = self.rig.brush_name();
-        let aim = self.tracker.aim(brush);
+        let brush = self.studio.rig.brush_name();
+        let aim = self.connection.tracker.aim(brush);
         let now_s = context.input(|input| input.time);
         let typing = context.memory(|memory| memory.focused().is_some());
         // A tap may be shorter than a frame.
-        let clean = self.preferences.keys.key_of(Action::Clean);
+        let clean = self.studio.preferences.keys.key_of(Action::Clean);
         let is_down = clean.is_some_and(|key| {
             let key = key.logical_key;
             !typing && context.input(|input| input.key_down(key) || input.key_pressed(key))
@@ -158,19 +168,24 @@ impl App {
                 }
             });
         }
-        let handling = self.rig.handling();
-        self.clean_key.follow(now_s, is_down, painting, &handling);
-        if self.clean_key.is_down() {
+        let handling = self.studio.rig.handling();
+        self.hands
+            .clean_key
+            .follow(now_s, is_down, painting, &handling);
+        if self.hands.clean_key.is_down() {
             context.request_repaint_after(STILL);
         }
         let wide_m = f64::from(view.area.width()) / view.scale;
         let at = aim.map(|(at, _)| (at.truncate() - view.middle) / wide_m);
         let at = gone(context, view).or(at);
-        let free = !painting && !self.navigation.holds();
-        if self
-            .palette_gesture
-            .follow(now_s, at, wide_m, free, side(&self.preferences))
-        {
+        let free = !painting && !self.hands.navigation.holds();
+        if self.hands.palette_gesture.follow(
+            now_s,
+            at,
+            wide_m,
+            free,
+            side(&self.studio.preferences),
+        ) {
             self.slide();
         }
     }
@@ -178,11 +193,11 @@ impl App {
     /// Names the wells on the palette as it is seen.
     pub(super) fn name_wells(&self, painter: &egui::Painter, view: &View, seen: &[Surface]) {
         let palette = seen.iter().find(|surface| surface.id == PALETTE);
-        let (Some(canvas), Some(palette)) = (self.rig.live.canvas(), palette) else {
+        let (Some(canvas), Some(palette)) = (self.studio.rig.live.canvas(), palette) else {
             return;
         };
-        let aim = self.tracker.aim(self.rig.brush_name());
-        let shown = match is_out(canvas, palette, side(&self.preferences)) {
+        let aim = self.connection.tracker.aim(self.studio.rig.brush_name());
+        let shown = match is_out(canvas, palette, side(&self.studio.preferences)) {
             true => Some(Shown::All),
             false => aim.map(|(at, _)| Shown::Under(at)),
         };
@@ -193,16 +208,20 @@ impl App {
 
     /// Shows what a device is to touch that is being fitted.
     pub(super) fn show_fit(&self, painter: &egui::Painter, view: &View) {
-        if let (Some(fit), Some(canvas)) = (&self.rig.setup.fit, self.rig.live.canvas()) {
-            fit_crosses::draw(painter, view, canvas, fit.asks.as_deref());
+        if let (Some(fit), Some(canvas)) =
+            (&self.studio.rig.setup.fit, self.studio.rig.live.canvas())
+        {
+            fit_crosses::draw(painter, view, canvas, fit.asked_corner());
         }
     }
 
     /// Draws the force in the hand as an arrow from the brush, as long as its panel is seen.
     pub(super) fn draw_force(&self, painter: &egui::Painter, view: &View) {
-        let seen = self.preferences.panels && self.preferences.is_open("Device");
+        let seen =
+            self.studio.preferences.window.panels && self.studio.preferences.is_open("Device");
         let Some((place_m, force_n)) =
-            force_history::force_arrow(&self.rig.live, self.rig.brush_name()).filter(|_| seen)
+            force_history::force_arrow(&self.studio.rig.live, self.studio.rig.brush_name())
+                .filter(|_| seen)
         else {
             return;
         };
@@ -217,9 +236,11 @@ impl App {
 
     /// Lays palette and wells for the hand that paints, where the painter has changed it.
     pub(super) fn change_hands(&mut self) {
-        let side = side(&self.preferences);
-        let (Some(canvas), Some(palette)) = (self.rig.live.canvas(), self.rig.live.palette())
-        else {
+        let side = side(&self.studio.preferences);
+        let (Some(canvas), Some(palette)) = (
+            self.studio.rig.live.canvas(),
+            self.studio.rig.live.palette(),
+        ) else {
             return;
         };
         let other = match side {
@@ -227,10 +248,10 @@ impl App {
             Side::Right => Side::Left,
         };
         // Once for each start of the paint node, and when the painter has changed hands.
-        let key = (side, self.rig.live.starts);
-        let before = self.side.replace(key);
+        let key = (side, self.studio.rig.live.starts);
+        let before = self.desk.side.replace(key);
         let rests = is_same(&palette.pose, &beside(canvas, palette, other));
-        let changes = before == Some((other, self.rig.live.starts));
+        let changes = before == Some((other, self.studio.rig.live.starts));
         if before == Some(key) || !(rests || changes) {
             return;
         }
@@ -244,8 +265,8 @@ impl App {
             Place::new(PALETTE, pose, palette.zoom),
             Wells::new(PALETTE, wells),
         ) {
-            self.requests.send(laid);
-            self.requests.send(wells);
+            self.studio.requests.send(laid);
+            self.studio.requests.send(wells);
         }
     }
 }
@@ -258,7 +279,7 @@ fn over_panel(context: &Context) -> bool {
 
 /// The side of the palette for the hand that paints.
 fn side(preferences: &Preferences) -> Side {
-    match preferences.left_handed {
+    match preferences.window.left_handed {
         false => Side::Left,
         true => Side::Right,
     }

@@ -1,23 +1,25 @@
 //! Everything over the desk: rack, panels, dialogs, notifications, the line of help; and the keys for them.
 
+pub(crate) mod bar;
+mod column;
+mod first_run;
+mod help_pages;
 mod outcome_words;
+mod table_of_keys;
 
-use eframe::egui::{self, Align, Align2, Context, Layout, Rect, Ui};
+use eframe::egui::{self, Context, Rect, Ui};
 use maulstick_painting::edits::{Clean, Dry, Redo, Relight, Scrape, Undo};
 use maulstick_types::scene::{CANVAS, Light, PALETTE};
 use maulstick_types::values::BrushName;
-use maulstick_ui_kit::language::translated;
 
+use self::column::Column;
+use self::first_run::FirstRun;
+use self::help_pages::HelpPages;
 use crate::advice;
-use crate::app::bar;
-use crate::app::column::Column;
-use crate::app::first_run::FirstRun;
-use crate::app::help_pages::HelpPages;
 use crate::app::rack;
 use crate::app::sides;
 use crate::dialogs::Files;
-use crate::input::keymap::Keymap;
-use crate::input::keys::{self, Action};
+use crate::input::keys::Action;
 use crate::input::presses;
 use crate::input::size_drag::SizeDrag;
 use crate::matching::colour_window::ColourWindow;
@@ -32,7 +34,6 @@ use crate::settings::brush_memory::BrushMemory;
 use crate::settings::preferences::Preferences;
 use crate::settings_page::SettingsPage;
 use crate::widgets::context::{PanelContext, ask};
-use crate::widgets::key_picture;
 use maulstick_client::dispatcher::Outcome;
 
 /// Turn of the mouse's brush by one press of a key, degrees.
@@ -40,19 +41,12 @@ const TURN_DEG: f64 = 15.0;
 /// Change of the mouse's pressure by one press of a key.
 const PRESS: f64 = 0.05;
 
-/// Height of the table of keys beyond its list, points, and width of the picture over it.
-const HEAD: f32 = 80.0;
-const PICTURE: f32 = 480.0;
-
 /// Rack, panels, dialogs and notifications over the desk.
 #[derive(Default)]
 pub(crate) struct Overlay {
     column: Column,
     keys: bool,
-    /// What hides panels, while one of their controls is dragged: it waits until that is let go.
-    later: Vec<Action>,
-    /// True if a control was dragged in the last frame.
-    was_dragged: bool,
+    hiding: HidingActs,
     files: Files,
     settings: SettingsPage,
     brush_memory: BrushMemory,
@@ -70,6 +64,31 @@ pub(crate) struct Overlay {
     alone: Option<bool>,
 }
 
+/// Actions that hide panels, while one of their controls is dragged: they wait until that is let go.
+#[derive(Default)]
+struct HidingActs {
+    later: Vec<Action>,
+    /// True if a control was dragged in the last frame.
+    was_dragged: bool,
+}
+
+impl HidingActs {
+    /// Keeps back what hides the panels until no control of theirs is dragged, so that its end is not missed.
+    fn wait_for_drag(&mut self, context: &Context, acts: &mut Vec<Action>) {
+        let is_dragged = context.egui_is_using_pointer();
+        let hides = |act: &mut Action| matches!(act, Action::Panels | Action::Alone);
+        if is_dragged || self.was_dragged {
+            self.later.extend(acts.extract_if(.., hides));
+        } else {
+            acts.append(&mut self.later);
+        }
+        if !self.later.is_empty() {
+            context.request_repaint();
+        }
+        self.was_dragged = is_dragged;
+    }
+}
+
 impl Overlay {
     /// Shows it and follows the keys; what concerns the desk itself is returned.
     #[must_use]
@@ -83,12 +102,13 @@ impl Overlay {
         if !in_dialog {
             TransportBar::follow_keys(&context, work);
         }
-        let mut acts = match in_dialog {
-            true => presses::force_off(&context, &work.preferences.keys),
-            false => presses::pressed(&context, &work.preferences.keys),
+        let mut acts = if in_dialog {
+            presses::force_off(&context, &work.preferences.keys)
+        } else {
+            presses::pressed(&context, &work.preferences.keys)
         };
         acts.append(&mut work.requests.take_acts());
-        self.wait_for_drag(&context, &mut acts);
+        self.hiding.wait_for_drag(&context, &mut acts);
         let keymap = &work.preferences.keys;
         if self.keys
             && !in_dialog
@@ -105,36 +125,40 @@ impl Overlay {
                 rest.push(act);
             }
         }
+        self.show_all(&context, in_dialog, work);
+        rest
+    }
+
+    fn show_all(&mut self, context: &Context, in_dialog: bool, work: &mut PanelContext<'_>) {
         if self.alone.is_none() {
-            self.transport.show(&context, work);
+            self.transport.show(context, work);
             if sides::has_rack(work.preferences) {
-                rack::show(&context, work);
+                rack::show(context, work);
             }
-            if work.preferences.panels {
-                self.column.show(&context, work);
+            if work.preferences.window.panels {
+                self.column.show(context, work);
             }
         }
         if !in_dialog {
-            self.size_drag.follow(&context, work);
+            self.size_drag.follow(context, work);
         }
         if self.keys {
-            self.table_of_keys(&context, &work.preferences.keys);
+            table_of_keys::show(context, &work.preferences.keys, &mut self.keys);
         }
         if !in_dialog && self.alone.is_none() {
             self.first_run
-                .show(&context, self.palette, work.rig, work.preferences);
+                .show(context, self.palette, work.rig, work.preferences);
         }
-        if let Some(act) = self.reference.show(&context, self.palette, work) {
-            self.files.follow(&context, act, work);
+        if let Some(act) = self.reference.show(context, self.palette, work) {
+            self.files.follow(context, act, work);
         }
-        self.colour.show(&context, work);
-        self.help_pages.show(&context, work);
-        self.files.show(&context, &mut self.reference, work);
-        self.settings.show(&context, work);
-        self.motions.show(&context, work);
-        self.brush_memory.follow(&context, work);
-        work.notifications.show(&context);
-        rest
+        self.colour.show(context, work);
+        self.help_pages.show(context, work);
+        self.files.show(context, &mut self.reference, work);
+        self.settings.show(context, work);
+        self.motions.show(context, work);
+        self.brush_memory.follow(context, work);
+        work.notifications.show(context);
     }
 
     /// Widths that the tools take from the canvas at the left and right side of the window, points.
@@ -157,20 +181,6 @@ impl Overlay {
         self.files.closes()
     }
 
-    /// Keeps back what hides the panels until no control of theirs is dragged, so that its end is not missed.
-    fn wait_for_drag(&mut self, context: &Context, acts: &mut Vec<Action>) {
-        let is_dragged = context.egui_is_using_pointer();
-        let hides = |act: &mut Action| matches!(act, Action::Panels | Action::Alone);
-        match is_dragged || self.was_dragged {
-            true => self.later.extend(acts.extract_if(.., hides)),
-            false => acts.append(&mut self.later),
-        }
-        if !self.later.is_empty() {
-            context.request_repaint();
-        }
-        self.was_dragged = is_dragged;
-    }
-
     /// Takes in the outcome of a request; a failure becomes a notification, and so does an edit
     /// whose effect may be out of view.
     pub(crate) fn on_reply(&mut self, outcome: &Outcome, work: &mut PanelContext<'_>) {
@@ -190,9 +200,16 @@ impl Overlay {
 
     /// Does what a key asks for; `false` where it concerns the desk.
     fn follow(&mut self, context: &Context, act: Action, work: &mut PanelContext<'_>) -> bool {
-        if self.motions.follow(act) || self.help_pages.follow(act) {
-            return true;
-        }
+        self.motions.follow(act)
+            || self.help_pages.follow(act)
+            || self.follow_painting(act, work)
+            || follow_mouse(act, work)
+            || self.follow_window(context, act, work)
+            || self.follow_tools(context, act, work)
+    }
+
+    /// Changes the painting or the brush.
+    fn follow_painting(&mut self, act: Action, work: &mut PanelContext<'_>) -> bool {
         match act {
             Action::Undo => match self.lamp_undo.undo(work.rig) {
                 Some(light) => relight(work, light),
@@ -210,40 +227,30 @@ impl Overlay {
             Action::Smaller => work.step_width(false),
             Action::Larger => work.step_width(true),
             Action::NextBrush => work.next_brush(),
-            Action::TurnLeft | Action::TurnRight => {
-                let by_deg = if act == Action::TurnLeft {
-                    TURN_DEG
-                } else {
-                    -TURN_DEG
-                };
-                work.preferences.mouse.turn(by_deg);
-                let turn = work.preferences.mouse.turn_deg;
-                work.notifications.note(tr!(
-                    "Brush turned by {turn}°",
-                    turn = format_args!("{turn:.0}")
-                ));
+            Action::Clean => {
+                let brush = BrushName::new(work.rig.brush_name());
+                ask(work, brush.map(|brush| Clean { brush }));
             }
-            Action::Follow => {
-                let follows = &mut work.preferences.mouse.follows;
-                *follows = !*follows;
-                let words = match *follows {
-                    true => tr!("The mouse's brush follows the stroke"),
-                    false => tr!("The mouse's brush keeps its turn"),
-                };
-                work.notifications.note(words.to_owned());
-            }
-            Action::Lighter | Action::Harder => {
-                let by = if act == Action::Harder { PRESS } else { -PRESS };
-                work.preferences.mouse.press(by);
-                let percent = 100.0 * work.preferences.mouse.pressure;
-                let words = tr!(
-                    "Mouse presses with {percent} %",
-                    percent = format_args!("{percent:.0}")
-                );
-                work.notifications.value("pressure", words);
-            }
+            Action::ForceOff => panels::device::force_off(work),
+            Action::Record => work.requests.session(match work.rig.recording {
+                Some(_) => SessionOrder::StopRecording,
+                None => SessionOrder::Record,
+            }),
+            _ => return false,
+        }
+        true
+    }
+
+    /// Changes what of the canvas is seen, and whether beside tools.
+    fn follow_window(
+        &mut self,
+        context: &Context,
+        act: Action,
+        work: &mut PanelContext<'_>,
+    ) -> bool {
+        match act {
             Action::Mirror => {
-                let mirrored = &mut work.preferences.mirrored;
+                let mirrored = &mut work.preferences.window.mirrored;
                 *mirrored = !*mirrored;
                 let words = match *mirrored {
                     true => tr!("The view is mirrored; the painting is not"),
@@ -251,9 +258,36 @@ impl Overlay {
                 };
                 work.notifications.note(words.to_owned());
             }
-            Action::Panels => work.preferences.panels = !work.preferences.panels,
+            Action::FullScreen => fill_screen(context, !fills_screen(context)),
+            Action::Alone => match self.alone.take() {
+                Some(filled) => fill_screen(context, filled),
+                None => {
+                    self.alone = Some(fills_screen(context));
+                    fill_screen(context, true);
+                    let key = work.preferences.keys.written(context, Action::Alone);
+                    if !key.is_empty() {
+                        work.notifications
+                            .note(tr!("{key} shows the tools again", key));
+                    }
+                }
+            },
+            Action::Quit => context.send_viewport_cmd(egui::ViewportCommand::Close),
+            _ => return false,
+        }
+        true
+    }
+
+    /// Opens and closes panels, dialogs and pictures.
+    fn follow_tools(
+        &mut self,
+        context: &Context,
+        act: Action,
+        work: &mut PanelContext<'_>,
+    ) -> bool {
+        match act {
+            Action::Panels => work.preferences.window.panels = !work.preferences.window.panels,
             Action::Focus => {
-                work.preferences.panels = true;
+                work.preferences.window.panels = true;
                 self.column.focus();
             }
             Action::Reference if self.reference.toggle(work.preferences) => {}
@@ -271,72 +305,54 @@ impl Overlay {
             | Action::ChooseTracing => {
                 self.files.follow(context, act, work);
             }
-            Action::Record => work.requests.session(match work.rig.recording {
-                Some(_) => SessionOrder::StopRecording,
-                None => SessionOrder::Record,
-            }),
             Action::Keys => self.keys = !self.keys,
             Action::Colour => self.colour.toggle(),
-            Action::Quit => context.send_viewport_cmd(egui::ViewportCommand::Close),
             Action::Settings => self.settings.open(),
             Action::Motions => self.motions.open(work),
-            Action::Clean => {
-                let brush = BrushName::new(work.rig.brush_name());
-                ask(work, brush.map(|brush| Clean { brush }));
-            }
-            Action::ForceOff => panels::device::force_off(work),
-            Action::FullScreen => fill_screen(context, !fills_screen(context)),
-            Action::Alone => match self.alone.take() {
-                Some(filled) => fill_screen(context, filled),
-                None => {
-                    self.alone = Some(fills_screen(context));
-                    fill_screen(context, true);
-                    let key = work.preferences.keys.written(context, Action::Alone);
-                    if !key.is_empty() {
-                        work.notifications
-                            .note(tr!("{key} shows the tools again", key));
-                    }
-                }
-            },
             _ => return false,
         }
         true
     }
+}
 
-    fn table_of_keys(&mut self, context: &Context, keymap: &Keymap) {
-        let mut open = self.keys;
-        egui::Window::new(tr!("Keys"))
-            .open(&mut open)
-            .collapsible(false)
-            .resizable(false)
-            .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
-            .show(context, |ui| {
-                let height = context.content_rect().height() - HEAD;
-                let list = egui::ScrollArea::vertical()
-                    .max_height(height)
-                    .min_scrolled_height(height);
-                list.show(ui, |ui| {
-                    let colour = ui.visuals().text_color();
-                    key_picture::show(ui, keymap, PICTURE, colour);
-                    ui.separator();
-                    egui::Grid::new("keys")
-                        .num_columns(2)
-                        .striped(true)
-                        .show(ui, |ui| {
-                            for (binding, key) in keymap.bindings() {
-                                // What has no key is in the menu, and in the settings.
-                                if let Some(key) = key {
-                                    key_row(ui, &keys::written(context, &key), binding.words);
-                                }
-                            }
-                            for (keys, words) in keys::HELD {
-                                key_row(ui, translated(keys), words);
-                            }
-                        });
-                });
-            });
-        self.keys = open;
+/// Changes how the mouse holds the brush.
+fn follow_mouse(act: Action, work: &mut PanelContext<'_>) -> bool {
+    match act {
+        Action::TurnLeft | Action::TurnRight => {
+            let by_deg = if act == Action::TurnLeft {
+                TURN_DEG
+            } else {
+                -TURN_DEG
+            };
+            work.preferences.brushes.mouse.turn(by_deg);
+            let turn = work.preferences.brushes.mouse.turn_deg;
+            work.notifications.note(tr!(
+                "Brush turned by {turn}°",
+                turn = format_args!("{turn:.0}")
+            ));
+        }
+        Action::Follow => {
+            let follows = &mut work.preferences.brushes.mouse.follows;
+            *follows = !*follows;
+            let words = match *follows {
+                true => tr!("The mouse's brush follows the stroke"),
+                false => tr!("The mouse's brush keeps its turn"),
+            };
+            work.notifications.note(words.to_owned());
+        }
+        Action::Lighter | Action::Harder => {
+            let by = if act == Action::Harder { PRESS } else { -PRESS };
+            work.preferences.brushes.mouse.press(by);
+            let percent = 100.0 * work.preferences.brushes.mouse.pressure;
+            let words = tr!(
+                "Mouse presses with {percent} %",
+                percent = format_args!("{percent:.0}")
+            );
+            work.notifications.value("pressure", words);
+        }
+        _ => return false,
     }
+    true
 }
 
 /// Brings back a light that undo or redo leads to.
@@ -345,13 +361,6 @@ fn relight(work: &mut PanelContext<'_>, light: Light) {
     work.requests.send(Relight { light, expose });
     work.notifications
         .note(tr!("The light is as it was").to_owned());
-}
-
-/// A row of the table of keys: a key at the right of its column, beside what it does.
-fn key_row(ui: &mut Ui, key: &str, words: &str) {
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.monospace(key));
-    ui.label(translated(words));
-    ui.end_row();
 }
 
 fn fills_screen(context: &Context) -> bool {

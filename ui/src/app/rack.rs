@@ -11,8 +11,8 @@ use eframe::egui::{
 use maulstick_brush::BrushFile;
 use maulstick_ui_kit::language::known;
 
-use crate::input::brush_choice::{called, is_of_library, library};
 use crate::render::brush::icon_cache;
+use crate::settings::brush_library::{called, is_of_library, library};
 use crate::widgets::context::PanelContext;
 
 /// Width of the rack, points.
@@ -119,14 +119,14 @@ fn switch(ui: &mut Ui, work: &mut PanelContext<'_>) {
 fn brushes(ui: &mut Ui, work: &mut PanelContext<'_>) {
     ui.spacing_mut().item_spacing.y = 2.0;
     let hand = work.in_hand().cloned();
-    let own: Vec<_> = work.preferences.own_brushes.clone();
+    let own: Vec<_> = work.preferences.brushes.own_brushes.clone();
     let mut chosen = None;
     let mut is_shown = false;
     for file in library() {
         let in_hand = hand.as_ref().filter(|hand| hand.kind == file.kind);
         let in_hand = in_hand.filter(|hand| is_of_library(hand));
         is_shown |= in_hand.is_some();
-        let remembered = work.preferences.widths_mm.get(&file.kind).copied();
+        let remembered = work.preferences.brushes.widths_mm.get(&file.kind).copied();
         let held_mm = in_hand.map(|hand| hand.head.width_mm);
         let place = Place {
             name: called(&file.kind),
@@ -140,33 +140,9 @@ fn brushes(ui: &mut Ui, work: &mut PanelContext<'_>) {
         }
     }
     for path in &own {
-        match icon_cache::own(ui.ctx(), path) {
-            Ok(file) => {
-                let same = |hand: &BrushFile| {
-                    file.scaled_to(hand.head.width_mm).as_ref() == Ok(hand) || *file == *hand
-                };
-                let in_hand = hand.as_ref().filter(|hand| same(hand));
-                is_shown |= in_hand.is_some();
-                let place = Place {
-                    name: stem(path),
-                    key: path.display().to_string(),
-                    file: &file,
-                    width_mm: in_hand.map_or(file.head.width_mm, |hand| hand.head.width_mm),
-                    in_hand: in_hand.is_some(),
-                };
-                if cell(ui, work, &place).clicked() {
-                    chosen = Some((*file).clone());
-                }
-            }
-            Err(fault) => {
-                let button = eframe::egui::Button::new(stem(path)).truncate();
-                let hover = tr!("This brush file cannot be read; click: why");
-                if ui.add(button).on_hover_text(hover).clicked() {
-                    icon_cache::forget(ui.ctx(), path);
-                    work.notifications.of(&fault);
-                }
-            }
-        }
+        let (is_in_hand, taken) = own_brush(ui, work, path, hand.as_ref());
+        is_shown |= is_in_hand;
+        chosen = taken.or(chosen);
     }
     // A brush that was changed by hand matches no entry.
     if let Some(hand) = hand.filter(|_| !is_shown) {
@@ -184,6 +160,41 @@ fn brushes(ui: &mut Ui, work: &mut PanelContext<'_>) {
     }
     if let Some(file) = chosen {
         work.choose(&file);
+    }
+}
+
+/// A brush of a file of the painter's: true if it is in the hand, and itself if it is chosen.
+fn own_brush(
+    ui: &mut Ui,
+    work: &mut PanelContext<'_>,
+    path: &Path,
+    hand: Option<&BrushFile>,
+) -> (bool, Option<BrushFile>) {
+    match icon_cache::own(ui.ctx(), path) {
+        Ok(file) => {
+            let same = |hand: &BrushFile| {
+                file.scaled_to(hand.head.width_mm).as_ref() == Ok(hand) || *file == *hand
+            };
+            let in_hand = hand.filter(|hand| same(hand));
+            let place = Place {
+                name: stem(path),
+                key: path.display().to_string(),
+                file: &file,
+                width_mm: in_hand.map_or(file.head.width_mm, |hand| hand.head.width_mm),
+                in_hand: in_hand.is_some(),
+            };
+            let is_chosen = cell(ui, work, &place).clicked();
+            (place.in_hand, is_chosen.then(|| (*file).clone()))
+        }
+        Err(fault) => {
+            let button = eframe::egui::Button::new(stem(path)).truncate();
+            let hover = tr!("This brush file cannot be read; click: why");
+            if ui.add(button).on_hover_text(hover).clicked() {
+                icon_cache::forget(ui.ctx(), path);
+                work.notifications.of(&fault);
+            }
+            (false, None)
+        }
     }
 }
 
@@ -210,7 +221,7 @@ fn cell(ui: &mut Ui, work: &PanelContext<'_>, place: &Place<'_>) -> Response {
     let words = format!(
         "{}, {}",
         place.name,
-        work.preferences.units.width(place.width_mm)
+        work.preferences.window.units.width(place.width_mm)
     );
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, place.in_hand, &words));
     if ui.is_rect_visible(area) {

@@ -1,51 +1,91 @@
 //! Requests on their way to the rig, in their order among the strokes; what has to wait for a brush to lift, or is
 //! refused until then.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use eframe::egui::Context;
+use maulstick_client::dispatcher::CommandDispatcher;
+use maulstick_client::pending_orders::PendingSender;
+use maulstick_client::stroke_barrier::StrokeBarrier;
+use maulstick_rig::{NodeHandle, UserError};
 
-use super::App;
+use crate::app::connection::Connection;
+use crate::app::hands::Hands;
+use crate::app::held_places::HeldPlaces;
+use crate::app::studio::Studio;
+use crate::rig::device_setup::DeviceSetupRunner;
 use crate::rig::state::BrushContact;
-use crate::widgets::context::PanelContext;
-use maulstick_client::request::Request;
+use crate::sessions::SessionProcesses;
 
 /// Interval at which a request that waits for its stroke is checked again.
 const BARRIER_LOOK: Duration = Duration::from_millis(50);
 
-impl App {
+/// Requests on their way.
+pub(super) struct Sending {
+    pub(super) dispatcher: CommandDispatcher,
+    barrier: StrokeBarrier,
+    pending: PendingSender,
+    held_places: HeldPlaces,
+    device_setup: DeviceSetupRunner,
+    sessions: SessionProcesses,
+}
+
+impl Sending {
+    /// Sends to the rig of `member`.
+    ///
+    /// # Errors
+    /// A [`UserError`] where the bus is closed.
+    pub(super) fn new(member: &NodeHandle) -> Result<Self, UserError> {
+        let (bus, topics) = (&member.bus, &member.topics);
+        Ok(Self {
+            dispatcher: CommandDispatcher::new(Arc::clone(bus), topics, &member.wake),
+            barrier: StrokeBarrier::new(&**bus, topics)?,
+            pending: PendingSender::new(&**bus, topics)?,
+            held_places: HeldPlaces::default(),
+            device_setup: DeviceSetupRunner::default(),
+            sessions: SessionProcesses::own(),
+        })
+    }
+
+    /// Reads how far the strokes are painted.
+    pub(super) fn drain(&mut self, now_ns: u64) {
+        self.barrier.drain(now_ns);
+    }
+
     /// Sends the requests whose preceding strokes are painted.
-    pub(super) fn send(&mut self, context: &Context) {
-        let now_ns = self.bus.now_ns();
-        let is_shown = self.shows_devices();
-        let orders = self.requests.take_device_orders();
-        let told = (&mut self.rig, &mut self.notifications);
-        self.device_commands.turn(context, orders, is_shown, told);
-        let orders = self.requests.take_session_orders();
-        let told = (&mut self.rig, &mut self.notifications);
-        self.session_processes.turn(context, orders, told);
+    pub(super) fn send(
+        &mut self,
+        context: &Context,
+        studio: &mut Studio,
+        hands: &mut Hands,
+        Connection { bus, tracker, .. }: &Connection,
+    ) {
+        let now_ns = bus.now_ns();
+        let is_shown = studio.shows_devices();
+        let orders = studio.requests.take_device_orders();
+        let shown = (&mut studio.rig, &mut studio.notifications);
+        self.device_setup.poll(context, orders, is_shown, shown);
+        let orders = studio.requests.take_session_orders();
+        let shown = (&mut studio.rig, &mut studio.notifications);
+        self.sessions.poll(context, orders, shown);
         // The mouse's samples until then are sent, and those of others heard.
-        let heard_ns = self.tracker.heard_until_ns().min(now_ns);
-        let asked_ns = self.rig.live.now_ns.max(heard_ns);
-        for follow_up in self.requests.take_follow_ups() {
+        let heard_ns = tracker.heard_until_ns().min(now_ns);
+        let asked_ns = studio.rig.live.now_ns.max(heard_ns);
+        for follow_up in studio.requests.take_follow_ups() {
             self.barrier.push_follow_up(follow_up);
         }
         // The cleaning key acts within a stroke, and so does the free hand.
-        let mut within = self.clean_key.take();
-        within.append(&mut self.navigation.take());
-        let contact = match self.holds_desk() {
-            true => BrushContact::Held,
-            false => BrushContact::Lifted,
-        };
-        let asked = self.requests.take();
-        for request in self.held_places.release(contact, asked, &within) {
-            if !self.refuses(&request) {
-                let newest = self.tracker.newest(now_ns);
-                self.barrier.push(now_ns, (request, asked_ns), newest);
-            }
-        }
-        for request in within {
-            let newest = self.tracker.newest(now_ns);
+        let mut within = hands.clean_key.take();
+        within.append(&mut hands.navigation.take());
+        let contact = BrushContact::of(hands.holds_desk(tracker));
+        let asked = studio.requests.take();
+        let released = self.held_places.release(contact, asked, &within);
+        // The brush is not changed while the hand has it on a surface.
+        let is_sent = |request: &_| !studio.context().refuses(request);
+        let released = released.into_iter().filter(is_sent);
+        for request in released.chain(within) {
+            let newest = tracker.newest(now_ns);
             self.barrier.push(now_ns, (request, asked_ns), newest);
         }
         while let Some(ready) = self.barrier.next_ready(now_ns) {
@@ -59,35 +99,5 @@ impl App {
         if self.barrier.is_waiting() || since_ns.is_some() {
             context.request_repaint_after(BARRIER_LOOK);
         }
-    }
-
-    /// Whether the hand has the brush of the panels on a surface. What the mouse's own samples say comes late.
-    pub(super) fn contact(&self) -> BrushContact {
-        let name = self.rig.brush_name();
-        let is_held = match self.tracker.is_led_by_mouse(name) {
-            true => self.pointer_path.is_pressed(),
-            false => self.tracker.aim(name).is_some_and(|(_, in_air)| !in_air),
-        };
-        match is_held {
-            true => BrushContact::Held,
-            false => BrushContact::Lifted,
-        }
-    }
-
-    /// True while a brush touches the desk: neither the view nor a surface is moved under it, whoever asks for that, but
-    /// for the painter's free hand.
-    pub(super) fn holds_desk(&self) -> bool {
-        self.pointer_path.is_pressed() || self.tracker.touches()
-    }
-
-    /// True if a request is refused: the brush is not changed while the hand has it on a surface.
-    fn refuses(&mut self, request: &Request) -> bool {
-        let work = &mut PanelContext {
-            rig: &mut self.rig,
-            requests: &mut self.requests,
-            preferences: &mut self.preferences,
-            notifications: &mut self.notifications,
-        };
-        work.refuses(request)
     }
 }

@@ -24,6 +24,7 @@ pub(crate) fn rack_side(preferences: &Preferences) -> WindowSide {
 #[must_use]
 pub(crate) fn column_side(preferences: &Preferences) -> WindowSide {
     preferences
+        .window
         .panel_side
         .unwrap_or_else(|| rack_side(preferences))
 }
@@ -31,7 +32,7 @@ pub(crate) fn column_side(preferences: &Preferences) -> WindowSide {
 /// Width of the column at a side with what surrounds it, points; 0 if it is not there.
 #[must_use]
 pub(crate) fn column_at(preferences: &Preferences, side: WindowSide) -> f32 {
-    match preferences.panels && column_side(preferences) == side {
+    match preferences.window.panels && column_side(preferences) == side {
         true => COLUMN + 6.0 * MARGIN,
         false => 0.0,
     }
@@ -40,7 +41,7 @@ pub(crate) fn column_at(preferences: &Preferences, side: WindowSide) -> f32 {
 /// True if the rack is shown: in a narrow window it gives way to the column.
 #[must_use]
 pub(crate) fn has_rack(preferences: &Preferences) -> bool {
-    !(preferences.is_narrow && preferences.panels)
+    !(preferences.window.is_narrow && preferences.window.panels)
 }
 
 /// Width of the rack at a side, points; 0 if it is not there.
@@ -61,18 +62,20 @@ pub(crate) fn taken(preferences: &Preferences) -> [f32; 2] {
 
 #[cfg(test)]
 mod tests {
+    use crate::settings::preferences::WindowPreferences;
+
     use super::*;
 
     #[test]
     fn rack_and_column_take_room_where_they_stand() {
         let wide = COLUMN + 6.0 * MARGIN;
         let of = |panels, left_handed, panel_side| {
-            taken(&Preferences {
+            taken(&Preferences::of_window(WindowPreferences {
                 panels,
                 left_handed,
                 panel_side,
-                ..Preferences::default()
-            })
+                ..WindowPreferences::default()
+            }))
         };
         assert_eq!(of(false, false, Some(WindowSide::Left)), [0.0, rack::WIDTH]);
         assert_eq!(of(true, false, None), [0.0, rack::WIDTH + wide]);
@@ -81,11 +84,11 @@ mod tests {
         assert_eq!(of(true, false, left), [wide, rack::WIDTH]);
         assert_eq!(of(true, true, left), [rack::WIDTH + wide, 0.0]);
         let narrow = |panels| {
-            taken(&Preferences {
+            taken(&Preferences::of_window(WindowPreferences {
                 panels,
                 is_narrow: true,
-                ..Preferences::default()
-            })
+                ..WindowPreferences::default()
+            }))
         };
         assert_eq!(narrow(true), [0.0, wide], "the rack gives way");
         assert_eq!(narrow(false), [0.0, rack::WIDTH]);

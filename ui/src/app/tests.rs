@@ -9,10 +9,10 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde::Deserialize as _;
 use serde::de::value::{Error, StrDeserializer};
 
-use crate::input::brush_choice::of_library;
 use crate::input::keys::{Action, BINDINGS};
 use crate::panels;
 use crate::sessions::tests::{recording, replay};
+use crate::settings::brush_library::of_library;
 use crate::test_support::overlay_bench::{Bench, ctrl, press, window};
 
 /// Presses of Tab at most: more than there are controls.

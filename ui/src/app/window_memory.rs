@@ -1,18 +1,72 @@
 //! Title and size of the window, and the painter's habits, which are kept.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use eframe::egui::{Context, ViewportCommand};
+use maulstick_ui_kit::language;
+use maulstick_ui_kit::notifications::Notifications;
 
-use crate::app::App;
+use crate::app::studio::Studio;
 use crate::dialogs::paths;
+use crate::settings::preferences::Preferences;
 
-impl App {
-    /// Titles the window with the painting's name.
-    pub(super) fn name_window(&mut self, context: &Context) {
-        let path = self.rig.live.paint.as_ref().map(|node| &*node.status.path);
+/// What outlives the window, and its title.
+#[derive(Debug)]
+pub(super) struct WindowMemory {
+    title: String,
+    /// Preferences as they were last saved, and their file.
+    saved: Preferences,
+    file: Option<PathBuf>,
+}
+
+impl WindowMemory {
+    /// Reads the preferences; what is wrong with them is notified.
+    pub(super) fn read(notifications: &mut Notifications) -> Self {
+        let file = Preferences::place();
+        let read = file
+            .as_deref()
+            .map_or_else(|| Ok(Preferences::default()), Preferences::read);
+        let saved = read.unwrap_or_else(|fault| {
+            notifications.of(&fault);
+            Preferences::default()
+        });
+        language::choose(saved.window.language.as_deref());
+        if let Some(what) = saved.keys.fault() {
+            notifications.fault(
+                what,
+                tr!("All else is as you left it; Settings has the keys."),
+            );
+        }
+        Self {
+            title: String::new(),
+            saved,
+            file,
+        }
+    }
+
+    /// The preferences as they were last saved.
+    pub(super) fn preferences(&self) -> Preferences {
+        self.saved.clone()
+    }
+
+    /// Titles the window with the painting's name, and keeps the habits where they have changed.
+    pub(super) fn follow(&mut self, context: &Context, studio: &mut Studio) {
+        self.name_window(context, studio);
+        remember_size(context, &mut studio.preferences);
+        if self.saved == studio.preferences {
+            return;
+        }
+        self.saved.clone_from(&studio.preferences);
+        let kept = self.file.as_deref().map(|file| self.saved.keep(file));
+        if let Some(Err(fault)) = kept {
+            studio.notifications.of(&fault);
+        }
+    }
+
+    fn name_window(&mut self, context: &Context, Studio { rig, .. }: &Studio) {
+        let path = rig.live.paint.as_ref().map(|node| &*node.status.path);
         let title = match path.filter(|path| !path.is_empty()) {
-            Some(_) if self.rig.is_sketch() => tr!("Sketch · Maulstick").to_owned(),
+            Some(_) if rig.is_sketch() => tr!("Sketch · Maulstick").to_owned(),
             Some(path) => format!("{} · Maulstick", paths::name(Path::new(path))),
             None => "Maulstick".to_owned(),
         };
@@ -21,29 +75,17 @@ impl App {
             context.send_viewport_cmd(ViewportCommand::Title(title));
         }
     }
+}
 
-    /// Remembers the size of the window once nobody drags it.
-    pub(super) fn remember_size(&mut self, context: &Context) {
-        let size = context.input(|input| {
-            let whole = input.viewport().fullscreen.unwrap_or(false);
-            let rests = !whole && !input.pointer.any_down() && input.stable_dt < 0.5;
-            rests.then(|| input.content_rect().size())
-        });
-        // The window system does not know of the text size.
-        if let Some(size) = size.map(|size| size * context.zoom_factor()) {
-            self.preferences.size = size.round().into();
-        }
-    }
-
-    /// Keeps the habits where they have changed.
-    pub(super) fn keep(&mut self) {
-        let (kept, place) = &mut self.kept;
-        if *kept == self.preferences {
-            return;
-        }
-        kept.clone_from(&self.preferences);
-        if let Some(Err(fault)) = place.as_deref().map(|place| kept.keep(place)) {
-            self.notifications.of(&fault);
-        }
+/// Remembers the size of the window once nobody drags it.
+fn remember_size(context: &Context, preferences: &mut Preferences) {
+    let size = context.input(|input| {
+        let whole = input.viewport().fullscreen.unwrap_or(false);
+        let rests = !whole && !input.pointer.any_down() && input.stable_dt < 0.5;
+        rests.then(|| input.content_rect().size())
+    });
+    // The window system does not know of the text size.
+    if let Some(size) = size.map(|size| size * context.zoom_factor()) {
+        preferences.window.size = size.round().into();
     }
 }

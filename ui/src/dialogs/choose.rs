@@ -7,7 +7,7 @@ use maulstick_exchange::PictureKind;
 
 use crate::dialogs::browser::{Browser, Purpose};
 use crate::dialogs::dialog::{self, Answer, Foot};
-use crate::dialogs::discard_prompt::Unkept;
+use crate::dialogs::open::discard_prompt::UnsavedState;
 use crate::dialogs::paths;
 use crate::sessions::RECORDING;
 
@@ -25,7 +25,7 @@ pub(crate) struct ChooseFile {
     title: &'static str,
     browser: Browser,
     /// What a recording takes the place of.
-    unkept: Unkept,
+    unkept: UnsavedState,
     wrong: Option<String>,
 }
 
@@ -37,14 +37,14 @@ impl ChooseFile {
             kind: Kind::Picture,
             title,
             browser: Browser::at(&begin(folder), Purpose::Read, &PictureKind::ENDINGS),
-            unkept: Unkept::default(),
+            unkept: UnsavedState::default(),
             wrong: None,
         }
     }
 
     /// A recording of `folder`, which is painted in another painting than the one on the easel.
     #[must_use]
-    pub(crate) fn recording(folder: &Path, unkept: Unkept) -> Self {
+    pub(crate) fn recording(folder: &Path, unkept: UnsavedState) -> Self {
         Self {
             kind: Kind::Recording,
             title: tr!("Play a recording"),

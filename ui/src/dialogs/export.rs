@@ -1,5 +1,7 @@
 //! Dialog for an export.
 
+pub(super) mod progress;
+
 use std::path::Path;
 
 use eframe::egui::{ComboBox, Context, Grid, Ui};

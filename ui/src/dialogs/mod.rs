@@ -4,25 +4,23 @@
 //! | module | holds |
 //! | --- | --- |
 //! | `dialog`, `browser`, `paths` | parts of dialogs: frame, file chooser with the listing of a folder, paths |
-//! | `new`, `open`, `recent`, `save_as`, `export`, `choose` | one dialog each |
-//! | `discard_prompt` | asks before a painting in memory alone gives way to another |
+//! | `new`, `open`, `save_as`, `export`, `choose` | one dialog each |
 //! | `close` | asks before the window closes on a painting without a name |
 //! | `sketch_offer` | the sketches of before |
 //! | `dropped` | files dropped on the window |
-//! | `save_status`, `exporting` | line at the lower edge; progress of an export |
+//! | `painting_file` | folder and name that they propose |
+//! | `save_status` | line at the lower edge |
 
 mod browser;
 mod choose;
 mod close;
 pub(crate) mod dialog;
-mod discard_prompt;
 mod dropped;
 mod export;
-mod exporting;
 mod new;
 mod open;
+mod painting_file;
 pub(crate) mod paths;
-mod recent;
 mod save_as;
 mod save_status;
 mod sketch_offer;
@@ -46,15 +44,15 @@ use choose::ChooseFile;
 use close::{ClosePainting, Decision};
 pub(crate) use dialog::wrong;
 use dialog::{Answer, in_words};
-use discard_prompt::Unkept;
 use dropped::Dropped;
 use export::ExportPicture;
 use maulstick_client::dispatcher::Outcome;
 use maulstick_client::request::Request;
 use new::NewPainting;
 use open::OpenPainting;
-use paths::{folder, stem};
-use recent::RecentList;
+use open::discard_prompt::UnsavedState;
+use open::recent::RecentList;
+use painting_file::{folder, stem};
 use save_as::SaveAs;
 use sketch_offer::{Choice, SketchOffer};
 
@@ -126,8 +124,8 @@ impl Files {
     ) -> bool {
         match act {
             Action::New => {
-                let unkept = Unkept::of(work.rig);
-                let new = NewPainting::new(&folder(work), work.preferences.units, unkept);
+                let unkept = UnsavedState::of(work.rig);
+                let new = NewPainting::new(&folder(work), work.preferences.window.units, unkept);
                 self.begin(Dialog::New(new));
             }
             Action::Open => {
@@ -165,7 +163,7 @@ impl Files {
         let open = self.open.as_deref().unwrap_or(Path::new(""));
         let recent = RecentList::new(context, &work.preferences.recent, open);
         let sketches = work.rig.sketches.as_ref();
-        OpenPainting::new(&folder(work), recent, Unkept::of(work.rig))
+        OpenPainting::new(&folder(work), recent, UnsavedState::of(work.rig))
             .with_sketches(sketches.map(Sketches::folder))
     }
 
@@ -187,7 +185,7 @@ impl Files {
             );
             return;
         }
-        let mut choose = ChooseFile::recording(&folder(work), Unkept::of(work.rig));
+        let mut choose = ChooseFile::recording(&folder(work), UnsavedState::of(work.rig));
         known.iter().for_each(|path| choose.propose(path));
         self.begin(Dialog::Recording(choose));
     }
@@ -231,7 +229,7 @@ impl Files {
         if let Some(act) = save_status::show(context, work) {
             self.follow(context, act, work);
         }
-        exporting::show(context, work);
+        export::progress::show(context, work);
         if self.dialog.is_none() {
             self.offer_sketches(context, work);
         }
@@ -265,16 +263,10 @@ impl Files {
             Dialog::Open(open) => open.show(context, busy),
             Dialog::SaveAs(save_as) => save_as.show(context, busy),
             Dialog::Export(export) => export.show(context, busy),
-            Dialog::Close(close) => match close.show(context) {
-                Decision::None => return,
-                Decision::Stay => return self.dialog = None,
-                Decision::Name => return self.save_as(work),
-                Decision::Close => {
-                    self.dialog = None;
-                    self.closes = true;
-                    return;
-                }
-            },
+            Dialog::Close(close) => {
+                let decision = close.show(context);
+                return self.decide(decision, work);
+            }
             Dialog::Picture(picture) => {
                 let (answer, path) = picture.show(context);
                 if let Some(path) = path {
@@ -311,12 +303,23 @@ impl Files {
                 // An export runs in the background and shows its progress.
                 let is_export = matches!(command, Command::File(FileCommand::Export(_)));
                 let order = ask(command, work);
-                match is_export {
-                    true => self.dialog = None,
-                    false => self.waiting = Some(order),
+                if is_export {
+                    self.dialog = None;
+                } else {
+                    self.waiting = Some(order);
                 }
             }
             _ => {}
+        }
+    }
+
+    /// Closes the window, or stays, as the painter has decided.
+    fn decide(&mut self, decision: Decision, work: &mut PanelContext<'_>) {
+        match decision {
+            Decision::None => {}
+            Decision::Stay => self.dialog = None,
+            Decision::Name => self.save_as(work),
+            Decision::Close => (self.dialog, self.closes) = (None, true),
         }
     }
 
@@ -437,7 +440,7 @@ impl Files {
 
     /// Opens a painting without a dialog, unless there is something to ask.
     fn open_path(&mut self, context: &Context, path: &Path, work: &mut PanelContext<'_>) {
-        if let Err(words) = Unkept::of(work.rig).check() {
+        if let Err(words) = UnsavedState::of(work.rig).check() {
             let mut open = self.choose(context, work);
             open.propose(path);
             open.refused(words);

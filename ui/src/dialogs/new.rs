@@ -11,7 +11,7 @@ use maulstick_ui_kit::language::{capitalized, known, translated};
 use maulstick_ui_kit::units::Units;
 
 use crate::dialogs::dialog::{self, Answer, Foot, in_words, line, number};
-use crate::dialogs::discard_prompt::Unkept;
+use crate::dialogs::open::discard_prompt::UnsavedState;
 use crate::dialogs::paths;
 
 /// Sizes that are chosen with a click: name, width and height, cm.
@@ -48,7 +48,7 @@ pub(crate) struct NewPainting {
     tooth: String,
     as_sketch: bool,
     path: String,
-    unkept: Unkept,
+    unkept: UnsavedState,
     /// True if the painter accepts that painting on it is slow.
     may_be_slow: bool,
     wrong: Option<String>,
@@ -57,12 +57,12 @@ pub(crate) struct NewPainting {
 impl NewPainting {
     /// A form for a painting in `folder`.
     #[must_use]
-    pub(crate) fn new(folder: &Path, units: Units, unkept: Unkept) -> Self {
+    pub(crate) fn new(folder: &Path, units: Units, unkept: UnsavedState) -> Self {
         let free = paths::free(folder, tr!("Painting"), paths::PAINTING);
         Self::kept_in(paths::shown(&free), units, unkept)
     }
 
-    fn kept_in(path: String, units: Units, unkept: Unkept) -> Self {
+    fn kept_in(path: String, units: Units, unkept: UnsavedState) -> Self {
         Self {
             units,
             width: units.typed(29.7),
@@ -201,24 +201,7 @@ impl NewPainting {
         let mut entered = false;
         let mut changed = false;
         let (_, unit) = self.units.large();
-        ui.horizontal(|ui| {
-            let paper = SIZES.map(|(name, width, height)| {
-                (name, [width, height].map(|cm| self.units.typed(cm)))
-            });
-            let usual = usual(self.units)
-                .map(|(name, width, height)| (name, [width, height].map(str::to_owned)));
-            for (name, size) in paper.into_iter().chain(usual) {
-                let hover = format!("{} × {} {unit}", size[0], size[1]);
-                if ui.button(name).on_hover_text(hover).clicked() {
-                    [self.width, self.height] = size;
-                    changed = true;
-                }
-            }
-            let turn = ui.button(tr!("Swap width and height"));
-            if turn.clicked() {
-                std::mem::swap(&mut self.width, &mut self.height);
-            }
-        });
+        changed |= self.sizes(ui);
         ui.add_space(4.0);
         let grid = Grid::new("new painting")
             .num_columns(2)
@@ -239,36 +222,7 @@ impl NewPainting {
                 ui.weak(tr!("4 for most, 8 for miniatures"));
             });
             ui.end_row();
-            let ground = ui.label(tr!("Ground"));
-            ui.horizontal(|ui| {
-                let name = |known: &str| GROUNDS.iter().find(|(name, _)| *name == known);
-                let shown = name(self.ground).map_or("", |(_, shown)| translated(shown));
-                let combo = ComboBox::from_id_salt("ground")
-                    .width(120.0)
-                    .selected_text(shown);
-                let combo = combo.show_ui(ui, |ui| {
-                    for (name, shown) in GROUNDS {
-                        ui.selectable_value(&mut self.ground, name, translated(shown));
-                    }
-                });
-                combo.response.labelled_by(ground.id);
-                if self.ground == FILE {
-                    entered |= line(ui, tr!("Path"), &mut self.ground_file, false, 120.0);
-                }
-            });
-            ui.end_row();
-            let tooth = ui.label(tr!("Tooth"));
-            let combo = ComboBox::from_id_salt("tooth")
-                .width(120.0)
-                .selected_text(capitalized(known(&self.tooth)));
-            let combo = combo.show_ui(ui, |ui| {
-                for name in Tooth::names() {
-                    let words = capitalized(known(name));
-                    ui.selectable_value(&mut self.tooth, name.to_owned(), words);
-                }
-            });
-            combo.response.labelled_by(tooth.id);
-            ui.end_row();
+            entered |= self.materials(ui);
             let keep = ui.label(tr!("Keep in"));
             ui.vertical(|ui| {
                 ui.add_enabled_ui(!self.as_sketch, |ui| {
@@ -288,6 +242,67 @@ impl NewPainting {
         if changed || entered {
             self.wrong = None;
         }
+        entered
+    }
+
+    /// Buttons of usual sizes; true if one was chosen.
+    fn sizes(&mut self, ui: &mut Ui) -> bool {
+        let mut is_chosen = false;
+        let (_, unit) = self.units.large();
+        ui.horizontal(|ui| {
+            let paper = SIZES.map(|(name, width, height)| {
+                (name, [width, height].map(|cm| self.units.typed(cm)))
+            });
+            let usual = usual(self.units)
+                .map(|(name, width, height)| (name, [width, height].map(str::to_owned)));
+            for (name, size) in paper.into_iter().chain(usual) {
+                let hover = format!("{} × {} {unit}", size[0], size[1]);
+                if ui.button(name).on_hover_text(hover).clicked() {
+                    [self.width, self.height] = size;
+                    is_chosen = true;
+                }
+            }
+            let turn = ui.button(tr!("Swap width and height"));
+            if turn.clicked() {
+                std::mem::swap(&mut self.width, &mut self.height);
+            }
+        });
+        is_chosen
+    }
+
+    /// Rows of ground and tooth; true if Enter was pressed.
+    fn materials(&mut self, ui: &mut Ui) -> bool {
+        let mut entered = false;
+        let ground = ui.label(tr!("Ground"));
+        ui.horizontal(|ui| {
+            let name = |known: &str| GROUNDS.iter().find(|(name, _)| *name == known);
+            let shown = name(self.ground).map_or("", |(_, shown)| translated(shown));
+            let combo = ComboBox::from_id_salt("ground")
+                .width(120.0)
+                .selected_text(shown);
+            let combo = combo.show_ui(ui, |ui| {
+                for (name, shown) in GROUNDS {
+                    ui.selectable_value(&mut self.ground, name, translated(shown));
+                }
+            });
+            combo.response.labelled_by(ground.id);
+            if self.ground == FILE {
+                entered |= line(ui, tr!("Path"), &mut self.ground_file, false, 120.0);
+            }
+        });
+        ui.end_row();
+        let tooth = ui.label(tr!("Tooth"));
+        let combo = ComboBox::from_id_salt("tooth")
+            .width(120.0)
+            .selected_text(capitalized(known(&self.tooth)));
+        let combo = combo.show_ui(ui, |ui| {
+            for name in Tooth::names() {
+                let words = capitalized(known(name));
+                ui.selectable_value(&mut self.tooth, name.to_owned(), words);
+            }
+        });
+        combo.response.labelled_by(tooth.id);
+        ui.end_row();
         entered
     }
 }

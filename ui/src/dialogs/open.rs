@@ -1,5 +1,8 @@
 //! Dialog that opens another painting.
 
+pub(super) mod discard_prompt;
+pub(super) mod recent;
+
 use std::path::{Path, PathBuf};
 
 use eframe::egui::Context;
@@ -7,9 +10,9 @@ use maulstick_types::command::{Command, RigCommand};
 
 use crate::dialogs::browser::{Browser, Purpose};
 use crate::dialogs::dialog::{self, Answer, Foot};
-use crate::dialogs::discard_prompt::Unkept;
+use crate::dialogs::open::discard_prompt::UnsavedState;
+use crate::dialogs::open::recent::RecentList;
 use crate::dialogs::paths;
-use crate::dialogs::recent::RecentList;
 
 /// File endings of paintings.
 pub(super) const PAINTINGS: &[&str] = &[paths::PAINTING];
@@ -19,7 +22,7 @@ pub(super) const PAINTINGS: &[&str] = &[paths::PAINTING];
 pub(crate) struct OpenPainting {
     recent: RecentList,
     browser: Browser,
-    unkept: Unkept,
+    unkept: UnsavedState,
     /// The folder of the sketches, if there is one.
     sketches: Option<PathBuf>,
     wrong: Option<String>,
@@ -28,7 +31,7 @@ pub(crate) struct OpenPainting {
 impl OpenPainting {
     /// One of `folder`, or one of the recent ones.
     #[must_use]
-    pub(crate) fn new(folder: &Path, recent: RecentList, unkept: Unkept) -> Self {
+    pub(crate) fn new(folder: &Path, recent: RecentList, unkept: UnsavedState) -> Self {
         let shown = paths::shown(folder);
         let begin = format!("{}/", shown.trim_end_matches('/'));
         Self {

@@ -8,8 +8,6 @@ pub(crate) use maulstick_rig::files::ending;
 use maulstick_rig::files::first_free;
 use maulstick_types::values::WholePath;
 
-use crate::widgets::context::PanelContext;
-
 /// File ending of a painting.
 pub(crate) const PAINTING: &str = "maul";
 
@@ -131,34 +129,6 @@ pub(crate) fn age(changed: SystemTime, now: SystemTime) -> String {
         525_600..=1_051_199 => tr!("1 year ago").to_owned(),
         _ => tr!("{years} years ago", years),
     }
-}
-
-/// The folder in which a dialog begins: that of the painting, or of the one before.
-pub(super) fn folder(work: &PanelContext<'_>) -> PathBuf {
-    let status = work.rig.live.paint.as_ref().map(|node| &node.status);
-    let open = status.filter(|status| !status.path.is_empty() && !work.rig.is_sketch());
-    let open = open.map(|status| PathBuf::from(&status.path));
-    let known = open.as_ref().or(work.preferences.recent.first());
-    let folder = known.and_then(|path| path.parent());
-    folder
-        .filter(|folder| folder.is_dir())
-        .map_or_else(pictures, Path::to_owned)
-}
-
-/// File stem of the painting.
-pub(super) fn stem(work: &PanelContext<'_>) -> String {
-    let node = work
-        .rig
-        .live
-        .paint
-        .as_ref()
-        .filter(|_| !work.rig.is_sketch());
-    let status = node.map(|node| &node.status);
-    let stem = status.and_then(|status| Path::new(&status.path).file_stem());
-    stem.map_or_else(
-        || tr!("Painting").to_owned(),
-        |stem| stem.to_string_lossy().into_owned(),
-    )
 }
 
 #[cfg(test)]

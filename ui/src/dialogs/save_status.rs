@@ -9,7 +9,8 @@ use eframe::egui::{
 };
 use maulstick_ui_kit::language::translated;
 
-use crate::app::{bar, sides};
+use crate::app::overlay::bar;
+use crate::app::sides;
 use crate::dialogs::paths;
 use crate::input::keymap::Keymap;
 use crate::input::keys::{Action, BINDINGS};

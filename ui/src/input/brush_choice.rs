@@ -1,10 +1,10 @@
 //! The brush in the hand and its width, as rack, keys, panel and presets change them.
 
+mod presets;
+
 use std::ops::RangeInclusive;
 use std::path::Path;
-use std::sync::OnceLock;
 
-use maulstick_brush::file::library::LIBRARY;
 use maulstick_brush::{BrushError, BrushFile};
 use maulstick_painting::edits::{Handle, Load, Tune};
 use maulstick_rig::UserError;
@@ -12,9 +12,9 @@ use maulstick_rig::files::ending;
 use maulstick_types::command::{BrushCommand, Command};
 use maulstick_types::scene::{BrushHandling, Tuning};
 use maulstick_types::values::{BrushName, BrushToml};
-use maulstick_ui_kit::language::{capitalized, known};
 
 use crate::rig::state::{BrushContact, RigBrush};
+use crate::settings::brush_library::{called, is_of_library, library, of_library};
 use crate::settings::brush_load::{BrushLoad, written};
 use crate::widgets::context::PanelContext;
 use maulstick_client::dispatcher::Outcome;
@@ -27,28 +27,6 @@ const GRAIN_MM: f64 = 0.5;
 /// Widths offered for a brush file that lists no sizes, mm.
 const OFFERED_MM: RangeInclusive<f64> = 0.5..=60.0;
 
-/// The brushes of the library, in their order.
-pub(crate) fn library() -> &'static [BrushFile] {
-    static FILES: OnceLock<Vec<BrushFile>> = OnceLock::new();
-    FILES.get_or_init(|| {
-        let files = LIBRARY.iter().map(|(kind, _)| BrushFile::library(kind));
-        files.filter_map(Result::ok).collect()
-    })
-}
-
-/// The library's brush of a kind.
-#[must_use]
-pub(crate) fn of_library(kind: &str) -> Option<&'static BrushFile> {
-    library().iter().find(|file| file.kind == kind)
-}
-
-/// True if a brush differs from the library's only in its width.
-#[must_use]
-pub(crate) fn is_of_library(file: &BrushFile) -> bool {
-    let own = of_library(&file.kind).map(|own| own.scaled_to(file.head.width_mm));
-    own.is_some_and(|own| own.as_ref() == Ok(file))
-}
-
 /// A brush at another width, mm; one of the library from its own numbers, so that they do not drift.
 ///
 /// # Errors
@@ -58,12 +36,6 @@ pub(crate) fn resized(file: &BrushFile, width_mm: f64) -> Result<BrushFile, Brus
         Some(own) => own.scaled_to(width_mm),
         None => file.scaled_to(width_mm),
     }
-}
-
-/// A kind as a word in a sentence: its first letter large.
-#[must_use]
-pub(crate) fn called(kind: &str) -> String {
-    capitalized(known(kind))
 }
 
 /// Widths that a brush can have, mm: from its file's smallest to its largest size, where all that scales with them stays
@@ -130,7 +102,7 @@ pub(crate) fn read(path: &Path) -> Result<BrushFile, UserError> {
 impl RigBrush {
     /// Its brush file, or the one that it is about to get.
     #[must_use]
-    pub fn wanted(&self) -> Option<&BrushFile> {
+    pub(crate) fn wanted(&self) -> Option<&BrushFile> {
         let known = self.file.as_ref().map(|(file, _)| file);
         self.asked.as_ref().or(known)
     }
@@ -139,12 +111,12 @@ impl RigBrush {
 impl PanelContext<'_> {
     /// Brush file of the brush in the hand, or the one it is about to get; `None` until its node has sent it.
     #[must_use]
-    pub fn in_hand(&self) -> Option<&BrushFile> {
+    pub(crate) fn in_hand(&self) -> Option<&BrushFile> {
         self.rig.brush()?.wanted()
     }
 
     /// True if the brush may be changed now. While the hand has it on a surface it stays as it is, which is said once.
-    pub fn may_change_brush(&mut self) -> bool {
+    pub(crate) fn may_change_brush(&mut self) -> bool {
         let is_lifted = self.rig.contact == BrushContact::Lifted;
         if !is_lifted {
             self.tell_refusal();
@@ -153,7 +125,7 @@ impl PanelContext<'_> {
     }
 
     /// True if a request is refused, which is said once: it changes the brush while the hand has it on a surface.
-    pub fn refuses(&mut self, request: &Request) -> bool {
+    pub(crate) fn refuses(&mut self, request: &Request) -> bool {
         if self.rig.contact == BrushContact::Lifted || !request.changes_brush() {
             return false;
         }
@@ -171,7 +143,7 @@ impl PanelContext<'_> {
     }
 
     /// Gives the hand another brush; the brush already in the hand is not requested again.
-    pub fn take_up(&mut self, file: BrushFile) {
+    pub(crate) fn take_up(&mut self, file: BrushFile) {
         if self.in_hand() == Some(&file) || !self.may_change_brush() {
             return;
         }
@@ -196,6 +168,7 @@ impl PanelContext<'_> {
         };
         let width_mm = file.head.width_mm;
         self.preferences
+            .brushes
             .widths_mm
             .insert(file.kind.clone(), width_mm);
         let in_hand = self.rig.in_hand;
@@ -208,9 +181,13 @@ impl PanelContext<'_> {
     /// Writes what the brush in the hand was loaded with into the field of its paint, wherever that was asked for.
     fn loaded(&mut self, load: &Load) {
         let name = self.rig.brush_name();
-        let known = self.preferences.loading.edit(name, &self.rig.library);
+        let known = self
+            .preferences
+            .brushes
+            .loading
+            .edit(name, &self.rig.library);
         if load.brush.as_str() == name && known.ok().as_ref() != Some(load) {
-            self.preferences.loading = BrushLoad {
+            self.preferences.brushes.loading = BrushLoad {
                 paint: written(&load.mixture),
                 beside: load.beside.as_ref().map(written),
                 thinner: 0.0,
@@ -220,7 +197,7 @@ impl PanelContext<'_> {
 
     /// Takes in the outcome of a request: a brush that refused keeps its file; one that has the requested file runs the
     /// command that waited for it.
-    pub fn brush_answered(&mut self, outcome: &Outcome) {
+    pub(crate) fn brush_answered(&mut self, outcome: &Outcome) {
         if let Request::Command { command, .. } = &outcome.request
             && outcome.result.is_ok()
             && let Some(load) = command.edit()
@@ -257,12 +234,13 @@ impl PanelContext<'_> {
         let brush = self.rig.brush_name().to_owned();
         let before = self
             .preferences
+            .brushes
             .before_preset
             .take_if(|before| before.brush == brush);
-        if !is_limited && self.preferences.loading.thinner == 0.0 && before.is_none() {
+        if !is_limited && self.preferences.brushes.loading.thinner == 0.0 && before.is_none() {
             return;
         }
-        self.preferences.loading.thinner = 0.0;
+        self.preferences.brushes.loading.thinner = 0.0;
         let words = match before {
             Some(_) => {
                 tr!(
@@ -272,8 +250,8 @@ impl PanelContext<'_> {
             None => tr!("This brush lays full paint: no limit, no thinner."),
         };
         if let Some(before) = before {
-            self.preferences.mouse.pressure = before.pressure;
-            self.preferences.mouse = self.preferences.mouse.sane();
+            self.preferences.brushes.mouse.pressure = before.pressure;
+            self.preferences.brushes.mouse = self.preferences.brushes.mouse.sane();
             let tuning = Tuning {
                 brush,
                 stiffness: before.stiffness,
@@ -294,7 +272,7 @@ impl PanelContext<'_> {
     }
 
     /// Sends a command to the paint node once the brush in the hand has its requested file.
-    pub fn then(&mut self, command: Command) {
+    pub(crate) fn then(&mut self, command: Command) {
         if !self.may_change_brush() {
             return;
         }
@@ -307,18 +285,18 @@ impl PanelContext<'_> {
 
     /// Takes a brush at the width that it was last used at, or at its own. What a preset made of the one before ends with
     /// it: another brush lays full paint.
-    pub fn choose(&mut self, file: &BrushFile) {
+    pub(crate) fn choose(&mut self, file: &BrushFile) {
         if !self.may_change_brush() {
             return;
         }
         self.lay_full_paint();
-        let width_mm = self.preferences.widths_mm.get(&file.kind);
+        let width_mm = self.preferences.brushes.widths_mm.get(&file.kind);
         let scaled = width_mm.and_then(|width_mm| file.scaled_to(*width_mm).ok());
         self.take_up(scaled.unwrap_or_else(|| file.clone()));
     }
 
     /// Makes the brush in the hand so wide, as far as it can be, mm.
-    pub fn widen(&mut self, width_mm: f64) {
+    pub(crate) fn widen(&mut self, width_mm: f64) {
         let Some(file) = self.in_hand() else {
             return;
         };
@@ -330,7 +308,7 @@ impl PanelContext<'_> {
     }
 
     /// The next wider brush of its kind, or the next narrower one.
-    pub fn step_width(&mut self, up: bool) {
+    pub(crate) fn step_width(&mut self, up: bool) {
         if !self.may_change_brush() {
             return;
         }
@@ -338,7 +316,7 @@ impl PanelContext<'_> {
             return;
         };
         let (now_mm, range) = (file.head.width_mm, widths_mm(file));
-        let units = self.preferences.units;
+        let units = self.preferences.window.units;
         let next_mm = next_width_mm(now_mm, up);
         let file = match range.contains(&next_mm) {
             true => resized(file, next_mm).ok(),
@@ -363,7 +341,7 @@ impl PanelContext<'_> {
     }
 
     /// The brush after the one in the hand, of the library.
-    pub fn next_brush(&mut self) {
+    pub(crate) fn next_brush(&mut self) {
         let now = file_kind(self);
         let place = library().iter().position(|file| file.kind == now);
         let next = place.map_or(0, |place| (place + 1) % library().len());

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Action of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Action {
+pub(crate) enum Action {
     /// A new painting.
     New,
     /// Another painting.

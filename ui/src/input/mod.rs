@@ -16,7 +16,6 @@
 //! | [`clean_key`] | the key that cleans the brush, or lifts paint while it is held |
 //! | [`palette_gesture`] | the wave of the brush that fetches the palette |
 //! | [`brush_choice`] | the brush in the hand and its width |
-//! | [`palette_wells`] | the mixtures in the wells of the palette |
 
 pub(crate) mod brush_choice;
 pub(crate) mod brush_turn;
@@ -26,7 +25,6 @@ pub(crate) mod keys;
 pub(crate) mod mouse_stylus;
 pub(crate) mod navigation;
 pub(crate) mod palette_gesture;
-pub(crate) mod palette_wells;
 pub(crate) mod pen;
 pub(crate) mod pixel_path;
 pub(crate) mod pointer_path;

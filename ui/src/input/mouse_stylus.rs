@@ -132,18 +132,7 @@ impl Mouse {
             places
         };
         if places.is_empty() {
-            (self.pressed, self.hovers) = (None, None);
-            if self.was_in_range {
-                self.was_in_range = false;
-                let stamp = Stamp {
-                    now_ns,
-                    event_ns: now_ns,
-                };
-                self.samples
-                    .send(Flags::NONE, stamp, &StylusSample::away())?;
-            }
-            self.sent_ns = now_ns;
-            return Ok(());
+            return self.leave(now_ns);
         }
         // A brush that rests in the air is not sent again: each sample would draw another frame of the window, which
         // would send the next.
@@ -154,9 +143,10 @@ impl Mouse {
         self.was_in_range = true;
         // After a pause the pointer has not crept here. In a stroke a frame may be as long as it likes: what was moved
         // in it took all of it, or the brush would leap and rest by turns.
-        let since_ns = match self.pressed.is_some() && places[0].pressed {
-            true => self.sent_ns,
-            false => self.sent_ns.max(now_ns.saturating_sub(FRAME_NS)),
+        let since_ns = if self.pressed.is_some() && places[0].pressed {
+            self.sent_ns
+        } else {
+            self.sent_ns.max(now_ns.saturating_sub(FRAME_NS))
         };
         let places = self.finer(places, now_ns - since_ns);
         self.pressed = places.last().copied().filter(|last| last.pressed);
@@ -177,6 +167,21 @@ impl Mouse {
             };
             self.samples
                 .send(Flags::NONE, Stamp { now_ns, event_ns }, &sample)?;
+        }
+        self.sent_ns = now_ns;
+        Ok(())
+    }
+
+    /// Sends that the pointer is away, if that is new.
+    fn leave(&mut self, now_ns: u64) -> Result<(), BusError> {
+        (self.pressed, self.hovers) = (None, None);
+        if std::mem::take(&mut self.was_in_range) {
+            let stamp = Stamp {
+                now_ns,
+                event_ns: now_ns,
+            };
+            self.samples
+                .send(Flags::NONE, stamp, &StylusSample::away())?;
         }
         self.sent_ns = now_ns;
         Ok(())

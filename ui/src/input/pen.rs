@@ -146,7 +146,7 @@ impl WindowPen {
         preferences: &Preferences,
     ) {
         let keymap = &preferences.keys;
-        self.link.bend_pressure(&preferences.pen_curve);
+        self.link.bend_pressure(&preferences.brushes.pen_curve);
         let paints = context.input(|input| {
             let held = [Action::Size, Action::Zoom];
             let held = held.iter().any(|act| presses::is_down(input, keymap, *act));

@@ -6,10 +6,11 @@ use eframe::egui::{
 
 use maulstick_num::exp;
 
-use crate::input::brush_choice::{called, widths_mm};
+use crate::input::brush_choice::widths_mm;
 use crate::input::keys::Action;
 use crate::input::navigation::is_panel;
 use crate::input::presses;
+use crate::settings::brush_library::called;
 use crate::widgets::context::PanelContext;
 
 /// The pointer goes so far for a brush that is e times as wide, points.
@@ -70,7 +71,7 @@ impl SizeDrag {
             let words = format!(
                 "{} {}",
                 called(&file.kind),
-                work.preferences.units.width(width_mm)
+                work.preferences.window.units.width(width_mm)
             );
             tell(context, from, &words);
         } else {
@@ -100,7 +101,7 @@ mod tests {
     use eframe::egui::{Event, Key, Modifiers, PointerButton, pos2};
     use maulstick_types::command::{BrushCommand, Command};
 
-    use crate::input::brush_choice::of_library;
+    use crate::settings::brush_library::of_library;
     use crate::test_support::overlay_bench::window;
 
     /// Widths asked for by a drag so far to the right, points, with S held or not.

@@ -16,7 +16,7 @@ use crate::panels::canvas::CanvasPanel;
 use crate::panels::device::tests::devices;
 use crate::rig::state::RigState;
 use crate::sessions::tests::{recording, replay};
-use crate::settings::preferences::Preferences;
+use crate::settings::preferences::{Preferences, WindowPreferences};
 use crate::test_support::context_bench;
 use crate::test_support::overlay_bench::{Bench, ctrl, press, until, window_of};
 use crate::test_support::panel_bench::{self, rig, steps};
@@ -59,12 +59,12 @@ fn studio() -> RigState {
 /// A window in a language with one panel unfolded.
 fn speaking(code: &str, panel: &str) -> Harness<'static, Bench> {
     choose(Some(code));
-    let preferences = Preferences {
+    let preferences = Preferences::of_window(WindowPreferences {
         panels: true,
         open: vec![panel.to_owned()],
         language: Some(code.to_owned()),
-        ..Preferences::default()
-    };
+        ..WindowPreferences::default()
+    });
     let mut harness = window_of(DISPLAY, studio(), preferences);
     harness.run_steps(4);
     harness
@@ -287,11 +287,17 @@ fn another_language_is_chosen_on_the_page_of_settings_and_holds_at_once() {
         harness.run_steps(3);
     };
     choose_by_name(&mut harness, "Deutsch");
-    assert_eq!(harness.state().preferences.language.as_deref(), Some("de"));
+    assert_eq!(
+        harness.state().preferences.window.language.as_deref(),
+        Some("de")
+    );
     harness.get_by_label("Schriftgröße");
     harness.get_by_role_and_label(Role::Button, "Rückgängig");
     choose_by_name(&mut harness, "English");
-    assert_eq!(harness.state().preferences.language.as_deref(), Some("en"));
+    assert_eq!(
+        harness.state().preferences.window.language.as_deref(),
+        Some("en")
+    );
     harness.get_by_label("Text size");
     assert!(chosen().is_none());
 }

@@ -10,8 +10,8 @@ use maulstick_rig::config::{ACTIONS, FORCES};
 use maulstick_types::scene::RULES;
 use maulstick_ui_kit::language::{FILES, Language, all};
 
-use crate::input::brush_choice::library;
 use crate::input::keys::{BINDINGS, HELD};
+use crate::settings::brush_library::library;
 
 /// Keys whose names are not the signs on them.
 const NAMED_KEYS: [&str; 18] = [

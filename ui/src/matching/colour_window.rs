@@ -78,7 +78,7 @@ impl ColourWindow {
         if !self.shown {
             return;
         }
-        let (corner, inward) = match work.preferences.left_handed {
+        let (corner, inward) = match work.preferences.window.left_handed {
             false => (Align2::RIGHT_TOP, -1.0),
             true => (Align2::LEFT_TOP, 1.0),
         };

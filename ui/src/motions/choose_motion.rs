@@ -8,8 +8,8 @@ use eframe::egui::{
 
 use crate::dialogs::dialog::{self, Answer, Foot};
 use crate::dialogs::paths;
-use crate::input::brush_choice::of_library;
 use crate::motions::library::{Known, Library, Motion};
+use crate::settings::brush_library::of_library;
 use crate::settings::preferences::Preferences;
 use crate::widgets::context::PanelContext;
 

@@ -96,7 +96,7 @@ impl Motions {
         let Some(placing) = self.placing.as_mut().filter(|_| is_free) else {
             return;
         };
-        if placing.turn(context, painter, (view, surfaces), work.requests) {
+        if placing.poll(context, painter, (view, surfaces), work.requests) {
             self.placing = None;
         }
     }

@@ -1,7 +1,7 @@
 //! A motion that follows the pointer over the desk until it is put down, or let go.
 
 use eframe::egui::{
-    Color32, Context, Event, Key, Modifiers, MouseWheelUnit, Painter, PointerButton,
+    Color32, Context, Event, Key, Modifiers, MouseWheelUnit, Painter, PointerButton, Vec2,
 };
 use glam::DVec3;
 use maulstick_motion::Placement;
@@ -69,7 +69,7 @@ impl Placing {
     }
 
     /// Follows the pointer and draws the strokes there; true once it is put down or let go.
-    pub(crate) fn turn(
+    pub(crate) fn poll(
         &mut self,
         context: &Context,
         painter: &Painter,
@@ -91,16 +91,11 @@ impl Placing {
                     modifiers,
                     ..
                 } if latest.is_some_and(on_desk) => {
-                    // With Shift some systems turn the wheel sideways.
-                    let lines = f64::from(delta.y + delta.x)
-                        * match unit {
-                            MouseWheelUnit::Point => POINT,
-                            MouseWheelUnit::Line => 1.0,
-                            MouseWheelUnit::Page => 10.0,
-                        };
-                    match modifiers.shift {
-                        true => self.turn_by(WHEEL_DEG * view.seen_x(lines)),
-                        false => self.scale_by(WHEEL * lines),
+                    let lines = lines(*unit, *delta);
+                    if modifiers.shift {
+                        self.turn_by(WHEEL_DEG * view.seen_x(lines));
+                    } else {
+                        self.scale_by(WHEEL * lines);
                     }
                 }
                 Event::PointerButton {
@@ -148,5 +143,15 @@ impl Placing {
         };
         drawn.draw(painter, Color32::from_black_alpha(DARK), 1.6, to_window);
         drawn.draw(painter, Color32::from_white_alpha(LIGHT), 0.8, to_window);
+    }
+}
+
+/// Lines that the wheel was turned by; with Shift some systems turn it sideways.
+fn lines(unit: MouseWheelUnit, delta: Vec2) -> f64 {
+    let lines = f64::from(delta.y + delta.x);
+    match unit {
+        MouseWheelUnit::Point => POINT * lines,
+        MouseWheelUnit::Line => lines,
+        MouseWheelUnit::Page => 10.0 * lines,
     }
 }

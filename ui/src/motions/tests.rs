@@ -11,7 +11,7 @@ use maulstick_brush::palette_place::Side;
 use maulstick_device::Take;
 use maulstick_device::demo::{Subject, performance};
 use maulstick_types::scene::Surface;
-use maulstick_ui_kit::notifications::Weight;
+use maulstick_ui_kit::notifications::Severity;
 
 use super::*;
 use crate::motions::drawn_paths::DrawnPaths;
@@ -150,8 +150,8 @@ fn a_folder_without_takes_says_so_and_nothing_is_begun_while_something_plays() {
     ctrl(&mut harness, Key::M, Modifiers::SHIFT);
     let bench = harness.state();
     assert!(!bench.overlay.motions.is_open());
-    let told = bench.notifications.told().iter();
-    let faults = told.filter(|toast| toast.weight == Weight::Fault);
+    let told = bench.notifications.shown().iter();
+    let faults = told.filter(|toast| toast.severity == Severity::Fault);
     assert_eq!(faults.count(), 1, "{}", bench.told());
 }
 

@@ -2,7 +2,7 @@
 
 use eframe::egui::{Context, Pos2, Rect, Vec2, Window, pos2, vec2};
 
-use crate::reference::ReferencePreferences;
+use crate::reference::settings::ReferencePreferences;
 use crate::settings::preferences::Preferences;
 
 /// Title and edges of a window around its inside, points.

@@ -5,11 +5,13 @@
 //! | --- | --- |
 //! | `frame` | where the frame stands, and how large it is |
 //! | `picture` | pictures, read and made small |
+//! | `settings` | what of it is remembered |
 
 mod frame;
 pub(crate) mod picture;
+pub(crate) mod settings;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use eframe::egui::{
     self, Color32, Context, CornerRadius, Frame, Id, Key, Modifiers, Pos2, Rect, Response,
@@ -18,7 +20,6 @@ use eframe::egui::{
 };
 use maulstick_optics::colour::srgb_encode;
 use maulstick_ui_kit::arrow_keys::arrow_steps;
-use serde::{Deserialize, Serialize};
 
 use crate::dialogs::paths;
 use crate::input::keys::Action;
@@ -37,54 +38,6 @@ const CLOSEST: f32 = 16.0;
 const LEAST_PICTURE: f32 = 60.0;
 /// Step of the cross per press of an arrow key, points.
 const STEP: f32 = 8.0;
-
-/// Settings of the reference picture that are remembered.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct ReferencePreferences {
-    /// True while it is shown.
-    pub shown: bool,
-    /// The picture.
-    pub path: Option<PathBuf>,
-    /// Position of its frame, points from the window's upper left corner.
-    pub place: [f32; 2],
-    /// Width and height of the frame's inside, points.
-    pub size: [f32; 2],
-    /// Opacity, .1 to 1.
-    pub opacity: f32,
-    /// True to search among all paints, false among those of the palette.
-    pub all_paints: bool,
-}
-
-impl Default for ReferencePreferences {
-    fn default() -> Self {
-        Self {
-            shown: false,
-            path: None,
-            place: [24.0, 24.0],
-            size: [320.0, 320.0],
-            opacity: 1.0,
-            all_paints: false,
-        }
-    }
-}
-
-impl ReferencePreferences {
-    /// The same with numbers that make a frame.
-    fn sound(&self) -> Self {
-        let within = |value: f32, least: f32, most: f32, usual: f32| match value.is_finite() {
-            true => value.clamp(least, most),
-            false => usual,
-        };
-        let usual = Self::default();
-        Self {
-            place: [0, 1].map(|i| within(self.place[i], 0.0, 20_000.0, usual.place[i])),
-            size: [0, 1].map(|i| within(self.size[i], LEAST[i], 20_000.0, usual.size[i])),
-            opacity: within(self.opacity, 0.1, 1.0, usual.opacity),
-            ..self.clone()
-        }
-    }
-}
 
 /// Pan and zoom of the picture in its frame.
 #[derive(Clone, Copy, Debug, PartialEq)]

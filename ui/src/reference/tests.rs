@@ -9,6 +9,7 @@ use maulstick_types::Mixture;
 use maulstick_types::scene::{Well, WellKind};
 use maulstick_ui_kit::notifications::Notifications;
 
+use super::settings::ReferencePreferences;
 use super::*;
 use crate::rig::requests::Requests;
 use crate::rig::state::RigState;

@@ -136,8 +136,15 @@ impl BrushTracker {
         })
     }
 
-    /// Takes in what has come.
-    pub fn take_in(&mut self, now_ns: u64) {
+    /// Reads what has come.
+    pub fn drain(&mut self, now_ns: u64) {
+        self.drain_definitions();
+        self.drain_paint();
+        self.drain_samples(now_ns);
+        self.drain_states();
+    }
+
+    fn drain_definitions(&mut self) {
         while let Some(def) = self.defs.try_recv() {
             match BrushFile::parse(&def.message.toml) {
                 Ok(file) => {
@@ -160,6 +167,9 @@ impl BrushTracker {
                 Err(error) => tracing::warn!("{}: {error}", def.key),
             }
         }
+    }
+
+    fn drain_paint(&mut self) {
         while let Some(look) = self.looks.try_recv() {
             let name = self.topics.middle(&look.key).unwrap_or_default();
             // Its file may still be in flight.
@@ -184,6 +194,9 @@ impl BrushTracker {
                 }
             }
         }
+    }
+
+    fn drain_samples(&mut self, now_ns: u64) {
         while let Some(sample) = self.samples.try_recv() {
             if sample.message.fault().is_none() {
                 let heard = Heard {
@@ -202,6 +215,9 @@ impl BrushTracker {
         self.newest.retain(|source, heard| {
             *source == quiet || now_ns < heard.arrived_ns.saturating_add(SILENCE_NS)
         });
+    }
+
+    fn drain_states(&mut self) {
         while let Some(state) = self.states.try_recv() {
             let name = self.topics.middle(&state.key).unwrap_or_default();
             let known = self.known.get_mut(name);

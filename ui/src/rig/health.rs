@@ -251,7 +251,7 @@ mod tests {
     use crate::sessions::player::ReplayProgress;
     use crate::test_support::panel_bench::status;
     use maulstick_client::state::PaintNode;
-    use maulstick_ui_kit::notifications::Weight;
+    use maulstick_ui_kit::notifications::Severity;
 
     struct Rig {
         watch: HealthMonitor,
@@ -282,11 +282,11 @@ mod tests {
         }
 
         /// Notifications of one look; ten more looks add none.
-        fn look(&mut self) -> Vec<(Weight, String)> {
+        fn look(&mut self) -> Vec<(Severity, String)> {
             let topics = Topics::new("t");
             let told = |notifications: &Notifications| {
-                let told = notifications.told().iter();
-                told.map(|toast| (toast.weight, toast.what.clone()))
+                let told = notifications.shown().iter();
+                told.map(|toast| (toast.severity, toast.what.clone()))
                     .collect::<Vec<_>>()
             };
             let mut notifications = Notifications::default();
@@ -311,12 +311,12 @@ mod tests {
         }
     }
 
-    fn fault(what: &str) -> Vec<(Weight, String)> {
-        vec![(Weight::Fault, what.to_owned())]
+    fn fault(what: &str) -> Vec<(Severity, String)> {
+        vec![(Severity::Fault, what.to_owned())]
     }
 
-    fn note(what: &str) -> Vec<(Weight, String)> {
-        vec![(Weight::Note, what.to_owned())]
+    fn note(what: &str) -> Vec<(Severity, String)> {
+        vec![(Severity::Note, what.to_owned())]
     }
 
     #[test]

@@ -5,8 +5,8 @@
 //! | `state` | what is known of the rig; plain data |
 //! | [`brushes`] | newest sample and bend of each brush |
 //! | `child_process` | a command that runs beside the window |
-//! | `device_commands` | `maulstick device`, run by the window |
-//! | `device_listing` | what is attached, and settings of the rig's devices |
+//! | `device_order` | orders to it, and a fit in progress |
+//! | `device_setup` | changes and listings of devices, on a thread |
 //! | `health` | events of the other processes |
 //! | `requests` | commands that wait to be sent |
 //! | `carried_paint` | what a brush carries, for its gauge |
@@ -14,8 +14,8 @@
 pub mod brushes;
 pub(crate) mod carried_paint;
 pub(crate) mod child_process;
-pub(crate) mod device_commands;
-pub(crate) mod device_listing;
+pub(crate) mod device_order;
+pub(crate) mod device_setup;
 pub(crate) mod health;
 #[cfg(test)]
 mod order_tests;

@@ -6,12 +6,12 @@ use maulstick_types::command::Command;
 use maulstick_types::haptics::ForceOrder;
 
 use crate::input::keys::Action;
-use crate::rig::device_commands::DeviceOrder;
+use crate::rig::device_order::{DeviceOrder, SetupChange};
 use crate::sessions::SessionOrder;
 
 /// Requests that wait to be sent.
 #[derive(Debug, Default)]
-pub struct Requests {
+pub(crate) struct Requests {
     waiting: Vec<Request>,
     /// Requests that an answer brings about, each with the time at which it was asked for, rig clock, ns.
     follow_ups: Vec<(Request, u64)>,
@@ -22,65 +22,64 @@ pub struct Requests {
 
 impl Requests {
     /// Asks the node that carries out a command.
-    pub fn send(&mut self, command: impl Into<Command>) {
+    pub(crate) fn send(&mut self, command: impl Into<Command>) {
         self.waiting.push(Request::of(command));
     }
 
     /// Asks for what was to follow another request, which is done; the painter asked for it at this time.
-    pub fn follow_up(&mut self, command: impl Into<Command>, asked_ns: u64) {
+    pub(crate) fn follow_up(&mut self, command: impl Into<Command>, asked_ns: u64) {
         self.follow_ups.push((Request::of(command), asked_ns));
     }
 
     /// Takes what was to follow other requests, the oldest first, with the times at which it was asked for.
     #[must_use]
-    pub fn take_follow_ups(&mut self) -> Vec<(Request, u64)> {
+    pub(crate) fn take_follow_ups(&mut self) -> Vec<(Request, u64)> {
         std::mem::take(&mut self.follow_ups)
     }
 
     /// Requests a change of the force of a device.
-    pub fn force(&mut self, device: &str, order: ForceOrder) {
+    pub(crate) fn force(&mut self, device: &str, order: ForceOrder) {
         self.waiting.push(Request::Force {
             device: device.to_owned(),
             order,
         });
     }
 
-    /// Runs `maulstick device` with these words.
-    pub fn device<'a>(&mut self, words: impl IntoIterator<Item = &'a str>) {
-        let words = words.into_iter().map(str::to_owned).collect();
-        self.devices.push(DeviceOrder::Run(words));
+    /// Asks for a change of the devices.
+    pub(crate) fn change_device(&mut self, change: SetupChange) {
+        self.devices.push(DeviceOrder::Change(change));
     }
 
-    /// As [`device`](Self::device), for what is no single command.
-    pub fn order_device(&mut self, order: DeviceOrder) {
+    /// Asks for a fit, or its end.
+    pub(crate) fn order_device(&mut self, order: DeviceOrder) {
         self.devices.push(order);
     }
 
     /// Takes the orders of devices, the oldest first.
     #[must_use]
-    pub fn take_device_orders(&mut self) -> Vec<DeviceOrder> {
+    pub(crate) fn take_device_orders(&mut self) -> Vec<DeviceOrder> {
         std::mem::take(&mut self.devices)
     }
 
     /// Asks recorder or player.
-    pub fn session(&mut self, order: SessionOrder) {
+    pub(crate) fn session(&mut self, order: SessionOrder) {
         self.sessions.push(order);
     }
 
     /// Takes the orders to recorder and player, the oldest first.
     #[must_use]
-    pub fn take_session_orders(&mut self) -> Vec<SessionOrder> {
+    pub(crate) fn take_session_orders(&mut self) -> Vec<SessionOrder> {
         std::mem::take(&mut self.sessions)
     }
 
     /// Does what a key would do.
-    pub fn act(&mut self, act: Action) {
+    pub(crate) fn act(&mut self, act: Action) {
         self.acts.push(act);
     }
 
     /// Takes what is to be done as if by keys, the oldest first.
     #[must_use]
-    pub fn take_acts(&mut self) -> Vec<Action> {
+    pub(crate) fn take_acts(&mut self) -> Vec<Action> {
         std::mem::take(&mut self.acts)
     }
 
@@ -95,7 +94,7 @@ impl Requests {
 
     /// Takes what waits, the oldest first.
     #[must_use]
-    pub fn take(&mut self) -> Vec<Request> {
+    pub(crate) fn take(&mut self) -> Vec<Request> {
         std::mem::take(&mut self.waiting)
     }
 }

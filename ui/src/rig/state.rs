@@ -8,22 +8,22 @@ use maulstick_brush::BrushFile;
 use maulstick_brush::desk::Desk;
 use maulstick_client::listener::RigListener;
 use maulstick_client::state::LiveRig;
+use maulstick_device_setup::listing::DeviceListing;
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::Sketches;
 use maulstick_types::command::Command;
-use maulstick_types::scene::{BrushHandling, Scene, Tuning};
+use maulstick_types::scene::{BrushHandling, Tuning};
 use maulstick_ui_kit::display_transform::DisplayTransform;
 use maulstick_ui_kit::swatches::Showing;
 
 use crate::rig::carried_paint::CarriedPaint;
-use crate::rig::device_commands::FitProgress;
-use crate::rig::device_listing::DeviceListing;
+use crate::rig::device_order::FitProgress;
 use crate::sessions::player::ReplayProgress;
 use crate::sessions::recorder::RecordingProgress;
 
 /// A brush of the rig.
 #[derive(Clone, Debug, Default)]
-pub struct RigBrush {
+pub(crate) struct RigBrush {
     /// Name as in `rig.toml`.
     pub name: String,
     /// Its brush file, parsed and as text; `None` until its node has sent it.
@@ -40,16 +40,24 @@ pub struct RigBrush {
 
 /// Whether a brush is on a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BrushContact {
+pub(crate) enum BrushContact {
     /// It is lifted.
     Lifted,
     /// A hand has it on a surface.
     Held,
 }
 
+impl BrushContact {
+    /// The contact of a brush that a hand holds on a surface, or does not.
+    #[must_use]
+    pub(crate) fn of(is_held: bool) -> Self {
+        if is_held { Self::Held } else { Self::Lifted }
+    }
+}
+
 /// Set-up of the devices, as far as the window shows it.
 #[derive(Clone, Debug, Default)]
-pub struct DeviceSetup {
+pub(crate) struct DeviceSetup {
     /// What is attached; `None` until it was looked for.
     pub listing: Option<DeviceListing>,
     /// A fit of a device to the canvas in progress.
@@ -60,7 +68,7 @@ pub struct DeviceSetup {
 
 /// The rig as the window knows it.
 #[derive(Clone, Debug)]
-pub struct RigState {
+pub(crate) struct RigState {
     /// What its messages say.
     pub live: LiveRig,
     /// The scene on the desk as brushes see it.
@@ -96,7 +104,7 @@ pub struct RigState {
 impl RigState {
     /// A rig without any message so far.
     #[must_use]
-    pub fn new(rig: &str, brushes: &[String], library: Arc<PaintLibrary>) -> Self {
+    pub(crate) fn new(rig: &str, brushes: &[String], library: Arc<PaintLibrary>) -> Self {
         let brush = |name: &String| RigBrush {
             name: name.clone(),
             ..RigBrush::default()
@@ -121,7 +129,7 @@ impl RigState {
     }
 
     /// Reads what the messages of the rig say.
-    pub fn drain(&mut self, listener: &mut RigListener, now_ns: u64) {
+    pub(crate) fn drain(&mut self, listener: &mut RigListener, now_ns: u64) {
         if listener.drain(now_ns, &mut self.live) {
             self.desk = self.live.scene.as_ref().map(Desk::of);
         }
@@ -139,14 +147,15 @@ impl RigState {
     }
 
     /// Puts a scene on the desk.
-    pub fn lay(&mut self, scene: Scene) {
+    #[cfg(test)]
+    pub(crate) fn lay(&mut self, scene: maulstick_types::scene::Scene) {
         self.desk = Some(Desk::of(&scene));
         self.live.scene = Some(scene);
     }
 
     /// What swatches are shown with.
     #[must_use]
-    pub fn showing(&self) -> Showing<'_> {
+    pub(crate) fn showing(&self) -> Showing<'_> {
         Showing {
             library: &self.library,
             light: self.live.scene.as_ref().map(|scene| &scene.light),
@@ -156,7 +165,7 @@ impl RigState {
 
     /// True if the painting has no name yet: it is in the file of a sketch.
     #[must_use]
-    pub fn is_sketch(&self) -> bool {
+    pub(crate) fn is_sketch(&self) -> bool {
         let (Some(sketches), Some(node)) = (&self.sketches, &self.live.paint) else {
             return false;
         };
@@ -165,19 +174,19 @@ impl RigState {
 
     /// The brush that the panels are about.
     #[must_use]
-    pub fn brush(&self) -> Option<&RigBrush> {
+    pub(crate) fn brush(&self) -> Option<&RigBrush> {
         self.brushes.get(self.in_hand)
     }
 
     /// Its name; "main" if the rig names none.
     #[must_use]
-    pub fn brush_name(&self) -> &str {
+    pub(crate) fn brush_name(&self) -> &str {
         self.brush().map_or("main", |brush| brush.name.as_str())
     }
 
     /// Handling of that brush.
     #[must_use]
-    pub fn handling(&self) -> BrushHandling {
+    pub(crate) fn handling(&self) -> BrushHandling {
         let name = self.brush_name();
         let mut handlings = self.live.scene.iter().flat_map(|scene| &scene.handlings);
         let own = handlings.find(|handling| handling.brush == name);
@@ -186,7 +195,7 @@ impl RigState {
 
     /// Stiffness and wetness settings of that brush.
     #[must_use]
-    pub fn tuning(&self) -> Tuning {
+    pub(crate) fn tuning(&self) -> Tuning {
         let name = self.brush_name();
         let mut tunings = self.live.scene.iter().flat_map(|scene| &scene.tunings);
         let own = tunings.find(|tuning| tuning.brush == name);

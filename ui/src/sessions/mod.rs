@@ -32,7 +32,7 @@ const MOTION: &str = "motion";
 
 /// A request to recorder or player.
 #[derive(Clone, Debug, PartialEq)]
-pub enum SessionOrder {
+pub(crate) enum SessionOrder {
     /// Records the session from now on.
     Record,
     /// Ends the recording.
@@ -83,7 +83,7 @@ impl SessionProcesses {
     }
 
     /// Carries out orders, and takes in what the processes say.
-    pub(crate) fn turn(
+    pub(crate) fn poll(
         &mut self,
         context: &Context,
         orders: Vec<SessionOrder>,

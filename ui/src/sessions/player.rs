@@ -18,7 +18,7 @@ const LOOK: Duration = Duration::from_millis(200);
 
 /// A replay in progress.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ReplayProgress {
+pub(crate) struct ReplayProgress {
     /// The recording.
     pub recording: PathBuf,
     /// Where it is; `None` until the player has begun.
@@ -31,7 +31,7 @@ pub struct ReplayProgress {
 
 /// Where a replay is.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
-pub struct Position {
+pub(crate) struct Position {
     /// Time since the beginning of the recording, s.
     pub position_s: f64,
     /// Length of the recording, s.
@@ -53,7 +53,7 @@ enum PlayerLine {
 
 /// An order to the player.
 #[derive(Clone, Debug, PartialEq)]
-pub enum TransportOrder {
+pub(crate) enum TransportOrder {
     /// Stand still, or go on.
     Pause,
     /// Go on by one event, then stand still.
@@ -84,7 +84,7 @@ impl fmt::Display for TransportOrder {
 impl ReplayProgress {
     /// Of a recording that is about to be played.
     #[must_use]
-    pub fn new(recording: &Path) -> Self {
+    pub(crate) fn new(recording: &Path) -> Self {
         Self {
             recording: recording.to_owned(),
             position: None,

@@ -18,7 +18,7 @@ const TICK: Duration = Duration::from_millis(500);
 
 /// A recording in progress.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RecordingProgress {
+pub(crate) struct RecordingProgress {
     /// Its file.
     pub file: PathBuf,
     /// Its beginning, rig clock, ns.

@@ -8,7 +8,7 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use maulstick_ui_kit::notifications::Weight;
+use maulstick_ui_kit::notifications::Severity;
 
 use super::*;
 use crate::sessions::player::{Position, ReplayProgress};
@@ -64,7 +64,7 @@ pub(crate) fn replay(paused: bool) -> ReplayProgress {
 struct Desk {
     processes: SessionProcesses,
     rig: RigState,
-    told: Vec<(Weight, String)>,
+    told: Vec<(Severity, String)>,
     folder: tempfile::TempDir,
 }
 
@@ -91,10 +91,10 @@ impl Desk {
     fn turn(&mut self, orders: Vec<SessionOrder>) {
         let mut notifications = Notifications::default();
         let told = (&mut self.rig, &mut notifications);
-        self.processes.turn(&Context::default(), orders, told);
-        let told = notifications.told().iter();
+        self.processes.poll(&Context::default(), orders, told);
+        let told = notifications.shown().iter();
         self.told
-            .extend(told.map(|toast| (toast.weight, toast.what.clone())));
+            .extend(told.map(|toast| (toast.severity, toast.what.clone())));
     }
 
     fn until(&mut self, is_so: impl Fn(&Self) -> bool) {
@@ -125,7 +125,7 @@ fn a_recording_stands_beside_the_painting_until_it_is_ended_and_its_file_is_told
     desk.until(|_| recording.file.exists());
     desk.turn(vec![SessionOrder::StopRecording]);
     desk.until(|desk| desk.rig.recording.is_none());
-    let [(Weight::Note, told)] = &desk.told[..] else {
+    let [(Severity::Note, told)] = &desk.told[..] else {
         panic!("{:?}", desk.told);
     };
     assert!(told.contains(&*name), "{told}");
@@ -139,10 +139,10 @@ fn what_a_recording_lacks_and_why_one_fails_is_told() {
     desk.until(|desk| desk.rig.recording.is_none());
     let (weight, told) = desk.told.first().expect("told");
     assert!(
-        *weight == Weight::Fault && told.contains("it is in no file"),
+        *weight == Severity::Fault && told.contains("it is in no file"),
         "{told}"
     );
-    let goes_on = |(_, told): &(Weight, String)| told.contains("x-2");
+    let goes_on = |(_, told): &(Severity, String)| told.contains("x-2");
     assert!(desk.told.iter().any(goes_on), "{:?}", desk.told);
     let mut desk = Desk::new();
     desk.processes = SessionProcesses::new("/none/maulstick".into());
@@ -154,7 +154,7 @@ fn what_a_recording_lacks_and_why_one_fails_is_told() {
     desk.painting("full.maul");
     desk.turn(vec![SessionOrder::Record]);
     desk.until(|desk| desk.rig.recording.is_none());
-    assert_eq!(desk.told, [(Weight::Fault, "no room".to_owned())]);
+    assert_eq!(desk.told, [(Severity::Fault, "no room".to_owned())]);
 }
 
 #[test]
@@ -231,7 +231,7 @@ fn orders_are_lines_to_the_player_whose_lines_say_where_it_is() {
     desk.turn(vec![SessionOrder::Transport(TransportOrder::End)]);
     desk.until(|desk| desk.rig.replay.is_none());
     let told = "The recording is painted in /p/sea-replay.maul.";
-    assert_eq!(desk.told, [(Weight::Note, told.to_owned())]);
+    assert_eq!(desk.told, [(Severity::Note, told.to_owned())]);
     let read = |ending: &str| {
         let path = recording.with_extension(ending);
         std::fs::read_to_string(path).expect("noted")
@@ -252,7 +252,7 @@ fn a_recording_that_cannot_be_played_is_told_and_the_bar_goes() {
     let forget = false;
     desk.turn(vec![SessionOrder::Play { recording, forget }]);
     desk.until(|desk| !desk.told.is_empty() && desk.rig.replay.is_none());
-    assert_eq!(desk.told, [(Weight::Fault, "no room".to_owned())]);
+    assert_eq!(desk.told, [(Severity::Fault, "no room".to_owned())]);
 }
 
 fn orders(harness: &mut Harness<'static, Bench>) -> Vec<SessionOrder> {
@@ -406,7 +406,7 @@ fn the_bar_looks_as_in_its_picture() {
     let state = || {
         let mut bench = context_bench::Bench::new();
         bench.rig.replay = Some(replay(false));
-        bench.preferences.panels = false;
+        bench.preferences.window.panels = false;
         (TransportBar::default(), bench)
     };
     overlay_bench::picture(

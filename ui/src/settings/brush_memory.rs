@@ -83,10 +83,10 @@ impl BrushMemory {
                     kept: None,
                 };
                 self.known.insert(name.clone(), known);
-                if let Some(held) = work.preferences.in_hand.get(&name).cloned()
+                if let Some(held) = work.preferences.brushes.in_hand.get(&name).cloned()
                     && let Err(fault) = restore(&held, work)
                 {
-                    work.preferences.in_hand.remove(&name);
+                    work.preferences.brushes.in_hand.remove(&name);
                     work.notifications.of(&fault);
                 }
             }
@@ -120,13 +120,16 @@ impl Known {
         if now_s - since_s < RESTS_S {
             return context.request_repaint_after(Duration::from_secs_f64(RESTS_S));
         }
-        if let Some(preset) = Preset::of("", work) {
+        if let Some(preset) = work.preset_in_hand("") {
             let held = Preset {
                 loading: BrushLoad::default(),
                 pressure: None,
                 ..preset
             };
-            work.preferences.in_hand.insert(name.to_owned(), held);
+            work.preferences
+                .brushes
+                .in_hand
+                .insert(name.to_owned(), held);
         }
         (self.kept, self.seen) = (Some(used), None);
     }
@@ -160,7 +163,7 @@ mod tests {
     use maulstick_types::command::{BrushCommand, Command};
     use maulstick_types::scene::BrushMode;
 
-    use crate::input::brush_choice::of_library;
+    use crate::settings::brush_library::of_library;
     use crate::settings::preferences::Preferences;
     use crate::test_support::overlay_bench::{Bench, window};
 
@@ -189,7 +192,7 @@ mod tests {
         let scene = rig.live.scene.as_mut().expect("a scene");
         scene.handlings.push(handling);
         scene.tunings.push(tuning);
-        harness.state_mut().preferences.loading.paint = "Bone Black".into();
+        harness.state_mut().preferences.brushes.loading.paint = "Bone Black".into();
         harness.run_steps(6);
         let text = toml::to_string(&harness.state().preferences).expect("written");
         assert!(!text.contains("Bone Black"), "a brush begins clean");
@@ -257,12 +260,16 @@ mod tests {
     #[test]
     fn a_brush_that_is_none_is_told_once_and_forgotten() {
         let mut preferences = remembered();
-        let held = preferences.in_hand.get_mut("main").expect("remembered");
+        let held = preferences
+            .brushes
+            .in_hand
+            .get_mut("main")
+            .expect("remembered");
         held.kind = "broom".into();
         let harness = session(preferences, "round", 10.0);
         let told = harness.state().told();
         assert_eq!(told.matches("broom").count(), 1, "{told}");
-        let kept = &harness.state().preferences.in_hand["main"];
+        let kept = &harness.state().preferences.brushes.in_hand["main"];
         assert_eq!(kept.kind, "round");
     }
 }

@@ -5,8 +5,6 @@ use std::ops::RangeInclusive;
 use eframe::egui::{Context, ThemePreference};
 use serde::{Deserialize, Serialize};
 
-use crate::settings::preferences::Preferences;
-
 /// Factors on the size of texts and controls that the window offers.
 pub(crate) const TEXT_SIZES: RangeInclusive<f32> = 0.5..=3.0;
 
@@ -49,15 +47,15 @@ pub(crate) struct Look {
 }
 
 impl Look {
-    /// Gives a new window the look of the preferences; later the theme follows them, and they follow the text size, which
-    /// keys of egui change too.
-    pub(crate) fn follow(&mut self, context: &Context, preferences: &mut Preferences) {
+    /// Gives a new window this look; later the theme follows, and the text size is taken from the window, for keys of egui
+    /// change it too.
+    pub(crate) fn follow(&mut self, context: &Context, theme: Theme, text_size: &mut f32) {
         match self.theme {
-            None => context.set_zoom_factor(preferences.text_size),
-            Some(_) => preferences.text_size = (100.0 * context.zoom_factor()).round() / 100.0,
+            None => context.set_zoom_factor(*text_size),
+            Some(_) => *text_size = (100.0 * context.zoom_factor()).round() / 100.0,
         }
-        if self.theme.replace(preferences.theme) != Some(preferences.theme) {
-            context.set_theme(preferences.theme);
+        if self.theme.replace(theme) != Some(theme) {
+            context.set_theme(theme);
         }
     }
 }
@@ -71,23 +69,18 @@ mod tests {
 
     #[test]
     fn the_text_size_is_given_to_the_window_and_kept_as_its_keys_change_it() {
-        let preferences = Preferences {
-            text_size: 1.3,
-            theme: Theme::Light,
-            ..Preferences::default()
+        let show = |ui: &mut egui::Ui, (look, text_size, theme): &mut (Look, f32, Theme)| {
+            look.follow(ui.ctx(), *theme, text_size);
         };
-        let show = |ui: &mut egui::Ui, (look, preferences): &mut (Look, Preferences)| {
-            look.follow(ui.ctx(), preferences);
-        };
-        let state = (Look::default(), preferences);
+        let state = (Look::default(), 1.3, Theme::Light);
         let mut harness = Harness::builder().build_ui_state(show, state);
         harness.run_steps(3);
         assert_eq!(harness.ctx.zoom_factor(), 1.3);
         assert!(!harness.ctx.global_style().visuals.dark_mode);
         harness.key_press_modifiers(Modifiers::COMMAND, Key::Minus);
         harness.run_steps(3);
-        assert_eq!(harness.state().1.text_size, 1.2);
-        harness.state_mut().1.theme = Theme::Dark;
+        assert_eq!(harness.state().1, 1.2);
+        harness.state_mut().2 = Theme::Dark;
         harness.run_steps(3);
         assert!(harness.ctx.global_style().visuals.dark_mode);
     }

@@ -12,7 +12,7 @@ use maulstick_rig::files::{Kind, write_whole};
 use maulstick_ui_kit::units::Units;
 
 use crate::input::keymap::Keymap;
-use crate::reference::ReferencePreferences;
+use crate::reference::settings::ReferencePreferences;
 use crate::settings::brush_load::BrushLoad;
 use crate::settings::grip::Grip;
 use crate::settings::look::{TEXT_SIZES, Theme};
@@ -24,14 +24,41 @@ use crate::tracing::settings::Tracings;
 /// Recent paintings that are remembered.
 const RECENT: usize = 12;
 
-/// Settings of the window.
+/// Settings that the window remembers. In the file the parts of window and brushes stand beside the others.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Preferences {
+    /// The window itself.
+    #[serde(flatten)]
+    pub window: WindowPreferences,
+    /// Brushes and paints.
+    #[serde(flatten)]
+    pub brushes: BrushPreferences,
+    /// True once the painter has painted here: the first line of help is no longer needed.
+    pub has_painted: bool,
+    /// All that pens over the window have sensed, bits of `axes`: it was told of.
+    pub pen_senses: u32,
+    /// The keys.
+    pub keys: Keymap,
+    /// Paintings that were open, the newest first.
+    pub recent: Vec<PathBuf>,
+    /// Folder of motions; absent for the usual one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motions: Option<PathBuf>,
+    /// The reference picture.
+    pub reference: ReferencePreferences,
+    /// Tracing pictures of the paintings.
+    pub tracings: Tracings,
+}
+
+/// Settings of the window itself: where its parts stand, and how they look.
 #[expect(
     clippy::struct_excessive_bools,
     reason = "each is a switch of its own, and a key of the file"
 )]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Preferences {
+pub struct WindowPreferences {
     /// True while the panels are shown.
     pub panels: bool,
     /// Side at which the panels stand; absent for that of the rack.
@@ -44,15 +71,11 @@ pub struct Preferences {
     /// True while the desk is seen in a mirror; not kept.
     #[serde(skip)]
     pub mirrored: bool,
-    /// True once the painter has painted here: the first line of help is no longer needed.
-    pub has_painted: bool,
-    /// All that pens over the window have sensed, bits of `axes`: it was told of.
-    pub pen_senses: u32,
-    /// Width and height of the window, points.
-    pub size: [f32; 2],
     /// True while the window is too narrow for rack and panels; not kept.
     #[serde(skip)]
     pub is_narrow: bool,
+    /// Width and height of the window, points.
+    pub size: [f32; 2],
     /// Factor on the size of texts and controls.
     pub text_size: f32,
     /// Theme of panels and dialogs.
@@ -62,15 +85,12 @@ pub struct Preferences {
     pub language: Option<String>,
     /// Units of lengths.
     pub units: Units,
-    /// The keys.
-    pub keys: Keymap,
-    /// Paintings that were open, the newest first.
-    pub recent: Vec<PathBuf>,
-    /// Folder of motions; absent for the usual one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub motions: Option<PathBuf>,
-    /// The reference picture.
-    pub reference: ReferencePreferences,
+}
+
+/// Settings of brushes and paints.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct BrushPreferences {
     /// The painter's own brush files, in the order of the rack.
     pub own_brushes: Vec<PathBuf>,
     /// What the brush was loaded with, or is to be; not kept, for a brush begins clean.
@@ -90,30 +110,29 @@ pub struct Preferences {
     pub presets: Vec<Preset>,
     /// The painter's sets of paints.
     pub paint_sets: Vec<PaintSet>,
-    /// Tracing pictures of the paintings.
-    pub tracings: Tracings,
 }
 
-impl Default for Preferences {
+impl Default for WindowPreferences {
     fn default() -> Self {
         Self {
             panels: false,
-            is_narrow: false,
             panel_side: None,
             open: vec!["Brush".to_owned(), "Tubes".to_owned()],
             left_handed: false,
             mirrored: false,
-            has_painted: false,
-            pen_senses: 0,
+            is_narrow: false,
             size: [1280.0, 800.0],
             text_size: 1.0,
             theme: Theme::default(),
             language: None,
             units: Units::default(),
-            keys: Keymap::default(),
-            recent: Vec::new(),
-            motions: None,
-            reference: ReferencePreferences::default(),
+        }
+    }
+}
+
+impl Default for BrushPreferences {
+    fn default() -> Self {
+        Self {
             own_brushes: Vec::new(),
             loading: BrushLoad::default(),
             in_hand: BTreeMap::new(),
@@ -123,12 +142,20 @@ impl Default for Preferences {
             widths_mm: BTreeMap::new(),
             presets: classic(),
             paint_sets: Vec::new(),
-            tracings: Tracings::default(),
         }
     }
 }
 
 impl Preferences {
+    /// The defaults but for the window itself.
+    #[cfg(test)]
+    pub(crate) fn of_window(window: WindowPreferences) -> Self {
+        Self {
+            window,
+            ..Self::default()
+        }
+    }
+
     /// File for this user; `None` if the system has no such folder.
     #[must_use]
     pub fn place() -> Option<PathBuf> {
@@ -156,15 +183,15 @@ impl Preferences {
             .at(format!("{}: {}", path.display(), error.message()))
         })?;
         let sane = |side: f32| side.is_finite() && (200.0..=20_000.0).contains(&side);
-        if !preferences.size.iter().all(|side| sane(*side)) {
-            preferences.size = Self::default().size;
+        if !preferences.window.size.iter().all(|side| sane(*side)) {
+            preferences.window.size = WindowPreferences::default().size;
         }
-        if !TEXT_SIZES.contains(&preferences.text_size) {
-            preferences.text_size = 1.0;
+        if !TEXT_SIZES.contains(&preferences.window.text_size) {
+            preferences.window.text_size = 1.0;
         }
-        preferences.mouse = preferences.mouse.sane();
-        if !rises(&preferences.pen_curve) {
-            preferences.pen_curve.clear();
+        preferences.brushes.mouse = preferences.brushes.mouse.sane();
+        if !rises(&preferences.brushes.pen_curve) {
+            preferences.brushes.pen_curve.clear();
         }
         Ok(preferences)
     }
@@ -193,20 +220,20 @@ impl Preferences {
     /// True if the palette is seen at the right and the rack at the left.
     #[must_use]
     pub fn rack_is_left(&self) -> bool {
-        self.left_handed != self.mirrored
+        self.window.left_handed != self.window.mirrored
     }
 
     /// True if a panel is unfolded.
     #[must_use]
     pub fn is_open(&self, panel: &str) -> bool {
-        self.open.iter().any(|open| open == panel)
+        self.window.open.iter().any(|open| open == panel)
     }
 
     /// Unfolds a panel, or folds it.
     pub fn unfold(&mut self, panel: &str, open: bool) {
-        self.open.retain(|known| known != panel);
+        self.window.open.retain(|known| known != panel);
         if open {
-            self.open.push(panel.to_owned());
+            self.window.open.push(panel.to_owned());
         }
     }
 }
@@ -223,10 +250,10 @@ mod tests {
             Preferences::read(&path).expect("none"),
             Preferences::default()
         );
-        let mut preferences = Preferences {
+        let mut preferences = Preferences::of_window(WindowPreferences {
             left_handed: true,
-            ..Preferences::default()
-        };
+            ..WindowPreferences::default()
+        });
         preferences.unfold("Light", true);
         for number in 0..20 {
             preferences.opened(Path::new(&format!("/{}.maul", number % 15)));

@@ -1,17 +1,14 @@
 //! Presets: brushes with their paint, by name.
 
 use maulstick_brush::BrushFile;
-use maulstick_painting::edits::{Clean, Handle, Tune};
+use maulstick_painting::edits::{Handle, Tune};
 use maulstick_rig::UserError;
-use maulstick_types::Edit;
-use maulstick_types::scene::{BrushHandling, BrushMode, MARKER_FLOW, Tuning};
-use maulstick_types::values::BrushName;
+use maulstick_types::scene::{BrushHandling, MARKER_FLOW, Tuning};
 use maulstick_ui_kit::units::Units;
 use serde::{Deserialize, Serialize};
 
-use crate::input::brush_choice::{is_of_library, of_library};
+use crate::settings::brush_library::{called, of_library};
 use crate::settings::brush_load::BrushLoad;
-use crate::widgets::context::PanelContext;
 
 /// The name of a preset, or of a set of paints, has at most so many letters.
 pub(crate) const NAME_MAX: usize = 40;
@@ -120,31 +117,23 @@ pub(crate) fn classic() -> Vec<Preset> {
 }
 
 impl Preset {
-    /// The brush in the hand as it is used now; `None` until it is known.
+    /// Short description.
     #[must_use]
-    pub fn of(name: &str, work: &PanelContext<'_>) -> Option<Self> {
-        let file = work.in_hand()?;
-        let (tuning, handling) = (work.rig.tuning(), work.rig.handling());
-        let text = match is_of_library(file) {
-            true => String::new(),
-            false => file.to_toml().ok()?,
-        };
-        let mut modes = BrushMode::NAMES.iter();
-        let mode = modes.find(|(_, mode)| *mode == handling.mode);
-        Some(Self {
-            name: name.to_owned(),
-            kind: file.kind.clone(),
-            width_mm: file.head.width_mm,
-            file: text,
-            stiffness: tuning.stiffness,
-            wetness: tuning.wetness,
-            mode: mode.map_or("normal", |(name, _)| name).to_owned(),
-            flow: handling.flow,
-            most_m: handling.most_m,
-            loading: work.preferences.loading.clone(),
-            clean: false,
-            pressure: Some(work.preferences.mouse.pressure),
-        })
+    pub fn words(&self, units: Units) -> String {
+        let kind = called(&self.kind);
+        let width = units.width(self.width_mm);
+        if self.loading.paint.is_empty() {
+            return format!("{kind}, {width}");
+        }
+        let mut paint = self.loading.paint.clone();
+        if let Some(other) = &self.loading.beside {
+            paint = tr!("{paint} beside {other}", paint, other);
+        }
+        if self.loading.thinner > 0.0 {
+            let percent = (100.0 * self.loading.thinner).round();
+            paint = tr!("{paint}, {percent} % thinner", paint, percent);
+        }
+        format!("{kind}, {width}\n{paint}")
     }
 
     /// The brush.
@@ -190,84 +179,6 @@ impl Preset {
         };
         Ok((Tune::try_from(&tuning)?, Handle::try_from(&handling)?))
     }
-
-    /// Takes it up: the brush, how it is used, and then its paint.
-    ///
-    /// # Errors
-    /// A [`UserError`] where something of it is wrong; then nothing is changed.
-    pub fn apply(&self, work: &mut PanelContext<'_>) -> Result<(), UserError> {
-        if !work.may_change_brush() {
-            return Ok(());
-        }
-        let file = self.brush()?;
-        let brush = work.rig.brush_name().to_owned();
-        let (tune, handle) = self.edits(&brush)?;
-        let mut loading = self.loading.clone();
-        if loading.paint.is_empty() && loading.thinner > 0.0 {
-            loading.paint.clone_from(&work.preferences.loading.paint);
-        }
-        let load: Option<Edit> = match loading.paint.is_empty() {
-            true if self.clean => Some(
-                Clean {
-                    brush: BrushName::new(&brush)?,
-                }
-                .into(),
-            ),
-            true => None,
-            false => Some(loading.edit(&brush, &work.rig.library)?.into()),
-        };
-        let (tuning, pressure) = (work.rig.tuning(), work.preferences.mouse.pressure);
-        let before = &mut work.preferences.before_preset;
-        before.take_if(|before| before.brush != brush);
-        before.get_or_insert(BeforePreset {
-            brush: brush.clone(),
-            pressure,
-            stiffness: tuning.stiffness,
-            wetness: tuning.wetness,
-        });
-        work.take_up(file);
-        work.requests.send(tune);
-        work.requests.send(handle);
-        if let Some(pressure) = self.pressure {
-            work.preferences.mouse.pressure = pressure;
-            work.preferences.mouse = work.preferences.mouse.sane();
-        }
-        if loading.paint.is_empty() && loading.thinner > 0.0 {
-            let percent = 100.0 * loading.thinner;
-            let words = tr!(
-                "The next paint that you load is thinned by {percent} %",
-                percent = format_args!("{percent:.0}")
-            );
-            work.notifications.note(words);
-            work.preferences.loading.thinner = loading.thinner;
-        }
-        if !loading.paint.is_empty() {
-            work.preferences.loading = loading;
-        }
-        if let Some(load) = load {
-            work.then(load.into());
-        }
-        Ok(())
-    }
-
-    /// Short description.
-    #[must_use]
-    pub fn words(&self, units: Units) -> String {
-        let kind = crate::input::brush_choice::called(&self.kind);
-        let width = units.width(self.width_mm);
-        if self.loading.paint.is_empty() {
-            return format!("{kind}, {width}");
-        }
-        let mut paint = self.loading.paint.clone();
-        if let Some(other) = &self.loading.beside {
-            paint = tr!("{paint} beside {other}", paint, other);
-        }
-        if self.loading.thinner > 0.0 {
-            let percent = (100.0 * self.loading.thinner).round();
-            paint = tr!("{paint}, {percent} % thinner", paint, percent);
-        }
-        format!("{kind}, {width}\n{paint}")
-    }
 }
 
 /// Checks a name against the existing ones.
@@ -308,7 +219,10 @@ mod tests {
         for preset in &classic {
             let file = preset.brush().expect(&preset.name);
             assert_eq!(file.head.width_mm, preset.width_mm, "{}", preset.name);
-            preset.mode.parse::<BrushMode>().expect("a mode");
+            preset
+                .mode
+                .parse::<maulstick_types::scene::BrushMode>()
+                .expect("a mode");
             let others = classic.iter().filter(|other| *other != preset);
             let names = others.map(|other| other.name.as_str());
             assert_eq!(check_name(&preset.name, names), Ok(()));

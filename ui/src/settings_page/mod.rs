@@ -87,16 +87,16 @@ fn look(ui: &mut Ui, work: &mut PanelContext<'_>) {
     let preferences = &mut *work.preferences;
     setting(ui, tr!("Text size"), text_size);
     setting(ui, tr!("Language"), |ui| {
-        language_choice(ui, &mut preferences.language);
+        language_choice(ui, &mut preferences.window.language);
     });
     setting(ui, tr!("Theme"), |ui| {
         for (theme, words) in Theme::WORDS {
-            ui.selectable_value(&mut preferences.theme, theme, translated(words));
+            ui.selectable_value(&mut preferences.window.theme, theme, translated(words));
         }
     });
     setting(ui, tr!("Lengths"), |ui| {
         for (units, words) in Units::WORDS {
-            ui.selectable_value(&mut preferences.units, units, translated(words));
+            ui.selectable_value(&mut preferences.window.units, units, translated(words));
         }
     });
 }

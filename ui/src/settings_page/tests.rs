@@ -103,7 +103,7 @@ fn text_and_units_are_changed_and_brushes_have_widths_in_them() {
     click(&mut harness, "Larger text");
     assert_eq!(harness.ctx.zoom_factor(), 1.1);
     click(&mut harness, "Inches");
-    assert_eq!(harness.state().preferences.units, Units::Inches);
+    assert_eq!(harness.state().preferences.window.units, Units::Inches);
     click(&mut harness, "Close");
     assert!(harness.query_by_label("Text size").is_none());
     assert!(harness.query_all_by_label_contains(" in").count() > 5);

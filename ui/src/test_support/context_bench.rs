@@ -74,7 +74,7 @@ impl Bench {
 
     /// The notifications.
     pub(crate) fn told(&self) -> Vec<&str> {
-        let notifications = self.notifications.told().iter();
+        let notifications = self.notifications.shown().iter();
         notifications.map(|toast| toast.what.as_str()).collect()
     }
 }

@@ -69,7 +69,7 @@ impl Bench {
 
     /// Words of all notifications.
     pub(crate) fn told(&self) -> String {
-        let words = self.notifications.told().iter();
+        let words = self.notifications.shown().iter();
         let words = words.map(|toast| format!("{} {}", toast.what, toast.help));
         words.collect::<Vec<_>>().join("\n")
     }

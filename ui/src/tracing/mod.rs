@@ -19,6 +19,7 @@ use maulstick_ui_kit::background_task::BackgroundTask;
 use crate::reference::picture::Picture;
 use crate::widgets::context::PanelContext;
 use projection::Slide;
+use settings::Tracing;
 
 /// A tracing picture while it loads.
 #[derive(Debug, Default)]
@@ -98,6 +99,53 @@ fn failed(work: &mut PanelContext<'_>, path: PathBuf, words: &str) -> Slot {
     );
     work.notifications.fault(what, words);
     Slot::Failed(path)
+}
+
+impl PanelContext<'_> {
+    /// File of the painting that is open, by which its tracing picture is remembered; `None` while it is not known.
+    fn painting(&self) -> Option<String> {
+        let status = self.rig.live.paint.as_ref().map(|node| &node.status);
+        status.map(|status| status.path.clone())
+    }
+
+    /// The tracing picture of the painting that is open.
+    #[must_use]
+    pub(crate) fn tracing(&self) -> Option<&Tracing> {
+        self.preferences.tracings.0.get(&self.painting()?)
+    }
+
+    /// The same, to be changed.
+    pub(crate) fn tracing_mut(&mut self) -> Option<&mut Tracing> {
+        let painting = self.painting()?;
+        self.preferences.tracings.0.get_mut(&painting)
+    }
+
+    /// Gives the painting that is open another tracing picture, of the strength of the one before.
+    pub(crate) fn trace(&mut self, path: &Path) {
+        if let Some(painting) = self.painting() {
+            self.preferences.tracings.trace(painting, path);
+        }
+    }
+
+    /// Takes the tracing picture away.
+    pub(crate) fn untrace(&mut self) {
+        if let Some(painting) = self.painting() {
+            self.preferences.tracings.0.remove(&painting);
+        }
+    }
+
+    /// A painting goes on in another file: so does its tracing picture.
+    pub(crate) fn carry_tracing(&mut self, from: &str, to: &str) {
+        let tracings = &mut self.preferences.tracings.0;
+        if let Some(tracing) = tracings.remove(from) {
+            tracings.insert(to.to_owned(), tracing);
+        }
+    }
+
+    /// Another sketch begins: the picture of the one before is not its own.
+    pub(crate) fn forget_sketch(&mut self) {
+        self.preferences.tracings.0.remove("");
+    }
 }
 
 #[cfg(test)]

@@ -5,8 +5,6 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::widgets::context::PanelContext;
-
 /// Paintings whose pictures are remembered.
 const MOST: usize = 64;
 /// Strength of a new one.
@@ -48,7 +46,7 @@ impl Tracing {
 /// Tracing pictures by the paintings' files; of a painting without a file, by an empty path.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
-pub struct Tracings(BTreeMap<String, Tracing>);
+pub struct Tracings(pub(super) BTreeMap<String, Tracing>);
 
 #[cfg(test)]
 impl Tracings {
@@ -68,40 +66,17 @@ impl Tracings {
     }
 }
 
-impl PanelContext<'_> {
-    /// File of the painting that is open, by which its tracing picture is remembered; `None` while it is not known.
-    fn painting(&self) -> Option<String> {
-        let status = self.rig.live.paint.as_ref().map(|node| &node.status);
-        status.map(|status| status.path.clone())
-    }
-
-    /// The tracing picture of the painting that is open.
-    #[must_use]
-    pub fn tracing(&self) -> Option<&Tracing> {
-        self.preferences.tracings.0.get(&self.painting()?)
-    }
-
-    /// The same, to be changed.
-    pub fn tracing_mut(&mut self) -> Option<&mut Tracing> {
-        let painting = self.painting()?;
-        self.preferences.tracings.0.get_mut(&painting)
-    }
-
-    /// Gives the painting that is open another tracing picture, of the strength of the one before.
-    pub fn trace(&mut self, path: &Path) {
-        let strength = self.tracing().map_or(STRENGTH, Tracing::sound_strength);
-        let Some(painting) = self.painting() else {
-            return;
-        };
-        let tracings = &mut self.preferences.tracings.0;
-        if tracings.len() >= MOST && !tracings.contains_key(&painting) {
+impl Tracings {
+    /// Gives a painting another tracing picture, of the strength of the one before.
+    pub(super) fn trace(&mut self, painting: String, path: &Path) {
+        let before = self.0.get(&painting);
+        let strength = before.map_or(STRENGTH, Tracing::sound_strength);
+        if self.0.len() >= MOST && !self.0.contains_key(&painting) {
             // Those of paintings that are no more go first.
-            let gone = tracings
-                .keys()
-                .find(|file| !Path::new(file).is_file())
-                .or(tracings.keys().next());
+            let gone = self.0.keys().find(|file| !Path::new(file).is_file());
+            let gone = gone.or(self.0.keys().next());
             if let Some(gone) = gone.cloned() {
-                tracings.remove(&gone);
+                self.0.remove(&gone);
             }
         }
         let tracing = Tracing {
@@ -109,26 +84,6 @@ impl PanelContext<'_> {
             strength,
             shown: true,
         };
-        tracings.insert(painting, tracing);
-    }
-
-    /// Takes the tracing picture away.
-    pub fn untrace(&mut self) {
-        if let Some(painting) = self.painting() {
-            self.preferences.tracings.0.remove(&painting);
-        }
-    }
-
-    /// A painting goes on in another file: so does its tracing picture.
-    pub fn carry_tracing(&mut self, from: &str, to: &str) {
-        let tracings = &mut self.preferences.tracings.0;
-        if let Some(tracing) = tracings.remove(from) {
-            tracings.insert(to.to_owned(), tracing);
-        }
-    }
-
-    /// Another sketch begins: the picture of the one before is not its own.
-    pub fn forget_sketch(&mut self) {
-        self.preferences.tracings.0.remove("");
+        self.0.insert(painting, tracing);
     }
 }

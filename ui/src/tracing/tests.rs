@@ -159,16 +159,16 @@ fn a_missing_picture_is_told_once() {
     let (mut desk, mut tracing) = (Desk::new(), TracingPicture::default());
     desk.work().trace(Path::new("/nowhere/sketch.png"));
     let begun = std::time::Instant::now();
-    while desk.notifications.told().is_empty() {
+    while desk.notifications.shown().is_empty() {
         assert!(tracing.follow(&context, &mut desk.work()).is_none());
         assert!(begun.elapsed() < Duration::from_secs(20), "nothing is told");
         std::thread::yield_now();
     }
     let told = std::mem::take(&mut desk.notifications);
-    let what = &told.told()[0].what;
+    let what = &told.shown()[0].what;
     assert!(what.contains("/nowhere/sketch.png"), "{what}");
     for _ in 0..10 {
         assert!(tracing.follow(&context, &mut desk.work()).is_none());
     }
-    assert!(desk.notifications.told().is_empty(), "it was told already");
+    assert!(desk.notifications.shown().is_empty(), "it was told already");
 }

@@ -29,13 +29,10 @@ fn place(canvas: &Surface, corner: Corner) -> DVec3 {
 }
 
 /// Draws them, that of the corner that is asked for in a colour of its own.
-pub(crate) fn draw(painter: &Painter, view: &View, canvas: &Surface, asked: Option<&str>) {
+pub(crate) fn draw(painter: &Painter, view: &View, canvas: &Surface, asked: Option<Corner>) {
     for corner in Corner::ALL {
         let at = view.to_window(place(canvas, corner));
-        let colour = match asked == Some(&*corner.to_string()) {
-            true => ASKED,
-            false => OTHER,
-        };
+        let colour = if asked == Some(corner) { ASKED } else { OTHER };
         // On any ground: a dark rim below.
         for stroke in [
             Stroke::new(5.0, Color32::from_black_alpha(130)),

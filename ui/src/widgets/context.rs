@@ -10,7 +10,7 @@ use crate::settings::preferences::Preferences;
 
 /// The rig as it is, and what the painter makes of it.
 #[derive(Debug)]
-pub struct PanelContext<'a> {
+pub(crate) struct PanelContext<'a> {
     /// State of the rig.
     pub rig: &'a mut RigState,
     /// Requests to it.

@@ -119,7 +119,7 @@ impl Devices {
         stroke: Stroke,
         now_ns: u64,
     ) -> bool {
-        self.arbiter.hear(device, priority, range, stroke, now_ns)
+        self.arbiter.admit(device, priority, range, stroke, now_ns)
     }
 
     /// True if a take has exclusive use of the brush.

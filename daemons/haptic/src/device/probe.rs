@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::sync::mpsc::{RecvTimeoutError, SyncSender, sync_channel};
 use std::time::Duration;
 
 use glam::DVec3;
@@ -11,7 +11,7 @@ use maulstick_device::registration::{Registration, Similarity};
 use maulstick_haptics::Switch;
 use maulstick_types::stylus::axes;
 
-use crate::device::driver::{DeviceError, Opened, Reading};
+use crate::device::driver::{DeviceError, Opened, Reading, ServoClock};
 use crate::device::mounted_device::MountedDevice;
 use crate::servo::clock::monotonic_ns;
 
@@ -46,39 +46,7 @@ pub fn probe(
         let ending = Ending(&stop);
         let reading = scope.spawn(|| {
             device.switch(Switch::Off);
-            let (mut last_ns, mut lost) = (monotonic_ns(), None);
-            let mut tick = |_: u64| {
-                if stop.load(Ordering::Relaxed) {
-                    return ControlFlow::Break(());
-                }
-                let now_ns = monotonic_ns();
-                let dt = now_ns.saturating_sub(last_ns) as f64 * 1e-9;
-                let read = device.read(dt).and_then(|reading| match reading {
-                    Some(reading) => device
-                        .write(DVec3::ZERO, DVec3::ZERO)
-                        .map(|()| Some(reading)),
-                    None => Ok(None),
-                });
-                match read {
-                    Ok(Some(reading)) => {
-                        last_ns = now_ns;
-                        // A caller that does not keep up sees the older ones.
-                        to_caller
-                            .try_send(hand_reading(&reading, senses, now_ns))
-                            .ok();
-                    }
-                    Ok(None) => {}
-                    Err(error) => {
-                        lost = Some(error);
-                        return ControlFlow::Break(());
-                    }
-                }
-                ControlFlow::Continue(())
-            };
-            let run = clock.run(&mut tick);
-            // Ends the caller's loop.
-            drop(to_caller);
-            lost.map_or(run, Err)
+            read_on(&mut device, &mut *clock, senses, (&stop, to_caller))
         });
         loop {
             let reading = match readings.recv_timeout(SILENCE) {
@@ -97,6 +65,45 @@ pub fn probe(
             help: "its own message above says why",
         }))
     })
+}
+
+/// Hands on readings until it is stopped; its end of the channel ends the caller's loop.
+fn read_on(
+    device: &mut MountedDevice,
+    clock: &mut dyn ServoClock,
+    senses: u32,
+    (stop, to_caller): (&AtomicBool, SyncSender<HandReading>),
+) -> Result<(), DeviceError> {
+    let (mut last_ns, mut lost) = (monotonic_ns(), None);
+    let run = clock.run(&mut |_: u64| {
+        if stop.load(Ordering::Relaxed) {
+            return ControlFlow::Break(());
+        }
+        let now_ns = monotonic_ns();
+        let dt = now_ns.saturating_sub(last_ns) as f64 * 1e-9;
+        let read = device.read(dt).and_then(|reading| match reading {
+            Some(reading) => device
+                .write(DVec3::ZERO, DVec3::ZERO)
+                .map(|()| Some(reading)),
+            None => Ok(None),
+        });
+        match read {
+            Ok(Some(reading)) => {
+                last_ns = now_ns;
+                // A caller that does not keep up sees the older ones.
+                to_caller
+                    .try_send(hand_reading(&reading, senses, now_ns))
+                    .ok();
+            }
+            Ok(None) => {}
+            Err(error) => {
+                lost = Some(error);
+                return ControlFlow::Break(());
+            }
+        }
+        ControlFlow::Continue(())
+    });
+    lost.map_or(run, Err)
 }
 
 /// Ends the reading also if `look` panics, for the scope waits for its thread.

@@ -40,7 +40,7 @@ impl BrushLooks {
     }
 
     /// Tells what is new.
-    pub(super) fn tell(
+    pub(super) fn publish(
         &mut self,
         bus: &dyn Bus,
         me: Origin,

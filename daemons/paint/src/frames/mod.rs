@@ -195,7 +195,7 @@ impl FrameServer {
     }
 
     /// Answers who can be answered, and returns how long to wait at most.
-    pub fn turn(&mut self) -> Duration {
+    pub fn poll(&mut self) -> Duration {
         let now_ns = self.bus.now_ns();
         while let Some(request) = self.server.try_recv() {
             let read = self
@@ -214,9 +214,9 @@ impl FrameServer {
         }
         let fed = self.feed.lock().clone();
         if let Some(looks) = &mut self.looks
-            && let Err(error) = looks.tell(&*self.bus, self.me, &fed)
+            && let Err(error) = looks.publish(&*self.bus, self.me, &fed)
         {
-            tracing::error!("the paint on a brush cannot be told: {error}");
+            tracing::error!("the look of a brush cannot be sent: {error}");
         }
         // A tile that takes long is gone on with at once.
         let mut begun = false;
@@ -289,7 +289,7 @@ impl FrameServer {
     /// Serves until `stop` says so.
     pub fn run(mut self, stop: &maulstick_rig::Stop) {
         while !stop.requested() {
-            let wait = self.turn();
+            let wait = self.poll();
             self.feed.wake.wait(wait);
         }
     }
@@ -318,45 +318,22 @@ impl FrameServer {
         } else {
             0
         };
-        let grid = grid(surface, level);
-        let mut changed = Vec::new();
-        for y in asked.tiles[1]..asked.tiles[3].min(grid[1]) {
-            for x in asked.tiles[0]..asked.tiles[2].min(grid[0]) {
-                let id = TileId { x, y };
-                let version = Pyramid::version(surface, level, id);
-                if version > since {
-                    changed.push((version, id));
-                }
-            }
-        }
-        changed.sort();
+        let changed = changed_tiles(surface, level, &asked.tiles, since);
         let (mut bytes, late) = (0, Instant::now() + REPLY_WORK);
-        let mut told = since;
+        let mut sent = since;
         for (place, (version, id)) in changed.iter().enumerate() {
             if place % BATCH == 0 {
                 let part = &changed[place..(place + BATCH).min(changed.len())];
-                let pyramid = &mut self.pyramid;
-                // A tile that was shown before need not be computed.
-                let new = part
-                    .iter()
-                    .filter(|(_, id)| !pyramid.recall(look, asked.surface, surface, level, *id));
-                let new: Vec<TileId> = new.map(|(_, id)| *id).collect();
-                let mut ids = Vec::new();
-                for id in &new {
-                    let (tile, most) = ((level, *id), MOST_TILES - ids.len());
-                    if most > 0 {
-                        ids.extend(self.pyramid.stale(asked.surface, surface, tile, most));
-                    }
-                }
-                self.pyramid.shade(look, asked.surface, surface, &ids);
+                let ids = part.iter().map(|(_, id)| *id);
+                self.shade(look, (asked.surface, surface), level, ids);
             }
             let tile = (level, *id);
             let made = self.pyramid.tile(look, asked.surface, surface, tile, late);
             let Some(shown) = made else {
-                (reply.more, reply.version) = (true, told);
+                (reply.more, reply.version) = (true, sent);
                 break;
             };
-            told = *version;
+            sent = *version;
             let planes = shown.to_bytes();
             bytes += planes.len();
             reply.tiles.push(FrameTile {
@@ -373,6 +350,49 @@ impl FrameServer {
         }
         reply
     }
+
+    /// Shades a batch of tiles together, as far as they are not known from before.
+    fn shade(
+        &mut self,
+        look: &Appearance,
+        (number, surface): (u32, &FedSurface),
+        level: u32,
+        batch: impl Iterator<Item = TileId>,
+    ) {
+        let pyramid = &mut self.pyramid;
+        let new = batch.filter(|id| !pyramid.recall(look, number, surface, level, *id));
+        let new: Vec<TileId> = new.collect();
+        let mut ids = Vec::new();
+        for id in new {
+            let most = MOST_TILES - ids.len();
+            if most > 0 {
+                ids.extend(self.pyramid.stale(number, surface, (level, id), most));
+            }
+        }
+        self.pyramid.shade(look, number, surface, &ids);
+    }
+}
+
+/// Tiles of a level within `[left, bottom, right, top]` above the version `since`, the oldest first.
+fn changed_tiles(
+    surface: &FedSurface,
+    level: u32,
+    tiles: &[u32; 4],
+    since: u64,
+) -> Vec<(u64, TileId)> {
+    let grid = grid(surface, level);
+    let mut changed = Vec::new();
+    for y in tiles[1]..tiles[3].min(grid[1]) {
+        for x in tiles[0]..tiles[2].min(grid[0]) {
+            let id = TileId { x, y };
+            let version = Pyramid::version(surface, level, id);
+            if version > since {
+                changed.push((version, id));
+            }
+        }
+    }
+    changed.sort();
+    changed
 }
 
 #[cfg(test)]

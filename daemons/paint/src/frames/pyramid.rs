@@ -126,7 +126,8 @@ impl Pyramid {
                 let ground = surface.bare.ground.tile(id);
                 let over = (&stack, ground.under());
                 let sight = (&**look, &mut self.films as &mut dyn FilmBackend);
-                self.bakery.planes(sight, number, id, over);
+                self.bakery
+                    .planes(sight, surface.bare.shown, number, id, over);
             }
         }
         Progress {
@@ -185,7 +186,10 @@ impl Pyramid {
             .filter_map(|(id, (stack, ground))| Some((*id, (*stack)?, ground.under())))
             .collect();
         let sight = (look, &mut self.films as &mut dyn FilmBackend);
-        let mut planes = self.bakery.planes_of(sight, number, &dry).into_iter();
+        let mut planes = self
+            .bakery
+            .planes_of(sight, surface.bare.shown, number, &dry)
+            .into_iter();
         let baked: Vec<Option<Arc<[f32]>>> = stacks
             .iter()
             .map(|stack| stack.and_then(|_| planes.next()))

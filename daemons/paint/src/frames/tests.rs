@@ -68,7 +68,7 @@ fn ask(rig: &mut Rig, asked: &FrameRequest) -> Option<FrameReply> {
         .ask("frame", Qos::Data, bytes, limit, &Wake::new())
         .expect("asked");
     rig.net.advance(1);
-    rig.server.turn();
+    rig.server.poll();
     rig.net.advance(1);
     match pending.try_recv() {
         Some(Answer::Bytes(bytes)) => Some(decode(&bytes).expect("a reply").1),
@@ -227,7 +227,7 @@ fn exported(rig: &Rig, tile: &Tile) -> [Vec<f32>; 3] {
     let ground = fed.surfaces[&0].bare.ground.tile(id);
     let stack = tile.dry().expect("dried");
     let sight = (&**look, &mut CpuFilms::new() as &mut dyn FilmBackend);
-    let baked = Bakery::default().planes(sight, 0, id, (stack, ground.under()));
+    let baked = Bakery::default().planes(sight, &Counted, 0, id, (stack, ground.under()));
     WetFilms::of(Some(tile)).shade(&look.studio, Under::Planes(&baked))
 }
 
@@ -357,7 +357,7 @@ fn a_look_of_a_brush_is_told_once_for_each_load_and_light() {
     let mut looks: Receiver<BrushLook> =
         Receiver::new(&bus, &key, Qos::Cached, Queue::Ring(16), &Wake::new()).expect("one");
     let mut told = |rig: &mut Rig| {
-        rig.server.turn();
+        rig.server.poll();
         rig.net.advance(1_000_000);
         std::iter::from_fn(|| looks.try_recv()).count()
     };

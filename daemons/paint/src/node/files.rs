@@ -112,7 +112,7 @@ impl Files {
 
     /// Begins the next snapshot; outcome of one that has failed.
     pub(super) fn poll_snapshots(&mut self) -> Option<(Asker, Outcome)> {
-        self.snapshots.turn()
+        self.snapshots.poll()
     }
 
     /// Writes everything pending and closes the document.

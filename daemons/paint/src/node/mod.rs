@@ -230,7 +230,7 @@ impl PaintNode {
         self.files.home_mut().save(&mut self.sequencer, now_ns);
         self.poll_background(now_ns);
         let painting = self.sequencer.painting_mut();
-        self.thumbnails.turn(&*self.bus, painting);
+        self.thumbnails.poll(&*self.bus, painting);
         self.outputs.publish_scene(painting.scene(), now_ns)?;
         self.feed.update(&mut self.sequencer, now_ns);
         self.feed.update_loads(self.sequencer.painting(), now_ns);

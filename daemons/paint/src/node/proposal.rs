@@ -1,7 +1,7 @@
 //! Proposal of a lighter paint model where painting falls behind: made once, never carried out.
 
+use maulstick_models::{AutoRole, auto_model};
 use maulstick_painting::Sequencer;
-use maulstick_painting::models::AUTO_MODELS;
 use maulstick_types::paint::Decision;
 use maulstick_types::scene::CANVAS;
 
@@ -29,7 +29,7 @@ impl Proposal {
 
     /// Makes the proposal in the journal and the log where it is due; true if it did.
     pub(super) fn poll(&mut self, sequencer: &mut Sequencer) -> bool {
-        let [own, lighter] = AUTO_MODELS;
+        let [own, lighter] = [AutoRole::First, AutoRole::Lighter].map(|role| auto_model(role).name);
         let painting = sequencer.painting();
         if painting.model(CANVAS) != Some(own) || !self.note(painting.longer()) {
             return false;

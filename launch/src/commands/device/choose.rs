@@ -3,10 +3,10 @@
 use std::str::FromStr;
 
 use clap::Args;
+use maulstick_device_setup::change::{DeviceChange, change};
 use maulstick_rig::UserError;
-use maulstick_rig::config::{ACTIONS, DeviceSection, FORCES, PEN_PRIORITY};
+use maulstick_rig::config::{ACTIONS, FORCES};
 
-use super::user_file::{UserFile, in_rig, is_same, put_in_rig};
 use crate::commands::client::Target;
 use crate::commands::say;
 
@@ -70,75 +70,36 @@ impl FromStr for PressureCurve {
 /// # Errors
 /// A [`UserError`] where there is no such device, or the change does not fit.
 pub(super) fn run(options: &UseOptions) -> Result<i32, UserError> {
-    let mut file = UserFile::read()?;
-    let name = &options.device;
-    let in_rig = in_rig(&options.target)?;
-    let own = file.device(name, &in_rig).cloned();
-    let is_own = own.is_ok();
-    // A studio's device is one of the rig alone.
-    let running = in_rig.iter().find(|device| device.name == *name);
-    let device = own.or_else(|fault| running.cloned().ok_or(fault))?;
-    is_same(&device, running)?;
-    let brush = options
-        .brush
-        .clone()
-        .unwrap_or_else(|| device.brush.clone());
-    let others = file.devices.iter().chain(&in_rig);
-    let others = others.filter(|other| other.name != *name && other.brush == brush);
-    let highest = others.map(|other| other.priority).max();
-    let priority = options
-        .priority
-        .unwrap_or_else(|| above(highest, device.priority));
-    let changed = DeviceSection {
-        priority,
-        force: options
-            .force
-            .clone()
-            .unwrap_or_else(|| device.force.clone()),
-        brush,
-        pressure_curve: match &options.pressure_curve {
-            Some(PressureCurve(points)) => points.clone(),
-            None => device.pressure_curve.clone(),
-        },
-        switches: options.switches.clone().or(device.switches.clone()),
-        max_force_n: options.max_force.unwrap_or(device.max_force_n),
-        paint_drag: options.paint_drag.unwrap_or(device.paint_drag),
-        relief: options.relief.unwrap_or(device.relief),
-        ..device
+    let curve = options.pressure_curve.as_ref();
+    let wanted = DeviceChange {
+        device: options.device.clone(),
+        brush: options.brush.clone(),
+        force: options.force.clone(),
+        priority: options.priority,
+        pressure_curve: curve.map(|PressureCurve(points)| points.clone()),
+        switches: options.switches.clone(),
+        max_force_n: options.max_force,
+        paint_drag: options.paint_drag,
+        relief: options.relief,
     };
-    let answer = put_in_rig(&options.target, &changed)?;
-    if is_own {
-        file.put(&changed)?;
-    }
+    let changed = change(&wanted, options.target.rig())?;
+    let device = &changed.device;
     say!(
-        "'{name}' moves '{}' with priority {priority}; its force is {}",
-        changed.brush,
-        changed.force
+        "'{}' moves '{}' with priority {}; its force is {}",
+        device.name,
+        device.brush,
+        device.priority,
+        device.force
     );
-    if answer.is_none() {
+    if !changed.is_running {
         say!("the rig does not run: `maulstick up` starts it so");
     }
     Ok(0)
 }
 
-/// The least priority above the others', the window's pen's among them, that is not below the device's own.
-fn above(highest: Option<i32>, own: i32) -> i32 {
-    let others = highest.unwrap_or(PEN_PRIORITY).max(PEN_PRIORITY);
-    own.max(others.saturating_add(1))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn what_is_used_comes_before_all_others() {
-        assert_eq!(above(None, 0), 0);
-        assert_eq!(above(Some(10), 0), 11);
-        assert_eq!(above(Some(10), 20), 20);
-        assert_eq!(above(Some(10), 10), 11);
-        assert_eq!(above(Some(-90), -80), PEN_PRIORITY + 1);
-    }
 
     #[test]
     fn a_pressure_curve_is_typed_point_by_point() {

@@ -1,20 +1,12 @@
 //! `maulstick device list`: attached devices, the drivers that fit, and their missing requirements.
 
-use std::time::{Duration, Instant};
-
 use clap::Args;
-use maulstick_bus::Qos;
-use maulstick_haptic::drivers::force_dimension::library::DHD;
-use maulstick_haptic::drivers::openhaptics::library::HD;
-use maulstick_rig::config::DeviceSection;
-use maulstick_rig::{UserError, user_devices};
-use maulstick_types::stylus::{StylusInfo, StylusStatus};
-use serde::{Serialize, Serializer};
+use maulstick_device_setup::attached::{Attached, Places, hid, rules};
+use maulstick_device_setup::listing::{DeviceListing, RigDevice};
+use maulstick_rig::UserError;
 use serde_json::json;
 
-use crate::attached::vendors::{INVERSE_SERVICE, library, library_folders, listens, openxr_loader};
-use crate::attached::{Attached, Places, events, hid, rules, serial};
-use crate::commands::client::{Client, Feed, Target};
+use crate::commands::client::Target;
 use crate::commands::table::table;
 use crate::commands::{print_json, print_text};
 
@@ -33,174 +25,29 @@ pub struct ListOptions {
     target: Target,
 }
 
-/// Longest wait for the devices of a rig to show themselves.
-const PATIENCE: Duration = Duration::from_secs(1);
-/// After the first, others come this soon; a status comes each tenth of a second.
-const TOGETHER: Duration = Duration::from_millis(300);
-
-/// All that is found.
-#[derive(Clone, Debug, Serialize)]
-struct Findings {
-    #[serde(serialize_with = "with_addresses")]
-    hid: Vec<Attached>,
-    #[serde(serialize_with = "with_addresses")]
-    events: Vec<Attached>,
-    #[serde(serialize_with = "with_addresses")]
-    serial: Vec<Attached>,
-    openhaptics: Library,
-    forcedimension: Library,
-    openxr: Library,
-    inverse_service: Service,
-    /// The devices of the rig; `None` if it does not run.
-    rig: Option<Vec<Used>>,
-}
-
-/// Devices with their addresses in `[[device]]`.
-fn with_addresses<S: Serializer>(devices: &[Attached], to: S) -> Result<S::Ok, S::Error> {
-    #[derive(Serialize)]
-    struct Addressed<'a> {
-        #[serde(flatten)]
-        device: &'a Attached,
-        address: String,
-    }
-    to.collect_seq(devices.iter().map(|device| Addressed {
-        device,
-        address: device.address(),
-    }))
-}
-
-/// A vendor's library.
-#[derive(Clone, Debug, Serialize)]
-struct Library {
-    path: Option<std::path::PathBuf>,
-    looked_in: Vec<std::path::PathBuf>,
-}
-
-/// Haply's service.
-#[derive(Clone, Debug, Serialize)]
-struct Service {
-    address: &'static str,
-    listens: bool,
-}
-
-/// A device of a running rig.
-#[derive(Clone, Debug, Serialize)]
-struct Used {
-    /// Its settings.
-    #[serde(flatten)]
-    section: DeviceSection,
-    /// True if it is in the rig's settings; other programs show themselves by their messages alone.
-    is_in_rig: bool,
-    /// True if it is kept for this user.
-    is_own: bool,
-    /// True if it has shown itself.
-    is_there: bool,
-    /// The reason why it gives nothing now; empty if it does.
-    trouble: String,
-}
-
 /// Lists what is attached.
 ///
 /// # Errors
 /// A [`UserError`] where it cannot be printed.
 pub(super) fn run(options: &ListOptions) -> Result<i32, UserError> {
-    let places = Places::here();
     if options.udev {
-        print_text(&rules(&hid::devices(&places)))?;
+        print_text(&rules(&hid::devices(&Places::here())))?;
         return Ok(0);
     }
-    let looked_in = library_folders();
-    let hid = hid::devices(&places);
-    let findings = Findings {
-        events: events::devices(&places, &hid),
-        hid,
-        serial: serial::ports(&places),
-        openhaptics: Library {
-            path: library(&HD, &looked_in),
-            looked_in: looked_in.clone(),
-        },
-        forcedimension: Library {
-            path: library(&DHD, &looked_in),
-            looked_in: looked_in.clone(),
-        },
-        openxr: Library {
-            path: openxr_loader(&looked_in),
-            looked_in,
-        },
-        inverse_service: Service {
-            address: INVERSE_SERVICE,
-            listens: listens(INVERSE_SERVICE),
-        },
-        rig: used(&options.target),
-    };
-    match options.json {
-        true => print_json(&json!(findings))?,
-        false => print_text(&in_words(&findings))?,
+    let listing = DeviceListing::read(options.target.rig());
+    if options.json {
+        print_json(&json!(listing))?;
+    } else {
+        print_text(&in_words(&listing))?;
     }
     Ok(0)
-}
-
-/// The devices of a rig, if it runs.
-fn used(target: &Target) -> Option<Vec<Used>> {
-    let client = Client::open(target).ok()?;
-    let own = user_devices::path().and_then(|path| user_devices::read(&path));
-    let own = own.unwrap_or_default();
-    let row = |section: DeviceSection, is_there: bool| Used {
-        is_in_rig: !is_there,
-        is_own: own.iter().any(|own| own.name == section.name),
-        section,
-        is_there,
-        trouble: String::new(),
-    };
-    let sections = client.config().ok()?.device.into_iter();
-    let mut found: Vec<Used> = sections.map(|section| row(section, false)).collect();
-    let topics = client.topics();
-    let mut infos: Feed<StylusInfo> = client.follow(&topics.stylus_info("*"), Qos::Cached).ok()?;
-    let mut statuses: Feed<StylusStatus> = client
-        .follow(&topics.stylus_status("*"), Qos::Background)
-        .ok()?;
-    let mut until = Instant::now() + PATIENCE;
-    while let Some(info) = infos.next_before(until) {
-        until = until.min(Instant::now() + TOGETHER);
-        match found
-            .iter_mut()
-            .find(|used| used.section.name == info.device)
-        {
-            Some(used) => used.is_there = true,
-            None => {
-                let section = DeviceSection {
-                    priority: info.priority,
-                    ..DeviceSection::new(&info.device, &info.driver, &info.brush)
-                };
-                found.push(row(section, true));
-            }
-        }
-    }
-    // Heard while the devices showed themselves; one that has never been there has nothing else.
-    while let Some(received) = statuses.received_before(Instant::now()) {
-        let device = received.key.rsplit('/').nth(1).unwrap_or_default();
-        let status = received.message;
-        let trouble = match status.trouble() {
-            Some(trouble) if status.faults.is_empty() => trouble.to_string(),
-            _ => status.faults.join("; "),
-        };
-        if let Some(used) = found.iter_mut().find(|used| used.section.name == device) {
-            used.trouble = trouble;
-        }
-    }
-    // The highest priority first.
-    found.sort_by(|a, b| {
-        let (a, b) = (&a.section, &b.section);
-        b.priority.cmp(&a.priority).then(a.name.cmp(&b.name))
-    });
-    Some(found)
 }
 
 /// Row of a device.
 type Row = [String; 5];
 
 /// The findings, for people.
-fn in_words(findings: &Findings) -> String {
+fn in_words(findings: &DeviceListing) -> String {
     let mut rows: Vec<Row> = Vec::new();
     let all = || {
         findings
@@ -262,7 +109,7 @@ fn in_words(findings: &Findings) -> String {
 }
 
 /// True if a device of the rig has shown itself.
-fn is_used(findings: &Findings) -> bool {
+fn is_used(findings: &DeviceListing) -> bool {
     let mut used = findings.rig.iter().flatten();
     used.any(|used| used.is_there)
 }
@@ -293,7 +140,7 @@ fn program(name: &str, driver: &str, at: &str) -> Row {
 }
 
 /// Message if there is nothing that a driver fits, but what the rig has in use.
-fn nothing(findings: &Findings) -> String {
+fn nothing(findings: &DeviceListing) -> String {
     let folders: Vec<String> = findings
         .openhaptics
         .looked_in
@@ -330,14 +177,14 @@ fn advice(device: &Attached) -> String {
     format!("\n{purpose}:\n\n  maulstick device add --address {address}\n")
 }
 
-fn in_rig(used: Option<&[Used]>) -> String {
+fn in_rig(used: Option<&[RigDevice]>) -> String {
     let Some(used) = used else {
         return "The rig does not run: `maulstick up` starts it.\n".into();
     };
     if used.is_empty() {
         return "The rig that runs has no device.\n".into();
     }
-    let row = |used: &Used| -> Row {
+    let row = |used: &RigDevice| -> Row {
         let state = match (used.trouble.as_str(), used.is_there) {
             ("", true) => "in use",
             ("", false) => "does not run: the rig's terminal says why",

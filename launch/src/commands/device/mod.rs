@@ -9,7 +9,6 @@ pub mod force_order;
 mod list;
 mod remove;
 mod rename;
-mod user_file;
 
 use clap::Subcommand;
 use maulstick_rig::UserError;

@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use maulstick_rig::UserError;
 use maulstick_rig::config::{CanvasSection, is_path};
+use maulstick_rig::{UserError, whole_path};
 use maulstick_types::command::{NewCanvas, RigCommand};
 use maulstick_types::values::MaterialName;
 
 use crate::cells::check_speed;
 use crate::commands::client::{Client, Target};
-use crate::commands::open::{LONGEST, whole};
+use crate::commands::open::LONGEST;
 use crate::commands::say;
 
 /// Options of `maulstick painting new`.
@@ -69,7 +69,7 @@ pub fn run(options: &NewOptions) -> Result<i32, UserError> {
         height_m: height * 1e-2,
         cell_m: 1e-3 / options.cells_per_mm,
         ground: match is_path(&options.ground) {
-            true => MaterialName::new(whole(Path::new(&options.ground))?)?,
+            true => MaterialName::new(whole_path(Path::new(&options.ground))?)?,
             false => MaterialName::new(&*options.ground)?,
         },
         tooth: MaterialName::new(&*options.tooth)?,
@@ -85,7 +85,7 @@ pub fn run(options: &NewOptions) -> Result<i32, UserError> {
     };
     check_speed(&section, options.slow.into())?;
     let command = RigCommand::New {
-        path: options.file.as_deref().map(whole).transpose()?,
+        path: options.file.as_deref().map(whole_path).transpose()?,
         canvas,
         forget: options.forget,
     };

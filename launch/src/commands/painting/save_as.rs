@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use maulstick_rig::UserError;
+use maulstick_rig::{UserError, whole_path};
 use maulstick_types::command::{RigCommand, SaveAs};
 
 use crate::commands::client::{Client, Target};
-use crate::commands::open::{LONGEST, whole};
+use crate::commands::open::LONGEST;
 use crate::commands::say;
 
 /// Options of `maulstick painting save-as`.
@@ -28,7 +28,7 @@ pub struct SaveAsOptions {
 /// A [`UserError`] where it cannot be written there, or where no rig runs.
 pub fn run(options: &SaveAsOptions) -> Result<i32, UserError> {
     let command = RigCommand::SaveAs(SaveAs {
-        path: whole(&options.file)?,
+        path: whole_path(&options.file)?,
         replace: options.replace,
     });
     let done = Client::open(&options.target)?.send_within(command, LONGEST)?;

@@ -2,45 +2,26 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`session`] | a session is painted again |
-//! | [`streams`] | messages of chosen topics are sent again |
-//! | [`pacing`] | no faster than brushes follow |
-//! | [`driven`] | the device whose hand feels it |
-//! | [`consent`] | its consent |
-//! | [`guide`], [`traced`] | its strokes guide a hand that paints |
-//! | [`place`] | a take elsewhere on the desk |
-//! | [`transport`], [`orders`] | pause, seek, step, rate |
-//! | [`events`] | what is to come |
+//! | [`orders`] | orders from keys of a terminal, or from lines of another program |
+//! | [`reports`] | reports of the player on a terminal, or as lines of JSON |
 
-mod consent;
-mod driven;
-mod events;
-mod guide;
 mod orders;
-mod pacing;
-mod place;
-mod session;
-mod streams;
-mod traced;
-mod transport;
+mod reports;
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
 use clap::Args;
-use maulstick_bus::RigFolder;
 use maulstick_device::player::Rate;
-use maulstick_rig::{NodeArgs, NodeHandle, UserError};
-use maulstick_streams::Recording;
-use serde_json::json;
+use maulstick_recorder::{GuideSettings, Player, ReplaySettings, TakePlace};
+use maulstick_rig::UserError;
+use tokio::runtime::Handle;
 
-use self::orders::{KEYS, Orders};
-use self::place::PlaceOptions;
-use self::transport::{Order, Transport, parse_rate, parse_strength};
-use crate::EXIT_INTERRUPTED;
+use self::orders::{Orders, parse_rate, parse_strength};
+use self::reports::Reports;
 use crate::commands::client::Target;
-use crate::commands::print_json_line;
-use crate::commands::takes::session_file::{PAINTING, SessionFile};
+use crate::commands::motion::{HeadOptions, parse_place};
+use crate::runtime::{EndSignals, block_on, exit_code};
 
 /// Options of `maulstick recording replay`.
 #[derive(Args, Clone, Debug)]
@@ -103,37 +84,75 @@ struct PaintingOptions {
     forget: bool,
 }
 
-/// Time between two lines that say where it is.
-const REPORT_PERIOD: Duration = Duration::from_millis(200);
-/// Longest wait for the next event while orders may come.
-const TURN: Duration = Duration::from_millis(20);
+/// Where a take is put.
+#[derive(Args, Clone, Copy, Debug)]
+struct PlaceOptions {
+    /// Put the middle of a take's strokes here, mm from the middle of the desk [default: where it was]
+    #[arg(long, value_name = "X,Y", value_parser = parse_place, allow_hyphen_values = true)]
+    at: Option<[f64; 2]>,
+    /// Scale a take by this, .01 to 100; pressures stay [default: 1]
+    #[arg(long, value_name = "FACTOR", allow_negative_numbers = true)]
+    scale: Option<f64>,
+    /// Turn a take by this, degrees, counter-clockwise [default: 0]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    turn: Option<f64>,
+    #[command(flatten)]
+    head: HeadOptions,
+}
+
+impl PlaceOptions {
+    fn place(self) -> Result<Option<TakePlace>, UserError> {
+        let is_given = self.at.is_some() || self.scale.is_some() || self.turn.is_some();
+        let place = TakePlace {
+            at_mm: self.at,
+            scale: self.scale,
+            turn_deg: self.turn,
+            head_m: self.head.given_m()?,
+        };
+        Ok(is_given.then_some(place))
+    }
+}
 
 impl ReplayOptions {
-    /// Start and end of what is played of a recording of this length, ns.
-    fn range_ns(&self, length_ns: u64) -> Result<[u64; 2], UserError> {
-        let length_s = length_ns as f64 * 1e-9;
-        let end_s = self.end.unwrap_or(length_s);
-        if !(self.start >= 0.0 && self.start < end_s && self.start < length_s) {
-            let what = format!("--start {} is not before the end", self.start);
-            return Err(UserError::usage(what)
-                .at(self.recording.display().to_string())
-                .help(format!("it is {length_s:.1} s long")));
-        }
-        Ok([
-            (self.start * 1e9) as u64,
-            ((end_s * 1e9) as u64).min(length_ns),
-        ])
-    }
-
-    /// Joins the rig as a member of its own.
-    fn join(&self) -> Result<NodeHandle, UserError> {
-        let (folder, _) = RigFolder::join(self.target.rig())?;
-        NodeHandle::join(&NodeArgs {
-            folder: folder.path().to_owned(),
-            node: format!("replay-{}", std::process::id()),
-            guarded: false,
+    fn settings(&self) -> Result<ReplaySettings, UserError> {
+        let guide = self.guide.as_ref().map(|device| GuideSettings {
+            device: device.clone(),
+            strength: self.strength,
+        });
+        Ok(ReplaySettings {
+            recording: self.recording.clone(),
+            rate: self.rate,
+            start_s: self.start,
+            end_s: self.end,
+            repeats: self.again,
+            paused: self.step,
+            topics: self.topic.clone(),
+            renamed: renamed(&self.remap)?,
+            device: self.device.clone(),
+            drive: self.drive.clone(),
+            guide,
+            place: self.place.place()?,
+            document: self.painting.document.clone(),
+            forget: self.painting.forget,
         })
     }
+}
+
+/// Topics by the names that they are to have.
+fn renamed(pairs: &[String]) -> Result<BTreeMap<String, String>, UserError> {
+    let pair = |pair: &String| {
+        let (from, to) = pair.split_once('=')?;
+        let is_topic =
+            |topic: &str| !topic.is_empty() && topic.split('/').all(|part| !part.is_empty());
+        (is_topic(from) && is_topic(to)).then(|| (from.to_owned(), to.to_owned()))
+    };
+    let pairs = pairs.iter().map(|own| {
+        pair(own).ok_or_else(|| {
+            UserError::usage(format!("--remap {own} is not A=B"))
+                .help("two topics, such as stylus/pen/sample=stylus/other/sample")
+        })
+    });
+    pairs.collect()
 }
 
 /// Plays a recording into a running rig.
@@ -141,125 +160,31 @@ impl ReplayOptions {
 /// # Errors
 /// A [`UserError`] where no rig runs, the recording lacks something, or the rig refuses it.
 pub fn run(options: &ReplayOptions) -> Result<i32, UserError> {
-    if let Some(device) = &options.guide {
-        return guide::guide(options, device);
-    }
-    let sends = !options.topic.is_empty()
-        || options.device.is_some()
-        || options.drive.is_some()
-        || options.place.is_given();
-    let recording = Recording::open(&options.recording)?;
-    if !sends
-        && recording.attachments().contains_key(PAINTING)
-        && let Some(session) = SessionFile::of(recording.clone())?
-    {
-        return session::replay(options, &session);
-    }
-    streams::replay(options, &recording)
-}
-
-/// What plays: the transport, its orders, and what is told of them.
-struct Playback {
-    transport: Transport,
-    orders: Orders,
-    begun: Instant,
-    reported: Option<Instant>,
-    json: bool,
-}
-
-/// A leap of a replay.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Leap {
-    /// To before what was played.
-    Back,
-    /// Over what is between.
-    Forth,
-}
-
-/// What an order asks of a player.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Turn {
-    /// To play on.
-    On,
-    /// To go on elsewhere.
-    Leap(Leap),
-    /// To end.
-    End,
-}
-
-impl Playback {
-    fn new(options: &ReplayOptions, range_ns: [u64; 2]) -> Result<Self, UserError> {
-        let orders = Orders::listen(options.json)?;
-        if orders.are_keys() {
-            eprintln!("{KEYS}");
-        }
-        Ok(Self {
-            transport: Transport::new(range_ns, options.rate, options.step),
-            orders,
-            begun: Instant::now(),
-            reported: None,
-            json: options.json,
-        })
-    }
-
-    /// Carries out the orders that came, and lets the transport go on; the times are those of the next event, and of the
-    /// newest one that was played.
-    fn turn(&mut self, next_ns: Option<u64>, played_ns: u64) -> Result<Turn, UserError> {
-        self.transport.look(self.begun.elapsed().as_nanos() as u64);
-        let mut leaps = false;
-        while let Some(order) = self.orders.next() {
-            if order == Order::End {
-                return Ok(Turn::End);
-            }
-            leaps |= matches!(order, Order::Seek(_) | Order::Skip(_));
-            self.transport.wait_for(next_ns);
-            self.transport.order(order, next_ns);
-            self.reported = None;
-            if order == Order::Step {
-                break;
+    let settings = options.settings()?;
+    block_on(async {
+        let mut signals = EndSignals::watch()?;
+        let mut player = Player::start(&Handle::current(), options.target.rig(), settings);
+        let (mut orders, mut reports) = (Orders::new(options.json), Reports::new(options.json));
+        let mut code = 0;
+        loop {
+            tokio::select! {
+                report = player.events.recv() => match report {
+                    Some(report) => {
+                        orders.listen(&report);
+                        reports.show(&report, orders.are_keys())?;
+                    }
+                    None => break,
+                },
+                order = orders.next() => player.order(order),
+                signal = signals.next() => {
+                    code = exit_code(signal);
+                    player.stop();
+                }
             }
         }
-        self.report(next_ns)?;
-        Ok(match (leaps, self.transport.position_ns() < played_ns) {
-            (false, _) => Turn::On,
-            (true, true) => Turn::Leap(Leap::Back),
-            (true, false) => Turn::Leap(Leap::Forth),
-        })
-    }
-
-    /// Says where it is, at most five times a second.
-    fn report(&mut self, next_ns: Option<u64>) -> Result<(), UserError> {
-        if self
-            .reported
-            .is_some_and(|reported| reported.elapsed() < REPORT_PERIOD)
-        {
-            return Ok(());
-        }
-        self.reported = Some(Instant::now());
-        let position_ns = self.transport.position_ns();
-        let s = next_ns.map_or(position_ns, |next_ns| position_ns.min(next_ns)) as f64 * 1e-9;
-        let (rate, paused) = (self.transport.rate(), self.transport.is_paused());
-        if self.json {
-            let end_s = self.transport.end_ns() as f64 * 1e-9;
-            return print_json_line(&json!({
-                "position_s": s,
-                "length_s": end_s,
-                "rate": rate.to_string(),
-                "paused": paused,
-            }));
-        }
-        if self.orders.are_keys() {
-            let paused = if paused { "  paused" } else { "        " };
-            eprint!("\r{s:8.1} s  × {rate}{paused}  ");
-        }
-        Ok(())
-    }
-
-    /// The exit code, after the line of the position.
-    fn end(self, member: &NodeHandle) -> i32 {
-        if self.orders.are_keys() {
-            eprintln!();
-        }
-        member.stop.exit_code(EXIT_INTERRUPTED)
-    }
+        drop(orders);
+        let ended = player.ended().await;
+        reports.end(ended.is_ok())?;
+        ended.map(|()| code)
+    })
 }

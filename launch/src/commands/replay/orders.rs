@@ -1,52 +1,65 @@
-//! Where orders to a replay come from: keys of a terminal, or lines of another program.
+//! Orders to a player: keys of a terminal, or lines of another program.
 
+use std::future::pending;
 use std::io::{BufRead as _, IsTerminal as _};
-use std::sync::mpsc::{Receiver, Sender, channel};
 
 use console::{Key, Term};
-use maulstick_rig::UserError;
+use maulstick_device::player::{Rate, RateError};
+use maulstick_recorder::{Order, RATES, ReplayReport};
 use nix::sys::termios::{SetArg, Termios, tcgetattr, tcsetattr};
-
-use super::guide::STRONGER;
-use super::transport::Order;
+use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
+use tokio::task::spawn_blocking;
 
 /// Seconds that an arrow key goes.
 const SKIP_S: f64 = 5.0;
+/// Step of a key that changes the strength.
+const STRONGER: f64 = 0.1;
 /// What the keys do.
-pub(super) const KEYS: &str =
+const KEYS: &str =
     "space: pause   ← →: 5 s   . : next event   + -: faster, slower   0: beginning   q: end";
-
-/// What the keys do while it guides a hand.
-pub(super) const GUIDE_KEYS: &str =
-    "space: let go   [ ]: softer, stronger   ← →: 5 s   0: beginning   q: end";
+/// What the keys do while a hand is guided.
+const GUIDE_KEYS: &str = "space: let go   [ ]: softer, stronger   ← →: 5 s   0: beginning   q: end";
 
 /// Orders as they come.
 #[derive(Debug)]
 pub(super) struct Orders {
-    orders: Receiver<Order>,
+    /// True if they are lines of the standard input.
+    are_lines: bool,
+    orders: Option<UnboundedReceiver<Order>>,
     /// The terminal as it was.
     before: Option<Termios>,
 }
 
 impl Orders {
-    /// Keys of the terminal, where there is one; with `lines` lines of the standard input instead.
-    ///
-    /// # Errors
-    /// A [`UserError`] where no thread can be started.
-    pub(super) fn listen(lines: bool) -> Result<Self, UserError> {
-        let (send, orders) = channel();
-        let is_terminal = std::io::stdin().is_terminal() && !lines;
-        let before = tcgetattr(std::io::stdin()).ok().filter(|_| is_terminal);
-        let read = match (lines, is_terminal) {
-            (true, _) => read_lines,
-            (false, true) => read_keys,
-            (false, false) => return Ok(Self { orders, before }),
+    /// Lines of the standard input, or keys of the terminal where there is one.
+    pub(super) fn new(are_lines: bool) -> Self {
+        Self {
+            are_lines,
+            orders: None,
+            before: None,
+        }
+    }
+
+    /// Listens from the first report on that says where the player is.
+    pub(super) fn listen(&mut self, report: &ReplayReport) {
+        let keys = match report {
+            ReplayReport::Position(_) => KEYS,
+            ReplayReport::Guiding(_) => GUIDE_KEYS,
+            ReplayReport::Opening { .. } | ReplayReport::Painting { .. } => return,
         };
-        std::thread::Builder::new()
-            .name("orders".into())
-            .spawn(move || read(&send))
-            .map_err(|error| UserError::failure(error.to_string()))?;
-        Ok(Self { orders, before })
+        if self.orders.is_some() {
+            return;
+        }
+        let (send, orders) = unbounded_channel();
+        self.orders = Some(orders);
+        // The system has no other way to wait for either but to block a thread.
+        if self.are_lines {
+            spawn_blocking(move || read_lines(&send));
+        } else if std::io::stdin().is_terminal() {
+            self.before = tcgetattr(std::io::stdin()).ok();
+            eprintln!("{keys}");
+            spawn_blocking(move || read_keys(&send));
+        }
     }
 
     /// True if keys are orders.
@@ -54,9 +67,16 @@ impl Orders {
         self.before.is_some()
     }
 
-    /// The next order, if there is one.
-    pub(super) fn next(&self) -> Option<Order> {
-        self.orders.try_recv().ok()
+    /// The next order; for ever none where there are no more.
+    pub(super) async fn next(&mut self) -> Order {
+        let next = match &mut self.orders {
+            Some(orders) => orders.recv().await,
+            None => None,
+        };
+        match next {
+            Some(order) => order,
+            None => pending().await,
+        }
     }
 }
 
@@ -69,9 +89,9 @@ impl Drop for Orders {
     }
 }
 
-fn read_lines(send: &Sender<Order>) {
+fn read_lines(send: &UnboundedSender<Order>) {
     for line in std::io::stdin().lock().lines().map_while(Result::ok) {
-        match line.parse() {
+        match parse(&line) {
             Ok(order) if send.send(order).is_err() => return,
             Ok(_) => {}
             Err(what) => eprintln!("{what}"),
@@ -79,7 +99,7 @@ fn read_lines(send: &Sender<Order>) {
     }
 }
 
-fn read_keys(send: &Sender<Order>) {
+fn read_keys(send: &UnboundedSender<Order>) {
     let terminal = Term::stderr();
     while let Ok(key) = terminal.read_key() {
         let order = match key {
@@ -97,6 +117,75 @@ fn read_keys(send: &Sender<Order>) {
         };
         if send.send(order).is_err() {
             return;
+        }
+    }
+}
+
+/// An order as a line.
+fn parse(line: &str) -> Result<Order, String> {
+    let (word, rest) = line.trim().split_once(' ').unwrap_or((line.trim(), ""));
+    let number = || match rest.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err(format!("'{line}' lacks a number of seconds")),
+    };
+    match word {
+        "pause" => Ok(Order::Pause),
+        "step" => Ok(Order::Step),
+        "end" => Ok(Order::End),
+        "seek" => number().map(Order::Seek),
+        "skip" => number().map(Order::Skip),
+        "rate" => parse_rate(rest.trim()).map(Order::Rate),
+        "strength" => parse_strength(rest.trim()).map(Order::Strength),
+        _ => Err(format!(
+            "'{line}' is none of pause, step, seek S, skip S, rate R, strength P, end"
+        )),
+    }
+}
+
+/// A rate within [`RATES`], or `max`.
+///
+/// # Errors
+/// What is wrong with it.
+pub(super) fn parse_rate(text: &str) -> Result<Rate, String> {
+    let rate: Rate = text.parse().map_err(|error: RateError| error.to_string())?;
+    match rate {
+        Rate::Times(rate) if !RATES.contains(&rate) => {
+            Err(format!("{rate} is no rate from .1 to 100, nor 'max'"))
+        }
+        rate => Ok(rate),
+    }
+}
+
+/// A strength from 0 to 1.
+///
+/// # Errors
+/// What is wrong with it.
+pub(super) fn parse_strength(text: &str) -> Result<f64, String> {
+    let strength = text.parse().ok();
+    let good = strength.filter(|strength| (0.0..=1.0).contains(strength));
+    good.ok_or_else(|| format!("'{text}' is no strength from 0 to 1"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn orders_are_read_and_wrong_ones_rejected() {
+        assert_eq!(parse("seek 3.5"), Ok(Order::Seek(3.5)));
+        assert_eq!(parse(" skip -2\n"), Ok(Order::Skip(-2.0)));
+        assert_eq!(parse("rate max"), Ok(Order::Rate(Rate::Max)));
+        assert_eq!(parse("strength 0.4"), Ok(Order::Strength(0.4)));
+        for wrong in [
+            "",
+            "seek",
+            "seek nan",
+            "rate 0",
+            "rate 101",
+            "halt",
+            "strength 1.1",
+        ] {
+            assert!(parse(wrong).is_err(), "{wrong}");
         }
     }
 }

@@ -6,12 +6,12 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Qos, Queue};
+use maulstick_recorder::Listener;
 use maulstick_rig::UserError;
 use maulstick_types::node::NodeStatus;
 use serde_json::{Value, json};
 
 use crate::commands::client::Target;
-use crate::commands::streams::listener::Listener;
 use crate::commands::table::table;
 use crate::commands::{print_json, print_text};
 
@@ -33,7 +33,7 @@ const PATIENCE: Duration = Duration::from_nanos(NodeStatus::PERIOD_NS + 300_000_
 /// # Errors
 /// A [`UserError`] where the rig does not run.
 pub fn run(options: &NodesOptions) -> Result<i32, UserError> {
-    let listener = Listener::open(&options.target, "scene")?;
+    let listener = Listener::open(options.target.rig(), "scene")?;
     let (member, topics) = (&listener.member, &listener.member.topics);
     let tokens = member.bus.watch(&topics.node("*"), &member.wake)?;
     let (topic, queue) = (topics.node_status("*"), Queue::Ring(1024));

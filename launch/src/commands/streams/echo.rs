@@ -3,12 +3,12 @@
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use maulstick_recorder::listener::{Listener, ReceivedMessage};
 use maulstick_rig::UserError;
 use maulstick_streams::Value;
 use maulstick_streams::catalogue::KnownTables;
 use maulstick_types::{HEADER_BYTES, plain};
 
-use super::listener::{Listener, ReceivedMessage};
 use super::message_lines::{MessageLine, head};
 use crate::commands::client::Target;
 use crate::commands::print_text;
@@ -42,7 +42,7 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// # Errors
 /// A [`UserError`] for a rig that does not run, or a field that a message does not have.
 pub(super) fn run(options: &EchoOptions) -> Result<i32, UserError> {
-    let mut listener = Listener::open(&options.target, &options.topic)?;
+    let mut listener = Listener::open(options.target.rig(), &options.topic)?;
     let mut printer = Printer::new(options);
     let give_up = options.once.then(|| Instant::now() + PATIENCE);
     while !listener.is_over() {

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use clap::Args;
+use maulstick_recorder::Listener;
 use maulstick_rig::UserError;
 use maulstick_streams::Traffic;
 use maulstick_streams::catalogue::message_of;
@@ -10,7 +11,6 @@ use maulstick_streams::traffic::{Distribution, Stream};
 use maulstick_types::Origin;
 use serde_json::{Value, json};
 
-use super::listener::Listener;
 use crate::commands::client::Target;
 use crate::commands::table::table;
 use crate::commands::{print_json, print_text, say};
@@ -51,7 +51,7 @@ pub(super) enum Measure {
 /// A [`UserError`] for a rig that does not run, or a time that is none.
 pub(super) fn run(options: &MeasureOptions, measure: Measure) -> Result<i32, UserError> {
     let time = duration(options.seconds)?;
-    let mut listener = Listener::open(&options.target, &options.topic)?;
+    let mut listener = Listener::open(options.target.rig(), &options.topic)?;
     loop {
         let dropped = listener.dropped();
         let traffic = listener.traffic(time);

@@ -2,10 +2,9 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`listener`] | messages of a running rig |
 //! | [`echo`], [`measure`] | contents and rates of live streams |
 //! | [`graph`] | the processes of a rig, and what they send each other, as a picture |
-//! | [`recorder`], [`record`] | recordings, made and kept within bounds |
+//! | [`record`], [`recorder_words`] | recordings, made and kept within bounds; their events in words |
 //! | [`recording`], [`recording_info`], [`foxglove_export`] | recordings, looked at and written for Foxglove |
 //! | [`topic`] | the commands of live streams as a group |
 //! | [`bridge`] | live streams for Foxglove |
@@ -15,11 +14,10 @@ mod bridge;
 mod echo;
 mod foxglove_export;
 mod graph;
-pub(crate) mod listener;
 mod measure;
 mod message_lines;
 mod record;
-pub(crate) mod recorder;
+pub(crate) mod recorder_words;
 pub mod recording;
 mod recording_info;
 pub mod topic;

@@ -1,20 +1,19 @@
-//! `maulstick recording record`: the streams of a running rig into a file, by a process of its own that no node waits for.
+//! `maulstick recording record`: the streams of a running rig into a file, which no node waits for.
 
-use std::fs::{File, TryLockError};
-use std::io::{Error, ErrorKind};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
+use maulstick_recorder::{Division, LEAST_LAST, Recorder, RecorderSettings, Ring};
 use maulstick_rig::UserError;
-use maulstick_rig::files::{Kind, open_private};
+use maulstick_rig::files::Kind;
 use maulstick_rig::log::print_beside;
+use tokio::runtime::Handle;
 
-use super::listener::Listener;
-use super::recorder::{Division, LEAST_LAST, RecorderSettings, Ring, Voice, record};
+use super::recorder_words::LogFormat;
 use crate::commands::client::Target;
-use crate::commands::open::LONGEST;
 use crate::outputs::{UsedFile, check_outputs};
+use crate::runtime::{EndSignals, block_on};
 
 /// Options of `maulstick recording record`.
 #[derive(Args, Clone, Debug)]
@@ -72,9 +71,8 @@ pub(super) fn run(options: &RecordOptions) -> Result<i32, UserError> {
     }
     let bytes = |mb: u64| mb.saturating_mul(1_000_000);
     let settings = RecorderSettings {
-        target: options.target.clone(),
         topic: options.topic.clone(),
-        lasts,
+        length: lasts,
         division: Division {
             most_bytes: options.split_mb.map(bytes),
             after: bounded("split-seconds", options.split_seconds)?,
@@ -82,29 +80,34 @@ pub(super) fn run(options: &RecordOptions) -> Result<i32, UserError> {
             quota_bytes: options.quota_mb.map(bytes),
         },
         json_hz: options.json_hz,
-        longest_wait: LONGEST,
-        voice: match options.json {
-            true => Voice::Json,
-            false => Voice::Words,
-        },
+        ..RecorderSettings::default()
     };
     let output = UsedFile::new("the recording", &options.output).of(Kind::Take);
     check_outputs(&[output], &[])?;
-    let mut listener = Listener::open(&options.target, &options.topic)?;
+    let format = if options.json {
+        LogFormat::Json
+    } else {
+        LogFormat::Words
+    };
     let ring = Ring::new(&options.output, settings.division);
-    record(&settings, &mut listener, ring, begin_anew)?;
-    Ok(0)
-}
-
-/// Opens a file to be written anew, once no other program records into it.
-fn begin_anew(path: &Path) -> std::io::Result<File> {
-    let file = open_private(path)?;
-    file.try_lock().map_err(|error| match error {
-        TryLockError::WouldBlock => {
-            Error::new(ErrorKind::ResourceBusy, "another program records into it")
+    block_on(async {
+        let mut signals = EndSignals::watch()?;
+        let runtime = Handle::current();
+        let mut recorder = Recorder::start(&runtime, options.target.rig(), settings, ring);
+        let mut shown = Ok(());
+        loop {
+            tokio::select! {
+                event = recorder.events.recv() => match event {
+                    Some(event) => shown = shown.and_then(|()| format.show(&event)),
+                    None => break,
+                },
+                _ = signals.next() => recorder.stop(),
+            }
+            // Nobody reads on: the file is finished.
+            if shown.is_err() {
+                recorder.stop();
+            }
         }
-        TryLockError::Error(error) => error,
-    })?;
-    file.set_len(0)?;
-    Ok(file)
+        recorder.ended().await.and(shown).map(|()| 0)
+    })
 }

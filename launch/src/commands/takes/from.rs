@@ -5,22 +5,23 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use maulstick_document::{Access, Checkpoint, Document, DocumentSettings};
+use maulstick_document::Checkpoint;
 use maulstick_painting::Sequencer;
 use maulstick_painting::sequencer::{Accepted, Record};
+use maulstick_recorder::paintings::open_begin;
+use maulstick_recorder::session_file::{COUNTS, Event, NEXT, PAINTING, STATES, SessionFile};
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, is_painting, write_whole};
 use maulstick_session::RecordedSession;
-use maulstick_streams::topic_pattern::matches;
+use maulstick_streams::recording::Topic;
+use maulstick_streams::topic_pattern::{matches, parts};
 use maulstick_types::paint::Entry;
 
 use super::painting_record::PaintingRecord;
-use super::session_file::{Event, PAINTING, SessionFile};
 use super::take_writer::{TakeOrigin, TakeWriter};
 use crate::commands::say;
 use crate::document::wrong;
 use crate::outputs::{UsedFile, check_outputs};
-use crate::performance::refused;
 
 /// Options of `maulstick take from`.
 #[derive(Args, Clone, Debug)]
@@ -221,21 +222,33 @@ impl Source {
     /// What a take of it begins with, but for the painting.
     fn origin(&self) -> Result<TakeOrigin, UserError> {
         match self {
-            Self::Session(session) => session.origin(),
+            Self::Session(session) => origin_of(session),
             Self::Painting(painting) => Ok(painting.origin()),
         }
     }
 }
 
-/// The painting of a beginning, in the midst of its journal, and the tile versions that its file has.
-pub(crate) fn open_begin(path: &Path) -> Result<(Document, Sequencer, u64), UserError> {
-    let failed = |error| wrong(path, &error);
-    let settings = DocumentSettings::new(path, Access::Paint);
-    let (document, opened) = Document::open(&settings).map_err(failed)?;
-    let opened = opened.ok_or_else(|| failed(maulstick_document::DocumentError::NoPainting))?;
-    let since = opened.snapshot().versions;
-    let sequencer = opened.in_its_midst().map_err(refused)?;
-    Ok((document, sequencer, since))
+/// What a take of a session begins with, but for the painting.
+fn origin_of(session: &SessionFile) -> Result<TakeOrigin, UserError> {
+    let recording = &session.recording;
+    let mut notes = recording.notes().clone();
+    notes.remove(COUNTS);
+    notes.remove(NEXT);
+    let mut files = BTreeMap::new();
+    for name in recording.attachments().keys() {
+        if name != PAINTING
+            && let Some(bytes) = recording.attachment(name)?
+        {
+            files.insert(name.clone(), bytes);
+        }
+    }
+    let topics = recording.topics().values();
+    let brush = |topic: &Topic| Some(parts(STATES, &topic.name)?.first()?.to_string());
+    Ok(TakeOrigin {
+        notes,
+        files,
+        brushes: topics.filter_map(brush).collect(),
+    })
 }
 
 /// What a session holds.

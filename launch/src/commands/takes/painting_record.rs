@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use maulstick_document::{Document, DocumentError, record};
 use maulstick_painting::Sequencer;
+use maulstick_recorder::session_file::Event;
 use maulstick_rig::UserError;
 use maulstick_session::{WorkClock, each_record};
 
-use super::session_file::Event;
 use super::take_writer::TakeOrigin;
 use crate::commands::painting::no_record;
 use crate::document::{copy_closed, read, wrong};

@@ -3,12 +3,13 @@
 use std::time::Instant;
 
 use maulstick_paint_node::snapshots::write_snapshot;
+use maulstick_recorder::paintings::open_begin;
+use maulstick_recorder::session_file::{Event, PAINTING, SessionFile};
 use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::{Autosave, RecordedSession};
 
-use super::from::{Counts, open_begin};
+use super::from::Counts;
 use super::render::RenderOptions;
-use super::session_file::{Event, PAINTING, SessionFile};
 use crate::backend::choose_backend;
 use crate::commands::{progress_bar, say};
 use crate::destination::export;

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use maulstick_device::salvage::salvage;
-use maulstick_device::{Take, TakeSetup};
+use maulstick_device::{Take, TakeSetup, use_kit};
+use maulstick_recorder::paintings::open_begin;
+use maulstick_recorder::session_file::{Event, PAINTING, SessionFile};
 use maulstick_rig::files::{Kind, write_whole};
 use maulstick_rig::{RigConfig, UserError};
 use maulstick_session::RecordedSession;
@@ -19,11 +21,10 @@ use serde_json::json;
 use super::from::{self, FromOptions};
 use super::import::{self, ImportOptions};
 use super::render::{self, RenderOptions};
-use super::session_file::{Event, PAINTING, SessionFile};
 use crate::cells::picture_settings;
 use crate::commands::{print_json, say, write_take};
 use crate::document::wrong;
-use crate::kit::{kit_of, use_kit};
+use crate::kit::kit_of;
 use crate::outputs::{UsedFile, check_outputs, named_by};
 use crate::performance::{KitOptions, library_from, painting_setup, refused};
 
@@ -128,7 +129,7 @@ fn session_info(mut session: SessionFile, as_json: bool) -> Result<i32, UserErro
     let folder = tempfile::tempdir().map_err(|error| UserError::failure(error.to_string()))?;
     let begin = folder.path().join(PAINTING);
     session.write_painting(&begin)?;
-    let (document, mut sequencer, _) = from::open_begin(&begin)?;
+    let (document, mut sequencer, _) = open_begin(&begin)?;
     let (mut counts, mut devices) = (from::Counts::default(), BTreeMap::<String, u64>::new());
     let recorded = RecordedSession::after(&sequencer);
     session.follow(recorded, &mut sequencer, u64::MAX, &mut |_, _, event| {

@@ -4,12 +4,11 @@ use std::collections::BTreeMap;
 use std::io::{Error, Result, Seek, Write};
 
 use maulstick_painting::sequencer::{Accepted, Record};
+use maulstick_recorder::session_file::JOURNAL;
 use maulstick_streams::RecordingWriter;
 use maulstick_streams::recording::RecordedMessage;
 use maulstick_types::paint::{Entry, JournalEntry};
 use maulstick_types::{Flags, Header, Message, Origin, encode, name_hash};
-
-use super::session_file::JOURNAL;
 
 /// What a take begins with.
 #[derive(Clone, Debug, Default)]

@@ -3,10 +3,10 @@
 
 use std::time::{Duration, Instant};
 
+use maulstick_bus::RigFolder;
 use maulstick_bus::sockets::{SocketKeeper, SocketNews};
 
-use super::Supervisor;
-use crate::up::child::State;
+use super::node::{Node, State};
 use crate::up::plan::Role;
 
 /// Interval of the check.
@@ -37,6 +37,51 @@ impl FolderWatch {
         }
     }
 
+    /// Where it is time: puts removed sockets back, and says once that the folder, or its lock, is gone. Returned are nodes
+    /// whose sockets are gone for good, and that lose nothing by a new start.
+    pub(super) fn watch(
+        &mut self,
+        folder: &RigFolder,
+        nodes: &[Node],
+        now: Instant,
+    ) -> Vec<String> {
+        if !self.is_due(now) {
+            return Vec::new();
+        }
+        if !folder.is_whole() {
+            self.told = true;
+            tracing::error!(
+                "the folder of the rig, {}, was removed: painting goes on, but no command finds the rig, and \
+                 a node that ends cannot join again; end the rig and start it again",
+                folder.path().display()
+            );
+            return Vec::new();
+        }
+        let news = self.look(now);
+        for node in news.restored {
+            tracing::warn!(
+                "the socket of '{node}' was removed from the rig's folder, and is put back"
+            );
+        }
+        let (renewed, lost) = news.lost.into_iter().partition(|name| {
+            let is_meant = |node: &Node| {
+                let can_be = matches!(node.spec.role, Role::Brush | Role::Device);
+                node.spec.name == *name && node.state == State::Running && can_be
+            };
+            nodes.iter().any(is_meant)
+        });
+        let (renewed, lost): (Vec<String>, Vec<String>) = (renewed, lost);
+        for name in lost {
+            tracing::error!(
+                "the socket of '{name}' is gone: programs that start do not reach it; end the rig and start it again"
+            );
+        }
+        for name in &renewed {
+            tracing::warn!("the socket of '{name}' is gone: it is started again");
+        }
+        renewed
+    }
+
     /// True where it is time to look.
     fn is_due(&mut self, now: Instant) -> bool {
         let rests = |since: Instant| now.duration_since(since) < PERIOD;
@@ -65,44 +110,5 @@ impl FolderWatch {
             }
             SocketNews::default()
         })
-    }
-}
-
-impl Supervisor {
-    /// Puts removed sockets back, and says once that the folder, or its lock, is gone.
-    pub(super) fn watch_folder(&mut self) {
-        let now = Instant::now();
-        if !self.folder_watch.is_due(now) {
-            return;
-        }
-        if !self.folder.is_whole() {
-            self.folder_watch.told = true;
-            tracing::error!(
-                "the folder of the rig, {}, was removed: painting goes on, but no command finds the rig, and \
-                 a node that ends cannot join again; end the rig and start it again",
-                self.folder.path().display()
-            );
-            return;
-        }
-        let news = self.folder_watch.look(now);
-        for node in news.restored {
-            tracing::warn!(
-                "the socket of '{node}' was removed from the rig's folder, and is put back"
-            );
-        }
-        for name in news.lost {
-            let mut nodes = self.nodes.iter_mut();
-            let node = nodes.find(|node| node.spec.name == name && node.state == State::Running);
-            match node {
-                // They lose nothing by it.
-                Some(node) if matches!(node.spec.role, Role::Brush | Role::Device) => {
-                    tracing::warn!("the socket of '{name}' is gone: it is started again");
-                    node.renew();
-                }
-                _ => tracing::error!(
-                    "the socket of '{name}' is gone: programs that start do not reach it; end the rig and start it again"
-                ),
-            }
-        }
     }
 }

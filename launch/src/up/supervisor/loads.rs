@@ -3,38 +3,43 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use maulstick_bus::Bus;
 use maulstick_painting::edits::Load;
-use maulstick_rig::UserError;
 use maulstick_rig::command_client::CommandClient;
+use maulstick_rig::{RigConfig, Stop, UserError};
+use maulstick_types::Mixture;
 use maulstick_types::values::BrushName;
-
-use super::Supervisor;
+use maulstick_types::wire::topics::Topics;
+use tokio::task::spawn_blocking;
 
 /// Longest wait until the paint node has loaded a brush.
 const LOAD_TIME: Duration = Duration::from_secs(10);
 
-impl Supervisor {
-    /// Loads the brushes as soon as paint and all brushes are there, at the start and whenever paint
-    /// was started again. A take that is played brings its own loads.
-    pub(super) fn load_when_ready(&mut self) {
-        if self.unloaded && self.ready() {
-            self.unloaded = false;
-            if self.conductor.is_none() {
-                self.load_brushes();
-            }
-        }
-    }
+/// Loads of the brushes.
+#[derive(Debug)]
+pub(super) struct Loads {
+    /// The load of a new painting's brushes; none where they carry what they carried.
+    pub(super) first: Option<Mixture>,
+    /// True while paint has clean brushes, or is about to start with them: the painter's are to be loaded.
+    pub(super) are_due: bool,
+}
 
-    /// Gives the painter loaded brushes. The commands run by themselves: nothing waits for them.
-    fn load_brushes(&self) {
-        let (bus, topics) = (Arc::clone(&self.bus), self.topics.clone());
-        let brushes: Vec<String> = self.config.brush.iter().map(|b| b.name.clone()).collect();
-        let Some(mixture) = self.first_load.clone() else {
+impl Loads {
+    /// Gives the painter loaded brushes, where they are due. The commands run by themselves: nothing waits for them.
+    pub(super) fn send(
+        &mut self,
+        bus: &Arc<dyn Bus>,
+        topics: &Topics,
+        config: &RigConfig,
+        stop: &Stop,
+    ) {
+        self.are_due = false;
+        let Some(mixture) = self.first.clone() else {
             return;
         };
-        let stop = self.stop.clone();
-        let load = move || {
-            let mut commander = CommandClient::new(bus, &topics);
+        let brushes: Vec<String> = config.brush.iter().map(|own| own.name.clone()).collect();
+        let (mut client, stop) = (CommandClient::new(Arc::clone(bus), topics), stop.clone());
+        spawn_blocking(move || {
             for brush in brushes {
                 let load = BrushName::new(brush).map(|brush| Load {
                     mixture: mixture.clone(),
@@ -43,14 +48,11 @@ impl Supervisor {
                 });
                 let loaded = load
                     .map_err(UserError::from)
-                    .and_then(|load| commander.send(load, None, LOAD_TIME, &|| stop.requested()));
+                    .and_then(|load| client.send(load, None, LOAD_TIME, &|| stop.requested()));
                 if let Err(fault) = loaded {
                     tracing::warn!("{}", fault.what);
                 }
             }
-        };
-        if let Err(error) = std::thread::Builder::new().name("load".into()).spawn(load) {
-            tracing::warn!("the brushes cannot be loaded: {error}");
-        }
+        });
     }
 }

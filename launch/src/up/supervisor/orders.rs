@@ -2,11 +2,10 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use maulstick_bus::typed::{Reader, Receiver, random_epoch};
 use maulstick_bus::{Bus, BusError, Qos, Queue, Request, Server, Wake};
-use maulstick_rig::UserError;
+use maulstick_rig::{RigConfig, UserError};
 use maulstick_types::command::advice::Advice;
 use maulstick_types::command::reply_cache::ReplyCache;
 use maulstick_types::command::{
@@ -16,8 +15,7 @@ use maulstick_types::paint::PaintStatus;
 use maulstick_types::wire::topics::Topics;
 use maulstick_types::{Flags, Origin, encode, name_hash};
 
-use super::Supervisor;
-use super::switch::{Ask, Switch};
+use crate::up::plan::Hands;
 
 /// Requests to the rig, and its replies.
 pub(super) struct Orders {
@@ -65,7 +63,30 @@ impl Orders {
         })
     }
 
-    fn answer(&self, bus: &dyn Bus, request: Request, reply: &CommandReply) {
+    /// The next request that is none of those answered before.
+    pub(super) fn next(&mut self, bus: &dyn Bus) -> Option<(Request, CommandRequest)> {
+        loop {
+            let request = self.server.try_recv()?;
+            let asked = match self.reader.read_command(&request.key, &request.bytes) {
+                Ok(asked) => asked,
+                Err(reply) => {
+                    if let Some(reply) = reply {
+                        self.answer(bus, request, &reply);
+                    }
+                    continue;
+                }
+            };
+            match self.replies.find(&asked) {
+                None => return Some((request, asked)),
+                Some(outcome) => {
+                    let number = asked.number;
+                    self.answer(bus, request, &CommandReply { number, outcome });
+                }
+            }
+        }
+    }
+
+    pub(super) fn answer(&self, bus: &dyn Bus, request: Request, reply: &CommandReply) {
         let now_ns = bus.now_ns();
         match encode(&self.me, Flags::NONE, 0, now_ns, now_ns, reply) {
             Ok(bytes) => {
@@ -77,8 +98,63 @@ impl Orders {
         }
     }
 
+    /// Takes in the statuses of the paint node: the file in which the painting is, where two after each other name it. One
+    /// alone may be of the node before.
+    pub(super) fn follow_paint(&mut self) -> Option<PathBuf> {
+        let mut file = None;
+        while let Some(status) = self.statuses.try_recv() {
+            let before = self.status.as_ref().map(|before| before.path.clone());
+            let path = &status.message.path;
+            if before.as_ref() == Some(path) && !path.is_empty() {
+                file = Some(PathBuf::from(path));
+            }
+            self.status_ns = status.header.event_ns;
+            self.status = Some(status.message);
+        }
+        file
+    }
+
+    /// A request is carried out: who else wants to leave asks again.
+    pub(super) fn begin(&mut self) {
+        self.leaving.0.clear();
+    }
+
+    /// Sees that a painting in these settings may be left; `hands` tells whether a take is played.
+    ///
+    /// # Errors
+    /// A [`UserError`] with advice where something would be lost.
+    pub(super) fn may_leave(
+        &self,
+        config: &RigConfig,
+        hands: Hands,
+        forget: bool,
+    ) -> Result<(), UserError> {
+        let status = self.status.as_ref();
+        if hands == Hands::Take || status.is_some_and(|status| status.take) {
+            return Err(
+                UserError::usage("a take is being played into this painting")
+                    .help("wait for its end, or end its player, and ask again"),
+            );
+        }
+        if let Some(export) = status.and_then(|status| status.export.as_ref()) {
+            return Err(
+                UserError::usage(format!("{} is being exported", export.path))
+                    .advise(Advice::StopExport),
+            );
+        }
+        let in_memory = config.paint.document.is_none();
+        let is_blank = status.is_some_and(|status| status.blank);
+        if in_memory && !is_blank && !forget {
+            return Err(
+                UserError::usage("what was painted is in memory alone, and would be gone")
+                    .advise(Advice::SaveOrForget),
+            );
+        }
+        Ok(())
+    }
+
     /// True if the paint node has reported its status since this was first requested, where that matters.
-    fn has_heard(&mut self, asked: &CommandRequest, now_ns: u64) -> bool {
+    pub(super) fn has_heard(&mut self, asked: &CommandRequest, now_ns: u64) -> bool {
         let asker = (asked.client, asked.number);
         match asked.command {
             Command::Rig(RigCommand::Open { .. } | RigCommand::New { .. }) => {
@@ -121,140 +197,6 @@ pub(super) fn refusal(fault: UserError) -> Outcome {
 pub(super) fn is_same(one: &Path, other: &Path) -> bool {
     let real = |path: &Path| std::fs::canonicalize(path).ok();
     one == other || real(one).is_some_and(|path| real(other) == Some(path))
-}
-
-impl Supervisor {
-    /// A painting whose file was gone goes on in another one: there it is found again after a crash. One
-    /// status alone may be of the node before.
-    fn follow_painting(&mut self, path: &str) {
-        let before = self.orders.status.as_ref();
-        let is_said = before.is_some_and(|before| before.path == path) && !path.is_empty();
-        let document = self.config.paint.document.as_deref();
-        if !is_said || self.switch.is_some() || document.is_none_or(|own| own == Path::new(path)) {
-            return;
-        }
-        tracing::info!("painting in {path}");
-        self.config.paint.document = Some(path.into());
-        if let Err(fault) = self.write_config() {
-            tracing::warn!("{}: {}", fault.place.unwrap_or_default(), fault.what);
-        }
-    }
-
-    /// Answers what is asked of the rig.
-    pub(super) fn take_orders(&mut self) {
-        let bus = Arc::clone(&self.bus);
-        while let Some(status) = self.orders.statuses.try_recv() {
-            self.follow_painting(&status.message.path);
-            self.orders.status = Some(status.message);
-            self.orders.status_ns = status.header.event_ns;
-        }
-        while let Some(request) = self.orders.server.try_recv() {
-            let orders = &mut self.orders;
-            let asked = match orders.reader.read_command(&request.key, &request.bytes) {
-                Ok(asked) => asked,
-                Err(reply) => {
-                    if let Some(reply) = reply {
-                        orders.answer(&*bus, request, &reply);
-                    }
-                    continue;
-                }
-            };
-            let outcome = match self.orders.replies.find(&asked) {
-                Some(outcome) => outcome,
-                // It is asked again, and done when its turn comes.
-                None if self.switch.is_some() || !self.orders.has_heard(&asked, bus.now_ns()) => {
-                    Outcome::Waiting
-                }
-                None => {
-                    self.orders.leaving.0.clear();
-                    let outcome = self.order(&asked).unwrap_or_else(refusal);
-                    // The rig itself says when a switch is done; a removal is looked at each time.
-                    if self.switch.is_some() || outcome != Outcome::Waiting {
-                        let replies = &mut self.orders.replies;
-                        replies.keep(asked.client, asked.number, outcome.clone());
-                    }
-                    outcome
-                }
-            };
-            let reply = CommandReply {
-                number: asked.number,
-                outcome,
-            };
-            self.orders.answer(&*bus, request, &reply);
-        }
-    }
-
-    /// Begins to do what is asked.
-    fn order(&mut self, asked: &CommandRequest) -> Result<Outcome, UserError> {
-        if asked.after.is_some() {
-            return Err(UserError::usage("the rig has no journal in which to wait")
-                .help("ask without a place in it"));
-        }
-        let here = self.config.paint.document.clone();
-        let command = match &asked.command {
-            Command::Rig(command) => command,
-            command @ (Command::Edit(_)
-            | Command::Take(_)
-            | Command::File(_)
-            | Command::Brush(_)
-            | Command::Session(_)) => return Ok(command.misaddressed()),
-        };
-        let ask = match command {
-            RigCommand::Open { path, forget } => {
-                let path = PathBuf::from(path.as_str());
-                if here.is_some_and(|here| is_same(&here, &path)) {
-                    return Ok(Outcome::done(format!("{} is open already", path.display())));
-                }
-                self.may_leave(*forget)?;
-                Ask::Open(path, *forget)
-            }
-            RigCommand::New {
-                path,
-                canvas,
-                forget,
-            } => {
-                self.may_leave(*forget)?;
-                let path = path.as_ref().map(|path| PathBuf::from(path.as_str()));
-                Ask::New(path, canvas.clone(), *forget)
-            }
-            RigCommand::PutDevice { toml } => return self.put_device(toml.as_str()),
-            RigCommand::RemoveDevice { name } => return self.remove_device(name.as_str()),
-            RigCommand::SaveAs(save_as) => {
-                if !self.paint_runs() {
-                    return Ok(starts_again());
-                }
-                Ask::SaveAs(save_as.clone())
-            }
-        };
-        self.switch = Some(Switch::begin(self, (asked.client, asked.number), ask)?);
-        Ok(Outcome::Waiting)
-    }
-
-    /// Sees that the painting may be left.
-    pub(super) fn may_leave(&self, forget: bool) -> Result<(), UserError> {
-        let status = self.orders.status.as_ref();
-        if self.conductor.is_some() || status.is_some_and(|status| status.take) {
-            return Err(
-                UserError::usage("a take is being played into this painting")
-                    .help("wait for its end, or end its player, and ask again"),
-            );
-        }
-        if let Some(export) = status.and_then(|status| status.export.as_ref()) {
-            return Err(
-                UserError::usage(format!("{} is being exported", export.path))
-                    .advise(Advice::StopExport),
-            );
-        }
-        let in_memory = self.config.paint.document.is_none();
-        let is_blank = status.is_some_and(|status| status.blank);
-        match in_memory && !is_blank && !forget {
-            true => Err(
-                UserError::usage("what was painted is in memory alone, and would be gone")
-                    .advise(Advice::SaveOrForget),
-            ),
-            false => Ok(()),
-        }
-    }
 }
 
 /// Nothing can be asked of a painting that is not there.

@@ -7,11 +7,7 @@ use jiff::Zoned;
 use maulstick_document::{Access, Document, DocumentSettings, glance};
 use maulstick_rig::UserError;
 use maulstick_rig::files::companion;
-use maulstick_rig::log::say;
 use maulstick_rig::sketches::{Sketch, Sketches};
-
-use super::Supervisor;
-use super::orders::is_same;
 
 /// A file so young may be of a rig that is just being started.
 const YOUNG: Duration = Duration::from_secs(60);
@@ -26,19 +22,29 @@ fn fresh(sketches: &Sketches) -> Result<PathBuf, UserError> {
     sketches.fresh(&Zoned::now().strftime("%Y-%m-%d %H.%M.%S").to_string())
 }
 
+/// The sketches of this user, tidied up; none where the system has no room for them, which is said.
+pub(in crate::up) fn of_user() -> Option<Sketches> {
+    let sketches = said(Sketches::of_user())?;
+    tidy(&sketches);
+    Some(sketches)
+}
+
 /// The file of another sketch; where it cannot be had the painting is in memory alone, as its status says.
 pub(in crate::up) fn begin(sketches: &Sketches) -> Option<PathBuf> {
-    let begun = fresh(sketches);
+    said(fresh(sketches))
+}
+
+fn said<T>(result: Result<T, UserError>) -> Option<T> {
     let warn = |fault: &UserError| {
-        let place = fault.place.as_deref().unwrap_or_default();
+        let place = fault.place.as_deref().unwrap_or("sketches");
         tracing::warn!("{place}: {}: the sketch is in memory alone", fault.what);
     };
-    begun.inspect_err(warn).ok()
+    result.inspect_err(warn).ok()
 }
 
 /// Removes the sketches that leave and of which the painter was told, and those on which nothing was ever painted. One
 /// that is open in another rig stays.
-pub(in crate::up) fn tidy(sketches: &Sketches) {
+fn tidy(sketches: &Sketches) {
     for sketch in sketches.notified() {
         // Who has it open has it locked.
         if glance(&sketch.path).is_ok() {
@@ -83,50 +89,10 @@ fn is_blank(path: &Path) -> bool {
     document.close().is_ok() && is_blank
 }
 
-impl Supervisor {
-    /// The file of the sketch that a painting is, if it is one.
-    pub(super) fn sketch(&self) -> Option<(&Sketches, &Path)> {
-        let sketches = self.sketches.as_ref()?;
-        let path = self.config.paint.document.as_deref()?;
-        sketches.has(path).then_some((sketches, path))
-    }
-
-    /// The painting was saved under a name, or is left: its sketch goes if nothing is lost with it.
-    pub(super) fn leave_sketch(&self, path: &Path, why: Leave) {
-        let Some(sketches) = self.sketches.as_ref().filter(|sketches| sketches.has(path)) else {
-            return;
-        };
-        if why == Leave::Named || is_blank(path) {
-            remove(sketches, path);
-        }
-    }
-
-    /// The painting is in the file `to` from now on. The sketch that it was goes once nodes that start again are told of
-    /// that, and only if it is another file.
-    pub(super) fn is_saved_as(&mut self, to: &Path) {
-        let before = self.config.paint.document.replace(to.to_owned());
-        if let Err(fault) = self.write_config() {
-            tracing::warn!("{}: {}", fault.place.unwrap_or_default(), fault.what);
-            return;
-        }
-        if let Some(before) = before.filter(|before| !is_same(before, to)) {
-            self.leave_sketch(&before, Leave::Named);
-        }
-    }
-
-    /// At the end of the rig: says where the sketch is kept; one on which nothing was painted goes.
-    pub(super) fn end_sketch(&self) {
-        let Some((_, path)) = self.sketch() else {
-            return;
-        };
-        self.leave_sketch(path, Leave::Left);
-        if path.exists() {
-            let words = format!(
-                "the sketch is kept in {}: `maulstick up` offers it, and `maulstick up FILE` opens it",
-                path.display()
-            );
-            say(&format!("{words}\n"));
-        }
+/// Removes a sketch that is painted on no more, if nothing is lost with it.
+pub(super) fn leave(sketches: &Sketches, path: &Path, why: Leave) {
+    if why == Leave::Named || is_blank(path) {
+        remove(sketches, path);
     }
 }
 

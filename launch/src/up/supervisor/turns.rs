@@ -3,8 +3,6 @@
 
 use std::time::{Duration, Instant};
 
-use super::Supervisor;
-
 /// Time between two turns from which the launcher was late, not its nodes.
 const LATE: Duration = Duration::from_secs(1);
 
@@ -16,35 +14,17 @@ pub(super) struct Turns {
 
 impl Turns {
     /// Begins a turn; the time that was lost before it, if it is late.
-    fn begin(&mut self, now: Instant) -> Option<Duration> {
+    pub(super) fn begin(&mut self, now: Instant) -> Option<Duration> {
         let before = self.newest.replace(now)?;
         let passed = now.saturating_duration_since(before);
-        (passed > LATE).then_some(passed)
-    }
-}
-
-impl Supervisor {
-    /// Begins a turn, and all clocks for nodes anew where it is late.
-    pub(super) fn begin_turn(&mut self) {
-        let Some(lost) = self.turns.begin(Instant::now()) else {
-            return;
-        };
-        tracing::info!(
-            "the launcher stood still for {:.1} s: nodes have as much longer",
-            lost.as_secs_f64()
-        );
-        self.watchdog.postpone(lost);
-        for node in &mut self.nodes {
-            for since in [&mut node.missed, &mut node.leaving_since] {
-                *since = since.map(|since| since + lost);
-            }
+        let is_late = passed > LATE;
+        if is_late {
+            tracing::info!(
+                "the launcher stood still for {:.1} s: nodes have as much longer",
+                passed.as_secs_f64()
+            );
         }
-        for (_, since) in &mut self.started {
-            *since += lost;
-        }
-        if let Some(switch) = &mut self.switch {
-            switch.postpone(lost);
-        }
+        is_late.then_some(passed)
     }
 }
 

@@ -6,13 +6,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Bus, BusError, Qos, Queue, Wake};
 use maulstick_types::node::{NodeStatus, NodeWork};
-use maulstick_types::wire::topics::Topics;
 
-use super::Supervisor;
-use crate::up::child::{Node, State};
+use super::crew::Action;
+use super::node::{Node, State};
 use crate::up::plan::Role;
 
 /// Silence after which it is looked at what a process does.
@@ -162,54 +159,44 @@ impl Watched {
     }
 }
 
-/// The nodes that are watched, and what they say.
+/// The nodes that are watched.
+#[derive(Debug, Default)]
 pub(super) struct Watchdog {
-    statuses: Receiver<NodeStatus>,
     nodes: BTreeMap<String, Watched>,
 }
 
 impl Watchdog {
-    /// Listens to the statuses of all nodes.
-    ///
-    /// # Errors
-    /// [`BusError::Topic`].
-    pub(super) fn new(bus: &dyn Bus, topics: &Topics) -> Result<Self, BusError> {
-        let (topic, queue) = (topics.node_status("*"), Queue::Ring(256));
-        // They are looked at in each turn, and wake nobody.
-        Ok(Self {
-            statuses: Receiver::new(bus, &topic, Qos::Background, queue, &Wake::new())?,
-            nodes: BTreeMap::new(),
-        })
-    }
-
     /// Gives all nodes so much more time.
     pub(super) fn postpone(&mut self, by: Duration) {
         for node in self.nodes.values_mut() {
             node.postpone(by);
         }
     }
-}
 
-impl Supervisor {
-    /// Ends nodes that make no progress; they are started again as those that crash.
-    pub(super) fn end_hanging(&mut self) {
-        let now = Instant::now();
-        while let Some(status) = self.watchdog.statuses.try_recv() {
-            let name = self.topics.middle(&status.key).unwrap_or_default();
-            let watched = self.watchdog.nodes.get_mut(name);
-            if let Some(watched) = watched.filter(|own| own.process == status.message.process) {
-                watched.hear(now, &status.message.work);
-            }
+    /// Takes in the status of a node.
+    pub(super) fn hear(&mut self, name: &str, status: &NodeStatus, now: Instant) {
+        let watched = self.nodes.get_mut(name);
+        if let Some(watched) = watched.filter(|own| own.process == status.process) {
+            watched.hear(now, &status.work);
         }
-        let mut before = std::mem::take(&mut self.watchdog.nodes);
-        // A painting on its way to another file may hold paint up.
-        let is_switching = self.switch.is_some();
-        let is_watched = |node: &&mut Node| {
-            let is_free = !(is_switching && node.spec.role == Role::Paint);
-            node.state == State::Running && node.leaving_since.is_none() && is_free
-        };
-        for node in self.nodes.iter_mut().filter(is_watched) {
-            let (name, Some(pid)) = (&node.spec.name, node.pid()) else {
+    }
+
+    /// Nodes that make no progress, to be killed; they are started again as those that crash. Of roles that are `spared`
+    /// none is watched.
+    pub(super) fn look(
+        &mut self,
+        nodes: &[Node],
+        spared: Option<Role>,
+        now: Instant,
+    ) -> Vec<Action> {
+        let mut before = std::mem::take(&mut self.nodes);
+        let mut actions = Vec::new();
+        let watched = nodes.iter().filter(|node| {
+            let is_free = node.leaving_since.is_none() && spared != Some(node.spec.role);
+            node.state == State::Running && is_free
+        });
+        for node in watched {
+            let (name, Some(pid)) = (&node.spec.name, node.pid) else {
                 continue;
             };
             let known = before.remove(name).filter(|known| known.process == pid);
@@ -218,11 +205,12 @@ impl Supervisor {
             if watched.is_hanging(now, patience, || Activity::of(pid)) {
                 let silent = now.saturating_duration_since(watched.since).as_secs_f64();
                 tracing::warn!("node '{name}' has made no progress for {silent:.1} s and is ended");
-                node.strike();
+                actions.push(Action::Kill(name.clone()));
                 continue;
             }
-            self.watchdog.nodes.insert(name.clone(), watched);
+            self.nodes.insert(name.clone(), watched);
         }
+        actions
     }
 }
 

@@ -6,7 +6,7 @@ use maulstick_optics::light::{Facet, Lamp, SURFACE, Spot, Surroundings, lit};
 use maulstick_types::paint::TILE;
 
 use super::{Depth, Export};
-use crate::appearance::Bakery;
+use crate::bakery::Bakery;
 use crate::bands::{BandHeights, Banded};
 use crate::display::DisplayTile;
 

@@ -164,7 +164,6 @@ pub fn decode(mask: u64, bytes: &[u8], base: Option<&Planes>) -> Result<Planes, 
 mod tests {
     use std::collections::BTreeMap;
 
-    use maulstick_canvas::layered::shape_of;
     use maulstick_canvas::own_plane::{OwnPlane, OwnShape, ValueType};
     use proptest::prelude::*;
 
@@ -251,13 +250,12 @@ mod tests {
 
     #[test]
     fn a_page_is_bounded_by_what_its_paints_can_have() {
-        let layers = |count: usize| (0..count).map(|layer| shape_of(0, layer).kind);
-        let whole = decode(1, &with_own_of(layers(40), 7), None).expect("a model's page");
+        let whole = decode(1, &with_own_of(0..40, 7), None).expect("a model's page");
         assert_eq!(whole.own().len(), 40);
         let long = with_own_of(0..2000, 7);
         let error = decode(1, &long, None).expect_err("more than layers of a paint");
         assert!(matches!(error, Defect::Size { .. }), "{error}");
-        let empty = decode(1, &with_own_of(layers(40), 0), None).expect_err("nothing in it");
+        let empty = decode(1, &with_own_of(0..40, 0), None).expect_err("nothing in it");
         assert!(matches!(empty, Defect::Empty), "{empty}");
     }
 

@@ -5,7 +5,6 @@ use std::slice;
 use std::sync::Arc;
 
 use maulstick_appearance::bands::Banded;
-use maulstick_stokes_paint::columns::{has_layers, tile_columns};
 use maulstick_types::paint::TILE;
 
 /// Columns of a band, row after row from its lowest: the ends of each in m above the highest bare peaks, as
@@ -21,17 +20,19 @@ impl Columns {
         let mut layered = BTreeMap::new();
         let width = banded.cells()[0];
         for (id, tile) in banded.tiles(band) {
-            let Some(tile) = tile.filter(|tile| has_layers(tile)) else {
+            let bare = banded.bare();
+            let columns =
+                tile.map(|tile| bare.shown.columns(&bare.relief, id, tile, banded.cell_m()));
+            let Some(columns) = columns.filter(|columns| !columns.is_empty()) else {
                 continue;
             };
             let [across, up] = banded.within(id);
-            let hidden: Vec<usize> = banded
-                .bare()
+            let hidden: Vec<usize> = bare
                 .in_wells(id)
                 .filter(|well| well.hides)
                 .map(|well| well.cell)
                 .collect();
-            for (cell, ends) in tile_columns(&banded.bare().relief, id, tile, banded.cell_m()) {
+            for (cell, ends) in columns {
                 let (x, y) = (cell % TILE, cell / TILE);
                 if x < across && y < up && !hidden.contains(&cell) {
                     let cell = y * width + id.x as usize * TILE + x;

@@ -7,7 +7,6 @@ use maulstick_appearance::Appearance;
 use maulstick_appearance::blank_surface::BlankSurface;
 use maulstick_appearance::ground::Ground;
 use maulstick_appearance::show_paint::{Counted, ShowPaint};
-use maulstick_canvas::layered::shape_of;
 use maulstick_canvas::own_plane::OwnPlane;
 use maulstick_canvas::page::Page;
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
@@ -19,6 +18,7 @@ use maulstick_optics::{PaintLibrary, Studio};
 use maulstick_types::paint::TILE;
 
 use super::*;
+use maulstick_stokes_paint::layer_planes::shape_of;
 use maulstick_stokes_paint::layers::Layers;
 use maulstick_stokes_paint::overhangs::Overhangs;
 

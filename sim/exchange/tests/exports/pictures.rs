@@ -3,8 +3,8 @@
 use std::io::Cursor;
 
 use maulstick_exchange::{HeightRange, write_height_map};
+use maulstick_models::model_names;
 use maulstick_painting::Painting;
-use maulstick_painting::models::model_names;
 use maulstick_painting::picture::picture;
 use maulstick_types::scene::CANVAS;
 

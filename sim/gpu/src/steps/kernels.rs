@@ -6,21 +6,36 @@ use crate::device::Device;
 /// The buffers, by binding; 0 are the parameters of the step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
-pub(crate) enum Binding {
+pub enum Binding {
+    /// Poses of the head, by drawing.
     Poses = 1,
+    /// The head itself.
     Head,
+    /// Segments of the drawn head.
     Segments,
+    /// Counts of the window.
     Planes,
+    /// The same while they change.
     Other,
+    /// Heights under the paint.
     Base,
+    /// The load.
     Load,
+    /// What is asked of the brush.
     Asks,
+    /// The lowest segment of each cell.
     Keys,
+    /// The cells in contact.
     Contacts,
+    /// Velocities through faces of cells.
     Faces,
+    /// Sums of paints, by cell.
     Totals,
+    /// Statistics of steps.
     Stats,
+    /// Workgroups that a step has planned.
     Groups,
+    /// What cells ask for.
     Wants,
     /// The parameters of a blend, a record for each.
     Blend,
@@ -28,10 +43,10 @@ pub(crate) enum Binding {
 
 impl Binding {
     /// How many they are, with that of the step's parameters.
-    pub(crate) const COUNT: usize = Self::Blend as usize + 1;
+    pub const COUNT: usize = Self::Blend as usize + 1;
 
     /// Those with room for each cell of the grid.
-    pub(crate) const OF_GRID: [Self; 5] = [
+    pub const OF_GRID: [Self; 5] = [
         Self::Keys,
         Self::Contacts,
         Self::Faces,
@@ -40,7 +55,7 @@ impl Binding {
     ];
 
     /// Words that a cell of the grid has in it; 0 of one that has none.
-    pub(crate) fn words_by_cell(self) -> u64 {
+    pub fn words_by_cell(self) -> u64 {
         match self {
             Self::Keys | Self::Faces | Self::Wants => 2,
             Self::Contacts => 8,
@@ -61,7 +76,7 @@ impl Binding {
 
 /// How many workgroups a stage has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Groups {
+pub enum Groups {
     /// As many as cover the cells of the grid.
     Grid,
     /// As many as cover the segments, and so the strips and faces.
@@ -77,57 +92,61 @@ pub(crate) enum Groups {
 }
 
 /// What a stage is.
-pub(crate) struct Kernel {
+pub struct Kernel {
     /// Its name, also that of its entry point.
-    pub(crate) name: &'static str,
-    pub(crate) source: &'static str,
-    pub(crate) constants: &'static [(&'static str, f64)],
-    pub(crate) bindings: &'static [Binding],
-    pub(crate) groups: Groups,
+    pub name: &'static str,
+    /// Its WGSL in pieces, after what all stages share.
+    pub source: &'static [&'static str],
+    /// Its overridable constants.
+    pub constants: &'static [(&'static str, f64)],
+    /// The buffers that it takes.
+    pub bindings: &'static [Binding],
+    /// Its workgroups.
+    pub groups: Groups,
 }
 
 impl Kernel {
+    /// Its whole WGSL.
+    fn wgsl(&self) -> String {
+        SHARED.iter().chain(self.source).copied().collect()
+    }
+
     /// True if it takes the parameters of a blend.
-    pub(crate) fn blends(&self) -> bool {
+    pub fn blends(&self) -> bool {
         self.bindings.contains(&Binding::Blend)
     }
 }
 
-/// The WGSL of a stage, a file of `shaders`, after what all share and what those of its model do.
-macro_rules! source {
-    ($name:literal $(, $own:literal)*) => {
-        concat!(
-            include_str!("../shaders/steps/common/step.wgsl"),
-            include_str!("../shaders/steps/common/shapes.wgsl"),
-            include_str!("../shaders/steps/common/fragments.wgsl"),
-            $(include_str!(concat!("../shaders/", $own, ".wgsl")),)*
-            include_str!(concat!("../shaders/", $name, ".wgsl")),
-        )
-    };
-}
-pub(crate) use source;
+/// WGSL that all stages of steps begin with.
+const SHARED: [&str; 3] = [
+    include_str!("../shaders/steps/common/step.wgsl"),
+    include_str!("../shaders/steps/common/shapes.wgsl"),
+    include_str!("../shaders/steps/common/fragments.wgsl"),
+];
 
 use Binding as B;
 
 /// The lowest segment of each cell.
-pub(crate) const RASTERIZER: Kernel = Kernel {
+pub const RASTERIZER: Kernel = Kernel {
     name: "rasterizer",
-    source: source!("steps/rasterizer"),
+    source: &[include_str!("../shaders/steps/rasterizer.wgsl")],
     constants: &[],
     bindings: &[B::Poses, B::Head, B::Segments, B::Asks, B::Keys, B::Stats],
     groups: Groups::Segments,
 };
 
 /// A stage on a device.
-pub(crate) struct Pipeline {
-    pub(crate) kernel: &'static Kernel,
+pub struct Pipeline {
+    /// The stage.
+    pub kernel: &'static Kernel,
     layout: wgpu::BindGroupLayout,
-    pub(crate) pipeline: wgpu::ComputePipeline,
+    /// Its pipeline.
+    pub pipeline: wgpu::ComputePipeline,
 }
 
 impl Pipeline {
     /// Makes the pipeline.
-    pub(crate) fn new(gpu: &Device, kernel: &'static Kernel) -> Self {
+    pub fn new(gpu: &Device, kernel: &'static Kernel) -> Self {
         let entry = |binding, ty, size| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::COMPUTE,
@@ -167,7 +186,7 @@ impl Pipeline {
             .device
             .create_shader_module(wgpu::ShaderModuleDescriptor {
                 label,
-                source: wgpu::ShaderSource::Wgsl(kernel.source.into()),
+                source: wgpu::ShaderSource::Wgsl(kernel.wgsl().into()),
             });
         let pipeline = gpu
             .device
@@ -190,7 +209,7 @@ impl Pipeline {
     }
 
     /// Its buffers, bound.
-    pub(crate) fn bind<'a>(
+    pub fn bind<'a>(
         &self,
         gpu: &Device,
         records: &'a wgpu::Buffer,

@@ -16,10 +16,10 @@
 //! | `model` | the paint model that defers its steps to the device |
 
 mod kept;
-pub(crate) mod kernels;
-pub(crate) mod model;
-pub(crate) mod probing;
-pub(crate) mod record;
-pub(crate) mod residence;
-pub(crate) mod traffic;
-pub(crate) mod workspace;
+pub mod kernels;
+pub mod model;
+pub mod probing;
+pub mod record;
+pub mod residence;
+pub mod traffic;
+pub mod workspace;

@@ -18,7 +18,7 @@ use crate::device::{Device, GpuError};
 const MOST_KEPT: usize = 256;
 
 /// What makes stages of a model's steps.
-pub(crate) trait Planner: Send {
+pub trait Planner: Send {
     /// Adds a step to a batch, the brush's step of this number. The rows of the window that it may change; none where the
     /// processor is to do it.
     fn plan(
@@ -42,9 +42,6 @@ struct Session {
     uncounted: bool,
 }
 
-/// Makes a model on a device; a [`GpuError`] where the driver does not take the shaders.
-pub type MakeModel = fn(Device) -> Result<GpuModel, GpuError>;
-
 /// A paint model on the device; on the processor once that is lost.
 pub struct GpuModel {
     workspace: Option<Workspace>,
@@ -58,7 +55,10 @@ pub struct GpuModel {
 
 impl GpuModel {
     /// A model of these stages on a device.
-    pub(crate) fn new(
+    ///
+    /// # Errors
+    /// A [`GpuError`] where the driver does not take the shaders.
+    pub fn new(
         gpu: Device,
         kernels: &'static [Kernel],
         planner: Box<dyn Planner>,

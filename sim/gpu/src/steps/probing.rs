@@ -11,24 +11,25 @@ use super::workspace::{Batch, Workspace};
 use crate::device::{Device, GpuError};
 
 /// Stages of single steps.
-pub(crate) struct Probing<P> {
-    pub(crate) workspace: Workspace,
+pub struct Probing<P> {
+    /// The device with its buffers.
+    pub workspace: Workspace,
     kernels: &'static [Kernel],
     planner: P,
 }
 
 /// What of a step is on the device.
-pub(crate) struct Probed {
+pub struct Probed {
     on: Residence,
     rows: Range<usize>,
 }
 
 impl<P: Planner> Probing<P> {
-    pub(crate) fn new(
-        gpu: Device,
-        kernels: &'static [Kernel],
-        planner: P,
-    ) -> Result<Self, GpuError> {
+    /// The stages of a planner on a device.
+    ///
+    /// # Errors
+    /// A [`GpuError`] where the driver does not take the shaders.
+    pub fn new(gpu: Device, kernels: &'static [Kernel], planner: P) -> Result<Self, GpuError> {
         Ok(Self {
             workspace: Workspace::new(gpu, kernels)?,
             kernels,
@@ -37,7 +38,7 @@ impl<P: Planner> Probing<P> {
     }
 
     /// Does those stages of a step that come up to the last one called `last`. None where it is not for the device.
-    pub(crate) fn run(&mut self, step: &Step<'_>, last: &str) -> Result<Option<Probed>, GpuError> {
+    pub fn run(&mut self, step: &Step<'_>, last: &str) -> Result<Option<Probed>, GpuError> {
         let Some(on) = Residence::new(step) else {
             return Ok(None);
         };
@@ -54,7 +55,7 @@ impl<P: Planner> Probing<P> {
     }
 
     /// Writes what the stages did to a step's window and load.
-    pub(crate) fn write(&mut self, probed: Probed, step: &mut Step<'_>) -> Result<(), GpuError> {
+    pub fn write(&mut self, probed: Probed, step: &mut Step<'_>) -> Result<(), GpuError> {
         let width = step.window.width();
         let Probed { on, rows } = probed;
         let (settled, _) = self.workspace.read_back(&on, rows, width)?;

@@ -3,7 +3,6 @@
 use bytemuck::{Pod, Zeroable};
 use maulstick_brush::head::STATIONS;
 use maulstick_canvas::quantum::CELL_MAX;
-use maulstick_impasto::stages::advection::STAIN;
 use maulstick_model::brush::head::border;
 use maulstick_model::footprint::ribbons::{middle, rank};
 use maulstick_model::interface::{Step, Sweep, Transfer};
@@ -19,7 +18,7 @@ const NONE: u32 = u32::MAX;
 /// `Step` of step.wgsl.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct StepRecord {
+pub struct StepRecord {
     half_widths: [f32; 8],
     from: [u32; 2],
     size: [u32; 2],
@@ -66,36 +65,36 @@ pub(crate) struct StepRecord {
     film_most: f32,
     seep: [f32; 2],
     /// In so many parts its paint moves.
-    pub(crate) parts: u32,
+    pub parts: u32,
     room: [u32; 3],
 }
 
 /// Bytes from one record to the next.
-pub(crate) const RECORD_BYTES: u64 = size_of::<StepRecord>() as u64;
+pub const RECORD_BYTES: u64 = size_of::<StepRecord>() as u64;
 /// Words of a record, also of one of a blend.
-pub(crate) const RECORD_WORDS: usize = size_of::<StepRecord>() / 4;
+pub const RECORD_WORDS: usize = size_of::<StepRecord>() / 4;
 
 /// The cells on which a step works.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Grid {
+pub struct Grid {
     /// Its lower left cell, in the window, beyond which it may go.
-    pub(crate) from: [i64; 2],
+    pub from: [i64; 2],
     /// Its columns and rows.
-    pub(crate) size: [u32; 2],
+    pub size: [u32; 2],
     /// Its cells that may be touched, from the first up to but not with the second.
-    pub(crate) inside: [[u32; 2]; 2],
+    pub inside: [[u32; 2]; 2],
 }
 
 impl Grid {
     /// How many cells it has.
-    pub(crate) fn cells(&self) -> u64 {
+    pub fn cells(&self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
     }
 }
 
 impl StepRecord {
     /// A motion of a step of a brush and a window that are on the device; nothing is drawn.
-    pub(crate) fn new(
+    pub fn new(
         step: &Step<'_>,
         sweep: &Sweep<'_>,
         on: &Residence,
@@ -161,7 +160,7 @@ impl StepRecord {
     }
 
     /// Has the head drawn in this motion, whose poses go to the end of `poses`.
-    pub(crate) fn draw(mut self, step: &Step<'_>, sweep: &Sweep<'_>, poses: &mut Vec<f32>) -> Self {
+    pub fn draw(mut self, step: &Step<'_>, sweep: &Sweep<'_>, poses: &mut Vec<f32>) -> Self {
         let head = step.head;
         let (after, before) = (sweep.to, sweep.from);
         let strips = head.strips();
@@ -201,15 +200,16 @@ impl StepRecord {
         self
     }
 
-    /// A square of cells in a window of that size, on which nothing but the advection works.
-    pub(crate) fn of_square(side: u32, planes: u32) -> Self {
+    /// A square of cells in a window of that size with a `stain`, quanta, on which paint moves and nothing else.
+    #[must_use]
+    pub fn of_square(side: u32, planes: u32, stain: f32) -> Self {
         Self {
             size: [side; 2],
             row: side,
             plane: side * side,
             limit: [side; 2],
             planes,
-            stain: STAIN,
+            stain,
             push: 1,
             cell_max: CELL_MAX as f32,
             ..Self::default()
@@ -217,7 +217,7 @@ impl StepRecord {
     }
 
     /// Cells of the grid.
-    pub(crate) fn cells(&self) -> u64 {
+    pub fn cells(&self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
     }
 }

@@ -16,38 +16,38 @@ const MOST_BITS: u32 = 17;
 
 /// What of a window and a brush the shaders have to know.
 #[derive(Clone, Debug)]
-pub(crate) struct Residence {
+pub struct Residence {
     /// The paints, in order of plane.
-    pub(crate) slots: Vec<usize>,
+    pub slots: Vec<usize>,
     /// Cells of the window.
-    pub(crate) cells: usize,
+    pub cells: usize,
     /// Texels of the brush.
-    pub(crate) texels: usize,
+    pub texels: usize,
     /// Strips of the brush.
-    pub(crate) strips: usize,
+    pub strips: usize,
     /// Faces and points of its skin.
-    pub(crate) faces: usize,
+    pub faces: usize,
     /// See `faces`.
-    pub(crate) vertices: usize,
+    pub vertices: usize,
     /// Steps with contact that the brush had made.
     steps: u64,
 }
 
 /// What is read back.
-pub(crate) struct Settled {
+pub struct Settled {
     /// Rows of the window.
-    pub(crate) rows: std::ops::Range<usize>,
+    pub rows: std::ops::Range<usize>,
     /// Counts on those rows, paint after paint.
-    pub(crate) planes: Vec<f32>,
+    pub planes: Vec<f32>,
     /// The load, as step.wgsl lays it out.
-    pub(crate) load: Vec<u32>,
+    pub load: Vec<u32>,
     /// The highest that paint ever stood, quanta.
-    pub(crate) top: f32,
+    pub top: f32,
 }
 
 impl Residence {
     /// Window and load of a step; none where they are too large for the device.
-    pub(crate) fn new(step: &Step<'_>) -> Option<Self> {
+    pub fn new(step: &Step<'_>) -> Option<Self> {
         let head = step.head;
         let in_use = |slot: &usize| step.window.has(*slot) || step.load.has(*slot);
         let residence = Self {
@@ -66,7 +66,7 @@ impl Residence {
     }
 
     /// True if a grid of so many cells is not too large.
-    pub(crate) fn has_room(&self, cells: u64) -> bool {
+    pub fn has_room(&self, cells: u64) -> bool {
         cells * self.bytes_by_cell() as u64 <= MOST_BYTES as u64
     }
 
@@ -76,33 +76,28 @@ impl Residence {
     }
 
     /// Steps with contact that the brush had made.
-    pub(crate) fn steps(&self) -> u64 {
+    pub fn steps(&self) -> u64 {
         self.steps
     }
 
     /// Segments that the head is drawn as.
-    pub(crate) fn segments(&self) -> usize {
+    pub fn segments(&self) -> usize {
         2 * self.faces + self.strips * (STATIONS - 1)
     }
 
     /// Bits that number a segment, and one value besides.
-    pub(crate) fn segment_bits(&self) -> u32 {
+    pub fn segment_bits(&self) -> u32 {
         usize::BITS - self.segments().leading_zeros()
     }
 
     /// The plane of a paint; `u32::MAX` where it is not in use.
-    pub(crate) fn plane_of(&self, slot: usize) -> u32 {
+    pub fn plane_of(&self, slot: usize) -> u32 {
         let place = self.slots.iter().position(|of| *of == slot);
         place.map_or(u32::MAX, |place| place as u32)
     }
 
     /// By slot, how much more there is than window and load have now.
-    pub(crate) fn gained(
-        &self,
-        settled: &Settled,
-        window: &Window,
-        load: &BrushLoad,
-    ) -> [i64; SLOTS] {
+    pub fn gained(&self, settled: &Settled, window: &Window, load: &BrushLoad) -> [i64; SLOTS] {
         let mut gained = [0; SLOTS];
         let run = settled.rows.start * window.width()..settled.rows.end * window.width();
         let sum = |plane: &[f32]| plane.iter().map(|count| *count as i64).sum::<i64>();
@@ -123,22 +118,22 @@ impl Residence {
     }
 
     /// Words of the load.
-    pub(crate) fn load_words(&self) -> usize {
+    pub fn load_words(&self) -> usize {
         1 + (1 + 2 * self.slots.len()) * self.texels
     }
 
     /// Words of the poses of a drawing of the head.
-    pub(crate) fn poses_words(&self) -> usize {
+    pub fn poses_words(&self) -> usize {
         (5 * STATIONS + 2) * self.strips + 5 * self.vertices
     }
 
     /// Words of what is asked of the brush.
-    pub(crate) fn asks_words(&self) -> usize {
+    pub fn asks_words(&self) -> usize {
         (2 + self.slots.len()) * self.texels + 2 * self.strips
     }
 
     /// What of the head is always the same.
-    pub(crate) fn head(&self, head: &Head) -> Vec<u32> {
+    pub fn head(&self, head: &Head) -> Vec<u32> {
         let mut words = Vec::new();
         if let Some(skin) = head.skin() {
             words.extend(skin.faces().iter().flatten());
@@ -153,7 +148,7 @@ impl Residence {
     }
 
     /// The load.
-    pub(crate) fn load(&self, load: &BrushLoad) -> Vec<u32> {
+    pub fn load(&self, load: &BrushLoad) -> Vec<u32> {
         let mut words = Vec::with_capacity(self.load_words());
         words.push(load.steps() as u32);
         words.extend_from_slice(load.films());
@@ -170,7 +165,7 @@ impl Residence {
     }
 
     /// The planes of the window, each as bytes; `nothing` are those of one without paint.
-    pub(crate) fn planes<'a>(&self, window: &'a Window, nothing: &'a [f32]) -> Vec<&'a [u8]> {
+    pub fn planes<'a>(&self, window: &'a Window, nothing: &'a [f32]) -> Vec<&'a [u8]> {
         let plane = |slot: &usize| {
             let mut planes = window.planes();
             let found = planes.find(|(of, _)| of == slot);
@@ -180,7 +175,7 @@ impl Residence {
     }
 
     /// Writes what was read back into window and load.
-    pub(crate) fn write(&self, settled: &Settled, window: &mut Window, load: &mut BrushLoad) {
+    pub fn write(&self, settled: &Settled, window: &mut Window, load: &mut BrushLoad) {
         self.write_planes(settled, window);
         self.write_load(settled, load);
         window.note_top(settled.top);
@@ -240,7 +235,7 @@ impl Residence {
 
 impl Settled {
     /// What the device wrote: counts of `words` words, then the load.
-    pub(crate) fn read(bytes: &[u8], words: usize, rows: std::ops::Range<usize>, top: f32) -> Self {
+    pub fn read(bytes: &[u8], words: usize, rows: std::ops::Range<usize>, top: f32) -> Self {
         let (planes, load) = bytes.split_at(words * size_of::<f32>());
         Self {
             rows,

@@ -22,12 +22,12 @@ impl Traffic {
     }
 
     /// Counts a step.
-    pub(crate) fn step(&self) {
+    pub fn step(&self) {
         self.steps.fetch_add(1, Relaxed);
     }
 
     /// Counts a dispatch over a grid of so many cells.
-    pub(crate) fn dispatch(&self, kernel: &Kernel, on: &Residence, cells: u64) {
+    pub fn dispatch(&self, kernel: &Kernel, on: &Residence, cells: u64) {
         let (slots, strips) = (on.slots.len() as u64, on.strips as u64);
         let words = |binding: &Binding| match binding {
             Binding::Poses => on.poses_words() as u64,

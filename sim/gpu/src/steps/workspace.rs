@@ -18,7 +18,7 @@ use crate::arena::{Arena, read};
 use crate::device::{Device, GpuError};
 
 /// Steps of a submission.
-pub(crate) const BATCH: usize = 64;
+pub const BATCH: usize = 64;
 /// Blends of a batch: the device does some while the next ones are prepared.
 const MOST_BLENDS: usize = 128;
 /// Most bytes of the poses of a batch.
@@ -32,32 +32,33 @@ const GROUP: [u64; 2] = [256, 64];
 
 /// A stage to be done.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Call {
+pub struct Call {
     /// Its place among the model's.
-    pub(crate) stage: usize,
+    pub stage: usize,
     /// The record of its step.
-    pub(crate) record: usize,
+    pub record: usize,
     /// That of its blend.
-    pub(crate) blend: usize,
+    pub blend: usize,
 }
 
 /// Steps that are not yet given to the device.
 #[derive(Default)]
-pub(crate) struct Batch {
+pub struct Batch {
     /// How many they are.
-    pub(crate) steps: usize,
+    pub steps: usize,
     /// Parameters of steps, and of the parts of steps in which the head is drawn anew.
-    pub(crate) records: Vec<StepRecord>,
-    pub(crate) poses: Vec<f32>,
+    pub records: Vec<StepRecord>,
+    /// Poses of their heads.
+    pub poses: Vec<f32>,
     /// Parameters of blends.
-    pub(crate) blends: Vec<[u32; RECORD_WORDS]>,
+    pub blends: Vec<[u32; RECORD_WORDS]>,
     /// The stages in their order.
-    pub(crate) calls: Vec<Call>,
+    pub calls: Vec<Call>,
 }
 
 impl Batch {
     /// Takes a record; a stage with it and the next blend.
-    pub(crate) fn next(&mut self, record: StepRecord, stage: usize) -> Call {
+    pub fn next(&mut self, record: StepRecord, stage: usize) -> Call {
         self.records.push(record);
         Call {
             stage,
@@ -67,14 +68,14 @@ impl Batch {
     }
 
     /// Leaves out what comes after the last stage of this name.
-    pub(crate) fn end_after(&mut self, kernels: &[Kernel], name: &str) {
+    pub fn end_after(&mut self, kernels: &[Kernel], name: &str) {
         let last = |call: &Call| kernels[call.stage].name == name;
         let count = self.calls.iter().rposition(last);
         self.calls.truncate(count.map_or(0, |last| last + 1));
     }
 
     /// True if it is time that the device gets it.
-    pub(crate) fn is_full(&self) -> bool {
+    pub fn is_full(&self) -> bool {
         self.steps == BATCH
             || self.blends.len() >= MOST_BLENDS
             || 4 * self.poses.len() > POSES_BYTES
@@ -82,19 +83,21 @@ impl Batch {
 }
 
 /// The device with its pipelines and buffers.
-pub(crate) struct Workspace {
-    pub(crate) gpu: Device,
+pub struct Workspace {
+    /// The device.
+    pub gpu: Device,
     pipelines: Vec<Pipeline>,
     records: Arena,
     /// By binding.
     buffers: Vec<Arena>,
     back: Arena,
-    pub(crate) traffic: Arc<Traffic>,
+    /// What its steps move, counted.
+    pub traffic: Arc<Traffic>,
 }
 
 impl Workspace {
     /// Makes the pipelines.
-    pub(crate) fn new(gpu: Device, kernels: &'static [Kernel]) -> Result<Self, GpuError> {
+    pub fn new(gpu: Device, kernels: &'static [Kernel]) -> Result<Self, GpuError> {
         let pipelines =
             gpu.guarded(|| Ok(kernels.iter().map(|k| Pipeline::new(&gpu, k)).collect()))?;
         let storage = Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC;
@@ -128,7 +131,7 @@ impl Workspace {
     }
 
     /// Takes window and load onto the device.
-    pub(crate) fn upload(
+    pub fn upload(
         &mut self,
         on: &Residence,
         (window, load): (&Window, &BrushLoad),
@@ -153,7 +156,7 @@ impl Workspace {
     }
 
     /// Gives the device a batch of steps.
-    pub(crate) fn submit(&mut self, on: &Residence, batch: &Batch) -> Result<(), GpuError> {
+    pub fn submit(&mut self, on: &Residence, batch: &Batch) -> Result<(), GpuError> {
         let gpu = self.gpu.clone();
         gpu.guarded(|| {
             let cells = batch.records.iter().map(StepRecord::cells).max();
@@ -215,7 +218,7 @@ impl Workspace {
     }
 
     /// Reads rows of the window, the load, and what the steps did.
-    pub(crate) fn read_back(
+    pub fn read_back(
         &mut self,
         on: &Residence,
         rows: Range<usize>,
@@ -245,7 +248,7 @@ impl Workspace {
     }
 
     /// Reads parts of buffers, one after the other: which, from where, how many bytes.
-    pub(crate) fn read<T>(
+    pub fn read<T>(
         &mut self,
         ranges: &[(Binding, u64, u64)],
         take: impl FnOnce(&[u8]) -> T,

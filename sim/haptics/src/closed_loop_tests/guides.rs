@@ -9,7 +9,7 @@ use maulstick_num::sin;
 use maulstick_types::haptics::GuideModel;
 
 use super::{DT, Extent, HANDS, STILL_M};
-use crate::guide::Guide;
+use crate::guide::{Guide, GuideBounds};
 use crate::plant::{Hand, Plant};
 use crate::servo::Servo;
 use crate::servo::limits::Limits;
@@ -35,11 +35,15 @@ fn guide(points_m: Vec<[f64; 3]>, stiffness_n_m: f64) -> Guide {
 
 /// The bounds of the bare guide.
 fn unguarded() -> Limits {
+    let limits = super::unguarded();
     Limits {
-        guide_stiffness_n_m: 1e9,
-        guide_n: 3.3,
-        guide_reach_m: 1.0,
-        ..super::unguarded()
+        guide: GuideBounds {
+            stiffness_n_m: 1e9,
+            force_n: 3.3,
+            reach_m: 1.0,
+            ..limits.guide
+        },
+        ..limits
     }
 }
 
@@ -129,10 +133,8 @@ fn a_guide_that_is_too_stiff_or_late_shakes_a_fingertip_and_the_servo_makes_it_s
         println!("{hold:?}: {:.1} mm", wobble * 1e3);
         assert!(wobble > 1e-3, "{hold:?}: {wobble} m");
         if delay <= 4 {
-            let bounded = Limits {
-                guide_stiffness_n_m: Limits::default().guide_stiffness_n_m,
-                ..unguarded()
-            };
+            let mut bounded = unguarded();
+            bounded.guide.stiffness_n_m = Limits::default().guide.stiffness_n_m;
             let wobble = hold.wobble(bounded);
             assert!(wobble < STILL_M, "{hold:?}: {wobble} m");
         }

@@ -28,7 +28,6 @@ pub(super) struct Guidance {
     /// Part of the previous force that is still to fade, N.
     correction: DVec3,
     engagement: Engagement,
-    engaged_s: f64,
     oscillation: Oscillation,
     fast_hand: FastHand,
 }
@@ -76,8 +75,7 @@ impl Guidance {
             active: None,
             arrived: None,
             correction: DVec3::ZERO,
-            engagement: Engagement::ANEW,
-            engaged_s: 0.0,
+            engagement: Engagement::NEW,
             oscillation: Oscillation::default(),
             fast_hand: FastHand::default(),
         }
@@ -106,12 +104,12 @@ impl Guidance {
 
     /// The force engages anew.
     pub(super) fn engage_anew(&mut self) {
-        self.engagement = Engagement::ANEW;
+        self.engagement.wait_anew();
     }
 
     /// The ramp begins anew.
     pub(super) fn ramp_anew(&mut self) {
-        self.engaged_s = 0.0;
+        self.engagement.ramp_anew();
     }
 
     /// True while a guide is alive.
@@ -139,16 +137,19 @@ impl Guidance {
 
     /// The ramp and the correction continue by a tick, and the guide ages by all the time that has passed.
     pub(super) fn age(&mut self, limits: &Limits, dt: f64, passed_s: f64) {
-        self.engaged_s += dt;
+        self.engagement.age(dt);
         if let Some(active) = &mut self.active {
             active.age_s += passed_s;
         }
         if !self.is_alive(limits) {
             self.active = None;
             self.correction = DVec3::ZERO;
-            self.engagement = Engagement::ANEW;
+            self.engagement.wait_anew();
         }
-        let (size, shrunk) = (self.correction.length(), limits.guide_n * (dt / RECOVERY_S));
+        let (size, shrunk) = (
+            self.correction.length(),
+            limits.guide.force_n * (dt / RECOVERY_S),
+        );
         self.correction = match size > shrunk {
             true => self.correction * ((size - shrunk) / size),
             false => DVec3::ZERO,
@@ -195,9 +196,10 @@ impl Guidance {
         };
         // From the largest force one way to the largest the other way.
         self.correction = (self.correction - change).clamp_length_max(2.0 * bounds.force_n);
-        let touch = match self.engagement == Engagement::Begun && self.holds(limits) {
-            true => Touch::Contact,
-            false => Touch::Air,
+        let touch = if self.engagement.has_begun() && self.holds(limits) {
+            Touch::Contact
+        } else {
+            Touch::Air
         };
         // A hand that was let go feels the guide again from the path on, as it would feel a wall.
         let speed = handle.velocity.length() / limits.max_speed_m_s;
@@ -230,12 +232,11 @@ impl Guidance {
             false => asked.length(),
         };
         if self.engagement.waits(asked_n, limits.engage_n) {
-            self.engaged_s = 0.0;
             self.correction = DVec3::ZERO;
             return Guiding::default();
         }
         let most = limits.guide_bounds().force_n;
-        let ramp = (self.engaged_s / limits.engage_s).min(1.0);
+        let ramp = self.engagement.ramp(limits.engage_s);
         let softer = strength * self.oscillation.softness() * self.fast_hand.softness();
         let share = fading * ramp * softer;
         Guiding {

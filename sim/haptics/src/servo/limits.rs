@@ -4,8 +4,6 @@ use crate::guide::GuideBounds;
 
 /// Stiffness of a guide at most, by the largest of the device: in the canvas it is felt beside a wall as stiff as that.
 const GUIDE_STIFFNESS: f64 = 0.25;
-/// Damping of a guide at most, N·s/m: as of the passivity controller, more would shake on a velocity in encoder steps.
-const GUIDE_DAMPING: f64 = 0.8;
 
 /// The bounds of a servo.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,12 +37,8 @@ pub struct Limits {
     pub standstill_s: f64,
     /// Time without contact after which the amplifiers go off, s.
     pub idle_s: f64,
-    /// Largest force of a guide, N.
-    pub guide_n: f64,
-    /// Largest stiffness of a guide, N/m.
-    pub guide_stiffness_n_m: f64,
-    /// A guide pulls less from this distance of its path on, and not at all from twice it, m.
-    pub guide_reach_m: f64,
+    /// Bounds of a guide of a device that is strong and stiff enough.
+    pub guide: GuideBounds,
 }
 
 impl Default for Limits {
@@ -64,9 +58,13 @@ impl Default for Limits {
             longest_tick_s: 0.005,
             standstill_s: 0.1,
             idle_s: 60.0,
-            guide_n: 0.6,
-            guide_stiffness_n_m: 100.0,
-            guide_reach_m: 0.03,
+            guide: GuideBounds {
+                stiffness_n_m: 100.0,
+                // As of the passivity controller: more would shake on a velocity in encoder steps.
+                damping_n_s_m: 0.8,
+                force_n: 0.6,
+                reach_m: 0.03,
+            },
         }
     }
 }
@@ -90,21 +88,23 @@ impl Limits {
             max_speed_m_s: scale * self.max_speed_m_s,
             oscillation_m: scale * self.oscillation_m,
             engage_n: scale * self.engage_n,
-            guide_n: scale * self.guide_n,
-            guide_reach_m: scale * self.guide_reach_m,
+            guide: GuideBounds {
+                force_n: scale * self.guide.force_n,
+                reach_m: scale * self.guide.reach_m,
+                ..self.guide
+            },
             ..*self
         }
     }
 
-    /// The bounds of what a guide may ask for.
+    /// Bounds of what a guide may ask for.
     #[must_use]
     pub fn guide_bounds(&self) -> GuideBounds {
         let stiffness_n_m = GUIDE_STIFFNESS * self.max_stiffness_n_m;
         GuideBounds {
-            stiffness_n_m: self.guide_stiffness_n_m.min(stiffness_n_m),
-            damping_n_s_m: GUIDE_DAMPING,
-            force_n: self.guide_n.min(self.continuous_force_n),
-            reach_m: self.guide_reach_m,
+            stiffness_n_m: self.guide.stiffness_n_m.min(stiffness_n_m),
+            force_n: self.guide.force_n.min(self.continuous_force_n),
+            ..self.guide
         }
     }
 }

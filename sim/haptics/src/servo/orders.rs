@@ -1,9 +1,39 @@
 //! Orders of the painter and of the device: switches, strength, heat.
 
 use super::Servo;
-use super::engagement::Engagement;
 use super::oscillation::Oscillation;
 use super::tick::Switch;
+
+/// Permission for force, and its strength.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Orders {
+    switch: Switch,
+    /// The dead man's switch.
+    permitted: Switch,
+    strength: f64,
+}
+
+impl Default for Orders {
+    fn default() -> Self {
+        Self {
+            switch: Switch::On,
+            permitted: Switch::On,
+            strength: 1.0,
+        }
+    }
+}
+
+impl Orders {
+    /// True where there is to be no force.
+    pub(super) fn are_off(&self) -> bool {
+        [self.switch, self.permitted].contains(&Switch::Off)
+    }
+
+    /// Share of all force, 0 to 1.
+    pub(super) fn strength(&self) -> f64 {
+        self.strength
+    }
+}
 
 impl Servo {
     /// Makes the guides' force weaker: a share from 0 to 1.
@@ -22,13 +52,13 @@ impl Servo {
 
     /// Switches the force off, at once, or on: it engages anew.
     pub fn switch(&mut self, switch: Switch) {
-        self.switch = switch;
+        self.orders.switch = switch;
         self.wait();
     }
 
     /// Follows the dead man's switch: let go, there is no force, and it engages anew.
     pub fn permit(&mut self, dead_man: Switch) {
-        self.permitted = dead_man;
+        self.orders.permitted = dead_man;
         if dead_man == Switch::Off {
             self.wait();
         }
@@ -36,13 +66,13 @@ impl Servo {
 
     /// Both forces begin only where little is asked for.
     pub(super) fn wait(&mut self) {
-        self.engagement = Engagement::ANEW;
+        self.engagement.wait_anew();
         self.guidance.engage_anew();
     }
 
     /// Makes all force weaker: a share from 0 to 1.
     pub fn set_strength(&mut self, share: f64) {
-        self.strength = share_of(share);
+        self.orders.strength = share_of(share);
     }
 
     /// Takes in the temperature of the hottest motor, 0 cold to 1 hot.

@@ -8,6 +8,7 @@ use maulstick_types::haptics::ForceLaw;
 use proptest::prelude::*;
 
 use super::engagement::CALM_TICKS;
+use super::tick::Switch;
 use super::*;
 use crate::contact::tests::{linear, model};
 

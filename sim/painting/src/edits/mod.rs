@@ -26,8 +26,8 @@ pub use history::{Branch, Forget, GoTo, Keep, Redo, ReturnTo, Undo};
 pub use layer::{Dry, LayerRef, NameLayer, Opacity, StopDrying, Wet};
 pub use registry::{EditEntry, entries, read};
 pub use surface::{
-    Convert, Exposure, Fill, FillPaint, Ground, GroundSource, LightChange, Piles, Place, Relight,
-    Scrape, Size, Tooth, Wells,
+    Convert, Exposure, Fill, FillPaint, Flip, Ground, GroundSource, LightChange, Piles, Place,
+    Relight, Scrape, Size, Tooth, Wells,
 };
 
 use std::fmt::Debug;
@@ -45,7 +45,7 @@ macro_rules! for_each_edit {
         $with! {
             Load, LoadFrom, Clean, Tune, Handle,
             Dry, StopDrying, Wet, Opacity, NameLayer,
-            Place, Relight, Ground, Tooth, Size, Piles, Fill, Scrape, Wells, Convert,
+            Place, Relight, Ground, Tooth, Size, Piles, Fill, Scrape, Wells, Convert, Flip,
             Undo, Redo, Keep, ReturnTo, Branch, Forget, GoTo
         }
     };

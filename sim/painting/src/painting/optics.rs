@@ -6,6 +6,7 @@ use maulstick_appearance::Appearance;
 use maulstick_appearance::blank_surface::{
     BlankSurface, CLEANER_RGB, HeapColours, MEDIUM_RGB, WellLook, WellShape,
 };
+use maulstick_appearance::colouring::Colouring;
 use maulstick_appearance::ground::Ground;
 use maulstick_appearance::heap::{Heap, HeapCells};
 use maulstick_appearance::light::{changes_colour, studio_settings};
@@ -21,8 +22,8 @@ use maulstick_types::scene::{Light, PaintSlot, Scene, Surface, WellKind};
 use super::Painting;
 use super::undo::materials;
 use crate::error::paint_error;
-use crate::models::model_called;
 use crate::setup::relief_called;
+use maulstick_models::model_called;
 
 /// Thickness of an opaque layer, m.
 const OPAQUE_M: f64 = 0.01;
@@ -225,7 +226,7 @@ impl Optics {
 /// True if the relief of a surface is part of its colours.
 fn embosses(scene: &Scene) -> bool {
     let mut models = scene.surfaces.iter().map(|own| model_called(&own.model));
-    models.any(|model| model.is_ok_and(|model| model.shown.has_own_colours()))
+    models.any(|model| model.is_ok_and(|model| model.shown.colouring() != Colouring::Films))
 }
 
 /// Slot of a paint in a scene.

@@ -2,6 +2,7 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::{Counts, QUANTUM_M, SLOTS};
+use maulstick_models::{MODELS, ModelEntry};
 use maulstick_painting::edits::{Fill, FillPaint, Handle, Piles, Size};
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::Solve;
@@ -440,17 +441,30 @@ fn narrow_surfaces_are_painted_on() {
 }
 
 #[test]
-fn what_lies_under_the_brush_is_told() {
-    let under = |text: &str| {
-        let mut easel = Easel::new();
+fn what_lies_under_the_brush_has_the_viscosity_of_its_model() {
+    let under = |model: &ModelEntry, text: &str| {
+        let mut easel = Easel::of(PaintingSetup {
+            model: model.name.to_owned(),
+            ..PaintingSetup::default()
+        });
         easel.painting.apply(fill(text, 100.0)).expect("laid");
         easel.middle();
         easel.painting.under_brush(name_hash(BRUSH))
     };
-    let tube = under(WHITE);
-    assert!((5e-5..2e-4).contains(&tube.film_m), "{tube:?}");
-    assert!((tube.viscosity_m2_s - 1e-2).abs() < 1e-9, "{tube:?}");
-    assert!((1e-3..2e-2).contains(&tube.contact_m), "{tube:?}");
-    let thin = under("Titanium White=0.5,Thinner=0.5");
-    assert!(thin.viscosity_m2_s < 0.2 * tube.viscosity_m2_s, "{thin:?}");
+    for model in &MODELS {
+        let tube = under(model, WHITE);
+        assert!((5e-5..2e-4).contains(&tube.film_m), "{model:?}: {tube:?}");
+        assert!(
+            (1e-3..2e-2).contains(&tube.contact_m),
+            "{model:?}: {tube:?}"
+        );
+        let thin = under(model, "Titanium White=0.5,Thinner=0.5");
+        for (found, thinner) in [(tube, 0.0), (thin, 0.5)] {
+            let own = model.rheology.thinned_m2_s(thinner);
+            let off = (found.viscosity_m2_s / own - 1.0).abs();
+            assert!(off < 0.05, "{model:?}: {found:?} instead of {own}");
+        }
+    }
+    let [tube, thin] = [0.0, 0.5].map(|thinner| MODELS[0].rheology.thinned_m2_s(thinner));
+    assert!(tube == 1e-2 && thin < 0.2 * tube, "{tube} {thin}");
 }

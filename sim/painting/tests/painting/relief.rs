@@ -1,6 +1,7 @@
 //! Relief below a brush, as the hand feels it.
 
 use maulstick_brush::BrushFile;
+use maulstick_models::{MODELS, ModelEntry};
 use maulstick_painting::edits::Dry;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::{BrushRelief, Solve};
@@ -18,9 +19,14 @@ fn file() -> BrushFile {
 }
 
 fn bare() -> Painting {
+    bare_of(&MODELS[0])
+}
+
+fn bare_of(model: &ModelEntry) -> Painting {
     let mut painting = painting(&PaintingSetup {
         cells: [256, 256],
         tooth: "panel".into(),
+        model: model.name.to_owned(),
         ..PaintingSetup::default()
     });
     painting.define_brush(BRUSH, file());
@@ -62,6 +68,26 @@ fn dry_paint_is_felt_as_high_as_it_is_and_wet_paint_by_a_share_of_its_yield_stre
     assert!((wet / dry - 0.2).abs() < 0.01, "{wet}");
     // Half of it thinner: no yield stress is left.
     assert!(thin.abs() < 1.0, "{thin}");
+}
+
+#[test]
+fn wet_paint_bears_the_share_that_its_model_says() {
+    let middle = [0.5 * WIDE_MM; 2];
+    let share = |model: &ModelEntry| {
+        let mut painting = bare_of(model);
+        let ground = mean_um(&relief(&painting, middle));
+        painting.apply(fill(WHITE, 200.0)).expect("laid");
+        (mean_um(&relief(&painting, middle)) - ground) / 200.0
+    };
+    for model in &MODELS {
+        let share = share(model);
+        let off = |model: &ModelEntry| (share - model.rheology.bears).abs();
+        assert!(off(model) < 0.01, "{model:?}: {share}");
+        let other = MODELS
+            .iter()
+            .find(|other| other.rheology.bears != model.rheology.bears);
+        assert!(off(other.expect("they differ")) > 0.1, "a fault passes");
+    }
 }
 
 #[test]

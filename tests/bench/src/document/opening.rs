@@ -65,7 +65,7 @@ fn once(path: &std::path::Path) -> Result<[f64; 2], UserError> {
         let limit = Duration::from_secs(60);
         let query = bus.ask(&topics.frame(), Qos::Data, bytes, limit, &Wake::new())?;
         net.advance(1);
-        frames.turn();
+        frames.poll();
         net.advance(1);
         let Some(Answer::Bytes(bytes)) = query.try_recv() else {
             return Err(fault("no frame came"));

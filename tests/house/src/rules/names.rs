@@ -6,8 +6,10 @@ use super::Breaches;
 use crate::facts::Facts;
 use crate::tree::{Tree, below};
 
-/// The file that names all models, one entry each.
-const REGISTRY: &str = "sim/painting/src/models.rs";
+/// Folder of the registry and of the models, a folder each.
+const MODELS: &str = "sim/models";
+/// File of a model's entry, below its folder.
+const ENTRY: &str = "/src/entry.rs";
 const GRAPHICS: &str = "sim/gpu";
 /// A model whose name is that of a brush's mode as well, in texts.
 const ALSO_A_MODE: &str = "marker";
@@ -16,23 +18,14 @@ const EDITS: &str = "sim/painting/src/edits";
 /// Folder of the edits' widgets.
 const WIDGETS: &str = "ui/src/panels";
 
-/// Names of the models, from the registry's entries.
+/// Names of the models: their folders.
 fn model_names(tree: &Tree) -> Vec<&str> {
-    let registry = tree.texts.get(REGISTRY).map_or("", String::as_str);
-    let names = registry.lines().filter_map(|line| {
-        let rest = line.trim().strip_prefix("name: \"")?;
-        rest.strip_suffix("\",")
-    });
+    let folders = tree
+        .texts
+        .keys()
+        .filter_map(|path| path.strip_suffix(ENTRY));
+    let names = folders.filter_map(|folder| folder.strip_prefix(MODELS)?.strip_prefix('/'));
     names.collect()
-}
-
-/// The folder of a path that belongs to a model: one with its name, or its name and another word.
-fn own_folder<'a>(path: &'a str, models: &[&str]) -> Option<&'a str> {
-    let mut folders = path.match_indices('/').map(|(end, _)| &path[..end]);
-    folders.find(|folder| {
-        let name = folder.rsplit('/').next().unwrap_or(folder);
-        name.split(['-', '_']).any(|word| models.contains(&word))
-    })
 }
 
 /// Whether a text is a model's name, or has it beside the word "model".
@@ -71,26 +64,27 @@ pub(super) fn models(tree: &Tree, found: &mut Breaches) {
         rest.split('_').next() == Some(model)
     };
     for (file, facts) in tree.product() {
-        let own = own_folder(file, &models).is_some() || file == REGISTRY;
-        if !own && !below(file, GRAPHICS) {
+        if !below(file, MODELS) && !below(file, GRAPHICS) {
             add(file, facts, &models, is_crate, found);
         }
     }
 }
 
-/// Models' names in the graphics crate; the files of a model's folder there count one each.
+/// Models' names in the graphics crate, and models that it is built with.
 pub(super) fn graphics(tree: &Tree, found: &mut Breaches) {
     let models = model_names(tree);
     let has = |name: &str, model: &str| model != ALSO_A_MODE && name.to_lowercase().contains(model);
-    for file in tree.texts.keys().filter(|file| below(file, GRAPHICS)) {
-        let facts = tree.facts.get(file);
-        if !file.contains("/src/") && !file.ends_with("/build.rs") {
-            continue;
-        } else if let Some(folder) = own_folder(file, &models) {
-            let what = format!("{file} is one model's: move it to the model");
-            found.one(folder, 0, &what);
-        } else if let Some(facts) = facts {
+    for (file, facts) in &tree.facts {
+        let is_product = file.contains("/src/") || file.ends_with("/build.rs");
+        if below(file, GRAPHICS) && is_product {
             add(file, facts, &models, has, found);
+        }
+    }
+    let package = tree.packages.get(GRAPHICS);
+    for other in package.map_or_else(BTreeSet::new, |package| tree.built_with(&package.name)) {
+        if below(other, MODELS) {
+            let what = format!("it is built with {other}: turn the dependency round");
+            found.one(GRAPHICS, 0, &what);
         }
     }
 }

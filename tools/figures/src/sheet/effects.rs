@@ -10,7 +10,7 @@ use maulstick_types::values::{BrushName, Share};
 
 use super::gesture::{Gesture, Moment, swell};
 use super::marks::stroke;
-use super::{BRUSH, DEPTH_SHARE, GAP_MM, Panel, Sheet, library_brush, mixture_of, stroking};
+use super::{BRUSH, DEPTH_SHARE, GAP_MM, Panel, Sheet, library_brush, mixture_of};
 use maulstick::paintings::Board;
 use maulstick::performance::refused;
 
@@ -88,11 +88,8 @@ pub(crate) fn effects(
 ) -> Result<Picture, UserError> {
     let [across, up] = PANEL_MM;
     let columns = 2;
-    let stroking = match board.model {
-        "dab" => &stroking::PANELS[..],
-        _ => &[],
-    };
-    let panels = EFFECTS.len() + stroking.len();
+    let own = board.model.panels;
+    let panels = EFFECTS.len() + own.len();
     let rows = panels.div_ceil(columns);
     let width = GAP_MM + columns as f64 * (across + GAP_MM);
     let height = GAP_MM + rows as f64 * (WORDS_MM + up + GAP_MM);
@@ -111,9 +108,10 @@ pub(crate) fn effects(
         let panel = (effect.paint)(library.clone(), board)?;
         put(effect.name, effect.words, &panel.picture());
     }
-    for (words, way_mm) in stroking {
-        let picture = stroking::panel(PANEL_MM, *way_mm, board.cell_mm)?;
-        put("stroking", words, &picture);
+    for panel in own {
+        let picture = (panel.draw)(PANEL_MM, board.cell_mm);
+        let picture = picture.map_err(|error| UserError::failure(error.to_string()))?;
+        put(panel.name, panel.words, &picture);
     }
     Ok(sheet.page.done())
 }
@@ -361,6 +359,7 @@ fn thinning(library: PaintLibrary, board: Board) -> Result<Panel, UserError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use maulstick_models::MODELS;
 
     #[test]
     fn words_end_with_their_panel() {
@@ -372,8 +371,8 @@ mod tests {
         for effect in &EFFECTS {
             assert!(fits(effect.words), "{}", effect.words);
         }
-        for (words, _) in &stroking::PANELS {
-            assert!(fits(words), "{words}");
+        for panel in MODELS.iter().flat_map(|entry| entry.panels) {
+            assert!(fits(panel.words), "{}", panel.words);
         }
         assert!(!fits(
             "thick strokes, dried; a wiped brush of white over the right half"

@@ -7,14 +7,12 @@
 //! | [`marks`] | the marks of a brush |
 //! | [`one_stroke`] | the six marks of a double-loaded one |
 //! | [`softening`] | what a blender does between two wet colours |
-//! | `stroking` | dAb's stroking algorithms |
 
 pub(crate) mod effects;
 pub(crate) mod gesture;
 pub(crate) mod marks;
 pub(crate) mod one_stroke;
 pub(crate) mod softening;
-mod stroking;
 #[cfg(test)]
 mod tests;
 
@@ -123,7 +121,7 @@ impl Panel {
             ground: ground.to_owned(),
             cells: size_mm.map(|mm| pixels(mm, board.cell_mm) as u32),
             cell_m: 1e-3 * board.cell_mm,
-            model: board.model.to_owned(),
+            model: board.model.name.to_owned(),
             ..PaintingSetup::default()
         };
         let painting = Painting::new(&setup, library).map_err(refused)?;

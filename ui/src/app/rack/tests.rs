@@ -23,7 +23,11 @@ fn rack<'a>(bench: Bench) -> Harness<'a, Bench> {
 #[test]
 fn a_click_takes_a_brush_into_the_hand_at_its_width() {
     let mut bench = Bench::new();
-    bench.preferences.widths_mm.insert("flat".into(), 30.0);
+    bench
+        .preferences
+        .brushes
+        .widths_mm
+        .insert("flat".into(), 30.0);
     let mut harness = rack(bench);
     harness.get_by_label("Flat, 30 mm").click();
     harness.run();
@@ -63,7 +67,7 @@ fn the_keyboard_reaches_it_and_the_other_brush_of_the_rig() {
 fn it_covers_a_strip_at_the_side_of_the_hand() {
     for left_handed in [false, true] {
         let mut bench = Bench::new();
-        bench.preferences.left_handed = left_handed;
+        bench.preferences.window.left_handed = left_handed;
         let covered = Cell::new(Rect::NOTHING);
         let mut harness = window(vec2(400.0, 300.0), bench, |ui, work| {
             covered.set(show(ui.ctx(), work));
@@ -88,7 +92,7 @@ fn files_of_ones_own_join_it_and_a_lost_one_is_told() {
     let text = text.replace("kind = \"fan\"", "kind = \"rake\"");
     std::fs::write(&path, text).expect("written");
     let mut bench = Bench::new();
-    bench.preferences.own_brushes = vec![folder.path().join("lost.toml"), path];
+    bench.preferences.brushes.own_brushes = vec![folder.path().join("lost.toml"), path];
     let mut harness = rack(bench);
     harness.get_by_label("Rake, 40 mm").click_accesskit();
     harness.run();

@@ -2,8 +2,11 @@ use super::*;
 use crate::test_support::overlay_bench::picture;
 
 fn asked(change: impl FnOnce(&mut NewPainting)) -> Result<Command, String> {
-    let mut new =
-        NewPainting::kept_in("/nowhere/Painting".into(), Units::Metric, Unkept::default());
+    let mut new = NewPainting::kept_in(
+        "/nowhere/Painting".into(),
+        Units::Metric,
+        UnsavedState::default(),
+    );
     new.as_sketch = true;
     change(&mut new);
     new.command()
@@ -84,7 +87,7 @@ fn how_large_it_is_is_told_in_words() {
 fn it_looks_as_in_its_picture() {
     let new = || {
         let path = "/home/ada/Paintings/Birches.maul".into();
-        NewPainting::kept_in(path, Units::Metric, Unkept::default())
+        NewPainting::kept_in(path, Units::Metric, UnsavedState::default())
     };
     picture(
         "files_new",

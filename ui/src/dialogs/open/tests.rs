@@ -1,6 +1,6 @@
 use super::*;
 use crate::dialogs::browser::folder::Entry;
-use crate::dialogs::recent::Recent;
+use crate::dialogs::open::recent::Recent;
 use crate::test_support::overlay_bench::picture;
 
 fn entry(name: &str, age: &str) -> Entry {
@@ -31,7 +31,7 @@ fn dialog() -> OpenPainting {
         entry("Sea at dawn.maul", "2 hours ago"),
     ];
     let begin = Browser::at("/home/ada/Paintings/", Purpose::Read, PAINTINGS);
-    OpenPainting::new(folder, RecentList::of(recent), Unkept::default())
+    OpenPainting::new(folder, RecentList::of(recent), UnsavedState::default())
         .with(begin.listing(entries, PAINTINGS))
 }
 

@@ -107,9 +107,9 @@ fn another_brush_lays_full_paint_and_another_width_what_the_preset_says() {
         ..BrushHandling::normal("main")
     };
     bench.rig.live.scene.as_mut().expect("a scene").handlings = vec![limited];
-    bench.preferences.loading.thinner = 0.7;
-    bench.preferences.mouse.pressure = 0.08;
-    bench.preferences.before_preset = Some(BeforePreset {
+    bench.preferences.brushes.loading.thinner = 0.7;
+    bench.preferences.brushes.mouse.pressure = 0.08;
+    bench.preferences.brushes.before_preset = Some(BeforePreset {
         brush: "main".into(),
         pressure: 0.5,
         stiffness: 1.0,
@@ -117,7 +117,7 @@ fn another_brush_lays_full_paint_and_another_width_what_the_preset_says() {
     });
     bench.work().step_width(true);
     assert_eq!(defined(&mut bench).len(), 1, "nothing but a width");
-    assert_eq!(bench.preferences.loading.thinner, 0.7);
+    assert_eq!(bench.preferences.brushes.loading.thinner, 0.7);
     bench.work().next_brush();
     let commands = bench.commands();
     let mut handled = commands.iter().filter_map(Command::edit::<Handle>);
@@ -125,9 +125,9 @@ fn another_brush_lays_full_paint_and_another_width_what_the_preset_says() {
     assert_eq!(handled, Some(BrushHandling::normal("main")));
     let tuned = |command: &Command| command.edit::<Tune>().is_some();
     assert!(commands.iter().any(tuned), "it is as stiff as before");
-    assert_eq!(bench.preferences.loading.thinner, 0.0);
+    assert_eq!(bench.preferences.brushes.loading.thinner, 0.0);
     assert_eq!(
-        bench.preferences.mouse.pressure, 0.5,
+        bench.preferences.brushes.mouse.pressure, 0.5,
         "and pressed as before"
     );
 }
@@ -205,17 +205,17 @@ fn the_field_of_the_paint_says_what_was_loaded_last_wherever_that_was_asked_for(
         result: Ok(Detail::Nothing),
     };
     bench.work().brush_answered(&load("Bone Black", "other"));
-    assert_eq!(bench.preferences.loading.paint, "", "another brush");
+    assert_eq!(bench.preferences.brushes.loading.paint, "", "another brush");
     bench.work().brush_answered(&load("Bone Black", "main"));
-    assert_eq!(bench.preferences.loading.paint, "Bone Black");
+    assert_eq!(bench.preferences.brushes.loading.paint, "Bone Black");
     // What was typed in parts and thinned there stays as it was typed.
-    bench.preferences.loading.paint = "2 Bone Black, 2 Titanium White".into();
-    bench.preferences.loading.thinner = 0.5;
+    bench.preferences.brushes.loading.paint = "2 Bone Black, 2 Titanium White".into();
+    bench.preferences.brushes.loading.thinner = 0.5;
     let thinned = "Bone Black=0.25,Titanium White=0.25,Thinner=0.5";
     bench.work().brush_answered(&load(thinned, "main"));
-    assert_eq!(bench.preferences.loading.thinner, 0.5);
+    assert_eq!(bench.preferences.brushes.loading.thinner, 0.5);
     bench.work().brush_answered(&load("Yellow Ochre", "main"));
-    let loading = &bench.preferences.loading;
+    let loading = &bench.preferences.brushes.loading;
     assert_eq!(
         (loading.paint.as_str(), loading.thinner),
         ("Yellow Ochre", 0.0)

@@ -5,7 +5,7 @@ use maulstick_brush::BrushFile;
 use maulstick_ui_kit::labelled;
 use maulstick_ui_kit::language::translated;
 
-use crate::input::brush_choice::{is_of_library, of_library};
+use crate::settings::brush_library::{is_of_library, of_library};
 use crate::widgets::context::PanelContext;
 
 /// Unit that is shown as the painter has chosen.
@@ -84,7 +84,7 @@ pub(super) fn show(
     for number in &NUMBERS {
         let value = (number.of)(&mut wanted);
         let (unit, decimals, sign) = match number.unit {
-            MILLIMETRES => work.preferences.units.small(),
+            MILLIMETRES => work.preferences.window.units.small(),
             other => (1.0, 2, other),
         };
         let mut shown = *value / unit;

@@ -32,7 +32,7 @@ impl OwnBrushes {
             self.path.clear();
         }
         let mut gone = None;
-        for (place, path) in work.preferences.own_brushes.iter().enumerate() {
+        for (place, path) in work.preferences.brushes.own_brushes.iter().enumerate() {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             let left = |ui: &mut Ui| {
                 ui.add(eframe::egui::Label::new(&*name).truncate())
@@ -48,7 +48,7 @@ impl OwnBrushes {
             entry(ui, left, right);
         }
         if let Some(place) = gone {
-            work.preferences.own_brushes.remove(place);
+            work.preferences.brushes.own_brushes.remove(place);
         }
     }
 }
@@ -58,8 +58,11 @@ fn add_file(ui: &Ui, work: &mut PanelContext<'_>, path: PathBuf) -> bool {
     icon_cache::forget(ui.ctx(), &path);
     match icon_cache::own(ui.ctx(), &path) {
         Ok(file) => {
-            work.preferences.own_brushes.retain(|known| *known != path);
-            work.preferences.own_brushes.push(path);
+            work.preferences
+                .brushes
+                .own_brushes
+                .retain(|known| *known != path);
+            work.preferences.brushes.own_brushes.push(path);
             work.take_up((*file).clone());
             true
         }

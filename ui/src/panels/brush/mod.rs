@@ -24,11 +24,12 @@ use maulstick_types::scene::{BrushHandling, Tuning};
 use maulstick_ui_kit::labelled::{self, PendingValue};
 use maulstick_ui_kit::language::known;
 
-use crate::input::brush_choice::{called, library, resized, widths_mm};
+use crate::input::brush_choice::{resized, widths_mm};
 use crate::input::keymap::Keymap;
 use crate::input::keys::Action;
 use crate::panels::Panel;
 use crate::render::brush::icon_cache;
+use crate::settings::brush_library::{called, library};
 use crate::settings::grip::{Grip, MOUSE_PRESSURE};
 use crate::widgets::context::PanelContext;
 
@@ -67,7 +68,11 @@ impl Panel for BrushPanel {
         self.tuning(ui, work);
         modes::show(ui, work, &mut self.handling);
         ui.collapsing(tr!("Mouse"), |ui| {
-            mouse(ui, &work.preferences.keys, &mut work.preferences.mouse);
+            mouse(
+                ui,
+                &work.preferences.keys,
+                &mut work.preferences.brushes.mouse,
+            );
         });
         ui.separator();
         self.paint.show(ui, work);
@@ -162,7 +167,7 @@ impl BrushPanel {
 
     /// Width slider; true while it is dragged.
     fn width(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, file: &BrushFile) -> bool {
-        let (unit_mm, decimals, sign) = work.preferences.units.small();
+        let (unit_mm, decimals, sign) = work.preferences.window.units.small();
         let mut width = file.head.width_mm / unit_mm;
         let hover = work.preferences.keys.hint(
             ui.ctx(),

@@ -22,7 +22,7 @@ pub(super) struct PaintRows {
 
 impl PaintRows {
     pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
-        let before = work.preferences.loading.clone();
+        let before = work.preferences.brushes.loading.clone();
         if work
             .rig
             .brush()
@@ -42,11 +42,11 @@ impl PaintRows {
         let mut enter = field(ui, work, tr!("Paint"), hover, |loading| {
             Some(&mut loading.paint)
         });
-        let mut two = work.preferences.loading.beside.is_some();
+        let mut two = work.preferences.brushes.loading.beside.is_some();
         let check = ui.checkbox(&mut two, tr!("Second colour on the right half"));
         let hover = tr!("Two paints side by side on one brush (double loading).");
         if check.on_hover_text(hover).changed() {
-            work.preferences.loading.beside = two.then(String::new);
+            work.preferences.brushes.loading.beside = two.then(String::new);
         }
         if two {
             let hover = tr!("What the right half of the brush takes up.");
@@ -54,17 +54,31 @@ impl PaintRows {
                 loading.beside.as_mut()
             });
         }
-        let mut percent = (work.preferences.loading.thinner * 100.0).round();
+        let mut percent = (work.preferences.brushes.loading.thinner * 100.0).round();
         let most = ThinnerShare::MOST.get() * 100.0;
         let slider = labelled::slider(&mut percent, 0.0..=most, " %").max_decimals(0);
         let hover =
             tr!("Share of thinner in what the brush takes up: thin paint is transparent and runs.");
         if labelled::named(ui, tr!("Thinner"), hover, slider).changed() {
-            work.preferences.loading.thinner = percent / 100.0;
+            work.preferences.brushes.loading.thinner = percent / 100.0;
         }
+        self.buttons(ui, work, enter);
+        if before != work.preferences.brushes.loading {
+            self.fault = None;
+        }
+        if let Some(fault) = &self.fault {
+            labelled::wrong(ui, &fault.what);
+            if let Some(help) = &fault.help {
+                ui.label(help);
+            }
+        }
+    }
+
+    /// Load and Clean; `enter` loads as well.
+    fn buttons(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, enter: bool) {
         ui.horizontal(|ui| {
             let load = ui.add_enabled(
-                !work.preferences.loading.paint.is_empty(),
+                !work.preferences.brushes.loading.paint.is_empty(),
                 Button::new(tr!("Load")),
             );
             let load = load.on_hover_text(tr!("The brush is cleaned, and full of this paint."));
@@ -82,20 +96,15 @@ impl PaintRows {
                 crate::widgets::context::ask(work, brush.map(|brush| Clean { brush }));
             }
         });
-        if before != work.preferences.loading {
-            self.fault = None;
-        }
-        if let Some(fault) = &self.fault {
-            labelled::wrong(ui, &fault.what);
-            if let Some(help) = &fault.help {
-                ui.label(help);
-            }
-        }
     }
 
     fn load(&mut self, work: &mut PanelContext<'_>) {
         let brush = work.rig.brush_name().to_owned();
-        let load = work.preferences.loading.edit(&brush, &work.rig.library);
+        let load = work
+            .preferences
+            .brushes
+            .loading
+            .edit(&brush, &work.rig.library);
         self.fault = match load {
             Ok(load) => {
                 work.then(load.into());
@@ -114,7 +123,7 @@ fn field(
     hover: &str,
     part: impl Fn(&mut crate::settings::brush_load::BrushLoad) -> Option<&mut String>,
 ) -> bool {
-    let Some(text) = part(&mut work.preferences.loading) else {
+    let Some(text) = part(&mut work.preferences.brushes.loading) else {
         return false;
     };
     let edit = TextEdit::singleline(text)

@@ -42,7 +42,7 @@ fn shown_name(preset: &Preset) -> &str {
 }
 
 /// Action on a preset.
-enum Deed {
+enum PresetAction {
     Apply,
     Rename,
     Delete,
@@ -52,19 +52,19 @@ impl PresetRows {
     pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         ui.strong(tr!("Presets"));
         let mut asked = None;
-        for place in 0..work.preferences.presets.len() {
+        for place in 0..work.preferences.brushes.presets.len() {
             if self.renamed.as_ref().is_some_and(|(own, _)| *own == place) {
                 self.rename(ui, work, place);
                 continue;
             }
-            let preset = &work.preferences.presets[place];
+            let preset = &work.preferences.brushes.presets[place];
             let name = shown_name(preset).to_owned();
-            let words = preset.words(work.preferences.units);
+            let words = preset.words(work.preferences.window.units);
             let mut take = false;
             let taken = [tr!("Rename"), tr!("Delete")].map(|word| small_width(ui, word));
             let room = ui.available_width() - taken.iter().sum::<f32>();
             let width = room.ceil().min(NAME);
-            let mut deed = None;
+            let mut action = None;
             entry(
                 ui,
                 |ui| {
@@ -82,44 +82,49 @@ impl PresetRows {
                         .on_hover_text(tr!("Delete {name}", name))
                         .clicked()
                     {
-                        deed = Some(Deed::Delete);
+                        action = Some(PresetAction::Delete);
                     }
                     if ui
                         .small_button(tr!("Rename"))
                         .on_hover_text(tr!("Rename {name}", name))
                         .clicked()
                     {
-                        deed = Some(Deed::Rename);
+                        action = Some(PresetAction::Rename);
                     }
                 },
             );
             if take {
-                deed = Some(Deed::Apply);
+                action = Some(PresetAction::Apply);
             }
-            asked = deed.map(|deed| (place, deed)).or(asked);
+            asked = action.map(|action| (place, action)).or(asked);
         }
-        match asked {
-            Some((place, Deed::Apply)) => {
-                let preset = work.preferences.presets[place].clone();
-                if let Err(fault) = preset.apply(work) {
-                    work.notifications.of(&fault);
-                }
-            }
-            Some((place, Deed::Rename)) => {
-                self.renamed = Some((
-                    place,
-                    shown_name(&work.preferences.presets[place]).to_owned(),
-                ));
-                self.wrong = None;
-            }
-            Some((place, Deed::Delete)) => {
-                self.deleted = Some((place, work.preferences.presets.remove(place)));
-                self.renamed = None;
-            }
-            None => {}
+        if let Some((place, action)) = asked {
+            self.carry_out(place, action, work);
         }
         self.take_back(ui, work);
         self.save(ui, work);
+    }
+
+    fn carry_out(&mut self, place: usize, action: PresetAction, work: &mut PanelContext<'_>) {
+        match action {
+            PresetAction::Apply => {
+                let preset = work.preferences.brushes.presets[place].clone();
+                if let Err(fault) = work.take_up_preset(&preset) {
+                    work.notifications.of(&fault);
+                }
+            }
+            PresetAction::Rename => {
+                self.renamed = Some((
+                    place,
+                    shown_name(&work.preferences.brushes.presets[place]).to_owned(),
+                ));
+                self.wrong = None;
+            }
+            PresetAction::Delete => {
+                self.deleted = Some((place, work.preferences.brushes.presets.remove(place)));
+                self.renamed = None;
+            }
+        }
     }
 
     fn take_back(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
@@ -134,8 +139,11 @@ impl PresetRows {
             |ui| back = ui.small_button(tr!("Bring back")).clicked(),
         );
         if back {
-            let place = (*place).min(work.preferences.presets.len());
-            work.preferences.presets.insert(place, preset.clone());
+            let place = (*place).min(work.preferences.brushes.presets.len());
+            work.preferences
+                .brushes
+                .presets
+                .insert(place, preset.clone());
             self.deleted = None;
         }
     }
@@ -158,11 +166,11 @@ impl PresetRows {
         }
         let name = name.trim().to_owned();
         let is_kept = ui.input(|input| input.key_pressed(Key::Escape));
-        let others = work.preferences.presets.iter().enumerate();
+        let others = work.preferences.brushes.presets.iter().enumerate();
         let others = others.filter(|(other, _)| *other != place);
         match check_name(&name, others.map(|(_, preset)| preset.name.as_str())) {
             _ if is_kept => {}
-            Ok(()) => work.preferences.presets[place].name = name,
+            Ok(()) => work.preferences.brushes.presets[place].name = name,
             Err(what) => work.notifications.fault(what, String::new()),
         }
         self.renamed = None;
@@ -184,13 +192,14 @@ impl PresetRows {
             let name = self.name.trim().to_owned();
             let others = work
                 .preferences
+                .brushes
                 .presets
                 .iter()
                 .map(|preset| preset.name.as_str());
             match check_name(&name, others) {
                 Ok(()) => {
-                    if let Some(preset) = Preset::of(&name, work) {
-                        work.preferences.presets.push(preset);
+                    if let Some(preset) = work.preset_in_hand(&name) {
+                        work.preferences.brushes.presets.push(preset);
                         self.name.clear();
                     }
                 }

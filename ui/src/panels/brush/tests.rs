@@ -238,8 +238,8 @@ fn bristles_are_changed_and_come_back() {
 #[test]
 fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
     let mut bench = Bench::new();
-    bench.preferences.presets.clear();
-    bench.preferences.loading.paint = "Bone Black".into();
+    bench.preferences.brushes.presets.clear();
+    bench.preferences.brushes.loading.paint = "Bone Black".into();
     let mut harness = panel(bench);
     harness.get_by_label("Save this brush").click();
     harness.run();
@@ -247,7 +247,7 @@ fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
     write(&mut harness, "Name", "Ink");
     harness.get_by_label("Save this brush").click();
     harness.run();
-    let saved = harness.state().preferences.presets.clone();
+    let saved = harness.state().preferences.brushes.presets.clone();
     assert_eq!(
         (saved[0].name.as_str(), saved[0].kind.as_str()),
         ("Ink", "round")
@@ -255,7 +255,13 @@ fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
     assert!(saved[0].file.is_empty(), "it is of the library");
     // Another brush, and the preset again.
     harness.state_mut().work().next_brush();
-    harness.state_mut().preferences.loading.paint.clear();
+    harness
+        .state_mut()
+        .preferences
+        .brushes
+        .loading
+        .paint
+        .clear();
     harness.state_mut().commands();
     harness.run();
     harness.get_by_label("Ink").click();
@@ -275,7 +281,10 @@ fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
         then.is_some_and(|(command, _)| command.edit::<Load>().is_some()),
         "once it is a round one"
     );
-    assert_eq!(harness.state().preferences.loading.paint, "Bone Black");
+    assert_eq!(
+        harness.state().preferences.brushes.loading.paint,
+        "Bone Black"
+    );
     harness.get_by_label("Rename").click();
     harness.run();
     harness.run();
@@ -283,13 +292,19 @@ fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
     harness.run();
     harness.key_press(Key::Enter);
     harness.run();
-    assert_eq!(harness.state().preferences.presets[0].name, "Ink wash");
+    assert_eq!(
+        harness.state().preferences.brushes.presets[0].name,
+        "Ink wash"
+    );
     harness.get_by_label("Delete").click();
     harness.run();
-    assert!(harness.state().preferences.presets.is_empty());
+    assert!(harness.state().preferences.brushes.presets.is_empty());
     harness.get_by_label("Bring back").click();
     harness.run();
-    assert_eq!(harness.state().preferences.presets[0].name, "Ink wash");
+    assert_eq!(
+        harness.state().preferences.brushes.presets[0].name,
+        "Ink wash"
+    );
 }
 
 #[test]
@@ -312,11 +327,11 @@ fn a_preset_that_was_spoilt_changes_nothing_and_is_told() {
         spoilt(|preset| preset.loading.paint = "Blue=3".into()),
     ];
     for preset in faults {
-        assert!(preset.apply(&mut bench.work()).is_err(), "{preset:?}");
+        assert!(bench.work().take_up_preset(&preset).is_err(), "{preset:?}");
         assert!(bench.requests.take().is_empty(), "{preset:?}");
     }
     assert!(
-        Preset::default().apply(&mut bench.work()).is_ok(),
+        bench.work().take_up_preset(&Preset::default()).is_ok(),
         "a fault would pass"
     );
 }
@@ -329,8 +344,8 @@ fn a_brush_file_that_is_none_is_told() {
     write(&mut harness, "File", "/nowhere/rake.toml");
     harness.get_by_label("Add to the rack").click();
     harness.run();
-    assert!(harness.state().preferences.own_brushes.is_empty());
-    let told = harness.state().notifications.told();
+    assert!(harness.state().preferences.brushes.own_brushes.is_empty());
+    let told = harness.state().notifications.shown();
     assert_eq!(told.len(), 1, "{told:?}");
 }
 
@@ -346,9 +361,9 @@ fn a_brush_that_has_said_nothing_is_waited_for() {
 fn it_looks_as_it_should() {
     let bench = || {
         let mut bench = Bench::new();
-        bench.preferences.loading.paint = "Ultramarine Blue=0.6,Titanium White=0.4".into();
-        let preset = Preset::of("Evening sky", &bench.work()).expect("a brush");
-        bench.preferences.presets.push(preset);
+        bench.preferences.brushes.loading.paint = "Ultramarine Blue=0.6,Titanium White=0.4".into();
+        let preset = bench.work().preset_in_hand("Evening sky").expect("a brush");
+        bench.preferences.brushes.presets.push(preset);
         bench
     };
     let mut shown = panel(bench());

@@ -12,8 +12,8 @@ use eframe::egui::{CollapsingHeader, DragValue, Key, TextEdit, Ui};
 use maulstick_appearance::ground::GROUNDS;
 use maulstick_canvas::assets::{IMAGE, SPECTRUM};
 use maulstick_canvas::relief::tooth;
-use maulstick_painting::edits::{Convert, Ground, Piles, Place, Size, Tooth};
-use maulstick_painting::models::model_names;
+use maulstick_models::model_names;
+use maulstick_painting::edits::{Convert, Flip, Ground, Piles, Place, Size, Tooth};
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 use maulstick_types::values::{MaterialName, ModelName, StainThickness, ValueError};
 use maulstick_ui_kit::pending::Pending;
@@ -68,6 +68,9 @@ const ZOOM: Number<'_> = Number {
     factors: true,
 };
 
+/// Name of a flip among the steps of the history.
+const _: &str = tr_noop!("flip");
+
 /// The panel.
 #[derive(Debug, Default)]
 pub(crate) struct CanvasPanel {
@@ -112,7 +115,7 @@ impl Panel for CanvasPanel {
 
 /// Size of the canvas; another size means another painting.
 fn size(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
-    let (unit_m, unit) = work.preferences.units.large();
+    let (unit_m, unit) = work.preferences.window.units.large();
     let [width, height] = canvas
         .cells
         .map(|cells| f64::from(cells) * canvas.cell_m / unit_m);
@@ -160,7 +163,7 @@ fn shown<'a>(name: &'a str, measured: &'a str) -> &'a str {
 
 /// Preferences of the painter, the same for every painting.
 fn preferences(ui: &mut Ui, work: &mut PanelContext<'_>) {
-    ui.checkbox(&mut work.preferences.left_handed, tr!("Left-handed"))
+    ui.checkbox(&mut work.preferences.window.left_handed, tr!("Left-handed"))
         .on_hover_text(tr!(
             "The palette lies at the right, brushes and panels at the left"
         ));
@@ -205,8 +208,13 @@ fn ground(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
 }
 
 impl CanvasPanel {
-    /// The piece of cloth that is the tooth, and a measured ground.
+    /// The canvas flipped, the piece of cloth that is the tooth, and a measured ground.
     fn advanced(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
+        let hover = tr!("Mirrors the paint, to see the drawing afresh; again, and it is as before");
+        let flip = ui.button(tr!("Flip left to right")).on_hover_text(hover);
+        if flip.clicked() {
+            ask(work, Ok(Flip { surface: CANVAS }));
+        }
         let (name, seed) = (&canvas.tooth, canvas.tooth_seed);
         if !name.starts_with(IMAGE) {
             let mut piece = seed;

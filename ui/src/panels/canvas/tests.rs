@@ -1,7 +1,7 @@
 use eframe::egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use maulstick_painting::edits::{Fill, FillPaint, Ground, Piles, Place, Size, Tooth};
+use maulstick_painting::edits::{Fill, FillPaint, Flip, Ground, Piles, Place, Size, Tooth};
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
 use maulstick_types::values::{BrushName, FilmThickness, MaterialName, StainThickness};
@@ -74,7 +74,7 @@ fn tooth_ground_and_sizing_are_asked_for() {
     assert_eq!(harness.state_mut().asked(), expected);
     set(&mut harness, Role::Slider, "Absorbency", 5e4);
     assert!(harness.state_mut().asked().is_empty());
-    let told = harness.state().notifications.told();
+    let told = harness.state().notifications.shown();
     assert!(
         told[0].what.contains("stain") && told[0].what.contains("1000 µm"),
         "{told:?}"
@@ -176,7 +176,7 @@ fn the_hand_and_the_lasting_paint_are_switched() {
     let mut harness = panel();
     harness.get_by_label("Left-handed").click();
     harness.run();
-    assert!(harness.state().preferences.left_handed);
+    assert!(harness.state().preferences.window.left_handed);
     harness.get_by_label("Palette never runs out").click();
     harness.run();
     let expected = Command::from(Piles {
@@ -218,8 +218,19 @@ fn a_film_is_of_a_paint_or_of_what_the_brush_carries() {
     set(&mut harness, Role::Slider, "Thickness", 9000.0);
     harness.get_by_label("Cover").click();
     harness.run();
-    let told = harness.state().notifications.told();
+    let told = harness.state().notifications.shown();
     assert!(told[0].what.contains("5000 µm"), "{told:?}");
+}
+
+#[test]
+fn the_canvas_is_flipped() {
+    let mut harness = panel();
+    harness.get_by_label("Advanced").click();
+    harness.run();
+    harness.get_by_label("Flip left to right").click();
+    harness.run();
+    let expected = Command::from(Flip { surface: CANVAS });
+    assert_eq!(harness.state_mut().asked(), [expected]);
 }
 
 #[test]

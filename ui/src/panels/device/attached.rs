@@ -1,10 +1,13 @@
 //! What is attached and not in the rig: added with a click, or what is missing for that.
 
 use eframe::egui::{Frame, RichText, Ui};
+use maulstick_device_setup::add::NewDevice;
+use maulstick_device_setup::attached::Permission;
+use maulstick_device_setup::listing::UnusedDevice;
 use maulstick_rig::user_devices::ALLOW_BY_HAND;
 use maulstick_ui_kit::rows::note;
 
-use crate::rig::device_listing::AttachedDevice;
+use crate::rig::device_order::SetupChange;
 use crate::widgets::context::PanelContext;
 
 /// Shows it.
@@ -42,11 +45,11 @@ pub(super) fn show(ui: &mut Ui, work: &mut PanelContext<'_>) {
     }
 }
 
-fn row(ui: &mut Ui, device: &AttachedDevice, work: &mut PanelContext<'_>) {
-    let driver = device.driver.as_deref().unwrap_or_default();
+fn row(ui: &mut Ui, device: &UnusedDevice, work: &mut PanelContext<'_>) {
+    let driver = device.driver;
     ui.label(RichText::new(&device.name).strong());
     ui.small(tr!("driver {driver}", driver));
-    if device.permission == "denied" {
+    if device.permission == Permission::Denied {
         ui.colored_label(
             ui.visuals().warn_fg_color,
             tr!("The system keeps it for root: it has to be allowed once."),
@@ -54,7 +57,7 @@ fn row(ui: &mut Ui, device: &AttachedDevice, work: &mut PanelContext<'_>) {
         ui.horizontal(|ui| {
             let hint = tr!("Installs the rule for udev; the system asks for your password");
             if ui.button(tr!("Allow…")).on_hover_text(hint).clicked() {
-                work.requests.device(["allow"]);
+                work.requests.change_device(SetupChange::Allow);
             }
             let hint = tr!("For a terminal, where the button cannot ask");
             let copy = ui.button(tr!("Copy the command")).on_hover_text(hint);
@@ -74,9 +77,12 @@ fn row(ui: &mut Ui, device: &AttachedDevice, work: &mut PanelContext<'_>) {
         .on_hover_text(hint)
         .clicked()
     {
-        match device.address.is_empty() {
-            true => work.requests.device(["add", "--driver", driver]),
-            false => work.requests.device(["add", "--address", &device.address]),
+        let mut new = NewDevice::default();
+        if device.address.is_empty() {
+            new.driver = Some(driver.to_owned());
+        } else {
+            new.address = Some(device.address.clone());
         }
+        work.requests.change_device(SetupChange::Add(new));
     }
 }

@@ -3,14 +3,15 @@
 use eframe::egui::{CollapsingHeader, Frame, Key, RichText, TextEdit, Ui};
 use maulstick_device::pressure_curve::sensed;
 use maulstick_rig::config::{ACTIONS, DeviceSection, FORCES, PEN_DRIVERS};
-use maulstick_ui_kit::language::capitalized;
 use maulstick_ui_kit::rows::{choice, note, row};
 
 use super::pressure_curve::CurveEditor;
-use crate::rig::device_commands::DeviceOrder;
-use crate::rig::device_listing::RigDevice;
+use crate::rig::device_order::{DeviceOrder, SetupChange};
+use crate::rig::device_setup::fit_event;
 use crate::widgets::context::PanelContext;
 use maulstick_client::state::Device;
+use maulstick_device_setup::change::DeviceChange;
+use maulstick_device_setup::listing::RigDevice;
 
 /// Settings that are being changed.
 #[derive(Debug, Default)]
@@ -40,7 +41,10 @@ impl Edits {
         let is_left = ui.input(|input| input.key_pressed(Key::Escape)) || !ui.is_enabled();
         let name = name.trim();
         if field.lost_focus() && !is_left && !name.is_empty() && name != device {
-            work.requests.device(["rename", device, name]);
+            work.requests.change_device(SetupChange::Rename {
+                device: device.to_owned(),
+                name: name.to_owned(),
+            });
             self.renamed = Some((device.to_owned(), name.to_owned()));
         }
     }
@@ -71,57 +75,47 @@ pub(super) fn show(
                 .iter()
                 .map(|brush| brush.name.clone())
                 .collect();
-            let mut change = None;
+            let mut change = DeviceChange::default();
             if brushes.len() > 1 {
                 let names = brushes.iter().map(String::as_str);
-                change = choice(ui, tr!("Brush"), &section.brush, names)
-                    .map(|brush| ["--brush".to_owned(), brush]);
+                change.brush = choice(ui, tr!("Brush"), &section.brush, names);
             }
             if !PEN_DRIVERS.contains(&&*section.driver) && section.driver != "spacemouse" {
-                let law = choice(ui, tr!("Force"), &section.force, FORCES);
-                change = law.map(|law| ["--force".to_owned(), law]).or(change);
+                change.force = choice(ui, tr!("Force"), &section.force, FORCES);
             }
-            change = switches(ui, section).or(change);
+            change.switches = switches(ui, section);
             if PEN_DRIVERS.contains(&&*section.driver) {
                 ui.label(tr!("Pressure"));
                 let newest = device.samples.newest(work.rig.live.now_ns);
                 let given = newest.and_then(|sample| sample.pen).map(|(given, _)| given);
                 let sensed = given.map(|given| sensed(&section.pressure_curve, given));
-                let drawn = edits.curve.show(ui, &name, &section.pressure_curve, sensed);
-                change = drawn
-                    .map(|points| ["--pressure-curve".to_owned(), written(&points)])
-                    .or(change);
+                let curve = &section.pressure_curve;
+                change.pressure_curve = edits.curve.show(ui, &name, curve, sensed);
             }
-            if let Some([option, value]) = change {
-                let priority = section.priority.to_string();
-                let words = ["use", &name, "--priority", &priority, &option, &value];
-                work.requests.device(words);
+            if change != DeviceChange::default() {
+                work.requests.change_device(SetupChange::Use(DeviceChange {
+                    device: name,
+                    priority: Some(section.priority),
+                    ..change
+                }));
             }
         });
 }
 
 /// What each switch does.
-fn switches(ui: &mut Ui, section: &DeviceSection) -> Option<[String; 2]> {
+fn switches(ui: &mut Ui, section: &DeviceSection) -> Option<Vec<String>> {
     let actions = section.actions();
     let mut chosen = None;
     for (place, action) in actions.iter().enumerate() {
         let number = place + 1;
         let word = tr!("Switch {number}", number);
         if let Some(other) = choice(ui, &word, action, ACTIONS) {
-            let mut changed: Vec<&str> = actions.clone();
-            changed[place] = &other;
-            chosen = Some(["--switches".to_owned(), changed.join(",")]);
+            let mut changed: Vec<String> = actions.iter().map(|&own| own.to_owned()).collect();
+            changed[place] = other;
+            chosen = Some(changed);
         }
     }
     chosen
-}
-
-/// Points as the command line takes them.
-fn written(points: &[[f64; 2]]) -> String {
-    let points = points
-        .iter()
-        .map(|[sensed, given]| format!("{sensed},{given}"));
-    points.collect::<Vec<_>>().join(" ")
 }
 
 /// The fit in progress: the rig has let go of its device meanwhile.
@@ -133,12 +127,13 @@ pub(super) fn fit(ui: &mut Ui, work: &mut PanelContext<'_>) {
         ui.set_width(ui.available_width());
         let device = &fit.device;
         ui.label(RichText::new(tr!("Fitting '{device}' to the canvas", device)).strong());
-        for (place, line) in fit.said.iter().enumerate() {
-            let line = capitalized(line);
-            match place + 1 == fit.said.len() {
-                true => ui.label(RichText::new(line).strong()),
-                false => ui.label(line),
-            };
+        for (place, event) in fit.events.iter().enumerate() {
+            let line = RichText::new(fit_event(event));
+            ui.label(if place + 1 == fit.events.len() {
+                line.strong()
+            } else {
+                line
+            });
         }
         if ui.button(tr!("Stop fitting")).clicked() {
             work.requests.order_device(DeviceOrder::StopFit);
@@ -164,7 +159,10 @@ pub(super) fn buttons(ui: &mut Ui, known: &RigDevice, work: &mut PanelContext<'_
         let hint = tr!("Where several are in range, this one paints");
         let first = ui.add_enabled(!is_first, eframe::egui::Button::new(tr!("Paint with it")));
         if first.on_hover_text(hint).clicked() {
-            work.requests.device(["use", name]);
+            work.requests.change_device(SetupChange::Use(DeviceChange {
+                device: name.clone(),
+                ..DeviceChange::default()
+            }));
         }
         let idle = work.rig.setup.fit.is_none();
         if known.is_own && section.driver != "spacemouse" {
@@ -177,7 +175,8 @@ pub(super) fn buttons(ui: &mut Ui, known: &RigDevice, work: &mut PanelContext<'_
         let hint = tr!("It moves the brush no more");
         let remove = ui.add_enabled(idle, eframe::egui::Button::new(tr!("Remove")));
         if remove.on_hover_text(hint).clicked() {
-            work.requests.device(["remove", name]);
+            work.requests
+                .change_device(SetupChange::Remove(name.clone()));
         }
     });
 }
@@ -189,11 +188,11 @@ pub(super) fn window_pen(ui: &mut Ui, curve: &mut CurveEditor, work: &mut PanelC
         .show(ui, |ui| {
             ui.label(tr!("Pressure"));
             const STRAIGHT: &[[f64; 2]] = &[[0.0, 0.0], [1.0, 1.0]];
-            let own = work.preferences.pen_curve.clone();
+            let own = work.preferences.brushes.pen_curve.clone();
             let sensed = work.rig.pen_pressure;
             let actual = if own.is_empty() { STRAIGHT } else { &own };
             if let Some(drawn) = curve.show(ui, "pen", actual, sensed) {
-                work.preferences.pen_curve = drawn;
+                work.preferences.brushes.pen_curve = drawn;
             }
             note(ui, tr!("Press here: over a panel the pen paints nothing."));
         });

@@ -1,13 +1,20 @@
 use eframe::egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use maulstick_device::corner_calibration::Corner;
+use maulstick_device_setup::add::NewDevice;
+use maulstick_device_setup::attached::{Attached, Permission};
+use maulstick_device_setup::change::DeviceChange;
+use maulstick_device_setup::fit::{FitEvent, Gesture};
+use maulstick_device_setup::listing::{DeviceListing, RigDevice};
 use maulstick_num::sin;
+use maulstick_rig::config::DeviceSection;
 use maulstick_types::haptics::ForceOrder;
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus, axes};
 
 use super::*;
-use crate::rig::device_commands::{DeviceOrder, FitProgress};
-use crate::rig::device_listing::DeviceListing;
+use crate::rig::device_order::{DeviceOrder, FitProgress, SetupChange};
+use crate::rig::device_setup::fit_event;
 use crate::rig::state::RigState;
 use crate::test_support::panel_bench::{Bench, harness, picture, rig};
 use maulstick_client::request::Request;
@@ -108,46 +115,81 @@ fn who_paints_and_what_is_wrong_stand_in_words() {
     harness.get_by_label("silent");
 }
 
-const LISTING: &str = r#"{
-    "hid": [
-        {"name": "Wacom Intuos S", "address": "056a:0374", "driver": "pen", "permission": "granted",
-         "missing": null},
-        {"name": "Deco L", "address": "28bd:0935", "driver": "pen", "permission": "denied",
-         "missing": "no permission"}
-    ],
-    "events": [], "serial": [], "openhaptics": {"path": null}, "inverse_service": {"listens": false},
-    "rig": [
-        {"name": "tablet", "driver": "pen", "brush": "main", "priority": 5, "address": "1:2", "is_in_rig": true, "is_own": true},
-        {"name": "phantom", "driver": "openhaptics", "brush": "main", "priority": 10, "is_in_rig": true, "is_own": false}
-    ]
-}"#;
+fn attached(name: &str, id: &str, permission: Permission) -> Attached {
+    Attached {
+        name: name.into(),
+        id: id.into(),
+        path: "/dev/hidraw0".into(),
+        driver: Some("pen"),
+        missing: (permission == Permission::Denied).then(|| "no permission".to_owned()),
+        permission,
+    }
+}
+
+/// What is attached, and a rig with a tablet of the user's and a studio's phantom.
+fn listing(tablet: &str) -> DeviceListing {
+    let tablet = DeviceSection {
+        priority: 5,
+        address: Some("1:2".into()),
+        ..DeviceSection::new(tablet, "pen", "main")
+    };
+    let phantom = DeviceSection {
+        priority: 10,
+        ..DeviceSection::new("phantom", "openhaptics", "main")
+    };
+    let rig = [(tablet, true), (phantom, false)].map(|(section, is_own)| RigDevice {
+        section,
+        is_in_rig: true,
+        is_own,
+        is_there: true,
+        trouble: String::new(),
+    });
+    DeviceListing {
+        hid: vec![
+            attached("Wacom Intuos S", "056a:0374", Permission::Granted),
+            attached("Deco L", "28bd:0935", Permission::Denied),
+        ],
+        rig: Some(rig.to_vec()),
+        ..DeviceListing::default()
+    }
+}
 
 /// The same with what is attached.
 fn listed() -> RigState {
     let mut rig = devices();
-    rig.setup.listing = Some(DeviceListing::parse(LISTING.as_bytes()).expect("a listing"));
+    rig.setup.listing = Some(listing("tablet"));
     rig
 }
 
-fn orders(harness: &mut Harness<'_, Bench<DevicePanel>>) -> Vec<String> {
-    let orders = harness.state_mut().requests.take_device_orders();
-    let words = |order: DeviceOrder| match order {
-        DeviceOrder::Run(words) => words.join(" "),
-        other => format!("{other:?}"),
-    };
-    orders.into_iter().map(words).collect()
+fn orders(harness: &mut Harness<'_, Bench<DevicePanel>>) -> Vec<DeviceOrder> {
+    harness.state_mut().requests.take_device_orders()
+}
+
+/// A change of a device, with its priority or above all others.
+fn uses(device: &str, priority: Option<i32>, change: DeviceChange) -> DeviceOrder {
+    DeviceOrder::Change(SetupChange::Use(DeviceChange {
+        device: device.to_owned(),
+        priority,
+        ..change
+    }))
 }
 
 #[test]
 fn what_is_attached_is_added_with_a_click_or_first_allowed() {
     let mut harness = harness::<DevicePanel>(listed());
     for (button, command) in [
-        ("Add Wacom Intuos S", "add --address 056a:0374"),
-        ("Allow…", "allow"),
+        (
+            "Add Wacom Intuos S",
+            SetupChange::Add(NewDevice {
+                address: Some("056a:0374".into()),
+                ..NewDevice::default()
+            }),
+        ),
+        ("Allow…", SetupChange::Allow),
     ] {
         harness.get_by_label(button).click();
         harness.run();
-        assert_eq!(orders(&mut harness), [command]);
+        assert_eq!(orders(&mut harness), [DeviceOrder::Change(command)]);
     }
     assert!(
         harness.query_by_label("Add Deco L").is_none(),
@@ -163,9 +205,21 @@ fn a_device_is_preferred_fitted_and_removed() {
     let mut harness = harness::<DevicePanel>(listed());
     // Those of the phantom, which paints already and is a studio's, come first.
     for (button, place, command) in [
-        ("Paint with it", 1, "use tablet"),
-        ("Fit to the canvas…", 0, "Fit(\"tablet\")"),
-        ("Remove", 1, "remove tablet"),
+        (
+            "Paint with it",
+            1,
+            uses("tablet", None, DeviceChange::default()),
+        ),
+        (
+            "Fit to the canvas…",
+            0,
+            DeviceOrder::Fit("tablet".to_owned()),
+        ),
+        (
+            "Remove",
+            1,
+            DeviceOrder::Change(SetupChange::Remove("tablet".to_owned())),
+        ),
     ] {
         harness
             .get_all_by_label(button)
@@ -175,16 +229,19 @@ fn a_device_is_preferred_fitted_and_removed() {
         harness.run();
         assert_eq!(orders(&mut harness), [command]);
     }
+    let touch = FitEvent::Touch {
+        corner: Corner::LowerLeft,
+        gesture: Gesture::Pen,
+    };
     harness.state_mut().rig.setup.fit = Some(FitProgress {
         device: "tablet".into(),
-        said: vec!["touch the lower left corner".into()],
-        asks: Some("lower left".into()),
+        events: vec![touch.clone()],
     });
     harness.run();
-    harness.get_by_label("Touch the lower left corner");
+    harness.get_by_label(&fit_event(&touch));
     harness.get_by_label("Stop fitting").click();
     harness.run();
-    assert_eq!(orders(&mut harness), ["StopFit"]);
+    assert_eq!(orders(&mut harness), [DeviceOrder::StopFit]);
 }
 
 #[test]
@@ -202,20 +259,22 @@ fn a_law_a_switch_and_a_curve_are_chosen_with_the_priority_as_it_is() {
     harness.run();
     harness.get_by_label("rigid").click();
     harness.run();
-    assert_eq!(
-        orders(&mut harness),
-        ["use phantom --priority 10 --force rigid"]
-    );
+    let rigid = DeviceChange {
+        force: Some("rigid".into()),
+        ..DeviceChange::default()
+    };
+    assert_eq!(orders(&mut harness), [uses("phantom", Some(10), rigid)]);
     harness
         .get_by_role_and_label(Role::ComboBox, "Switch 1")
         .click();
     harness.run();
     harness.get_by_label("palette").click();
     harness.run();
-    assert_eq!(
-        orders(&mut harness),
-        ["use phantom --priority 10 --switches palette,undo"]
-    );
+    let switches = DeviceChange {
+        switches: Some(vec!["palette".into(), "undo".into()]),
+        ..DeviceChange::default()
+    };
+    assert_eq!(orders(&mut harness), [uses("phantom", Some(10), switches)]);
     harness
         .get_all_by_label("Settings")
         .nth(1)
@@ -224,8 +283,11 @@ fn a_law_a_switch_and_a_curve_are_chosen_with_the_priority_as_it_is() {
     harness.run_steps(20);
     harness.get_by_label("Soft").click();
     harness.run();
-    let soft = "use tablet --priority 5 --pressure-curve 0,0 0.3,0.5 0.6,0.8 1,1";
-    assert_eq!(orders(&mut harness), [soft]);
+    let soft = DeviceChange {
+        pressure_curve: Some(vec![[0.0, 0.0], [0.3, 0.5], [0.6, 0.8], [1.0, 1.0]]),
+        ..DeviceChange::default()
+    };
+    assert_eq!(orders(&mut harness), [uses("tablet", Some(5), soft)]);
 }
 
 /// Types at the end of the name in a device's settings.
@@ -268,12 +330,15 @@ fn a_typed_name_renames_a_device_of_ones_own_which_stays_unfolded_and_tested() {
     type_name(&mut harness, "-2");
     harness.key_press(eframe::egui::Key::Enter);
     harness.run_steps(4);
-    assert_eq!(orders(&mut harness), ["rename tablet tablet-2"]);
+    let renamed = SetupChange::Rename {
+        device: "tablet".into(),
+        name: "tablet-2".into(),
+    };
+    assert_eq!(orders(&mut harness), [DeviceOrder::Change(renamed)]);
     assert!(harness.query_all_by_label("Test of tablet").count() > 0);
     // The rig has it under its new name.
     let rig = &mut harness.state_mut().rig;
-    let said = LISTING.replace(r#""name": "tablet""#, r#""name": "tablet-2""#);
-    rig.setup.listing = Some(DeviceListing::parse(said.as_bytes()).expect("a listing"));
+    rig.setup.listing = Some(listing("tablet-2"));
     rig.live.nodes.retain(|node| node != "tablet");
     rig.live.nodes.push("tablet-2".into());
     let tablet = rig.live.devices.remove("tablet").expect("a tablet");

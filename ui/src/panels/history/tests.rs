@@ -206,7 +206,7 @@ fn a_name_that_no_version_can_have_is_told() {
     write(&mut harness, "Name of a version", &"x".repeat(200));
     click(&mut harness, "Keep");
     assert!(harness.state_mut().asked().is_empty());
-    let told = harness.state().notifications.told();
+    let told = harness.state().notifications.shown();
     assert!(told[0].what.contains("128"), "{told:?}");
 }
 

@@ -93,7 +93,7 @@ impl DryingForm {
             self.part = (chosen == PLACES[1]).then(|| region::middle(size_m));
         }
         if let Some(region) = &mut self.part {
-            region::show(ui, region, size_m, work.preferences.units);
+            region::show(ui, region, size_m, work.preferences.window.units);
         }
         ui.horizontal(|ui| {
             let dry = ui

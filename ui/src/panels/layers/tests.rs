@@ -226,7 +226,7 @@ fn a_part_is_drawn_and_one_that_is_none_is_told() {
     harness.get_by_label("Dry").click();
     harness.run_steps(4);
     assert!(harness.state_mut().asked().is_empty());
-    let told = harness.state().notifications.told();
+    let told = harness.state().notifications.shown();
     assert!(
         told[0].what.contains("region") && told[0].what.contains("X,Y,WxH"),
         "{told:?}"

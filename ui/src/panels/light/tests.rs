@@ -150,7 +150,7 @@ fn a_strength_beyond_all_lamps_is_told() {
     slider.set_value_accesskit(5000.0);
     harness.run();
     assert!(lights(&mut harness).is_empty());
-    let told = harness.state().notifications.told();
+    let told = harness.state().notifications.shown();
     assert!(
         told[0].what.contains("intensity") && told[0].what.contains("100"),
         "{told:?}"

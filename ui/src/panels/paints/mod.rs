@@ -6,6 +6,7 @@
 //! | `sets` | the painter's own sets of paints |
 //! | `wells` | mixtures on the palette |
 
+pub(crate) mod palette_wells;
 mod rows;
 mod sets;
 mod wells;
@@ -58,7 +59,7 @@ impl Panel for PaintsPanel {
 impl PaintsPanel {
     /// Choice of the painter's set to show.
     fn choose_set(&mut self, ui: &mut Ui, work: &PanelContext<'_>) {
-        let sets = &work.preferences.paint_sets;
+        let sets = &work.preferences.brushes.paint_sets;
         self.set
             .take_if(|own| sets.iter().all(|set| set.name != *own));
         if sets.is_empty() {

@@ -64,13 +64,21 @@ pub(super) fn show(panel: &mut PaintsPanel, ui: &mut Ui, work: &mut PanelContext
         });
     match asked {
         Some((tube, Deed::Load)) => {
-            work.preferences.loading.paint.clone_from(&tube.text);
-            work.preferences.loading.beside = None;
+            work.preferences
+                .brushes
+                .loading
+                .paint
+                .clone_from(&tube.text);
+            work.preferences.brushes.loading.beside = None;
             if tube.name == THINNER {
-                work.preferences.loading.thinner = 0.0;
+                work.preferences.brushes.loading.thinner = 0.0;
             }
             let brush = work.rig.brush_name().to_owned();
-            let load = work.preferences.loading.edit(&brush, &work.rig.library);
+            let load = work
+                .preferences
+                .brushes
+                .loading
+                .edit(&brush, &work.rig.library);
             match load {
                 Ok(load) => work.then(load.into()),
                 Err(fault) => work.notifications.of(&fault),
@@ -78,12 +86,12 @@ pub(super) fn show(panel: &mut PaintsPanel, ui: &mut Ui, work: &mut PanelContext
         }
         Some((tube, Deed::ToPalette)) => panel.wells.put(work, &tube.mixture),
         Some((tube, Deed::IntoSet(place, true))) => {
-            work.preferences.paint_sets[place]
+            work.preferences.brushes.paint_sets[place]
                 .paints
                 .push(tube.text.clone());
         }
         Some((tube, Deed::IntoSet(place, false))) => {
-            let set: &mut PaintSet = &mut work.preferences.paint_sets[place];
+            let set: &mut PaintSet = &mut work.preferences.brushes.paint_sets[place];
             set.paints.retain(|own| *own != tube.text);
         }
         None => {}
@@ -96,7 +104,7 @@ fn tubes(panel: &mut PaintsPanel, work: &mut PanelContext<'_>) -> Vec<Tube> {
     let library = &rig.library;
     let mut tubes = Vec::new();
     let set = panel.set.as_ref().and_then(|own| {
-        let mut sets = work.preferences.paint_sets.iter();
+        let mut sets = work.preferences.brushes.paint_sets.iter();
         sets.find(|set| set.name == *own)
     });
     let Some(set) = set else {
@@ -161,7 +169,7 @@ fn tube_row(ui: &mut Ui, work: &PanelContext<'_>, tube: &Tube) -> Option<Deed> {
             if ui.button(tr!("To the palette")).clicked() {
                 deed = Some(Deed::ToPalette);
             }
-            for (place, set) in work.preferences.paint_sets.iter().enumerate() {
+            for (place, set) in work.preferences.brushes.paint_sets.iter().enumerate() {
                 let held = set.paints.contains(&tube.text);
                 let words = match held {
                     true => tr!("Out of '{set}'", set = set.name),

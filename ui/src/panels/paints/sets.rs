@@ -26,12 +26,12 @@ impl SetRows {
     ) {
         ui.strong(tr!("Sets"));
         let place = shown.as_ref().and_then(|own| {
-            let mut sets = work.preferences.paint_sets.iter();
+            let mut sets = work.preferences.brushes.paint_sets.iter();
             sets.position(|set| set.name == *own)
         });
         if let Some(place) = place {
             self.deeds(ui, work, shown, place);
-        } else if !work.preferences.paint_sets.is_empty() {
+        } else if !work.preferences.brushes.paint_sets.is_empty() {
             ui.label(tr!("Choose a set above to lay it out."));
         }
         self.bring_back(ui, work);
@@ -76,7 +76,7 @@ impl SetRows {
             let lay = ui.button(tr!("Lay out"));
             let hover = tr!("The palette holds the paints of this set, and no others.");
             if lay.on_hover_text(hover).clicked() {
-                let set = work.preferences.paint_sets[place].clone();
+                let set = work.preferences.brushes.paint_sets[place].clone();
                 match set.mixtures(&work.rig.library) {
                     Ok(mixtures) => work.lay_wells(&mixtures),
                     Err(fault) => work.notifications.of(&fault),
@@ -85,11 +85,11 @@ impl SetRows {
             let renew = ui.button(tr!("Renew"));
             let hover = tr!("The set becomes what lies on the palette now.");
             if renew.on_hover_text(hover).clicked() {
-                let name = work.preferences.paint_sets[place].name.clone();
-                work.preferences.paint_sets[place] = PaintSet::of(&name, &work.wells());
+                let name = work.preferences.brushes.paint_sets[place].name.clone();
+                work.preferences.brushes.paint_sets[place] = PaintSet::of(&name, &work.wells());
             }
             if ui.button(tr!("Delete set")).clicked() {
-                self.deleted = Some((place, work.preferences.paint_sets.remove(place)));
+                self.deleted = Some((place, work.preferences.brushes.paint_sets.remove(place)));
                 *shown = None;
             }
         });
@@ -105,15 +105,18 @@ impl SetRows {
             back = ui.small_button(tr!("Bring back")).clicked();
         });
         if back {
-            let place = (*place).min(work.preferences.paint_sets.len());
-            work.preferences.paint_sets.insert(place, set.clone());
+            let place = (*place).min(work.preferences.brushes.paint_sets.len());
+            work.preferences
+                .brushes
+                .paint_sets
+                .insert(place, set.clone());
             self.deleted = None;
         }
     }
 
     fn named(&mut self, work: &PanelContext<'_>, besides: Option<usize>) -> Option<String> {
         let name = self.name.trim().to_owned();
-        let others = work.preferences.paint_sets.iter().enumerate();
+        let others = work.preferences.brushes.paint_sets.iter().enumerate();
         let others = others.filter(|(place, _)| Some(*place) != besides);
         match check_name(&name, others.map(|(_, set)| set.name.as_str())) {
             Ok(()) => {
@@ -133,13 +136,15 @@ impl SetRows {
             return;
         };
         let set = PaintSet::of(&name, &work.wells());
-        work.preferences.paint_sets.push(set);
+        work.preferences.brushes.paint_sets.push(set);
         *shown = Some(name);
     }
 
     fn rename(&mut self, work: &mut PanelContext<'_>, shown: &mut Option<String>, place: usize) {
         if let Some(name) = self.named(work, Some(place)) {
-            work.preferences.paint_sets[place].name.clone_from(&name);
+            work.preferences.brushes.paint_sets[place]
+                .name
+                .clone_from(&name);
             *shown = Some(name);
         }
     }

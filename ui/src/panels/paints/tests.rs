@@ -50,7 +50,7 @@ fn laid(harness: &mut Harness<'_, Bench>) -> Vec<String> {
 #[test]
 fn a_click_loads_the_brush_with_the_paint() {
     let mut bench = Bench::new();
-    bench.preferences.loading.beside = Some("Bone Black".into());
+    bench.preferences.brushes.loading.beside = Some("Bone Black".into());
     let mut harness = panel(bench);
     write(&mut harness, "Search", "pb 28");
     harness.get_by_label("Cobalt Blue").click();
@@ -61,7 +61,10 @@ fn a_click_loads_the_brush_with_the_paint() {
         brush: BrushName::main(),
     });
     assert_eq!(harness.state_mut().commands(), [load]);
-    assert_eq!(harness.state().preferences.loading.paint, "Cobalt Blue");
+    assert_eq!(
+        harness.state().preferences.brushes.loading.paint,
+        "Cobalt Blue"
+    );
     let white = harness.query_by_label("Titanium White to the palette");
     assert!(white.is_none(), "it is not searched for");
 }
@@ -171,8 +174,13 @@ fn sets_are_kept_shown_laid_out_renamed_deleted_and_brought_back() {
             "Yellow Ochre=0.5,Bone Black=0.5".into(),
         ],
     };
-    harness.state_mut().preferences.paint_sets.push(own);
-    assert_eq!(harness.state().preferences.paint_sets[0].paints.len(), 10);
+    harness.state_mut().preferences.brushes.paint_sets.push(own);
+    assert_eq!(
+        harness.state().preferences.brushes.paint_sets[0]
+            .paints
+            .len(),
+        10
+    );
     harness.get_by_label("Set").click();
     harness.run();
     harness.get_by_label("Earth").click();
@@ -188,19 +196,25 @@ fn sets_are_kept_shown_laid_out_renamed_deleted_and_brought_back() {
     write(&mut harness, "Name", "Ground");
     harness.get_by_label("Rename the set").click();
     harness.run();
-    assert_eq!(harness.state().preferences.paint_sets[1].name, "Ground");
+    assert_eq!(
+        harness.state().preferences.brushes.paint_sets[1].name,
+        "Ground"
+    );
     harness.get_by_label("Delete set").click();
     harness.run();
-    assert_eq!(harness.state().preferences.paint_sets.len(), 1);
+    assert_eq!(harness.state().preferences.brushes.paint_sets.len(), 1);
     harness.get_by_label("Bring back").click();
     harness.run();
-    assert_eq!(harness.state().preferences.paint_sets[1].name, "Ground");
+    assert_eq!(
+        harness.state().preferences.brushes.paint_sets[1].name,
+        "Ground"
+    );
 }
 
 #[test]
 fn a_set_of_paints_that_the_rig_lacks_is_told() {
     let mut bench = Bench::new();
-    bench.preferences.paint_sets.push(PaintSet {
+    bench.preferences.brushes.paint_sets.push(PaintSet {
         name: "Old".into(),
         paints: vec!["Lead White".into()],
     });
@@ -220,7 +234,7 @@ fn a_set_of_paints_that_the_rig_lacks_is_told() {
 #[test]
 fn a_full_palette_takes_no_more() {
     let mut bench = Bench::new();
-    let many = vec![Mixture::pure("Bone Black"); crate::input::palette_wells::MOST + 1];
+    let many = vec![Mixture::pure("Bone Black"); crate::panels::paints::palette_wells::MOST + 1];
     bench.work().lay_wells(&many);
     assert!(bench.requests.take().is_empty());
     assert!(bench.told()[0].contains("at most 24"), "{:?}", bench.told());

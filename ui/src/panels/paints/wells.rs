@@ -11,7 +11,7 @@ use maulstick_ui_kit::labelled;
 use maulstick_ui_kit::swatches::{Swatches, draw};
 
 use super::{Carried, SWATCH};
-use crate::input::palette_wells::MOST;
+use crate::panels::paints::palette_wells::MOST;
 use crate::settings::brush_load::{self, completed, completions, words};
 use crate::widgets::context::PanelContext;
 

@@ -82,7 +82,7 @@ impl Rig {
 
     fn turn(&mut self) -> Option<(Rigid, u32, Vec<[f32; 2]>)> {
         self.net.advance(5_000_000);
-        self.tracker.take_in(self.bus.now_ns());
+        self.tracker.drain(self.bus.now_ns());
         let held = self.tracker.held(&self.desk).next()?;
         Some((held.brush, held.plane.id, held.angles))
     }

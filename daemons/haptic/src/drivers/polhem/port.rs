@@ -133,7 +133,15 @@ struct SerialSettings {
     hub6: i32,
     closing_wait: u16,
     closing_wait2: u16,
-    memory: *mut u8,
+    memory: SerialMemory,
+}
+
+/// Registers of a port that is mapped into memory: the last fields of `struct serial_struct`.
+#[cfg(target_os = "linux")]
+#[repr(C)]
+#[derive(Debug)]
+struct SerialMemory {
+    base: *mut u8,
     register_shift: u16,
     port_high: u32,
     map_base: nix::libc::c_ulong,

@@ -2,8 +2,12 @@
 
 use std::path::PathBuf;
 
+use maulstick_device_setup::attached::Permission;
+use maulstick_device_setup::attached::vendors::INVERSE_SERVICE;
+use maulstick_device_setup::listing::{InverseService, VendorSoftware};
+use maulstick_rig::config::DeviceSection;
+
 use super::*;
-use crate::attached::Permission;
 
 fn attached(name: &str, id: &str, node: &str, driver: Option<&'static str>) -> Attached {
     Attached {
@@ -16,28 +20,19 @@ fn attached(name: &str, id: &str, node: &str, driver: Option<&'static str>) -> A
     }
 }
 
-fn findings(hid: Vec<Attached>, serial: Vec<Attached>) -> Findings {
-    Findings {
+fn findings(hid: Vec<Attached>, serial: Vec<Attached>) -> DeviceListing {
+    DeviceListing {
         hid,
-        events: Vec::new(),
         serial,
-        openhaptics: Library {
+        openhaptics: VendorSoftware {
             path: None,
             looked_in: vec!["/usr/lib".into()],
         },
-        forcedimension: Library {
-            path: None,
-            looked_in: Vec::new(),
-        },
-        openxr: Library {
-            path: None,
-            looked_in: Vec::new(),
-        },
-        inverse_service: Service {
+        inverse_service: InverseService {
             address: INVERSE_SERVICE,
             listens: false,
         },
-        rig: None,
+        ..DeviceListing::default()
     }
 }
 
@@ -94,18 +89,18 @@ Haply Inverse Service  -          localhost:10001    inverse3     found
 
 #[test]
 fn the_devices_of_a_rig_are_listed_with_their_trouble() {
-    let used = |name: &str, trouble: &str| Used {
+    let used = |name: &str, trouble: &str| RigDevice {
         section: DeviceSection::new(name, "pen", "main"),
         is_in_rig: true,
         is_own: true,
         is_there: true,
         trouble: trouble.into(),
     };
-    let never = Used {
+    let never = RigDevice {
         is_there: false,
         ..used("arm", "there is no libHD.so")
     };
-    let ended = Used {
+    let ended = RigDevice {
         is_there: false,
         ..used("cup", "")
     };
@@ -130,28 +125,9 @@ fn the_devices_of_a_rig_are_listed_with_their_trouble() {
 }
 
 #[test]
-fn json_has_the_same() {
-    let mut found = findings(
-        vec![attached("A pen", "056a:0374", "hidraw0", Some("pen"))],
-        vec![],
-    );
-    found.rig = Some(Vec::new());
-    let value = json!(found);
-    let pen = &value["hid"][0];
-    assert_eq!(
-        (&pen["driver"], &pen["path"], &pen["permission"]),
-        (&json!("pen"), &json!("/dev/hidraw0"), &json!("granted"))
-    );
-    assert_eq!(pen["missing"], json!(null));
-    assert_eq!(value["openhaptics"]["path"], json!(null));
-    assert_eq!(value["inverse_service"]["listens"], json!(false));
-    assert_eq!(value["rig"], json!([]));
-}
-
-#[test]
 fn what_the_rig_has_in_use_comes_first_and_is_not_called_nothing() {
     let mut found = findings(vec![], vec![]);
-    let pen = Used {
+    let pen = RigDevice {
         section: DeviceSection::new("pen", "window", "main"),
         is_in_rig: false,
         is_own: false,
@@ -164,7 +140,7 @@ fn what_the_rig_has_in_use_comes_first_and_is_not_called_nothing() {
     let first = text.split_once("\n\n").map(|(_, below)| below);
     assert!(first.is_some_and(|below| below.starts_with("Nothing else is attached")));
     // One that has not shown itself paints nothing.
-    found.rig = Some(vec![Used {
+    found.rig = Some(vec![RigDevice {
         is_there: false,
         ..pen
     }]);

@@ -11,6 +11,7 @@ use std::time::Duration;
 use foxglove::ws_protocol::schema::Schema;
 use foxglove::ws_protocol::server::{Advertise, Channel, ServerInfo};
 use maulstick_bus::typed::random_u64;
+use maulstick_recorder::listener::{Listener, ReceivedMessage};
 use maulstick_rig::UserError;
 use maulstick_streams::catalogue::KnownTables;
 use maulstick_streams::{RateLimit, json_channel};
@@ -18,7 +19,6 @@ use maulstick_types::HEADER_BYTES;
 
 use super::admission::{Admission, Refusal};
 use super::viewer::{Viewer, Wish, greet, turn_away};
-use crate::commands::streams::listener::{Listener, ReceivedMessage};
 
 /// Most connections at a time.
 const MOST: usize = 32;

@@ -16,12 +16,12 @@ use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use maulstick_recorder::Listener;
 use maulstick_rig::UserError;
 use maulstick_rig::log::print_beside;
 
 use self::admission::{Admission, FOXGLOVE, Refusals, origin};
 use self::foxglove_server::FoxgloveServer;
-use super::listener::Listener;
 use crate::commands::client::Target;
 use crate::commands::say;
 
@@ -63,7 +63,7 @@ const LOOK: Duration = Duration::from_secs(1);
 pub(super) fn run(options: &BridgeOptions) -> Result<i32, UserError> {
     let BridgeOptions { address, port, .. } = *options;
     print_beside();
-    let mut listener = Listener::open(&options.target, &options.topic)?;
+    let mut listener = Listener::open(options.target.rig(), &options.topic)?;
     let name = format!("maulstick {}", options.target.rig());
     let token = match options.no_token {
         true => None,

@@ -14,11 +14,11 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use maulstick_recorder::Listener;
 use maulstick_rig::UserError;
 use maulstick_rig::files::{Kind, ending, write_whole};
 
 use self::processes::Graph;
-use super::listener::Listener;
 use super::measure::duration;
 use crate::commands::client::Target;
 use crate::commands::{print_json, print_text};
@@ -91,7 +91,7 @@ impl GraphOptions {
 pub(super) fn run(options: &GraphOptions) -> Result<i32, UserError> {
     let time = duration(options.seconds)?;
     let form = options.form()?;
-    let mut listener = Listener::open(&options.target, "**")?;
+    let mut listener = Listener::open(options.target.rig(), "**")?;
     let traffic = listener.traffic(time);
     let mut rates = BTreeMap::new();
     for (topic, _, stream) in traffic.streams() {

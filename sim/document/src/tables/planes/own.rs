@@ -5,8 +5,7 @@
 
 use std::io::Read;
 
-use maulstick_canvas::layered::MOST_LAYERS;
-use maulstick_canvas::own_plane::{OwnPlane, OwnShape, ValueType};
+use maulstick_canvas::own_plane::{LAYERS_MOST, OwnPlane, OwnShape, ValueType};
 use maulstick_canvas::planes::{Planes, TILE_CELLS};
 
 use crate::tables::defect::Defect;
@@ -20,7 +19,7 @@ const OTHERS_MOST: usize = 1 << 20;
 
 /// Bytes of the planes on a page of the slots of a mask, at most: each paint may lie in each layer.
 pub(super) fn most(mask: u64) -> usize {
-    let layers = mask.count_ones() as usize * MOST_LAYERS;
+    let layers = mask.count_ones() as usize * LAYERS_MOST;
     (OTHERS_MOST + layers * (HEAD + TILE_CELLS * 4)).min(ALL_MOST)
 }
 

@@ -1,13 +1,13 @@
 //! Gives the paint of a surface another model.
 
 use maulstick_canvas::EditError;
+use maulstick_models::{AutoRole, auto_model, model_called};
 use maulstick_types::EditFields;
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::values::{ModelName, ValueError};
 
 use crate::edits::{Applied, Form, PaintingEdit, StepForm, read, words};
-use crate::models::model_called;
 use crate::painting::Painting;
 use crate::painting::undo::materials;
 
@@ -43,7 +43,7 @@ impl Form for Convert {
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {
-            model: ModelName::new("dab")?,
+            model: ModelName::new(auto_model(AutoRole::Lighter).name)?,
             surface: CANVAS,
         })
     }
@@ -62,14 +62,15 @@ impl PaintingEdit for Convert {
         painting.close_windows();
         painting.clock.stop(Some(self.surface));
         let is_painted = painting.surfaces[on].tiles().next().is_some();
-        if from.colouring != to.colouring && is_painted {
+        let colouring = to.shown.colouring();
+        if from.shown.colouring() != colouring && is_painted {
             painting.take_up_wells()?;
         }
         painting.begin_step(StepName::Model, None);
         let models = painting.model_names();
         painting.history.name_models(&models);
         painting.versions.name_models(&models);
-        let (tiles, distance) = painting.converted(on, to.colouring);
+        let (tiles, distance) = painting.converted(on, colouring);
         painting.put_converted(on, tiles);
         let mut materials = materials(&painting.scene);
         to.name.clone_into(&mut materials[on].model);

@@ -2,6 +2,7 @@
 
 mod convert;
 mod fill;
+mod flip;
 mod ground;
 mod piles;
 mod place;
@@ -13,6 +14,7 @@ mod wells;
 
 pub use convert::Convert;
 pub use fill::{Fill, FillPaint};
+pub use flip::Flip;
 pub use ground::{Ground, GroundSource};
 pub use piles::Piles;
 pub use place::Place;

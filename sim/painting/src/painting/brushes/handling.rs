@@ -2,12 +2,8 @@
 
 use maulstick_canvas::quantum::{CELL_MAX, QUANTUM_M, REFERENCE_CELL_M, UNIT_M};
 use maulstick_model::interface::{Handling, StepReport, Transfer};
+use maulstick_model::rheology::Rheology;
 use maulstick_types::scene::{BrushMode, PALETTE, Scene};
-
-/// Kinematic viscosity of oil paint as it comes from the tube, m²/s (Baxter 2004, § 5.2).
-const VISCOSITY_M2_S: f64 = 1e-2;
-/// ln of the factor on the viscosity of paint that is thinner alone.
-const THINNING: f64 = -4.6;
 
 /// Paint under a brush.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -21,8 +17,8 @@ pub struct UnderBrush {
 }
 
 impl UnderBrush {
-    /// Mean findings of so many steps.
-    pub(crate) fn mean(report: &StepReport, steps: u32, cell_m: f64) -> Self {
+    /// Mean findings of so many steps in paint of this rheology.
+    pub(crate) fn mean(report: &StepReport, steps: u32, cell_m: f64, rheology: &Rheology) -> Self {
         let mean = |sum: u64| (sum / u64::from(steps.max(1))) as f64;
         let [cells, wet, thinner] = [report.footprint_cells, report.wet, report.thinner].map(mean);
         if wet == 0.0 || cells == 0.0 {
@@ -30,7 +26,7 @@ impl UnderBrush {
         }
         Self {
             film_m: wet / cells * QUANTUM_M,
-            viscosity_m2_s: VISCOSITY_M2_S * maulstick_num::exp(THINNING * (thinner / wet)),
+            viscosity_m2_s: rheology.thinned_m2_s(thinner / wet),
             contact_m: cell_m * cells.sqrt(),
         }
     }

@@ -13,7 +13,7 @@ use super::PaintingBrush;
 use crate::ledger::Ledger;
 use crate::painting::Painting;
 use crate::painting::optics::thinner_slot;
-use crate::painting::strokes::backend::Deferral;
+use crate::painting::strokes::deferral::Deferral;
 
 /// What a brush takes up, by the halves of its head: slots and shares.
 type Halves<'a> = [(&'a [(usize, f64)], Half)];

@@ -17,7 +17,7 @@ use maulstick_model::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
 use maulstick_model::path::PathStepper;
 use maulstick_types::{Mixture, name_hash};
 
-use super::strokes::backend::Deferral;
+use super::strokes::deferral::Deferral;
 use crate::brush_colour::Carried;
 use handling::UnderBrush;
 

@@ -6,26 +6,11 @@ use std::sync::Arc;
 use maulstick_model::interface::{PaintModel, StepReport};
 use maulstick_types::paint::Decision;
 
+use super::models::Models;
 use super::stroke::Stroke;
-use crate::models::Models;
 use crate::painting::Painting;
 use crate::painting::brushes::handling::UnderBrush;
 use crate::painting::surfaces::SurfaceState;
-
-/// Largest number of deferred steps. The fullness of the brush is read just when they are settled: the time at which a
-/// caller looks at the painting must not matter.
-const SETTLE_EVERY: u32 = 256;
-
-/// Progress of the deferred steps of a brush.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Deferral {
-    /// Deferred steps since its stroke began.
-    steps: u32,
-    /// Those of them that are not settled.
-    unsettled: u32,
-    /// Fullness of the brush when it was last read.
-    fullness: Option<f32>,
-}
 
 /// A fact of a model's backend. It is reported where a stroke ends.
 #[derive(Debug)]
@@ -127,7 +112,7 @@ impl Painting {
             let surface = &mut self.surfaces[on];
             let model = self.backend.models.of(surface.model);
             let report = model.settle(window, Arc::make_mut(&mut own.load));
-            let steps = std::mem::take(&mut own.deferral.unsettled);
+            let steps = own.deferral.settle();
             surface.top = surface.top.max(window.top());
             self.note(brush, on, &report, steps);
             self.book(Some(brush));
@@ -142,7 +127,8 @@ impl Painting {
         self.accounts.note(report);
         let defers = self.backend.defers(&self.surfaces[surface], false);
         if !defers || report.footprint_cells > 0 {
-            let under = UnderBrush::mean(report, steps, self.surfaces.cell_m());
+            let rheology = &self.surfaces[surface].model.rheology;
+            let under = UnderBrush::mean(report, steps, self.surfaces.cell_m(), rheology);
             self.brushes[brush].under = under;
         }
     }
@@ -201,7 +187,7 @@ impl Stroke<'_> {
     /// Notes what a step did; the report of a deferred one covers all that were not settled.
     pub(super) fn note(&mut self, report: &StepReport, timing: Timing) {
         let unsettled = match timing {
-            Timing::Deferred => self.brush().deferral.unsettled,
+            Timing::Deferred => self.brush().deferral.unsettled(),
             Timing::Now => 0,
         };
         self.painting
@@ -214,11 +200,7 @@ impl Stroke<'_> {
             return;
         }
         self.painting.backend.unsettled = Some(self.brush);
-        let deferral = &mut self.brush_mut().deferral;
-        deferral.steps += 1;
-        deferral.unsettled += 1;
-        if deferral.steps.is_multiple_of(SETTLE_EVERY) {
-            deferral.fullness = None;
+        if self.brush_mut().deferral.count() {
             self.painting.settle();
         }
     }

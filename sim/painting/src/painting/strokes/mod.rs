@@ -3,6 +3,8 @@
 pub(crate) mod backend;
 mod cells;
 mod claims;
+pub(crate) mod deferral;
+mod models;
 mod relaxing;
 mod step;
 mod stroke;

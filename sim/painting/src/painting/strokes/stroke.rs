@@ -11,7 +11,7 @@ use maulstick_model::path::PathStepper;
 use maulstick_types::brush::{Solve, solve_flags};
 use maulstick_types::scene::CANVAS;
 
-use super::backend::Deferral;
+use super::deferral::Deferral;
 use crate::painting::Painting;
 use crate::painting::brushes::PaintingBrush;
 use crate::painting::surfaces::SurfaceState;

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
+use maulstick_appearance::colouring::Colouring;
 use maulstick_canvas::EditError;
 use maulstick_canvas::dry::{DryLayer, DryStack};
 use maulstick_canvas::page::{Page, Pager};
@@ -62,13 +63,9 @@ impl Painting {
     }
 
     /// The tiles of a surface in another colouring, as far as they change, and how near they come to what was seen.
-    pub(crate) fn converted(
-        &self,
-        on: usize,
-        to: maulstick_convert::Colouring,
-    ) -> (Changed, Distance) {
+    pub(crate) fn converted(&self, on: usize, to: Colouring) -> (Changed, Distance) {
         let surface = &self.surfaces[on];
-        let converter = Converter::new(&self.optics.look, surface.model.colouring, to);
+        let converter = Converter::new(&self.optics.look, surface.model.shown.colouring(), to);
         let is_even = matches!(
             surface.bare.ground,
             maulstick_appearance::ground::Ground::Even(_)

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use maulstick_canvas::EditError;
+use maulstick_models::model_called;
 use maulstick_types::paint::StepName;
 use maulstick_types::scene::Surface;
 
 use crate::edits::Applied;
 use crate::history::SurfaceMaterial;
-use crate::models::model_called;
 use crate::painting::Painting;
 use crate::painting::undo::materials;
 

@@ -29,7 +29,7 @@ use maulstick_types::scene::Scene;
 
 use super::optics::Optics;
 use crate::history::{TilePlace, TileRef};
-use crate::models::{ModelEntry, model_called};
+use maulstick_models::{ModelEntry, model_called};
 
 /// A surface: its tiles, the model of their paint, and the ground under them.
 #[derive(Clone, Debug)]

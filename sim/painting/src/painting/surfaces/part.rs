@@ -132,10 +132,7 @@ impl SurfaceState {
         stays: &[usize],
     ) -> Option<Tile> {
         let dried = tile.dried(number, share, stays)?;
-        Some(match self.bare.shown.has_own_colours() {
-            true => dried.with_wet_noted(),
-            false => dried,
-        })
+        Some(self.bare.shown.dried(dried))
     }
 
     /// The tiles of a part on which something has dried, with the cells that are of the part.

@@ -1,8 +1,7 @@
 //! Relief of a surface below a brush, as the hand feels it: tooth, what has dried on it, and a little of the wet paint.
 //!
-//! Each height is the mean of a cell that is a millimetre wide on the desk, for a head rests on several threads at once. Wet
-//! paint holds no brush: it yields at tens to hundreds of pascals, and a brush presses with kilopascals. A share of its
-//! height stays, as of what is pressed flat, by the yield stress that its thinner leaves it.
+//! Each height is the mean of a cell that is a millimetre wide on the desk, for a head rests on several threads at once. Of
+//! wet paint a share of its height stays, as of what is pressed flat, by the rheology of the surface's model.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -11,7 +10,7 @@ use glam::DVec3;
 use maulstick_canvas::planes::Planes;
 use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_canvas::tile::TileId;
-use maulstick_impasto::stages::levelling::thinned;
+use maulstick_model::rheology::Rheology;
 use maulstick_num::geometry::Rigid;
 use maulstick_types::brush::{BrushRelief, Solve};
 use maulstick_types::haptics::height_bytes;
@@ -29,8 +28,6 @@ const SIDE: u32 = 24;
 const POINTS: i64 = 4;
 /// A tip that is higher than this feels nothing soon, m of the desk.
 const FAR_M: f64 = 0.03;
-/// Share of the height of wet paint from the tube that a brush feels.
-const WET_SHARE: f64 = 0.2;
 
 impl Painting {
     /// Relief below a brush as it was solved; none for a brush far from the surface, or one that is not known.
@@ -121,6 +118,7 @@ impl<'a> Heights<'a> {
         };
         let at = ((cell[1] % side) * side + cell[0] % side) as usize;
         let surface = self.surface;
+        let rheology = &surface.model.rheology;
         let tile = self.tiles.entry(id).or_insert_with(|| {
             let tile = surface.store.version(id).tile.as_ref();
             TileHeights {
@@ -133,13 +131,13 @@ impl<'a> Heights<'a> {
         let wet = tile
             .wet
             .as_ref()
-            .map_or(0.0, |wet| stiff(wet, at, self.thinner));
-        f64::from(tile.tooth_m[at]) + (dry + WET_SHARE * wet) * QUANTUM_M
+            .map_or(0.0, |wet| stiff(wet, at, self.thinner, rheology));
+        f64::from(tile.tooth_m[at]) + (dry + rheology.bears * wet) * QUANTUM_M
     }
 }
 
 /// Quanta of the wet paint of a cell by the yield stress that its thinner leaves it.
-fn stiff(wet: &Planes, at: usize, thinner: Option<usize>) -> f64 {
+fn stiff(wet: &Planes, at: usize, thinner: Option<usize>, rheology: &Rheology) -> f64 {
     let (mut all, mut thin) = (0.0, 0.0);
     for (slot, plane) in wet {
         all += plane[at];
@@ -150,6 +148,5 @@ fn stiff(wet: &Planes, at: usize, thinner: Option<usize>) -> f64 {
     if all <= 0.0 {
         return 0.0;
     }
-    let [yields, _] = thinned(thin / all);
-    f64::from(all * yields)
+    f64::from(all * (rheology.yields)(thin / all))
 }

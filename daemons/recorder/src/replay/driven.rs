@@ -1,0 +1,96 @@
+//! The device whose hand feels a recording, by contact models or guides.
+
+use std::time::Duration;
+
+use maulstick_bus::typed::Receiver;
+use maulstick_bus::{Qos, Queue};
+use maulstick_rig::{NodeHandle, UserError};
+use maulstick_streams::recording::RecordedMessage;
+use maulstick_types::haptics::{ContactModel, FluidForce};
+use maulstick_types::stylus::{StylusInfo, StylusSample};
+use maulstick_types::{Origin, decode};
+use tokio::time::timeout;
+
+/// Longest wait for the device.
+pub(super) const PATIENCE: Duration = Duration::from_secs(5);
+
+/// The device.
+pub(super) struct Driven {
+    pub(super) name: String,
+    pub(super) origin: Origin,
+    pub(super) brush: String,
+}
+
+impl Driven {
+    /// Finds the device in the rig, in its current session.
+    pub(super) async fn find(member: &NodeHandle, name: &str) -> Result<Self, UserError> {
+        let (bus, topics) = (&*member.bus, &member.topics);
+        let queue = || Queue::Ring(16);
+        let sample = topics.sample(name);
+        let mut samples: Receiver<StylusSample> =
+            Receiver::new(bus, &sample, Qos::RealTime, queue(), &member.wake)?;
+        let info = topics.stylus_info(name);
+        let mut infos: Receiver<StylusInfo> =
+            Receiver::new(bus, &info, Qos::Cached, queue(), &member.wake)?;
+        let (mut origin, mut brush) = (None, None);
+        let found = async {
+            while !member.stop.requested() {
+                let sample = samples.newest();
+                origin = sample.map(|sample| sample.header.origin()).or(origin);
+                brush = infos
+                    .newest()
+                    .map(|info| info.message.brush)
+                    .or(brush.take());
+                if let (Some(origin), Some(brush)) = (origin, &brush) {
+                    let main = "main".to_owned();
+                    return Some(Self {
+                        name: name.to_owned(),
+                        origin,
+                        brush: if brush.is_empty() {
+                            main
+                        } else {
+                            brush.clone()
+                        },
+                    });
+                }
+                member.wake.ringing().await;
+            }
+            None
+        };
+        timeout(PATIENCE, found)
+            .await
+            .ok()
+            .flatten()
+            .ok_or_else(|| {
+                UserError::usage(format!("no device called '{name}' is in the rig"))
+                    .help("`maulstick device list` shows which are")
+            })
+    }
+
+    /// A recorded force of paint as one for this device.
+    pub(super) fn address_fluid(&self, message: &RecordedMessage) -> Result<FluidForce, UserError> {
+        let (_, force) = decode::<FluidForce>(&message.bytes).map_err(|error| {
+            UserError::usage(format!("a force of paint cannot be read: {error}"))
+                .help("play it with the version of Maulstick that recorded it")
+        })?;
+        Ok(FluidForce {
+            device: self.origin.source,
+            device_epoch: self.origin.epoch,
+            ..force
+        })
+    }
+
+    /// A recorded model as one for this device.
+    pub(super) fn address(&self, message: &RecordedMessage) -> Result<ContactModel, UserError> {
+        let (_, model) = decode::<ContactModel>(&message.bytes).map_err(|error| {
+            UserError::usage(format!("a contact model cannot be read: {error}"))
+                .help("play it with the version of Maulstick that recorded it")
+        })?;
+        Ok(ContactModel {
+            device: self.origin.source,
+            device_epoch: self.origin.epoch,
+            brush: self.brush.clone(),
+            ..model
+        })
+    }
+}

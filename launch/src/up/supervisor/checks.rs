@@ -1,0 +1,166 @@
+//! Checks of another painting, and its saving, beside the supervisor: both may wait for a disk, or for the paint node.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, mpsc};
+
+use maulstick_bus::Wake;
+use maulstick_document::DocumentError;
+use maulstick_rig::command_client::CommandClient;
+use maulstick_rig::config::{RigConfig, is_path};
+use maulstick_rig::files::{Kind, check_writable};
+use maulstick_rig::{Sketches, Stop, UserError};
+use maulstick_types::Mixture;
+use maulstick_types::command::{FileCommand, NewCanvas, SaveAs};
+use tokio::task::spawn_blocking;
+
+use super::sketch;
+use super::switch::{Asker, Plan, SwitchEvent};
+use crate::cells::check_memory;
+use crate::document::{measure, read, round, wrong};
+use crate::performance::{library_from, painting_setup, refused};
+use crate::up::first_load;
+
+/// A painting is in another file within this time.
+const SAVE_TIME: std::time::Duration = std::time::Duration::from_secs(3600);
+
+/// Work beside the supervisor: its outcomes.
+pub(super) struct Checks {
+    send: mpsc::Sender<(Asker, SwitchEvent)>,
+    outcomes: mpsc::Receiver<(Asker, SwitchEvent)>,
+    wake: Wake,
+}
+
+impl Checks {
+    /// Work that rings `wake` when it is done.
+    pub(super) fn new(wake: &Wake) -> Self {
+        let (send, outcomes) = mpsc::channel();
+        Self {
+            send,
+            outcomes,
+            wake: wake.clone(),
+        }
+    }
+
+    /// An outcome that has come, and who asked for it.
+    pub(super) fn next(&self) -> Option<(Asker, SwitchEvent)> {
+        self.outcomes.try_recv().ok()
+    }
+
+    /// Checks that a painting can be opened.
+    pub(super) fn open(&self, asker: Asker, mut config: RigConfig, path: PathBuf) {
+        self.beside(asker, move || {
+            let checked = opened(&mut config, path);
+            SwitchEvent::Checked(checked.map(|()| Box::new(Plan { config, load: None })))
+        });
+    }
+
+    /// Checks that a painting can be begun: without a path in a sketch, where there are such.
+    pub(super) fn begin(
+        &self,
+        asker: Asker,
+        mut config: RigConfig,
+        (path, canvas): (Option<PathBuf>, NewCanvas),
+        sketches: Option<Sketches>,
+    ) {
+        self.beside(asker, move || {
+            let path = path.or_else(|| sketches.as_ref().and_then(sketch::begin));
+            let checked = begun(&mut config, path, &canvas);
+            let plan = checked.map(|load| {
+                let load = Some(load);
+                Box::new(Plan { config, load })
+            });
+            SwitchEvent::Checked(plan)
+        });
+    }
+
+    /// Has the paint node put the painting in another file, until it has ended, or the rig does.
+    pub(super) fn save(
+        &self,
+        asker: Asker,
+        mut client: CommandClient,
+        save_as: SaveAs,
+        (has_gone, stop): (Arc<AtomicBool>, Stop),
+    ) {
+        self.beside(asker, move || {
+            let stops = || stop.requested() || has_gone.load(Ordering::SeqCst);
+            let saved = client.send(FileCommand::SaveAs(save_as), None, SAVE_TIME, &stops);
+            SwitchEvent::Saved(saved.map(drop))
+        });
+    }
+
+    fn beside(&self, asker: Asker, work: impl FnOnce() -> SwitchEvent + Send + 'static) {
+        let (send, wake) = (self.send.clone(), self.wake.clone());
+        let report = Report { asker, send, wake };
+        spawn_blocking(move || report.send(work()));
+    }
+}
+
+/// The way of an outcome to the supervisor; dropped by a panic it says so.
+struct Report {
+    asker: Asker,
+    send: mpsc::Sender<(Asker, SwitchEvent)>,
+    wake: Wake,
+}
+
+impl Report {
+    fn send(self, outcome: SwitchEvent) {
+        self.send.send((self.asker, outcome)).ok();
+    }
+}
+
+impl Drop for Report {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.send.send((self.asker, SwitchEvent::Fallen)).ok();
+        }
+        self.wake.ring();
+    }
+}
+
+/// Sees that a painting can go on, and what is painted on.
+fn opened(config: &mut RigConfig, path: PathBuf) -> Result<(), UserError> {
+    if !path.exists() {
+        return Err(wrong(&path, &DocumentError::Missing));
+    }
+    let (document, opened) = read(&path)?;
+    measure(&mut config.canvas, &opened.snapshot().scene);
+    drop(opened);
+    document.close().map_err(|error| wrong(&path, &error))?;
+    config.paint.document = Some(path);
+    Ok(())
+}
+
+/// Sees that a painting can be begun, and what its brushes carry then.
+fn begun(
+    config: &mut RigConfig,
+    path: Option<PathBuf>,
+    canvas: &NewCanvas,
+) -> Result<Mixture, UserError> {
+    if is_path(&canvas.ground) && !Path::new(canvas.ground.as_str()).is_absolute() {
+        return Err(
+            UserError::usage("the path of the ground does not begin at the root")
+                .help("give the whole path, for each program has a folder of its own"),
+        );
+    }
+    let section = &mut config.canvas;
+    [section.width_mm, section.height_mm, section.cell_mm] =
+        [canvas.width_m, canvas.height_m, canvas.cell_m].map(|m| round(m * 1e3));
+    section.stain_um = round(canvas.stain_m * 1e6);
+    section.tooth_seed = canvas.tooth_seed;
+    section.ground = canvas.ground.to_string();
+    section.tooth = canvas.tooth.to_string();
+    match &path {
+        Some(path) if path.exists() => return Err(wrong(path, &DocumentError::Taken)),
+        Some(path) => {
+            check_writable(path, Kind::Own).map_err(|error| UserError::writing(path, &error))?;
+        }
+        None => check_memory(&config.canvas)?,
+    }
+    config.paint.document = path;
+    let library = library_from(config.paint.paints.as_deref())?;
+    painting_setup(config, &library)?
+        .check(&library)
+        .map_err(refused)?;
+    Ok(first_load(&library))
+}

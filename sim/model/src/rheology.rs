@@ -1,0 +1,25 @@
+//! Rheology of a model's wet paint, as the hand feels it: its drag and its relief.
+
+use maulstick_num::exp;
+
+/// Rheology of wet paint, unthinned and by its share of thinner.
+#[derive(Clone, Copy, Debug)]
+pub struct Rheology {
+    /// Kinematic viscosity of unthinned paint, m²/s.
+    pub viscosity_m2_s: f64,
+    /// ln of the factor on the viscosity of paint that is thinner alone.
+    pub thinning: f64,
+    /// Share of the height of unthinned paint that stays under a brush: it yields at tens to hundreds of pascals, and a
+    /// brush presses with kilopascals.
+    pub bears: f64,
+    /// Yield stress that a share of thinner of 0 to 1 leaves, by that of unthinned paint.
+    pub yields: fn(f32) -> f32,
+}
+
+impl Rheology {
+    /// Kinematic viscosity of paint with this share of thinner, m²/s.
+    #[must_use]
+    pub fn thinned_m2_s(&self, thinner: f64) -> f64 {
+        self.viscosity_m2_s * exp(self.thinning * thinner)
+    }
+}

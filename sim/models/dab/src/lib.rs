@@ -1,0 +1,82 @@
+//! dAb (Baxter 2004, ch. 4): the light paint model. Paint lies on a wet surface and a dry or deep layer, is moved in whole
+//! units, mixes additively, and is not pushed.
+//!
+//! It keeps no planes of its own: additive colour is linear in the volumes of the paints, so counts by slot say what RGB
+//! textures would. [`Dab`] is the step, [`Layers`] how its paint is shown.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`volume`] | units of paint: 8 bits a layer, 32 of the surface in a deep one |
+//! | [`dither`] | volumes below a unit |
+//! | [`touching`] | where brush and canvas meet |
+//! | [`transfer`] | what goes from brush to canvas and back |
+//! | [`raster`] | the brush over the cells that it touches |
+//! | [`reservoir`] | the surface of a brush filled again |
+//! | [`relative_height`] | heights as differences of a byte |
+//! | [`stroke`] | stroking algorithms: faster, better, along a spline |
+//! | [`layers`], `wet_over`, [`emboss`] | colour and relief |
+//! | `sheet` | its panels of the sheet of effects |
+//!
+//! A loaded brush over wet paint lays its own and takes up the other; no quantum is made or lost:
+//!
+//! ```
+//! use maulstick_brush::{BrushFile, HeadPose};
+//! use maulstick_dab::Dab;
+//! use maulstick_model::trial::Trial;
+//!
+//! # fn main() -> Result<(), maulstick_brush::BrushError> {
+//! let file = BrushFile::library("round")?.scaled_to(6.0)?;
+//! let mut trial = Trial::new(file, 256, 2.5e-4).expect("a surface");
+//! trial.wet();
+//! let mut load = trial.full();
+//! let poses: Vec<HeadPose> =
+//!     (0..30).map(|step| trial.pose([50.0 + 4.0 * f64::from(step), 128.0], 0.0)).collect();
+//! let lying = |trial: &Trial, slot| -> f64 {
+//!     trial.window.plane(slot).into_iter().flatten().map(|count| f64::from(*count)).sum()
+//! };
+//! let (canvas, brush) = (lying(&trial, 0), load.total() as f64);
+//! trial.steps(&mut Dab::default(), &mut load, &poses);
+//! let [canvas_paint, brush_paint] = [0, 1].map(|slot| lying(&trial, slot));
+//! println!("{brush_paint} quanta laid, {} taken up", canvas - canvas_paint);
+//! assert!(brush_paint > 0.0 && canvas_paint < canvas);
+//! assert_eq!(canvas_paint + brush_paint + load.total() as f64, canvas + brush);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Notes
+//!
+//! - A unit of volume is 512 quanta, 255 units at most in a layer. Rounding uses quasi-random thresholds over cells and
+//!   steps, so small volumes are not lost and no cell waits for another.
+//! - Stroking: Algorithms 1 and 2, and the parabola through three heads; the doublings of a step choose. The head is
+//!   drawn once for all blends in which the whole of it goes the same way within half a cell. The films of its texels
+//!   are parted among the cells that they cover, the raster is blended with the canvas at each place of its way, and
+//!   returns to the texels in integers.
+//! - On a device (feature `device`) the processor knows which blends a step has, and sends a record for each; the head is
+//!   drawn once a drawing, and a dispatch blends it at each place. Thresholds are the processor's in fixed point and
+//!   quotients are rounded as it rounds them, so on the same drawing both leave the same counts. Reservoirs are filled in
+//!   f32.
+//! - Colours depend on what stayed wet over a layer when it dried, which the dry page notes
+//!   (`wet_over`); so eq. 4.1 and its inverse (§ 4.7) hold for any number of layers. The optics neither shade
+//!   nor bake this paint (`Colouring::Volumes`).
+
+#[cfg(feature = "device")]
+pub mod device;
+pub mod dither;
+pub mod emboss;
+mod entry;
+mod films;
+pub mod layers;
+pub mod raster;
+pub mod relative_height;
+pub mod reservoir;
+mod sheet;
+mod step;
+pub mod stroke;
+pub mod touching;
+pub mod transfer;
+pub mod volume;
+
+pub use entry::ENTRY;
+pub use layers::Layers;
+pub use step::{Dab, first_blend};

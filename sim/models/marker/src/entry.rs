@@ -1,0 +1,21 @@
+//! Entry of `marker` in the registry.
+
+use maulstick_model::rheology::Rheology;
+use maulstick_model_entry::ModelEntry;
+
+use crate::matte::Matte;
+use crate::step::Marker;
+
+/// Ink of a few mPa·s, which bears nothing.
+const RHEOLOGY: Rheology = Rheology {
+    viscosity_m2_s: 5e-6,
+    thinning: 0.0,
+    bears: 0.0,
+    yields: |_| 0.0,
+};
+
+/// The entry.
+pub const ENTRY: ModelEntry = ModelEntry {
+    shown: &Matte,
+    ..ModelEntry::new("marker", || Box::new(Marker::default()), RHEOLOGY)
+};

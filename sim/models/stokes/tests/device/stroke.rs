@@ -1,0 +1,208 @@
+//! Whole strokes in thick paint: beside those of the processor, in too little memory, and when the device is lost.
+
+use maulstick_gpu::{Choice, Device};
+use maulstick_model::interface::PaintModel;
+use maulstick_painting::edits::{Fill, FillPaint};
+use maulstick_painting::{Painting, Sequencer};
+use maulstick_stokes::flow::Effort;
+use maulstick_stokes::grid::Grid;
+use maulstick_stokes_paint::StokesPaint;
+use maulstick_stokes_paint::device::{GpuBrushFlow, GpuFlow, Tuning};
+use maulstick_types::paint::Decision;
+use maulstick_types::scene::CANVAS;
+use maulstick_types::values::FilmThickness;
+
+use crate::device;
+use crate::easel::{all, apart, easel_of, lifted, mixture, paint, stroke, volume};
+use crate::strokes;
+
+/// Mean and 99th percentile of ΔE00 by which the backends may differ.
+const COLOURS: [f64; 2] = [0.02, 0.3];
+/// Share of the volume by which they may: where rounding decides whether a speck falls, what follows differs.
+const VOLUME: f64 = 1e-3;
+
+/// A thick wet film, and a loaded brush.
+fn thick(model: Option<Box<dyn PaintModel>>) -> Painting {
+    let mut painting = easel_of(("stokes", 1), model);
+    painting
+        .apply(Fill {
+            paint: FillPaint::Mixture {
+                mixture: mixture("Titanium White=0.7,Yellow Ochre=0.3"),
+            },
+            thickness: FilmThickness::new(400e-6).expect("in range"),
+            surface: CANVAS,
+        })
+        .expect("laid");
+    painting
+}
+
+fn easel(gpu: Option<Device>) -> Painting {
+    thick(gpu.map(|gpu| {
+        let make = maulstick_stokes_paint::ENTRY.make_on.expect("there is one");
+        make(gpu, Choice::Forced).expect("taken").model
+    }))
+}
+
+fn tuned(tuning: &Tuning) -> Painting {
+    let flow = GpuBrushFlow::tuned(device(), Choice::Forced, tuning).expect("made");
+    thick(Some(Box::new(StokesPaint::on(Box::new(flow)))))
+}
+
+fn agree(cpu: &mut Painting, gpu: &mut Painting, before: u64) -> bool {
+    let (volume, colours) = apart(cpu, gpu, before);
+    volume <= VOLUME && colours[0] <= COLOURS[0] && colours[1] <= COLOURS[1]
+}
+
+/// Quanta of each paint by cell of the canvas.
+fn lying(painting: &mut Painting) -> Vec<f32> {
+    painting.commit();
+    let store = painting.store(CANVAS).expect("a canvas");
+    let tiles = store.iter().filter_map(|(_, version)| version.tile.clone());
+    let planes = tiles.map(|tile| {
+        let wet = tile.wet();
+        let plane = |slot| {
+            wet.iter()
+                .find(|(at, _)| *at == slot)
+                .map(|(_, plane)| plane.to_vec())
+        };
+        [0, 1, 2]
+            .map(|slot| plane(slot).unwrap_or_else(|| vec![0.0; 64 * 64]))
+            .concat()
+    });
+    planes.flatten().collect()
+}
+
+/// Paint that lies elsewhere after a few steps of a stroke than on the processor's painting, by what they have moved there.
+fn elsewhere(gpu: &mut Painting) -> f64 {
+    let mut cpu = easel(None);
+    let before = lying(&mut cpu);
+    let few = &stroke(1, 0.0, 24)[..5];
+    paint(&mut cpu, "main", few);
+    paint(gpu, "main", few);
+    let sum = |one: &[f32], two: &[f32]| {
+        let pairs = one.iter().zip(two);
+        pairs.map(|(a, b)| f64::from((a - b).abs())).sum::<f64>()
+    };
+    let (want, got) = (lying(&mut cpu), lying(gpu));
+    assert_eq!((want.len(), got.len()), (before.len(), before.len()));
+    assert_eq!(gpu.report().quanta_missing, 0);
+    sum(&want, &got) / sum(&want, &before)
+}
+
+/// Of the paint that is moved.
+const ELSEWHERE: f64 = 1e-4;
+
+#[test]
+fn the_first_steps_leave_the_paint_where_the_processor_does() {
+    let off = elsewhere(&mut easel(Some(device())));
+    println!("{off:.1e}");
+    for fault in ["fault_link", "fault_slope"] {
+        let off = elsewhere(&mut tuned(&Tuning {
+            fault: Some((fault, 1.01)),
+            ..Tuning::default()
+        }));
+        println!("{fault}: {off:.1e}");
+        assert!(off > ELSEWHERE, "a fault passes: {off:e}");
+    }
+    assert!(off < ELSEWHERE, "{off:e}");
+}
+
+/// Two strokes, the second one across what the first has left.
+fn strokes_of(painting: &mut Painting) {
+    paint(painting, "main", &stroke(1, 0.0, 24));
+    paint(painting, "main", &stroke(2, 1.5, 24));
+}
+
+#[test]
+fn both_backends_paint_the_same_strokes() {
+    let (mut cpu, mut gpu) = (easel(None), easel(Some(device())));
+    let before = volume(&mut cpu);
+    assert_eq!(volume(&mut gpu), before);
+    strokes_of(&mut cpu);
+    strokes_of(&mut gpu);
+    assert!(gpu.backend().starts_with("gpu "), "{}", gpu.backend());
+    let alike = agree(&mut cpu, &mut gpu, before);
+    assert_eq!(gpu.report().quanta_missing, 0);
+    let (cells, same) = (gpu.work().1 as f64, cpu.work().1 as f64);
+    assert!((cells / same - 1.0).abs() < 0.01, "{cells} {same}");
+    let mut faulty = tuned(&Tuning {
+        fault: Some(("fault_link", 1.01)),
+        ..Tuning::default()
+    });
+    strokes_of(&mut faulty);
+    assert!(!agree(&mut cpu, &mut faulty, before), "a fault passes");
+    assert_eq!(faulty.report().quanta_missing, 0);
+    // A stroke a fifth of a cell beside it is another one.
+    let mut beside = easel(None);
+    paint(&mut beside, "main", &stroke(1, 0.05, 24));
+    paint(&mut beside, "main", &stroke(2, 1.55, 24));
+    assert!(!agree(&mut beside, &mut gpu, before), "a fault passes");
+    assert!(alike);
+}
+
+#[test]
+fn the_same_stroke_has_the_same_bytes() {
+    strokes::have_the_same_bytes(&easel);
+}
+
+#[test]
+fn the_books_balance() {
+    strokes::balance_the_books(&easel);
+}
+
+#[test]
+fn a_lost_device_loses_no_paint() {
+    strokes::outlive_their_device(&easel, &agree);
+}
+
+/// Two strokes in a window's memory of so many bytes: what was decided, the backend, and the painting.
+fn limited(most_bytes: u64) -> (Vec<Decision>, Painting) {
+    let tuning = Tuning {
+        most_bytes,
+        ..Tuning::default()
+    };
+    let mut sequencer = Sequencer::new(tuned(&tuning));
+    for number in 1..=2 {
+        let mut states = stroke(number, 0.0, 24);
+        states.truncate(8);
+        states.push(lifted());
+        for (seq, state) in states.iter().enumerate() {
+            let header = strokes::header(100 * number + seq as u64);
+            sequencer.state("main", &header, state).1.expect("it fits");
+        }
+    }
+    assert_eq!(sequencer.painting_mut().report().quanta_missing, 0);
+    let decided = strokes::decisions(&mut sequencer);
+    (decided, sequencer.into_painting())
+}
+
+#[test]
+fn too_little_memory_makes_cells_coarser_and_that_is_said_once() {
+    let bytes = |cells| GpuFlow::window_bytes(&Grid::walled(cells), Effort::default());
+    let (decided, mut whole) = limited(u64::MAX);
+    assert_eq!(decided, []);
+    let before = volume(&mut easel(None));
+    let (decided, mut coarse) = limited(bytes([14, 14, 8]).expect("it has an index"));
+    println!("{decided:?}");
+    assert!(
+        matches!(&decided[..], [Decision::CoarserFlow { .. }]),
+        "{decided:?}"
+    );
+    let backend = coarse.backend();
+    assert!(
+        backend.starts_with("gpu ") && backend.ends_with(", flow on coarser cells"),
+        "{backend}"
+    );
+    let (off, colours) = apart(&mut whole, &mut coarse, before);
+    assert!(off < 0.05 && colours[0] < 1.0, "{off} {colours:?}");
+    assert!(all(&mut whole) != all(&mut coarse));
+    // Where not even the coarsest cells have room, the processor goes on.
+    let (decided, mut none) = limited(bytes([1; 3]).expect("it has an index"));
+    println!("{decided:?}");
+    assert_eq!(none.backend(), "cpu");
+    assert!(
+        matches!(&decided[..], [Decision::Fallback { .. }]),
+        "{decided:?}"
+    );
+    assert!(agree(&mut whole, &mut none, before));
+}

@@ -1,0 +1,64 @@
+//! The device beside the processor.
+
+use maulstick_stokes::flow::Effort;
+use maulstick_stokes::rheology::Paint;
+use maulstick_stokes_paint::device::Tuning;
+
+use super::device;
+use super::scenes::{Scene, bristles, channel, differences, pool, thinning};
+
+fn scenes() -> [Scene; 4] {
+    [
+        channel(),
+        pool(Paint::newtonian(1e-2)),
+        thinning(),
+        bristles(),
+    ]
+}
+
+/// Of the fastest velocity. The processor leaves out layers of air, so its coarse grids are others: both are solved until
+/// what is left is rounding.
+const TOLERANCE: f64 = 1e-5;
+const EFFORT: Effort = Effort {
+    steps: 20,
+    projections: 5,
+};
+
+fn worst(scene: &Scene, tuning: &Tuning) -> f64 {
+    let found = differences(device(), scene, EFFORT, tuning).expect("steps");
+    println!("{}, {tuning:?}: {found:?}", scene.name);
+    found
+        .into_iter()
+        .map(|[velocity, _]| velocity)
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn the_device_has_the_processors_velocities() {
+    for scene in scenes() {
+        // Where one workgroup does all levels, some and the coarsest alone.
+        for rest in [u32::MAX, Tuning::default().rest, 0] {
+            let tuning = Tuning {
+                rest,
+                ..Tuning::default()
+            };
+            let off = worst(&scene, &tuning);
+            assert!(off < TOLERANCE, "{}, {rest}: {off:e}", scene.name);
+        }
+    }
+}
+
+/// A weight in a shader that is wrong by a hundredth.
+#[test]
+fn a_fault_would_be_found() {
+    for scene in scenes() {
+        for fault in ["fault_link", "fault_slope"] {
+            let tuning = Tuning {
+                fault: Some((fault, 1.01)),
+                ..Tuning::default()
+            };
+            let off = worst(&scene, &tuning);
+            assert!(off > TOLERANCE, "{}, {fault}: {off:e}", scene.name);
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! Asks before a painting that is only in memory is closed.
+
+use eframe::egui::Ui;
+
+use crate::rig::state::RigState;
+
+/// State of the painting that would be closed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct UnsavedState {
+    /// True if the painting is only in memory and has paint on it.
+    would_go: bool,
+    let_go: bool,
+}
+
+impl UnsavedState {
+    /// The painting on the easel.
+    #[must_use]
+    pub(crate) fn of(rig: &RigState) -> Self {
+        let status = rig.live.paint.as_ref().map(|paint| &paint.status);
+        Self {
+            would_go: status.is_some_and(|status| status.path.is_empty() && !status.blank),
+            let_go: false,
+        }
+    }
+
+    /// True if the painter agrees to discard it.
+    #[must_use]
+    pub(crate) fn let_go(self) -> bool {
+        self.would_go && self.let_go
+    }
+
+    /// Asks, where there is something to ask.
+    pub(crate) fn show(&mut self, ui: &mut Ui) {
+        if self.would_go {
+            ui.add_space(6.0);
+            ui.checkbox(
+                &mut self.let_go,
+                tr!("Let go of the painting on the easel: it is in no file"),
+            );
+        }
+    }
+
+    /// Checks that another painting may replace it.
+    ///
+    /// # Errors
+    /// Advice in words.
+    pub(crate) fn check(self) -> Result<(), String> {
+        match self.would_go && !self.let_go {
+            true => Err(tr!(
+                "The painting on the easel is in no file and would be gone. Keep it first \
+                 (Escape, then Ctrl+S), or tick that you let it go."
+            )
+            .to_owned()),
+            false => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! Settings of the reference picture that are remembered.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use super::LEAST;
+
+/// Settings of the reference picture that are remembered.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ReferencePreferences {
+    /// True while it is shown.
+    pub shown: bool,
+    /// The picture.
+    pub path: Option<PathBuf>,
+    /// Position of its frame, points from the window's upper left corner.
+    pub place: [f32; 2],
+    /// Width and height of the frame's inside, points.
+    pub size: [f32; 2],
+    /// Opacity, .1 to 1.
+    pub opacity: f32,
+    /// True to search among all paints, false among those of the palette.
+    pub all_paints: bool,
+}
+
+impl Default for ReferencePreferences {
+    fn default() -> Self {
+        Self {
+            shown: false,
+            path: None,
+            place: [24.0, 24.0],
+            size: [320.0, 320.0],
+            opacity: 1.0,
+            all_paints: false,
+        }
+    }
+}
+
+impl ReferencePreferences {
+    /// The same with numbers that make a frame.
+    pub(super) fn sound(&self) -> Self {
+        let within = |value: f32, least: f32, most: f32, usual: f32| match value.is_finite() {
+            true => value.clamp(least, most),
+            false => usual,
+        };
+        let usual = Self::default();
+        Self {
+            place: [0, 1].map(|i| within(self.place[i], 0.0, 20_000.0, usual.place[i])),
+            size: [0, 1].map(|i| within(self.size[i], LEAST[i], 20_000.0, usual.size[i])),
+            opacity: within(self.opacity, 0.1, 1.0, usual.opacity),
+            ..self.clone()
+        }
+    }
+}
