@@ -61,7 +61,10 @@ fn line(from: [f64; 2], to: [f64; 2]) -> Vec<[i16; 2]> {
 impl Studio {
     /// Pixels of the window, a grid of them.
     fn pixels(&self) -> Vec<[u8; 3]> {
-        let [width, height] = Preferences::default().window.size.map(|side| side as i16 / 32);
+        let [width, height] = Preferences::default()
+            .window
+            .size
+            .map(|side| side as i16 / 32);
         (1..32)
             .flat_map(|row| (1..32).map(move |column| (column * width, row * height)))
             .map(|(x, y)| self.display.pixel(self.window, x, y))
