@@ -7,7 +7,7 @@ use std::time::Instant;
 use maulstick_types::command::advice::Advice;
 
 use super::queues::NoticeKind;
-use super::{DocumentThread, Part, Retry};
+use super::{Content, DocumentThread, Part, Retry};
 use crate::error::DocumentError;
 use crate::file::database::{Access, Database};
 use crate::file::relocate;
@@ -81,7 +81,9 @@ impl DocumentThread {
         self.watch = FileWatch::new(path);
         path.clone_into(&mut self.path);
         self.clear_notice();
-        self.is_merged = false;
+        if self.content == Content::Merged {
+            self.content = Content::Unmerged;
+        }
         self.note_written(Part::File);
         Ok(())
     }

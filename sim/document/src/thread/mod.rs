@@ -48,8 +48,7 @@ pub(crate) struct DocumentThread {
     /// The painting's file.
     path: PathBuf,
     writes: bool,
-    /// True if nothing of the painting is in the file yet: its first checkpoint is written completely or not at all.
-    is_first: bool,
+    content: Content,
     /// True once the records accepted before a relocation was requested are in the file.
     committed_for_relocation: bool,
     watch: FileWatch,
@@ -63,8 +62,17 @@ pub(crate) struct DocumentThread {
     /// Pages of the painting as it is that were not read yet: they are, while there is nothing else to do, so that a disk that
     /// fails later is painted on.
     to_read_ahead: Vec<Page<Planes>>,
-    /// True once the first checkpoint of the file is merged into it, so that it can be read without its journal.
-    is_merged: bool,
+}
+
+/// What is in the file.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Content {
+    /// Nothing of the painting: its first checkpoint is written completely or not at all.
+    Nothing,
+    /// Checkpoints of which some need SQLite's journal beside the file.
+    Unmerged,
+    /// A checkpoint that is read without that journal.
+    Merged,
 }
 
 /// Next work of the thread.
@@ -107,7 +115,7 @@ impl DocumentThread {
             database,
             path: path.to_owned(),
             writes,
-            is_first: false,
+            content: Content::Unmerged,
             committed_for_relocation: false,
             watch: FileWatch::new(path),
             saved_version,
@@ -117,7 +125,6 @@ impl DocumentThread {
             file: Retry::default(),
             reading: Retry::default(),
             to_read_ahead: Vec::new(),
-            is_merged: false,
         }
     }
 
@@ -132,7 +139,7 @@ impl DocumentThread {
     /// Thread for a painting of which nothing is in the file yet.
     pub(crate) fn for_first_checkpoint(self) -> Self {
         Self {
-            is_first: true,
+            content: Content::Nothing,
             ..self
         }
     }
@@ -328,7 +335,7 @@ impl DocumentThread {
             overtaken.extend(queues.records.drain(..before));
             drop(queues);
             overtaken.append(&mut checkpoint.records);
-            let longest = if self.is_first || trust == Trust::Nothing {
+            let longest = if self.content == Content::Nothing || trust == Trust::Nothing {
                 FIRST_CHECKPOINT
             } else {
                 COMMIT_PERIOD
@@ -352,7 +359,6 @@ impl DocumentThread {
             Ok(stored) => {
                 queues.wants_all = false;
                 stored.mark();
-                self.is_first = false;
                 self.saved_version = checkpoint.painting.kept.versions;
                 // The next look is at the next checkpoint.
                 self.shared.record_bytes.store(
@@ -363,7 +369,7 @@ impl DocumentThread {
                     .committed
                     .fetch_max(checkpoint.sequencer.next, SeqCst);
                 drop((queues, checkpoint));
-                if !std::mem::replace(&mut self.is_merged, true) {
+                if std::mem::replace(&mut self.content, Content::Merged) != Content::Merged {
                     self.database.merge_journal();
                     self.watch.note_merged();
                 }
