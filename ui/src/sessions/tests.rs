@@ -299,7 +299,7 @@ fn keys_are_the_bars_while_a_session_is_painted_again_and_else_where_they_are_fr
     ];
     let of_session = [(Key::Space, Order::Pause), (Key::Period, Order::Step)];
     harness.state_mut().rig.replay = Some(replay(false));
-    for (key, order) in both.clone().into_iter().chain(of_session) {
+    for (key, order) in both.into_iter().chain(of_session) {
         press(&mut harness, key);
         assert_eq!(orders(&mut harness), transport(order), "{key:?}");
     }
