@@ -10,7 +10,7 @@ use nix::sys::prctl::set_name;
 use crate::advice;
 use crate::beside;
 use crate::commands::completions::{self, CompletionsCommand, Headings};
-use crate::commands::edit::{self, DAILY, EditCommand};
+use crate::commands::edit::{self, DAILY, DailyEdit, LayerEdit, PaletteEdit};
 use crate::commands::{
     brush, canvas, colour, demo, device, endpoint, nodes, painting, recording, render, schema,
     snapshot, take, topic,
@@ -45,7 +45,7 @@ enum Command {
     Schema(schema::SchemaOptions),
     /// An edit of the painting
     #[command(flatten)]
-    Daily(EditCommand),
+    Daily(DailyEdit),
     /// As `take render`
     Render(render::RenderOptions),
     /// As `painting snapshot`
@@ -58,10 +58,10 @@ enum Command {
     Canvas(canvas::CanvasCommand),
     /// Scrape the palette, let its paint deplete or last
     #[command(subcommand)]
-    Palette(EditCommand),
+    Palette(PaletteEdit),
     /// Dry paint into a layer, make layers wet again, set their opacity
     #[command(subcommand)]
-    Layer(EditCommand),
+    Layer(LayerEdit),
     /// Load, clean, tune, take in hand, set the mode; show brushes, import one
     #[command(subcommand)]
     Brush(brush::BrushCommand),

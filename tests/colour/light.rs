@@ -156,7 +156,7 @@ fn what_a_rig_cannot_do_with_light_it_refuses_with_words() {
     );
     refused(
         &["canvas", "light", "--samples", "3"],
-        &["3 samples", "4 to 16"],
+        &["not 3", "4 to 16"],
     );
     refused(
         &["canvas", "light", "--rule", "simpson"],

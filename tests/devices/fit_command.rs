@@ -105,7 +105,7 @@ fn a_hand_that_shows_three_corners_fits_its_device_to_the_canvas() {
             "touch the lower left corner",
             "lower left: ",
             "touch the upper left corner",
-            "width by height is",
+            "the ratio of width to height is",
             "written into rig.toml",
         ],
     );

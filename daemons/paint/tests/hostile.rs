@@ -35,7 +35,7 @@ fn what_is_out_of_range_is_answered_in_short_with_the_reason() {
                 beside: None,
                 brush: BrushName::main(),
             }),
-            "70000 bytes",
+            "70000",
         ),
         (Place { pose, ..place }.into(), "desk's origin"),
         (

@@ -18,7 +18,7 @@ use maulstick_types::values::{BrushName, BrushToml};
 use serde_json::json;
 
 use crate::commands::client::{Client, Target};
-use crate::commands::edit::{self, EditCommand};
+use crate::commands::edit::{self, BrushEdit};
 use crate::commands::say;
 use crate::commands::{print_json, print_text};
 use crate::outputs::{UsedFile, check_outputs};
@@ -35,7 +35,7 @@ pub enum BrushCommand {
     Take(TakeOptions),
     /// An edit
     #[command(flatten)]
-    Edit(EditCommand),
+    Edit(BrushEdit),
     /// Bend one spine through a list of poses above the plane z = 0
     ///
     /// SPINE.toml has `lengths_m` and `stiffness_nm_per_rad` (lists from ferrule to tip, 1 to 64

@@ -18,17 +18,37 @@ pub const DAILY: [(&str, &str); 4] = [
     ("render", "take"),
 ];
 
+/// Groups of commands that have edits, by their numbers in [`EditCommand`].
+const GROUPS: [&str; 5] = ["brush", "canvas", "layer", "painting", "palette"];
+
+/// An edit of `maulstick brush`.
+pub type BrushEdit = EditCommand<0>;
+/// An edit of `maulstick canvas`.
+pub type CanvasEdit = EditCommand<1>;
+/// An edit of `maulstick layer`.
+pub type LayerEdit = EditCommand<2>;
+/// An edit of `maulstick painting`.
+pub type PaintingEdit = EditCommand<3>;
+/// An edit of `maulstick palette`.
+pub type PaletteEdit = EditCommand<4>;
+/// A daily edit, beside the groups.
+pub type DailyEdit = EditCommand<5>;
+
 /// An edit of the painting of a running rig, among the commands of its group, or beside the groups if it is daily.
 #[derive(Clone, Debug)]
-pub struct EditCommand {
+pub struct EditCommand<const GROUP: usize> {
     /// The edit.
     pub edit: Edit,
     target: Target,
 }
 
-/// The commands of all edits; no two have the same name.
-fn forms() -> impl Iterator<Item = CommandForm> {
-    edits::entries().iter().filter_map(|entry| entry.command)
+/// The commands of the edits of a group; another group may have a command of the same name.
+fn forms(group: usize) -> impl Iterator<Item = CommandForm> {
+    let all = edits::entries().iter().filter_map(|entry| entry.command);
+    all.filter(move |form| match GROUPS.get(group) {
+        Some(name) => form.group == *name,
+        None => DAILY.contains(&(form.name, form.group)),
+    })
 }
 
 /// Its command, with the help of the edit and the options that say which rig.
@@ -40,15 +60,9 @@ fn command(form: &CommandForm) -> clap::Command {
     both.long_about(long.or(about).unwrap_or_default())
 }
 
-impl Subcommand for EditCommand {
+impl<const GROUP: usize> Subcommand for EditCommand<GROUP> {
     fn augment_subcommands(parent: clap::Command) -> clap::Command {
-        let group = parent.get_name().to_owned();
-        let is_group = forms().any(|form| form.group == group);
-        let has = |form: &CommandForm| match is_group {
-            true => form.group == group,
-            false => DAILY.contains(&(form.name, form.group)),
-        };
-        parent.subcommands(forms().filter(has).map(|form| command(&form)))
+        parent.subcommands(forms(GROUP).map(|form| command(&form)))
     }
 
     fn augment_subcommands_for_update(parent: clap::Command) -> clap::Command {
@@ -56,15 +70,15 @@ impl Subcommand for EditCommand {
     }
 
     fn has_subcommand(name: &str) -> bool {
-        forms().any(|form| form.name == name)
+        forms(GROUP).any(|form| form.name == name)
     }
 }
 
-impl FromArgMatches for EditCommand {
+impl<const GROUP: usize> FromArgMatches for EditCommand<GROUP> {
     fn from_arg_matches(matches: &clap::ArgMatches) -> Result<Self, clap::Error> {
         let missing = || clap::Error::new(ErrorKind::MissingSubcommand);
         let (name, options) = matches.subcommand().ok_or_else(missing)?;
-        let form = forms().find(|form| form.name == name);
+        let form = forms(GROUP).find(|form| form.name == name);
         Ok(Self {
             edit: (form.ok_or_else(missing)?.read)(options)?,
             target: Target::from_arg_matches(options)?,
@@ -81,7 +95,7 @@ impl FromArgMatches for EditCommand {
 ///
 /// # Errors
 /// A [`UserError`] with the refusal of the painting, where no rig runs, and for a file that cannot be read.
-pub fn run(command: &EditCommand) -> Result<i32, UserError> {
+pub fn run<const GROUP: usize>(command: &EditCommand<GROUP>) -> Result<i32, UserError> {
     let mut edit = command.edit.clone();
     let known = edits::read(&edit)?;
     known.check_idle()?;

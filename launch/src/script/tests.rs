@@ -351,11 +351,11 @@ fn what_would_do_nothing_is_refused() {
         ("{ undo = 0 }", &["does nothing", "leave it out"]),
         (
             "{ mode = \"sponge\", flow = 3 }",
-            &["flow does nothing", "sponge", "marker"],
+            &["flow has no effect", "sponge", "marker"],
         ),
         (
             "{ mode = \"sampler\", most_um = 3 }",
-            &["most_um does nothing", "sampler"],
+            &["most_um has no effect", "sampler"],
         ),
         (
             "{ tooth = \"linen\", width_mm = 30 }",
@@ -368,7 +368,7 @@ fn what_would_do_nothing_is_refused() {
         ("{ light = {} }", &["changes nothing"]),
         (
             "{ light = { rule = \"reference\", samples = 8 } }",
-            &["samples does nothing"],
+            &["samples has no effect"],
         ),
         (
             "{ take = \"x\", loads = [] }",

@@ -5,14 +5,14 @@ mod light;
 use clap::Subcommand;
 use maulstick_rig::UserError;
 
-use crate::commands::edit::{self, EditCommand};
+use crate::commands::edit::{self, CanvasEdit};
 
 /// Commands of `maulstick canvas`.
 #[derive(Clone, Debug, Subcommand)]
 pub enum CanvasCommand {
     /// An edit
     #[command(flatten)]
-    Edit(EditCommand),
+    Edit(CanvasEdit),
     /// Show or change the light
     Light(light::LightOptions),
 }

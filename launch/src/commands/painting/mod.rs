@@ -21,7 +21,7 @@ pub(super) use timelapse::no_record;
 use clap::Subcommand;
 use maulstick_rig::UserError;
 
-use crate::commands::edit::{self, EditCommand};
+use crate::commands::edit::{self, PaintingEdit};
 
 /// Subcommands of `maulstick painting`.
 #[derive(Subcommand, Clone, Debug)]
@@ -36,7 +36,7 @@ pub enum PaintingCommand {
     Snapshot(snapshot::SnapshotOptions),
     /// An edit
     #[command(flatten)]
-    Edit(EditCommand),
+    Edit(PaintingEdit),
     /// Show what a painting holds
     Info(info::InfoOptions),
     /// Export a painting: PNG, OpenEXR, OpenRaster, height map, STL, glTF

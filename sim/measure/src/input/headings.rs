@@ -178,7 +178,7 @@ mod tests {
         );
         assert_eq!(
             error("\"a,b\",500"),
-            "line 1, column 1 (a,b): the name 'a,b' has one of = , \" in it, as mixtures are written with"
+            "line 1, column 1 (a,b): the name 'a,b' has one of = , \" in it, with which mixtures are written"
         );
         assert_eq!(
             error("sample,500,600,700"),

@@ -93,7 +93,7 @@ fn a_unit_of_time_is_guessed_only_where_it_is_safe() {
         let [note] = imported.notes.as_slice() else {
             panic!("{step}: {:?}", imported.notes);
         };
-        assert!(note.contains(&format!("in {unit}:")), "{note}");
+        assert!(note.contains(&format!("{unit}: samples")), "{note}");
         let period = imported.take.samples[1].time_ns;
         assert!(
             (5_000_000..20_000_000).contains(&period),
